@@ -1,0 +1,56 @@
+//! The domain: periodic or open along each axis.
+
+use nalgebra::Vector2;
+
+/// Where particles may be and which axes close on themselves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// Lower corner of the period \[m\]; of no meaning on open axes.
+    pub low: Vector2<f64>,
+    /// Period along x and y \[m\], `None` on an open axis.
+    pub period: [Option<f64>; 2],
+}
+
+impl Domain {
+    /// Open along both axes.
+    pub fn open() -> Self {
+        Self { low: Vector2::zeros(), period: [None, None] }
+    }
+
+    /// Periodic along x from 0, open along y: a channel section.
+    pub fn channel(length: f64) -> Self {
+        Self { low: Vector2::zeros(), period: [Some(length), None] }
+    }
+
+    /// Periodic along both axes from the origin.
+    pub fn torus(length: f64, height: f64) -> Self {
+        Self { low: Vector2::zeros(), period: [Some(length), Some(height)] }
+    }
+
+    /// The same point inside the period. A point already inside keeps its bits.
+    pub fn wrap(&self, mut point: Vector2<f64>) -> Vector2<f64> {
+        for axis in 0..2 {
+            if let Some(period) = self.period[axis] {
+                let turns = ((point[axis] - self.low[axis]) / period).floor();
+                if turns != 0.0 {
+                    point[axis] -= turns * period;
+                }
+            }
+        }
+        point
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrapping_is_by_whole_periods_along_periodic_axes_only() {
+        let domain = Domain::channel(2.0);
+        assert_eq!(domain.wrap(Vector2::new(-0.5, -9.0)), Vector2::new(1.5, -9.0));
+        assert_eq!(domain.wrap(Vector2::new(5.25, 9.0)), Vector2::new(1.25, 9.0));
+        assert_eq!(domain.wrap(Vector2::new(2.0, 0.0)), Vector2::new(0.0, 0.0));
+        assert_eq!(Domain::open().wrap(Vector2::new(7.0, 7.0)), Vector2::new(7.0, 7.0));
+    }
+}

@@ -1,0 +1,564 @@
+//! Neighbour rows: particles sorted by cell, rows of column indices padded to whole lanes, kept for
+//! as long as no particle has moved by half the skin.
+//!
+//! Column c < n is particle c; then come images (periodic copies, ghosts), and last the sentinel
+//! that pads rows. Two particles farther apart than support + skin when the rows were built, each
+//! having moved by at most skin/2 since, are still outside each other's support: the criterion is
+//! exact, for images too, since a shift or a mirror moves an image as far as its source.
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+
+use crate::{
+    domain::Domain,
+    walls::{Map, PlaneWall},
+};
+
+/// Neighbours handled at once.
+pub(crate) const LANES: usize = 4;
+/// Rows a unit of parallel work; fixed, so that nothing depends on the number of threads.
+pub(crate) const BLOCK: usize = 512;
+
+/// An extra column: which particle it copies, and by which map.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Image {
+    pub source: u32,
+    pub map: u32,
+}
+
+/// The rows of up to [`BLOCK`] particles.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Block {
+    /// Row k is `chunks[starts[k]..starts[k + 1]]`.
+    starts: Vec<u32>,
+    chunks: Vec<[u32; LANES]>,
+    /// Scratch: the neighbours of one row.
+    found: Vec<u32>,
+    /// Neighbours without padding.
+    pub pairs: u64,
+}
+
+impl Block {
+    /// The neighbours of the k-th row of the block.
+    #[inline(always)]
+    pub fn row(&self, k: usize) -> &[[u32; LANES]] {
+        &self.chunks[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+
+    fn bytes(&self) -> usize {
+        (self.starts.capacity() + self.found.capacity()) * size_of::<u32>()
+            + self.chunks.capacity() * size_of::<[u32; LANES]>()
+    }
+}
+
+/// A grid of cells no smaller than the list radius.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    low: Vector2<f64>,
+    inverse: Vector2<f64>,
+    cells: [usize; 2],
+}
+
+impl Grid {
+    /// Covers the points; at most about two cells a point, however far apart they are.
+    fn new(points: &[Vector2<f64>], radius: f64) -> Self {
+        let low = points.iter().fold(points[0], |a, p| a.inf(p));
+        let size = points.iter().fold(points[0], |a, p| a.sup(p)) - low;
+        let most = (2 * points.len() + 16) as f64;
+        let mut cell = Vector2::repeat(radius);
+        while (size.x / cell.x + 1.0) * (size.y / cell.y + 1.0) > most {
+            // Coarsen along the axis with more cells: few particles far apart, or a long thin set.
+            let axis = usize::from(size.y / cell.y > size.x / cell.x);
+            cell[axis] *= 2.0;
+        }
+        let cells = [0, 1].map(|a| (size[a] / cell[a]) as usize + 1);
+        Self { low, inverse: cell.map(|c| 1.0 / c), cells }
+    }
+
+    #[inline(always)]
+    fn cell(&self, point: Vector2<f64>) -> [usize; 2] {
+        let q = (point - self.low).component_mul(&self.inverse);
+        // A float below 0 becomes 0; the upper bound guards against the last bit.
+        [(q.x as usize).min(self.cells[0] - 1), (q.y as usize).min(self.cells[1] - 1)]
+    }
+
+    #[inline(always)]
+    fn index(&self, point: Vector2<f64>) -> usize {
+        let [x, y] = self.cell(point);
+        y * self.cells[0] + x
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    x: f64,
+    y: f64,
+    column: u32,
+}
+
+/// The neighbour rows of a scene and what is needed to rebuild them without allocating.
+#[derive(Debug)]
+pub(crate) struct Neighbours {
+    radius: f64,
+    pub maps: Vec<Map>,
+    pub images: Vec<Image>,
+    pub rows: Vec<Block>,
+    pub wall_rows: Vec<Block>,
+    /// Where the particles were when the rows were built.
+    pub built_at: Vec<Vector2<f64>>,
+    points: Vec<Vector2<f64>>,
+    cell_starts: Vec<u32>,
+    candidates: Vec<Candidate>,
+}
+
+impl Neighbours {
+    /// Rows that reach `radius` = support + skin \[m\], empty until built.
+    pub fn new(radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> Self {
+        let mut maps = vec![Map::identity()];
+        maps.extend(mirrors.iter().map(Map::mirror));
+        for axis in 0..2 {
+            if let Some(period) = domain.period[axis] {
+                let shift = if axis == 0 { Vector2::x() } else { Vector2::y() } * period;
+                let shifted = maps.clone();
+                maps.extend(shifted.iter().map(|m| m.shifted(shift)));
+                maps.extend(shifted.iter().map(|m| m.shifted(-shift)));
+            }
+        }
+        Self {
+            radius,
+            maps,
+            images: Vec::new(),
+            rows: Vec::new(),
+            wall_rows: Vec::new(),
+            built_at: Vec::new(),
+            points: Vec::new(),
+            cell_starts: Vec::new(),
+            candidates: Vec::new(),
+        }
+    }
+
+    /// Neighbours of all rows, without padding.
+    pub fn pairs(&self) -> u64 {
+        self.rows.iter().chain(&self.wall_rows).map(|b| b.pairs).sum()
+    }
+
+    /// Memory held \[bytes\].
+    pub fn bytes(&self) -> usize {
+        self.rows.iter().chain(&self.wall_rows).map(Block::bytes).sum::<usize>()
+            + self.images.capacity() * size_of::<Image>()
+            + (self.built_at.capacity() + self.points.capacity()) * size_of::<Vector2<f64>>()
+            + self.cell_starts.capacity() * size_of::<u32>()
+            + self.candidates.capacity() * size_of::<Candidate>()
+    }
+
+    /// Takes note of where the particles are, for [`Neighbours::order`] or [`Neighbours::build`].
+    pub fn place(&mut self, positions: impl Iterator<Item = Vector2<f64>>) {
+        self.points.clear();
+        self.points.extend(positions);
+    }
+
+    /// The order that sorts the placed particles by cell, and inside a cell by place: the same for
+    /// any order that they came in.
+    pub fn order(&self, order: &mut Vec<u32>) {
+        let grid = Grid::new(&self.points, self.radius);
+        order.clear();
+        order.extend(0..self.points.len() as u32);
+        let place = |&k: &u32| {
+            let p = self.points[k as usize];
+            (grid.index(p), p)
+        };
+        order.sort_unstable_by(|a, b| {
+            let ((cell_a, a), (cell_b, b)) = (place(a), place(b));
+            cell_a.cmp(&cell_b).then(a.y.total_cmp(&b.y)).then(a.x.total_cmp(&b.x))
+        });
+    }
+
+    /// Builds the rows of the first `fluid` placed particles and of the `wall` ones after them.
+    pub fn build(
+        &mut self,
+        domain: &Domain,
+        mirrors: &[PlaneWall],
+        [fluid, wall]: [usize; 2],
+        parallel: bool,
+    ) {
+        self.built_at.clear();
+        self.built_at.extend_from_slice(&self.points);
+        self.make_images(domain, mirrors);
+        let grid = Grid::new(&self.points, self.radius);
+        self.sort_into_cells(&grid);
+        let Self { rows, wall_rows, points, cell_starts, candidates, radius, .. } = self;
+        let search = Search { grid, points, cell_starts, candidates, radius2: *radius * *radius };
+        search.fill_blocks(rows, 0, fluid, parallel);
+        search.fill_blocks(wall_rows, fluid, wall, parallel);
+    }
+
+    /// Appends the images within reach: ghosts of particles near a wall, then periodic copies of
+    /// all of these. The maps are numbered as [`Neighbours::new`] composes them.
+    fn make_images(&mut self, domain: &Domain, mirrors: &[PlaneWall]) {
+        self.images.clear();
+        let real = self.points.len();
+        for source in 0..real {
+            for (m, wall) in mirrors.iter().enumerate() {
+                let depth = (self.points[source] - wall.point).dot(&wall.normal);
+                if depth.abs() < self.radius {
+                    self.add_image(source as u32, 1 + m as u32);
+                }
+            }
+        }
+        let mut maps_so_far = 1 + mirrors.len() as u32;
+        for axis in 0..2 {
+            let Some(period) = domain.period[axis] else { continue };
+            let along = || self.points[..real].iter().map(|p| p[axis]);
+            let (low, high) = (along().fold(f64::MAX, f64::min), along().fold(f64::MIN, f64::max));
+            for k in 0..self.points.len() {
+                let (source, map) = if k < real {
+                    (k as u32, 0)
+                } else {
+                    (self.images[k - real].source, self.images[k - real].map)
+                };
+                let x = self.points[k][axis];
+                if x + period < high + self.radius {
+                    self.add_image(source, map + maps_so_far);
+                }
+                if x - period > low - self.radius {
+                    self.add_image(source, map + 2 * maps_so_far);
+                }
+            }
+            maps_so_far *= 3;
+        }
+    }
+
+    fn add_image(&mut self, source: u32, map: u32) {
+        let place = self.maps[map as usize].place(self.points[source as usize]);
+        self.images.push(Image { source, map });
+        self.points.push(place);
+    }
+
+    /// Counting sort of all columns by cell, stable.
+    fn sort_into_cells(&mut self, grid: &Grid) {
+        let starts = &mut self.cell_starts;
+        starts.clear();
+        starts.resize(grid.cells[0] * grid.cells[1] + 1, 0);
+        for &p in &self.points {
+            starts[grid.index(p) + 1] += 1;
+        }
+        for cell in 1..starts.len() {
+            starts[cell] += starts[cell - 1];
+        }
+        self.candidates.clear();
+        self.candidates.resize(self.points.len(), Candidate { x: 0.0, y: 0.0, column: 0 });
+        for (column, &p) in self.points.iter().enumerate() {
+            let slot = &mut starts[grid.index(p)];
+            self.candidates[*slot as usize] = Candidate { x: p.x, y: p.y, column: column as u32 };
+            *slot += 1;
+        }
+        // Each entry now holds the end of its cell, the start of the next one.
+        starts.rotate_right(1);
+        starts[0] = 0;
+    }
+}
+
+/// What building rows reads.
+struct Search<'a> {
+    grid: Grid,
+    points: &'a [Vector2<f64>],
+    cell_starts: &'a [u32],
+    candidates: &'a [Candidate],
+    radius2: f64,
+}
+
+impl Search<'_> {
+    fn fill_blocks(&self, blocks: &mut Vec<Block>, first: usize, count: usize, parallel: bool) {
+        blocks.resize_with(count.div_ceil(BLOCK), Block::default);
+        let fill = |(b, block): (usize, &mut Block)| {
+            let start = first + b * BLOCK;
+            self.fill_block(block, start..(start + BLOCK).min(first + count));
+        };
+        if parallel {
+            blocks.par_iter_mut().enumerate().for_each(fill);
+        } else {
+            blocks.iter_mut().enumerate().for_each(fill);
+        }
+    }
+
+    fn fill_block(&self, block: &mut Block, rows: std::ops::Range<usize>) {
+        block.starts.clear();
+        block.starts.push(0);
+        block.chunks.clear();
+        block.pairs = 0;
+        let mut found = std::mem::take(&mut block.found);
+        for i in rows {
+            let count = self.find(&mut found, i);
+            let sentinel = self.points.len() as u32;
+            found.resize(found.len().max(count + LANES), sentinel);
+            found[count..count + LANES].fill(sentinel);
+            let (chunks, _) = found[..count.next_multiple_of(LANES)].as_chunks();
+            block.chunks.extend_from_slice(chunks);
+            block.starts.push(block.chunks.len() as u32);
+            block.pairs += count as u64;
+        }
+        block.found = found;
+    }
+
+    /// Neighbours of particle i in the order of cells, then of columns; never itself.
+    fn find(&self, found: &mut Vec<u32>, i: usize) -> usize {
+        let own = self.points[i];
+        let [cx, cy] = self.grid.cell(own);
+        let mut count = 0;
+        let xs = cx.saturating_sub(1)..(cx + 2).min(self.grid.cells[0]);
+        for y in cy.saturating_sub(1)..(cy + 2).min(self.grid.cells[1]) {
+            let run = self.cell_starts[y * self.grid.cells[0] + xs.start] as usize
+                ..self.cell_starts[y * self.grid.cells[0] + xs.end] as usize;
+            found.resize(found.len().max(count + run.len()), 0);
+            for candidate in &self.candidates[run] {
+                let (dx, dy) = (candidate.x - own.x, candidate.y - own.y);
+                let near = (dx * dx + dy * dy < self.radius2) & (candidate.column as usize != i);
+                // Always written, kept if near: no branch to mispredict.
+                found[count] = candidate.column;
+                count += usize::from(near);
+            }
+        }
+        count
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Splitmix64: the same points on every machine.
+    struct Random(u64);
+
+    impl Random {
+        fn unit(&mut self) -> f64 {
+            self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+            let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        }
+
+        fn point(&mut self, size: [f64; 2]) -> Vector2<f64> {
+            Vector2::new(self.unit() * size[0], self.unit() * size[1])
+        }
+    }
+
+    /// What a row lists: which particle, and where it or its image is.
+    type Seen = (u32, Vector2<f64>);
+
+    fn horizontal(y: f64, up: f64) -> PlaneWall {
+        PlaneWall::new(Vector2::new(0.0, y), Vector2::new(0.0, up), Vector2::zeros())
+    }
+
+    /// All that particle i can see within `radius`, by trying every image. Shifts of two periods
+    /// are tried as well, to find out that one is enough.
+    fn brute_force(
+        points: &[Vector2<f64>],
+        i: usize,
+        radius: f64,
+        domain: &Domain,
+        mirrors: &[PlaneWall],
+    ) -> Vec<Seen> {
+        let shifts = |axis: usize| match domain.period[axis] {
+            Some(period) => (-2..=2).map(|k| f64::from(k) * period).collect(),
+            None => vec![0.0],
+        };
+        let mut seen = Vec::new();
+        for (j, &point) in points.iter().enumerate() {
+            let mirrored =
+                mirrors.iter().map(|w| point - w.normal * (2.0 * (point - w.point).dot(&w.normal)));
+            for (m, place) in std::iter::once(point).chain(mirrored).enumerate() {
+                for (sx, sy) in
+                    shifts(0).into_iter().flat_map(|x| shifts(1).into_iter().map(move |y| (x, y)))
+                {
+                    let own = m == 0 && j == i && sx == 0.0 && sy == 0.0;
+                    let place = place + Vector2::new(sx, sy);
+                    if !own && (place - points[i]).norm() < radius {
+                        seen.push((j as u32, place));
+                    }
+                }
+            }
+        }
+        seen
+    }
+
+    fn listed(neighbours: &Neighbours, points: &[Vector2<f64>], i: usize) -> Vec<Seen> {
+        let (n, images) = (points.len() as u32, &neighbours.images);
+        let sentinel = n + images.len() as u32;
+        let row = neighbours.rows[i / BLOCK].row(i % BLOCK).iter().flatten();
+        row.filter(|&&c| c != sentinel)
+            .map(|&c| match c.checked_sub(n) {
+                None => (c, points[c as usize]),
+                Some(k) => {
+                    let Image { source, map } = images[k as usize];
+                    (source, neighbours.maps[map as usize].place(points[source as usize]))
+                }
+            })
+            .collect()
+    }
+
+    /// Whether each entry of one list is in the other, as often.
+    fn same(mut a: Vec<Seen>, mut b: Vec<Seen>, tolerance: f64) -> bool {
+        let by_source_then_place = |p: &Seen, q: &Seen| {
+            let key = |s: &Seen| (s.0, (s.1 / (1e3 * tolerance)).map(|x| x.round() as i64));
+            let (p, q) = (key(p), key(q));
+            (p.0, p.1.x, p.1.y).cmp(&(q.0, q.1.x, q.1.y))
+        };
+        a.sort_by(by_source_then_place);
+        b.sort_by(by_source_then_place);
+        let close = |(p, q): (&Seen, &Seen)| p.0 == q.0 && (p.1 - q.1).amax() < tolerance;
+        a.len() == b.len() && a.iter().zip(&b).all(close)
+    }
+
+    fn check(points: &[Vector2<f64>], radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> u64 {
+        let mut neighbours = Neighbours::new(radius, domain, mirrors);
+        let n = points.len();
+        neighbours.place(points.iter().copied());
+        neighbours.build(domain, mirrors, [n, 0], false);
+        let mut pairs = 0;
+        for i in 0..n {
+            let expected = brute_force(points, i, radius, domain, mirrors);
+            pairs += expected.len() as u64;
+            let found = listed(&neighbours, points, i);
+            let wanted = expected.len();
+            assert!(same(found, expected, 1e-9), "row {i} of {n}: {wanted} neighbours expected");
+        }
+        assert_eq!(neighbours.pairs(), pairs, "padding is not counted");
+        // The parallel path builds the same rows in the same order.
+        let mut parallel = Neighbours::new(radius, domain, mirrors);
+        parallel.place(points.iter().copied());
+        parallel.build(domain, mirrors, [n, 0], true);
+        for (a, b) in neighbours.rows.iter().zip(&parallel.rows) {
+            assert_eq!((&a.starts, &a.chunks), (&b.starts, &b.chunks));
+        }
+        pairs
+    }
+
+    #[test]
+    fn rows_of_random_points_are_those_of_brute_force_in_every_kind_of_domain() {
+        let walls = [horizontal(0.0, 1.0), horizontal(3.0, -1.0)];
+        let slanted = PlaneWall::new(Vector2::zeros(), Vector2::new(0.6, 0.8), Vector2::zeros());
+        let corner = PlaneWall::new(Vector2::zeros(), Vector2::new(1.0, 0.0), Vector2::zeros());
+        let shifted = Domain { low: Vector2::new(-1.0, 7.0), ..Domain::torus(4.0, 3.0) };
+        for seed in 0..2 {
+            let mut random = Random(seed);
+            let points: Vec<_> = (0..520).map(|_| random.point([4.0, 3.0])).collect();
+            for radius in [0.05, 0.31, 0.9] {
+                check(&points, radius, &Domain::open(), &[]);
+                check(&points, radius, &Domain::channel(4.0), &[]);
+                check(&points, radius, &Domain::torus(4.0, 3.0), &[]);
+                check(&points, radius, &Domain::channel(4.0), &walls);
+                check(&points, radius, &Domain::open(), &[slanted]);
+                check(&points, radius, &Domain::open(), &[walls[0], corner]);
+                let wrapped: Vec<_> = points.iter().map(|p| shifted.wrap(*p)).collect();
+                check(&wrapped, radius, &shifted, &[]);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_see_across_a_period_of_just_two_radii_and_past_its_edges() {
+        let mut random = Random(9);
+        let domain = Domain::torus(2.0, 2.0);
+        // Between two wraps particles may stand outside of the period by a few displacements.
+        let outside = Vector2::repeat(0.2);
+        let points: Vec<_> = (0..150).map(|_| random.point([2.4, 2.4]) - outside).collect();
+        check(&points, 1.0, &domain, &[]);
+    }
+
+    #[test]
+    fn rows_of_awkward_sets_are_those_of_brute_force() {
+        let mut random = Random(3);
+        let open = Domain::open();
+        let mut clustered: Vec<_> = (0..400).map(|_| random.point([1e-3, 1e-3])).collect();
+        clustered.extend((0..200).map(|_| random.point([50.0, 50.0])));
+        check(&clustered, 0.3, &open, &[]);
+        let along = |axis: usize| {
+            move |k: i32| {
+                let mut point = Vector2::repeat(-3.0);
+                point[axis] += 0.7 * f64::from(k);
+                point
+            }
+        };
+        for axis in 0..2 {
+            let line: Vec<_> = (0..700).map(along(axis)).collect();
+            assert_eq!(check(&line, 1.5, &open, &[]), 4 * 700 - 6);
+        }
+        let one = [Vector2::new(0.5, 0.1)];
+        assert_eq!(check(&one, 0.4, &open, &[]), 0);
+        assert_eq!(check(&one, 0.4, &Domain::torus(0.8, 0.8), &[]), 0);
+        // Its own ghost is its only neighbour.
+        assert_eq!(check(&one, 0.4, &open, &[horizontal(0.0, 1.0)]), 1);
+        let apart = [Vector2::zeros(), Vector2::new(1e6, -1e6)];
+        assert_eq!(check(&apart, 2.0, &open, &[]), 0);
+        let coincident = [Vector2::repeat(0.3); 9];
+        assert_eq!(check(&coincident, 0.1, &Domain::torus(1.0, 1.0), &[]), 72);
+    }
+
+    /// True pairs, within `support`, that rows kept over random moves do not list. Rows are rebuilt
+    /// when a particle has moved by more than `share` of the skin.
+    fn lost(share: f64, builds: &mut u32) -> usize {
+        let (support, skin) = (0.4, 0.08);
+        let domain = Domain::channel(3.0);
+        let mirrors = [horizontal(0.0, 1.0), horizontal(2.0, -1.0)];
+        let mut random = Random(77);
+        let mut points: Vec<_> = (0..200).map(|_| random.point([3.0, 2.0])).collect();
+        let mut neighbours = Neighbours::new(support + skin, &domain, &mirrors);
+        let mut lost = 0;
+        let n = points.len();
+        neighbours.place(points.iter().copied());
+        neighbours.build(&domain, &mirrors, [n, 0], false);
+        for _ in 0..60 {
+            for point in &mut points {
+                *point += (random.point([1.0, 1.0]) - Vector2::repeat(0.5)) * 0.03;
+                point.y = point.y.clamp(0.0, 2.0);
+            }
+            let moved = points.iter().zip(&neighbours.built_at).map(|(p, b)| (p - b).norm());
+            if moved.fold(0.0, f64::max) > share * skin {
+                neighbours.place(points.iter().copied());
+                neighbours.build(&domain, &mirrors, [n, 0], false);
+                *builds += 1;
+            }
+            for i in 0..n {
+                let found = listed(&neighbours, &points, i);
+                lost += brute_force(&points, i, support, &domain, &mirrors)
+                    .iter()
+                    .filter(|e| !found.iter().any(|f| f.0 == e.0 && (f.1 - e.1).amax() < 1e-9))
+                    .count();
+            }
+        }
+        lost
+    }
+
+    #[test]
+    fn rows_kept_while_nothing_moved_by_half_the_skin_lose_no_pair() {
+        let mut builds = 0;
+        assert_eq!(lost(0.5, &mut builds), 0);
+        assert!(
+            (5..40).contains(&builds),
+            "rows are kept and rebuilt: {builds} builds in 60 moves"
+        );
+    }
+
+    #[test]
+    fn rows_kept_for_ten_times_too_long_lose_pairs() {
+        assert!(lost(5.0, &mut 0) > 0);
+    }
+
+    #[test]
+    fn the_cell_order_does_not_depend_on_the_order_the_particles_came_in() {
+        let mut random = Random(5);
+        let mut points: Vec<_> = (0..300).map(|_| random.point([2.0, 5.0])).collect();
+        let sorted = |points: &[Vector2<f64>]| {
+            let mut order = Vec::new();
+            let mut neighbours = Neighbours::new(0.3, &Domain::open(), &[]);
+            neighbours.place(points.iter().copied());
+            neighbours.order(&mut order);
+            order.iter().map(|&k| points[k as usize]).collect::<Vec<_>>()
+        };
+        let first = sorted(&points);
+        for k in (1..points.len()).rev() {
+            points.swap(k, (random.unit() * (k + 1) as f64) as usize);
+        }
+        assert_eq!(sorted(&points), first);
+    }
+}

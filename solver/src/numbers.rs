@@ -1,0 +1,130 @@
+//! [`Numbers`]: a fixed set of numbers that a term keeps a particle, liftable to lanes.
+//!
+//! What a particle shows its neighbours, what a row sums and what a term integrates are all such
+//! sets: `()`, one number, a vector, three numbers, or tuples of these. `()` takes no memory and
+//! no time, which is how a scene leaves out what it does not need.
+
+use nalgebra::Vector2;
+
+use crate::lane::{Lane, gather_vector};
+
+/// A fixed set of numbers.
+pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 'static {
+    /// The same set with a lane in place of each number.
+    type In<V: Lane>: Copy;
+
+    /// One set a neighbour, side by side.
+    fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Self::In<V>;
+    /// The same set for every neighbour.
+    fn spread<V: Lane>(self) -> Self::In<V>;
+    /// The sum over the neighbours, in a fixed order.
+    fn total<V: Lane>(lanes: Self::In<V>) -> Self;
+    /// self + dt rate.
+    fn advanced(self, dt: f64, rate: Self) -> Self;
+    /// Whether every number is finite.
+    fn is_finite(&self) -> bool;
+}
+
+impl Numbers for () {
+    type In<V: Lane> = ();
+
+    #[inline(always)]
+    fn gather<V: Lane>(_: impl Fn(usize) -> Self) {}
+    #[inline(always)]
+    fn spread<V: Lane>(self) {}
+    #[inline(always)]
+    fn total<V: Lane>(_: ()) {}
+    #[inline(always)]
+    fn advanced(self, _: f64, _: Self) {}
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        true
+    }
+}
+
+impl Numbers for f64 {
+    type In<V: Lane> = V;
+
+    #[inline(always)]
+    fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> V {
+        V::gather(read)
+    }
+    #[inline(always)]
+    fn spread<V: Lane>(self) -> V {
+        V::all(self)
+    }
+    #[inline(always)]
+    fn total<V: Lane>(lanes: V) -> Self {
+        lanes.total()
+    }
+    #[inline(always)]
+    fn advanced(self, dt: f64, rate: Self) -> Self {
+        self + dt * rate
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        f64::is_finite(*self)
+    }
+}
+
+impl Numbers for Vector2<f64> {
+    type In<V: Lane> = Vector2<V>;
+
+    #[inline(always)]
+    fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Vector2<V> {
+        gather_vector(read)
+    }
+    #[inline(always)]
+    fn spread<V: Lane>(self) -> Vector2<V> {
+        Vector2::new(V::all(self.x), V::all(self.y))
+    }
+    #[inline(always)]
+    fn total<V: Lane>(lanes: Vector2<V>) -> Self {
+        Vector2::new(lanes.x.total(), lanes.y.total())
+    }
+    #[inline(always)]
+    fn advanced(self, dt: f64, rate: Self) -> Self {
+        self + rate * dt
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.x.is_finite() && self.y.is_finite()
+    }
+}
+
+/// Implements [`Numbers`] for a tuple, member by member.
+macro_rules! tuple_of_numbers {
+    ($($member:ident $index:tt),+) => {
+        impl<$($member: Numbers),+> Numbers for ($($member,)+) {
+            type In<V: Lane> = ($($member::In<V>,)+);
+
+            #[inline(always)]
+            fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Self::In<V> {
+                ($($member::gather(|k| read(k).$index),)+)
+            }
+            #[inline(always)]
+            fn spread<V: Lane>(self) -> Self::In<V> {
+                ($(self.$index.spread(),)+)
+            }
+            #[inline(always)]
+            fn total<V: Lane>(lanes: Self::In<V>) -> Self {
+                ($($member::total::<V>(lanes.$index),)+)
+            }
+            #[inline(always)]
+            fn advanced(self, dt: f64, rate: Self) -> Self {
+                ($(self.$index.advanced(dt, rate.$index),)+)
+            }
+            #[inline(always)]
+            fn is_finite(&self) -> bool {
+                $(self.$index.is_finite())&&+
+            }
+        }
+    };
+}
+
+tuple_of_numbers!(A 0);
+tuple_of_numbers!(A 0, B 1);
+tuple_of_numbers!(A 0, B 1, C 2);
+tuple_of_numbers!(A 0, B 1, C 2, D 3);
+tuple_of_numbers!(A 0, B 1, C 2, D 3, E 4);
+tuple_of_numbers!(A 0, B 1, C 2, D 3, E 4, F 5);

@@ -1,0 +1,172 @@
+//! Particle data in three kinds: fixed, evolved, and the column that a row reads.
+//!
+//! The integrator sees [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
+//! laid out for the row loop: for a fluid it is one cache line.
+
+use nalgebra::Vector2;
+
+use crate::{lane::Lane, numbers::Numbers};
+
+/// What a particle stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Moves by the equations of the scene.
+    Fluid,
+    /// Behind a wall: stands still, its density follows the walls' own terms.
+    Wall,
+    /// On a wall: stands still, density and pressure frozen.
+    Interface,
+}
+
+/// One particle as a scene is given it and as it is read back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Particle<X = ()> {
+    /// Role in the scene.
+    pub role: Role,
+    /// Position \[m\].
+    pub position: Vector2<f64>,
+    /// Velocity \[m/s\]; of a wall particle, the wall's.
+    pub velocity: Vector2<f64>,
+    /// Density \[kg/m³\].
+    pub density: f64,
+    /// Mass per unit depth \[kg/m\].
+    pub mass: f64,
+    /// What the terms integrate beyond these.
+    pub extra: X,
+}
+
+impl<X: Numbers> Particle<X> {
+    /// A fluid particle.
+    pub fn fluid(
+        position: Vector2<f64>,
+        velocity: Vector2<f64>,
+        density: f64,
+        volume: f64,
+    ) -> Self {
+        let (mass, extra) = (density * volume, X::default());
+        Self { role: Role::Fluid, position, velocity, density, mass, extra }
+    }
+
+    /// The same particle in another role.
+    pub fn with_role(self, role: Role) -> Self {
+        Self { role, ..self }
+    }
+}
+
+/// What never changes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fixed {
+    pub mass: f64,
+    pub id: u32,
+}
+
+/// What the integrator advances: `X` is what terms integrate of their own, `()` for a fluid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evolved<X> {
+    /// Position \[m\].
+    pub position: Vector2<f64>,
+    /// Velocity \[m/s\].
+    pub velocity: Vector2<f64>,
+    /// Density \[kg/m³\].
+    pub density: f64,
+    /// Fields of the terms' own.
+    pub extra: X,
+}
+
+const _: () = assert!(size_of::<Evolved<()>>() == 40, "a fluid evolves x, v and rho only");
+
+/// d/dt of [`Evolved`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rate<X> {
+    /// dx/dt \[m/s\].
+    pub position: Vector2<f64>,
+    /// dv/dt \[m/s²\].
+    pub velocity: Vector2<f64>,
+    /// dρ/dt \[kg/m³/s\].
+    pub density: f64,
+    /// d/dt of the terms' own fields.
+    pub extra: X,
+}
+
+impl<X: Numbers> Evolved<X> {
+    /// The velocity alone advanced by dt.
+    #[inline(always)]
+    pub fn kick(&mut self, dt: f64, rate: &Rate<X>) {
+        self.velocity += rate.velocity * dt;
+    }
+
+    /// Everything but the velocity advanced by dt.
+    #[inline(always)]
+    pub fn drift(&mut self, dt: f64, rate: &Rate<X>) {
+        self.position += rate.position * dt;
+        self.density += dt * rate.density;
+        self.extra = self.extra.advanced(dt, rate.extra);
+    }
+
+    /// All of it advanced by dt.
+    #[inline(always)]
+    pub fn advanced(mut self, dt: f64, rate: &Rate<X>) -> Self {
+        self.drift(dt, rate);
+        self.kick(dt, rate);
+        self
+    }
+
+    /// The first field that no simulation may reach: not finite, or a density not above 0.
+    pub(crate) fn fault(&self) -> Option<&'static str> {
+        match self {
+            Self { position, .. } if !position.is_finite() => Some("position"),
+            Self { velocity, .. } if !velocity.is_finite() => Some("velocity"),
+            Self { density, .. } if !(density.is_finite() && *density > 0.0) => Some("density"),
+            Self { extra, .. } if !extra.is_finite() => Some("extra"),
+            _ => None,
+        }
+    }
+}
+
+/// What every term may ask of a particle, `V` per neighbour or `f64` for one.
+#[derive(Clone, Copy, Debug)]
+pub struct Common<V> {
+    /// Mass per unit depth \[kg/m\].
+    pub mass: V,
+    /// Density \[kg/m³\].
+    pub density: V,
+    /// Volume m/ρ per unit depth \[m²\].
+    pub volume: V,
+}
+
+impl Common<f64> {
+    /// The same particle for every neighbour.
+    #[inline(always)]
+    pub fn spread<V: Lane>(self) -> Common<V> {
+        Common {
+            mass: V::all(self.mass),
+            density: V::all(self.density),
+            volume: V::all(self.volume),
+        }
+    }
+}
+
+/// A particle as rows see it; `S` is what the terms have it show.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct Column<S> {
+    /// Position \[m\].
+    pub position: Vector2<f64>,
+    /// Velocity \[m/s\].
+    pub velocity: Vector2<f64>,
+    /// Mass, density, volume.
+    pub common: Common<f64>,
+    /// Derived numbers that terms ask for.
+    pub shows: S,
+}
+
+const _: () = assert!(size_of::<Column<f64>>() == 64, "a fluid column is one cache line");
+
+impl<S: Numbers> Column<S> {
+    /// Pads rows to whole lanes: so far away that every kernel is 0, and without mass or volume.
+    pub(crate) fn sentinel() -> Self {
+        let common = Common { mass: 0.0, density: 1.0, volume: 0.0 };
+        let far = Vector2::new(1e100, 1e100);
+        Self { position: far, velocity: Vector2::zeros(), common, shows: S::default() }
+    }
+}

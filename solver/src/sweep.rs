@@ -1,0 +1,108 @@
+//! The row loop, the only hot code: each row sums its neighbours in a fixed order and hands the
+//! rates of its particle to the integrator. Gather only: no locks, no atomics, and the same bits
+//! for any number of threads.
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+use simba::simd::WideF64x4;
+
+use crate::{
+    kernel::{Kernel, Smoothing},
+    lane::{Lane, gather_vector},
+    neighbours::{BLOCK, Block, LANES},
+    numbers::Numbers,
+    particles::{Column, Common, Evolved, Rate},
+    terms::{Pair, Term},
+};
+
+type Wide = WideF64x4;
+
+/// What becomes of a row: the index of its particle, the particle, and its rates.
+pub trait Update<X>: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {}
+impl<X, F: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync> Update<X> for F {}
+
+/// What a sweep reads: the columns, the terms, and where in a column the terms' numbers are.
+pub(crate) struct Sweep<'a, K, T, S, P> {
+    pub kernel: &'a Smoothing<K>,
+    pub terms: &'a T,
+    pub columns: &'a [Column<S>],
+    /// From what a column shows to what these terms read.
+    pub project: P,
+    /// Whether the particles move: dx/dt = v, to which terms may add.
+    pub moving: bool,
+}
+
+impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
+    /// Updates `targets`, the particles from column `first` on, row by row.
+    pub fn run<X: Numbers>(
+        &self,
+        blocks: &[Block],
+        first: usize,
+        targets: &mut [Evolved<X>],
+        parallel: bool,
+        update: impl Update<X>,
+    ) where
+        T: Term<X>,
+        P: Fn(&S) -> T::Shows + Sync,
+    {
+        let run = |(b, (block, targets)): (usize, (&Block, &mut [Evolved<X>]))| {
+            self.block(block, first + b * BLOCK, targets, &update);
+        };
+        if parallel {
+            blocks.par_iter().zip(targets.par_chunks_mut(BLOCK)).enumerate().for_each(run);
+        } else {
+            blocks.iter().zip(targets.chunks_mut(BLOCK)).enumerate().for_each(run);
+        }
+    }
+
+    /// One block of rows. Not inlined: its share of a profile is the share of the row loop.
+    #[inline(never)]
+    fn block<X: Numbers>(
+        &self,
+        block: &Block,
+        first: usize,
+        targets: &mut [Evolved<X>],
+        update: &impl Update<X>,
+    ) where
+        T: Term<X>,
+        P: Fn(&S) -> T::Shows,
+    {
+        for (k, target) in targets.iter_mut().enumerate() {
+            let rate = self.row(&self.columns[first + k], block.row(k));
+            update(first + k, target, &rate);
+        }
+    }
+
+    /// The rates of one particle.
+    #[inline(always)]
+    fn row<X: Numbers>(&self, own: &Column<S>, neighbours: &[[u32; LANES]]) -> Rate<X>
+    where
+        T: Term<X>,
+        P: Fn(&S) -> T::Shows,
+    {
+        let position = own.position.spread::<Wide>();
+        let velocity = own.velocity.spread::<Wide>();
+        let common = own.common.spread::<Wide>();
+        let own_shows = (self.project)(&own.shows).spread::<Wide>();
+        let mut sum = T::Sum::default().spread::<Wide>();
+        for chunk in neighbours {
+            let others = chunk.map(|c| &self.columns[c as usize]);
+            let other = Common {
+                mass: Wide::gather(|k| others[k].common.mass),
+                density: Wide::gather(|k| others[k].common.density),
+                volume: Wide::gather(|k| others[k].common.volume),
+            };
+            let r = position - gather_vector::<Wide>(|k| others[k].position);
+            let v = velocity - gather_vector::<Wide>(|k| others[k].velocity);
+            let shows = T::Shows::gather::<Wide>(|k| (self.project)(&others[k].shows));
+            let r2 = r.x * r.x + r.y * r.y;
+            let f = self.kernel.f(r2);
+            let pair = Pair { r, r2, v, f, own: common, other, kernel: self.kernel };
+            self.terms.pair(&pair, own_shows, shows, &mut sum);
+        }
+        let position = if self.moving { own.velocity } else { Vector2::zeros() };
+        let mut rate = Rate { position, ..Rate::default() };
+        self.terms.finish(&own.common, T::Sum::total::<Wide>(sum), &mut rate);
+        rate
+    }
+}

@@ -1,0 +1,60 @@
+use super::Pair;
+use crate::{kernel::Kernel, lane::Lane, numbers::Numbers};
+
+/// What [`super::Pressure`] adds to the pair pressure where p < 0: nothing, or an artificial stress.
+pub trait Tensile: Copy + Send + Sync + 'static {
+    /// What a particle shows.
+    type Shows: Numbers;
+    /// From p/ρ² of a particle.
+    fn shows(&self, pressure_over_density_squared: f64) -> Self::Shows;
+    /// Rᵢⱼ φᵢⱼⁿ, in the unit of p/ρ².
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: <Self::Shows as Numbers>::In<V>,
+        other: <Self::Shows as Numbers>::In<V>,
+    ) -> V;
+}
+
+impl Tensile for () {
+    type Shows = ();
+    #[inline(always)]
+    fn shows(&self, _: f64) {}
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: ()) -> V {
+        V::nil()
+    }
+}
+
+/// (18) φᵢⱼ = W(dᵢⱼ)/W(⁰r), (19) Rᵢ = ξ |pᵢ|/ρᵢ² where pᵢ < 0, else 0, Rᵢⱼ = Rᵢ + Rⱼ (Monaghan 2000).
+#[derive(Clone, Copy, Debug)]
+pub struct ArtificialStress {
+    /// Strength ξ \[-\]; 0.3 in the seed.
+    pub xi: f64,
+    /// Exponent n; 4 (inferred).
+    pub n: u32,
+    /// 1/W(⁰r) at the initial spacing ⁰r \[m²\].
+    pub inverse_w: f64,
+}
+
+impl ArtificialStress {
+    /// Strength ξ, exponent n, and W at the initial spacing \[1/m²\].
+    pub fn new(xi: f64, n: u32, w_at_spacing: f64) -> Self {
+        Self { xi, n, inverse_w: 1.0 / w_at_spacing }
+    }
+}
+
+impl Tensile for ArtificialStress {
+    type Shows = f64;
+
+    #[inline(always)]
+    fn shows(&self, p: f64) -> f64 {
+        self.xi * (-p).max(0.0)
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, own: V, other: V) -> V {
+        let phi = pair.w() * V::all(self.inverse_w);
+        (0..self.n).fold(own + other, |product, _| product * phi)
+    }
+}

@@ -1,0 +1,30 @@
+use super::{Pair, Term};
+use crate::{
+    kernel::Kernel,
+    lane::Lane,
+    particles::{Common, Rate},
+};
+
+/// (3) dρᵢ/dt = Σⱼ mⱼ vᵢⱼ · ∇ᵢWᵢⱼ \[kg/m³/s\].
+///
+/// Exactly the time derivative of the density sum Σⱼ mⱼ Wᵢⱼ, so free surfaces need no special code.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Continuity;
+
+impl<X> Term<X> for Continuity {
+    type Shows = ();
+    type Sum = f64;
+
+    #[inline(always)]
+    fn shows(&self, _: &Common<f64>, _: &X) {}
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut V) {
+        *sum += pair.other.mass * pair.f * pair.v.dot(&pair.r);
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, sum: f64, rate: &mut Rate<X>) {
+        rate.density -= sum;
+    }
+}

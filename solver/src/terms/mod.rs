@@ -1,0 +1,239 @@
+//! Terms: the pair sums of the equations, one file each.
+//!
+//! A term is written once, generic over the lane. A physics is a tuple of terms: `()` is nothing
+//! and costs nothing, and a term that is not in the tuple is not in the program. The row loop in
+//! `sweep.rs` knows nothing but this trait.
+
+mod artificial_stress;
+mod artificial_viscosity;
+mod body_force;
+mod continuity;
+mod density_diffusion;
+mod pressure;
+mod shifting;
+mod viscosity;
+mod xsph;
+
+pub use artificial_stress::{ArtificialStress, Tensile};
+pub use artificial_viscosity::{Always, Approaching, ArtificialViscosity, Switch};
+pub use body_force::BodyForce;
+pub use continuity::Continuity;
+pub use density_diffusion::DensityDiffusion;
+pub use pressure::Pressure;
+pub use shifting::Shifting;
+pub use viscosity::Viscosity;
+pub use xsph::Xsph;
+
+use nalgebra::Vector2;
+
+use crate::{
+    kernel::{Kernel, Smoothing},
+    lane::Lane,
+    numbers::Numbers,
+    particles::{Common, Rate},
+};
+
+/// A particle i and its neighbours j, one a lane.
+pub struct Pair<'k, V, K> {
+    /// rᵢⱼ = rᵢ − rⱼ \[m\].
+    pub r: Vector2<V>,
+    /// |rᵢⱼ|² \[m²\].
+    pub r2: V,
+    /// vᵢⱼ = vᵢ − vⱼ \[m/s\].
+    pub v: Vector2<V>,
+    /// F(|rᵢⱼ|), so that ∇ᵢWᵢⱼ = −F rᵢⱼ \[1/m⁴\].
+    pub f: V,
+    /// The particle i.
+    pub own: Common<V>,
+    /// The neighbours j.
+    pub other: Common<V>,
+    /// The kernel, for terms that need W itself.
+    pub kernel: &'k Smoothing<K>,
+}
+
+impl<V: Lane, K: Kernel> Pair<'_, V, K> {
+    /// W(|rᵢⱼ|) \[1/m²\].
+    #[inline(always)]
+    pub fn w(&self) -> V {
+        self.kernel.w(self.r2)
+    }
+}
+
+/// One term of the equations. `X` is what a particle integrates beyond x, v and ρ.
+pub trait Term<X>: Clone + Send + Sync + 'static {
+    /// Derived numbers of a particle that its neighbours read.
+    type Shows: Numbers;
+    /// What a row sums over its neighbours.
+    type Sum: Numbers;
+    /// Whether [`Term::prepare`] wants the largest speed.
+    const NEEDS_SPEED: bool = false;
+
+    /// Told the largest speed of the scene \[m/s\] before each step, if it wants it.
+    fn prepare(&mut self, _max_speed: f64) {}
+    /// What a particle shows.
+    fn shows(&self, own: &Common<f64>, extra: &X) -> Self::Shows;
+    /// Adds the neighbours of one pair to the sum.
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: <Self::Shows as Numbers>::In<V>,
+        other: <Self::Shows as Numbers>::In<V>,
+        sum: &mut <Self::Sum as Numbers>::In<V>,
+    );
+    /// Turns the sum into rates.
+    fn finish(&self, own: &Common<f64>, sum: Self::Sum, rate: &mut Rate<X>);
+}
+
+impl<X> Term<X> for () {
+    type Shows = ();
+    type Sum = ();
+
+    #[inline(always)]
+    fn shows(&self, _: &Common<f64>, _: &X) {}
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: (), _: &mut ()) {}
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, _: (), _: &mut Rate<X>) {}
+}
+
+/// Implements [`Term`] for a tuple: each member in turn, in the order of the equation.
+macro_rules! tuple_of_terms {
+    ($($member:ident $index:tt),+) => {
+        impl<X, $($member: Term<X>),+> Term<X> for ($($member,)+) {
+            type Shows = ($($member::Shows,)+);
+            type Sum = ($($member::Sum,)+);
+            const NEEDS_SPEED: bool = $($member::NEEDS_SPEED)||+;
+
+            fn prepare(&mut self, max_speed: f64) {
+                $(self.$index.prepare(max_speed);)+
+            }
+            #[inline(always)]
+            fn shows(&self, own: &Common<f64>, extra: &X) -> Self::Shows {
+                ($(self.$index.shows(own, extra),)+)
+            }
+            #[inline(always)]
+            fn pair<V: Lane, K: Kernel>(
+                &self,
+                pair: &Pair<V, K>,
+                own: <Self::Shows as Numbers>::In<V>,
+                other: <Self::Shows as Numbers>::In<V>,
+                sum: &mut <Self::Sum as Numbers>::In<V>,
+            ) {
+                $(self.$index.pair(pair, own.$index, other.$index, &mut sum.$index);)+
+            }
+            #[inline(always)]
+            fn finish(&self, own: &Common<f64>, sum: Self::Sum, rate: &mut Rate<X>) {
+                $(self.$index.finish(own, sum.$index, rate);)+
+            }
+        }
+    };
+}
+
+tuple_of_terms!(A 0);
+tuple_of_terms!(A 0, B 1);
+tuple_of_terms!(A 0, B 1, C 2);
+tuple_of_terms!(A 0, B 1, C 2, D 3);
+tuple_of_terms!(A 0, B 1, C 2, D 3, E 4);
+tuple_of_terms!(A 0, B 1, C 2, D 3, E 4, F 5);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2};
+    use simba::simd::{SimdValue, WideF64x4};
+
+    /// Four neighbours, number k of field f; the last one is at the same place as the particle.
+    fn number(field: usize, k: usize) -> f64 {
+        let x = ((7 * field + 3 * k + 1) as f64 * 0.618_033_988_749_895).fract();
+        match field {
+            0 | 1 if k == 3 => 0.0,
+            0..4 => x - 0.5,
+            _ => 0.7 + 0.6 * x,
+        }
+    }
+
+    fn pair<V: Lane, K: Kernel>(
+        kernel: &Smoothing<K>,
+        read: impl Fn(usize) -> V,
+    ) -> Pair<'_, V, K> {
+        let r = Vector2::new(read(0), read(1));
+        let r2 = r.x * r.x + r.y * r.y;
+        let common = |first| {
+            let (mass, density) = (read(first), read(first + 1));
+            Common { mass, density, volume: mass / density }
+        };
+        let v = Vector2::new(read(2), read(3));
+        Pair { r, r2, v, f: kernel.f(r2), own: common(4), other: common(6), kernel }
+    }
+
+    /// The sum of one pair, for a term that shows two numbers or fewer.
+    fn sum<V: Lane, K: Kernel, T: Term<()>>(
+        term: &T,
+        pair: &Pair<V, K>,
+        shows: impl Fn(&Common<V>) -> <T::Shows as Numbers>::In<V>,
+    ) -> <T::Sum as Numbers>::In<V> {
+        let mut sum = T::Sum::default().spread::<V>();
+        term.pair(pair, shows(&pair.own), shows(&pair.other), &mut sum);
+        sum
+    }
+
+    /// Each lane of four neighbours at once has the bits of that neighbour alone.
+    fn check<K: Kernel, T: Term<()>, const N: usize>(
+        term: T,
+        read_wide: impl Fn(<T::Sum as Numbers>::In<WideF64x4>) -> [WideF64x4; N],
+        read: impl Fn(<T::Sum as Numbers>::In<f64>) -> [f64; N],
+    ) {
+        let kernel = Smoothing::<K>::new(0.35);
+        let at = |k: usize, mass: f64, density: f64| {
+            let common = Common { mass, density, volume: mass / density };
+            assert!(k < 4);
+            term.shows(&common, &())
+        };
+        let wide = pair(&kernel, |field| WideF64x4::gather(|k| number(field, k)));
+        let four = read_wide(sum(&term, &wide, |c| {
+            T::Shows::gather::<WideF64x4>(|k| at(k, c.mass.extract(k), c.density.extract(k)))
+        }));
+        let mut nonzero = 0;
+        for k in 0..4 {
+            let one = pair(&kernel, |field| number(field, k));
+            let alone =
+                read(sum(&term, &one, |c| T::Shows::gather::<f64>(|_| at(k, c.mass, c.density))));
+            for (four, alone) in four.iter().zip(alone) {
+                let lane = four.extract(k);
+                let term = std::any::type_name::<T>();
+                assert!(lane == alone && alone.is_finite(), "{term}: {lane:e} {alone:e}");
+                nonzero += u32::from(alone != 0.0);
+            }
+        }
+        assert!(nonzero > 0, "zeros show nothing");
+    }
+
+    fn check_vector<K: Kernel>(term: impl Term<(), Sum = Vector2<f64>>) {
+        check::<K, _, 2>(term, |s| [s.x, s.y], |s| [s.x, s.y]);
+    }
+
+    fn check_number<K: Kernel>(term: impl Term<(), Sum = f64>) {
+        check::<K, _, 1>(term, |s| [s], |s| [s]);
+    }
+
+    fn check_every_term<K: Kernel>() {
+        let eos = Tait { background: 0.2, ..Tait::new(1.0, 3.0) };
+        let (eta2, w) = (1e-4, 2.0);
+        check_vector::<K>(Pressure::new(eos));
+        check_vector::<K>(Pressure::with_stress(eos, ArtificialStress::new(0.3, 4, w)));
+        check_vector::<K>(Viscosity { mu: 0.3, eta2 });
+        check_vector::<K>(ArtificialViscosity::<_, Approaching>::new(0.3, 0.7, 0.35, eos));
+        check_vector::<K>(ArtificialViscosity::<_, Always>::new(0.3, 0.7, 0.35, eos));
+        check_vector::<K>(Xsph { epsilon: 0.5 });
+        check_vector::<K>(Shifting::new(0.5, 0.35, w));
+        check_number::<K>(Continuity);
+        check_number::<K>(DensityDiffusion { diffusivity: 0.1 });
+    }
+
+    #[test]
+    fn four_lanes_have_the_bits_of_four_scalars() {
+        check_every_term::<CubicSpline>();
+        check_every_term::<QuinticSpline>();
+        check_every_term::<WendlandC2>();
+    }
+}

@@ -1,0 +1,65 @@
+use nalgebra::Vector2;
+
+use super::{ArtificialStress, Pair, Tensile, Term};
+use crate::{
+    eos::EquationOfState,
+    kernel::Kernel,
+    lane::Lane,
+    numbers::Numbers,
+    particles::{Common, Rate},
+};
+
+/// (5) Pᵢ = −Σⱼ mⱼ (pᵢ/ρᵢ² + pⱼ/ρⱼ²) ∇ᵢWᵢⱼ \[m/s²\], and (14) with R ≠ ().
+///
+/// The form with p/ρ² is the one whose work balances the compression energy of (3) exactly.
+/// `R` is the artificial stress (18), (19), which acts only through this term.
+#[derive(Clone, Copy, Debug)]
+pub struct Pressure<E, R = ()> {
+    /// Equation of state p(ρ).
+    pub eos: E,
+    /// `()` or [`ArtificialStress`].
+    pub tensile: R,
+}
+
+impl<E> Pressure<E> {
+    /// The pressure term (5) without artificial stress.
+    pub fn new(eos: E) -> Self {
+        Self { eos, tensile: () }
+    }
+}
+
+impl<E> Pressure<E, ArtificialStress> {
+    /// The pressure term of (14) with artificial stress.
+    pub fn with_stress(eos: E, tensile: ArtificialStress) -> Self {
+        Self { eos, tensile }
+    }
+}
+
+impl<X, E: EquationOfState, R: Tensile> Term<X> for Pressure<E, R> {
+    /// p/ρ² \[m⁵/(kg s²)\] and what the artificial stress shows.
+    type Shows = (f64, R::Shows);
+    type Sum = Vector2<f64>;
+
+    #[inline(always)]
+    fn shows(&self, own: &Common<f64>, _: &X) -> Self::Shows {
+        let p = self.eos.pressure(own.density) / (own.density * own.density);
+        (p, self.tensile.shows(p))
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: <Self::Shows as Numbers>::In<V>,
+        other: <Self::Shows as Numbers>::In<V>,
+        sum: &mut Vector2<V>,
+    ) {
+        let stress = own.0 + other.0 + self.tensile.pair(pair, own.1, other.1);
+        *sum += pair.r * (pair.other.mass * pair.f * stress);
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, sum: Self::Sum, rate: &mut Rate<X>) {
+        rate.velocity += sum;
+    }
+}

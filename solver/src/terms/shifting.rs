@@ -1,0 +1,55 @@
+use nalgebra::Vector2;
+
+use super::{Pair, Term};
+use crate::{
+    kernel::Kernel,
+    lane::Lane,
+    particles::{Common, Rate},
+};
+
+/// Particle shifting: drᵢ/dt −= A v_max h Σⱼ Vⱼ \[1 + 0.2 (Wᵢⱼ/W(⁰r))⁴\] ∇ᵢWᵢⱼ \[m/s\].
+///
+/// A correction between steps: it moves particles from where they crowd to where they are missing,
+/// and changes no velocity and no density (Lind et al. 2012; the bracket, Monaghan 2000, keeps pairs
+/// apart). A particle of a perfect lattice feels nothing. It is summed in the drift sweep, so that it
+/// costs no traversal of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Shifting {
+    amplitude: f64,
+    h: f64,
+    inverse_w: f64,
+    max_speed: f64,
+}
+
+impl Shifting {
+    /// Amplitude A \[-\] (0.5 by default elsewhere), h \[m\], and W at the initial spacing \[1/m²\].
+    pub fn new(amplitude: f64, h: f64, w_at_spacing: f64) -> Self {
+        Self { amplitude, h, inverse_w: 1.0 / w_at_spacing, max_speed: 0.0 }
+    }
+}
+
+impl<X> Term<X> for Shifting {
+    type Shows = ();
+    type Sum = Vector2<f64>;
+    const NEEDS_SPEED: bool = true;
+
+    fn prepare(&mut self, max_speed: f64) {
+        self.max_speed = max_speed;
+    }
+
+    #[inline(always)]
+    fn shows(&self, _: &Common<f64>, _: &X) {}
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
+        let phi = pair.w() * V::all(self.inverse_w);
+        let phi2 = phi * phi;
+        let bracket = V::all(1.0) + V::all(0.2) * phi2 * phi2;
+        *sum += pair.r * (pair.other.volume * pair.f * bracket);
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, sum: Vector2<f64>, rate: &mut Rate<X>) {
+        rate.position += sum * (self.amplitude * self.max_speed * self.h);
+    }
+}
