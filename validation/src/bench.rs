@@ -1,0 +1,234 @@
+//! Scenes for measuring speed, shared by the benches and by `touchstone doctor --bench`.
+//!
+//! The scene is a torus of particles on a square lattice in a slow shear, cubic spline with
+//! h/dx = 1.2, so 20 neighbours within the support; continuity, pressure and Morris viscosity. Steps
+//! are so short that rows are never rebuilt: what is measured is the right-hand side. Building rows
+//! is measured by [`Rebuilding`], an integrator that does nothing else.
+
+use std::time::Instant;
+
+use nalgebra::Vector2;
+use solver::{
+    Compose, Continuity, CubicSpline, DensityDiffusion, Domain, Engine, Euler, Evolved, Fault,
+    Ghosts, Integrator, Leapfrog, Open, Particle, PredictorCorrector, Pressure, QuinticSpline,
+    Scene, SceneError, Scheme, Shifting, Simulation, Tait, Viscosity, lattice,
+};
+
+use crate::{
+    case::RunError,
+    cases::channel::{self, ChannelSettings, Flow, Ingredient, Setup, Stepping},
+};
+
+/// The scheme whose right-hand side is measured.
+pub type Fluid<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
+
+/// Particles along a side of the square scenes: about 10³, 10⁴, 10⁵ and 10⁶ in all.
+pub const SIDES: [usize; 4] = [32, 100, 316, 1000];
+
+/// A step that moves nothing far \[s\].
+pub const SHORT: f64 = 1e-9;
+
+/// `side` × `side` particles on a unit torus; serial unless `parallel`, and then from the usual
+/// number of particles on.
+pub fn scene<I: Integrator<()>>(side: usize, parallel: bool) -> Scene<Fluid<I>> {
+    let dx = 1.0 / side as f64;
+    let h = 1.2 * dx;
+    let wave = |y: f64| 0.01 * (std::f64::consts::TAU * y).sin();
+    let particles = lattice(Vector2::repeat(0.5 * dx), dx, side, side)
+        .map(|x| Particle::fluid(x, Vector2::new(wave(x.y), wave(x.x + 0.25)), 1000.0, dx * dx))
+        .collect();
+    let forces =
+        (Pressure::new(Tait::new(1000.0, 10.0)), Viscosity { mu: 1.0, eta2: 0.01 * h * h });
+    let mut scene = Scene::new(h, Domain::torus(1.0, 1.0), particles, forces, Continuity, Open);
+    if !parallel {
+        scene.parallel_from = usize::MAX;
+    }
+    scene
+}
+
+/// Distance that makes rows stale in a scene of that many particles a side: a third of h.
+pub fn stale_distance(side: usize) -> f64 {
+    0.4 / side as f64
+}
+
+/// Moves all particles to and fro and starts a step: sorts them and builds their rows. The "time
+/// step" is the distance, which must be more than half a skin.
+#[derive(Debug, Default)]
+pub struct Rebuilding {
+    is_away: bool,
+}
+
+impl Integrator<()> for Rebuilding {
+    const NAME: &'static str = "rebuilding";
+    const ORDER: [u32; 2] = [0, 0];
+
+    fn step<S: Scheme<Extra = ()>>(
+        &mut self,
+        engine: &mut Engine<S>,
+        state: &mut [Evolved<()>],
+        dt: f64,
+    ) -> Result<(), Fault> {
+        self.is_away = !self.is_away;
+        let shift = if self.is_away { dt } else { -dt };
+        state.iter_mut().for_each(|evolved| evolved.position.x += shift);
+        engine.begin(state)
+    }
+}
+
+/// The sweeps of the integrator `I` and nothing else: no columns, no rows, no time.
+#[derive(Debug, Default)]
+pub struct Bare<I> {
+    is_begun: bool,
+    of: std::marker::PhantomData<I>,
+}
+
+impl<I: Sweeping> Integrator<()> for Bare<I> {
+    const NAME: &'static str = "bare sweeps";
+    const ORDER: [u32; 2] = [0, 0];
+
+    fn step<S: Scheme<Extra = ()>>(
+        &mut self,
+        engine: &mut Engine<S>,
+        state: &mut [Evolved<()>],
+        _dt: f64,
+    ) -> Result<(), Fault> {
+        if !self.is_begun {
+            engine.begin(state)?;
+            self.is_begun = true;
+        }
+        I::sweep(engine, state);
+        Ok(())
+    }
+}
+
+/// An integrator whose sweeps can be done without the rest of its step.
+pub trait Sweeping: Integrator<()> {
+    /// The sweeps of one step, with updates over no time.
+    fn sweep<S: Scheme<Extra = ()>>(engine: &mut Engine<S>, state: &mut [Evolved<()>]);
+}
+
+impl Sweeping for PredictorCorrector {
+    fn sweep<S: Scheme<Extra = ()>>(engine: &mut Engine<S>, state: &mut [Evolved<()>]) {
+        for _ in 0..2 {
+            engine.sweep_all(state, |_, evolved, rate| *evolved = evolved.advanced(0.0, rate));
+        }
+    }
+}
+
+impl Sweeping for Leapfrog {
+    fn sweep<S: Scheme<Extra = ()>>(engine: &mut Engine<S>, state: &mut [Evolved<()>]) {
+        engine.sweep_forces(state, |_, evolved, rate| evolved.kick(0.0, rate));
+        engine.sweep_drift(state, |_, evolved, rate| evolved.drift(0.0, rate));
+    }
+}
+
+/// Seconds a step, the best of a few batches; a machine that is busy only ever makes it longer.
+pub fn seconds_per_step<S: Scheme>(simulation: &mut Simulation<S>, dt: f64, budget: f64) -> f64 {
+    let mut batch = |steps: u64| {
+        let until = simulation.time() + steps as f64 * dt;
+        let start = Instant::now();
+        let _ = simulation.advance(until, dt, &mut ());
+        start.elapsed().as_secs_f64() / steps as f64
+    };
+    let first = batch(3); // touches the memory
+    let steps = ((budget / 4.0 / first) as u64).clamp(3, 1_000_000);
+    (0..4).map(|_| batch(steps)).fold(first, f64::min)
+}
+
+/// What one scene came to.
+#[derive(Clone, Copy, Debug)]
+pub struct Speed {
+    /// Particles.
+    pub particles: usize,
+    /// Right-hand sides of a particle a second.
+    pub rate: f64,
+    /// Neighbours in a row, those within the skin included.
+    pub neighbours: f64,
+    /// Memory a particle \[bytes\].
+    pub bytes: usize,
+    /// Particles sorted and put into rows a second.
+    pub list_rate: f64,
+}
+
+/// Measures one scene on the current pool for about `budget` seconds.
+pub fn speed(side: usize, parallel: bool, budget: f64) -> Result<Speed, SceneError> {
+    let mut simulation = scene::<Euler>(side, parallel).build()?;
+    let particles = simulation.fluid_count();
+    let rate = particles as f64 / seconds_per_step(&mut simulation, SHORT, 0.7 * budget);
+    let work = simulation.work();
+    let neighbours = work.pair_interactions as f64 / work.right_hand_sides as f64;
+    let bytes = simulation.bytes() / particles;
+    let mut simulation = scene::<Rebuilding>(side, parallel).build()?;
+    let distance = stale_distance(side);
+    let list_rate = particles as f64 / seconds_per_step(&mut simulation, distance, 0.3 * budget);
+    Ok(Speed { particles, rate, neighbours, bytes, list_rate })
+}
+
+/// Where the time of a channel run goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Share {
+    /// A whole step \[s\].
+    pub step: f64,
+    /// The row loops of a step alone \[s\].
+    pub sweeps: f64,
+}
+
+impl Share {
+    /// Share of the row loop in a step.
+    pub fn of_row_loop(&self) -> f64 {
+        self.sweeps / self.step
+    }
+}
+
+type Seed<B, I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity, B), Continuity, Ghosts, I>;
+type Stabilised = (Continuity, DensityDiffusion, Shifting);
+type Modern<B, I> = Compose<QuinticSpline, (Pressure<Tait>, Viscosity, B), Stabilised, Ghosts, I>;
+
+/// Times whole steps of the variants `seed` and `modern` of a channel flow driven by `B`, and as
+/// many bare sweeps, at so many rows, for about `budget` seconds each.
+pub fn shares<B: Ingredient>(
+    flow: Flow,
+    rows: usize,
+    budget: f64,
+) -> Result<[(&'static str, Share); 2], RunError> {
+    let variants = channel::variants::<B>();
+    let settings = |name: &str| {
+        let find = |v: &&channel::ChannelVariant| v.variant.name == name;
+        let set = [format!("rows={rows}")];
+        variants.iter().find(find).map_or_else(|| Ok(Default::default()), |v| v.settings(&set))
+    };
+    let seed = share::<Seed<B, PredictorCorrector>, Seed<B, Bare<PredictorCorrector>>>(
+        flow,
+        &settings("seed")?,
+        budget,
+    )?;
+    let modern = share::<Modern<B, Leapfrog>, Modern<B, Bare<Leapfrog>>>(
+        flow,
+        &settings("modern")?,
+        budget,
+    )?;
+    Ok([("seed", seed), ("modern", modern)])
+}
+
+fn share<S, Sweeps>(flow: Flow, settings: &ChannelSettings, budget: f64) -> Result<Share, RunError>
+where
+    S: Scheme<Extra = ()>,
+    S::Integrator: Stepping,
+    S::Forces: Ingredient,
+    S::Drift: Ingredient,
+    S::Walls: channel::Arrangement,
+    Sweeps: Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Walls: channel::Arrangement>,
+{
+    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, false)?;
+    let mut whole = channel::scene::<S>(&setup);
+    whole.parallel_from = usize::MAX;
+    let mut whole = whole.build()?;
+    let mut bare = channel::scene::<Sweeps>(&setup);
+    bare.parallel_from = usize::MAX;
+    let mut bare = bare.build()?;
+    // The flow at work, not the lattice at rest.
+    let _ = whole.advance(setup.time(0.1), setup.dt, &mut ());
+    let step = seconds_per_step(&mut whole, setup.dt, budget);
+    let sweeps = seconds_per_step(&mut bare, setup.dt, budget);
+    Ok(Share { step, sweeps })
+}

@@ -1,0 +1,568 @@
+//! What the ladders of a channel flow say together: profiles, order, work-precision, error budget.
+
+use rayon::prelude::*;
+
+use super::{
+    Flow, hypotheses,
+    plan::{LIKE_PEERS, ladder, ladder_of, levels},
+};
+use crate::{
+    case::{Case, Tier},
+    exact::{couette::Couette, poiseuille::Poiseuille},
+    gate::{Bound, Evidence, Gate},
+    record::{Profile, Record, Status},
+    reference::Reference,
+    report::{
+        Axis, Block, Cell, Colour, ColourMap, Column, Figure, Layer, Legend, ParticleMap, Plot,
+        Series, Shape, Table, percent, sig,
+    },
+    runner::Context,
+    studies::{
+        convergence::{Convergence, Label, Level, convergence},
+        work_precision::{self, Peer, Point},
+    },
+    suite::{JudgedRun, Study},
+};
+
+/// All studies of a flow.
+pub fn studies(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
+    let mut studies = vec![
+        profiles(flow, tier, runs),
+        orders(flow, tier, runs),
+        cost(case, flow, tier, runs),
+        budget(case, flow),
+        reynolds(flow, runs),
+    ];
+    if flow == Flow::Poiseuille {
+        studies.extend(hypotheses::studies(case, tier));
+    }
+    studies
+}
+
+fn name(flow: Flow) -> &'static str {
+    if flow == Flow::Couette { "couette" } else { "poiseuille" }
+}
+
+/// The run of the ladder with this variant and rows.
+fn run_of<'a>(
+    flow: Flow,
+    tier: Tier,
+    runs: &'a [JudgedRun],
+    variant: &str,
+    rows: usize,
+) -> Option<&'a Record> {
+    let k = levels(tier).iter().position(|r| *r == rows)?;
+    runs.get(ladder_of(flow, tier, variant).start + k).map(|run| &run.record)
+}
+
+fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
+    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
+}
+
+fn number(record: &Record, name: &str) -> f64 {
+    record.numerics.get(name).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
+}
+
+/// Times that fit into a figure.
+const SHOWN: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 1.0];
+/// Width of the channel that the default settings have \[m\].
+const WIDTH: f64 = 1e-3;
+
+fn profiles(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
+    let (id, best) = match flow {
+        Flow::Couette => ("couette-profiles", "plain"),
+        Flow::Poiseuille => ("poiseuille-profiles", "curved"),
+    };
+    let caption = format!(
+        "Velocity across the channel at five times, Re = 0.5, 20 rows. Lines: exact series. Symbols: \
+         SPH, mean of each row of particles. Left the seed's settings, middle the variant `{best}`, \
+         right the error of the latter in units of V."
+    );
+    let mut figure = Figure::new(id, caption).columns(3).panel_size(290.0, 290.0);
+    for variant in ["seed", best] {
+        let Some(record) = run_of(flow, tier, runs, variant, 20) else { continue };
+        figure = figure.panel(profile_panel(flow, record, variant));
+    }
+    if let Some(record) = run_of(flow, tier, runs, best, 20) {
+        figure = figure.panel(error_panel(record));
+    }
+    let mut study = Study::new(id, "Velocity profiles");
+    if let Some(record) = run_of(flow, tier, runs, "seed", 20) {
+        let walls = run_of(flow, tier, runs, "interface-wall", 20);
+        study = study.block(Block::List(verdicts(flow, record, walls)));
+    }
+    study = study.block(figure);
+    match runs.last() {
+        Some(run) if run.planned.set == ["columns=20"] => study.block(snapshot(flow, &run.record)),
+        _ => study,
+    }
+}
+
+/// H1, H2 and M4 of the paper in words.
+fn verdicts(flow: Flow, seed: &Record, walls: Option<&Record>) -> Vec<String> {
+    let worst = |record: &Record| record.metric("l2_worst").unwrap_or(f64::NAN);
+    let said = |supported: bool| if supported { "supported" } else { "refuted here" };
+    let (name, what) = match flow {
+        Flow::Couette => ("H1", "the transient profiles follow the analytic series"),
+        Flow::Poiseuille => ("H2", "the parabola follows the analytic solution"),
+    };
+    let mut list = vec![format!(
+        "**{name} {}**: {what}. Variant `seed`, 20 rows, Re 0.5: worst relative L2 error from νt/L² = \
+         0.1 on {}, of which the lattice and η² may explain 1.9 %.",
+        said(worst(seed) <= 0.02),
+        percent(worst(seed), 2)
+    )];
+    if let Some(walls) = walls {
+        list.push(format!(
+            "**M4 {}** for this flow: both wall representations work, ghosts with {} and interface and \
+             wall particles with {}.",
+            said(worst(seed) <= 0.02 && worst(walls) <= 0.02),
+            percent(worst(seed), 2),
+            percent(worst(walls), 2)
+        ));
+    }
+    list
+}
+
+fn profile_panel(flow: Flow, record: &Record, title: &str) -> Plot {
+    let v = number(record, "V [m/s]");
+    let mut plot = Plot::new(title, Axis::linear("u/V [-]"), Axis::linear("y/L [-]"));
+    for (k, tau) in SHOWN.into_iter().enumerate() {
+        let Some(profile) = record.profiles.get(&format!("u@{tau}")) else { continue };
+        let rows = column(profile, "u").iter().zip(column(profile, "y"));
+        let points = rows.map(|(u, y)| (u / v, y / WIDTH)).collect();
+        let colour = Colour::cycle(k);
+        plot = plot.layer(Series::line("", exact_line(flow, tau)).colour(colour)).layer(
+            Series::markers(format!("νt/L² = {tau}"), points)
+                .colour(colour)
+                .shape(Shape::cycle(k))
+                .open(),
+        );
+    }
+    plot.legend(Legend::Auto)
+}
+
+/// (u/V, y/L) of the exact flow from wall to wall.
+fn exact_line(flow: Flow, tau: f64) -> Vec<(f64, f64)> {
+    let (v, l, nu) = (1.0, 1.0, 1.0);
+    let velocity = |y: f64| match flow {
+        Flow::Couette => Couette { v0: v, l, nu }.velocity(y, tau),
+        Flow::Poiseuille => Poiseuille { v, l, nu }.velocity(y, tau),
+    };
+    (0..=100).map(|k| f64::from(k) / 100.0).map(|y| (velocity(y), y)).collect()
+}
+
+fn error_panel(record: &Record) -> Plot {
+    let v = number(record, "V [m/s]");
+    let mut plot = Plot::new("error", Axis::linear("(u − u_exact)/V [-]"), Axis::linear("y/L [-]"));
+    for (k, tau) in SHOWN.into_iter().enumerate() {
+        let Some(profile) = record.profiles.get(&format!("u@{tau}")) else { continue };
+        let u = column(profile, "u").iter().zip(column(profile, "u_exact"));
+        let points: Vec<(f64, f64)> =
+            u.zip(column(profile, "y")).map(|((u, e), y)| ((u - e) / v, y / WIDTH)).collect();
+        let name = format!("νt/L² = {tau}");
+        plot = plot.layer(
+            Series::line_markers(name, points).colour(Colour::cycle(k)).shape(Shape::cycle(k)),
+        );
+    }
+    plot.legend(Legend::Outside)
+}
+
+/// Particles at the end of a run, coloured by velocity and by pressure.
+fn snapshot(flow: Flow, record: &Record) -> Figure {
+    let id = format!("{}-particles", name(flow));
+    let dx = number(record, "dx [m]");
+    let caption = "Particles of the seed's run at the end, νt/L² = 1, 20 rows of 20: velocity along the \
+                   channel, and pressure, which is exactly zero in the flow. The pressure that is left \
+                   is a pattern of rows that slide past each other. The section is periodic in x.";
+    let empty = Profile::default();
+    let particles = record.profiles.get("particles").unwrap_or(&empty);
+    let map = |title: &str, field: &str, label: &str, colours| {
+        let (x, y) = (column(particles, "x"), column(particles, "y"));
+        let values = column(particles, field).iter();
+        let points = x.iter().zip(y).zip(values).map(|((x, y), v)| (*x, *y, *v)).collect();
+        let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
+        ParticleMap::new(title, axes, label, colours, points).diameter(0.9 * dx)
+    };
+    Figure::new(id, caption)
+        .columns(2)
+        .panel(map("velocity", "u", "u [m/s]", ColourMap::Sequential))
+        .panel(map("pressure", "p", "p [Pa]", ColourMap::Diverging))
+}
+
+/// The error that a flow is judged by, and its name.
+fn error_metric(flow: Flow) -> (&'static str, &'static str) {
+    match flow {
+        Flow::Couette => ("l2@0.1", "relative L2 error of u at νt/L² = 0.1 [-]"),
+        Flow::Poiseuille => ("l2@1", "relative L2 error of u at νt/L² = 1 [-]"),
+    }
+}
+
+fn orders(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
+    let (metric, label) = error_metric(flow);
+    let id = format!("{}-convergence", name(flow));
+    let mut study = Study::new(&id, "Order of accuracy");
+    let caption = format!(
+        "{label} against spacing, Re = 0.5. The order in the table is a least-squares fit over all \
+         levels; 95 % interval of Student's t."
+    );
+    let mut plot = Plot::new("", Axis::log("Δx/L [-]"), Axis::log(label));
+    let columns = vec![
+        Column::text("variant"),
+        Column::num("order ± standard error", "-"),
+        Column::text("95 % interval"),
+        Column::text("local orders, coarse to fine"),
+        Column::text("label"),
+        Column::num("finest error", "-"),
+        Column::num("fitted floor", "-"),
+    ];
+    let mut table =
+        Table::new(format!("Observed order of {metric} over the rows of the ladder."), columns);
+    for (k, variant) in ladder(flow).into_iter().enumerate() {
+        let ladder = &runs[ladder_of(flow, tier, variant)];
+        let error = |run: &JudgedRun| run.record.metric(metric).unwrap_or(f64::NAN);
+        let levels: Vec<Level> = levels(tier)
+            .iter()
+            .zip(ladder)
+            .map(|(rows, run)| Level { spacing: 1.0 / *rows as f64, value: error(run) })
+            .collect();
+        let line = levels.iter().map(|l| (l.spacing, l.value)).collect();
+        plot = plot.layer(
+            Series::line_markers(variant, line).colour(Colour::cycle(k)).shape(Shape::cycle(k)),
+        );
+        let found = convergence(&levels);
+        let finest = levels.last().map_or(f64::NAN, |l| l.value);
+        if let (Ok(c), "plain", Flow::Poiseuille) = (&found, variant, flow) {
+            let because = "mirrored walls and the kernel are second order; finer levels than the \
+                           floor of the lattice are not in the ladder";
+            let bound = Bound::Within(1.8, 2.2);
+            let gate =
+                Gate::new("poiseuille.plain.order", "order", bound, Evidence::Theory, because);
+            study = study.judge(gate, c.order);
+        }
+        table = table.row(order_row(variant, finest, found.ok().as_ref()));
+    }
+    plot = plot.layer(Layer::slope(2.0)).legend(Legend::Outside);
+    study.block(Figure::new(&id, caption).panel(plot)).block(table)
+}
+
+fn order_row(variant: &str, finest: f64, found: Option<&Convergence>) -> Vec<Cell> {
+    let Some(c) = found else {
+        let rest = (0..4).map(|_| Cell::text("–"));
+        let mut row = vec![Cell::text(format!("`{variant}`"))];
+        row.extend(rest);
+        row.extend([Cell::percent(finest, 2), Cell::text("–")]);
+        return row;
+    };
+    let local: Vec<String> = c.local_orders.iter().map(|p| sig(*p, 2)).collect();
+    let label = match c.label {
+        Label::Asymptotic => "asymptotic",
+        Label::FloorReached => "floor reached",
+        Label::NotAsymptotic => "not asymptotic",
+    };
+    vec![
+        Cell::text(format!("`{variant}`")),
+        Cell::text(format!("{} ± {}", sig(c.order, 3), sig(c.standard_error, 2))),
+        Cell::text(format!("{} … {}", sig(c.interval[0], 2), sig(c.interval[1], 2))),
+        Cell::text(local.join(", ")),
+        Cell::text(label),
+        Cell::percent(finest, 2),
+        c.floor.map_or(Cell::text("–"), |floor| Cell::percent(floor.error, 2)),
+    ]
+}
+
+/// Runs up to this many processor seconds are timed again \[s\].
+const TIMED_AGAIN_BELOW: f64 = 0.08;
+/// Timings of a run that is timed again.
+const REPETITIONS: usize = 5;
+
+fn cost(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
+    let (metric, label) = error_metric(flow);
+    let id = format!("{}-work-precision", name(flow));
+    let ladder_runs = &runs[..ladder(flow).len() * levels(tier).len()];
+    let points = timed_points(case, tier, ladder_runs, metric);
+    let caption = format!(
+        "{label} against the cost of the whole run to νt/L² = 1, Re = 0.5. Left: processor seconds of \
+         the stepping loop, median of up to {REPETITIONS} interleaved runs, bars from fastest to \
+         slowest; other codes were timed on another machine. Right: pair interactions, which no noise \
+         touches. Rows: {:?}.",
+        levels(tier)
+    );
+    let study = Study::new(&id, "Error against run time")
+        .block(work_precision::figure(&id, &caption, label, &points, &peers(flow)))
+        .block(work_precision::cheapest_table("Cheapest setting that reaches an error.", &points));
+    let like = if flow == Flow::Couette { points } else { like_peers(case, tier, runs, metric) };
+    study.block(peer_table(flow, &like))
+}
+
+/// Poiseuille flow at the peers' Reynolds number, timed.
+fn like_peers(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun], metric: &str) -> Vec<Point> {
+    let end = runs.len() - 1;
+    let like = &runs[end - LIKE_PEERS.len()..end];
+    let mut points = timed_points(case, tier, like, metric);
+    for (point, (_, _, ratio)) in points.iter_mut().zip(LIKE_PEERS) {
+        point.note = format!(", h/dx {ratio}");
+    }
+    points
+}
+
+/// Points of these runs; cheap ones are timed again one after the other, variants interleaved.
+fn timed_points(
+    case: &'static dyn Case,
+    tier: Tier,
+    runs: &[JudgedRun],
+    metric: &str,
+) -> Vec<Point> {
+    let point = |run: &JudgedRun| Point {
+        variant: run.planned.variant,
+        rows: run.record.settings.get("rows").and_then(|r| r.as_u64()).unwrap_or(0) as usize,
+        note: String::new(),
+        error: run.record.metric(metric).unwrap_or(f64::NAN),
+        seconds: vec![run.record.cost.cpu_s],
+        cost: run.record.cost.clone(),
+        status: run.record.status.clone(),
+    };
+    let mut points: Vec<Point> = runs.iter().map(point).collect();
+    let most = if tier == Tier::Full { 10.0 * TIMED_AGAIN_BELOW } else { TIMED_AGAIN_BELOW };
+    let again: Vec<usize> = (0..points.len()).filter(|&k| points[k].seconds[0] < most).collect();
+    for &k in &again {
+        points[k].seconds.clear();
+    }
+    for _ in 0..REPETITIONS {
+        for &k in &again {
+            let planned = &runs[k].planned;
+            if let Ok(record) = case.run(planned.variant, &planned.set, &Context::default()) {
+                points[k].seconds.push(record.cost.cpu_s);
+            }
+        }
+    }
+    points
+}
+
+/// Other codes' error at the nearest time, from the reference package.
+fn peers(flow: Flow) -> Vec<Peer> {
+    let read = || -> Result<Vec<Peer>, crate::reference::ReferenceError> {
+        let table = Reference::load("peers_channel")?.table("errors")?.clone();
+        let column = if flow == Flow::Couette { "error_0.1125s" } else { "error_1s" };
+        let (codes, cases) = (table.texts("code")?, table.texts("case")?);
+        let (seconds, errors) = (table.optional("seconds")?, table.optional(column)?);
+        let rows = (0..codes.len()).filter(|&k| cases[k] == name(flow));
+        Ok(rows
+            .filter_map(|k| Some((codes[k].to_string(), seconds[k]?, errors[k]? / 100.0)))
+            .collect())
+    };
+    read().unwrap_or_default()
+}
+
+/// At the error of each peer, the cheapest of ours and how many times faster it is.
+fn peer_table(flow: Flow, points: &[Point]) -> Table {
+    let columns = vec![
+        Column::text("code"),
+        Column::num("its error", "-"),
+        Column::num("its time", "s"),
+        Column::text("ours at no more error"),
+        Column::num("our error", "-"),
+        Column::num("our time", "s"),
+        Column::num("ratio", "-"),
+    ];
+    let re = if flow == Flow::Couette { "0.5" } else { "0.0125" };
+    let caption = format!(
+        "Other codes on the same work (reference `peers_channel`: Re {re}, from rest to t = 1 s = L²/ν, \
+         their times from another machine of the same class) against our cheapest setting at the same \
+         Reynolds number with no more error."
+    );
+    let mut table = Table::new(caption, columns);
+    for (code, seconds, error) in peers(flow) {
+        let mut row = vec![Cell::text(code), Cell::percent(error, 2), Cell::seconds(seconds)];
+        match work_precision::cheapest(points, error) {
+            Some(p) => row.extend([
+                Cell::text(format!("`{}`, {} rows{}", p.variant, p.rows, p.note)),
+                Cell::percent(p.error, 2),
+                Cell::seconds(p.median_seconds()),
+                Cell::num(seconds / p.median_seconds(), 2),
+            ]),
+            None => row.extend((0..4).map(|_| Cell::text("–"))),
+        }
+        table = table.row(row);
+    }
+    table
+}
+
+/// A change of one thing, what it is called, and the change that it is compared with.
+struct Change {
+    what: &'static str,
+    part: &'static str,
+    set: Vec<String>,
+    against: usize,
+}
+
+/// The error budget: the same run with one thing changed.
+fn budget(case: &'static dyn Case, flow: Flow) -> Study {
+    let id = format!("{}-error-budget", name(flow));
+    let (metric, label) = error_metric(flow);
+    let columns = vec![
+        Column::text("variant, 20 rows"),
+        Column::text("change"),
+        Column::text("part of the error"),
+        Column::num("error", "-"),
+        Column::num("change of error", "-"),
+    ];
+    let caption = format!(
+        "Error budget: {label} with one thing changed at a time. The largest fall names what to spend \
+         on; parts that cancel show as a rise."
+    );
+    let mut table = Table::new(caption, columns);
+    let mut study = Study::new(&id, "Error budget");
+    let mut findings = Vec::new();
+    for variant in ["seed", "plain", "curved"] {
+        let changes = changes(case, variant, flow);
+        let errors: Vec<f64> = changes
+            .par_iter()
+            .map(|change| {
+                let record = case.run(variant, &change.set, &Context::default());
+                record.ok().and_then(|r| r.metric(metric)).unwrap_or(f64::NAN)
+            })
+            .collect();
+        let base = errors[0];
+        for (change, error) in changes.iter().zip(&errors) {
+            table = table.row(vec![
+                Cell::text(format!("`{variant}`")),
+                Cell::text(change.what),
+                Cell::text(change.part),
+                Cell::percent(*error, 3),
+                Cell::percent(error - errors[change.against], 2),
+            ]);
+        }
+        table = table.row(series_row(case, variant, flow));
+        let single = changes.iter().zip(&errors).filter(|(change, _)| change.against == 0);
+        let smallest = single.skip(1).min_by(|a, b| a.1.total_cmp(b.1));
+        if let Some((change, error)) = smallest.filter(|(_, error)| **error < 0.9 * base) {
+            findings.push(format!(
+                "`{variant}`: {} falls most by *{}* (to {}): {}.",
+                percent(base, 2),
+                change.what,
+                percent(*error, 2),
+                change.part
+            ));
+        } else {
+            findings.push(format!(
+                "`{variant}`: no single change takes a tenth off {}.",
+                percent(base, 2)
+            ));
+        }
+    }
+    study = study.block(Block::List(findings));
+    study.block(table)
+}
+
+/// How much the exact series moves with twice the terms, in V: the part of the reference.
+fn series_row(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Cell> {
+    let tau = if flow == Flow::Couette { 0.1 } else { 1.0 };
+    let record = case.run(variant, &[], &Context::default());
+    let v = record.as_ref().map_or(f64::NAN, |record| number(record, "V [m/s]"));
+    let t = tau * WIDTH * WIDTH / 1e-6;
+    let moved = (1..20).map(|k| {
+        let y = WIDTH * f64::from(k) / 20.0;
+        let (once, twice) = match flow {
+            Flow::Couette => {
+                let exact = Couette { v0: v, l: WIDTH, nu: 1e-6 };
+                let n = exact.terms(t);
+                (exact.velocity_by_series(y, t, n), exact.velocity_by_series(y, t, 2 * n))
+            }
+            Flow::Poiseuille => {
+                let exact = Poiseuille { v, l: WIDTH, nu: 1e-6 };
+                let n = exact.terms(t);
+                (exact.velocity_by_series(y, t, n), exact.velocity_by_series(y, t, 2 * n))
+            }
+        };
+        (once - twice).abs() / v
+    });
+    vec![
+        Cell::text(format!("`{variant}`")),
+        Cell::text("twice the terms of the series"),
+        Cell::text("reference"),
+        Cell::text("–"),
+        Cell::sci(moved.fold(0.0, f64::max), 2),
+    ]
+}
+
+fn changes(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Change> {
+    let base = case.run(variant, &[], &Context::default());
+    let base = |name: &str| base.as_ref().map_or(f64::NAN, |record| number(record, name));
+    let (dt, c0) = (base("dt [s]"), base("c0 [m/s]"));
+    let change = |what, part, set: &[String]| Change { what, part, set: set.to_vec(), against: 0 };
+    let quarter = format!("dt={}", 0.25 * dt);
+    let double = format!("c0={}", 2.0 * c0);
+    let mut changes = vec![
+        change("none", "–", &[]),
+        change("dt/4", "time", std::slice::from_ref(&quarter)),
+        Change {
+            against: 1,
+            ..change("c0 × 2 and dt/4, against dt/4", "compressibility (Ma²)", &[double, quarter])
+        },
+        change("dt/2", "time", &[format!("dt={}", 0.5 * dt)]),
+        change("h/dx + 0.3", "kernel sums on the lattice", &[h_over_dx(variant)]),
+        change("eta² × 1e-3", "guard in the viscous term", &[eta(variant)]),
+        change("40 rows", "spacing: wall and kernel", &["rows=40".into()]),
+    ];
+    if flow == Flow::Poiseuille {
+        let curved = (variant != "curved").to_string();
+        changes.push(change(
+            "curvature in the ghosts on/off",
+            "wall",
+            &[format!("wall_curvature={curved}")],
+        ));
+    }
+    changes
+}
+
+fn h_over_dx(variant: &str) -> String {
+    format!("h_over_dx={}", if variant == "seed" { 1.5 } else { 1.3 })
+}
+
+fn eta(variant: &str) -> String {
+    format!("eta2_over_h2={}", if variant == "seed" { 1e-5 } else { 1e-9 })
+}
+
+/// The modern variant over the Reynolds number.
+fn reynolds(flow: Flow, runs: &[JudgedRun]) -> Study {
+    let id = format!("{}-reynolds", name(flow));
+    let columns = vec![
+        Column::num("Re", "-"),
+        Column::num("c0/V", "-"),
+        Column::num("dt/limit", "-"),
+        Column::num("νt/L² reached", "-"),
+        Column::num("worst error from νt/L² = 0.1 on", "-"),
+        Column::num("rms p", "ρV²"),
+        Column::num("rms v", "V"),
+        Column::num("steps", "1"),
+        Column::num("stepping", "s"),
+    ];
+    let caption = "Variant `modern` at 20 rows over the Reynolds number, all settings by one rule: quintic \
+                   spline, h = dx, density diffusion 0.1, shifting 0.5, no background pressure, c0 by \
+                   Morris' rule with 1 % density variation and at least 2.2 ν/h, Courant number 1 and \
+                   viscous number 0.4.";
+    let mut table = Table::new(caption, columns);
+    for run in runs.iter().filter(|run| run.planned.variant == "modern") {
+        let record = &run.record;
+        let metric = |name: &str| record.metric(name).unwrap_or(f64::NAN);
+        let set = |key: &str| record.settings.get(key).and_then(|v| v.as_f64()).unwrap_or(f64::NAN);
+        let reached = match record.status {
+            Status::Completed => set("end"),
+            Status::Diverged { time, .. } | Status::Interrupted { time, .. } => time,
+            Status::Refused { .. } => 0.0,
+        };
+        table = table.row(vec![
+            Cell::num(set("re"), 4),
+            Cell::num(number(record, "c0/V"), 3),
+            Cell::num(number(record, "dt/limit"), 2),
+            Cell::num(reached, 3),
+            Cell::percent(metric("l2_worst"), 2),
+            Cell::sci(metric("p_rms"), 2),
+            Cell::sci(metric("v_rms"), 2),
+            Cell::count(record.cost.steps),
+            Cell::seconds(record.cost.cpu_s),
+        ]);
+    }
+    Study::new(&id, "One rule for every Reynolds number").block(table)
+}

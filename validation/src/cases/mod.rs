@@ -1,0 +1,34 @@
+//! The benchmarks, one file each, and their list.
+
+pub mod acoustic_wave;
+pub mod channel;
+mod couette;
+mod poiseuille;
+pub mod shear_wave;
+pub mod wave;
+
+use crate::{
+    case::{Case, RunError},
+    settings::nearest,
+};
+
+/// Every case.
+pub const CASES: &[&dyn Case] = &[
+    &couette::COUETTE,
+    &poiseuille::POISEUILLE,
+    &acoustic_wave::ACOUSTIC_WAVE,
+    &shear_wave::SHEAR_WAVE,
+];
+
+/// The case of that name.
+pub fn find(name: &str) -> Result<&'static dyn Case, RunError> {
+    find_in(CASES, name)
+}
+
+/// The case of that name among these.
+pub fn find_in(cases: &[&'static dyn Case], name: &str) -> Result<&'static dyn Case, RunError> {
+    cases.iter().copied().find(|case| case.name() == name).ok_or_else(|| {
+        let known: Vec<_> = cases.iter().map(|case| case.name()).collect();
+        RunError::Case { name: name.into(), nearest: nearest(&known, name), known }
+    })
+}

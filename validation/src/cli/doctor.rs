@@ -1,0 +1,177 @@
+//! `doctor`: what this program is, and whether it works here.
+
+use std::time::Instant;
+
+use solver::BodyForce;
+use validation::bench;
+use validation::cases::{self, channel::Flow};
+use validation::files::OutputFolder;
+use validation::manifest::{Known, Manifest};
+use validation::reference::Reference;
+use validation::report;
+use validation::runner::Context;
+
+use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
+
+pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
+    let manifest = Manifest::of_this_process(rayon::current_num_threads());
+    output::print(&about(&manifest))?;
+    let mut is_sound = true;
+    for (what, check) in [
+        ("references", references as fn(&arguments::Doctor, &World) -> Result<String, String>),
+        ("writing", writing),
+        ("self-check", self_check),
+    ] {
+        let (mark, words) = match check(arguments, world) {
+            Ok(words) => ("ok  ", words),
+            Err(words) => {
+                is_sound &= what == "writing"; // a folder of yours is no bug of ours
+                ("FAIL", words)
+            }
+        };
+        output::print(&format!("{what:<11} {mark} {words}\n"))?;
+        if world.is_interrupted() {
+            return Err(Failure::interrupted("the checks are not complete"));
+        }
+    }
+    if !is_sound {
+        return Err(Failure::bug(anyhow::anyhow!("a check of doctor failed, see above")));
+    }
+    if arguments.bench {
+        bench(world)?;
+    }
+    Ok(Exit::Pass)
+}
+
+fn about(manifest: &Manifest) -> String {
+    let Manifest { touchstone, commit, rustc, profile, opt_level, target, .. } = manifest;
+    let dirty = match manifest.dirty {
+        Known::Yes => ", with changes that are not committed",
+        Known::No => "",
+        Known::Unknown => ", perhaps with changes",
+    };
+    let advice = if profile == "release" { "" } else { " (cargo build --release is faster)" };
+    let rows: [(&str, String); 6] = [
+        ("touchstone", format!("{touchstone}, commit {commit}{dirty}")),
+        ("compiler", rustc.clone()),
+        ("build", format!("{profile}, opt-level {opt_level}{advice}")),
+        ("target", format!("{target}, {}", manifest.features.join(" "))),
+        ("processor", manifest.cpu.clone()),
+        ("threads", format!("{} of {} cores", manifest.threads, manifest.cores)),
+    ];
+    let words = |words: &str| output::wrap(words, 100, "            ").trim_start().to_string();
+    rows.iter().map(|(head, text)| format!("{head:<12}{}", words(text))).collect()
+}
+
+/// Every embedded reference, read and checked against its hash.
+fn references(_: &arguments::Doctor, _: &World) -> Result<String, String> {
+    let mut texts = Vec::new();
+    for name in Reference::names() {
+        let reference = Reference::load(name).map_err(|error| error.to_string())?;
+        for resource in &reference.package.resources {
+            texts.push(format!("\n                 {name}/{} {}", resource.path, resource.hash));
+        }
+    }
+    Ok(format!("{} tables as described{}", texts.len(), texts.concat()))
+}
+
+fn writing(arguments: &arguments::Doctor, _: &World) -> Result<String, String> {
+    let is_new = !arguments.out.exists();
+    let folder = OutputFolder::create(&arguments.out).map_err(|error| error.to_string())?;
+    if is_new {
+        let _ = std::fs::remove_dir(folder.path()); // refused unless empty
+    }
+    Ok(format!("into {}", folder.path().display()))
+}
+
+/// Error that the self-check may have: twice what it is, so that a change of method is no alarm.
+const BOUND: f64 = 0.02;
+
+/// A small Couette flow against its series, twice: right, and the same bits.
+fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, String> {
+    let start = Instant::now();
+    let set = ["rows=10".to_string(), "end=0.1".to_string()];
+    let case = cases::find("couette").map_err(|error| error.to_string())?;
+    let run = || {
+        let context = Context { interrupt: Some(world.interrupt), ..Context::default() };
+        case.run("seed", &set, &context).map_err(|error| error.to_string())
+    };
+    let (first, second) = (run()?, run()?);
+    let error = first.metric("l2@0.1").unwrap_or(f64::NAN);
+    let took = report::seconds(start.elapsed().as_secs_f64());
+    let words = format!(
+        "Couette flow of 10 rows, l2 error {} at most {} after {} steps, in {took}",
+        report::percent(error, 3),
+        report::percent(BOUND, 3),
+        first.cost.steps
+    );
+    match (error <= BOUND, first.state.is_some() && first.state == second.state) {
+        (true, true) => Ok(words),
+        (true, false) => Err(format!("two equal runs differ in their bits; {words}")),
+        (false, _) => Err(words),
+    }
+}
+
+/// Seconds that one measurement may take.
+const BUDGET: f64 = 2.0;
+
+fn bench(world: &World) -> Result<(), Failure> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    output::print(
+        "\nSpeed: continuity, pressure and Morris viscosity in one sum, cubic spline, h/dx 1.2, 20 \
+         neighbours\nwithin the support; the best of four batches. Rows: particles sorted and put \
+         into rows.\n\n",
+    )?;
+    let mut rows = Vec::new();
+    for side in bench::SIDES {
+        let mut row = Vec::new();
+        for threads in if all > 1 { vec![1, all] } else { vec![1] } {
+            let speed = on_threads(u16::try_from(threads).ok(), || {
+                bench::speed(side, threads > 1, BUDGET).map_err(Failure::bug)
+            })?;
+            if row.is_empty() {
+                row.push(speed.particles.to_string());
+                row.push(report::sig(speed.neighbours, 3));
+                row.push(speed.bytes.to_string());
+            }
+            row.extend([speed.rate, speed.list_rate].map(|rate| report::sig(rate / 1e6, 3)));
+            if world.is_interrupted() {
+                return Err(Failure::interrupted("the measurements are not complete"));
+            }
+        }
+        rows.push(row);
+    }
+    let on_all = format!("{all} threads: M rhs/s");
+    let heads =
+        ["particles", "in a row", "B each", "1 thread: M rhs/s", "M rows/s", &on_all, "M rows/s"];
+    output::print(&output::table(&heads[..if all > 1 { 7 } else { 5 }], &rows))?;
+    shares()
+}
+
+/// Rows of the profiled runs.
+const ROWS: usize = 20;
+
+fn shares() -> Result<(), Failure> {
+    let couette = bench::shares::<()>(Flow::Couette, ROWS, BUDGET)?;
+    let poiseuille = bench::shares::<BodyForce>(Flow::Poiseuille, ROWS, BUDGET)?;
+    let all = [("couette", couette), ("poiseuille", poiseuille)];
+    let rows: Vec<Vec<String>> = all
+        .iter()
+        .flat_map(|(case, shares)| shares.iter().map(move |share| (case, share)))
+        .map(|(case, (variant, share))| {
+            vec![
+                format!("{case} {variant}"),
+                report::seconds(share.step),
+                report::seconds(share.sweeps),
+                report::percent(share.of_row_loop(), 3),
+            ]
+        })
+        .collect();
+    output::print(&format!(
+        "\nWhere the time of a run goes, {ROWS} rows, one thread. Method: whole steps of the running \
+         flow are\ntimed, then as many bare row loops (sweeps of the same scene over columns and \
+         rows that are ready,\nwith updates over no time); the rest of a step is filling columns, \
+         images and building rows.\n\n{}",
+        output::table(&["run", "step", "its row loops", "share"], &rows)
+    ))
+}

@@ -1,0 +1,159 @@
+//! Judgements as tables, and as JSON that `explain` reads back.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use validation::case::Tier;
+use validation::gate::{Gate, Judgement, Verdict};
+use validation::report;
+use validation::suite::{JudgedRun, Study, Suite};
+use validation::{record, suite};
+
+use super::output;
+
+/// Judgements as a table: what fails comes last, next to the prompt.
+pub fn table<'a>(all: impl IntoIterator<Item = &'a suite::Judged>) -> String {
+    let mut judged: Vec<&suite::Judged> = all.into_iter().collect();
+    judged.sort_by_key(|j| j.judgement.verdict.is_failure());
+    let rows: Vec<Vec<String>> = judged
+        .into_iter()
+        .map(|suite::Judged { gate, judgement }| {
+            let number = |number: Option<f64>| number.map(|number| report::sig(number, 4));
+            vec![
+                judgement.verdict.to_string(),
+                gate.id.clone(),
+                number(judgement.value).unwrap_or("-".into()),
+                gate.bound.to_string(),
+                number(judgement.margin).unwrap_or("-".into()),
+            ]
+        })
+        .collect();
+    output::table(&["verdict", "gate", "value", "bound", "margin"], &rows)
+}
+
+/// Everything that a suite decided: `verify --json` and `verdicts.json` of a report.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Verdicts {
+    /// `quick` or `full`
+    pub tier: String,
+    /// commit of the program
+    pub commit: String,
+    /// gates by verdict
+    pub counts: BTreeMap<String, usize>,
+    /// runs of all cases
+    pub runs: Vec<RunVerdicts>,
+    /// studies of all cases and of the method
+    pub studies: Vec<StudyVerdicts>,
+}
+
+/// A run and the judgements on it.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct RunVerdicts {
+    /// name of the case
+    pub case: String,
+    /// name of the variant
+    pub variant: String,
+    /// `key=value` texts of the plan
+    pub set: Vec<String>,
+    /// names the record
+    pub key: String,
+    /// how it ended
+    pub status: record::Status,
+    /// wall time in seconds
+    #[serde(with = "validation::number")]
+    pub wall_s: f64,
+    /// the judgements
+    pub judged: Vec<Judged>,
+}
+
+/// A study and the judgements on it.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct StudyVerdicts {
+    /// the case, or `method`
+    pub case: String,
+    /// anchor in the report
+    pub id: String,
+    /// its title
+    pub title: String,
+    /// the judgements
+    pub judged: Vec<Judged>,
+}
+
+/// A gate and its judgement.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Judged {
+    /// what was asked
+    pub gate: Gate,
+    /// what came of it
+    pub judgement: Judgement,
+}
+
+impl From<&suite::Judged> for Judged {
+    fn from(judged: &suite::Judged) -> Self {
+        Judged { gate: judged.gate.clone(), judgement: judged.judgement.clone() }
+    }
+}
+
+/// The name of a tier on the command line.
+pub fn tier_name(tier: Tier) -> &'static str {
+    match tier {
+        Tier::Quick => "quick",
+        Tier::Full => "full",
+    }
+}
+
+impl Verdicts {
+    /// The verdicts of a suite.
+    pub fn of(suite: &Suite) -> Self {
+        let judged = |all: &[suite::Judged]| all.iter().map(Judged::from).collect::<Vec<_>>();
+        let of_run = |run: &JudgedRun| RunVerdicts {
+            case: run.case.into(),
+            variant: run.planned.variant.into(),
+            set: run.planned.set.clone(),
+            key: run.record.key(),
+            status: run.record.status.clone(),
+            wall_s: run.record.cost.wall_s,
+            judged: judged(&run.judged),
+        };
+        let of_study = |case: &str, study: &Study| StudyVerdicts {
+            case: case.into(),
+            id: study.id.clone(),
+            title: study.title.clone(),
+            judged: judged(&study.judged),
+        };
+        let of_cases = suite.cases.iter().flat_map(|results| {
+            results.studies.iter().map(|study| of_study(results.case.name(), study))
+        });
+        let of_method = suite.studies.iter().map(|study| of_study("method", study));
+        Verdicts {
+            tier: tier_name(suite.tier).into(),
+            commit: env!("TOUCHSTONE_COMMIT").into(),
+            counts: counts(suite),
+            runs: suite.cases.iter().flat_map(|results| results.runs.iter().map(of_run)).collect(),
+            studies: of_cases.chain(of_method).collect(),
+        }
+    }
+}
+
+fn counts(suite: &Suite) -> BTreeMap<String, usize> {
+    let mut counts = BTreeMap::new();
+    for judged in suite.judged() {
+        let name = match judged.judgement.verdict {
+            Verdict::Pass => "pass",
+            Verdict::Fail => "fail",
+            Verdict::Reported => "reported",
+            Verdict::Limitation(_) => "limitation",
+            Verdict::ExpectedFailure => "expected failure",
+            Verdict::NotMeasured => "not measured",
+        };
+        *counts.entry(name.to_string()).or_default() += 1;
+    }
+    counts
+}
+
+/// `12 pass, 1 fail`.
+pub fn in_words(suite: &Suite) -> String {
+    let counts: Vec<String> =
+        counts(suite).iter().map(|(name, count)| format!("{count} {name}")).collect();
+    if counts.is_empty() { "no gate was judged".into() } else { counts.join(", ") }
+}

@@ -1,0 +1,194 @@
+//! The command line: what can be asked, and what the process ends with.
+//!
+//! | Exit code | Meaning |
+//! |---|---|
+//! | 0 | done, and every gate that was judged passed |
+//! | 1 | a gate failed |
+//! | 2 | usage, invalid settings, or a file that cannot be written |
+//! | 3 | the simulation of `run` diverged |
+//! | 4 | a bug of ours |
+//! | 130 | interrupted; whole files may have been written, no partial one |
+//!
+//! Results that were asked for go to standard output (`list`, `explain`, `doctor`, and all that is
+//! `--json`); what tells a person how it went goes to standard error.
+
+mod arguments;
+mod doctor;
+mod explain;
+mod interrupt;
+mod judged;
+mod list;
+mod output;
+mod progress;
+mod report;
+mod run;
+mod stability;
+#[cfg(test)]
+mod tests;
+mod verify;
+
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+
+use clap::Parser;
+use validation::case::{Case, RunError};
+use validation::cases;
+use validation::files::FileError;
+use validation::record::RecordError;
+
+use arguments::{Arguments, Command};
+
+/// What the process ends with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// Done, and nothing failed.
+    Pass = 0,
+    /// A gate failed.
+    GateFailed = 1,
+    /// The request cannot be met as it stands.
+    Usage = 2,
+    /// The simulation diverged.
+    Diverged = 3,
+    /// A bug of ours.
+    Bug = 4,
+    /// By the user.
+    Interrupted = 130,
+}
+
+/// Why a command ended early, and with what.
+#[derive(Debug)]
+pub struct Failure {
+    exit: Exit,
+    reason: anyhow::Error,
+}
+
+impl Failure {
+    /// A request that cannot be met.
+    fn usage(reason: impl Into<anyhow::Error>) -> Self {
+        Failure { exit: Exit::Usage, reason: reason.into() }
+    }
+
+    /// Something that must not happen.
+    fn bug(reason: impl Into<anyhow::Error>) -> Self {
+        Failure { exit: Exit::Bug, reason: reason.into() }
+    }
+
+    /// Stopped by the user.
+    fn interrupted(what: impl std::fmt::Display) -> Self {
+        Failure { exit: Exit::Interrupted, reason: anyhow::anyhow!("interrupted: {what}") }
+    }
+}
+
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        Failure::usage(error)
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        Failure::usage(error)
+    }
+}
+
+impl From<RecordError> for Failure {
+    fn from(error: RecordError) -> Self {
+        Failure::bug(error)
+    }
+}
+
+impl From<serde_json::Error> for Failure {
+    fn from(error: serde_json::Error) -> Self {
+        Failure::bug(error)
+    }
+}
+
+/// What a command comes to.
+type Outcome = Result<Exit, Failure>;
+
+/// What commands work on.
+#[derive(Clone, Copy)]
+pub struct World {
+    /// The cases to choose from.
+    cases: &'static [&'static dyn Case],
+    /// Set to stop.
+    interrupt: &'static AtomicBool,
+}
+
+impl World {
+    /// The named cases, or all.
+    fn choose(&self, names: &[String]) -> Result<Vec<&'static dyn Case>, RunError> {
+        if names.is_empty() {
+            return Ok(self.cases.to_vec());
+        }
+        let mut chosen: Vec<&'static dyn Case> = Vec::new();
+        for name in names {
+            let case = cases::find_in(self.cases, name)?;
+            if !chosen.iter().any(|known| known.name() == case.name()) {
+                chosen.push(case);
+            }
+        }
+        Ok(chosen)
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupt.load(std::sync::atomic::Ordering::Relaxed)
+    }
+}
+
+/// Reads the arguments of the process and does what they ask.
+pub fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(output::report_bug));
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print(); // help and version on standard output, errors on standard error
+            return code(if error.use_stderr() { Exit::Usage } else { Exit::Pass });
+        }
+    };
+    let world = World { cases: cases::CASES, interrupt: interrupt::flag() };
+    if let Err(error) = interrupt::listen() {
+        output::say(&format!("note: an interrupt will end the program at once ({error})"));
+    }
+    code(conclude(|| dispatch(&arguments.command, &world)))
+}
+
+fn code(exit: Exit) -> ExitCode {
+    ExitCode::from(exit as u8)
+}
+
+/// Turns what a command comes to, a panic included, into an exit code, and says why.
+fn conclude(command: impl FnOnce() -> Outcome) -> Exit {
+    match std::panic::catch_unwind(std::panic::AssertUnwindSafe(command)) {
+        Ok(Ok(exit)) => exit,
+        Ok(Err(Failure { exit, reason })) => {
+            match exit {
+                Exit::Bug => output::say(&format!("{}\n{reason}", output::BUG)),
+                _ => output::say(&format!("touchstone: {reason}")),
+            }
+            exit
+        }
+        Err(_) => Exit::Bug, // the hook has said what there is to say
+    }
+}
+
+fn dispatch(command: &Command, world: &World) -> Outcome {
+    match command {
+        Command::List(arguments) => list::list(arguments, world),
+        Command::Run(arguments) => run::run(arguments, world),
+        Command::Verify(arguments) => verify::verify(arguments, world),
+        Command::Report(arguments) => report::report(arguments, world),
+        Command::Stability(arguments) => stability::stability(arguments, world),
+        Command::Explain(arguments) => explain::explain(arguments, world),
+        Command::Doctor(arguments) => doctor::doctor(arguments, world),
+    }
+}
+
+/// Does the work on a pool of so many threads, by default one a core.
+fn on_threads<T: Send>(
+    threads: Option<u16>,
+    work: impl FnOnce() -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
+    pool.map_err(Failure::usage)?.install(work)
+}

@@ -1,0 +1,78 @@
+//! Text for people and for programs.
+
+use std::io::{self, ErrorKind, Write};
+use std::panic::PanicHookInfo;
+
+use super::Failure;
+
+/// Before the words of a bug.
+pub const BUG: &str = "touchstone: this is a bug of touchstone, not of your settings. Please report it \
+                       with the command line and these lines:";
+
+/// A line or more for a person, on standard error. Nobody listening is no error.
+pub fn say(text: &str) {
+    let _ = writeln!(io::stderr(), "{}", text.trim_end_matches('\n'));
+}
+
+/// A result, on standard output. A reader that has had enough (`| head`) is no error.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::usage(anyhow::anyhow!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The hook of a panic.
+pub fn report_bug(info: &PanicHookInfo) {
+    let message = info.payload_as_str().unwrap_or("no message");
+    let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("TOUCHSTONE_COMMIT"));
+    let place = info.location().map(ToString::to_string).unwrap_or_default();
+    say(&format!("{BUG}\n{message}\nat {place}, touchstone {version}, commit {commit}"));
+}
+
+/// Rows under their heads, columns two spaces apart; a column of numbers stands on the right.
+pub fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
+    let width = |text: &str| text.chars().count();
+    let cells = |k: usize| rows.iter().filter_map(move |row| row.get(k)).map(String::as_str);
+    let widths: Vec<usize> = (0..heads.len())
+        .map(|k| cells(k).map(width).max().unwrap_or(0).max(width(heads[k])))
+        .collect();
+    let numeric: Vec<bool> = (0..heads.len())
+        .map(|k| {
+            let starts_like_a_number =
+                |cell: &str| cell.starts_with(|c: char| c.is_ascii_digit() || "-−+.∞".contains(c));
+            cells(k).any(starts_like_a_number)
+                && cells(k).all(|cell| starts_like_a_number(cell) || ["", "NaN"].contains(&cell))
+        })
+        .collect();
+    let mut text = String::new();
+    let heads: Vec<String> = heads.iter().map(ToString::to_string).collect();
+    for row in std::iter::once(&heads).chain(rows) {
+        let mut line = String::new();
+        for (k, cell) in row.iter().enumerate() {
+            let padding = " ".repeat(widths[k].saturating_sub(width(cell)));
+            let (left, right) = if numeric[k] { (&*padding, "") } else { ("", &*padding) };
+            line += &format!("{}{left}{cell}{right}", if k == 0 { "" } else { "  " });
+        }
+        text += line.trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+/// Text in lines of at most so many characters, each after `indent`.
+pub fn wrap(text: &str, columns: usize, indent: &str) -> String {
+    let (mut lines, mut line) = (Vec::new(), String::new());
+    for word in text.split_whitespace() {
+        let length = indent.chars().count() + line.chars().count() + 1 + word.chars().count();
+        if !line.is_empty() && length > columns {
+            lines.push(std::mem::take(&mut line));
+        }
+        line += &format!("{}{word}", if line.is_empty() { "" } else { " " });
+    }
+    lines.push(line);
+    lines.iter().map(|line| format!("{indent}{line}\n")).collect()
+}

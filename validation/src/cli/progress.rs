@@ -1,0 +1,84 @@
+//! How far it is: on a terminal only, so that logs and tests stay quiet.
+
+use std::io::{self, IsTerminal};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use validation::report;
+use validation::runner::Progress;
+
+/// A bar on standard error, or nothing.
+pub struct Bar {
+    bar: ProgressBar,
+    start: Instant,
+    /// Before this there is nothing new to show.
+    next: Mutex<Instant>,
+}
+
+/// Between two looks.
+const EVERY: Duration = Duration::from_millis(100);
+/// Parts that a run is divided into.
+const PARTS: u64 = 1000;
+
+impl Bar {
+    /// A bar over so many parts if standard error is a terminal.
+    pub fn new(parts: u64) -> Self {
+        let bar = if io::stderr().is_terminal() {
+            ProgressBar::new(parts)
+        } else {
+            ProgressBar::hidden()
+        };
+        if let Ok(style) = ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}") {
+            bar.set_style(style.progress_chars("━╸ "));
+        }
+        let start = Instant::now();
+        Bar { bar, start, next: Mutex::new(start) }
+    }
+
+    /// A bar for one run.
+    pub fn of_a_run() -> Self {
+        Self::new(PARTS)
+    }
+
+    /// Shows how far a run is.
+    pub fn show_run(&self, progress: Progress) {
+        if !self.is_time() {
+            return;
+        }
+        let Progress { time, end, dt, particle_steps } = progress;
+        let elapsed = self.start.elapsed().as_secs_f64();
+        let done = (time / end).clamp(0.0, 1.0);
+        let rate = particle_steps as f64 / elapsed / 1e6;
+        let left = elapsed * (1.0 - done) / done;
+        self.bar.set_position((done * PARTS as f64) as u64);
+        self.bar.set_message(format!(
+            "t {time:.3e} of {end:.3e} s, dt {dt:.2e} s, {rate:.2} M particle steps/s, {} left",
+            report::seconds(left)
+        ));
+    }
+
+    /// Shows that `done` of `all` runs are done.
+    pub fn show_runs(&self, done: usize, all: usize, name: &str) {
+        let left = self.start.elapsed().as_secs_f64() * (all - done) as f64 / done as f64;
+        self.bar.set_length(all as u64);
+        self.bar.set_position(done as u64);
+        let left = report::seconds(left);
+        self.bar.set_message(format!("{done} of {all} runs, last {name}, {left} left"));
+    }
+
+    /// Wipes the bar away.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn is_time(&self) -> bool {
+        let now = Instant::now();
+        let mut next = self.next.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_time = !self.bar.is_hidden() && now >= *next;
+        if is_time {
+            *next = now + EVERY;
+        }
+        is_time
+    }
+}

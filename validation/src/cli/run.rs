@@ -1,0 +1,314 @@
+//! `run`: one variant of one case.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use validation::case::{Case, Planned, Tier};
+use validation::cases;
+use validation::files::{CsvTable, FileError, OutputFolder};
+use validation::record::{Profile, Record, Status};
+use validation::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
+use validation::runner::{Context, Progress};
+use validation::suite::Judged;
+
+use super::{
+    Exit, Failure, Outcome, World, arguments, judged, list::default_variant, on_threads, output,
+    progress::Bar,
+};
+
+pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
+    let case = cases::find_in(world.cases, &arguments.case)?;
+    let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
+    let mut set = arguments.set.clone();
+    set.extend(arguments.rows.iter().map(|rows| format!("rows={rows}")));
+    let settings = case.settings(variant, &set)?;
+    let folder = Folder::of(arguments, variant)?;
+    let record = match on_threads(arguments.threads, || {
+        compute(case, variant, &set, arguments, folder.as_ref(), world)
+    }) {
+        Ok(record) => record,
+        Err(failure) => {
+            folder.iter().for_each(Folder::remove_if_new_and_empty);
+            return Err(failure);
+        }
+    };
+    if let Status::Interrupted { step, time } = record.status {
+        folder.iter().for_each(Folder::remove_if_new_and_empty);
+        let kept = if arguments.vtk.is_some() { "; frames so far are whole" } else { "" };
+        let what = format!("after {step} steps, at t = {time:.4e} s; no record is written{kept}");
+        return Err(Failure::interrupted(what));
+    }
+    let written = folder.as_ref().map(|folder| write(&record, folder)).transpose()?;
+    let verdicts: Vec<Judged> = gates_of(case, variant, &settings)
+        .into_iter()
+        .map(|gate| {
+            let value = record.metric(&gate.metric);
+            Judged::new(gate, value)
+        })
+        .collect();
+    if arguments.json {
+        output::print(&record.to_json()?)?;
+    } else {
+        output::say(&summary(&record));
+        if !verdicts.is_empty() {
+            output::say(&format!("\n{}", judged::table(&verdicts)));
+        }
+    }
+    if let (Some(folder), Some(names)) = (&folder, written) {
+        output::say(&format!("{}: {}", folder.output.path().display(), names.join(", ")));
+    }
+    Ok(conclude(&record, &verdicts))
+}
+
+/// The exit code, and the words for one that is not 0.
+fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
+    if let Status::Diverged { step, time, particle, field, value_text } = &record.status {
+        output::say(&format!(
+            "touchstone: diverged after {step} steps, at t = {time:.4e} s: {field} of particle \
+             {particle} is {value_text}"
+        ));
+        return Exit::Diverged;
+    }
+    match verdicts.iter().any(|j| j.judgement.verdict.is_failure()) {
+        true => Exit::GateFailed,
+        false => Exit::Pass,
+    }
+}
+
+fn compute(
+    case: &dyn Case,
+    variant: &str,
+    set: &[String],
+    arguments: &arguments::Run,
+    folder: Option<&Folder>,
+    world: &World,
+) -> Result<Record, Failure> {
+    let bar = Bar::of_a_run();
+    let show = |progress: Progress| bar.show_run(progress);
+    let frames = folder.zip(arguments.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
+    let context = Context {
+        allow_unstable: arguments.allow_unstable,
+        threads: rayon::current_num_threads(),
+        frames,
+        keep_particles: false,
+        progress: Some(&show),
+        interrupt: Some(world.interrupt),
+    };
+    let record = case.run(variant, set, &context);
+    bar.clear();
+    Ok(record?)
+}
+
+/// Gates of the plans that judge just this run.
+fn gates_of(case: &dyn Case, variant: &str, settings: &Value) -> Vec<validation::gate::Gate> {
+    let plans = [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| case.plan(tier));
+    let is_this = |planned: &Planned| {
+        planned.variant == variant
+            && case.settings(planned.variant, &planned.set).is_ok_and(|of| of == *settings)
+    };
+    let mut gates: Vec<validation::gate::Gate> = Vec::new();
+    for gate in plans.filter(is_this).flat_map(|planned| planned.gates) {
+        if !gates.iter().any(|known| known.id == gate.id) {
+            gates.push(gate);
+        }
+    }
+    gates
+}
+
+/// Where a run writes to.
+struct Folder {
+    output: OutputFolder,
+    is_new: bool,
+}
+
+impl Folder {
+    /// None unless files were asked for; found writable before anything is computed.
+    fn of(arguments: &arguments::Run, variant: &str) -> Result<Option<Self>, FileError> {
+        let path = match (&arguments.out, arguments.vtk) {
+            (Some(path), _) => path.clone(),
+            (None, Some(_)) => {
+                Path::new("reports").join(format!("run-{}-{variant}", arguments.case))
+            }
+            (None, None) => return Ok(None),
+        };
+        let is_new = !path.exists();
+        Ok(Some(Folder { output: OutputFolder::create(&path)?, is_new }))
+    }
+
+    fn vtk(&self) -> PathBuf {
+        self.output.path().join("vtk")
+    }
+
+    fn remove_if_new_and_empty(&self) {
+        if self.is_new {
+            // Refused by the system unless empty, as it should be.
+            let _ = fs::remove_dir(self.vtk());
+            let _ = fs::remove_dir(self.output.path());
+        }
+    }
+}
+
+/// Writes the record and what can be drawn from it; returns the names.
+fn write(record: &Record, folder: &Folder) -> Result<Vec<&'static str>, Failure> {
+    let Folder { output, .. } = folder;
+    output.write("record.json", record.to_json()?.as_bytes())?;
+    let mut names = vec!["record.json"];
+    let curves = curves(record);
+    if !curves.is_empty() {
+        output.write("profile.csv", &profile_csv(&curves)?)?;
+        let path = output.path().join("profile.png");
+        let refused = |reason| FileError::File { path: path.clone(), reason };
+        report::png(&figure(record, &curves), &path).map_err(refused)?;
+        names.extend(["profile.csv", "profile.png"]);
+    }
+    if let Some(series) = record.profiles.get("series") {
+        output.write("series.csv", &series_csv(series)?)?;
+        names.push("series.csv");
+    }
+    if folder.vtk().exists() {
+        names.push("vtk/particles.pvd");
+    }
+    Ok(names)
+}
+
+/// The velocity across the channel at one time.
+struct Curve {
+    /// νt/L²
+    tau: f64,
+    /// in seconds
+    time: f64,
+    /// y, u and the exact u, finite
+    points: Vec<[f64; 3]>,
+}
+
+/// Profiles `u@TAU` of the record, by time.
+fn curves(record: &Record) -> Vec<Curve> {
+    let setting = |name: &str| record.settings[name].as_f64();
+    let (Some(width), Some(nu)) = (setting("width"), setting("nu")) else { return Vec::new() };
+    let mut curves: Vec<Curve> = record
+        .profiles
+        .iter()
+        .filter_map(|(name, profile)| {
+            let tau: f64 = name.strip_prefix("u@")?.parse().ok()?;
+            let column = |name: &str| {
+                let column = profile.columns.iter().find(|column| column.name == name);
+                column.map(|column| &column.values)
+            };
+            let (y, u, exact) = (column("y")?, column("u")?, column("u_exact")?);
+            let points = y.iter().zip(u).zip(exact).map(|((y, u), exact)| [*y, *u, *exact]);
+            let finite = points.filter(|point| point.iter().all(|number| number.is_finite()));
+            Some(Curve { tau, time: tau * width * width / nu, points: finite.collect() })
+        })
+        .collect();
+    curves.sort_by(|a, b| a.tau.total_cmp(&b.tau));
+    curves
+}
+
+fn profile_csv(curves: &[Curve]) -> Result<Vec<u8>, FileError> {
+    let mut table = CsvTable::new(&["t[s]", "y[m]", "u[m/s]", "u_exact[m/s]"])?;
+    for Curve { time, points, .. } in curves {
+        for [y, u, exact] in points {
+            table.numbers(&[*time, *y, *u, *exact])?;
+        }
+    }
+    Ok(table.into_bytes())
+}
+
+/// The columns as they are; a row with a number that is not finite ends the table.
+fn series_csv(series: &Profile) -> Result<Vec<u8>, FileError> {
+    let heads: Vec<String> =
+        series.columns.iter().map(|column| format!("{}[{}]", column.name, column.unit)).collect();
+    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
+    let length = series.columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
+    for k in 0..length {
+        let row: Vec<f64> = series.columns.iter().map(|column| column.values[k]).collect();
+        if row.iter().any(|number| !number.is_finite()) {
+            break;
+        }
+        table.numbers(&row)?;
+    }
+    Ok(table.into_bytes())
+}
+
+/// Symbols: SPH; lines: exact.
+fn figure(record: &Record, curves: &[Curve]) -> Figure {
+    let rows = record.settings["rows"].as_u64().unwrap_or_default();
+    let title = format!("{}, variant {}, {rows} rows", record.case, record.variant);
+    let (x, y) = (Axis::linear("y [m]"), Axis::linear("velocity u [m/s]"));
+    let mut plot = Plot::new(title, x, y).legend(Legend::Outside);
+    for (k, Curve { tau, points, .. }) in curves.iter().enumerate() {
+        let exact = points.iter().map(|[y, _, exact]| (*y, *exact)).collect();
+        let name = if k == 0 { "exact" } else { "" };
+        plot = plot.layer(Series::line(name, exact).colour(Colour::GREY).dash(Dash::Solid));
+        let computed = points.iter().map(|[y, u, _]| (*y, *u)).collect();
+        let name = format!("SPH, νt/L² = {tau}");
+        plot = plot.layer(Series::markers(name, computed).colour(Colour::cycle(k)).size(5.0));
+    }
+    Figure::new("profile", "").panel(plot).panel_size(520.0, 360.0)
+}
+
+/// What a person wants to know of a record.
+fn summary(record: &Record) -> String {
+    let Record { case, variant, cost, .. } = record;
+    let value = |value: &Value| match value.as_f64() {
+        Some(number) if !value.is_u64() => report::sig(number, 4),
+        _ => value.as_str().map_or_else(|| value.to_string(), String::from),
+    };
+    let numerics: Vec<String> =
+        record.numerics.iter().map(|(name, number)| format!("{name} {}", value(number))).collect();
+    let mut text = format!("{case}, variant {variant}\n");
+    text += &output::wrap(&numerics.join(", "), 100, "    ");
+    let rate = cost.particle_rhs as f64 / cost.wall_s.max(1e-9) / 1e6;
+    text += &format!(
+        "    {} particles, {} steps in {}, {rate:.2} million particle right-hand sides a second\n\n",
+        cost.particles,
+        cost.steps,
+        report::seconds(cost.wall_s)
+    );
+    text + &metrics(record)
+}
+
+/// Metrics `name@tau` as a table over tau, the others below.
+fn metrics(record: &Record) -> String {
+    let (mut times, mut names, mut single): (Vec<&str>, Vec<&str>, Vec<Vec<String>>) =
+        Default::default();
+    for (name, metric) in &record.metrics {
+        if let Some((name, time)) = name.split_once('@') {
+            times.push(time);
+            names.push(name);
+        } else {
+            let value = report::sig(metric.value, 4);
+            single.push(vec![name.clone(), value, metric.unit.clone(), metric.formula.clone()]);
+        }
+    }
+    let number = |text: &&str| text.parse().unwrap_or(f64::NAN);
+    times.sort_by(|a, b| number(a).total_cmp(&number(b)));
+    times.dedup();
+    names.sort();
+    names.dedup();
+    let value = |name: &str, time: &str| {
+        let metric = record.metrics.get(&format!("{name}@{time}"));
+        metric.map(|metric| report::sig(metric.value, 4)).unwrap_or_default()
+    };
+    let rows: Vec<Vec<String>> = times
+        .iter()
+        .map(|time| {
+            let values = names.iter().map(|name| value(name, time));
+            std::iter::once(time.to_string()).chain(values).collect()
+        })
+        .collect();
+    let heads: Vec<&str> = std::iter::once("at νt/L²").chain(names.iter().copied()).collect();
+    let mut text = String::new();
+    if !rows.is_empty() {
+        text += &output::table(&heads, &rows);
+        for name in &names {
+            let of_name = |(key, _): &(&String, _)| key.split_once('@').map(|k| k.0) == Some(*name);
+            if let Some((_, metric)) = record.metrics.iter().find(of_name) {
+                text += &format!("    {name} = {} [{}]\n", metric.formula, metric.unit);
+            }
+        }
+        text.push('\n');
+    }
+    text + &output::table(&["metric", "value", "unit", "formula"], &single)
+}

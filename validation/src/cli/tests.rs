@@ -1,0 +1,161 @@
+//! Tests of commands on a case made for the purpose, whose runs end as their variant says.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Parser;
+use serde_json::{Value, json};
+use validation::case::{Case, Planned, RunError, Tier, Variant};
+use validation::gate::{Bound, Evidence, Gate};
+use validation::record::{Metric, Record, Status};
+use validation::report::check_page;
+use validation::runner::Context;
+use validation::settings::Field;
+use validation::suite::{JudgedRun, Study};
+
+use super::{Exit, World, arguments::Arguments, conclude, dispatch, judged::Verdicts};
+
+/// A case whose variants are the ways in which a run can end.
+struct Staged {
+    name: &'static str,
+    planned: &'static [&'static str],
+}
+
+fn gate(metric: &str) -> Gate {
+    let because = "the error of a run that is staged is 1";
+    Gate::new(format!("staged.{metric}"), metric, Bound::Below(2.0), Evidence::Theory, because)
+}
+
+impl Case for Staged {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn about(&self) -> &'static str {
+        "Nothing moves."
+    }
+
+    fn variants(&self) -> Vec<Variant> {
+        let variant = |name| Variant { name, about: "as it says" };
+        ["right", "wrong", "diverging", "panicking"].map(variant).to_vec()
+    }
+
+    fn fields(&self) -> &'static [Field] {
+        &[]
+    }
+
+    fn settings(&self, _: &str, set: &[String]) -> Result<Value, RunError> {
+        Ok(json!({ "set": set }))
+    }
+
+    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
+        assert!(variant != "panicking", "staged panic");
+        let mut record = Record::new(self.name, variant, self.settings(variant, set)?, 1);
+        if context.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            record.status = Status::Interrupted { step: 64, time: 0.1 };
+            return Ok(record);
+        }
+        let error = if variant == "wrong" { 3.0 } else { 1.0 };
+        record.metrics.insert("error".into(), Metric::new(error, "-", "as staged"));
+        if variant == "diverging" {
+            let (field, value_text) = ("density".into(), "NaN".into());
+            record.status = Status::Diverged { step: 7, time: 0.1, particle: 3, field, value_text };
+        }
+        Ok(record)
+    }
+
+    fn plan(&self, _: Tier) -> Vec<Planned> {
+        let planned = |variant: &&'static str| {
+            Planned::new(variant, &["re=1".to_string()]).judged(vec![gate("error")])
+        };
+        self.planned.iter().map(planned).collect()
+    }
+
+    fn studies(&self, _: Tier, runs: &[JudgedRun]) -> Vec<Study> {
+        let count = runs.len() as f64;
+        vec![Study::new("count", "How many").prose("Runs are counted.").judge(gate("count"), count)]
+    }
+}
+
+static RIGHT: Staged = Staged { name: "right", planned: &["right"] };
+static WRONG: Staged = Staged { name: "wrong", planned: &["right", "wrong"] };
+static PANICKING: Staged = Staged { name: "panicking", planned: &["right", "panicking"] };
+static ALL: [&dyn Case; 3] = [&RIGHT, &WRONG, &PANICKING];
+static SOUND: [&dyn Case; 2] = [&RIGHT, &WRONG];
+static NEVER: AtomicBool = AtomicBool::new(false);
+static ALREADY: AtomicBool = AtomicBool::new(true);
+
+fn exit_with(interrupt: &'static AtomicBool, line: &str, out: &Path) -> Exit {
+    let line = line.replace("OUT", out.to_str().expect("a plain path"));
+    let words = std::iter::once("touchstone").chain(line.split(' '));
+    let arguments = Arguments::try_parse_from(words).expect("a sound command line");
+    let world = World { cases: &ALL, interrupt };
+    conclude(|| dispatch(&arguments.command, &world))
+}
+
+fn exit(line: &str) -> Exit {
+    exit_with(&NEVER, line, Path::new(""))
+}
+
+#[test]
+fn every_ending_of_a_run_has_its_exit_code() {
+    assert_eq!(exit("run right --variant right"), Exit::Pass);
+    assert_eq!(exit("run right --variant diverging"), Exit::Diverged);
+    assert_eq!(exit("run right --variant panicking"), Exit::Bug);
+    assert_eq!(exit("run none"), Exit::Usage);
+    let out = tempfile::tempdir().expect("a folder");
+    let line = "run right --variant right --out OUT/new";
+    assert_eq!(exit_with(&ALREADY, line, out.path()), Exit::Interrupted);
+    assert!(!out.path().join("new").exists(), "a folder without a result is removed again");
+}
+
+#[test]
+fn a_run_of_the_plan_is_judged_and_another_one_is_not() {
+    assert_eq!(exit("run wrong --variant wrong --set re=1"), Exit::GateFailed);
+    assert_eq!(exit("run wrong --variant wrong --set re=2"), Exit::Pass);
+}
+
+#[test]
+fn verify_ends_with_the_verdict() {
+    assert_eq!(exit("verify right"), Exit::Pass);
+    assert_eq!(exit("verify right wrong --tier full --threads 2"), Exit::GateFailed);
+    assert_eq!(exit("verify panicking"), Exit::Bug, "a panic on another thread is one too");
+    assert_eq!(exit_with(&ALREADY, "verify right", Path::new("")), Exit::Interrupted);
+}
+
+#[test]
+fn a_report_is_whole_and_explain_reads_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let world = World { cases: &SOUND, interrupt: &NEVER };
+    let in_folder = |line: &str| {
+        let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
+        let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
+        conclude(|| dispatch(&arguments.command, &world))
+    };
+    assert_eq!(in_folder("touchstone report --out OUT"), Exit::GateFailed);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
+    check_page(&read("index.html")).expect("a page that opens");
+    let verdicts: Verdicts = serde_json::from_str(&read("verdicts.json")).expect("verdicts");
+    assert_eq!((verdicts.runs.len(), verdicts.counts["fail"]), (3, 1));
+    for run in &verdicts.runs {
+        let name = format!("records/{}-{}-{}.json", run.case, run.variant, run.key);
+        assert_eq!(Record::from_json(&read(&name)).expect("a record").key(), run.key);
+    }
+    for (gate, expected) in [
+        ("staged.error", Exit::Pass),
+        ("staged.count", Exit::Pass), // of a study: known from the report
+        ("staged", Exit::Pass),
+        ("staged.eror", Exit::Usage),
+    ] {
+        let line = format!("touchstone explain {gate} --reports OUT");
+        assert_eq!(in_folder(&line), expected, "{gate}");
+    }
+}
+
+#[test]
+fn tables_are_aligned() {
+    let rows = [vec!["a".into(), "−1.5".into()], vec!["νt/L²".into(), "10".into()]];
+    let text = super::output::table(&["name", "value"], &rows);
+    assert_eq!(text, "name   value\na       −1.5\nνt/L²     10\n");
+    assert_eq!(super::output::wrap("one two three", 9, "  "), "  one two\n  three\n");
+}

@@ -1,0 +1,138 @@
+//! Floats in JSON without loss: a finite number is a number, anything else says what it is.
+//!
+//! JSON has no NaN and no infinity, and `serde_json` writes both as `null`, which a reader takes
+//! for "not measured". Here they are objects with one key, and they read back as what they were:
+//! `{"not_finite": "NaN"}`, `{"not_finite": "inf"}`, `{"not_finite": "-inf"}`.
+//! `null` itself is refused. Use `#[serde(with = "crate::number")]` on an `f64` field,
+//! `crate::number::optional` on an `Option<f64>` and `crate::number::list` on a `Vec<f64>`.
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// An `f64` whose JSON form is never `null`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Number(pub f64);
+
+/// The JSON form of a number: what a reader of a record finds.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Form {
+    Finite(f64),
+    Other(NotFinite),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NotFinite {
+    not_finite: String,
+}
+
+/// The name of a float that is not finite: `NaN`, `inf` or `-inf`.
+fn name(value: f64) -> &'static str {
+    match (value.is_nan(), value > 0.0) {
+        (true, _) => "NaN",
+        (_, true) => "inf",
+        (_, false) => "-inf",
+    }
+}
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            value if value.is_finite() => serializer.serialize_f64(value),
+            value => NotFinite { not_finite: name(value).into() }.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        const EXPECTED: &str = r#"expected a number or {"not_finite": "NaN" | "inf" | "-inf"}"#;
+        match Form::deserialize(deserializer).map_err(|_| D::Error::custom(EXPECTED))? {
+            Form::Finite(value) => Ok(Number(value)),
+            Form::Other(NotFinite { not_finite }) => match not_finite.as_str() {
+                "NaN" => Ok(Number(f64::NAN)),
+                "inf" => Ok(Number(f64::INFINITY)),
+                "-inf" => Ok(Number(f64::NEG_INFINITY)),
+                other => Err(D::Error::custom(format!("{EXPECTED}, found not_finite {other:?}"))),
+            },
+        }
+    }
+}
+
+/// The number as a JSON value, for maps of values: `Value::from(f64::NAN)` would be `null`.
+pub fn json(value: f64) -> serde_json::Value {
+    match serde_json::Number::from_f64(value) {
+        Some(finite) => serde_json::Value::Number(finite),
+        None => serde_json::json!({ "not_finite": name(value) }),
+    }
+}
+
+/// For `#[serde(with = …)]` on an `f64`.
+pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    Number(*value).serialize(serializer)
+}
+
+/// For `#[serde(with = …)]` on an `f64`.
+pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Number::deserialize(deserializer).map(|number| number.0)
+}
+
+/// The same for an `Option<f64>`; add `default, skip_serializing_if = "Option::is_none"`,
+/// so that a missing number is a missing key and not `null`.
+pub mod optional {
+    use super::{Deserialize, Deserializer, Number, Serialize, Serializer};
+
+    /// Writes the number; the field is skipped when there is none.
+    pub fn serialize<S: Serializer>(value: &Option<f64>, to: S) -> Result<S::Ok, S::Error> {
+        value.map(Number).serialize(to)
+    }
+
+    /// Reads a number that is there.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
+        Number::deserialize(from).map(|number| Some(number.0))
+    }
+}
+
+/// The same for a `Vec<f64>`.
+pub mod list {
+    use super::{Deserialize, Deserializer, Number, Serializer};
+
+    /// Writes every number.
+    pub fn serialize<S: Serializer>(values: &[f64], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(values.iter().copied().map(Number))
+    }
+
+    /// Reads every number.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
+        let numbers = Vec::<Number>::deserialize(from)?;
+        Ok(numbers.into_iter().map(|number| number.0).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_float_keeps_its_bits() {
+        let values = [0.0, -0.0, 1.0, 5e-324, 1.7976931348623157e308, 0.1 + 0.2, -3.2e-7];
+        for value in values.into_iter().chain([f64::INFINITY, f64::NEG_INFINITY]) {
+            let text = serde_json::to_string(&Number(value)).unwrap();
+            let back: Number = serde_json::from_str(&text).unwrap();
+            assert_eq!(back.0.to_bits(), value.to_bits(), "{text}");
+        }
+        let text = serde_json::to_string(&Number(f64::NAN)).unwrap();
+        assert_eq!(text, r#"{"not_finite":"NaN"}"#);
+        assert!(serde_json::from_str::<Number>(&text).unwrap().0.is_nan());
+    }
+
+    #[test]
+    fn null_and_strangers_are_refused() {
+        for text in ["null", r#""NaN""#, r#"{"not_finite":null}"#, r#"{"not_finite":"nan"}"#, "[1]"]
+        {
+            assert!(serde_json::from_str::<Number>(text).is_err(), "{text}");
+        }
+        assert!(!json(f64::NAN).is_null());
+    }
+}

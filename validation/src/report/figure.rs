@@ -1,0 +1,470 @@
+//! The data model of a figure: what to draw, not how.
+
+use super::axis::Axis;
+use super::colour::{Colour, ColourMap};
+
+/// One or more panels in a grid, with a caption.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Unique on its page; also the name of its PNG file.
+    pub id: String,
+    /// Drawn above the panels; may be empty.
+    pub title: String,
+    /// What is seen, with commit and settings; inline markup as in [`super::Block::Prose`].
+    pub caption: String,
+    /// Panels, row by row.
+    pub panels: Vec<Panel>,
+    /// Panels in a row.
+    pub columns: usize,
+    /// Size of the area inside the axes of one panel, in CSS pixels.
+    pub panel_size: (f64, f64),
+}
+
+impl Figure {
+    /// A figure without panels, in one column of 420 × 290 pixels.
+    pub fn new(id: impl Into<String>, caption: impl Into<String>) -> Self {
+        Self {
+            id: id.into(),
+            title: String::new(),
+            caption: caption.into(),
+            panels: Vec::new(),
+            columns: 1,
+            panel_size: (420.0, 290.0),
+        }
+    }
+
+    /// Sets the title.
+    pub fn title(self, title: impl Into<String>) -> Self {
+        Self { title: title.into(), ..self }
+    }
+
+    /// Adds a panel.
+    pub fn panel(mut self, panel: impl Into<Panel>) -> Self {
+        self.panels.push(panel.into());
+        self
+    }
+
+    /// Sets the number of columns.
+    pub fn columns(self, columns: usize) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// Sets the size inside the axes of one panel.
+    pub fn panel_size(self, width: f64, height: f64) -> Self {
+        Self { panel_size: (width, height), ..self }
+    }
+}
+
+/// One drawing of a figure.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Panel {
+    /// Curves and markers over two axes.
+    Plot(Plot),
+    /// Coloured dots at equal aspect.
+    Particles(ParticleMap),
+    /// A grid of outcomes.
+    Categories(CategoryMap),
+}
+
+impl From<Plot> for Panel {
+    fn from(plot: Plot) -> Self {
+        Self::Plot(plot)
+    }
+}
+
+impl From<ParticleMap> for Panel {
+    fn from(map: ParticleMap) -> Self {
+        Self::Particles(map)
+    }
+}
+
+impl From<CategoryMap> for Panel {
+    fn from(map: CategoryMap) -> Self {
+        Self::Categories(map)
+    }
+}
+
+/// Curves and markers over two axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// Drawn above the axes; may be empty.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Drawn in this order.
+    pub layers: Vec<Layer>,
+    /// Where the names of the layers go.
+    pub legend: Legend,
+}
+
+impl Plot {
+    /// An empty plot, its legend where it hides nothing.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
+        Self { title: title.into(), x, y, layers: Vec::new(), legend: Legend::Auto }
+    }
+
+    /// Adds a layer.
+    pub fn layer(mut self, layer: impl Into<Layer>) -> Self {
+        self.layers.push(layer.into());
+        self
+    }
+
+    /// Sets the place of the legend.
+    pub fn legend(self, legend: Legend) -> Self {
+        Self { legend, ..self }
+    }
+}
+
+/// Place of a legend.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Legend {
+    /// The first corner where it hides no data, else outside.
+    Auto,
+    /// Inside, top left.
+    TopLeft,
+    /// Inside, top right.
+    TopRight,
+    /// Inside, bottom left.
+    BottomLeft,
+    /// Inside, bottom right.
+    BottomRight,
+    /// Right of the plot.
+    Outside,
+    /// Nowhere.
+    Hidden,
+}
+
+/// Direction of a rule or a span.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Orientation {
+    /// At one y, over all x.
+    Horizontal,
+    /// At one x, over all y.
+    Vertical,
+}
+
+/// Which end of a text sits at its point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// The text starts at the point.
+    Start,
+    /// The text is centred on the point.
+    Middle,
+    /// The text ends at the point.
+    End,
+}
+
+/// One thing drawn on a plot.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Layer {
+    /// A line, markers, or both, with or without error bars.
+    Series(Series),
+    /// A triangle that shows the slope `order` on two logarithmic axes.
+    Slope {
+        /// d log y / d log x; negative where x counts particles.
+        order: f64,
+        /// Corner (x, y) at which the hypotenuse starts; `None` finds a free place near the data
+        /// (with a smaller factor if need be) and leaves the triangle out where there is none.
+        anchor: Option<(f64, f64)>,
+        /// Ratio of the ends in x, 2 say; below 1 the triangle lies to the left of its anchor.
+        factor: f64,
+    },
+    /// A line across the plot at one value, with a label above (right of) it.
+    Rule {
+        /// Horizontal: `at` is a y.
+        orientation: Orientation,
+        /// The value.
+        at: f64,
+        /// May be empty.
+        label: String,
+        /// Colour of line and label.
+        colour: Colour,
+        /// Dash pattern.
+        dash: Dash,
+    },
+    /// The area between two curves.
+    Band {
+        /// Name in the legend; may be empty.
+        name: String,
+        /// (x, lower, upper).
+        points: Vec<(f64, f64, f64)>,
+        /// Drawn as a pale tint of this colour.
+        colour: Colour,
+    },
+    /// The area between two values, across the plot: a gate's bounds.
+    Span {
+        /// Horizontal: `from` and `to` are values of y.
+        orientation: Orientation,
+        /// One end; may be infinite.
+        from: f64,
+        /// The other end; may be infinite.
+        to: f64,
+        /// Name in the legend; may be empty.
+        name: String,
+        /// Drawn as a pale tint of this colour.
+        colour: Colour,
+    },
+    /// Free text at a point of the plot.
+    Text {
+        /// Where, in the plot's values.
+        at: (f64, f64),
+        /// What.
+        text: String,
+        /// Which end of the text is at the point.
+        align: Align,
+    },
+    /// Runs without a result, as crosses in a strip at the upper edge: (x, reason).
+    Failed(Vec<(f64, String)>),
+}
+
+impl Layer {
+    /// A slope triangle of width factor 2 that finds its place.
+    pub fn slope(order: f64) -> Self {
+        Self::Slope { order, anchor: None, factor: 2.0 }
+    }
+
+    /// A slope triangle of width factor 2 whose hypotenuse starts at a point.
+    pub fn slope_at(order: f64, anchor: (f64, f64)) -> Self {
+        Self::Slope { order, anchor: Some(anchor), factor: 2.0 }
+    }
+
+    /// A dashed grey horizontal line.
+    pub fn horizontal(at: f64, label: impl Into<String>) -> Self {
+        Self::rule(Orientation::Horizontal, at, label.into())
+    }
+
+    /// A dashed grey vertical line.
+    pub fn vertical(at: f64, label: impl Into<String>) -> Self {
+        Self::rule(Orientation::Vertical, at, label.into())
+    }
+
+    fn rule(orientation: Orientation, at: f64, label: String) -> Self {
+        Self::Rule { orientation, at, label, colour: Colour::GREY, dash: Dash::Dashed }
+    }
+
+    /// A shaded area between two curves, points (x, lower, upper).
+    pub fn band(name: impl Into<String>, points: Vec<(f64, f64, f64)>, colour: Colour) -> Self {
+        Self::Band { name: name.into(), points, colour }
+    }
+
+    /// A shaded area between two values of y.
+    pub fn span(name: impl Into<String>, from: f64, to: f64, colour: Colour) -> Self {
+        let orientation = Orientation::Horizontal;
+        Self::Span { orientation, from, to, name: name.into(), colour }
+    }
+
+    /// Text that starts at a point.
+    pub fn text(at: (f64, f64), text: impl Into<String>) -> Self {
+        Self::Text { at, text: text.into(), align: Align::Start }
+    }
+}
+
+impl From<Series> for Layer {
+    fn from(series: Series) -> Self {
+        Self::Series(series)
+    }
+}
+
+/// Dash pattern of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dash {
+    /// Unbroken.
+    Solid,
+    /// Long dashes.
+    Dashed,
+    /// Dots.
+    Dotted,
+    /// Long, short.
+    DashDot,
+}
+
+/// Shape of a marker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// ●
+    Circle,
+    /// ■
+    Square,
+    /// ▲
+    Triangle,
+    /// ◆
+    Diamond,
+    /// ▼
+    Down,
+    /// ✕
+    Cross,
+    /// +
+    Plus,
+}
+
+impl Shape {
+    /// The shape of the `i`th series that names none.
+    pub fn cycle(i: usize) -> Self {
+        const CYCLE: [Shape; 5] =
+            [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Down];
+        CYCLE[i % CYCLE.len()]
+    }
+}
+
+/// A line, markers, or both, with or without error bars. Points that are not finite, or not
+/// positive on a logarithmic axis, break the line and are counted above the plot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name in the legend; empty leaves it out.
+    pub name: String,
+    /// (x, y).
+    pub points: Vec<(f64, f64)>,
+    /// `None` takes the next of the palette.
+    pub colour: Option<Colour>,
+    /// The line, if any.
+    pub line: Option<Dash>,
+    /// Width of the line in CSS pixels.
+    pub width: f64,
+    /// Whether points are marked.
+    pub marked: bool,
+    /// `None` takes the next shape.
+    pub shape: Option<Shape>,
+    /// Open markers: reference data.
+    pub open: bool,
+    /// Diameter of a marker in CSS pixels.
+    pub size: f64,
+    /// (lower, upper) end of the bar in y for each point; empty for none.
+    pub y_bars: Vec<(f64, f64)>,
+    /// (lower, upper) end of the bar in x for each point; empty for none.
+    pub x_bars: Vec<(f64, f64)>,
+}
+
+impl Series {
+    /// A solid line.
+    pub fn line(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            colour: None,
+            line: Some(Dash::Solid),
+            width: 1.6,
+            marked: false,
+            shape: None,
+            open: false,
+            size: 6.5,
+            y_bars: Vec::new(),
+            x_bars: Vec::new(),
+        }
+    }
+
+    /// Filled markers without a line.
+    pub fn markers(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self { line: None, marked: true, ..Self::line(name, points) }
+    }
+
+    /// Filled markers joined by a solid line.
+    pub fn line_markers(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
+        Self { marked: true, ..Self::line(name, points) }
+    }
+
+    /// Sets the colour.
+    pub fn colour(self, colour: Colour) -> Self {
+        Self { colour: Some(colour), ..self }
+    }
+
+    /// Sets the dash pattern; adds a line where there is none.
+    pub fn dash(self, dash: Dash) -> Self {
+        Self { line: Some(dash), ..self }
+    }
+
+    /// Sets the width of the line.
+    pub fn width(self, width: f64) -> Self {
+        Self { width, ..self }
+    }
+
+    /// Sets the shape of the markers; adds markers where there are none.
+    pub fn shape(self, shape: Shape) -> Self {
+        Self { shape: Some(shape), marked: true, ..self }
+    }
+
+    /// Makes the markers open.
+    pub fn open(self) -> Self {
+        Self { open: true, ..self }
+    }
+
+    /// Sets the diameter of the markers.
+    pub fn size(self, size: f64) -> Self {
+        Self { size, ..self }
+    }
+
+    /// Bars in y, (lower, upper) for each point.
+    pub fn y_bars(self, y_bars: Vec<(f64, f64)>) -> Self {
+        Self { y_bars, ..self }
+    }
+
+    /// Bars in x, (lower, upper) for each point.
+    pub fn x_bars(self, x_bars: Vec<(f64, f64)>) -> Self {
+        Self { x_bars, ..self }
+    }
+}
+
+/// Dots coloured by a value, at equal aspect, with a colour bar.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParticleMap {
+    /// Drawn above the axes; may be empty.
+    pub title: String,
+    /// Horizontal axis; linear whatever it says.
+    pub x: Axis,
+    /// Vertical axis; linear whatever it says.
+    pub y: Axis,
+    /// (x, y, value). Values that are not finite become black crosses and are counted.
+    pub points: Vec<(f64, f64, f64)>,
+    /// Colour map.
+    pub map: ColourMap,
+    /// Values at the ends of the colour bar; `None` takes the data's.
+    pub values: Option<(f64, f64)>,
+    /// Quantity and unit of the colour bar.
+    pub label: String,
+    /// Diameter of a dot in units of x and y (the particle spacing, say); `None` guesses.
+    pub diameter: Option<f64>,
+}
+
+impl ParticleMap {
+    /// A map with automatic ranges.
+    pub fn new(
+        title: impl Into<String>,
+        (x, y): (Axis, Axis),
+        label: impl Into<String>,
+        map: ColourMap,
+        points: Vec<(f64, f64, f64)>,
+    ) -> Self {
+        let (title, label) = (title.into(), label.into());
+        Self { title, x, y, points, map, values: None, label, diameter: None }
+    }
+
+    /// Sets the ends of the colour bar.
+    pub fn values(self, lo: f64, hi: f64) -> Self {
+        Self { values: Some((lo, hi)), ..self }
+    }
+
+    /// Sets the diameter of a dot in units of x and y.
+    pub fn diameter(self, diameter: f64) -> Self {
+        Self { diameter: Some(diameter), ..self }
+    }
+}
+
+/// A grid of cells coloured by outcome.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CategoryMap {
+    /// Drawn above the grid; may be empty.
+    pub title: String,
+    /// Label of the horizontal axis.
+    pub x_label: String,
+    /// Label of the vertical axis.
+    pub y_label: String,
+    /// Columns, left to right.
+    pub x: Vec<String>,
+    /// Rows, bottom to top.
+    pub y: Vec<String>,
+    /// What a cell can be: name and colour, in the order of the legend.
+    pub categories: Vec<(String, Colour)>,
+    /// `cells[row][column]`: index into `categories` and a short text; `None` was not run.
+    pub cells: Vec<Vec<Option<(usize, String)>>>,
+}

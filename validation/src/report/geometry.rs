@@ -1,0 +1,183 @@
+//! Runs of points that can be drawn: split at gaps, thinned, clipped.
+
+use super::canvas::{Point, Rect};
+use super::figure::Align;
+use super::font;
+
+/// The point moved by the corner of the area.
+pub(super) fn shift((x, y): Point, by: Rect) -> Point {
+    (x + by.left, y + by.top)
+}
+
+/// The rectangle moved by the corner of the area.
+pub(super) fn shift_rect(rect: Rect, by: Rect) -> Rect {
+    Rect { left: rect.left + by.left, top: rect.top + by.top, ..rect }
+}
+
+/// The places of the points, split where a point has none.
+pub(super) fn runs(
+    points: &[(f64, f64)],
+    place: impl Fn((f64, f64)) -> Option<Point>,
+) -> Vec<Vec<Point>> {
+    let mut runs = vec![Vec::new()];
+    for &point in points {
+        match (place(point), runs.last_mut()) {
+            (Some(p), Some(run)) => run.push(p),
+            _ => runs.push(Vec::new()),
+        }
+    }
+    runs.retain(|run| !run.is_empty());
+    runs
+}
+
+/// The outlines of a band (x, lower, upper), split where a point has no place.
+pub(super) fn band_runs(
+    points: &[(f64, f64, f64)],
+    place: impl Fn((f64, f64)) -> Option<Point>,
+) -> Vec<Vec<Point>> {
+    let mut outlines = Vec::new();
+    let (mut lower, mut upper): (Vec<Point>, Vec<Point>) = (Vec::new(), Vec::new());
+    let mut close = |lower: &mut Vec<Point>, upper: &mut Vec<Point>| {
+        upper.reverse();
+        lower.append(upper);
+        outlines.push(std::mem::take(lower));
+    };
+    for &(x, lo, hi) in points {
+        match (place((x, lo)), place((x, hi))) {
+            (Some(a), Some(b)) => {
+                lower.push(a);
+                upper.push(b);
+            }
+            _ => close(&mut lower, &mut upper),
+        }
+    }
+    close(&mut lower, &mut upper);
+    outlines.retain(|outline| outline.len() > 2);
+    outlines
+}
+
+/// The same curve to the eye: of the points in one third of a pixel column the first, the lowest,
+/// the highest and the last remain.
+pub(super) fn thin(run: &[Point]) -> Vec<Point> {
+    const ENOUGH: usize = 600;
+    if run.len() < ENOUGH {
+        return run.to_vec();
+    }
+    let column = |p: &Point| (3.0 * p.0).round() as i64;
+    let mut kept = Vec::new();
+    for group in run.chunk_by(|a, b| column(a) == column(b)) {
+        let by_y = |&i: &usize, &j: &usize| group[i].1.total_cmp(&group[j].1);
+        let lowest = (0..group.len()).max_by(by_y).unwrap_or(0);
+        let highest = (0..group.len()).min_by(by_y).unwrap_or(0);
+        let mut indices = [0, lowest, highest, group.len() - 1];
+        indices.sort_unstable();
+        kept.extend(indices.map(|i| group[i]));
+    }
+    kept.dedup();
+    kept
+}
+
+/// The parts of a line inside an area.
+pub(super) fn clip_line(run: &[Point], area: Rect) -> Vec<Vec<Point>> {
+    let mut pieces: Vec<Vec<Point>> = Vec::new();
+    for pair in run.windows(2) {
+        let Some((a, b)) = area.clip(pair[0], pair[1]) else { continue };
+        match pieces.last_mut() {
+            Some(piece) if piece.last() == Some(&a) => piece.push(b),
+            _ => pieces.push(vec![a, b]),
+        }
+    }
+    pieces
+}
+
+/// The part of a polygon inside an area (Sutherland and Hodgman).
+pub(super) fn clip_polygon(corners: &[Point], area: Rect) -> Vec<Point> {
+    // Room to the four sides: positive is inside.
+    let room = |(x, y): Point, side: usize| match side {
+        0 => x - area.left,
+        1 => area.right() - x,
+        2 => y - area.top,
+        _ => area.bottom() - y,
+    };
+    let mut polygon = corners.to_vec();
+    for side in 0..4 {
+        let mut clipped = Vec::new();
+        for (i, &p) in polygon.iter().enumerate() {
+            let q = polygon[(i + 1) % polygon.len()];
+            let (rp, rq) = (room(p, side), room(q, side));
+            if rp >= 0.0 {
+                clipped.push(p);
+            }
+            if (rp >= 0.0) != (rq >= 0.0) {
+                let t = rp / (rp - rq);
+                clipped.push((p.0 + t * (q.0 - p.0), p.1 + t * (q.1 - p.1)));
+            }
+        }
+        polygon = clipped;
+    }
+    polygon
+}
+
+/// Adds points along a segment, a few pixels apart.
+pub(super) fn sample_segment(points: &mut Vec<Point>, a: Point, b: Point) {
+    let steps = ((b.0 - a.0).hypot(b.1 - a.1) / 4.0).ceil().clamp(1.0, 2000.0);
+    let at = |t: f64| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1));
+    points.extend((0..=steps as usize).map(|i| at(i as f64 / steps)));
+}
+
+/// Adds points inside a rectangle, a few pixels apart.
+pub(super) fn sample_rect(points: &mut Vec<Point>, rect: Rect) {
+    let rows = (rect.height / 4.0).ceil() as usize;
+    for i in 0..=rows {
+        let y = rect.top + rect.height * i as f64 / rows.max(1) as f64;
+        sample_segment(points, (rect.left, y), (rect.right(), y));
+    }
+}
+
+/// The room that a text takes, vertically centred on its point.
+pub(super) fn text_rect((x, y): Point, text: &str, em: f64, align: Align) -> Rect {
+    let width = font::width(text, em);
+    let left = match align {
+        Align::Start => x,
+        Align::Middle => x - 0.5 * width,
+        Align::End => x - width,
+    };
+    Rect { left, top: y - 0.5 * em, width, height: em }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AREA: Rect = Rect { left: 0.0, top: 0.0, width: 10.0, height: 10.0 };
+
+    #[test]
+    fn gaps_split_a_line() {
+        let points = [(0.0, 1.0), (1.0, 1.0), (2.0, f64::NAN), (3.0, 1.0)];
+        let place = |p: (f64, f64)| p.1.is_finite().then_some(p);
+        assert_eq!(runs(&points, place).len(), 2);
+        assert!(runs(&[], place).is_empty());
+    }
+
+    #[test]
+    fn thinning_keeps_peaks() {
+        let run: Vec<Point> = (0..100_000)
+            .map(|i| (f64::from(i) * 1e-3, if i == 5432 { -7.0 } else { 1.0 }))
+            .collect();
+        let kept = thin(&run);
+        assert!(kept.len() < 1300 && kept.iter().any(|p| p.1 == -7.0));
+    }
+
+    #[test]
+    fn a_line_that_leaves_and_returns_is_two_pieces() {
+        let run = [(1.0, 5.0), (5.0, 15.0), (9.0, 5.0)];
+        assert_eq!(clip_line(&run, AREA).len(), 2);
+    }
+
+    #[test]
+    fn a_polygon_is_cut_at_the_border() {
+        let cut = clip_polygon(&[(-5.0, 2.0), (5.0, 2.0), (5.0, 4.0), (-5.0, 4.0)], AREA);
+        assert_eq!(cut.len(), 4);
+        assert!(cut.iter().all(|&p| AREA.contains(p)));
+    }
+}

@@ -1,0 +1,126 @@
+//! Legends: what stands for what, and where it hides nothing.
+
+use super::canvas::{Canvas, Point, Rect, Type};
+use super::colour::Colour;
+use super::figure::{Align, Dash, Legend, Shape};
+use super::font;
+use plotters::prelude::DrawingBackend;
+
+/// How a series is drawn, after the palette was consulted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Look {
+    pub colour: Colour,
+    pub line: Option<Dash>,
+    pub width: f64,
+    pub marker: Option<(Shape, f64)>,
+    pub open: bool,
+}
+
+/// The sample beside a name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Sample {
+    Series(Look),
+    Patch(Colour),
+}
+
+/// One line of a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Entry {
+    pub name: String,
+    pub sample: Sample,
+}
+
+const EM: f64 = 11.0;
+const ROW: f64 = 17.0;
+const PADDING: f64 = 7.0;
+const SAMPLE: f64 = 26.0;
+const INSET: f64 = 8.0;
+
+/// Width and height of the box around the entries.
+pub(super) fn size(entries: &[Entry]) -> (f64, f64) {
+    let widest = entries.iter().map(|e| font::width(&e.name, EM)).fold(0.0, f64::max);
+    let text = SAMPLE + 7.0 + widest;
+    (text + 2.0 * PADDING, entries.len() as f64 * ROW + 2.0 * PADDING - 5.0)
+}
+
+/// Draws the entries in a box whose corner is `at`.
+pub(super) fn draw<B: DrawingBackend>(
+    canvas: &mut Canvas<B>,
+    entries: &[Entry],
+    (left, top): Point,
+    boxed: bool,
+) {
+    let (width, height) = size(entries);
+    if boxed {
+        let area = Rect { left, top, width, height };
+        canvas.fill(area, Colour::WHITE);
+        canvas.frame(area, Colour(190, 190, 190), 0.7);
+    }
+    for (i, entry) in entries.iter().enumerate() {
+        let y = top + PADDING + (i as f64 + 0.5) * ROW - 2.5;
+        let x = left + PADDING;
+        match entry.sample {
+            Sample::Series(look) => sample(canvas, look, (x, y)),
+            Sample::Patch(colour) => {
+                let patch = Rect { left: x + 4.0, top: y - 5.5, width: SAMPLE - 8.0, height: 11.0 };
+                canvas.fill(patch, colour);
+                canvas.frame(patch, Colour(150, 150, 150), 0.6);
+            }
+        }
+        canvas.text(&entry.name, (x + SAMPLE + 7.0, y), Type::new(EM, Align::Start));
+    }
+}
+
+fn sample<B: DrawingBackend>(canvas: &mut Canvas<B>, look: Look, (x, y): Point) {
+    if let Some(dash) = look.line {
+        canvas.dashed(&[(x, y), (x + SAMPLE, y)], look.colour, look.width, dash);
+    }
+    if let Some((shape, diameter)) = look.marker {
+        canvas.marker((x + 0.5 * SAMPLE, y), shape, diameter, look.colour, look.open);
+    }
+}
+
+/// The corner of the area where the box hides none of the obstacles, else outside.
+pub(super) fn place(entries: &[Entry], area: Rect, obstacles: &[Point]) -> Legend {
+    let corners = [Legend::TopRight, Legend::TopLeft, Legend::BottomRight, Legend::BottomLeft];
+    let fits = |rect: Rect| {
+        area.contains((rect.left, rect.top)) && area.contains((rect.right(), rect.bottom()))
+    };
+    let free = |corner: &Legend| {
+        let rect = rect(entries, area, *corner);
+        fits(rect) && !obstacles.iter().any(|&p| rect.grown(4.0).contains(p))
+    };
+    corners.into_iter().find(free).unwrap_or(Legend::Outside)
+}
+
+/// The box at a place of the area.
+pub(super) fn rect(entries: &[Entry], area: Rect, place: Legend) -> Rect {
+    let (width, height) = size(entries);
+    let left = match place {
+        Legend::TopLeft | Legend::BottomLeft => area.left + INSET,
+        Legend::Outside => area.right() + INSET,
+        _ => area.right() - INSET - width,
+    };
+    let top = match place {
+        Legend::BottomLeft | Legend::BottomRight => area.bottom() - INSET - height,
+        Legend::Outside => area.top - 4.0,
+        _ => area.top + INSET,
+    };
+    Rect { left, top, width, height }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_legend_avoids_data_or_leaves() {
+        let entries = vec![Entry { name: "SPH".into(), sample: Sample::Patch(Colour::BLUE) }];
+        let area = Rect { left: 0.0, top: 0.0, width: 300.0, height: 200.0 };
+        assert_eq!(place(&entries, area, &[]), Legend::TopRight);
+        assert_eq!(place(&entries, area, &[(280.0, 20.0)]), Legend::TopLeft);
+        let everywhere: Vec<_> =
+            (0..3000).map(|i| (f64::from(i % 60) * 5.0, f64::from(i / 60) * 4.0)).collect();
+        assert_eq!(place(&entries, area, &everywhere), Legend::Outside);
+    }
+}

@@ -1,0 +1,242 @@
+//! Particle maps and category maps.
+
+use super::axis::{Axis, Mapping, Scale};
+use super::canvas::{Canvas, Rect, Type};
+use super::colour::{Colour, ColourMap};
+use super::figure::{Align, CategoryMap, ParticleMap, Shape};
+use super::font;
+use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
+use super::legend::{self, Entry, Sample};
+use super::ticks::{Ticks, with_exponent};
+use plotters::prelude::DrawingBackend;
+
+const BAR_GAP: f64 = 12.0;
+const BAR_WIDTH: f64 = 13.0;
+
+/// A particle map with its scales decided.
+pub(super) struct Particles<'a> {
+    map: &'a ParticleMap,
+    size: (f64, f64),
+    x: Mapping,
+    y: Mapping,
+    values: Mapping,
+    x_ticks: Ticks,
+    y_ticks: Ticks,
+    value_ticks: Ticks,
+    /// Radius of a dot in CSS pixels.
+    radius: f64,
+    note: String,
+}
+
+impl<'a> Particles<'a> {
+    pub fn new(map: &'a ParticleMap, room: (f64, f64)) -> Self {
+        let linear = |axis: &Axis| Axis { scale: Scale::Linear, ..axis.clone() };
+        let (x_axis, y_axis) = (linear(&map.x), linear(&map.y));
+        let mut x = x_axis.mapping(map.points.iter().map(|p| p.0));
+        let mut y = y_axis.mapping(map.points.iter().map(|p| p.1));
+        let spacing = ((x.hi - x.lo) * (y.hi - y.lo) / map.points.len().max(1) as f64)
+            .sqrt()
+            .min(0.1 * (x.hi - x.lo));
+        let diameter = map.diameter.filter(|d| *d > 0.0).unwrap_or(0.9 * spacing);
+        // A dot on the border is seen whole.
+        for axis in [&mut x, &mut y] {
+            axis.lo -= 0.5 * diameter;
+            axis.hi += 0.5 * diameter;
+        }
+        let (width, height) = (x.hi - x.lo, y.hi - y.lo);
+        let pixels = (room.0 / width).min(room.1 / height);
+        let size = (pixels * width, pixels * height);
+        let values = value_range(map);
+        let lost = map.points.iter().filter(|p| !(p.0 + p.1 + p.2).is_finite()).count();
+        Self {
+            map,
+            size,
+            x,
+            y,
+            values,
+            x_ticks: x_axis.place_ticks(&x, (size.0 / 60.0) as usize),
+            y_ticks: y_axis.place_ticks(&y, (size.1 / 42.0) as usize),
+            value_ticks: Axis::linear("").place_ticks(&values, (size.1 / 36.0) as usize),
+            radius: (0.5 * diameter * pixels).clamp(0.8, 9.0),
+            note: if lost > 0 { format!("{lost} not finite") } else { String::new() },
+        }
+    }
+
+    pub fn size(&self) -> (f64, f64) {
+        self.size
+    }
+
+    fn with_texts<R>(&self, then: impl FnOnce(&Texts) -> R) -> R {
+        then(&Texts {
+            title: &self.map.title,
+            note: &self.note,
+            x: &with_exponent(&self.map.x.label, self.x_ticks.exponent),
+            y: &with_exponent(&self.map.y.label, self.y_ticks.exponent),
+        })
+    }
+
+    pub fn margins(&self) -> Margins {
+        let around = self.with_texts(|texts| margins(texts, widest_label(&self.y_ticks)));
+        let bar = BAR_GAP + BAR_WIDTH + 8.0 + widest_label(&self.value_ticks);
+        Margins { right: bar + if self.map.label.is_empty() { 6.0 } else { 26.0 }, ..around }
+    }
+
+    pub fn draw<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+        axes(canvas, area, 0.0, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
+        self.with_texts(|texts| labels(canvas, area, texts, widest_label(&self.y_ticks)));
+        for &(x, y, value) in &self.map.points {
+            let (Some(ux), Some(uy)) = (self.x.unit(x), self.y.unit(y)) else { continue };
+            let at = (area.left + ux * area.width, area.bottom() - uy * area.height);
+            if !area.contains(at) {
+                continue;
+            }
+            match self.values.unit(value) {
+                Some(t) => canvas.disc(at, self.radius, self.map.map.at(t)),
+                None => canvas.marker(at, Shape::Cross, 8.0, Colour::BLACK, false),
+            }
+        }
+        canvas.frame(area, Colour::BLACK, 1.0);
+        self.bar(canvas, area);
+    }
+
+    fn bar<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+        const STEPS: u32 = 64;
+        let bar = Rect { left: area.right() + BAR_GAP, width: BAR_WIDTH, ..area };
+        for i in 0..STEPS {
+            let t = f64::from(i) / f64::from(STEPS);
+            let bottom = bar.bottom() - t * bar.height;
+            // Each step reaches to the top, so that no seam shows between two.
+            let step = Rect { height: bottom - bar.top, ..bar };
+            canvas.fill(step, self.map.map.at(t + 0.5 / f64::from(STEPS)));
+        }
+        canvas.frame(bar, Colour::BLACK, 1.0);
+        for (v, label) in &self.value_ticks.major {
+            let Some(t) = self.values.unit(*v) else { continue };
+            let y = bar.bottom() - t * bar.height;
+            canvas.line((bar.right(), y), (bar.right() + 4.0, y), Colour::BLACK, 1.0);
+            canvas.text(label, (bar.right() + 7.0, y), Type::new(TICK_EM, Align::Start));
+        }
+        let label = with_exponent(&self.map.label, self.value_ticks.exponent);
+        let em = fit(&label, 12.0, area.height + 20.0);
+        let x = bar.right() + 20.0 + widest_label(&self.value_ticks);
+        let middle = area.top + 0.5 * area.height;
+        canvas.text(&label, (x, middle), Type::new(em, Align::Middle).upright());
+    }
+}
+
+/// The ends of the colour bar: given, or the data's, symmetric where the map is.
+fn value_range(map: &ParticleMap) -> Mapping {
+    let finite = || map.points.iter().map(|p| p.2).filter(|v| v.abs() < 1e150);
+    let lo = finite().fold(f64::INFINITY, f64::min);
+    let hi = finite().fold(f64::NEG_INFINITY, f64::max);
+    let (lo, hi) = match map.values {
+        Some(ends) => ends,
+        None if map.map == ColourMap::Diverging => {
+            let most = lo.abs().max(hi.abs());
+            (-most, most)
+        }
+        None => (lo, hi),
+    };
+    if lo.is_finite() && hi.is_finite() && lo < hi {
+        Mapping { scale: Scale::Linear, lo, hi }
+    } else {
+        Axis::linear("").mapping([lo, hi].into_iter())
+    }
+}
+
+/// A category map with its legend.
+pub(super) struct Categories<'a> {
+    map: &'a CategoryMap,
+    size: (f64, f64),
+    entries: Vec<Entry>,
+    /// Whether the column names are too long to lie flat.
+    upright: bool,
+}
+
+impl<'a> Categories<'a> {
+    pub fn new(map: &'a CategoryMap, size: (f64, f64)) -> Self {
+        let entry = |(name, colour): &(String, Colour)| Entry {
+            name: name.clone(),
+            sample: Sample::Patch(*colour),
+        };
+        let column = size.0 / map.x.len().max(1) as f64;
+        let upright = map.x.iter().any(|name| font::width(name, TICK_EM) > column - 4.0);
+        Self { map, size, entries: map.categories.iter().map(entry).collect(), upright }
+    }
+
+    pub fn size(&self) -> (f64, f64) {
+        self.size
+    }
+
+    fn texts(&self) -> Texts<'_> {
+        Texts { title: &self.map.title, note: "", x: "", y: &self.map.y_label }
+    }
+
+    /// Height that the column names take.
+    fn names(&self) -> f64 {
+        match self.upright {
+            true => widest(&self.map.x) + 8.0,
+            false => 18.0,
+        }
+    }
+
+    pub fn margins(&self) -> Margins {
+        let label = if self.map.x_label.is_empty() { 4.0 } else { 22.0 };
+        Margins {
+            right: legend::size(&self.entries).0 + 14.0,
+            bottom: self.names() + label,
+            ..margins(&self.texts(), widest(&self.map.y))
+        }
+    }
+
+    pub fn draw<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+        let map = self.map;
+        labels(canvas, area, &self.texts(), widest(&map.y));
+        let width = area.width / map.x.len().max(1) as f64;
+        let height = area.height / map.y.len().max(1) as f64;
+        for (column, name) in map.x.iter().enumerate() {
+            let x = area.left + (column as f64 + 0.5) * width;
+            let how = Type::new(TICK_EM, if self.upright { Align::End } else { Align::Middle });
+            match self.upright {
+                true => canvas.text(name, (x, area.bottom() + 5.0), how.upright()),
+                false => canvas.text(name, (x, area.bottom() + 11.0), how),
+            }
+        }
+        for (row, name) in map.y.iter().enumerate() {
+            let top = area.bottom() - (row as f64 + 1.0) * height;
+            let at = (area.left - 6.0, top + 0.5 * height);
+            canvas.text(name, at, Type::new(TICK_EM, Align::End));
+            for column in 0..map.x.len() {
+                let cell = map.cells.get(row).and_then(|r| r.get(column)).and_then(Option::as_ref);
+                let left = area.left + column as f64 * width;
+                self.cell(canvas, Rect { left, top, width, height }.grown(-1.0), cell);
+            }
+        }
+        let below = (area.left + 0.5 * area.width, area.bottom() + self.names() + 9.0);
+        let em = fit(&map.x_label, 12.0, area.width + 40.0);
+        canvas.text(&map.x_label, below, Type::new(em, Align::Middle));
+        legend::draw(canvas, &self.entries, (area.right() + 8.0, area.top - 4.0), false);
+    }
+
+    fn cell<B: DrawingBackend>(
+        &self,
+        canvas: &mut Canvas<B>,
+        rect: Rect,
+        cell: Option<&(usize, String)>,
+    ) {
+        let known = cell.and_then(|(i, text)| Some((self.map.categories.get(*i)?.1, text)));
+        let Some((colour, text)) = known else {
+            canvas.frame(rect.grown(-0.5), Colour::LIGHT_GREY, 1.0);
+            return;
+        };
+        canvas.fill(rect, colour);
+        let em = fit(text, 11.0, rect.width - 4.0).min(0.8 * rect.height);
+        let ink = if colour.is_dark() { Colour::WHITE } else { Colour::BLACK };
+        let at = (rect.left + 0.5 * rect.width, rect.top + 0.5 * rect.height);
+        canvas.text(text, at, Type::new(em, Align::Middle).colour(ink));
+    }
+}
+
+fn widest(names: &[String]) -> f64 {
+    names.iter().map(|name| font::width(name, TICK_EM)).fold(0.0, f64::max)
+}

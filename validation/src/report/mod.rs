@@ -1,0 +1,35 @@
+//! Rendering: figures, tables and one self-contained page, from plain data.
+//!
+//! Nothing here knows particles, solvers or cases. Build a [`Figure`], [`Table`] or [`Page`] from
+//! numbers and text, then call [`svg`], [`png`], [`Table::html`], [`Page::html`] or [`Page::write`].
+//! [`check_page`] reads a page back and says whether it can be trusted to open from disk.
+
+mod axis;
+mod canvas;
+mod check;
+mod colour;
+mod figure;
+mod font;
+mod frame;
+mod geometry;
+mod inline;
+mod legend;
+mod maps;
+mod number;
+mod page;
+mod plot;
+mod render;
+mod table;
+mod ticks;
+
+pub use axis::{Axis, Scale};
+pub use check::{Summary, check_page};
+pub use colour::{Colour, ColourMap};
+pub use figure::{
+    Align, CategoryMap, Dash, Figure, Layer, Legend, Orientation, Panel, ParticleMap, Plot, Series,
+    Shape,
+};
+pub use number::{percent, sci, seconds, sig};
+pub use page::{Block, Counts, Page, Section};
+pub use render::{png, svg};
+pub use table::{Cell, Column, Status, Table};

@@ -1,0 +1,237 @@
+//! Tables whose cells may carry a verdict.
+
+use super::inline::inline;
+use super::number;
+use maud::{Markup, PreEscaped, html};
+
+/// What a value means for the verdict.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// Judged and inside its bound.
+    Pass,
+    /// Shown without judgement.
+    Reported,
+    /// A known limit of the method, not judged.
+    Limitation,
+    /// Outside its bound, as it should be.
+    ExpectedFailure,
+    /// Judged and outside its bound.
+    Fail,
+}
+
+impl Status {
+    /// Every status, mildest first.
+    pub const ALL: [Self; 5] =
+        [Self::Pass, Self::Reported, Self::Limitation, Self::ExpectedFailure, Self::Fail];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Reported => "reported",
+            Self::Limitation => "limitation",
+            Self::ExpectedFailure => "expected failure",
+            Self::Fail => "fail",
+        }
+    }
+
+    /// As a class of the style sheet.
+    pub(super) fn class(self) -> &'static str {
+        match self {
+            Self::ExpectedFailure => "expected",
+            other => other.name(),
+        }
+    }
+
+    /// A mark that needs no colour.
+    pub(super) fn mark(self) -> &'static str {
+        match self {
+            Self::Pass => "✓",
+            Self::Reported => "•",
+            Self::Limitation => "△",
+            Self::ExpectedFailure => "⊘",
+            Self::Fail => "✗",
+        }
+    }
+}
+
+/// One cell: text, the value to sort by, a verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// Inline markup as in [`super::Block::Prose`].
+    pub text: String,
+    /// Sorts the column; without it the text does.
+    pub value: Option<f64>,
+    /// Colours the cell.
+    pub status: Option<Status>,
+}
+
+impl Cell {
+    /// Plain text.
+    pub fn text(text: impl Into<String>) -> Self {
+        Self { text: text.into(), value: None, status: None }
+    }
+
+    /// A number with this many significant digits.
+    pub fn num(value: f64, digits: usize) -> Self {
+        Self::formatted(value, number::sig(value, digits))
+    }
+
+    /// A whole number, in full.
+    pub fn count(value: u64) -> Self {
+        Self::formatted(value as f64, value.to_string())
+    }
+
+    /// A number as `1.2·10⁻⁴`.
+    pub fn sci(value: f64, digits: usize) -> Self {
+        Self::formatted(value, number::sci(value, digits))
+    }
+
+    /// A fraction as per cent.
+    pub fn percent(value: f64, digits: usize) -> Self {
+        Self::formatted(value, number::percent(value, digits))
+    }
+
+    /// A duration in a unit that suits it.
+    pub fn seconds(value: f64) -> Self {
+        Self::formatted(value, number::seconds(value))
+    }
+
+    /// A verdict in words.
+    pub fn status(status: Status) -> Self {
+        Self::text(status.name()).with(status)
+    }
+
+    /// The same cell with a verdict.
+    pub fn with(self, status: Status) -> Self {
+        Self { status: Some(status), ..self }
+    }
+
+    fn formatted(value: f64, text: String) -> Self {
+        Self { text, value: Some(value), status: None }
+    }
+
+    fn html(&self, numeric: bool) -> Markup {
+        let class = match (self.status, numeric) {
+            (Some(s), true) => format!("number {}", s.class()),
+            (Some(s), false) => s.class().into(),
+            (None, true) => "number".into(),
+            (None, false) => String::new(),
+        };
+        html! {
+            td class=[Some(class).filter(|c| !c.is_empty())]
+                data-value=[self.value.filter(|v| v.is_finite())] {
+                @if let Some(s) = self.status {
+                    span.mark title=(s.name()) { (s.mark()) } "\u{a0}"
+                }
+                (inline(&self.text))
+            }
+        }
+    }
+}
+
+/// Head of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name; inline markup.
+    pub head: String,
+    /// Unit, shown in brackets; empty for none.
+    pub unit: String,
+    /// Numbers stand on the right.
+    pub numeric: bool,
+}
+
+impl Column {
+    /// A column of text.
+    pub fn text(head: impl Into<String>) -> Self {
+        Self { head: head.into(), unit: String::new(), numeric: false }
+    }
+
+    /// A column of numbers in a unit (empty for none).
+    pub fn num(head: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { head: head.into(), unit: unit.into(), numeric: true }
+    }
+}
+
+/// A table with a caption; a click on a head sorts it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// Inline markup.
+    pub caption: String,
+    /// Heads.
+    pub columns: Vec<Column>,
+    /// Cells, row by row; missing ones stay empty.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(caption: impl Into<String>, columns: Vec<Column>) -> Self {
+        Self { caption: caption.into(), columns, rows: Vec::new() }
+    }
+
+    /// Adds a row.
+    pub fn row(mut self, cells: Vec<Cell>) -> Self {
+        self.rows.push(cells);
+        self
+    }
+
+    /// The table as HTML.
+    pub fn html(&self) -> String {
+        self.markup("").into_string()
+    }
+
+    pub(super) fn markup(&self, number: &str) -> Markup {
+        html! {
+            div.scroll {
+                table {
+                    @if !self.caption.is_empty() {
+                        caption { b { (number) } (inline(&self.caption)) }
+                    }
+                    thead { tr {
+                        @for column in &self.columns {
+                            th class=[column.numeric.then_some("number")] scope="col" {
+                                (inline(&column.head))
+                                @if !column.unit.is_empty() {
+                                    span.unit { " [" (column.unit) "]" }
+                                }
+                            }
+                        }
+                    } }
+                    tbody { @for row in &self.rows { (self.row_markup(row)) } }
+                }
+            }
+        }
+    }
+
+    fn row_markup(&self, row: &[Cell]) -> Markup {
+        let worst = row.iter().filter_map(|c| c.status).max();
+        html! {
+            tr data-status=[worst.map(Status::class)] {
+                @for (i, column) in self.columns.iter().enumerate() {
+                    @match row.get(i) {
+                        Some(cell) => (cell.html(column.numeric)),
+                        None => (PreEscaped("<td></td>")),
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_carry_value_and_verdict() {
+        let table = Table::new("Errors", vec![Column::text("case"), Column::num("L2", "1")])
+            .row(vec![Cell::text("a < b"), Cell::sci(1.2e-4, 2).with(Status::Fail)])
+            .row(vec![Cell::text("short")]);
+        let html = table.html();
+        assert!(html.contains("a &lt; b"));
+        assert!(html.contains("1.2·10⁻⁴"));
+        assert!(html.contains("data-value=\"0.00012\""));
+        assert!(html.contains("<tr data-status=\"fail\">"));
+    }
+}

@@ -1,0 +1,205 @@
+//! Where ticks go and what they say.
+
+use super::axis::Scale;
+
+/// Ticks of one axis over a range.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Ticks {
+    /// Labelled ticks: value, label.
+    pub major: Vec<(f64, String)>,
+    /// Unlabelled ticks.
+    pub minor: Vec<f64>,
+    /// Power of ten taken out of the labels; it belongs to the axis label.
+    pub exponent: i32,
+}
+
+/// At most about `count` labelled ticks on `lo..hi`.
+pub(super) fn ticks(scale: Scale, lo: f64, hi: f64, count: usize) -> Ticks {
+    match scale {
+        Scale::Linear => linear(lo, hi, count),
+        Scale::Log => logarithmic(lo, hi, count),
+    }
+}
+
+/// The given values as ticks, those outside the range left out.
+pub(super) fn fixed(values: &[f64], lo: f64, hi: f64) -> Ticks {
+    let inside = values.iter().copied().filter(|v| (lo..=hi).contains(v));
+    Ticks { major: inside.map(|v| (v, plain(v))).collect(), minor: Vec::new(), exponent: 0 }
+}
+
+/// Ticks at multiples of 1, 2 or 5 times a power of ten.
+fn linear(lo: f64, hi: f64, count: usize) -> Ticks {
+    let (step, subdivisions) = nice_step((hi - lo) / count.max(1) as f64);
+    let multiples = |step: f64| {
+        let slack = 1e-9 * (hi - lo) / step;
+        let first = (lo / step - slack).ceil() as i64;
+        let last = (hi / step + slack).floor() as i64;
+        (first..=last.min(first + 200)).map(move |k| k as f64 * step)
+    };
+    let largest = lo.abs().max(hi.abs());
+    let magnitude = largest.log10().floor() as i32;
+    let exponent = if (-2..5).contains(&magnitude) { 0 } else { magnitude };
+    let unit = 10f64.powi(exponent);
+    let decimals = (-(step / unit * 1.000_001).log10().floor()).max(0.0) as usize;
+    let label = |v: f64| minus(format!("{:.decimals$}", v / unit + 0.0));
+    let major: Vec<_> = multiples(step).map(|v| (v, label(v))).collect();
+    let fine = step / f64::from(subdivisions);
+    let is_major = |v: f64| ((v / step).round() * step - v).abs() < 1e-6 * step;
+    let minor = multiples(fine).filter(|&v| !is_major(v)).collect();
+    Ticks { major, minor, exponent }
+}
+
+/// About the next 1-2-5 step above `raw`, and into how many parts minor ticks divide it.
+fn nice_step(raw: f64) -> (f64, u32) {
+    let power = 10f64.powf(raw.log10().floor());
+    match raw / power {
+        m if m <= 1.1 => (power, 5),
+        m if m <= 2.2 => (2.0 * power, 4),
+        m if m <= 5.5 => (5.0 * power, 5),
+        _ => (10.0 * power, 5),
+    }
+}
+
+/// Decades; below two decades also their multiples, as labels where there is room.
+fn logarithmic(lo: f64, hi: f64, count: usize) -> Ticks {
+    let inside = |v: &f64| *v >= lo * (1.0 - 1e-9) && *v <= hi * (1.0 + 1e-9);
+    let (first, last) = (lo.log10().floor() as i32, hi.log10().ceil() as i32);
+    let decades: Vec<i32> = (first..=last).filter(|k| inside(&10f64.powi(*k))).collect();
+    let multiples = |of: &'static [u8]| {
+        (first..=last).flat_map(move |k| of.iter().map(move |&m| f64::from(m) * 10f64.powi(k)))
+    };
+    let all: &[u8] = &[1, 2, 3, 4, 5, 6, 7, 8, 9];
+    let (major, minor): (Vec<(f64, String)>, Vec<f64>) = if decades.len() >= 3 {
+        let least = decades.len().div_ceil(count.max(2)) as i32;
+        let strides = [1, 2, 3, 4, 6, 10, 15, 20, 50, 100];
+        let stride = strides.into_iter().find(|&s| s >= least).unwrap_or(200);
+        let (labelled, bare): (Vec<i32>, Vec<i32>) =
+            decades.into_iter().partition(|k| k % stride == 0);
+        let major = labelled.iter().map(|&k| (10f64.powi(k), power_of_ten(k))).collect();
+        let minor = match stride {
+            1 => multiples(&all[1..]).filter(inside).collect(),
+            _ => bare.iter().map(|&k| 10f64.powi(k)).collect(),
+        };
+        (major, minor)
+    } else {
+        let choices: [&'static [u8]; 4] = [all, &[1, 2, 3, 5], &[1, 2, 5], &[1]];
+        let fits = |of: &&&'static [u8]| multiples(of).filter(inside).count() <= count.max(2);
+        let labelled = choices.iter().find(fits).unwrap_or(&choices[2]);
+        let major: Vec<f64> = multiples(labelled).filter(inside).collect();
+        let minor = multiples(all).filter(inside).filter(|v| !major.contains(v)).collect();
+        (major.into_iter().map(|v| (v, plain(v))).collect(), minor)
+    };
+    Ticks { major, minor, exponent: 0 }
+}
+
+/// `10⁻³`.
+pub(super) fn power_of_ten(k: i32) -> String {
+    format!("10{}", superscript(k))
+}
+
+/// An integer in superscript digits.
+pub(super) fn superscript(k: i32) -> String {
+    let digit = |c: char| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        c => char::from_u32('⁰' as u32 + c as u32 - '0' as u32).unwrap_or(c),
+    };
+    k.to_string().chars().map(digit).collect()
+}
+
+/// The shortest text of a value with few digits: `0.02`, `50`, `3·10⁻⁴`.
+fn plain(v: f64) -> String {
+    if v == 0.0 {
+        return "0".into();
+    }
+    let k = v.abs().log10();
+    if (-2.001..4.0).contains(&k) {
+        let rounded = format!("{v:.6}");
+        return minus(rounded.trim_end_matches('0').trim_end_matches('.').to_string());
+    }
+    let k = (k + 1e-9).floor() as i32;
+    let mantissa = v / 10f64.powi(k);
+    if (mantissa - 1.0).abs() < 1e-9 {
+        return power_of_ten(k);
+    }
+    let mantissa = format!("{mantissa:.3}");
+    let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
+    minus(format!("{mantissa}·{}", power_of_ten(k)))
+}
+
+/// A true minus sign instead of a hyphen.
+pub(super) fn minus(text: String) -> String {
+    text.replace('-', "−")
+}
+
+/// `u [m/s]` with a factor of 10⁻³ becomes `u [10⁻³ m/s]`.
+pub(super) fn with_exponent(label: &str, exponent: i32) -> String {
+    if exponent == 0 {
+        return label.into();
+    }
+    let factor = power_of_ten(exponent);
+    match label.rfind('[') {
+        Some(at) if label.ends_with(']') => {
+            let unit = &label[at + 1..label.len() - 1];
+            let space = if matches!(unit, "1" | "-" | "–" | "") { "" } else { " " };
+            let unit = if space.is_empty() { "" } else { unit };
+            format!("{}[{factor}{space}{unit}]", &label[..at])
+        }
+        _ => format!("{label} [{factor}]"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(t: &Ticks) -> Vec<&str> {
+        t.major.iter().map(|(_, l)| l.as_str()).collect()
+    }
+
+    #[test]
+    fn linear_ticks_are_multiples_of_one_two_five() {
+        let t = linear(-0.013, 1.02, 6);
+        assert_eq!(labels(&t), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(t.minor.len(), 15);
+        assert_eq!(labels(&linear(-1.0, 1.0, 4)), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(labels(&linear(0.0, 40.0, 4)), ["0", "10", "20", "30", "40"]);
+    }
+
+    #[test]
+    fn small_values_take_their_power_of_ten_out() {
+        let t = linear(0.0, 1.3e-5, 4);
+        assert_eq!(t.exponent, -5);
+        assert_eq!(labels(&t), ["0.0", "0.5", "1.0"]);
+        assert_eq!(with_exponent("u [m/s]", -5), "u [10⁻⁵ m/s]");
+        assert_eq!(with_exponent("error [1]", -5), "error [10⁻⁵]");
+        assert_eq!(with_exponent("error", 6), "error [10⁶]");
+    }
+
+    #[test]
+    fn log_labels_have_no_rounding_dust() {
+        let t = logarithmic(3e-6, 2.0, 8);
+        assert_eq!(labels(&t), ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
+        assert!(t.minor.len() > 40);
+        let few = logarithmic(0.018, 0.4, 6);
+        assert_eq!(labels(&few), ["0.02", "0.03", "0.05", "0.1", "0.2", "0.3"]);
+        assert_eq!(
+            labels(&logarithmic(1.5e-5, 6e-5, 6)),
+            ["2·10⁻⁵", "3·10⁻⁵", "4·10⁻⁵", "5·10⁻⁵", "6·10⁻⁵"]
+        );
+    }
+
+    #[test]
+    fn many_decades_are_thinned() {
+        let t = logarithmic(1e-16, 1.0, 6);
+        assert!(t.major.len() <= 7, "{:?}", labels(&t));
+        assert!(t.minor.iter().all(|m| (m.log10() - m.log10().round()).abs() < 1e-9));
+    }
+
+    #[test]
+    fn fixed_ticks_keep_to_the_range() {
+        assert_eq!(labels(&fixed(&[16.0, 32.0, 64.0, 1e-4], 10.0, 50.0)), ["16", "32"]);
+    }
+}

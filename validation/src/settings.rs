@@ -1,0 +1,677 @@
+//! Settings of a case: named, documented numbers with a unit, an allowed range and a default.
+//!
+//! [`settings!`](crate::settings!) declares the struct once; the command line
+//! (`--set key=value`), the JSON record, the listing and the report's table all follow from it.
+//! No way in (text, JSON) leaves a struct with a value outside its range.
+//!
+//! ```
+//! use validation::settings::{self, Settings};
+//!
+//! validation::settings! {
+//!     /// A channel between two plates.
+//!     pub struct Channel {
+//!         /// Reynolds number V L / nu
+//!         re: f64 ["-"] in 1e-9..=1e6 = 0.5,
+//!         /// rows of particles between the plates
+//!         rows: usize ["-"] in 4..=2000 = 20,
+//!         /// speed of sound, by Morris' rule unless given
+//!         c0: Option<f64> ["m/s"] in 1e-9..=1e5 = None,
+//!         /// write every step
+//!         verbose: bool = false,
+//!     }
+//! }
+//!
+//! let mut channel = Channel::default();
+//! settings::apply(&mut channel, &["re=1e-3", "rows=40", "c0=auto"]).unwrap();
+//! assert_eq!((channel.re, channel.rows, channel.c0), (1e-3, 40, None));
+//! assert!(channel.set("rows", "3").is_err());
+//! ```
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use thiserror::Error;
+
+/// What kind of value a setting takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// a real number
+    Real,
+    /// a real number, or `auto` for "by rule"
+    RealOrAuto,
+    /// a whole number that is not negative
+    Count,
+    /// `true` or `false`
+    Flag,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Kind::Real => "a number",
+            Kind::RealOrAuto => "a number or auto",
+            Kind::Count => "a whole number",
+            Kind::Flag => "true or false",
+        })
+    }
+}
+
+/// The value of one setting, without its type.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// a flag
+    Flag(bool),
+    /// a whole number
+    Count(u64),
+    /// a real number
+    Real(f64),
+    /// by rule; in JSON and on the command line the word `auto`
+    Auto(Auto),
+}
+
+/// The word `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Auto {
+    /// by rule
+    Auto,
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Flag(flag) => write!(f, "{flag}"),
+            Value::Count(count) => write!(f, "{count}"),
+            Value::Real(real) => write!(f, "{real:?}"), // the shortest text that reads back equal
+            Value::Auto(_) => f.write_str("auto"),
+        }
+    }
+}
+
+/// What is known about a setting without an instance.
+#[derive(Debug, Clone, Copy)]
+pub struct Field {
+    /// the key of `--set key=value`
+    pub name: &'static str,
+    /// SI unit, `-` for none
+    pub unit: &'static str,
+    /// what it is, one line
+    pub doc: &'static str,
+    /// what it takes
+    pub kind: Kind,
+    /// allowed range in words
+    pub range: &'static str,
+    default: fn() -> Value,
+}
+
+impl Field {
+    /// For [`settings!`](crate::settings!) only: the macro fills in every field.
+    #[doc(hidden)]
+    pub const fn new(
+        [name, unit, doc, range]: [&'static str; 4],
+        kind: Kind,
+        default: fn() -> Value,
+    ) -> Self {
+        Field { name, unit, doc, kind, range, default }
+    }
+
+    /// The value that the setting has unless it is set.
+    pub fn default(&self) -> Value {
+        (self.default)()
+    }
+}
+
+/// Why a setting was refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SettingError {
+    /// No setting has that name.
+    #[error("no setting is called {key:?}{}; the settings are {}", hint(.nearest), .keys.join(", "))]
+    UnknownKey {
+        /// as given
+        key: String,
+        /// the most similar name, if one is similar
+        nearest: Option<&'static str>,
+        /// all names
+        keys: Vec<&'static str>,
+    },
+    /// The text is not of the form `key=value`.
+    #[error("{text:?} is not of the form key=value")]
+    NotAnAssignment {
+        /// as given
+        text: String,
+    },
+    /// The text is not a value of the setting's kind.
+    #[error("setting {name} takes {kind} in the range {range}, not {text:?}")]
+    Unreadable {
+        /// the setting
+        name: &'static str,
+        /// what it takes
+        kind: Kind,
+        /// as given
+        text: String,
+        /// allowed
+        range: &'static str,
+    },
+    /// NaN or infinity.
+    #[error("setting {name} is {text}, which is not finite; allowed is {range}")]
+    NotFinite {
+        /// the setting
+        name: &'static str,
+        /// as given
+        text: String,
+        /// allowed
+        range: &'static str,
+    },
+    /// A number outside the range.
+    #[error("setting {name} is {value} [{unit}]; allowed is {range}")]
+    OutOfRange {
+        /// the setting
+        name: &'static str,
+        /// as given
+        value: String,
+        /// unit of the setting
+        unit: &'static str,
+        /// allowed
+        range: &'static str,
+    },
+}
+
+/// " (did you mean NAME?)", or nothing.
+pub fn hint(nearest: &Option<&'static str>) -> String {
+    nearest.map(|name| format!(" (did you mean {name}?)")).unwrap_or_default()
+}
+
+/// A settings struct; implemented by [`settings!`](crate::settings!).
+pub trait Settings:
+    Clone + Default + PartialEq + fmt::Debug + Serialize + for<'de> Deserialize<'de>
+{
+    /// All settings in the order of declaration.
+    const FIELDS: &'static [Field];
+
+    /// The value of a setting, `None` if there is no such setting.
+    fn get(&self, key: &str) -> Option<Value>;
+
+    /// Sets one setting from text; on error nothing changes.
+    fn set(&mut self, key: &str, text: &str) -> Result<(), SettingError>;
+
+    /// Checks every range again, for a struct whose public fields were written directly.
+    fn validate(&self) -> Result<(), SettingError>;
+
+    /// Every setting with its value, for tables.
+    fn entries(&self) -> Vec<(&'static Field, Value)> {
+        let value = |field: &'static Field| self.get(field.name).map(|value| (field, value));
+        Self::FIELDS.iter().filter_map(value).collect()
+    }
+}
+
+/// Applies assignments `key=value` in order; on error nothing changes.
+pub fn apply<S: Settings>(
+    settings: &mut S,
+    assignments: &[impl AsRef<str>],
+) -> Result<(), SettingError> {
+    let mut changed = settings.clone();
+    for assignment in assignments {
+        let text = assignment.as_ref();
+        let Some((key, value)) = text.split_once('=') else {
+            return Err(SettingError::NotAnAssignment { text: text.into() });
+        };
+        changed.set(key.trim(), value.trim())?;
+    }
+    *settings = changed;
+    Ok(())
+}
+
+/// The error for a key that is not among the fields.
+pub fn unknown(fields: &'static [Field], key: &str) -> SettingError {
+    let keys: Vec<_> = fields.iter().map(|field| field.name).collect();
+    SettingError::UnknownKey { key: key.into(), nearest: nearest(&keys, key), keys }
+}
+
+/// The name most similar to what was written, if one is similar.
+pub fn nearest<'a>(names: &[&'a str], written: &str) -> Option<&'a str> {
+    let distance = |name: &&str| edit_distance(name, written);
+    let is_close = |name: &&&str| distance(name) <= 1 + name.len() / 3;
+    names.iter().filter(is_close).min_by_key(|name| distance(name)).copied()
+}
+
+/// Levenshtein distance: insertions, deletions and replacements between two words.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().take(100).collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, to) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(from != *to);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// A type that a setting may have.
+pub trait SettingType: Copy {
+    /// What the limits of the range are.
+    type Limit: PartialOrd;
+
+    /// The kind that errors and listings name.
+    const KIND: Kind;
+
+    /// Reads the text; knows nothing of the range.
+    fn read(text: &str, field: &Field) -> Result<Self, SettingError>;
+
+    /// The value without its type.
+    fn value(self) -> Value;
+
+    /// Is it finite, if it is a real number at all?
+    fn is_finite(self) -> bool {
+        true
+    }
+
+    /// Is it inside the range? Always, if there is nothing to compare.
+    fn is_within(self, range: &Option<std::ops::RangeInclusive<Self::Limit>>) -> bool;
+}
+
+/// Refuses a value that is not finite or outside the range.
+pub fn check<T: SettingType>(
+    value: T,
+    range: Option<std::ops::RangeInclusive<T::Limit>>,
+    field: &Field,
+) -> Result<T, SettingError> {
+    let Field { name, unit, range: allowed, .. } = *field;
+    let text = value.value().to_string();
+    if !value.is_finite() {
+        return Err(SettingError::NotFinite { name, text, range: allowed });
+    }
+    match value.is_within(&range) {
+        true => Ok(value),
+        false => Err(SettingError::OutOfRange { name, value: text, unit, range: allowed }),
+    }
+}
+
+fn unreadable(text: &str, field: &Field) -> SettingError {
+    let Field { name, kind, range, .. } = *field;
+    SettingError::Unreadable { name, kind, text: text.into(), range }
+}
+
+impl SettingType for f64 {
+    type Limit = f64;
+    const KIND: Kind = Kind::Real;
+
+    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
+        text.parse().map_err(|_| unreadable(text, field))
+    }
+
+    fn value(self) -> Value {
+        Value::Real(self)
+    }
+
+    fn is_finite(self) -> bool {
+        f64::is_finite(self)
+    }
+
+    fn is_within(self, range: &Option<std::ops::RangeInclusive<f64>>) -> bool {
+        range.as_ref().is_none_or(|range| range.contains(&self))
+    }
+}
+
+impl SettingType for Option<f64> {
+    type Limit = f64;
+    const KIND: Kind = Kind::RealOrAuto;
+
+    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
+        if text == "auto" { Ok(None) } else { f64::read(text, field).map(Some) }
+    }
+
+    fn value(self) -> Value {
+        self.map_or(Value::Auto(Auto::Auto), Value::Real)
+    }
+
+    fn is_finite(self) -> bool {
+        self.is_none_or(f64::is_finite)
+    }
+
+    fn is_within(self, range: &Option<std::ops::RangeInclusive<f64>>) -> bool {
+        self.is_none_or(|value| value.is_within(range))
+    }
+}
+
+impl SettingType for u64 {
+    type Limit = u64;
+    const KIND: Kind = Kind::Count;
+
+    /// Whole numbers, also written as `2e3`; what is a number but not a count is out of range.
+    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
+        const EXACT: f64 = 9007199254740992.0; // 2^53: above it neighbouring floats skip counts
+        if let Ok(count) = text.parse() {
+            return Ok(count);
+        }
+        let Field { name, unit, range, .. } = *field;
+        match text.parse::<f64>() {
+            Ok(real) if (0.0..=EXACT).contains(&real) && real.fract() == 0.0 => Ok(real as u64),
+            Ok(real) if real.is_finite() && real.fract() == 0.0 => {
+                Err(SettingError::OutOfRange { name, value: text.into(), unit, range })
+            }
+            Ok(real) if !real.is_finite() => {
+                Err(SettingError::NotFinite { name, text: text.into(), range })
+            }
+            _ => Err(unreadable(text, field)),
+        }
+    }
+
+    fn value(self) -> Value {
+        Value::Count(self)
+    }
+
+    fn is_within(self, range: &Option<std::ops::RangeInclusive<u64>>) -> bool {
+        range.as_ref().is_none_or(|range| range.contains(&self))
+    }
+}
+
+impl SettingType for usize {
+    type Limit = usize;
+    const KIND: Kind = Kind::Count;
+
+    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
+        let count = u64::read(text, field)?;
+        let Field { name, unit, range, .. } = *field;
+        let too_big = |_| SettingError::OutOfRange { name, value: text.into(), unit, range };
+        usize::try_from(count).map_err(too_big)
+    }
+
+    fn value(self) -> Value {
+        Value::Count(self as u64)
+    }
+
+    fn is_within(self, range: &Option<std::ops::RangeInclusive<usize>>) -> bool {
+        range.as_ref().is_none_or(|range| range.contains(&self))
+    }
+}
+
+impl SettingType for bool {
+    type Limit = bool;
+    const KIND: Kind = Kind::Flag;
+
+    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
+        text.parse().map_err(|_| unreadable(text, field))
+    }
+
+    fn value(self) -> Value {
+        Value::Flag(self)
+    }
+
+    fn is_within(self, _: &Option<std::ops::RangeInclusive<bool>>) -> bool {
+        true
+    }
+}
+
+/// Writes settings as one JSON object; used by [`settings!`](crate::settings!).
+pub fn serialize<S: Settings, T: Serializer>(settings: &S, to: T) -> Result<T::Ok, T::Error> {
+    to.collect_map(settings.entries().into_iter().map(|(field, value)| (field.name, value)))
+}
+
+/// Reads settings from a JSON object: unknown keys and values outside their range are refused,
+/// missing keys keep their default. Used by [`settings!`](crate::settings!).
+pub fn deserialize<'de, S: Settings, D: Deserializer<'de>>(from: D) -> Result<S, D::Error> {
+    let mut settings = S::default();
+    for (key, value) in BTreeMap::<String, Value>::deserialize(from)? {
+        settings.set(&key, &value.to_string()).map_err(D::Error::custom)?;
+    }
+    Ok(settings)
+}
+
+/// Declares a settings struct; see the module [`settings`](mod@crate::settings) for an example.
+///
+/// `name: type ["unit"] in low..=high = default`, with literals as limits and
+/// `f64`, `Option<f64>`, `usize`, `u64` as types; `name: bool = default` has no unit nor range.
+#[macro_export]
+macro_rules! settings {
+    (
+        $(#[doc = $struct_doc:literal])+
+        pub struct $Struct:ident {
+            $(
+                $(#[doc = $doc:literal])+
+                $name:ident : $kind:ty $([$unit:literal] in $low:literal ..= $high:literal)?
+                    = $default:expr
+            ),+ $(,)?
+        }
+    ) => {
+        $(#[doc = $struct_doc])+
+        #[derive(Debug, Clone, PartialEq)]
+        pub struct $Struct {
+            $(
+                $(#[doc = $doc])+
+                $(#[doc = concat!(" \\[", $unit, "\\]")])?
+                pub $name: $kind,
+            )+
+        }
+
+        impl Default for $Struct {
+            fn default() -> Self {
+                $Struct { $($name: $default),+ }
+            }
+        }
+
+        impl $crate::settings::Settings for $Struct {
+            const FIELDS: &'static [$crate::settings::Field] = &[$({
+                #[allow(unused_mut, unused_assignments)]
+                let (mut unit, mut range) = ("-", "true or false");
+                $((unit, range) = (
+                    $unit,
+                    concat!(stringify!($low), " to ", stringify!($high), " [", $unit, "]"),
+                );)?
+                $crate::settings::Field::new(
+                    [stringify!($name), unit, concat!($($doc),+).trim_ascii(), range],
+                    <$kind as $crate::settings::SettingType>::KIND,
+                    || <$kind as $crate::settings::SettingType>::value($default),
+                )
+            }),+];
+
+            fn get(&self, key: &str) -> Option<$crate::settings::Value> {
+                match key {
+                    $(stringify!($name) => {
+                        Some($crate::settings::SettingType::value(self.$name))
+                    })+
+                    _ => None,
+                }
+            }
+
+            fn set(&mut self, key: &str, text: &str) -> Result<(), $crate::settings::SettingError> {
+                use $crate::settings::{SettingType, check, unknown};
+                let unknown = || unknown(Self::FIELDS, key);
+                let field = Self::FIELDS.iter().find(|field| field.name == key).ok_or_else(unknown)?;
+                match key {
+                    $(stringify!($name) => {
+                        #[allow(unused_mut, unused_assignments)]
+                        let mut range = None;
+                        $(range = Some($low..=$high);)?
+                        self.$name = check(<$kind as SettingType>::read(text, field)?, range, field)?;
+                    })+
+                    _ => return Err(unknown()),
+                }
+                Ok(())
+            }
+
+            fn validate(&self) -> Result<(), $crate::settings::SettingError> {
+                let mut fields = Self::FIELDS.iter();
+                $({
+                    #[allow(unused_mut, unused_assignments)]
+                    let mut range = None;
+                    $(range = Some($low..=$high);)?
+                    if let Some(field) = fields.next() {
+                        $crate::settings::check(self.$name, range, field)?;
+                    }
+                })+
+                Ok(())
+            }
+        }
+
+        impl $crate::settings::serde::Serialize for $Struct {
+            fn serialize<S: $crate::settings::serde::Serializer>(
+                &self,
+                to: S,
+            ) -> Result<S::Ok, S::Error> {
+                $crate::settings::serialize(self, to)
+            }
+        }
+
+        impl<'de> $crate::settings::serde::Deserialize<'de> for $Struct {
+            fn deserialize<D: $crate::settings::serde::Deserializer<'de>>(
+                from: D,
+            ) -> Result<Self, D::Error> {
+                $crate::settings::deserialize(from)
+            }
+        }
+    };
+}
+
+#[doc(hidden)]
+pub use serde; // for the macro, in crates that do not depend on serde
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    crate::settings! {
+        /// A channel between two plates.
+        pub struct Channel {
+            /// Reynolds number
+            /// V L / nu
+            re: f64 ["-"] in 1e-9..=1e6 = 0.5,
+            /// rows of particles
+            rows: usize ["-"] in 4..=2000 = 20,
+            /// seed of the perturbation
+            seed: u64 ["-"] in 0..=4294967295 = 7,
+            /// speed of sound
+            c0: Option<f64> ["m/s"] in 1e-9..=1e5 = None,
+            /// shift of the lower plate
+            shift: f64 ["m"] in -1.0..=1.0 = 0.0,
+            /// say more
+            verbose: bool = false,
+        }
+    }
+
+    fn channel(assignments: &[&str]) -> Result<Channel, SettingError> {
+        let mut channel = Channel::default();
+        apply(&mut channel, assignments)?;
+        Ok(channel)
+    }
+
+    #[test]
+    fn fields_carry_what_the_declaration_says() {
+        let re = &Channel::FIELDS[0];
+        assert_eq!((re.name, re.unit, re.kind), ("re", "-", Kind::Real));
+        assert_eq!((re.doc, re.range), ("Reynolds number V L / nu", "1e-9 to 1e6 [-]"));
+        assert_eq!(re.default(), Value::Real(0.5));
+        let printed: Vec<_> = Channel::default()
+            .entries()
+            .iter()
+            .map(|(field, value)| format!("{}={value}", field.name))
+            .collect();
+        assert_eq!(printed.join(" "), "re=0.5 rows=20 seed=7 c0=auto shift=0.0 verbose=false");
+    }
+
+    #[test]
+    fn assignments_are_read_in_order_and_all_or_nothing() {
+        let set =
+            channel(&["re = 1e-3", "rows=1e2", "c0=12.5", "shift=-0.5", "verbose=true"]).unwrap();
+        let expected =
+            Channel { re: 1e-3, rows: 100, c0: Some(12.5), shift: -0.5, verbose: true, seed: 7 };
+        assert_eq!(set, expected);
+        assert_eq!(channel(&["c0=12.5", "c0=auto"]).unwrap().c0, None);
+        let mut kept = Channel::default();
+        assert!(apply(&mut kept, &["rows=40", "re=nonsense"]).is_err());
+        assert_eq!(kept, Channel::default());
+    }
+
+    #[test]
+    fn errors_name_setting_value_and_range() {
+        let says = |assignment: &str| channel(&[assignment]).unwrap_err().to_string();
+        assert_eq!(
+            says("row=40"),
+            "no setting is called \"row\" (did you mean rows?); \
+             the settings are re, rows, seed, c0, shift, verbose"
+        );
+        assert!(
+            says("viscosity=1").starts_with("no setting is called \"viscosity\"; the settings")
+        );
+        assert_eq!(says("rows=3"), "setting rows is 3 [-]; allowed is 4 to 2000 [-]");
+        assert_eq!(says("rows=-3"), "setting rows is -3 [-]; allowed is 4 to 2000 [-]");
+        assert_eq!(says("re=1e300"), "setting re is 1e300 [-]; allowed is 1e-9 to 1e6 [-]");
+        assert_eq!(
+            says("re=NaN"),
+            "setting re is NaN, which is not finite; allowed is 1e-9 to 1e6 [-]"
+        );
+        assert_eq!(
+            says("c0=inf"),
+            "setting c0 is inf, which is not finite; allowed is 1e-9 to 1e5 [m/s]"
+        );
+        assert_eq!(
+            says("rows=20.5"),
+            "setting rows takes a whole number in the range 4 to 2000 [-], not \"20.5\""
+        );
+        assert_eq!(says("re"), "\"re\" is not of the form key=value");
+        assert!(matches!(
+            channel(&["rows=99999999999999999999999"]),
+            Err(SettingError::OutOfRange { .. })
+        ));
+        assert!(matches!(channel(&["re="]), Err(SettingError::Unreadable { .. })));
+        assert!(matches!(channel(&["verbose=yes"]), Err(SettingError::Unreadable { .. })));
+    }
+
+    #[test]
+    fn json_round_trips_and_cannot_carry_an_invalid_value() {
+        let set = channel(&["re=0.1", "c0=3", "seed=4294967295"]).unwrap();
+        let text = serde_json::to_string(&set).unwrap();
+        assert_eq!(serde_json::from_str::<Channel>(&text).unwrap(), set);
+        let auto = serde_json::to_string(&Channel::default()).unwrap();
+        assert!(auto.contains(r#""c0":"auto""#), "{auto}");
+        assert_eq!(serde_json::from_str::<Channel>(&auto).unwrap(), Channel::default());
+        assert_eq!(serde_json::from_str::<Channel>(r#"{"re":2}"#).unwrap().re, 2.0);
+        for refused in [r#"{"rows":3}"#, r#"{"rouws":30}"#, r#"{"re":null}"#, r#"{"re":"1"}"#] {
+            assert!(serde_json::from_str::<Channel>(refused).is_err(), "{refused}");
+        }
+    }
+
+    #[test]
+    fn validate_finds_what_was_written_past_set() {
+        assert_eq!(Channel::default().validate(), Ok(()));
+        let wrong = Channel { re: f64::NAN, ..Channel::default() };
+        assert!(matches!(wrong.validate(), Err(SettingError::NotFinite { name: "re", .. })));
+        let wrong = Channel { c0: Some(-1.0), ..Channel::default() };
+        assert!(matches!(wrong.validate(), Err(SettingError::OutOfRange { name: "c0", .. })));
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics_or_leaves_an_invalid_struct(
+            key in "re|rows|seed|c0|shift|verbose|.{0,40}",
+            text in "-?[0-9]{0,30}(\\.[0-9]{0,9})?(e-?[0-9]{1,4})?|auto|NaN|inf|true|.{0,40}",
+        ) {
+            let mut settings = Channel::default();
+            let outcome = settings.set(&key, &text);
+            prop_assert_eq!(settings.validate(), Ok(()));
+            if outcome.is_err() {
+                prop_assert_eq!(&settings, &Channel::default());
+            }
+            let _ = apply(&mut settings, &[format!("{key}={text}"), text]);
+            prop_assert_eq!(settings.validate(), Ok(()));
+        }
+
+        #[test]
+        fn printed_values_read_back_equal(re in 1e-9..=1e6f64, rows in 4..=2000usize, auto: bool) {
+            let set = Channel { re, rows, c0: (!auto).then_some(re.min(1e5)), ..Channel::default() };
+            let mut back = Channel::default();
+            for (field, value) in set.entries() {
+                back.set(field.name, &value.to_string()).unwrap();
+            }
+            prop_assert_eq!(set, back);
+        }
+    }
+}

@@ -1,0 +1,435 @@
+//! Order of accuracy: the line through log error against log spacing, and when to believe it.
+//!
+//! [`convergence`] is for errors against an exact solution, [`extrapolate`] for a quantity whose
+//! exact value is unknown (Richardson 1911; grid convergence index of Roache 1994).
+//!
+//! With the local orders p_k = ln(E_k/E_{k+1}) / ln(h_k/h_{k+1}) between successive levels, coarse
+//! to fine, and p̂ the slope of the least-squares line through all levels, the label is
+//!
+//! - [`Label::Asymptotic`] if p̂ > 0 and every p_k is within 15 % of p̂;
+//! - [`Label::FloorReached`] if the p_k begin with one or more that are at least half of the
+//!   largest and at least 0.5, and all after them, at least the last one, are below half of the
+//!   largest: the error fell in earnest and then stopped falling;
+//! - [`Label::NotAsymptotic`] otherwise.
+
+use thiserror::Error;
+
+/// Local orders within this fraction of the fitted one count as the same order.
+pub const SAME_ORDER: f64 = 0.15;
+/// A local order below this fraction of the largest one has left the power law.
+pub const LEFT_THE_LAW: f64 = 0.5;
+/// The slowest fall of the error that counts as convergence towards a floor.
+pub const SLOWEST: f64 = 0.5;
+
+/// One resolution: spacing h \[any unit\] and its error or value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// Spacing or time step.
+    pub spacing: f64,
+    /// Error (≥ 0) for [`convergence`], value of the quantity for [`extrapolate`].
+    pub value: f64,
+}
+
+/// What the levels show; the rule is in the module's documentation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Label {
+    /// One order describes all levels.
+    Asymptotic,
+    /// The error fell with some order and then stopped falling.
+    FloorReached,
+    /// Neither: the fitted order means nothing.
+    NotAsymptotic,
+}
+
+/// E = E₀ + C hᵖ.
+#[derive(Clone, Copy, Debug)]
+pub struct Floor {
+    /// E₀ ≥ 0, the error that refinement does not remove.
+    pub error: f64,
+    /// C ≥ 0.
+    pub coefficient: f64,
+    /// p, between 0.5 and 6.
+    pub order: f64,
+}
+
+/// The outcome of [`convergence`].
+#[derive(Clone, Debug)]
+pub struct Convergence {
+    /// p̂, least squares in log-log over all levels.
+    pub order: f64,
+    /// Standard error of p̂.
+    pub standard_error: f64,
+    /// 95 % confidence interval p̂ ± t₀.₉₇₅(n-2) × standard error; wide for three levels, t = 12.7.
+    pub interval: [f64; 2],
+    /// p_k, coarse to fine.
+    pub local_orders: Vec<f64>,
+    /// Whether to believe the order.
+    pub label: Label,
+    /// The floor, if reached: least squares of E₀ + C hᵖ in relative errors. Rough when the error
+    /// dips below its floor on the way, as two errors of opposite sign make it do.
+    pub floor: Option<Floor>,
+}
+
+/// The outcome of [`extrapolate`].
+#[derive(Clone, Debug)]
+pub struct GridConvergence {
+    /// p from the three finest levels.
+    pub order: f64,
+    /// f for h → 0 from the two finest levels and p.
+    pub extrapolated: f64,
+    /// 1.25 |f₂ - f₁| / (scale (rᵖ - 1)) of the finest level, a relative uncertainty; only if there
+    /// are two or more triplets of levels and their orders agree within 15 %.
+    pub gci: Option<f64>,
+    /// p of every triplet of successive levels, coarse to fine; NaN where the differences change
+    /// sign.
+    pub orders: Vec<f64>,
+}
+
+/// Why there is no order.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ConvergenceError {
+    /// Two levels always lie on a line.
+    #[error("{0} levels, at least 3 are needed")]
+    TooFew(usize),
+    /// A spacing or error is 0, negative, infinite or NaN.
+    #[error("spacing {spacing}, value {value} cannot be used in a logarithm")]
+    Unusable {
+        /// Spacing of the level.
+        spacing: f64,
+        /// Its error or value.
+        value: f64,
+    },
+    /// Two levels have the same spacing.
+    #[error("two levels with spacing {0}")]
+    Repeated(f64),
+    /// The three finest values do not approach anything: their differences change sign or grow.
+    #[error("the finest values {0:?} do not converge")]
+    Oscillating([f64; 3]),
+}
+
+/// Order of the errors of three or more levels in any sequence, with the actual ratios of spacing.
+///
+/// # Errors
+/// [`ConvergenceError`]; an error of exactly 0 has no order and is refused.
+pub fn convergence(levels: &[Level]) -> Result<Convergence, ConvergenceError> {
+    let levels = sorted(levels, |level| level.value > 0.0 && level.value.is_finite())?;
+    let x: Vec<f64> = levels.iter().map(|level| level.spacing.ln()).collect();
+    let y: Vec<f64> = levels.iter().map(|level| level.value.ln()).collect();
+    let (order, standard_error) = slope(&x, &y);
+    let half_width = student_t(levels.len() - 2) * standard_error;
+    let local_orders: Vec<f64> =
+        (1..x.len()).map(|k| (y[k - 1] - y[k]) / (x[k - 1] - x[k])).collect();
+    let label = label(order, &local_orders);
+    let floor = (label == Label::FloorReached).then(|| fit_floor(&levels));
+    let interval = [order - half_width, order + half_width];
+    Ok(Convergence { order, standard_error, interval, local_orders, label, floor })
+}
+
+/// Richardson extrapolation of a quantity from three or more levels in any sequence; `scale` > 0
+/// \[unit of the quantity\] makes the index relative.
+///
+/// # Errors
+/// [`ConvergenceError`]; [`ConvergenceError::Oscillating`] when the three finest do not converge.
+pub fn extrapolate(levels: &[Level], scale: f64) -> Result<GridConvergence, ConvergenceError> {
+    if !(scale > 0.0 && scale.is_finite()) {
+        return Err(ConvergenceError::Unusable { spacing: f64::NAN, value: scale });
+    }
+    let levels = sorted(levels, |level| level.value.is_finite())?;
+    let orders: Vec<f64> =
+        levels.windows(3).map(|w| triplet_order(w).unwrap_or(f64::NAN)).collect();
+    let (middle, fine) = (levels[levels.len() - 2], levels[levels.len() - 1]);
+    let order = orders[orders.len() - 1];
+    if order.is_nan() {
+        let [a, b, c] = [3, 2, 1].map(|back| levels[levels.len() - back].value);
+        return Err(ConvergenceError::Oscillating([a, b, c]));
+    }
+    let growth = (middle.spacing / fine.spacing).powf(order) - 1.0;
+    let correction = (fine.value - middle.value) / growth;
+    let same = orders.len() >= 2 && orders.iter().all(|p| (p - order).abs() <= SAME_ORDER * order);
+    let gci = same.then(|| 1.25 * correction.abs() / scale);
+    Ok(GridConvergence { order, extrapolated: fine.value + correction, gci, orders })
+}
+
+/// The levels, coarse to fine.
+fn sorted(
+    levels: &[Level],
+    usable: impl Fn(&Level) -> bool,
+) -> Result<Vec<Level>, ConvergenceError> {
+    if levels.len() < 3 {
+        return Err(ConvergenceError::TooFew(levels.len()));
+    }
+    let positive = |level: &Level| level.spacing > 0.0 && level.spacing.is_finite();
+    if let Some(Level { spacing, value }) = levels.iter().find(|l| !(positive(l) && usable(l))) {
+        return Err(ConvergenceError::Unusable { spacing: *spacing, value: *value });
+    }
+    let mut levels = levels.to_vec();
+    levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
+    match levels.windows(2).find(|w| w[0].spacing == w[1].spacing) {
+        Some(twins) => Err(ConvergenceError::Repeated(twins[0].spacing)),
+        None => Ok(levels),
+    }
+}
+
+/// Slope of the least-squares line through (x, y) and its standard error,
+/// (Σ residual²/(n-2) / Σ (x - x̄)²)^(1/2).
+fn slope(x: &[f64], y: &[f64]) -> (f64, f64) {
+    let n = x.len() as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (mean_x, mean_y) = (mean(x), mean(y));
+    let (mut sxx, mut sxy) = (0.0, 0.0);
+    for (x, y) in x.iter().zip(y) {
+        sxx += (x - mean_x) * (x - mean_x);
+        sxy += (x - mean_x) * (y - mean_y);
+    }
+    let slope = sxy / sxx;
+    let residual = |(x, y): (&f64, &f64)| y - mean_y - slope * (x - mean_x);
+    let square: f64 = x.iter().zip(y).map(residual).map(|r| r * r).sum();
+    (slope, (square / (n - 2.0) / sxx).sqrt())
+}
+
+fn label(order: f64, local: &[f64]) -> Label {
+    if order > 0.0 && local.iter().all(|p| (p - order).abs() <= SAME_ORDER * order) {
+        return Label::Asymptotic;
+    }
+    let largest = local.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let falls = |p: &f64| *p >= (LEFT_THE_LAW * largest).max(SLOWEST);
+    let falling = local.iter().take_while(|p| falls(p)).count();
+    let flat = local[falling..].iter().all(|p| *p < LEFT_THE_LAW * largest);
+    if falling >= 1 && falling < local.len() && flat {
+        Label::FloorReached
+    } else {
+        Label::NotAsymptotic
+    }
+}
+
+/// Least squares of E = E₀ + C hᵖ, E₀ and C ≥ 0, with weights 1/E²: linear for given p, a scan in
+/// steps of 0.05 and golden sections for p.
+fn fit_floor(levels: &[Level]) -> Floor {
+    let misfit = |order: f64| misfit(levels, &linear_floor(levels, order));
+    let mut best = SLOWEST;
+    for k in 0..=110 {
+        let order = SLOWEST + 0.05 * f64::from(k);
+        if misfit(order) < misfit(best) {
+            best = order;
+        }
+    }
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    let (mut low, mut high) = ((best - 0.05).max(SLOWEST), best + 0.05);
+    while high - low > 1e-10 {
+        let width = golden * (high - low);
+        if misfit(high - width) < misfit(low + width) {
+            high = low + width
+        } else {
+            low = high - width
+        }
+    }
+    linear_floor(levels, 0.5 * (low + high))
+}
+
+/// The best E₀ and C at a given order: weighted normal equations, then the better edge if one is
+/// negative.
+fn linear_floor(levels: &[Level], order: f64) -> Floor {
+    let (mut aa, mut ab, mut bb, mut a, mut b) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for Level { spacing, value } in levels {
+        // Relative residual 1 - E₀ u - C w.
+        let (u, w) = (1.0 / value, spacing.powf(order) / value);
+        aa += u * u;
+        ab += u * w;
+        bb += w * w;
+        a += u;
+        b += w;
+    }
+    let determinant = aa * bb - ab * ab;
+    let inner =
+        [(a * bb - b * ab) / determinant, (b * aa - a * ab) / determinant].map(|x| x.max(0.0));
+    let floor = |[error, coefficient]: [f64; 2]| Floor { error, coefficient, order };
+    let edges = [inner, [a / aa, 0.0], [0.0, b / bb]].map(floor);
+    let [first, rest @ ..] = edges;
+    rest.into_iter().fold(first, |best, edge| {
+        if misfit(levels, &edge) < misfit(levels, &best) { edge } else { best }
+    })
+}
+
+/// Σ (1 - (E₀ + C hᵖ)/E)².
+fn misfit(levels: &[Level], floor: &Floor) -> f64 {
+    let residual = |level: &Level| {
+        1.0 - (floor.error + floor.coefficient * level.spacing.powf(floor.order)) / level.value
+    };
+    levels.iter().map(residual).map(|r| r * r).sum()
+}
+
+/// p of three levels, coarse to fine, with unequal ratios: the root of
+/// (h₁ᵖ - h₂ᵖ)/(h₂ᵖ - h₃ᵖ) = (f₁ - f₂)/(f₂ - f₃), whose left side grows with p. `None` unless the
+/// differences have one sign and p is in (0, 20).
+fn triplet_order(levels: &[Level]) -> Option<f64> {
+    let [coarse, middle, fine] = levels else { return None };
+    let ratio = (coarse.value - middle.value) / (middle.value - fine.value);
+    if !(ratio > 0.0 && ratio.is_finite()) {
+        return None;
+    }
+    let power = |level: &Level, p: f64| (level.spacing / middle.spacing).powf(p);
+    let excess = |p: f64| (power(coarse, p) - 1.0) / (1.0 - power(fine, p)) - ratio;
+    let (mut low, mut high) = (1e-6, 20.0);
+    if excess(low) > 0.0 || excess(high) < 0.0 {
+        return None;
+    }
+    for _ in 0..60 {
+        let p = 0.5 * (low + high);
+        if excess(p) < 0.0 { low = p } else { high = p }
+    }
+    Some(0.5 * (low + high))
+}
+
+/// The 97.5 % quantile of Student's t with `freedom` ≥ 1 degrees: a table to 10, beyond it the
+/// expansion in 1/n of Abramowitz & Stegun 26.7.5 (error below 1e-5).
+fn student_t(freedom: usize) -> f64 {
+    const TABLE: [f64; 10] =
+        [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281];
+    let z = 1.959_964;
+    let n = freedom as f64;
+    let [z3, z5, z7, z9] = [3, 5, 7, 9].map(|power| f64::powi(z, power));
+    let expansion = z
+        + (z3 + z) / (4.0 * n)
+        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n)
+        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n)
+        + (79.0 * z9 + 776.0 * z7 + 1482.0 * z5 - 1920.0 * z3 - 945.0 * z)
+            / (92160.0 * n * n * n * n);
+    TABLE.get(freedom.wrapping_sub(1)).copied().unwrap_or(expansion)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Spacings whose ratios are 1.5, 1.6 and 2.
+    const SPACINGS: [f64; 4] = [0.12, 0.08, 0.05, 0.025];
+
+    fn levels<const N: usize>(spacings: [f64; N], value: impl Fn(f64) -> f64) -> [Level; N] {
+        spacings.map(|spacing| Level { spacing, value: value(spacing) })
+    }
+
+    #[test]
+    fn a_power_law_is_found_exactly() {
+        let mut shuffled = levels(SPACINGS, |h| 3.0 * h.powf(1.7));
+        shuffled.swap(0, 2);
+        let found = convergence(&shuffled).expect("usable");
+        assert_relative_eq!(found.order, 1.7, epsilon = 1e-12);
+        assert!(found.standard_error < 1e-12 && found.floor.is_none());
+        assert_eq!(found.label, Label::Asymptotic);
+        assert_eq!(found.local_orders.len(), 3);
+    }
+
+    /// The prototype's steady Poiseuille errors: 1.78, 0.44, 0.109 % at 10, 20, 40 rows.
+    #[test]
+    fn the_prototype_is_of_second_order() {
+        let errors = [(10.0, 1.78e-2), (20.0, 4.4e-3), (40.0, 1.09e-3)];
+        let found =
+            convergence(&errors.map(|(n, value)| Level { spacing: 1.0 / n, value })).unwrap();
+        assert!((found.order - 2.015).abs() < 1e-3 && found.label == Label::Asymptotic);
+        let width = found.interval[1] - found.interval[0];
+        assert_relative_eq!(width, 2.0 * 12.7062 * found.standard_error, epsilon = 1e-12);
+    }
+
+    /// 5 % of noise: the interval holds the true order, and a fit of many levels is still believed.
+    #[test]
+    fn noise_widens_the_interval() {
+        let noise = [0.05, -0.04, 0.03, -0.05, 0.02];
+        let spacings = [0.16, 0.08, 0.04, 0.02, 0.01];
+        let mut noisy = levels(spacings, |h| h * h);
+        for (level, noise) in noisy.iter_mut().zip(noise) {
+            level.value *= 1.0 + noise;
+        }
+        let found = convergence(&noisy).expect("usable");
+        assert_eq!(found.label, Label::Asymptotic);
+        assert!(found.standard_error > 1e-3);
+        assert!(found.interval[0] < 2.0 && 2.0 < found.interval[1]);
+    }
+
+    #[test]
+    fn a_floor_is_seen_and_measured() {
+        let found =
+            convergence(&levels([0.1, 0.05, 0.025, 0.0125, 0.00625], |h| 5e-4 + h * h)).unwrap();
+        assert_eq!(found.label, Label::FloorReached);
+        let floor = found.floor.expect("reached");
+        assert_relative_eq!(floor.error, 5e-4, max_relative = 1e-6);
+        assert_relative_eq!(floor.coefficient, 1.0, max_relative = 1e-5);
+        assert_relative_eq!(floor.order, 2.0, max_relative = 1e-6);
+    }
+
+    /// Ghost walls with the seed's kernel and with the quintic, from the row-reduced channel.
+    #[test]
+    fn lattice_floors_of_the_channel_are_seen() {
+        let rows = [0.1, 0.05, 0.025, 0.0125];
+        let label = |errors: [f64; 4]| {
+            let levels: Vec<_> =
+                rows.iter().zip(errors).map(|(h, value)| Level { spacing: *h, value }).collect();
+            let found = convergence(&levels).expect("usable");
+            (found.label, found.floor.map(|floor| floor.error))
+        };
+        let (seed, floor) = label([3.615e-2, 2.369e-2, 2.068e-2, 1.994e-2]);
+        assert_eq!(seed, Label::FloorReached);
+        assert!((floor.unwrap() - 1.97e-2).abs() < 2e-4, "{floor:?}");
+        assert_eq!(label([1.713e-2, 3.744e-3, 5.061e-4, 5.529e-4]).0, Label::FloorReached);
+    }
+
+    #[test]
+    fn scatter_and_growth_are_not_asymptotic() {
+        for errors in [[1.0, 0.1, 0.2, 0.01], [1.0, 1.1, 0.9, 1.0], [1.0, 2.0, 4.0, 8.0]] {
+            let mut levels = levels(SPACINGS, |_| 0.0);
+            for (level, error) in levels.iter_mut().zip(errors) {
+                level.value = error;
+            }
+            let found = convergence(&levels).expect("usable");
+            assert_eq!(found.label, Label::NotAsymptotic, "{errors:?}");
+            assert!(found.floor.is_none());
+        }
+    }
+
+    #[test]
+    fn what_has_no_order_is_an_error() {
+        let two = levels([0.2, 0.1], |h| h);
+        assert_eq!(convergence(&two).unwrap_err(), ConvergenceError::TooFew(2));
+        for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
+            let broken = levels([0.4, 0.2, 0.1], |h| if h < 0.15 { bad } else { h });
+            assert!(
+                matches!(convergence(&broken), Err(ConvergenceError::Unusable { .. })),
+                "{bad}"
+            );
+        }
+        let twins = levels([0.2, 0.1, 0.1], |h| h);
+        assert_eq!(convergence(&twins).unwrap_err(), ConvergenceError::Repeated(0.1));
+        assert!(extrapolate(&levels([0.2, 0.1, 0.05], |h| h), 0.0).is_err());
+    }
+
+    #[test]
+    fn richardson_finds_the_limit() {
+        let found = extrapolate(&levels(SPACINGS, |h| 2.0 + 0.5 * h.powf(1.5)), 2.0).unwrap();
+        assert_relative_eq!(found.order, 1.5, epsilon = 1e-9);
+        assert_relative_eq!(found.extrapolated, 2.0, epsilon = 1e-12);
+        let error = 0.5 * 0.025f64.powf(1.5) / 2.0;
+        assert_relative_eq!(
+            found.gci.expect("two triplets agree"),
+            1.25 * error,
+            max_relative = 1e-8
+        );
+        let three = extrapolate(&levels([0.1, 0.07, 0.04], |h| 1.0 - h * h), 1.0).unwrap();
+        assert!(three.gci.is_none(), "one triplet cannot show that it is asymptotic");
+        let mixed = extrapolate(&levels([0.4, 0.2, 0.1, 0.05], |h| h * h * h + 0.1 * h), 1.0);
+        assert!(mixed.unwrap().gci.is_none(), "the orders of the triplets differ");
+    }
+
+    #[test]
+    fn oscillation_is_not_extrapolated() {
+        let values = levels([0.4, 0.2, 0.1], |h| if h == 0.2 { 2.0 } else { 1.0 });
+        assert!(matches!(extrapolate(&values, 1.0), Err(ConvergenceError::Oscillating(_))));
+    }
+
+    #[test]
+    fn quantiles_continue_their_table() {
+        assert_relative_eq!(student_t(10), 2.2281, epsilon = 1e-9);
+        assert_relative_eq!(student_t(11), 2.200_985, epsilon = 1e-5);
+        assert_relative_eq!(student_t(30), 2.042_272, epsilon = 1e-5);
+        assert_relative_eq!(student_t(1_000_000), 1.95997, epsilon = 1e-4);
+    }
+}

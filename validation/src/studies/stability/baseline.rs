@@ -1,0 +1,122 @@
+//! Limits and margins that this study measured before: not the truth, but nothing may get worse
+//! unnoticed. The numbers depend on no clock and no machine, only on the program and, in their last
+//! digits, on its libm; so they stand here, to four digits.
+//!
+//! Obtained with `studies::stability::study(Tier::Full)` at the commit that introduced this file.
+//! A change that moves one on purpose changes it here, and says why.
+
+use crate::gate::{Bound, Evidence, Gate};
+
+/// A limit may be this much below its baseline: the resolution of the bisections.
+const SLACK: f64 = 0.99;
+
+/// Longest stable c₀ dt/h of a point (the middle of its bracket), by the name of its gate.
+#[rustfmt::skip] // one line a point: a table
+const LIMITS: &[(&str, f64)] = &[
+    ("stability.cubic.h1.3.leapfrog.stiffness1", 0.356),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness1", 0.3534),
+    ("stability.cubic.h1.3.leapfrog.stiffness3", 1.068),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness3", 1.06),
+    ("stability.cubic.h1.3.leapfrog.stiffness10", 1.667),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness10", 0.9402),
+    ("stability.cubic.h1.3.leapfrog.stiffness30", 1.802),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness30", 0.6203),
+    ("stability.cubic.h1.3.leapfrog.stiffness100", 1.849),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness100", 0.4036),
+    ("stability.cubic.h1.3.leapfrog.stiffnessinf", 1.865),
+    ("stability.cubic.h1.3.leapfrog.stiffnessinf.alpha1.delta0", 1.024),
+    ("stability.cubic.h1.3.leapfrog.stiffnessinf.alpha0.delta1", 0.353),
+    ("stability.cubic.h1.3.predictor-corrector.stiffnessinf.alpha1.delta0", 1.016),
+    ("stability.cubic.h1.3.leapfrog.stiffness30.alpha0.1.delta0.1", 1.55),
+    ("stability.cubic.h1.3.leapfrog.stiffnessinf.alpha0.1.delta0", 1.8),
+    ("stability.quintic.h1.leapfrog.stiffness1", 0.5301),
+    ("stability.quintic.h1.predictor-corrector.stiffness1", 0.5262),
+    ("stability.quintic.h1.leapfrog.stiffness3", 1.579),
+    ("stability.quintic.h1.predictor-corrector.stiffness3", 1.579),
+    ("stability.quintic.h1.leapfrog.stiffness10", 2.105),
+    ("stability.quintic.h1.predictor-corrector.stiffness10", 1.074),
+    ("stability.quintic.h1.leapfrog.stiffness30", 2.247),
+    ("stability.quintic.h1.predictor-corrector.stiffness30", 0.7134),
+    ("stability.quintic.h1.leapfrog.stiffness100", 2.295),
+    ("stability.quintic.h1.predictor-corrector.stiffness100", 0.4674),
+    ("stability.quintic.h1.leapfrog.stiffnessinf", 2.31),
+    ("stability.quintic.h1.leapfrog.stiffnessinf.alpha1.delta0", 1.477),
+    ("stability.quintic.h1.leapfrog.stiffnessinf.alpha0.delta1", 0.5276),
+    ("stability.quintic.h1.predictor-corrector.stiffnessinf.alpha1.delta0", 1.544),
+    ("stability.quintic.h1.leapfrog.stiffness30.alpha0.1.delta0.1", 1.982),
+    ("stability.quintic.h1.leapfrog.stiffnessinf.alpha0.1.delta0", 2.242),
+    ("stability.cubic.h1.2.leapfrog.stiffness1", 0.3552),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness1", 0.3526),
+    ("stability.cubic.h1.2.leapfrog.stiffness3", 1.066),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness3", 1.058),
+    ("stability.cubic.h1.2.leapfrog.stiffness10", 1.659),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness10", 0.9499),
+    ("stability.cubic.h1.2.leapfrog.stiffness30", 1.804),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness30", 0.6254),
+    ("stability.cubic.h1.2.leapfrog.stiffness100", 1.857),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness100", 0.4075),
+    ("stability.cubic.h1.2.leapfrog.stiffnessinf", 1.873),
+    ("stability.cubic.h1.2.leapfrog.stiffnessinf.alpha1.delta0", 1.032),
+    ("stability.cubic.h1.2.leapfrog.stiffnessinf.alpha0.delta1", 0.3529),
+    ("stability.cubic.h1.2.predictor-corrector.stiffnessinf.alpha1.delta0", 1.03),
+    ("stability.cubic.h1.2.leapfrog.stiffness30.alpha0.1.delta0.1", 1.55),
+    ("stability.cubic.h1.2.leapfrog.stiffnessinf.alpha0.1.delta0", 1.803),
+    ("stability.wendland-c2.h2.leapfrog.stiffness1", 0.3052),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness1", 0.303),
+    ("stability.wendland-c2.h2.leapfrog.stiffness3", 0.9157),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness3", 0.9089),
+    ("stability.wendland-c2.h2.leapfrog.stiffness10", 1.555),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness10", 0.909),
+    ("stability.wendland-c2.h2.leapfrog.stiffness30", 1.696),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness30", 0.5981),
+    ("stability.wendland-c2.h2.leapfrog.stiffness100", 1.745),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness100", 0.3885),
+    ("stability.wendland-c2.h2.leapfrog.stiffnessinf", 1.762),
+    ("stability.wendland-c2.h2.leapfrog.stiffnessinf.alpha1.delta0", 0.9558),
+    ("stability.wendland-c2.h2.leapfrog.stiffnessinf.alpha0.delta1", 0.2986),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffnessinf.alpha1.delta0", 0.9613),
+    ("stability.wendland-c2.h2.leapfrog.stiffness30.alpha0.1.delta0.1", 1.442),
+    ("stability.wendland-c2.h2.leapfrog.stiffnessinf.alpha0.1.delta0", 1.689),
+];
+
+/// Variant of Couette flow at 20 rows: longest stable dt over the default dt, and over the theory of
+/// the periodic lattice.
+const DEFAULTS: &[(&str, [f64; 2])] = &[
+    ("seed", [2.8455, 1.0098]),
+    ("interface-wall", [2.8596, 1.0148]),
+    ("seed-small-eta", [2.8194, 1.0149]),
+    ("cubic-leapfrog", [1.3203, 1.0149]),
+    ("wendland-leapfrog", [1.2903, 1.0101]),
+    ("quintic-pc", [1.3206, 1.0151]),
+    ("plain", [1.3336, 1.0251]),
+    ("curved", [1.3336, 1.0251]),
+    ("modern", [1.3401, 1.0301]),
+    ("modern-mirror", [1.3401, 1.0301]),
+    ("cure-background", [2.8596, 1.0148]),
+    ("cure-stress", [2.8455, 1.0098]),
+    ("cure-viscosity", [2.8173, 0.9998]),
+    ("cure-xsph", [2.8455, 1.0098]),
+    ("cure-diffusion", [2.8455, 1.0098]),
+    ("cure-shifting", [2.8455, 1.0098]),
+    ("cure-both", [2.8455, 1.0098]),
+    ("cure-leapfrog", [2.8877, 1.0248]),
+];
+
+const BECAUSE: &str = "what this study measured when its baseline was set, less 1 % for the \
+                       resolution of the bisection";
+
+/// The gate that a limit must not shrink; `None` if it was never measured.
+pub fn limit_gate(id: &str) -> Option<Gate> {
+    let (_, limit) = LIMITS.iter().find(|(name, _)| *name == id)?;
+    let bound = Bound::Above(SLACK * limit);
+    Some(Gate::new(format!("{id}.limit"), "c0 dt/h", bound, Evidence::Regression, BECAUSE))
+}
+
+/// The gate that the margin (or the ratio to theory) of a default step must not shrink.
+pub fn default_gate(id: &str, variant: &str, what: &str) -> Option<Gate> {
+    let (_, [margin, ratio]) = DEFAULTS.iter().find(|(name, _)| *name == variant)?;
+    let baseline = if what == "margin" { margin } else { ratio };
+    let bound = Bound::Above(SLACK * baseline);
+    let metric = if what == "margin" { "longest stable dt/default dt" } else { "measured/theory" };
+    Some(Gate::new(format!("{id}.{what}"), metric, bound, Evidence::Regression, BECAUSE))
+}

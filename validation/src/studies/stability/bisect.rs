@@ -1,0 +1,156 @@
+//! The largest stable step by bisection, and when a run counts as growing.
+
+/// A step that is stable and a longer one that is not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bracket {
+    /// The longest step seen to be stable.
+    pub stable: f64,
+    /// The shortest step seen to be unstable.
+    pub unstable: f64,
+}
+
+impl Bracket {
+    /// The limit, up to half of the bracket.
+    pub fn middle(&self) -> f64 {
+        0.5 * (self.stable + self.unstable)
+    }
+}
+
+/// Half the width of the first bracket, relative to the guess.
+const FIRST_WIDTH: f64 = 0.04;
+/// The farthest that a limit may be from the guess, as a factor.
+const FARTHEST: f64 = 16.0;
+
+/// Bisects down to a bracket of `resolution` times `guess`. The guess decides on how many runs it
+/// takes, not on the answer: the bracket grows until it holds the limit. `None` if there is no limit
+/// within a factor of 16 of the guess.
+pub fn largest_stable(
+    guess: f64,
+    resolution: f64,
+    is_stable: impl Fn(f64) -> bool,
+) -> Option<Bracket> {
+    let (mut width, mut stable, mut unstable) = (FIRST_WIDTH, None, None);
+    let mut step = guess * (1.0 - width);
+    while stable.is_none() || unstable.is_none() {
+        if !(guess / FARTHEST..=guess * FARTHEST).contains(&step) {
+            return None;
+        }
+        if is_stable(step) {
+            stable = Some(step);
+            step = if step < guess { guess * (1.0 + width) } else { step * (1.0 + width) };
+        } else {
+            unstable = Some(step);
+            step *= 1.0 - width;
+        }
+        width *= 1.5;
+    }
+    let mut bracket = Bracket { stable: stable?, unstable: unstable? };
+    while bracket.unstable - bracket.stable > resolution * guess {
+        let middle = bracket.middle();
+        if is_stable(middle) { bracket.stable = middle } else { bracket.unstable = middle }
+    }
+    Some(bracket)
+}
+
+/// Energy that counts as growth beyond doubt, in units of the energy at the start.
+const BEYOND_DOUBT: f64 = 100.0;
+/// Ratio of the mean energies of the last and the second quarter that counts as growth. Sound at the
+/// leapfrog's limit beats, by a few per cent of the energy of white noise.
+const LATE_GROWTH: f64 = 1.5;
+
+/// Watches an energy over a known number of steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Growth {
+    start: f64,
+    steps: u64,
+    seen: u64,
+    /// Sums over the second and the last quarter.
+    quarters: [f64; 2],
+    beyond_doubt: bool,
+}
+
+impl Growth {
+    /// Watches `steps` steps from an energy of `start` > 0.
+    pub fn new(start: f64, steps: u64) -> Self {
+        Self { start, steps, seen: 0, quarters: [0.0; 2], beyond_doubt: false }
+    }
+
+    /// The energy after one more step; `true` if there is no need to go on.
+    pub fn see(&mut self, energy: f64) -> bool {
+        self.seen += 1;
+        let quarter = (4 * self.seen - 1) / self.steps.max(1);
+        if quarter == 1 {
+            self.quarters[0] += energy;
+        } else if quarter >= 3 {
+            self.quarters[1] += energy;
+        }
+        self.beyond_doubt |= energy.is_nan() || energy > BEYOND_DOUBT * self.start;
+        self.beyond_doubt
+    }
+
+    /// Whether the energy grew: beyond a hundred times the start at some step, or by half from the
+    /// second to the last quarter of the steps.
+    pub fn grew(&self) -> bool {
+        self.beyond_doubt || self.quarters[1] > LATE_GROWTH * self.quarters[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bisection_finds_a_limit_far_from_the_guess() {
+        for limit in [0.2, 0.9, 0.999, 1.0, 1.03, 1.5, 7.0] {
+            let found = largest_stable(1.0, 1e-3, |dt| dt <= limit).expect("a limit");
+            assert!(found.stable <= limit && limit <= found.unstable, "{limit}: {found:?}");
+            assert!(found.unstable - found.stable <= 1e-3);
+        }
+    }
+
+    #[test]
+    fn no_limit_is_no_answer() {
+        assert_eq!(largest_stable(1.0, 1e-3, |_| true), None);
+        assert_eq!(largest_stable(1.0, 1e-3, |_| false), None);
+    }
+
+    fn watched(energy: impl Fn(f64) -> f64) -> (bool, u64) {
+        let mut growth = Growth::new(1.0, 400);
+        for k in 1..=400 {
+            if growth.see(energy(f64::from(k as u32))) {
+                return (growth.grew(), k);
+            }
+        }
+        (growth.grew(), 400)
+    }
+
+    #[test]
+    fn growth_is_seen_and_decay_and_beats_are_not() {
+        assert_eq!(watched(|k| (-0.1 * k).exp()), (false, 400));
+        assert_eq!(watched(|_| 1.0), (false, 400));
+        assert_eq!(watched(|k| 1.0 + 0.3 * (0.05 * k).sin()), (false, 400));
+        // Early exit, at ln(100)/0.5 = 9.2 steps.
+        assert_eq!(watched(|k| (0.5 * k).exp()), (true, 10));
+        // A weak mode below decaying ones, still far below the start.
+        assert_eq!(watched(|k| (-0.1 * k).exp() + 1e-4 * (0.01 * k).exp()), (true, 400));
+        assert_eq!(watched(|k| if k > 7.0 { f64::NAN } else { 1.0 }), (true, 8));
+    }
+
+    /// Both together on a mode with a known limit: growth 2(dt/1.7 - 1) a step beyond it.
+    #[test]
+    fn bisection_of_growth_finds_the_limit_of_a_mode() {
+        let is_stable = |dt: f64| {
+            let mut growth = Growth::new(1.0, 400);
+            let rate = 2.0 * (dt / 1.7 - 1.0);
+            for k in 1..=400 {
+                let k = f64::from(k);
+                if growth.see((-0.2 * k).exp() + 0.01 * (2.0 * rate * k).exp()) {
+                    break;
+                }
+            }
+            !growth.grew()
+        };
+        let found = largest_stable(1.6, 1e-3, is_stable).expect("a limit").middle();
+        assert!((found / 1.7 - 1.0).abs() < 3e-3, "{found}");
+    }
+}

@@ -1,0 +1,187 @@
+//! Runs the plans of cases, side by side, and judges them: what `verify` and `report` share.
+
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use crate::{
+    case::{Case, Planned, RunError, Tier},
+    gate::{Gate, Judgement, Verdict},
+    record::Record,
+    report::Block,
+    runner::Context,
+    studies,
+};
+
+/// A run of a plan with its record and its judgements.
+#[derive(Clone, Debug)]
+pub struct JudgedRun {
+    /// Name of the case.
+    pub case: &'static str,
+    /// What was planned.
+    pub planned: Planned,
+    /// What came out.
+    pub record: Record,
+    /// One judgement a gate.
+    pub judged: Vec<Judged>,
+}
+
+/// A gate and its judgement.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    /// The gate.
+    pub gate: Gate,
+    /// The judgement.
+    pub judgement: Judgement,
+}
+
+impl Judged {
+    /// Judges a value.
+    pub fn new(gate: Gate, value: Option<f64>) -> Self {
+        let judgement = gate.judge(value);
+        Self { gate, judgement }
+    }
+}
+
+/// A statement from many runs: what the report shows, and the gates on it.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// Anchor in the report: letters, digits, hyphens.
+    pub id: String,
+    /// Title of the section.
+    pub title: String,
+    /// Prose, figures, tables.
+    pub blocks: Vec<Block>,
+    /// Judgements on what was found.
+    pub judged: Vec<Judged>,
+}
+
+impl Study {
+    /// An empty study.
+    pub fn new(id: &str, title: &str) -> Self {
+        Self { id: id.into(), title: title.into(), blocks: Vec::new(), judged: Vec::new() }
+    }
+
+    /// The same with one more block.
+    pub fn block(mut self, block: impl Into<Block>) -> Self {
+        self.blocks.push(block.into());
+        self
+    }
+
+    /// The same with one more paragraph.
+    pub fn prose(self, text: impl Into<String>) -> Self {
+        self.block(Block::Prose(vec![text.into()]))
+    }
+
+    /// The same with a judged value.
+    pub fn judge(mut self, gate: Gate, value: f64) -> Self {
+        self.judged.push(Judged::new(gate, Some(value)));
+        self
+    }
+}
+
+/// Everything of one case.
+pub struct CaseResults {
+    /// The case.
+    pub case: &'static dyn Case,
+    /// Its runs, in the order of the plan.
+    pub runs: Vec<JudgedRun>,
+    /// Its studies.
+    pub studies: Vec<Study>,
+}
+
+/// Everything.
+pub struct Suite {
+    /// How much was run.
+    pub tier: Tier,
+    /// One entry a case.
+    pub cases: Vec<CaseResults>,
+    /// Studies of the method itself.
+    pub studies: Vec<Study>,
+}
+
+impl Suite {
+    /// Every judgement.
+    pub fn judged(&self) -> impl Iterator<Item = &Judged> {
+        let of_cases = self.cases.iter().flat_map(|case| {
+            let runs = case.runs.iter().flat_map(|run| &run.judged);
+            runs.chain(case.studies.iter().flat_map(|study| &study.judged))
+        });
+        of_cases.chain(self.studies.iter().flat_map(|study| &study.judged))
+    }
+
+    /// Gates that failed.
+    pub fn failures(&self) -> usize {
+        self.judged().filter(|j| j.judgement.verdict.is_failure()).count()
+    }
+
+    /// Gates that passed.
+    pub fn passes(&self) -> usize {
+        self.judged().filter(|j| j.judgement.verdict == Verdict::Pass).count()
+    }
+}
+
+/// Told after each run: runs done, runs in all, name of the run.
+pub type Progress<'a> = dyn Fn(usize, usize, &str) + Sync + 'a;
+
+/// How a suite is watched and stopped.
+#[derive(Default)]
+pub struct Watch<'a> {
+    /// Told after each run.
+    pub progress: Option<&'a Progress<'a>>,
+    /// Set from outside to stop.
+    pub interrupt: Option<&'a AtomicBool>,
+}
+
+/// Runs the plans of `cases` side by side on the threads of the current pool, each run serial, then
+/// the studies. `with_method` adds the studies that belong to no case.
+pub fn run(
+    cases: &[&'static dyn Case],
+    tier: Tier,
+    with_method: bool,
+    watch: &Watch,
+) -> Result<Suite, RunError> {
+    let plans: Vec<(&'static dyn Case, Planned)> = cases
+        .iter()
+        .flat_map(|&case| case.plan(tier).into_iter().map(move |planned| (case, planned)))
+        .collect();
+    let (done, all) = (AtomicUsize::new(0), plans.len());
+    let results: Result<Vec<JudgedRun>, RunError> = plans
+        .into_par_iter()
+        .map(|(case, planned)| {
+            let judged = run_planned(case, planned, watch.interrupt)?;
+            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if let Some(progress) = watch.progress {
+                progress(count, all, &format!("{} {}", case.name(), judged.planned.variant));
+            }
+            Ok(judged)
+        })
+        .collect();
+    let mut results = results?;
+    let mut suite = Suite { tier, cases: Vec::new(), studies: Vec::new() };
+    if watch.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        return Ok(suite); // nothing can be said of runs that were cut short
+    }
+    for &case in cases {
+        let rest = results.iter().position(|r| r.case != case.name()).unwrap_or(results.len());
+        let runs: Vec<JudgedRun> = results.drain(..rest).collect();
+        let studies = case.studies(tier, &runs);
+        suite.cases.push(CaseResults { case, runs, studies });
+    }
+    if with_method {
+        suite.studies = studies::of_the_method(tier);
+    }
+    Ok(suite)
+}
+
+/// Runs and judges one planned run. A run that diverges is a result, and its gates fail.
+pub fn run_planned(
+    case: &'static dyn Case,
+    planned: Planned,
+    interrupt: Option<&AtomicBool>,
+) -> Result<JudgedRun, RunError> {
+    let context = Context { threads: 1, interrupt, keep_particles: true, ..Context::default() };
+    let record = case.run(planned.variant, &planned.set, &context)?;
+    let judge = |gate: &Gate| Judged::new(gate.clone(), record.metric(&gate.metric));
+    let judged = planned.gates.iter().map(judge).collect();
+    Ok(JudgedRun { case: case.name(), planned, record, judged })
+}

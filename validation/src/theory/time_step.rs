@@ -1,0 +1,523 @@
+//! Theoretical limits of the time step: linear stability of each integrator on a square lattice.
+//!
+//! A wave of wave vector k on a fluid at rest with p₀ = 0 obeys, with p the density amplitude and v
+//! the velocity,
+//!
+//! p' = -ω ĝ·v - γ_ρ p,  v' = ω ĝ p - Γ v,
+//!
+//! ω = c₀|g(k)|, ĝ = g/|g|, Γ = ν λ(k) + α c₀ h P(k), γ_ρ = δ h c₀ λ₀(k), symbols from
+//! [`super::lattice`]. The limit is the largest dt for which no k of the box grows. A periodic box
+//! of n × n particles has only the wave vectors 2π(i, j)/(n dx), so its limit is exact; an infinite
+//! lattice is the limit of large n. Moving, disordered or strongly compressed particles grow
+//! earlier: see the notes of each study.
+
+use super::lattice::{SquareLattice, wave_vectors};
+use nalgebra::{Complex, Matrix3, Vector2};
+use solver::kernel::Kernel;
+
+/// The fluid that the limits are for. All numbers must be finite and not negative, `h` and `c0`
+/// positive.
+#[derive(Clone, Copy, Debug)]
+pub struct Medium {
+    /// Sound speed c₀ \[m/s\].
+    pub c0: f64,
+    /// Smoothing length \[m\].
+    pub h: f64,
+    /// Kinematic viscosity ν of Morris' term \[m²/s\].
+    pub nu: f64,
+    /// α of Monaghan's artificial viscosity, acting on approaching and receding pairs alike. With
+    /// the switch (17) about half of it acts.
+    pub alpha: f64,
+    /// δ of the density diffusion -δ h c₀ λ₀ ρ.
+    pub delta: f64,
+}
+
+/// How a step advances (p, v).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// Explicit midpoint rule, the predictor-corrector of the seed; order 2.
+    PredictorCorrector,
+    /// Staggered leapfrog with damping from the old velocity, continuity from the new one.
+    Leapfrog,
+    /// Forward Euler; order 1.
+    Euler,
+}
+
+/// One wave: the coefficients of its equations, resolved along and across ĝ.
+#[derive(Clone, Copy, Debug)]
+pub struct Mode {
+    /// ω = c₀|g| \[1/s\].
+    pub omega: f64,
+    /// ĝ·Γĝ \[1/s\].
+    pub longitudinal: f64,
+    /// t̂·Γĝ with t̂ normal to ĝ, 0 along the axes and diagonals and without artificial viscosity
+    /// \[1/s\].
+    pub coupling: f64,
+    /// t̂·Γt̂ \[1/s\].
+    pub transverse: f64,
+    /// γ_ρ \[1/s\].
+    pub density: f64,
+}
+
+/// The limit of each mechanism acting alone \[s\]; infinite for what is absent.
+#[derive(Clone, Copy, Debug)]
+pub struct SeparateLimits {
+    /// 2/ω_max, leapfrog only: alone, sound grows at any dt under the other two.
+    pub acoustic: f64,
+    /// 2/(ν λ_max), every integrator.
+    pub viscous: f64,
+    /// 2/(α c₀ h P_max), every integrator.
+    pub artificial_viscosity: f64,
+    /// 2/(δ h c₀ λ₀_max), every integrator.
+    pub density_diffusion: f64,
+}
+
+/// The limits of single mechanisms in a periodic box of `n` × `n` particles. The smallest is up to
+/// 28 % above the limit of all of them together, [`time_step_limit`].
+pub fn separate_limits<K: Kernel>(
+    lattice: &SquareLattice<K>,
+    n: usize,
+    medium: &Medium,
+) -> SeparateLimits {
+    let Medium { c0, h, nu, alpha, delta } = *medium;
+    let max = lattice.maxima(n);
+    SeparateLimits {
+        acoustic: 2.0 * h / (max.gradient * c0),
+        viscous: 2.0 * h * h / (max.laplacian * nu),
+        artificial_viscosity: 2.0 * h / (max.artificial * alpha * c0),
+        density_diffusion: 2.0 * h / (max.diffusion * delta * c0),
+    }
+}
+
+/// The waves of a periodic box of `n` × `n` particles, one of each symmetry class.
+pub fn modes<K: Kernel>(lattice: &SquareLattice<K>, n: usize, medium: &Medium) -> Vec<Mode> {
+    wave_vectors(n).map(|theta| Mode::new(lattice, theta, medium)).collect()
+}
+
+/// The largest stable dt \[s\] over `modes`: 0 if one of them grows at every dt, infinite for none.
+pub fn time_step_limit(modes: &[Mode], integrator: Integrator) -> f64 {
+    modes.iter().map(|mode| mode.limit(integrator)).fold(f64::INFINITY, f64::min)
+}
+
+/// The growth rate of the fastest of `modes` a step, ln of the spectral radius; about 0 or below
+/// when stable.
+pub fn growth_per_step(modes: &[Mode], integrator: Integrator, dt: f64) -> f64 {
+    modes.iter().map(|mode| mode.growth(integrator, dt)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The largest c₀h/ν that leaves the leapfrog's limit where viscosity alone puts it, in a box of
+/// `n` × `n` particles: sound this fast costs nothing. From (ω dt)² ≤ 2(2 - γ dt) at dt = 2/γ_max
+/// it is
+///
+/// min over k of (λ_max (λ_max - λ))^(1/2) h/|g|.
+///
+/// With an even n the wave of λ_max is one that g does not see.
+pub fn free_sound<K: Kernel>(lattice: &SquareLattice<K>, n: usize) -> f64 {
+    let max = lattice.maxima(n).laplacian;
+    let audible = wave_vectors(n).filter(|theta| !acoustically_silent(lattice, *theta));
+    let ratio = |theta| {
+        let slack = (max - lattice.laplacian(theta)).max(0.0);
+        (max * slack).sqrt() / lattice.gradient(theta).norm()
+    };
+    audible.map(ratio).fold(f64::INFINITY, f64::min)
+}
+
+/// Growth of an undamped wave a step of the predictor-corrector, ½ ln(1 + (ω dt)⁴/4) ≈ (ω dt)⁴/8.
+pub fn predictor_corrector_growth(omega_dt: f64) -> f64 {
+    0.5 * (0.25 * omega_dt.powi(4)).ln_1p()
+}
+
+impl Mode {
+    /// The wave with phase `theta` = k dx \[rad\].
+    pub fn new<K: Kernel>(
+        lattice: &SquareLattice<K>,
+        theta: Vector2<f64>,
+        medium: &Medium,
+    ) -> Self {
+        let Medium { c0, h, nu, alpha, delta } = *medium;
+        let g = lattice.gradient(theta);
+        // At the corners of the zone g is round-off; P is diagonal there.
+        let along = if g.norm() > 1e-12 { g.normalize() } else { Vector2::x() };
+        let across = Vector2::new(-along.y, along.x);
+        let p = lattice.artificial(theta) * (alpha * c0 / h);
+        let viscous = nu * lattice.laplacian(theta) / (h * h);
+        Self {
+            omega: c0 * g.norm() / h,
+            longitudinal: viscous + along.dot(&(p * along)),
+            coupling: across.dot(&(p * along)),
+            transverse: viscous + across.dot(&(p * across)),
+            density: delta * c0 / h * lattice.diffusion(theta),
+        }
+    }
+
+    /// The largest stable dt \[s\].
+    ///
+    /// - Leapfrog: 2/λ_max of the symmetric \[\[γ_ρ, ω, 0\], \[ω, γ_l, γ_c\], \[0, γ_c, γ_t\]\],
+    ///   for which ξ = -1 is reached first. Without coupling this is (2 - γ dt)(2 - γ_ρ dt) ≥ (ω
+    ///   dt)².
+    /// - The others: the smallest limit over the eigenvalues s = a + ib of the equations, from
+    ///   |1 + s dt|² ≤ 1 for Euler and |1 + s dt + (s dt)²/2|² ≤ 1 for the predictor-corrector. The
+    ///   latter reads 2a + 2a² dt + a|s|² dt² + |s|⁴ dt³/4 ≤ 0, free of cancellation, and its left
+    ///   side grows with dt for every a < 0, so it has one root.
+    pub fn limit(&self, integrator: Integrator) -> f64 {
+        if integrator == Integrator::Leapfrog {
+            return 2.0 / self.stiffness().symmetric_eigenvalues().max();
+        }
+        let limit = |s: Complex<f64>| match s.norm() {
+            0.0 => f64::INFINITY,
+            _ if s.re >= 0.0 => 0.0,
+            size if integrator == Integrator::Euler => -2.0 * s.re / (size * size),
+            size => midpoint_root(-s.re / size) / size,
+        };
+        self.eigenvalues().map(limit).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// ln of the spectral radius of one step.
+    pub fn growth(&self, integrator: Integrator, dt: f64) -> f64 {
+        let radius = match integrator {
+            Integrator::Leapfrog => {
+                let spectrum = self.leapfrog_step(dt).complex_eigenvalues();
+                spectrum.iter().map(|s| s.norm()).fold(0.0, f64::max)
+            }
+            Integrator::Euler => self.largest(|s| Complex::new(1.0, 0.0) + s * dt),
+            Integrator::PredictorCorrector => {
+                self.largest(|s| Complex::new(1.0, 0.0) + s * dt + s * s * (0.5 * dt * dt))
+            }
+        };
+        radius.ln()
+    }
+
+    fn largest(&self, factor: impl Fn(Complex<f64>) -> Complex<f64>) -> f64 {
+        self.eigenvalues().map(|s| factor(s).norm()).into_iter().fold(0.0, f64::max)
+    }
+
+    /// The symmetric matrix whose largest eigenvalue limits the leapfrog.
+    fn stiffness(&self) -> Matrix3<f64> {
+        let Self { omega, longitudinal, coupling, transverse, density } = *self;
+        Matrix3::new(
+            density,
+            omega,
+            0.0, //
+            omega,
+            longitudinal,
+            coupling, //
+            0.0,
+            coupling,
+            transverse,
+        )
+    }
+
+    /// One step of the leapfrog: v with the old v and p, then p with the new v.
+    fn leapfrog_step(&self, dt: f64) -> Matrix3<f64> {
+        let Self { omega, longitudinal, coupling, transverse, density } = *self;
+        let kick = Matrix3::new(
+            1.0,
+            0.0,
+            0.0, //
+            omega * dt,
+            1.0 - longitudinal * dt,
+            -coupling * dt, //
+            0.0,
+            -coupling * dt,
+            1.0 - transverse * dt,
+        );
+        let drift = Matrix3::new(
+            1.0 - density * dt,
+            -omega * dt,
+            0.0, //
+            0.0,
+            1.0,
+            0.0, //
+            0.0,
+            0.0,
+            1.0,
+        );
+        drift * kick
+    }
+
+    /// Eigenvalues of (p, v_l, v_t)' \[1/s\]: in closed form without coupling, for then zero and
+    /// undamped waves keep an exact real part.
+    fn eigenvalues(&self) -> [Complex<f64>; 3] {
+        let Self { omega, longitudinal, coupling, transverse, density } = *self;
+        if coupling.abs() > 1e-12 * (longitudinal + transverse) {
+            let spectrum = Matrix3::new(
+                -density,
+                -omega,
+                0.0, //
+                omega,
+                -longitudinal,
+                -coupling, //
+                0.0,
+                -coupling,
+                -transverse,
+            )
+            .complex_eigenvalues();
+            return [spectrum[0], spectrum[1], spectrum[2]];
+        }
+        let mean = -0.5 * (longitudinal + density);
+        let discriminant = (0.5 * (longitudinal - density)).powi(2) - omega * omega;
+        let shear = Complex::new(-transverse, 0.0);
+        if discriminant < 0.0 {
+            let s = Complex::new(mean, (-discriminant).sqrt());
+            return [s, s.conj(), shear];
+        }
+        let fast = mean - discriminant.sqrt();
+        let product = longitudinal * density + omega * omega;
+        let slow = if fast == 0.0 { 0.0 } else { product / fast };
+        [Complex::new(fast, 0.0), Complex::new(slow, 0.0), shear]
+    }
+}
+
+/// The root τ of -2c + 2c²τ - cτ² + τ³/4 in (0, 3) for 0 < c ≤ 1: the limit |s| dt of the midpoint
+/// rule in direction c = -Re s/|s|. The cubic rises with τ (its derivative has discriminant
+/// 4c² - 6c² < 0), from -2c at 0 to at least 3/4 at 3.
+fn midpoint_root(c: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 3.0);
+    for _ in 0..60 {
+        let tau = 0.5 * (low + high);
+        let growing = ((0.25 * tau - c) * tau + 2.0 * c * c) * tau > 2.0 * c;
+        if growing { high = tau } else { low = tau }
+    }
+    0.5 * (low + high)
+}
+
+/// The largest c₀h/ν at which the predictor-corrector is stable at the Courant number `cfl` =
+/// c₀ dt/h in a box of `n` × `n` particles: sound needs this much viscosity. `None` if the viscous
+/// limit itself forbids it.
+pub fn predictor_corrector_stiffest_sound<K: Kernel>(
+    lattice: &SquareLattice<K>,
+    n: usize,
+    cfl: f64,
+) -> Option<f64> {
+    let rest = Medium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
+    let nu = smallest(|nu| stable(lattice, n, &Medium { nu, ..rest }, cfl), cfl)?;
+    Some(1.0 / nu)
+}
+
+/// The smallest always-on α that keeps the predictor-corrector stable at the Courant number `cfl`
+/// without viscosity, in a box of `n` × `n` particles. `None` if no α does.
+pub fn predictor_corrector_smallest_alpha<K: Kernel>(
+    lattice: &SquareLattice<K>,
+    n: usize,
+    cfl: f64,
+) -> Option<f64> {
+    let rest = Medium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
+    smallest(|alpha| stable(lattice, n, &Medium { alpha, ..rest }, cfl), cfl)
+}
+
+fn stable<K: Kernel>(lattice: &SquareLattice<K>, n: usize, medium: &Medium, dt: f64) -> bool {
+    let bound = |theta| Mode::new(lattice, theta, medium).limit(Integrator::PredictorCorrector);
+    wave_vectors(n).all(|theta| acoustically_silent(lattice, theta) || bound(theta) >= dt)
+}
+
+/// Waves without a gradient symbol are no sound: without viscosity they neither grow nor decay.
+fn acoustically_silent<K: Kernel>(lattice: &SquareLattice<K>, theta: Vector2<f64>) -> bool {
+    lattice.gradient(theta).norm() < 1e-12
+}
+
+/// The smallest damping that is `enough`, by bisection on a logarithmic scale; first the stable
+/// window is looked for from below, since too much damping is unstable again.
+fn smallest(enough: impl Fn(f64) -> bool, cfl: f64) -> Option<f64> {
+    let ladder = (0..60).map(|k| 1e-8 * 1.5f64.powi(k)).take_while(|x| x * cfl < 10.0);
+    let mut high = ladder.into_iter().find(|x| enough(*x))?;
+    let mut low = high / 1.5;
+    for _ in 0..30 {
+        let middle = (low * high).sqrt();
+        if enough(middle) { high = middle } else { low = middle }
+    }
+    Some(high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::theory::printed::assert_rounds_to;
+    use approx::assert_relative_eq;
+    use solver::kernel::{CubicSpline, QuinticSpline, WendlandC2};
+
+    const WATER: Medium = Medium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
+    use Integrator::{Euler, Leapfrog, PredictorCorrector};
+
+    fn oscillator(omega: f64, gamma: f64) -> Mode {
+        Mode { omega, longitudinal: gamma, coupling: 0.0, transverse: 0.0, density: 0.0 }
+    }
+
+    /// Table 2.1: leapfrog limit of sound c₀ dt/h and limit of viscosity ν dt/h² at η² = 0.01 h².
+    #[test]
+    fn separate_limits_match_the_design_table() {
+        fn check<K: Kernel>(ratio: f64, printed: [&str; 2]) {
+            let lattice = SquareLattice::<K>::new(ratio, 0.01);
+            let limits = separate_limits(&lattice, 120, &Medium { nu: 1.0, ..WATER });
+            let row = format!("{} {ratio}", K::NAME);
+            assert_rounds_to(&row, &printed, &[limits.acoustic, limits.viscous]);
+            assert_eq!(limits.artificial_viscosity, f64::INFINITY);
+        }
+        check::<CubicSpline>(1.2, ["1.867", "0.352"]);
+        check::<CubicSpline>(1.3, ["1.868", "0.353"]);
+        check::<CubicSpline>(1.5, ["1.861", "0.357"]);
+        check::<QuinticSpline>(1.0, ["2.311", "0.526"]);
+        check::<WendlandC2>(1.5, ["1.775", "0.313"]);
+        check::<WendlandC2>(2.0, ["1.761", "0.303"]);
+    }
+
+    /// The theory beside the measurements of 2.1: 20 × 20 particles, cubic, h = 1.3 dx, c₀h/ν = ∞,
+    /// 10 and 1. The notes print 1.659 for 10, which is the infinite lattice (1.6595); the box of
+    /// the measurement (1.666) allows 1.6649. They print 0.3530 for 1, this is 0.3529 (measured
+    /// 0.3551).
+    #[test]
+    fn measured_box_matches_the_design_table() {
+        let lattice = SquareLattice::<CubicSpline>::new(1.3, 0.01);
+        let limit = |n: usize, nu: f64, integrator| {
+            time_step_limit(&modes(&lattice, n, &Medium { nu, ..WATER }), integrator)
+        };
+        let leapfrog = [0.0, 0.1, 1.0].map(|nu| limit(20, nu, Leapfrog));
+        assert_rounds_to("leapfrog", &["1.868", "1.6649", "0.3529"], &leapfrog);
+        assert_rounds_to("infinite", &["1.6595"], &[limit(80, 0.1, Leapfrog)]);
+        assert_rounds_to("midpoint", &["0.3529"], &[limit(20, 1.0, PredictorCorrector)]);
+        for (theory, measured) in leapfrog.iter().zip([1.867, 1.666, 0.3551]) {
+            assert_relative_eq!(*theory, measured, max_relative = 7e-3);
+        }
+        assert_eq!(limit(20, 0.0, PredictorCorrector), 0.0);
+        assert_eq!(limit(20, 0.0, Euler), 0.0);
+    }
+
+    /// R4 and R5 of 2.4: 1.03 h/(α c) and 0.347 h/(δ c).
+    #[test]
+    fn dissipation_limits_match_the_design_text() {
+        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let limits = separate_limits(&lattice, 120, &Medium { alpha: 1.0, delta: 1.0, ..WATER });
+        let computed = [limits.artificial_viscosity, limits.density_diffusion];
+        assert_rounds_to("R4, R5", &["1.03", "0.347"], &computed);
+    }
+
+    /// 2.1: at Courant number 0.5 a 20 × 20 box was stable for c₀h/ν = 40 and grew by 2.6e-3 a step
+    /// for 80. At 40 the fastest mode is the density checkerboard, which g does not see: neutral.
+    #[test]
+    fn measured_threshold_of_the_predictor_corrector() {
+        let lattice = SquareLattice::<CubicSpline>::new(1.3, 0.01);
+        let threshold = predictor_corrector_stiffest_sound(&lattice, 20, 0.5).expect("a window");
+        assert_rounds_to("threshold", &["53.5"], &[threshold]);
+        let growth = [40.0, 80.0].map(|x| {
+            let modes = modes(&lattice, 20, &Medium { nu: 1.0 / x, ..WATER });
+            growth_per_step(&modes, PredictorCorrector, 0.5)
+        });
+        assert_eq!(growth[0], 0.0);
+        assert_rounds_to("growth", &["2.8e-3"], &[growth[1]]);
+    }
+
+    #[test]
+    fn mixed_limits_match_the_design_text() {
+        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let limit = |medium: Medium| time_step_limit(&modes(&lattice, 80, &medium), Leapfrog);
+        let mixed = [10.0, 30.0, 100.0].map(|x: f64| limit(Medium { nu: 1.0 / x, ..WATER }));
+        assert_rounds_to("c h/nu = 10, 30, 100", &["1.655", "1.797", "1.846"], &mixed);
+        let alphas = [0.0, 0.01, 0.1, 0.5, 1.0, 2.0].map(|alpha| limit(Medium { alpha, ..WATER }));
+        let printed = ["1.867", "1.860", "1.796", "1.469", "1.028", "0.515"];
+        assert_rounds_to("alpha", &printed, &alphas);
+    }
+
+    /// The smaller of the separate limits is too long by up to 28 %, where the two meet. The design
+    /// notes say 12 % at most, which is their value at c₀h/ν = 10.
+    #[test]
+    fn separate_limits_are_optimistic() {
+        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let excess = [3.0, 5.3, 10.0, 30.0, 100.0].map(|x: f64| {
+            let medium = Medium { nu: 1.0 / x, ..WATER };
+            let alone = separate_limits(&lattice, 80, &medium);
+            let together = time_step_limit(&modes(&lattice, 80, &medium), Leapfrog);
+            alone.acoustic.min(alone.viscous) / together - 1.0
+        });
+        assert_rounds_to("excess", &["0.00", "0.28", "0.13", "0.04", "0.01"], &excess);
+    }
+
+    /// Sound as fast as it can be for free: 3.5 ν/h, not the 5.3 ν/h where the separate limits
+    /// meet.
+    #[test]
+    fn free_sound_speed_leaves_the_viscous_limit() {
+        fn check<K: Kernel>(ratio: f64, eta2: f64, printed: &str) {
+            let lattice = SquareLattice::<K>::new(ratio, eta2);
+            let free = free_sound(&lattice, 80);
+            let limit = |x: f64| {
+                let modes = modes(&lattice, 80, &Medium { nu: 1.0 / x, ..WATER });
+                time_step_limit(&modes, Leapfrog) / x
+            };
+            assert_relative_eq!(limit(0.999 * free), limit(1.0), max_relative = 1e-12);
+            assert!(limit(1.001 * free) < (1.0 - 1e-5) * limit(1.0));
+            assert_rounds_to(K::NAME, &[printed], &[free]);
+        }
+        check::<CubicSpline>(1.2, 0.01, "3.54");
+        check::<QuinticSpline>(1.0, 1e-6, "3.04");
+        check::<WendlandC2>(2.0, 1e-6, "4.22");
+    }
+
+    /// Table 2.2: largest ω dt at γ/ω = 0.1, 1, 10 and largest γ dt.
+    #[test]
+    fn oscillator_limits_match_the_design_table() {
+        for (integrator, printed) in [
+            (PredictorCorrector, ["0.80", "2.00", "0.202", "2.0"]),
+            (Leapfrog, ["1.90", "1.24", "0.198", "2.0"]),
+            (Euler, ["0.10", "1.00", "0.202", "2.0"]),
+        ] {
+            let coupled = [0.1, 1.0, 10.0].map(|gamma| oscillator(1.0, gamma).limit(integrator));
+            let shear = oscillator(0.0, 1.0).limit(integrator);
+            let computed = [coupled.as_slice(), &[shear]].concat();
+            assert_rounds_to(&format!("{integrator:?}"), &printed, &computed);
+        }
+        assert_relative_eq!(oscillator(1.0, 0.0).limit(Leapfrog), 2.0, max_relative = 1e-14);
+    }
+
+    /// Table 2.3: how much damping the predictor-corrector needs, cubic, h = 1.2 dx.
+    #[test]
+    fn predictor_corrector_needs_match_the_design_table() {
+        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        for (cfl, printed) in [
+            (0.1, ["6073", "4.8e-4"]),
+            (0.2, ["770", "3.8e-3"]),
+            (0.25, ["399", "7.3e-3"]),
+            (0.3, ["234", "1.3e-2"]),
+            (0.4, ["102", "2.9e-2"]),
+            (0.5, ["54", "5.4e-2"]),
+            (0.7, ["21", "0.14"]),
+            (1.0, ["8", "0.34"]),
+        ] {
+            let computed = [
+                predictor_corrector_stiffest_sound(&lattice, 80, cfl).expect("a window"),
+                predictor_corrector_smallest_alpha(&lattice, 80, cfl).expect("a window"),
+            ];
+            assert_rounds_to(&format!("Courant number {cfl}"), &printed, &computed);
+        }
+    }
+
+    /// The limits against the spectral radius, which they were not derived from: just below stable,
+    /// just above growing, for coupled and uncoupled waves.
+    #[test]
+    fn spectral_radius_crosses_one_at_the_limit() {
+        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        for (nu, alpha, delta) in
+            [(0.1, 0.0, 0.0), (0.0, 0.5, 0.0), (0.02, 1.0, 0.1), (1.0, 0.1, 0.1)]
+        {
+            let modes = modes(&lattice, 12, &Medium { nu, alpha, delta, ..WATER });
+            for integrator in [PredictorCorrector, Leapfrog, Euler] {
+                for mode in &modes {
+                    let limit = mode.limit(integrator);
+                    let (below, above) = (0.999 * limit, 1.001 * limit);
+                    assert!(mode.growth(integrator, below) < 1e-9, "{integrator:?} {mode:?}");
+                    assert!(mode.growth(integrator, above) > 1e-9, "{integrator:?} {mode:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn undamped_growth_has_its_closed_form() {
+        for omega_dt in [0.2, 0.4, 0.5] {
+            let growth = oscillator(1.0, 0.0).growth(PredictorCorrector, omega_dt);
+            assert_relative_eq!(growth, predictor_corrector_growth(omega_dt), max_relative = 1e-10);
+            assert_relative_eq!(growth, omega_dt.powi(4) / 8.0, max_relative = 0.01);
+        }
+        let lattice = SquareLattice::<CubicSpline>::new(1.3, 0.01);
+        let modes = modes(&lattice, 20, &WATER);
+        let growth = [0.4, 0.5].map(|cfl| growth_per_step(&modes, PredictorCorrector, cfl));
+        assert_rounds_to("growth", &["4.19e-3", "1.02e-2"], &growth);
+    }
+}

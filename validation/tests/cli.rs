@@ -1,0 +1,320 @@
+//! The command line as a user has it: exit codes, messages, files, interrupts; and random settings.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::AtomicBool;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use proptest::prelude::*;
+use serde_json::Value;
+use validation::record::{Record, Status};
+use validation::{cases, runner::Context};
+
+fn touchstone_in(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
+    command.current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// Runs the program in an empty folder of its own.
+fn touchstone(arguments: &[&str]) -> Output {
+    touchstone_in(tempfile::tempdir().unwrap().path(), arguments)
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// Exit code 2, nothing on standard output, and every one of these texts in the message.
+#[track_caller]
+fn refused(arguments: &[&str], says: &[&str]) {
+    let output = touchstone(arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    for words in says {
+        assert!(message.contains(words), "{arguments:?} should say {words:?}: {message}");
+    }
+}
+
+/// All files below a folder, relative to it.
+fn files(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() {
+            found.extend(files(&path).into_iter().map(|below| format!("{name}/{below}")));
+        } else {
+            found.push(name);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// A short run of `case` with more arguments.
+fn short<'a>(case: &'a str, rest: &[&'a str]) -> Vec<&'a str> {
+    let short = ["run", case, "--variant", "seed", "--rows", "8", "--set", "end=0.1"];
+    [&short, rest].concat()
+}
+
+#[test]
+fn help_version_and_lists_are_results() {
+    for arguments in [&["--help"][..], &["--version"], &["help", "run"], &["list"]] {
+        let output = touchstone(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        assert!(!output.stdout.is_empty() && output.stderr.is_empty(), "{arguments:?}");
+    }
+    let text = stdout(&touchstone(&["list", "couette"]));
+    for word in ["* modern", "h_over_dx", "0.5 to 5.0 [-]", "Reynolds number"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    let json = |arguments: &[&str]| -> Value {
+        serde_json::from_str(&stdout(&touchstone(arguments))).unwrap()
+    };
+    let one = json(&["list", "couette", "--json"]);
+    assert_eq!(json(&["list", "--json"])[0], one);
+    assert_eq!(one["default_variant"], "modern");
+    let rows = one["settings"].as_array().unwrap().iter().find(|s| s["name"] == "rows").unwrap();
+    assert_eq!((&rows["unit"], &rows["default"]), (&"-".into(), &20.into()));
+}
+
+#[test]
+fn unknown_names_are_refused_with_the_nearest() {
+    refused(&[], &["Usage"]);
+    refused(&["frobnicate"], &["unrecognized subcommand"]);
+    refused(&["run", "couete"], &["did you mean couette?", "poiseuille"]);
+    refused(&["list", "Couette"], &["did you mean couette?"]);
+    refused(&["verify", "lid"], &["no case is called \"lid\"; the cases are"]);
+    refused(&["run", "couette", "--variant", "modrn"], &["did you mean modern?", "seed"]);
+    refused(&["run", "couette", "--set", "row=8"], &["did you mean rows?"]);
+    refused(&["run", "couette", "--set", "rows"], &["key=value"]);
+    refused(&["explain", "no.such.gate"], &["no gate is called \"no.such.gate\""]);
+}
+
+#[test]
+fn senseless_settings_are_refused_with_their_range() {
+    for (set, says) in [
+        ("rows=1", "setting rows is 1 [-]; allowed is 4 to 2000 [-]"),
+        ("rows=1e9", "allowed is 4 to 2000 [-]"),
+        ("rows=-8", "setting rows is -8 [-]; allowed is 4 to 2000 [-]"),
+        ("rows=8.5", "setting rows takes a whole number"),
+        ("h_over_dx=0", "setting h_over_dx is 0.0 [-]; allowed is 0.5 to 5.0 [-]"),
+        ("re=-1", "setting re is -1.0 [-]; allowed is 1e-9 to 1e6 [-]"),
+        ("re=NaN", "setting re is NaN, which is not finite"),
+        ("end=inf", "setting end is inf, which is not finite"),
+        ("re=fast", "re takes a number in the range 1e-9 to 1e6 [-], not \"fast\""),
+        ("re=", "setting re takes a number"),
+        ("wall_curvature=1", "true or false"),
+        ("dt=1e-15", "the number of time steps would be"),
+        ("columns=2", "impossible scene"),
+    ] {
+        refused(&["run", "couette", "--set", set], &[says]);
+    }
+    refused(&["run", "couette", "--rows", "-3"], &["rows is -3"]);
+    refused(&["run", "couette", "--threads", "0"], &["1..=1024"]);
+    refused(&["verify", "--threads", "1025"], &["1..=1024"]);
+    refused(&["run", "couette", "--vtk", "0"], &["1..=9999"]);
+    let many = ["run", "couette", "--rows", "2000", "--set", "columns=100000"];
+    refused(&many, &["number of particles", "at most", "rows or columns"]);
+    let unused = ["run", "couette", "--variant", "seed", "--set", "shift=0.1"];
+    refused(&unused, &["\"shift\" has no effect in variant seed"]);
+}
+
+#[test]
+fn a_time_step_beyond_the_limit_needs_a_word_and_may_diverge() {
+    let far_beyond = ["--set", "jitter=0.01", "--set", "dt=0.05"];
+    let with = |rest: &[&'static str]| short("couette", &[&far_beyond, rest].concat());
+    refused(&with(&[]), &["dt is 5.0000e-2 s", "at most", "--allow-unstable"]);
+    let output = touchstone(&with(&["--allow-unstable", "--json"]));
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(stderr(&output).contains("diverged after"));
+    let record = Record::from_json(&stdout(&output)).unwrap();
+    assert!(matches!(record.status, Status::Diverged { .. }));
+
+    let message = stderr(&touchstone(&with(&[])));
+    let limit = message.split("at most ").nth(1).unwrap().split(' ').next().unwrap();
+    let just_beyond = format!("dt={}", 1.005 * limit.parse::<f64>().unwrap());
+    refused(&short("couette", &["--set", &just_beyond]), &["--allow-unstable"]);
+    let output = touchstone(&short("couette", &["--set", &just_beyond, "--allow-unstable"]));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+#[test]
+fn a_run_prints_its_record_or_its_metrics() {
+    let output = touchstone(&short("couette", &[]));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(output.stdout.is_empty() && stderr(&output).contains("l2_worst"));
+    let output = touchstone(&short("couette", &["--json", "--threads", "2"]));
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    let record = Record::from_json(&stdout(&output)).unwrap();
+    assert_eq!((record.status, record.settings["rows"].as_u64()), (Status::Completed, Some(8)));
+    assert!(record.metrics["l2@0.1"].value < 0.05);
+}
+
+#[test]
+fn a_run_writes_its_files_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = touchstone_in(folder.path(), &short("poiseuille", &["--vtk", "3"]));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let out = folder.path().join("reports/run-poiseuille-seed");
+    let expected = [
+        "profile.csv",
+        "profile.png",
+        "record.json",
+        "series.csv",
+        "vtk/particles.pvd",
+        "vtk/particles_0000.vtp",
+        "vtk/particles_0001.vtp",
+        "vtk/particles_0002.vtp",
+    ];
+    assert_eq!(files(&out), expected);
+    let record = Record::from_json(&fs::read_to_string(out.join("record.json")).unwrap()).unwrap();
+    assert_eq!(record.variant, "seed");
+    let profile = fs::read_to_string(out.join("profile.csv")).unwrap();
+    let mut lines = profile.lines();
+    assert_eq!(lines.next(), Some("t[s],y[m],u[m/s],u_exact[m/s]"));
+    assert_eq!(lines.count(), 3 * 8, "three times, eight rows");
+    assert!(profile.contains("\n0.1,"), "nu t/L^2 = 0.1 is t = 0.1 s here: {profile}");
+    assert!(fs::read(out.join("profile.png")).unwrap().starts_with(b"\x89PNG"));
+    // Without --out and --vtk nothing is written.
+    let empty = tempfile::tempdir().unwrap();
+    assert_eq!(touchstone_in(empty.path(), &short("couette", &[])).status.code(), Some(0));
+    assert_eq!(files(empty.path()), Vec::<String>::new());
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_refused_before_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "in the way").unwrap();
+    let below = file.join("below");
+    let start = Instant::now();
+    let long = ["run", "couette", "--rows", "400", "--out", below.to_str().unwrap()];
+    refused(&long, &["cannot write into the folder", "below"]);
+    refused(&["report", "--out", below.to_str().unwrap()], &["cannot write into the folder"]);
+    assert!(start.elapsed() < Duration::from_secs(3));
+    // A folder made for a run that is refused is removed again.
+    let new = folder.path().join("new");
+    let refused_run = ["run", "couette", "--set", "dt=1", "--out", new.to_str().unwrap()];
+    refused(&refused_run, &["--allow-unstable"]);
+    assert!(!new.exists());
+}
+
+/// Starts a long run, sends it a signal once it is under way, and returns what it said.
+#[cfg(unix)]
+fn interrupted(out: &Path, signal: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_touchstone"))
+        .args(["run", "couette", "--variant", "seed", "--rows", "400", "--threads", "1"])
+        .args(["--vtk", "2", "--out", out.to_str().unwrap()])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while !out.join("vtk").exists() && start.elapsed() < Duration::from_secs(10) {
+        sleep(Duration::from_millis(10));
+    }
+    sleep(Duration::from_millis(200));
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() && start.elapsed() < Duration::from_secs(10) {
+        sleep(Duration::from_millis(10));
+    }
+    let _ = child.kill(); // has no effect on a child that has ended
+    child.wait_with_output().unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_run_in_order_and_leaves_no_part() {
+    for signal in ["-INT", "-TERM"] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        let output = interrupted(&out, signal);
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(130), "{message}");
+        assert!(message.contains("touchstone: interrupted: after"), "{message}");
+        assert!(message.contains("no record is written"), "{message}");
+        assert_eq!(files(folder.path()), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn doctor_finds_this_program_sound() {
+    let output = touchstone(&["doctor"]);
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    for word in ["commit", "references  ok", "writing     ok", "self-check  ok", "sha256:"] {
+        assert!(stdout(&output).contains(word), "{word}: {}", stdout(&output));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_reader_that_goes_away_is_no_bug_and_a_full_disk_is_told() {
+    let run = |shell: &str| {
+        let program = env!("CARGO_BIN_EXE_touchstone");
+        let line = format!("set -o pipefail; '{program}' list couette {shell}");
+        Command::new("bash").args(["-c", &line]).output().unwrap()
+    };
+    assert_eq!(run("| true").status.code(), Some(0));
+    let full = run("> /dev/full");
+    assert_eq!(full.status.code(), Some(2));
+    assert!(stderr(&full).contains("cannot write to standard output"));
+}
+
+fn assignment() -> impl Strategy<Value = String> {
+    let keys: Vec<&'static str> = cases::CASES[0].fields().iter().map(|field| field.name).collect();
+    let key = prop_oneof![8 => prop::sample::select(keys), 1 => Just("Rows"), 1 => Just("")];
+    let number = prop_oneof![
+        4 => (-320i32..=310, 1.0..10.0f64).prop_map(|(power, digits)| format!("{digits}e{power}")),
+        4 => (-6i32..=3, 1.0..10.0f64).prop_map(|(power, digits)| format!("{digits}e{power}")),
+        2 => (0u64..3000).prop_map(|count| count.to_string()),
+        1 => any::<f64>().prop_map(|number| number.to_string()),
+        1 => prop::sample::select(vec!["auto", "true", "false", "NaN", "-inf", "", "0", "-1"])
+            .prop_map(String::from),
+        1 => ".{0,12}",
+    ];
+    (key, number).prop_map(|(key, value)| format!("{key}={value}"))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    /// Whatever is set is refused in words or runs; the runs are stopped after a few steps.
+    #[test]
+    fn no_settings_make_a_run_panic(
+        case in 0..cases::CASES.len(),
+        variant in any::<prop::sample::Index>(),
+        mut set in prop::collection::vec(assignment(), 0..5),
+        allow_unstable: bool,
+    ) {
+        let case = cases::CASES[case];
+        let variants = case.variants();
+        let variant = variants[variant.index(variants.len())].name;
+        set.extend(["rows=5".to_string(), "columns=0".to_string()]); // small, whatever came before
+        let stop = AtomicBool::new(true);
+        let context = Context { allow_unstable, interrupt: Some(&stop), ..Context::default() };
+        match case.run(variant, &set, &context) {
+            Err(error) => prop_assert!(error.to_string().len() > 10),
+            Ok(record) => {
+                prop_assert_eq!(&record.settings, &case.settings(variant, &set).unwrap());
+                let text = record.to_json();
+                prop_assert!(text.is_ok(), "{:?}", text);
+            }
+        }
+    }
+
+    /// Texts that are no assignments at all.
+    #[test]
+    fn no_text_makes_settings_panic(set in prop::collection::vec(".{0,40}", 0..4)) {
+        let _ = cases::CASES[0].settings("seed", &set);
+    }
+}
