@@ -1,0 +1,148 @@
+//! What the cross-crate tests share: random numbers, patches of particles, and the rates of one
+//! right-hand side.
+
+pub mod spoil;
+
+use nalgebra::Vector2;
+use solver::{
+    Compose, Domain, Engine, Evolved, Fault, Flow, Integrator, Kernel, Observer, Open, Outcome,
+    Particle, Rate, Role, Scene, Scheme, Simulation, Term, lattice, numbers::Numbers, walls::Walls,
+};
+
+/// A plane vector.
+pub type V2 = Vector2<f64>;
+
+/// Splitmix64: the same numbers on every machine.
+pub struct Random(pub u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in [low, high).
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+
+    /// Each component uniform in [low, high).
+    pub fn vector(&mut self, low: f64, high: f64) -> V2 {
+        Vector2::new(self.between(low, high), self.between(low, high))
+    }
+
+    /// The same items in another order.
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        for k in (1..items.len()).rev() {
+            items.swap(k, (self.bits() % (k as u64 + 1)) as usize);
+        }
+    }
+}
+
+/// A scheme without the walls, whose rates are looked at.
+pub type RatesOf<K, F, D, W = Open> = Compose<K, F, D, W, RateInstead>;
+
+/// Puts the rates where the state was. Not a time integration: it shows one right-hand side.
+#[derive(Default)]
+pub struct RateInstead;
+
+impl<X: Numbers> Integrator<X> for RateInstead {
+    const NAME: &'static str = "rate";
+    const ORDER: [u32; 2] = [0, 0];
+
+    fn step<S: Scheme<Extra = X>>(
+        &mut self,
+        engine: &mut Engine<S>,
+        state: &mut [Evolved<X>],
+        _: f64,
+    ) -> Result<(), Fault> {
+        engine.begin(state)?;
+        engine.sweep_all(state, |_, evolved, rate| {
+            let Rate { position, velocity, density, extra } = *rate;
+            *evolved = Evolved { position, velocity, density, extra };
+        });
+        Ok(())
+    }
+}
+
+/// Keeps the particles of the first step and stops, before anyone takes the rates for a state.
+#[derive(Default)]
+struct First(Vec<Particle>);
+
+impl<S: Scheme<Extra = ()>> Observer<S> for First {
+    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+        self.0 = simulation.particles();
+        Flow::Stop
+    }
+}
+
+/// d/dt of every particle, in the order of the scene; 0 for interface particles.
+pub fn rates<K: Kernel, F: Term<()>, D: Term<()>, W: Walls<()>>(
+    scene: Scene<RatesOf<K, F, D, W>>,
+) -> Vec<Rate<()>> {
+    let mut first = First::default();
+    let outcome = scene.build().expect("a sound scene").advance(1.0, 1.0, &mut first);
+    assert_eq!(outcome, Outcome::Stopped);
+    let rate = |p: Particle| match p.role {
+        Role::Interface => Rate::default(),
+        _ => Rate { position: p.position, velocity: p.velocity, density: p.density, extra: () },
+    };
+    first.0.into_iter().map(rate).collect()
+}
+
+/// The rates of particles in an open domain.
+pub fn open_rates<K: Kernel, F: Term<()>, D: Term<()>>(
+    h: f64,
+    particles: &[Particle],
+    forces: F,
+    drift: D,
+) -> Vec<Rate<()>> {
+    let particles = particles.to_vec();
+    rates::<K, F, D, Open>(Scene::new(h, Domain::open(), particles, forces, drift, Open))
+}
+
+/// A square lattice of n × n particles in the unit square, density 1, moved by up to `jitter`
+/// spacings, with smooth velocities of size 0.1 that fit the period.
+pub fn patch(n: usize, jitter: f64, seed: u64) -> Vec<Particle> {
+    let (mut random, dx) = (Random(seed), 1.0 / n as f64);
+    lattice(Vector2::repeat(0.5 * dx), dx, n, n)
+        .map(|point| {
+            let position = point + random.vector(-jitter, jitter) * dx;
+            let k = 2.0 * std::f64::consts::PI;
+            let (x, y) = (k * position.x, k * position.y);
+            let velocity = Vector2::new(x.sin() * y.cos(), 0.5 * y.sin() - 0.3 * x.cos()) * 0.1;
+            Particle::fluid(position, velocity, 1.0, dx * dx)
+        })
+        .collect()
+}
+
+/// Largest difference of positions, velocities and densities, each against its own scale. Places
+/// are compared modulo the periods.
+pub fn difference(a: &[Particle], b: &[Particle], period: [Option<f64>; 2]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let mut largest = 0.0_f64;
+    for (a, b) in a.iter().zip(b) {
+        let mut apart = a.position - b.position;
+        for axis in 0..2 {
+            if let Some(period) = period[axis] {
+                apart[axis] -= (apart[axis] / period).round() * period;
+            }
+        }
+        let parts = [apart.amax(), (a.velocity - b.velocity).amax(), (a.density - b.density).abs()];
+        for part in parts {
+            // A NaN must not hide behind a maximum.
+            largest = if part > largest || part.is_nan() { part } else { largest };
+        }
+    }
+    largest
+}
+
+/// The bits of a state, so that equal means equal.
+pub fn bits(particles: &[Particle]) -> Vec<[u64; 5]> {
+    let numbers = |p: &Particle| {
+        [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density].map(f64::to_bits)
+    };
+    particles.iter().map(numbers).collect()
+}

@@ -1,0 +1,114 @@
+//! A scene pays for what it uses: memory by type, rows by motion.
+
+use nalgebra::Vector2;
+use solver::{
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
+    DensityDiffusion, Domain, Evolved, Integrator, Leapfrog, Open, Outcome, Particle,
+    PredictorCorrector, Pressure, QuinticSpline, Scene, Shifting, Simulation, Tait, Term,
+    Viscosity, Xsph, engine::Shows, particles::Column,
+};
+use touchstone_tests::{difference, patch};
+
+type Fluid = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
+
+/// Memory of what a term has a particle show, and of what it sums.
+fn sizes<T: Term<()>>() -> [usize; 2] {
+    [size_of::<T::Shows>(), size_of::<T::Sum>()]
+}
+
+#[test]
+fn a_fluid_evolves_40_bytes_and_shows_one_cache_line() {
+    assert_eq!(size_of::<Evolved<()>>(), 40);
+    assert_eq!(size_of::<Column<Shows<Fluid>>>(), 64);
+    assert_eq!(align_of::<Column<Shows<Fluid>>>(), 64);
+}
+
+#[test]
+fn terms_take_the_memory_of_what_they_need_and_absent_ones_none() {
+    assert_eq!(sizes::<()>(), [0, 0]);
+    assert_eq!(sizes::<BodyForce>(), [0, 0]);
+    assert_eq!(sizes::<Continuity>(), [0, 8]);
+    assert_eq!(sizes::<DensityDiffusion>(), [0, 8]);
+    assert_eq!(sizes::<Viscosity>(), [0, 16]);
+    assert_eq!(sizes::<ArtificialViscosity<Tait>>(), [0, 16]);
+    assert_eq!(sizes::<Xsph>(), [0, 16]);
+    assert_eq!(sizes::<Shifting>(), [0, 16]);
+    assert_eq!(sizes::<Pressure<Tait>>(), [8, 16]);
+    assert_eq!(sizes::<Pressure<Tait, ArtificialStress>>(), [16, 16]);
+    assert_eq!(sizes::<(BodyForce, (), Pressure<Tait>, BodyForce)>(), [8, 16]);
+}
+
+#[test]
+fn a_simulation_holds_no_more_than_its_buffers() {
+    let fluid = |n| {
+        let (h, forces) = (1.2 / n as f64, forces());
+        let scene =
+            Scene::<Fluid>::new(h, Domain::open(), patch(n, 0.1, 1), forces, Continuity, Open);
+        scene.build().unwrap().bytes() as f64 / (n * n) as f64
+    };
+    // State, columns, rows of about 25 neighbours and the sort: see `Simulation::bytes`.
+    let [small, large] = [fluid(40), fluid(80)];
+    assert!((300.0..600.0).contains(&large), "{large} bytes a particle");
+    assert!((large / small - 1.0).abs() < 0.4, "in proportion: {small}, {large}");
+}
+
+fn forces() -> (Pressure<Tait>, Viscosity) {
+    (Pressure::new(Tait::new(1.0, 1.0)), Viscosity { mu: 0.01, eta2: 1e-8 })
+}
+
+/// Particles that fly straight on, whose densities follow: the trajectories are exact, so that two
+/// runs differ in their rows only.
+fn flight<I: Integrator<()>>(skin: f64, share: f64) -> (Vec<Particle>, u64) {
+    type Flight<I> = Compose<QuinticSpline, (), Continuity, Open, I>;
+    let h = 0.07;
+    let particles = patch(16, 0.2, 3);
+    let scene =
+        Scene::<Flight<I>>::new(h, Domain::torus(1.0, 1.0), particles, (), Continuity, Open);
+    let scene = Scene { skin: skin * h, skin_share: share, ..scene };
+    let mut simulation: Simulation<_> = scene.build().unwrap();
+    assert_eq!(simulation.advance(1.0, 1.0 / 64.0, &mut ()), Outcome::Reached);
+    (simulation.particles(), simulation.work().list_builds)
+}
+
+fn check_skin<I: Integrator<()>>() {
+    let torus = [Some(1.0), Some(1.0)];
+    let (exact, every_time) = flight::<I>(0.0, 0.5);
+    assert!(every_time >= 64);
+    for skin in [0.05, 0.12, 0.5] {
+        let (kept, builds) = flight::<I>(skin, 0.5);
+        assert!(builds > 1 && builds < every_time, "{builds} builds with a skin of {skin} h");
+        let apart = difference(&kept, &exact, torus);
+        assert!(apart < 1e-12, "{}: {apart:e} with a skin of {skin} h", I::NAME);
+    }
+    let (wrong, builds) = flight::<I>(0.12, 5.0);
+    let apart = difference(&wrong, &exact, torus);
+    assert!(apart > 1e-6, "{}: ten times too long was not seen, {apart:e}", I::NAME);
+    assert!(builds < flight::<I>(0.12, 0.5).1);
+}
+
+#[test]
+fn rows_kept_within_the_skin_sum_what_rows_built_every_step_do() {
+    check_skin::<Leapfrog>();
+    check_skin::<PredictorCorrector>();
+}
+
+#[test]
+fn particles_at_rest_build_their_rows_once() {
+    let start: Vec<_> = patch(12, 0.0, 1)
+        .into_iter()
+        .map(|p| Particle { velocity: Vector2::zeros(), ..p })
+        .collect();
+    let scene = Scene::<Fluid>::new(
+        0.1,
+        Domain::torus(1.0, 1.0),
+        start.clone(),
+        forces(),
+        Continuity,
+        Open,
+    );
+    let mut simulation = scene.build().unwrap();
+    assert_eq!(simulation.advance(1.0, 0.01, &mut ()), Outcome::Reached);
+    let work = simulation.work();
+    assert_eq!((work.steps, work.list_builds, work.right_hand_sides), (100, 1, 100 * 144));
+    assert!(difference(&simulation.particles(), &start, [None, None]) < 1e-13);
+}

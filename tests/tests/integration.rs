@@ -1,0 +1,173 @@
+//! Time: order of the integrators, reversibility, and the book-keeping of steps.
+
+use solver::{
+    Compose, Continuity, Domain, Euler, Flow, Integrator, Leapfrog, Observer, Open, Outcome,
+    Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, Tait, Viscosity,
+};
+use touchstone_tests::{bits, difference, patch};
+
+type Forces = (Pressure<Tait>, Viscosity);
+type Scheme<I> = Compose<QuinticSpline, Forces, Continuity, Open, I>;
+
+const H: f64 = 0.1;
+const TORUS: [Option<f64>; 2] = [Some(1.0), Some(1.0)];
+
+/// A jittered patch in motion. The quintic spline is smooth enough for second order in time.
+fn simulation<I: Integrator<()>>(particles: Vec<Particle>, mu: f64) -> Simulation<Scheme<I>> {
+    let pressure = Pressure::new(Tait { background: 0.3, ..Tait::new(1.0, 1.0) });
+    let forces = (pressure, Viscosity { mu, eta2: 1e-4 * H * H });
+    Scene::new(H, Domain::torus(1.0, 1.0), particles, forces, Continuity, Open).build().unwrap()
+}
+
+fn end<I: Integrator<()>>(mu: f64, time: f64, steps: u32) -> Vec<Particle> {
+    let mut simulation = simulation::<I>(patch(10, 0.1, 5), mu);
+    let outcome = simulation.advance(time, time / f64::from(steps), &mut ());
+    assert_eq!((outcome, simulation.work().steps), (Outcome::Reached, u64::from(steps)));
+    simulation.particles()
+}
+
+/// log₂ of the ratio of successive differences over dt, dt/2, dt/4, dt/8, finest last.
+fn orders<I: Integrator<()>>(mu: f64) -> [f64; 2] {
+    let (time, steps) = (0.4, 64);
+    let [a, b, c, d] = [1, 2, 4, 8].map(|k| end::<I>(mu, time, steps * k));
+    let [e1, e2, e3] = [(&a, &b), (&b, &c), (&c, &d)].map(|(p, q)| difference(p, q, TORUS));
+    println!("{} mu {mu}: differences {e1:.3e} {e2:.3e} {e3:.3e}", I::NAME);
+    [(e1 / e2).log2(), (e2 / e3).log2()]
+}
+
+fn check_order<I: Integrator<()>>() {
+    for (mu, declared) in [0.0, 0.02].into_iter().zip(I::ORDER) {
+        for order in orders::<I>(mu) {
+            let apart = (order - f64::from(declared)).abs();
+            assert!(apart < 0.15, "{}, mu = {mu}: order {order:.3}", I::NAME);
+        }
+    }
+}
+
+#[test]
+fn predictor_corrector_has_the_order_it_declares() {
+    check_order::<PredictorCorrector>();
+}
+
+#[test]
+fn leapfrog_has_the_order_it_declares() {
+    check_order::<Leapfrog>();
+}
+
+#[test]
+fn euler_has_the_order_it_declares() {
+    check_order::<Euler>();
+}
+
+/// Error of going there and back.
+fn irreversibility<I: Integrator<()>>(mu: f64, steps: u32) -> f64 {
+    let start = patch(10, 0.1, 5);
+    let mut there = simulation::<I>(start.clone(), mu);
+    let dt = 0.4 / f64::from(steps);
+    assert_eq!(there.advance(0.4, dt, &mut ()), Outcome::Reached);
+    let turn = |p: Particle| Particle { velocity: -p.velocity, ..p };
+    let turned: Vec<_> = there.particles().into_iter().map(turn).collect();
+    assert!(difference(&there.particles(), &start, TORUS) > 1e-3, "nothing happened");
+    let mut back = simulation::<I>(turned, mu);
+    assert_eq!(back.advance(0.4, dt, &mut ()), Outcome::Reached);
+    let returned: Vec<_> = back.particles().into_iter().map(turn).collect();
+    difference(&returned, &start, TORUS)
+}
+
+#[test]
+fn leapfrog_without_viscosity_retraces_its_steps() {
+    for steps in [20, 200] {
+        let error = irreversibility::<Leapfrog>(0.0, steps);
+        println!("leapfrog {steps} steps and back: {error:e}");
+        assert!(error < 1e-15 * f64::from(steps) * 10.0, "{steps} steps and back: {error:e}");
+    }
+    for error in
+        [irreversibility::<PredictorCorrector>(0.0, 20), irreversibility::<Leapfrog>(0.02, 20)]
+    {
+        println!("others: {error:e}");
+        assert!(error > 1e-8, "what must not be reversible is, up to {error:e}");
+    }
+}
+
+/// Notes the time and the length of each step.
+#[derive(Default)]
+struct Clock {
+    times: Vec<f64>,
+    dts: Vec<f64>,
+}
+
+impl<I: Integrator<()>> Observer<Scheme<I>> for Clock {
+    fn after_step(&mut self, simulation: &Simulation<Scheme<I>>) -> Flow {
+        self.times.push(simulation.time());
+        self.dts.push(simulation.dt());
+        Flow::Continue
+    }
+}
+
+#[test]
+fn advance_lands_on_the_time_with_equal_steps_of_at_most_the_length_asked_for() {
+    for (until, dt, steps) in [
+        (1.0, 0.1, 10),
+        (0.1 + 0.2, 0.1, 3),
+        (1.0, 0.3, 4),
+        (0.7, 1.0, 1),
+        (1e-9, 1e-10, 10),
+        (1.0 + 1e-9, 0.1, 11),
+        (7.0 / 3.0, 1.0 / 3.0, 7),
+    ] {
+        let mut simulation = simulation::<Euler>(vec![patch(1, 0.0, 1)[0]], 0.0);
+        let mut clock = Clock::default();
+        assert_eq!(simulation.advance(until, dt, &mut clock), Outcome::Reached);
+        assert_eq!((simulation.time(), clock.times.len()), (until, steps), "{until} by {dt}");
+        assert!(clock.dts.iter().all(|d| *d == clock.dts[0] && *d <= dt * (1.0 + 1e-11)));
+        assert_eq!(*clock.times.last().unwrap(), until);
+        // Nothing to do is nothing done.
+        assert_eq!(simulation.advance(until, dt, &mut ()), Outcome::Reached);
+        assert_eq!((simulation.time(), simulation.work().steps), (until, steps as u64));
+    }
+}
+
+#[test]
+fn time_does_not_drift_over_a_hundred_thousand_steps() {
+    let mut simulation = simulation::<Euler>(vec![patch(1, 0.0, 1)[0]], 0.0);
+    let mut clock = Clock::default();
+    // 0.1 is not a binary fraction: adding it 100,000 times would be off by 1e-8.
+    assert_eq!(simulation.advance(10_000.0, 0.1, &mut clock), Outcome::Reached);
+    assert_eq!(clock.times.len(), 100_000);
+    for (k, time) in clock.times.iter().enumerate() {
+        let exact = (k + 1) as f64 / 10.0;
+        assert!((time - exact).abs() <= 2.0 * f64::EPSILON * exact, "step {k} is at {time}");
+    }
+    // Many advances end where one does.
+    let mut often = self::simulation::<Euler>(vec![patch(1, 0.0, 1)[0]], 0.0);
+    for k in 1..=1000 {
+        assert_eq!(often.advance(f64::from(k) * 10.0, 0.1, &mut ()), Outcome::Reached);
+    }
+    assert_eq!((often.time(), often.work().steps), (10_000.0, 100_000));
+}
+
+/// dt = 1/128 is exact, so that both runs step by the same bits. Leapfrog stops to synchronise: two
+/// half kicks in place of one.
+#[test]
+fn two_advances_are_one_for_the_one_step_schemes_and_nearly_for_leapfrog() {
+    fn both<I: Integrator<()>>(mu: f64) -> [Vec<Particle>; 2] {
+        [vec![0.5], vec![0.25, 0.5]].map(|times| {
+            let mut simulation = simulation::<I>(patch(10, 0.1, 5), mu);
+            for time in times {
+                assert_eq!(simulation.advance(time, 1.0 / 128.0, &mut ()), Outcome::Reached);
+            }
+            assert_eq!((simulation.time(), simulation.work().steps), (0.5, 64));
+            simulation.particles()
+        })
+    }
+    let [one, two] = both::<PredictorCorrector>(0.02);
+    assert_eq!(bits(&one), bits(&two));
+    let [one, two] = both::<Euler>(0.02);
+    assert_eq!(bits(&one), bits(&two));
+    let [one, two] = both::<Leapfrog>(0.0);
+    assert!(difference(&one, &two, TORUS) < 1e-13);
+    let [one, two] = both::<Leapfrog>(0.02);
+    let apart = difference(&one, &two, TORUS);
+    println!("one synchronisation under viscosity: {apart:e}");
+    assert!(apart > 0.0 && apart < 1e-4, "a synchronisation moved the state by {apart:e}");
+}

@@ -1,0 +1,109 @@
+//! A run that goes on from a checkpoint has the bits of one that was never interrupted.
+
+use solver::{
+    Checkpoint, Compose, Continuity, CubicSpline, Domain, Flow, Integrator, Leapfrog, Observer,
+    Open, Outcome, PredictorCorrector, Pressure, Role, Scene, SceneError, Shifting, Simulation,
+    Smoothing, Tait, Viscosity,
+};
+use touchstone_tests::{bits, patch};
+
+type Method<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), (Continuity, Shifting), Open, I>;
+
+const H: f64 = 0.08;
+const DT: f64 = 1.0 / 64.0;
+
+fn scene<I: Integrator<()>>() -> Scene<Method<I>> {
+    let pressure = Pressure::new(Tait { background: 0.3, ..Tait::new(1.0, 1.0) });
+    let forces = (pressure, Viscosity { mu: 0.01, eta2: 1e-4 * H * H });
+    let w = Smoothing::<CubicSpline>::new(H).w(1.0 / 256.0);
+    let drift = (Continuity, Shifting::new(0.5, H, w));
+    Scene::new(H, Domain::torus(1.0, 1.0), patch(16, 0.15, 7), forces, drift, Open)
+}
+
+/// Stops after so many steps of the run.
+struct After(u64);
+
+impl<I: Integrator<()>> Observer<Method<I>> for After {
+    fn after_step(&mut self, simulation: &Simulation<Method<I>>) -> Flow {
+        if simulation.work().steps == self.0 { Flow::Stop } else { Flow::Continue }
+    }
+}
+
+/// A checkpoint after each of 12 steps, between builds of the rows and just after them. dt is a
+/// power of two, so that the rest of the time divides into the same steps.
+fn check<I: Integrator<()>>() {
+    let until = 40.0 * DT;
+    let mut whole = scene::<I>().build().unwrap();
+    assert_eq!(whole.advance(until, DT, &mut ()), Outcome::Reached);
+    let mut between_builds = 0;
+    for steps in 9..=20 {
+        let mut first = scene::<I>().build().unwrap();
+        assert_eq!(first.advance(until, DT, &mut After(steps)), Outcome::Stopped);
+        let checkpoint = first.checkpoint();
+        drop(first);
+        let moved = checkpoint.particles.iter().zip(&checkpoint.built_at);
+        between_builds += u32::from(moved.clone().any(|((_, p), at)| p.position != *at));
+        let mut second = scene::<I>().resume(&checkpoint).unwrap();
+        assert_eq!(second.checkpoint(), checkpoint, "nothing is lost on the way");
+        assert_eq!(second.advance(until, DT, &mut ()), Outcome::Reached);
+        assert_eq!(bits(&second.particles()), bits(&whole.particles()), "from step {steps}");
+        assert_eq!((second.time(), second.dt()), (whole.time(), whole.dt()));
+        assert_eq!(second.work().steps, 40);
+    }
+    assert!(between_builds > 5, "rows were older than the state in {between_builds} checkpoints");
+    assert!(whole.work().list_builds > 8);
+}
+
+#[test]
+fn leapfrog_goes_on_with_the_same_bits() {
+    check::<Leapfrog>();
+}
+
+#[test]
+fn the_predictor_corrector_goes_on_with_the_same_bits() {
+    check::<PredictorCorrector>();
+}
+
+/// Why a checkpoint is more than the particles: without the rows' age, the order and the lag the
+/// bits change.
+#[test]
+fn particles_alone_do_not_restart_with_the_same_bits() {
+    let mut first = scene::<Leapfrog>().build().unwrap();
+    assert_eq!(first.advance(40.0 * DT, DT, &mut After(20)), Outcome::Stopped);
+    let rest = |mut simulation: Simulation<Method<Leapfrog>>| {
+        assert_eq!(simulation.advance(40.0 * DT, DT, &mut ()), Outcome::Reached);
+        bits(&simulation.particles())
+    };
+    let exact = first.checkpoint();
+    let with = |checkpoint: Checkpoint| rest(scene().resume(&checkpoint).unwrap());
+    let expected = with(exact.clone());
+    assert_ne!(with(Checkpoint { lag: 0.0, ..exact.clone() }), expected);
+    let mut particles = exact.particles.clone();
+    particles.sort_by_key(|(id, _)| *id);
+    let built_at = particles.iter().map(|(_, p)| p.position).collect();
+    assert_ne!(with(Checkpoint { particles, built_at, ..exact.clone() }), expected);
+}
+
+#[test]
+fn checkpoints_that_no_run_can_have_made_are_refused() {
+    let checkpoint = scene::<Leapfrog>().build().unwrap().checkpoint();
+    let refused = |change: &dyn Fn(&mut Checkpoint)| {
+        let mut changed = checkpoint.clone();
+        change(&mut changed);
+        scene::<Leapfrog>().resume(&changed).err().expect("refused")
+    };
+    for (change, part) in [
+        (&(|c: &mut Checkpoint| c.time = f64::NAN) as &dyn Fn(&mut Checkpoint), "time"),
+        (&|c| c.lag = f64::INFINITY, "lag"),
+        (&|c| c.built_at.truncate(5), "places"),
+        (&|c| c.built_at[3].x = f64::NAN, "place that is not finite"),
+        (&|c| c.particles[0].1.role = Role::Wall, "roles"),
+        (&|c| c.particles[7].0 = 8, "numbers"),
+    ] {
+        let error = refused(change);
+        assert!(matches!(error, SceneError::Checkpoint { .. }));
+        assert!(error.to_string().contains(part), "{error}");
+    }
+    let error = refused(&|c| c.particles[2].1.density = -1.0);
+    assert!(matches!(error, SceneError::Particle { particle: 2, .. }), "{error}");
+}

@@ -1,0 +1,299 @@
+//! What the quick tier measures, as snapshots that fail on a change, and bounds that say what may
+//! be accepted: whoever accepts a snapshot cannot move the truth.
+//!
+//! Metrics are compared to 1e-6 of themselves and a floor for those that are round-off; steps, pair
+//! interactions and right-hand sides exactly. No snapshot holds seconds.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use insta::{Comparator, Settings, Snapshot};
+use rayon::prelude::*;
+use serde_json::{Map, Value, json};
+use validation::{
+    case::{Case, Planned, Tier},
+    cases::{
+        self,
+        channel::{Flow, plan::ladder},
+    },
+    gate::{Bound, Evidence, Gate, check_all},
+    record::{Record, Status},
+    runner::Context,
+    settings::Value as Default,
+};
+
+/// Metrics may differ by this much of themselves.
+const RELATIVE: f64 = 1e-6;
+/// And by this much: velocities and errors that are exactly 0 but for round-off.
+const FLOOR: f64 = 1e-10;
+/// The same for errors of waves, which are round-off over the amplitude of 1e-6.
+const WAVE_FLOOR: f64 = 1e-8;
+
+/// JSON with numbers that may differ a little; whole numbers, texts and names may not.
+#[derive(Clone)]
+struct Close;
+
+impl Close {
+    fn are(key: &str, a: &Value, b: &Value) -> bool {
+        match (a, b) {
+            (Value::Object(a), Value::Object(b)) => {
+                a.len() == b.len()
+                    && a.iter().all(|(k, v)| b.get(k).is_some_and(|other| Close::are(k, v, other)))
+            }
+            (Value::Array(a), Value::Array(b)) => {
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Close::are(key, a, b))
+            }
+            (Value::Number(x), Value::Number(y)) if x.is_f64() && y.is_f64() => {
+                let [x, y] = [x, y].map(|n| n.as_f64().unwrap_or(f64::NAN));
+                let floor = if key.ends_with("_error") { WAVE_FLOOR } else { FLOOR };
+                (x - y).abs() <= RELATIVE * x.abs().max(y.abs()) + floor
+            }
+            _ => a == b,
+        }
+    }
+}
+
+impl Comparator for Close {
+    fn matches(&self, reference: &Snapshot, test: &Snapshot) -> bool {
+        let json = |snapshot: &Snapshot| -> Option<Value> {
+            serde_json::from_str(&snapshot.as_text()?.to_string()).ok()
+        };
+        match (json(reference), json(test)) {
+            (Some(a), Some(b)) => Close::are("", &a, &b),
+            _ => false,
+        }
+    }
+
+    fn dyn_clone(&self) -> Box<dyn Comparator> {
+        Box::new(self.clone())
+    }
+}
+
+/// Compares with the stored snapshot of this name.
+fn assert_close(name: &str, value: &Value) {
+    let mut settings = Settings::clone_current();
+    settings.set_comparator(Box::new(Close));
+    settings.set_omit_expression(true);
+    settings.set_prepend_module_to_snapshot(false);
+    settings.bind(|| insta::assert_snapshot!(name, format!("{value:#}")));
+}
+
+/// Runs of the plan that are kept: the ladders up to 20 rows, and every wave.
+fn is_kept(case: &dyn Case, planned: &Planned) -> bool {
+    let small = ["rows=8", "rows=10", "rows=14", "rows=20"];
+    let flow = if case.name() == "couette" { Flow::Couette } else { Flow::Poiseuille };
+    let is_ladder = ladder(flow).contains(&planned.variant)
+        && planned.set.len() == 1
+        && small.contains(&planned.set[0].as_str());
+    is_ladder || case.name().ends_with("_wave")
+}
+
+/// Metrics and counts of one run.
+fn numbers(record: &Record) -> Value {
+    let metrics: Map<String, Value> =
+        record.metrics.iter().map(|(name, m)| (name.clone(), json!(m.value))).collect();
+    let cost = &record.cost;
+    json!({
+        "metrics": metrics,
+        "steps": cost.steps,
+        "pair_interactions": cost.pair_interactions,
+        "particle_rhs": cost.particle_rhs,
+    })
+}
+
+/// Names and units of metrics and profiles.
+fn layout(record: &Record) -> Value {
+    let metrics: Map<String, Value> =
+        record.metrics.iter().map(|(name, m)| (name.clone(), json!(m.unit))).collect();
+    let columns = |profile: &validation::record::Profile| -> Value {
+        profile.columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
+    };
+    let profiles: Map<String, Value> =
+        record.profiles.iter().map(|(name, p)| (name.clone(), columns(p))).collect();
+    let numerics: Vec<&String> = record.numerics.keys().collect();
+    json!({"metrics": metrics, "profiles": profiles, "numerics": numerics})
+}
+
+/// A metric without its time: `l2@0.1` is of the group `l2`.
+fn group(metric: &str) -> &str {
+    metric.split('@').next().unwrap_or(metric)
+}
+
+/// Bounds on what no gate is on, for every run that is kept, from νt/L² = 0.1 on.
+fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
+    let walls = "walls are first order in dx where the velocity is not linear: at 8 rows some 5 %";
+    match case {
+        "couette" | "poiseuille" => {
+            vec![("linf", Bound::Below(0.1), walls), ("field_l2", Bound::Below(0.15), walls)]
+        }
+        "acoustic_wave" => vec![
+            (
+                "sound_factor",
+                Bound::Within(0.9, 1.0),
+                "a smoothed gradient is weaker than the gradient: by (k h)^2 of about 0.2, less",
+            ),
+            (
+                "frequency",
+                Bound::Within(0.9, 1.17),
+                "c0 k/(2 pi) is 1 Hz, on the compressed lattice 1.05^3 = 1.158 Hz",
+            ),
+            ("decay", Bound::Within(0.0, 0.05), "nu k^2/2 is 0.02 1/s, viscosity only damps"),
+        ],
+        _ => vec![
+            (
+                "viscous_factor",
+                Bound::Within(0.9, 1.05),
+                "the Laplacian, smoothed, eta^2 = 0.01 h^2",
+            ),
+            ("decay", Bound::Within(0.35, 0.42), "nu k^2 = 0.395 1/s"),
+        ],
+    }
+}
+
+fn outside_bounds(case: &str, planned: &Planned, record: &Record) -> Vec<String> {
+    let mut outside = Vec::new();
+    if record.status != Status::Completed {
+        outside.push(format!("{} {:?}: {:?}", planned.variant, planned.set, record.status));
+    }
+    for (name, bound, because) in bounds_beside(case) {
+        for (metric, found) in &record.metrics {
+            let time = metric.split('@').nth(1).and_then(|tau| tau.parse::<f64>().ok());
+            let is_judged = group(metric) == name && time.is_none_or(|tau| tau >= 0.1);
+            if is_judged && !bound.contains(found.value) {
+                let run = format!("{case} {} {:?}", planned.variant, planned.set);
+                outside.push(format!("{run}: {metric} = {:e}, {bound}: {because}", found.value));
+            }
+        }
+    }
+    outside
+}
+
+/// Runs what is kept and compares, one snapshot for each case and variant.
+fn check(name: &str) {
+    let case = cases::find(name).expect("a case");
+    let plan: Vec<Planned> =
+        case.plan(Tier::Quick).into_iter().filter(|p| is_kept(case, p)).collect();
+    let run =
+        |p: &Planned| case.run(p.variant, &p.set, &Context::default()).expect("a planned run");
+    let records: Vec<Record> = plan.par_iter().map(run).collect();
+    let mut documents: BTreeMap<&str, Map<String, Value>> = BTreeMap::new();
+    let mut outside = Vec::new();
+    for (planned, record) in plan.iter().zip(&records) {
+        let document = documents.entry(planned.variant).or_default();
+        document.insert(planned.set.join(" "), numbers(record));
+        document.entry("layout").or_insert_with(|| layout(record));
+        outside.extend(outside_bounds(name, planned, record));
+    }
+    assert!(outside.is_empty(), "{}", outside.join("\n"));
+    for (variant, document) in documents {
+        assert_close(&format!("{name}.{variant}"), &Value::Object(document));
+    }
+}
+
+#[test]
+#[ignore = "first draft, not yet seen to pass on main"]
+fn couette_flow_is_as_it_was() {
+    check("couette");
+}
+
+#[test]
+#[ignore = "first draft, not yet seen to pass on main"]
+fn poiseuille_flow_is_as_it_was() {
+    check("poiseuille");
+}
+
+#[test]
+#[ignore = "first draft, not yet seen to pass on main"]
+fn sound_is_as_it_was() {
+    check("acoustic_wave");
+}
+
+#[test]
+#[ignore = "first draft, not yet seen to pass on main"]
+fn shear_is_as_it_was() {
+    check("shear_wave");
+}
+
+/// What `list --json` says of settings and variants.
+#[test]
+#[ignore = "first draft, not yet seen to pass on main"]
+fn settings_are_as_they_were() {
+    for case in cases::CASES {
+        let variants: Map<String, Value> = case
+            .variants()
+            .iter()
+            .map(|v| (v.name.to_string(), case.settings(v.name, &[]).expect("default settings")))
+            .collect();
+        let default = |value: Default| serde_json::to_value(value).expect("a value");
+        let fields: Map<String, Value> = case
+            .fields()
+            .iter()
+            .map(|f| {
+                let field = json!({
+                    "unit": f.unit, "doc": f.doc, "kind": f.kind.to_string(), "range": f.range,
+                    "default": default(f.default()),
+                });
+                (f.name.to_string(), field)
+            })
+            .collect();
+        let schema = json!({"settings": fields, "variants": variants});
+        assert_close(&format!("settings.{}", case.name()), &schema);
+    }
+}
+
+/// Every group of metrics in a snapshot has a gate that is no regression, or a bound above.
+#[test]
+#[ignore = "first draft, not yet seen to pass on main"]
+fn every_snapshot_has_a_physical_bound_beside_it() {
+    let plans = |case: &dyn Case| [Tier::Quick, Tier::Full].map(|tier| case.plan(tier)).concat();
+    let gated = |gates: &[Gate]| -> BTreeSet<String> {
+        let physical = gates.iter().filter(|gate| gate.evidence != Evidence::Regression);
+        physical.map(|gate| group(&gate.metric).to_string()).collect()
+    };
+    let gates_of = |case: &&dyn Case| -> Vec<Gate> {
+        plans(*case).into_iter().flat_map(|planned| planned.gates).collect()
+    };
+    let channels = ["couette", "poiseuille"].map(|name| cases::find(name).expect("a case"));
+    let of_channels = gated(&channels.iter().flat_map(gates_of).collect::<Vec<_>>());
+    for case in cases::CASES {
+        let name = case.name();
+        let is_channel = channels.iter().any(|channel| channel.name() == name);
+        let mut bounded = if is_channel { of_channels.clone() } else { gated(&gates_of(case)) };
+        bounded.extend(bounds_beside(name).into_iter().map(|(group, _, _)| group.to_string()));
+        let planned = case.plan(Tier::Quick).into_iter().find(|p| is_kept(*case, p));
+        let planned = planned.expect("a run that is kept");
+        let record = case.run(planned.variant, &planned.set, &Context::default());
+        let metrics = record.expect("a planned run").metrics;
+        let unbounded: BTreeSet<&str> =
+            metrics.keys().map(|m| group(m)).filter(|group| !bounded.contains(*group)).collect();
+        assert!(unbounded.is_empty(), "{name} snapshots {unbounded:?}, and nothing bounds them");
+        for gate in gates_of(case) {
+            let is_bounded = bounded.contains(group(&gate.metric));
+            assert!(is_bounded, "{} stands on what was computed before alone", gate.id);
+        }
+    }
+}
+
+#[test]
+#[ignore = "first draft, not yet seen to pass on main"]
+fn gates_have_names_of_their_own() {
+    for tier in [Tier::Quick, Tier::Full] {
+        let plans = cases::CASES.iter().flat_map(|case| case.plan(tier));
+        let gates: Vec<Gate> = plans.flat_map(|planned| planned.gates).collect();
+        assert!(gates.len() > 80, "{}", gates.len());
+        check_all(&gates).expect("sound gates with names of their own");
+    }
+}
+
+/// The comparison itself: what it lets pass, and what it does not.
+#[test]
+#[ignore = "first draft, not yet seen to pass on main"]
+fn a_change_is_seen_and_round_off_is_not() {
+    let are = |a: Value, b: Value| Close::are("", &a, &b);
+    assert!(are(json!({"l2": 0.1, "n": 3}), json!({"l2": 0.100_000_05, "n": 3})));
+    assert!(!are(json!({"l2": 0.1}), json!({"l2": 0.100_000_2})));
+    assert!(are(json!({"v": 1e-14}), json!({"v": -3e-11})) && !are(json!(1e-9), json!(2e-9)));
+    assert!(!are(json!({"steps": 100}), json!({"steps": 101})));
+    assert!(!are(json!({"steps": 100}), json!({"steps": 100.0})));
+    assert!(!are(json!({"l2": 0.1}), json!({"l2": null})) && !are(json!({}), json!({"a": 1})));
+    assert!(!are(json!(["u [m/s]"]), json!(["u [V]"])) && !are(json!([1]), json!([1, 1])));
+}

@@ -1,0 +1,130 @@
+//! The same bits on any number of threads, and without them.
+//!
+//! Rows are gathered, each by one thread in its own order; blocks are fixed; maxima are exact. That
+//! is the mechanism under test. 2,500 particles are five blocks, so that pools share them unevenly.
+
+use nalgebra::Vector2;
+use solver::{
+    Compose, Continuity, CubicSpline, Domain, Ghosts, Integrator, InterfaceWall, Leapfrog, Open,
+    Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, Scheme, Shifting,
+    Smoothing, Tait, Viscosity, lattice, walls::Walls,
+};
+use touchstone_tests::{Random, V2, bits, patch};
+
+const N: usize = 50;
+const DX: f64 = 1.0 / N as f64;
+const H: f64 = 1.3 * DX;
+
+type Forces = (Pressure<Tait>, Viscosity);
+type Drift = (Continuity, Shifting);
+type Method<W, I> = Compose<CubicSpline, Forces, Drift, W, I>;
+
+fn scene<W: Walls<()>, I: Integrator<()>>(
+    domain: Domain,
+    particles: Vec<Particle>,
+    walls: W,
+) -> Scene<Method<W, I>> {
+    let pressure = Pressure::new(Tait { background: 0.3, ..Tait::new(1.0, 1.0) });
+    let forces = (pressure, Viscosity { mu: 1e-3, eta2: 1e-4 * H * H });
+    let w = Smoothing::<CubicSpline>::new(H).w(DX * DX);
+    let drift = (Continuity, Shifting::new(0.5, H, w));
+    Scene::new(H, domain, particles, forces, drift, walls)
+}
+
+/// Runs the scene serially, then on 1, 2 and 4 threads.
+fn check<S: Scheme<Extra = ()>>(name: &str, scene: impl Fn() -> Scene<S> + Sync) {
+    let run = |parallel_from: usize| {
+        let mut simulation = Scene { parallel_from, ..scene() }.build().unwrap();
+        let outcome = simulation.advance(30.0 * 0.3 * DX, 0.3 * DX, &mut ());
+        assert_eq!((outcome, simulation.work().steps), (Outcome::Reached, 30));
+        assert!(simulation.work().list_builds > 2, "{name}: rows were rebuilt on the way");
+        (bits(&simulation.particles()), simulation.work())
+    };
+    let serial = run(usize::MAX);
+    for threads in [1, 2, 4] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let parallel = pool.install(|| run(0));
+        assert!(parallel == serial, "{name} differs on {threads} threads");
+    }
+    let start = Scene { parallel_from: usize::MAX, ..scene() }.build().unwrap();
+    assert_ne!(bits(&start.particles()), serial.0, "{name}: something happened");
+}
+
+fn periodic<I: Integrator<()>>() -> Scene<Method<Open, I>> {
+    scene(Domain::torus(1.0, 1.0), patch(N, 0.1, 2), Open)
+}
+
+#[test]
+fn a_periodic_box_has_the_same_bits_on_any_number_of_threads() {
+    check("leapfrog", periodic::<Leapfrog>);
+    check("predictor-corrector", periodic::<PredictorCorrector>);
+}
+
+#[test]
+fn a_channel_of_ghosts_has_the_same_bits_on_any_number_of_threads() {
+    let wall = |y, up, u| {
+        PlaneWall::new(Vector2::new(0.0, y), Vector2::new(0.0, up), Vector2::new(u, 0.0))
+    };
+    check("ghosts", || {
+        let walls = Ghosts { walls: vec![wall(0.0, 1.0, 0.0), wall(1.0, -1.0, 0.2)] };
+        scene::<_, Leapfrog>(Domain::channel(1.0), channel_fluid(), walls)
+    });
+}
+
+/// The patch without motion through the walls.
+fn channel_fluid() -> Vec<Particle> {
+    let along = |p: Particle| Particle { velocity: Vector2::new(p.velocity.x, 0.0), ..p };
+    patch(N, 0.05, 2).into_iter().map(along).collect()
+}
+
+/// Interface particles at y = 0 and 1, and behind them as many wall rows as the kernel reaches: 700
+/// wall particles, in blocks of their own.
+fn walled() -> Vec<Particle> {
+    let row = |y: f64, role: Role, u: f64| {
+        let points = lattice(Vector2::new(0.5 * DX, y), DX, N, 1);
+        points.map(move |p: V2| {
+            Particle::fluid(p, Vector2::new(u, 0.0), 1.0, DX * DX).with_role(role)
+        })
+    };
+    let mut all = channel_fluid();
+    for (y, out, u) in [(0.0, -1.0, 0.0), (1.0, 1.0, 0.2)] {
+        all.extend(row(y, Role::Interface, u));
+        for k in 1..=7 {
+            all.extend(row(y + out * f64::from(k) * DX, Role::Wall, u));
+        }
+    }
+    // Roles mixed: the solver sorts them.
+    Random(4).shuffle(&mut all);
+    all
+}
+
+#[test]
+fn a_channel_of_wall_particles_has_the_same_bits_on_any_number_of_threads() {
+    check("walls, leapfrog", || {
+        scene::<_, Leapfrog>(Domain::channel(1.0), walled(), InterfaceWall)
+    });
+    check("walls, predictor-corrector", || {
+        scene::<_, PredictorCorrector>(Domain::channel(1.0), walled(), InterfaceWall)
+    });
+}
+
+#[test]
+fn walls_stand_still_and_interfaces_keep_their_density() {
+    let start = walled();
+    let scene = scene::<_, Leapfrog>(Domain::channel(1.0), start.clone(), InterfaceWall);
+    let mut simulation = scene.build().unwrap();
+    assert_eq!(simulation.advance(30.0 * 0.3 * DX, 0.3 * DX, &mut ()), Outcome::Reached);
+    let mut walls_changed = 0;
+    for (before, after) in start.iter().zip(simulation.particles()) {
+        assert_eq!((before.role, before.mass), (after.role, after.mass));
+        match before.role {
+            Role::Fluid => assert_ne!(before.position, after.position),
+            Role::Interface => assert_eq!(*before, after),
+            Role::Wall => {
+                assert_eq!((before.position, before.velocity), (after.position, after.velocity));
+                walls_changed += u32::from(before.density != after.density);
+            }
+        }
+    }
+    assert!(walls_changed > 80, "the density of {walls_changed} wall particles followed the fluid");
+}
