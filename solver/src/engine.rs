@@ -1,13 +1,13 @@
 //! The right-hand side of a scene, as integrators see it: look at a state, then sweep.
 
 use nalgebra::Vector2;
-use rayon::prelude::*;
 
 use crate::{
     domain::Domain,
     kernel::Smoothing,
     neighbours::{BLOCK, Neighbours},
     numbers::Numbers,
+    parallel,
     particles::{Column, Common, Evolved, Fixed},
     scene::Scheme,
     simulation::Work,
@@ -80,11 +80,13 @@ pub struct Engine<S: Scheme> {
     pub(crate) parallel: bool,
     pub(crate) work: Work,
     pub(crate) order: Vec<u32>,
+    /// What was found in each block while filling columns.
+    pub(crate) extents: Vec<Extent>,
 }
 
 /// Largest squares found while filling columns.
 #[derive(Clone, Copy)]
-struct Extent {
+pub(crate) struct Extent {
     displacement2: f64,
     speed2: f64,
     sound: bool,
@@ -112,6 +114,7 @@ struct Fill<'a, F, D> {
 }
 
 impl<F, D> Fill<'_, F, D> {
+    /// The columns of a block, from the states that begin with it.
     fn chunk<S: Scheme<Forces = F, Drift = D>>(
         &self,
         columns: &mut [Column<Shows<S>>],
@@ -250,22 +253,15 @@ impl<S: Scheme> Engine<S> {
     /// Derives the columns of the particles, and finds out how far they moved since the rows were
     /// built.
     fn fill(&mut self, state: &State<S>) -> Result<Extent, Fault> {
-        let Self { forces, drift, limits, fixed, columns, neighbours, reach2, .. } = self;
+        let Self { forces, drift, limits, fixed, columns, neighbours, reach2, extents, .. } = self;
         let fill = Fill { forces, drift, limits, reach2: *reach2 };
         let (columns, built_at) = (&mut columns[..state.len()], &*neighbours.built_at);
-        let extent = if self.parallel {
-            let chunks = columns
-                .par_chunks_mut(BLOCK)
-                .zip(state.par_chunks(BLOCK))
-                .zip(fixed.par_chunks(BLOCK))
-                .zip(built_at.par_chunks(BLOCK));
-            let extents = chunks.map(|(((columns, state), fixed), built_at)| {
-                fill.chunk::<S>(columns, state, fixed, built_at)
-            });
-            extents.collect::<Vec<_>>().into_iter().fold(Extent::NIL, Extent::and)
-        } else {
-            fill.chunk::<S>(columns, state, fixed, built_at)
-        };
+        extents.resize(state.len().div_ceil(BLOCK), Extent::NIL);
+        parallel::map_blocks(columns, extents, self.parallel, &|b, columns| {
+            let from = b * BLOCK;
+            fill.chunk::<S>(columns, &state[from..], &fixed[from..], &built_at[from..])
+        });
+        let extent = extents.iter().copied().fold(Extent::NIL, Extent::and);
         if extent.sound { Ok(extent) } else { Err(self.find_fault(state)) }
     }
 

@@ -26,6 +26,7 @@ pub mod kernel;
 pub mod lane;
 mod neighbours;
 pub mod numbers;
+mod parallel;
 pub mod particles;
 pub mod scene;
 pub mod simulation;

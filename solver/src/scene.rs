@@ -170,8 +170,11 @@ impl<S: Scheme> Scene<S> {
     /// Checks the scene and makes it ready to step.
     pub fn build(mut self) -> Result<Simulation<S>, SceneError> {
         self.check()?;
-        let mut particles: Vec<_> = (0..).zip(std::mem::take(&mut self.particles)).collect();
-        particles.sort_by_key(|(id, p)| (p.role, *id));
+        let all = std::mem::take(&mut self.particles);
+        let mut particles = Vec::with_capacity(all.len());
+        for role in [Role::Fluid, Role::Wall, Role::Interface] {
+            particles.extend((0..).zip(all.iter().copied()).filter(|(_, p)| p.role == role));
+        }
         let (mut engine, mut state) = self.engine(&particles);
         engine.sort(&mut state);
         engine.build(&state);
@@ -248,6 +251,7 @@ impl<S: Scheme> Scene<S> {
             reach2: half_period * half_period,
             work: Work::default(),
             order: Vec::new(),
+            extents: Vec::new(),
         };
         (engine, particles.iter().map(evolved).collect())
     }

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::{
-    engine::{Engine, Fault, Shows},
+    engine::{Engine, Extent, Fault, Shows},
     integrator::Integrator,
     kernel::Smoothing,
     particles::{Column, Evolved, Fixed, Particle, Role},
@@ -248,9 +248,12 @@ impl<S: Scheme> Simulation<S> {
 
     /// All particles in the order of the scene.
     pub fn particles(&self) -> Vec<Particle<S::Extra>> {
-        let mut particles: Vec<_> = self.stored().collect();
-        particles.sort_by_key(|(id, _)| *id);
-        particles.into_iter().map(|(_, p)| p).collect()
+        let nothing = Particle::fluid(Vector2::zeros(), Vector2::zeros(), 0.0, 0.0);
+        let mut particles = vec![nothing; self.state.len()];
+        for (id, particle) in self.stored() {
+            particles[id as usize] = particle;
+        }
+        particles
     }
 
     /// Particles and their images as rows see them, after [`Simulation::advance`].
@@ -271,6 +274,7 @@ impl<S: Scheme> Simulation<S> {
             + self.engine.fixed.capacity() * size_of::<Fixed>()
             + self.engine.columns.capacity() * size_of::<Column<Shows<S>>>()
             + self.engine.order.capacity() * size_of::<u32>()
+            + self.engine.extents.capacity() * size_of::<Extent>()
             + self.engine.neighbours.bytes()
             + self.integrator.bytes()
     }

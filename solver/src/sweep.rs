@@ -3,7 +3,6 @@
 //! for any number of threads.
 
 use nalgebra::Vector2;
-use rayon::prelude::*;
 use simba::simd::WideF64x4;
 
 use crate::{
@@ -11,6 +10,7 @@ use crate::{
     lane::{Lane, gather_vector},
     neighbours::{BLOCK, Block, LANES},
     numbers::Numbers,
+    parallel,
     particles::{Column, Common, Evolved, Rate},
     terms::{Pair, Term},
 };
@@ -45,14 +45,9 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         T: Term<X>,
         P: Fn(&S) -> T::Shows + Sync,
     {
-        let run = |(b, (block, targets)): (usize, (&Block, &mut [Evolved<X>]))| {
-            self.block(block, first + b * BLOCK, targets, &update);
-        };
-        if parallel {
-            blocks.par_iter().zip(targets.par_chunks_mut(BLOCK)).enumerate().for_each(run);
-        } else {
-            blocks.iter().zip(targets.chunks_mut(BLOCK)).enumerate().for_each(run);
-        }
+        parallel::for_each_block(targets, parallel, &|b, targets| {
+            self.block(&blocks[b], first + b * BLOCK, targets, &update);
+        });
     }
 
     /// One block of rows. Not inlined: its share of a profile is the share of the row loop.

@@ -48,7 +48,7 @@ fn a_simulation_holds_no_more_than_its_buffers() {
     };
     // State, columns, rows of about 25 neighbours and the sort: see `Simulation::bytes`.
     let [small, large] = [fluid(40), fluid(80)];
-    assert!((300.0..600.0).contains(&large), "{large} bytes a particle");
+    assert!((200.0..350.0).contains(&large), "{large} bytes a particle");
     assert!((large / small - 1.0).abs() < 0.4, "in proportion: {small}, {large}");
 }
 

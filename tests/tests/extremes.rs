@@ -274,5 +274,5 @@ fn each_limit_is_kept_from_the_first_step_on() {
     assert_eq!(start(|p| p.density = 1.1), None);
     assert_eq!(start(|p| p.density = 2.5), Some((0, 40, "density", 2.5)));
     assert_eq!(start(|p| p.density = 0.25), Some((0, 40, "density", 0.25)));
-    assert_eq!(start(|p| p.velocity.y = -4.0), Some((0, 40, "velocity", 4.0)));
+    assert_eq!(start(|p| p.velocity = -4.0 * Vector2::y()), Some((0, 40, "velocity", 4.0)));
 }

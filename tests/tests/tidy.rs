@@ -206,8 +206,13 @@ fn functions_are_short() {
 
 #[test]
 fn the_solver_stays_within_its_budget() {
-    let count = |(_, source): (String, String)| without_tests(&source).len();
+    // Lines of code: the equations and reasons that the public documentation gives are no burden.
+    let count = |(_, source): (String, String)| {
+        let kept = code(&without_tests(&source).join("\n"));
+        kept.lines().filter(|line| !line.trim().is_empty()).count()
+    };
     let lines: usize = sources(&["solver/src"]).into_iter().map(count).sum();
+    println!("the solver has {lines} lines of code");
     assert!(lines <= SOLVER_LINES, "the solver has {lines} lines, allowed are {SOLVER_LINES}");
 }
 

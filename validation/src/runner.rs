@@ -86,7 +86,7 @@ pub fn drive<S: Scheme>(
     times: &[f64],
     context: &Context,
     observer: &mut impl Observer<S>,
-    mut at: impl FnMut(&Simulation<S>, usize),
+    at: &mut dyn FnMut(&Simulation<S>, usize),
 ) -> (Status, Cost) {
     let mut cost = Cost { threads: context.threads.max(1), ..Cost::default() };
     let end = times.last().copied().unwrap_or_default();

@@ -33,4 +33,9 @@ pub const ACOUSTIC_WAVE: WaveCase = WaveCase {
         "the sound speed of the Tait equation rises as (rho/rho0)^3, which no wave at rho0 shows: the \
          exponent is seen by the curvature of p(rho) alone",
     )),
+    disordered: Some((
+        "momentum_error",
+        "forces of pairs are equal and opposite wherever particles are; on a lattice symmetry would hide \
+         a pressure that is not, 0.1 dx of disorder shows it",
+    )),
 };

@@ -24,4 +24,5 @@ pub const SHEAR_WAVE: WaveCase = WaveCase {
         ),
     ],
     compressed: None,
+    disordered: None,
 };

@@ -198,7 +198,7 @@ fn curves(record: &Record) -> Vec<Curve> {
             let (y, u, exact) = (column("y")?, column("u")?, column("u_exact")?);
             let points = y.iter().zip(u).zip(exact).map(|((y, u), exact)| [*y, *u, *exact]);
             let finite = points.filter(|point| point.iter().all(|number| number.is_finite()));
-            Some(Curve { tau, time: tau * width * width / nu, points: finite.collect() })
+            Some(Curve { tau, time: tau * (width * width / nu), points: finite.collect() })
         })
         .collect();
     curves.sort_by(|a, b| a.tau.total_cmp(&b.tau));

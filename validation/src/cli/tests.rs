@@ -73,7 +73,8 @@ impl Case for Staged {
 
     fn studies(&self, _: Tier, runs: &[JudgedRun]) -> Vec<Study> {
         let count = runs.len() as f64;
-        vec![Study::new("count", "How many").prose("Runs are counted.").judge(gate("count"), count)]
+        let id = format!("{}-count", self.name);
+        vec![Study::new(&id, "How many").prose("Runs are counted.").judge(gate("count"), count)]
     }
 }
 

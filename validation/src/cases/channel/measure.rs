@@ -19,13 +19,35 @@ const STATIONS: usize = 41;
 /// than a few spacings.
 const WORST_FROM: f64 = 0.1;
 
+/// What is measured of a simulation: nothing here knows its scheme, so that it is compiled once.
+pub struct Seen {
+    /// All particles in the order of the scene.
+    all: Vec<Particle>,
+    /// The fluid ones.
+    fluid: Vec<Particle>,
+    /// The interpolated velocity along the channel at the stations, if it can be had \[m/s\].
+    field: Option<Vec<f64>>,
+}
+
+impl Seen {
+    /// Looks at a simulation.
+    pub fn of<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Self {
+        let all = simulation.particles();
+        let fluid = all.iter().filter(|p| p.role == Role::Fluid).copied().collect();
+        let columns = simulation.columns();
+        let positions: Vec<_> = columns.iter().map(|c| c.position).collect();
+        let volumes: Vec<_> = columns.iter().map(|c| c.common.volume).collect();
+        let values: Vec<_> = columns.iter().map(|c| c.velocity.x).collect();
+        let field = Field { positions: &positions, volumes: &volumes, values: &values };
+        let field = interpolate(simulation.kernel(), field, &stations(setup)).ok();
+        Self { all, fluid, field }
+    }
+}
+
 /// Compares with the exact flow at νt/L² = `tau` and adds metrics `name@tau` and a profile.
-pub fn compare<S>(setup: &Setup, simulation: &Simulation<S>, tau: f64, record: &mut Record)
-where
-    S: Scheme<Extra = ()>,
-{
+pub fn compare(setup: &Setup, seen: &Seen, tau: f64, record: &mut Record) {
     let t = setup.time(tau);
-    let fluid: Vec<Particle> = fluid(simulation);
+    let fluid = &seen.fluid;
     let u: Vec<f64> = fluid.iter().map(|p| p.velocity.x).collect();
     let exact: Vec<f64> = fluid.iter().map(|p| setup.exact(p.position.y, t)).collect();
     let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
@@ -36,10 +58,10 @@ where
     put("l2", particle_l2, "-", "rms(u - u_exact)/rms(u_exact) over particles");
     let max = Scale::new(setup.v).and_then(|v| linf(&u, &exact, v)).unwrap_or(f64::NAN);
     put("linf", max, "-", "max|u - u_exact|/V over particles");
-    let field = interpolated_l2(setup, simulation, t);
+    let field = interpolated_l2(setup, seen, t);
     put("field_l2", field, "-", "rms(<u> - u_exact)/rms(u_exact), SPH field (1) at 41 stations");
     for (name, error) in [("shear_lower", 0), ("shear_upper", 1)]
-        .map(|(name, wall)| (name, shear_error(setup, &fluid, wall, t)))
+        .map(|(name, wall)| (name, shear_error(setup, fluid, wall, t)))
     {
         put(
             name,
@@ -48,9 +70,9 @@ where
             "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall",
         );
     }
-    let nu = fitted_viscosity(setup, &fluid, t);
+    let nu = fitted_viscosity(setup, fluid, t);
     put("nu_eff", nu, "-", "nu_eff/nu of the exact flow nearest in l2");
-    let profile = row_profile(setup, simulation, t);
+    let profile = row_profile(setup, fluid, t);
     record.profiles.insert(format!("u@{tau}"), profile);
     if tau >= WORST_FROM {
         let so_far = record.metric("l2_worst").unwrap_or(0.0);
@@ -62,11 +84,8 @@ where
 }
 
 /// Measures that need the end of the run only.
-pub fn at_the_end<S>(setup: &Setup, simulation: &Simulation<S>, record: &mut Record)
-where
-    S: Scheme<Extra = ()>,
-{
-    let fluid = fluid(simulation);
+pub fn at_the_end(setup: &Setup, seen: &Seen, record: &mut Record) {
+    let fluid = &seen.fluid;
     let count = fluid.len() as f64;
     let mean = |f: &dyn Fn(&Particle) -> f64| fluid.iter().map(f).sum::<f64>() / count;
     let rms = |f: &dyn Fn(&Particle) -> f64| mean(&|p| f(p) * f(p)).sqrt();
@@ -82,26 +101,23 @@ where
     let volume: f64 = fluid.iter().map(|p| p.mass / p.density).sum();
     let initial: f64 = fluid.iter().map(|p| p.mass / s.rho).sum();
     put("volume_drift", volume / initial - 1.0, "sum(m/rho)/sum(m/rho0) - 1 at the end");
-    let drift = simulation.momentum().y / (initial * s.rho * v);
+    let momentum: f64 = fluid.iter().map(|p| p.mass * p.velocity.y).sum();
+    let drift = momentum / (initial * s.rho * v);
     put("momentum_y", drift, "sum(m v)/(sum(m) V) at the end");
     let outside = fluid.iter().filter(|p| !(0.0..=s.width).contains(&p.position.y)).count();
     put("outside", outside as f64, "particles beyond the plates at the end");
 }
 
-/// Fluid particles in the order of the scene.
-fn fluid<S: Scheme<Extra = ()>>(simulation: &Simulation<S>) -> Vec<Particle> {
-    simulation.particles().into_iter().filter(|p| p.role == Role::Fluid).collect()
-}
-
 /// All of the state, in the order of the scene.
-pub fn state<S: Scheme<Extra = ()>>(simulation: &Simulation<S>) -> Vec<f64> {
-    let numbers = |p: Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
-    simulation.particles().into_iter().flat_map(numbers).collect()
+pub fn state(particles: &[Particle]) -> Vec<f64> {
+    let numbers =
+        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
+    particles.iter().flat_map(numbers).collect()
 }
 
 /// The particles themselves: x, y, u, v, p.
-pub fn particles<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Profile {
-    let all = simulation.particles();
+pub fn particles(setup: &Setup, seen: &Seen) -> Profile {
+    let all = &seen.all;
     let column = |f: &dyn Fn(&Particle) -> f64| all.iter().map(f).collect::<Vec<f64>>();
     Profile::default()
         .with("x", "m", column(&|p| p.position.x))
@@ -112,12 +128,7 @@ pub fn particles<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S
 }
 
 /// Means over the rows of the initial lattice: y, u, the exact u there, v, p.
-fn row_profile<S: Scheme<Extra = ()>>(
-    setup: &Setup,
-    simulation: &Simulation<S>,
-    t: f64,
-) -> Profile {
-    let fluid = fluid(simulation);
+fn row_profile(setup: &Setup, fluid: &[Particle], t: f64) -> Profile {
     let rows = fluid.chunks(setup.columns);
     let mean = |f: &dyn Fn(&Particle) -> f64| -> Vec<f64> {
         rows.clone().map(|row| row.iter().map(f).sum::<f64>() / row.len() as f64).collect()
@@ -130,19 +141,17 @@ fn row_profile<S: Scheme<Extra = ()>>(
         .with("p", "Pa", mean(&|p| setup.eos.pressure(p.density)))
 }
 
-/// Relative L2 error of the SPH interpolation (1) at stations across the middle of the section.
-fn interpolated_l2<S: Scheme>(setup: &Setup, simulation: &Simulation<S>, t: f64) -> f64 {
-    let columns = simulation.columns();
-    let positions: Vec<_> = columns.iter().map(|c| c.position).collect();
-    let volumes: Vec<_> = columns.iter().map(|c| c.common.volume).collect();
-    let values: Vec<_> = columns.iter().map(|c| c.velocity.x).collect();
-    let field = Field { positions: &positions, volumes: &volumes, values: &values };
+/// Stations across the middle of the section.
+fn stations(setup: &Setup) -> Vec<Vector2<f64>> {
     let y = |k: usize| setup.settings.width * (k as f64 + 0.5) / STATIONS as f64;
-    let stations: Vec<_> =
-        (0..STATIONS).map(|k| Vector2::new(0.5 * setup.length(), y(k))).collect();
-    let exact: Vec<f64> = stations.iter().map(|s| setup.exact(s.y, t)).collect();
-    let Ok(u) = interpolate(simulation.kernel(), field, &stations) else { return f64::NAN };
-    Scale::rms(&exact).and_then(|rms| l2(&u, &exact, rms)).unwrap_or(f64::NAN)
+    (0..STATIONS).map(|k| Vector2::new(0.5 * setup.length(), y(k))).collect()
+}
+
+/// Relative L2 error of the SPH interpolation (1) at the stations.
+fn interpolated_l2(setup: &Setup, seen: &Seen, t: f64) -> f64 {
+    let Some(u) = &seen.field else { return f64::NAN };
+    let exact: Vec<f64> = stations(setup).iter().map(|s| setup.exact(s.y, t)).collect();
+    Scale::rms(&exact).and_then(|rms| l2(u, &exact, rms)).unwrap_or(f64::NAN)
 }
 
 /// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within

@@ -5,7 +5,7 @@ use solver::{Integrator, Kernel, Limits, Role, Scene, Scheme};
 
 use super::{
     Arrangement, ChannelSettings, Flow, Ingredient, Setup, Stepping, TIMES,
-    measure::{self, Series},
+    measure::{self, Seen, Series},
 };
 use crate::{
     case::RunError,
@@ -82,44 +82,46 @@ where
     let json = serde_json::to_value(settings).unwrap_or_default();
     let case = if flow == Flow::Couette { "couette" } else { "poiseuille" };
     let mut record = Record::new(case, variant, json, context.threads.max(1));
-    describe::<S>(&setup, &mut record);
+    describe(&setup, [S::Kernel::NAME, S::Integrator::NAME, S::Walls::NAME], &mut record);
 
     let frames = Frames::of(context)?;
     let stops = stops(&setup, context);
     let times: Vec<f64> = stops.iter().map(|s| s.time).collect();
     let mut series = Series::new(&setup, simulation.fluid_count());
     let mut failed_frame = None;
-    let (status, cost) =
-        runner::drive(&mut simulation, setup.dt, &times, context, &mut series, |simulation, k| {
+    let (status, cost) = runner::drive(
+        &mut simulation,
+        setup.dt,
+        &times,
+        context,
+        &mut series,
+        &mut |simulation, k| {
             if let Some(tau) = stops[k].compare {
-                measure::compare(&setup, simulation, tau, &mut record);
+                measure::compare(&setup, &Seen::of(&setup, simulation), tau, &mut record);
             }
             if let (true, Some(frames)) = (stops[k].frame, &frames) {
                 failed_frame = failed_frame.take().or(frames.write(simulation, &setup.eos).err());
             }
-        });
+        },
+    );
     if let Some(error) = failed_frame {
         return Err(error.into());
     }
     if status == record::Status::Completed {
-        measure::at_the_end(&setup, &simulation, &mut record);
+        let seen = Seen::of(&setup, &simulation);
+        measure::at_the_end(&setup, &seen, &mut record);
         if context.keep_particles {
-            record.profiles.insert("particles".into(), measure::particles(&setup, &simulation));
+            record.profiles.insert("particles".into(), measure::particles(&setup, &seen));
         }
     }
     record.profiles.insert("series".into(), series.into_profile());
-    record.state = Some(record::digest(&measure::state(&simulation)));
+    record.state = Some(record::digest(&measure::state(&simulation.particles())));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }
 
 /// What the run chose.
-fn describe<S>(setup: &Setup, record: &mut Record)
-where
-    S: Scheme<Extra = ()>,
-    S::Walls: Arrangement,
-    S::Integrator: Stepping,
-{
+fn describe(setup: &Setup, [kernel, integrator, walls]: [&str; 3], record: &mut Record) {
     let numbers = [
         ("h/dx", setup.settings.h_over_dx),
         ("dx [m]", setup.dx),
@@ -130,11 +132,7 @@ where
         ("dt [s]", setup.dt),
         ("dt/limit", setup.dt / setup.dt_limit),
     ];
-    let words = [
-        ("kernel", S::Kernel::NAME),
-        ("integrator", S::Integrator::NAME),
-        ("walls", S::Walls::NAME),
-    ];
+    let words = [("kernel", kernel), ("integrator", integrator), ("walls", walls)];
     let numerics = &mut record.numerics;
     numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
     numerics.extend(words.map(|(name, word)| (name.to_string(), word.into())));

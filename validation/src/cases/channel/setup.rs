@@ -128,7 +128,7 @@ impl Setup {
 
     /// t \[s\] of νt/L² = `tau`.
     pub fn time(&self, tau: f64) -> f64 {
-        tau * self.settings.width * self.settings.width / self.settings.nu
+        tau * (self.settings.width * self.settings.width / self.settings.nu)
     }
 
     /// Length of the channel section \[m\].

@@ -16,12 +16,22 @@ use crate::{exact::damped_mode::DampedMode, theory::time_step::Integrator};
 
 /// The matrix of one step of (p, v).
 pub fn step(mode: &DampedMode, integrator: Integrator, dt: f64) -> Matrix2<f64> {
-    let (w, g) = (mode.omega * dt, mode.gamma * dt);
-    let z = Matrix2::new(0.0, -w, w, -g);
+    step_with_diffusion(mode, 0.0, integrator, dt)
+}
+
+/// The same where density decays by itself too, p' = -ω v - γ_ρ p, γ_ρ = `diffusion` \[1/s\].
+pub fn step_with_diffusion(
+    mode: &DampedMode,
+    diffusion: f64,
+    integrator: Integrator,
+    dt: f64,
+) -> Matrix2<f64> {
+    let (w, g, d) = (mode.omega * dt, mode.gamma * dt, diffusion * dt);
+    let z = Matrix2::new(-d, -w, w, -g);
     match integrator {
         Integrator::Leapfrog => {
             let kick = Matrix2::new(1.0, 0.0, w, 1.0 - g);
-            let drift = Matrix2::new(1.0, -w, 0.0, 1.0);
+            let drift = Matrix2::new(1.0 - d, -w, 0.0, 1.0);
             drift * kick
         }
         Integrator::PredictorCorrector => Matrix2::identity() + z + z * z * 0.5,

@@ -2,16 +2,17 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle, Pressure, Scene, Simulation,
-    Tait, Viscosity,
+    Continuity, DensityDiffusion, Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle,
+    Pressure, Scene, Simulation, Tait, Term, Viscosity,
 };
 
-use super::{Polarisation, Scheme, WaveCase, WaveSettings, fit};
+use super::{Polarisation, Scheme, SchemeWith, WaveCase, WaveSettings, fit};
 use crate::{
     case::RunError,
     cases::channel::Stepping,
     exact::damped_mode::DampedMode,
     number,
+    random::Random,
     record::{self, Cost, Metric, Profile, Record, Status},
     runner::{self, Context, Frames},
     theory::{
@@ -41,11 +42,16 @@ pub struct Wave {
     pub sound: DampedMode,
     /// Damping that theory gives to shear \[1/s\].
     pub shear: f64,
+    /// Decay that theory gives to density by itself \[1/s\].
+    diffusion: f64,
     /// Time step \[s\].
     pub dt: f64,
     /// End of the run \[s\].
     end: f64,
 }
+
+/// What density follows where it diffuses.
+pub type Diffusive = (Continuity, DensityDiffusion);
 
 /// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
 struct Projection<'a> {
@@ -53,12 +59,16 @@ struct Projection<'a> {
     /// cos and sin of the phase of each label, over the sum of their squares.
     basis: Vec<[f64; 2]>,
     series: Vec<[f64; 3]>,
+    /// Σ m v after the first step and the last \[kg m/s\].
+    momentum: Option<[Vector2<f64>; 2]>,
 }
 
 /// What was measured.
 pub struct Measured {
     /// Amplitudes after each step.
     pub series: Vec<[f64; 3]>,
+    /// Change of Σ m v after the first step \[kg m/s\].
+    momentum_change: f64,
     /// How the run ended.
     pub status: Status,
     /// What it took.
@@ -85,7 +95,7 @@ impl Wave {
         let lattice = SquareLattice::<K>::new(s.h_over_dx, s.eta2_over_h2);
         let density = s.rho * (1.0 + s.compression);
         let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
-        let medium = Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: 0.0 };
+        let medium = Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
         let mode = Mode::new(&lattice, theta, &medium);
         let sound = DampedMode { omega: mode.omega, gamma: mode.longitudinal };
         let viscous = if s.nu > 0.0 { s.viscous * h * h / s.nu } else { f64::INFINITY };
@@ -113,6 +123,7 @@ impl Wave {
             eos: without_pressure_at(density, Tait::new(s.rho, s.c0)),
             sound,
             shear: mode.transverse,
+            diffusion: mode.density,
             dt,
             end: s.span * time,
         })
@@ -130,6 +141,19 @@ impl Wave {
 
     /// The scene: a cosine of velocity at uniform density.
     pub fn scene<K: Kernel, I: Stepping>(&self) -> Scene<Scheme<K, I>> {
+        self.scene_with(Continuity)
+    }
+
+    /// The same with density diffusion.
+    pub fn diffusive_scene<K: Kernel, I: Stepping>(&self) -> Scene<SchemeWith<K, Diffusive, I>> {
+        let diffusivity = self.settings.diffusion * self.h * self.sound_speed;
+        self.scene_with((Continuity, DensityDiffusion { diffusivity }))
+    }
+
+    fn scene_with<K: Kernel, D: Term<()>, I: Stepping>(
+        &self,
+        drift: D,
+    ) -> Scene<SchemeWith<K, D, I>> {
         let s = &self.settings;
         let dx = s.length / s.n as f64;
         let direction = match self.polarisation {
@@ -137,21 +161,24 @@ impl Wave {
             Polarisation::Shear => self.across(),
         };
         let places = solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n);
+        let mut random = Random::new(1);
+        let mut offset = || Vector2::new(random.normal(), random.normal()) * (s.jitter * dx);
         let particles = places.zip(self.phases()).map(|(place, phase)| {
             let velocity = direction * (s.amplitude * self.sound_speed * phase.cos());
+            let place = if s.jitter > 0.0 { place + offset() } else { place };
             Particle::fluid(place, velocity, self.density, dx * dx)
         });
         let viscosity =
             Viscosity { mu: self.density * s.nu, eta2: s.eta2_over_h2 * self.h * self.h };
         let forces = (Pressure::new(self.eos), viscosity);
         let domain = Domain::torus(s.length, s.length);
-        Scene::new(self.h, domain, particles.collect(), forces, solver::Continuity, Open)
+        Scene::new(self.h, domain, particles.collect(), forces, drift, Open)
     }
 
     /// What theory gives for the amplitudes after each of `steps` steps, exactly.
     fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<[f64; 3]> {
         let (a, dt) = (self.settings.amplitude, self.dt);
-        let m = fit::step(&self.sound, integrator, dt);
+        let m = fit::step_with_diffusion(&self.sound, self.diffusion, integrator, dt);
         let factor = fit::shear_step(self.shear, integrator, dt);
         let (mut y, mut shear) = match self.polarisation {
             Polarisation::Sound => (Vector2::new(0.0, a), 0.0),
@@ -176,7 +203,7 @@ impl<'a> Projection<'a> {
         let mut basis: Vec<[f64; 2]> = wave.phases().map(|a| [a.cos(), a.sin()]).collect();
         let squares = [0, 1].map(|k| basis.iter().map(|b| b[k] * b[k]).sum::<f64>());
         basis.iter_mut().for_each(|b| *b = [b[0] / squares[0], b[1] / squares[1]]);
-        Self { wave, basis, series: Vec::new() }
+        Self { wave, basis, series: Vec::new(), momentum: None }
     }
 }
 
@@ -191,6 +218,8 @@ impl<S: solver::Scheme<Extra = ()>> Observer<S> for Projection<'_> {
             sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
         }
         self.series.push(sums);
+        let momentum = simulation.momentum();
+        self.momentum = Some([self.momentum.map_or(momentum, |[first, _]| first), momentum]);
         Flow::Continue
     }
 }
@@ -235,13 +264,18 @@ pub fn measure_scene<S: solver::Scheme<Extra = ()>>(
         &[wave.end],
         context,
         &mut projection,
-        |simulation, _| {
+        &mut |simulation, _| {
             failed = frames.as_ref().and_then(|f| f.write(simulation, &wave.eos).err());
         },
     );
     match failed {
         Some(error) => Err(error.into()),
-        None => Ok(Measured { series: projection.series, status, cost }),
+        None => Ok(Measured {
+            momentum_change: projection.momentum.map_or(f64::NAN, |[a, b]| (b - a).norm()),
+            series: projection.series,
+            status,
+            cost,
+        }),
     }
 }
 
@@ -253,6 +287,16 @@ pub(super) fn run<K: Kernel, I: Stepping>(
     context: &Context,
 ) -> Result<Record, RunError> {
     run_scene(case, variant, settings, context, Wave::scene::<K, I>)
+}
+
+/// The same with density diffusion.
+pub(super) fn run_diffusive<K: Kernel, I: Stepping>(
+    case: &WaveCase,
+    variant: &str,
+    settings: &WaveSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    run_scene(case, variant, settings, context, Wave::diffusive_scene::<K, I>)
 }
 
 /// Runs the scene that `scene` makes of a wave and compares it with the theory of the wave: the same
@@ -274,6 +318,12 @@ where
     let mut record = Record::new(case.name, variant, json, context.threads.max(1));
     describe::<S::Kernel, S::Integrator>(&wave, &mut record);
     compare(&wave, S::Integrator::THEORY, &measured.series, &mut record);
+    let s = settings;
+    let mass = wave.density * s.length * s.length;
+    let scale = mass * s.amplitude * wave.sound_speed;
+    let formula = "|change of sum m v after the first step|/(sum m times the velocity amplitude)";
+    let change = Metric::new(measured.momentum_change / scale, "-", formula);
+    record.metrics.insert("momentum_error".into(), change);
     let column = |k: usize| measured.series.iter().map(|a| a[k]).collect();
     let times = (1..=measured.series.len()).map(|k| k as f64 * wave.dt).collect();
     let profile = Profile::default()
