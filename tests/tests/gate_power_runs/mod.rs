@@ -21,7 +21,6 @@ use validation::{
     metrics::norms::{Scale, l2},
     record::Record,
     runner::Context,
-    settings,
     studies::stability::{self, NoisyBox, Point},
 };
 
@@ -160,7 +159,10 @@ impl Job {
             _ => ("", None),
         };
         if variant != "modern" {
-            (seen.diffusion, seen.shifting) = (N.diffusion, N.shifting);
+            seen.shifting = N.shifting;
+        }
+        if variant != "modern" && !self.diffuses() {
+            seen.diffusion = N.diffusion;
         }
         if flow != Some(Flow::Poiseuille) {
             seen.force = N.force;
@@ -178,6 +180,11 @@ impl Job {
             seen.curvature = N.curvature;
         }
         seen
+    }
+
+    /// Whether density diffusion is in a wave.
+    fn diffuses(&self) -> bool {
+        matches!(self, Job::Wave(_, planned) if planned.variant.ends_with("diffusion"))
     }
 
     pub fn run(&self, fault: &Fault) -> Measured {
@@ -278,8 +285,10 @@ where
 }
 
 fn wave_run(case: &WaveCase, planned: &Planned, fault: &Fault) -> Record {
-    let mut settings = WaveSettings::default();
-    settings::apply(&mut settings, &planned.set).expect("planned settings");
+    let settings = wave::settings(planned.variant, &planned.set).expect("planned settings");
+    if planned.variant == "cubic-leapfrog-diffusion" {
+        return diffusive_wave(case, planned.variant, &settings, fault);
+    }
     let run = match planned.variant {
         "cubic-leapfrog" => one_wave::<CubicSpline, Leapfrog>,
         "cubic-pc" => one_wave::<CubicSpline, PredictorCorrector>,
@@ -304,6 +313,25 @@ fn one_wave<K: Kernel, I: Mistaken>(
         wave::run_scene(case, variant, settings, &context, scene)
     } else {
         let scene = |wave: &Wave| spoil::<_, _, _, _, _, I>(wave.scene::<K, I>(), fault);
+        wave::run_scene(case, variant, settings, &context, scene)
+    };
+    record.expect("a planned run")
+}
+
+fn diffusive_wave(
+    case: &WaveCase,
+    variant: &str,
+    settings: &WaveSettings,
+    fault: &Fault,
+) -> Record {
+    type Old = <Leapfrog as Mistaken>::As;
+    let context = Context::default();
+    let healthy = Wave::diffusive_scene::<CubicSpline, Leapfrog>;
+    let record = if fault.integrator {
+        let scene = |wave: &Wave| spoil::<_, _, _, _, _, Old>(healthy(wave), fault);
+        wave::run_scene(case, variant, settings, &context, scene)
+    } else {
+        let scene = |wave: &Wave| spoil::<_, _, _, _, _, Leapfrog>(healthy(wave), fault);
         wave::run_scene(case, variant, settings, &context, scene)
     };
     record.expect("a planned run")
