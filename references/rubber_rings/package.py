@@ -1,0 +1,137 @@
+"""Writes the tables and lists them in datapackage.json, whose texts stay; checks both as the loader does."""
+
+import csv
+import hashlib
+import io
+import json
+from importlib.metadata import version
+
+ENERGY, FORCE, IMPULSE, TIME = "rho c0^2 L^2", "rho c0^2 L", "rho c0 L^2", "L/c0"
+
+RUN = [
+    ("speed", "number", "c0", "initial speed V of the ring towards the plane"),
+    ("law", "string", "-", "constitutive law: hencky, neo_hookean, saint_venant or jaumann"),
+]
+
+CURVES = [
+    ("x_c", "L", "distance of the centre of mass from the plane"),
+    ("v_c", "c0", "velocity of the centre of mass, away from the plane"),
+    ("width", "L", "outer extent across the plane: greatest less least x of the ring"),
+    ("height", "L", "outer extent along the plane: twice the greatest y of the ring"),
+    ("gap", "L", "least distance of the ring from the plane; negative: penetration"),
+    ("pole_gap", "L", "distance from the plane of the outer point at y = 0 that faces it"),
+    ("hole", "L", "distance of the two inner points at y = 0; the faces of the hole meet at 0"),
+    ("force", FORCE, "contact force on the whole ring, mean over about one time unit"),
+    ("impulse", IMPULSE, "impulse of the contact on the whole ring since t = 0; its uncertainty is that of "
+                         "v_c times the mass 7 pi"),
+    ("kinetic", ENERGY, "kinetic energy of the whole ring"),
+    ("strain", ENERGY, "strain energy of the whole ring"),
+]
+
+TOUCHES = [
+    ("first_touch", TIME, "first touch of the phase"),
+    ("impulse_1", TIME, "time when 1 % of the impulse of the phase has passed"),
+    ("impulse_50", TIME, "time when 50 % of the impulse of the phase has passed"),
+    ("impulse_99", TIME, "time when 99 % of the impulse of the phase has passed"),
+    ("last_touch", TIME, "last touch of the phase"),
+    ("impulse", IMPULSE, "impulse of the phase on the whole ring"),
+    ("greatest_force", FORCE, "greatest force as in column force of series.csv"),
+]
+
+QUANTITY = [
+    ("quantity", "string", "-", "t_ before a name: the time of that extreme; the README lists the names"),
+    ("unit", "string", "-", "unit of the row"),
+]
+
+
+def with_doubt(columns, without=()):
+    for name, unit, description in columns:
+        yield name, "number", unit, description
+        if name not in without:
+            yield f"{name}_uncertainty", "number", unit, f"uncertainty of {name}, see uncertainty"
+
+
+TABLES = {
+    "series": RUN + [("t", "number", TIME, "time")] + list(with_doubt(CURVES, ["impulse"])),
+    "summary": RUN + QUANTITY + [
+        ("value", "number", "see column unit", "on the finest mesh"),
+        ("uncertainty", "number", "see column unit", "of value"),
+        ("extrapolated", "number", "see column unit", "Richardson's, empty where the meshes show no order"),
+        ("order", "number", "-", "observed order of the three meshes"),
+        ("coarse", "number", "see column unit", "on the coarse mesh"),
+        ("middle", "number", "see column unit", "on the middle mesh"),
+        ("fine", "number", "see column unit", "on the finest mesh"),
+        ("shared", "number", "see column unit", "hencky, 16 elements across the thickness"),
+        ("half_step", "number", "see column unit", "the same with half the time step"),
+        ("rigid_contact", "number", "see column unit", "the same with rigid contact instead of the penalty"),
+        ("range_of_starts", "number", "see column unit", "greatest less least of six runs whose starts "
+         "differ by 1e-12 L, hencky, 8 elements"),
+    ],
+    "phases": RUN + [("phase", "integer", "-", "number of the contact phase")] + list(with_doubt(TOUCHES)),
+    "laws": RUN + [("mesh", "integer", "-", "elements across the thickness")] + QUANTITY + [
+        ("value", "number", "see column unit", "on that mesh, empty for a _greatest_difference"),
+        ("less_hencky", "number", "see column unit", "less that of hencky on the same mesh; for a "
+         "_greatest_difference the greatest over time of the magnitude"),
+    ],
+    "checks": [
+        ("check", "string", "-", "what is checked"),
+        ("speed", "number", "c0", "initial speed, empty for a check without collision"),
+        ("law", "string", "-", "constitutive law, empty if the check names it or needs none"),
+        ("mesh", "integer", "-", "elements across the thickness"),
+        ("value", "number", "see column check", "as computed, in units of the ring"),
+        ("expected", "number", "see column check", "exact, empty for a mere statement"),
+    ],
+}
+
+
+def write(folder, tables):
+    resources = []
+    for name, rows in tables.items():
+        fields = [dict(name=field, type=kind, unit=unit, description=text)
+                  for field, kind, unit, text in TABLES[name]]
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow([field["name"] for field in fields])
+        writer.writerows(rows)
+        path = f"{name}.csv"
+        (folder / path).write_text(out.getvalue(), newline="\n")
+        schema = {"fields": fields, "missingValues": [""]}
+        resources.append({"name": name, "path": path, "hash": "", "schema": schema})
+    description = folder / "datapackage.json"
+    package = json.loads(description.read_text())
+    for used in ("scikit-fem", "numpy", "scipy"):
+        assert f"{used} {version(used)}" in package["method"], f"the method names another version of {used}"
+    package["resources"] = resources
+    for resource in resources:
+        digest = hashlib.sha256((folder / resource["path"]).read_bytes()).hexdigest()
+        resource["hash"] = f"sha256:{digest}"
+    description.write_text(json.dumps(package, indent=2, ensure_ascii=False) + "\n")
+    check(folder)
+
+
+def check(folder):
+    """The rules of validation/src/reference.rs."""
+    package = json.loads((folder / "datapackage.json").read_text())
+    assert package["name"] == folder.resolve().name
+    allowed = {"profile", "name", "title", "description", "licenses", "sources", "resources", "method",
+               "uncertainty", "caveats", "errata"}
+    assert set(package) <= allowed, set(package) - allowed
+    assert all(package[key].strip() for key in ("title", "description", "method", "uncertainty"))
+    assert package["licenses"] and all(one["name"] for one in package["licenses"])
+    assert package["sources"] and all(one["title"] and (one.get("doi") or one.get("place"))
+                                      for one in package["sources"])
+    for resource in package["resources"]:
+        content = (folder / resource["path"]).read_bytes()
+        assert resource["hash"] == "sha256:" + hashlib.sha256(content).hexdigest()
+        fields = resource["schema"]["fields"]
+        assert all(field["unit"].strip() and field["description"].strip() for field in fields)
+        header, *rows = csv.reader(io.StringIO(content.decode()))
+        assert header == [field["name"] for field in fields] and rows, resource["path"]
+        for row in rows:
+            assert len(row) == len(fields), row
+            for field, cell in zip(fields, row, strict=True):
+                if field["type"] == "number" and cell:
+                    assert abs(float(cell)) < float("inf"), (resource["path"], row)
+                if field["type"] == "integer" and cell:
+                    int(cell)
+        print(f"{resource['path']}: {len(rows)} rows, {len(content)} bytes")
