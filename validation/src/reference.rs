@@ -43,6 +43,7 @@ macro_rules! embedded {
 const EMBEDDED: &[Embedded] = embedded! {
     "peers_channel": ["errors.csv"],
     "published_sph_errors": ["errors.csv"],
+    "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "checks.csv"],
 };
 
 /// Why a reference was refused.

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, EquationOfState, Flow as Going, Ghosts, Observer,
-    Outcome, PredictorCorrector, Pressure, Scheme, Simulation, Tait, Viscosity,
+    PredictorCorrector, Pressure, Scheme, Simulation, Tait, Viscosity,
 };
 
 use super::{ChannelSettings, Flow, Setup, scene};
@@ -218,7 +218,7 @@ const CURES: [(&str, &str); 10] = [
 
 fn cures(case: &'static dyn Case, tier: Tier) -> Study {
     let (list, end): (&[f64], f64) = match tier {
-        Tier::Quick => (&[20.0, 50.0, 100.0], 1.0),
+        Tier::Quick => (&[20.0, 50.0], 1.0),
         Tier::Full => (&[5.0, 20.0, 50.0, 100.0, 200.0, 500.0], 1.5),
     };
     let context = Context { allow_unstable: true, ..Context::default() };
@@ -309,67 +309,82 @@ impl<S: Scheme<Extra = ()>> Observer<S> for Mode {
 }
 
 /// What the lowest pressure mode of one run does.
+#[derive(Clone)]
 struct Ringing {
-    re: f64,
-    sound: f64,
-    /// (t c0/L from the start of the window, amplitude \[ρV²\]).
+    /// (t c0/L from the end of the run, amplitude \[ρV²\]).
     series: Vec<(f64, f64)>,
     /// Dominant period \[2L/c0\] and its amplitude \[ρV²\].
     period: f64,
     amplitude: f64,
 }
 
-/// Length of the window \[L/c0\].
+/// Length of the window, the last part of a run \[L/c0\].
 const WINDOW: f64 = 60.0;
 
-/// Runs the seed's Poiseuille flow to νt/L² = `tau`, then watches it for [`WINDOW`].
-fn ringing(re: f64, sound: f64, tau: f64) -> Option<Ringing> {
+/// Disorder of the start \[dx\]. The instability grows from it, or from round-off if there is none,
+/// so that a single run says little.
+const STARTS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+/// Watches the end of the seed's Poiseuille flow from a disordered start: divergence or νt/L² = 1.5.
+/// `None` for a run that is over before the window is full.
+fn ringing(re: f64, sound: f64, jitter: f64) -> Option<Ringing> {
     let defaults = ChannelSettings::default();
     let v = re * defaults.nu / defaults.width;
-    let settings = ChannelSettings { re, c0: Some(sound * v), ..defaults };
+    let settings = ChannelSettings { re, c0: Some(sound * v), jitter, ..defaults };
     let setup =
         Setup::new::<CubicSpline, PredictorCorrector>(Flow::Poiseuille, &settings, true).ok()?;
     let mut simulation = scene::<Seed>(&setup).build().ok()?;
-    let (start, crossing) = (setup.time(tau), setup.settings.width / setup.eos.sound_speed);
+    let crossing = setup.settings.width / setup.eos.sound_speed;
     let scale = setup.settings.rho * setup.v * setup.v;
     let mut mode = Mode { eos: setup.eos, width: setup.settings.width, scale, series: Vec::new() };
-    let before = simulation.advance(start, setup.dt, &mut ());
-    let window = simulation.advance(start + WINDOW * crossing, setup.dt, &mut mode);
-    if before != Outcome::Reached || window != Outcome::Reached {
+    let _diverged_or_not = simulation.advance(setup.time(1.5), setup.dt, &mut mode);
+    let since_end = |t: f64| (t - simulation.time()) / crossing;
+    let all = mode.series.iter().map(|(t, p)| (since_end(*t), *p));
+    let series: Vec<(f64, f64)> = all.filter(|(t, _)| *t >= -WINDOW).collect();
+    if since_end(0.0) > -WINDOW {
         return None;
     }
-    let series: Vec<(f64, f64)> =
-        mode.series.iter().map(|(t, p)| ((t - start) / crossing, *p)).collect();
     let (period, amplitude) = dominant_period(&series);
-    Some(Ringing { re, sound, series, period: 0.5 * period, amplitude })
+    Some(Ringing { series, period: 0.5 * period, amplitude })
+}
+
+/// The runs of one Re and c0/V from all starts, by period.
+fn ringings(re: f64, sound: f64) -> Vec<Ringing> {
+    let runs = STARTS.par_iter().map(|&jitter| ringing(re, sound, jitter));
+    let mut found: Vec<Ringing> = runs.collect::<Vec<_>>().into_iter().flatten().collect();
+    found.sort_by(|a, b| a.period.total_cmp(&b.period));
+    found
 }
 
 /// H3: the lowest pressure mode between the walls rings with the period 2L/c0 of a wave that
 /// bounces between them, whatever c0.
 fn waves() -> Study {
-    // (Re, c0/V, start of the window): about half-way to the divergence that the map shows, when
-    // rows have lost their order and the wave is still small.
-    let runs = [(5.0, 10.0, 0.4), (20.0, 10.0, 0.4), (20.0, 20.0, 0.55), (50.0, 10.0, 0.25)];
-    let found: Vec<Option<Ringing>> =
-        runs.par_iter().map(|&(re, sound, tau)| ringing(re, sound, tau)).collect();
-    let found: Vec<Ringing> = found.into_iter().flatten().collect();
+    // (Re, c0/V)
+    let runs = [(5.0, 10.0), (20.0, 10.0), (20.0, 20.0), (50.0, 10.0)];
+    let found = runs.map(|(re, sound)| (re, sound, ringings(re, sound)));
     let columns = vec![
         Column::num("Re", "-"),
         Column::num("c0/V", "-"),
+        Column::num("runs", "1"),
         Column::num("amplitude", "ρV²"),
         Column::num("dominant period", "2L/c0"),
+        Column::text("all periods"),
     ];
-    let caption = "The lowest pressure mode cos(πy/L) of the seed's Poiseuille flow over 60 L/c0 \
-                   from νt/L² = 0.4 on (c0/V = 20: 0.55, Re 50: 0.25). In the flow it is exactly \
-                   0, and by symmetry it stays round-off until disorder sets in. A wave that \
-                   bounces between the walls has the period 2L/c0.";
+    let caption = "The lowest pressure mode cos(πy/L) of the seed's Poiseuille flow over the last 60 L/c0 \
+                   of a run, which ends by divergence or at νt/L² = 1.5: medians of runs whose initial \
+                   places are disordered by 1e-6 to 1e-2 dx, without those that are over too soon. In the \
+                   flow the mode is exactly 0. A wave that bounces between the walls has the period 2L/c0.";
     let mut table = Table::new(caption, columns);
-    for r in &found {
+    for (re, sound, rings) in &found {
+        let Some(median) = rings.get(rings.len() / 2) else { continue };
+        let periods: Vec<String> = rings.iter().map(|r| sig(r.period, 3)).collect();
         table = table.row(vec![
-            Cell::num(r.re, 3),
-            Cell::num(r.sound, 3),
-            Cell::sci(r.amplitude, 2),
-            Cell::num(r.period, 3),
+            Cell::num(*re, 3),
+            Cell::num(*sound, 3),
+            Cell::count(rings.len() as u64),
+            Cell::sci(median.amplitude, 2),
+            Cell::num(median.period, 3),
+            Cell::text(periods.join(", ")),
         ]);
     }
     let because = "H3: waves bounce between the ghost walls, so the lowest mode has the period \
@@ -378,26 +393,30 @@ fn waves() -> Study {
         let id = format!("poiseuille.h3.period.c{sound}");
         Gate::new(id, "period", Bound::Within(0.8, 1.25), Evidence::Theory, because)
     };
-    let rings = |r: &&Ringing| r.re == 20.0 && gate(r.sound).bound.contains(r.period);
-    let verdict = if found.iter().filter(rings).count() == 2 {
+    let medians: Vec<(f64, &Ringing)> = found
+        .iter()
+        .filter(|(re, ..)| *re == 20.0)
+        .filter_map(|(_, sound, rings)| Some((*sound, rings.get(rings.len() / 2)?)))
+        .collect();
+    let rings = |(sound, r): &&(f64, &Ringing)| gate(*sound).bound.contains(r.period);
+    let verdict = if medians.iter().filter(rings).count() == 2 {
         "**H3 supported**, with a correction: up to Re 5 there is no wave, only round-off and \
          the slow pressure of rows sliding past each other. From Re 20 on, once the rows lose \
          their order, the lowest mode rings with the period of a wave that bounces between the \
          walls, at half the period for twice the sound speed, and grows until the run ends (H4)."
     } else {
-        "**H3 open**: the lowest mode does not ring with the period of a bouncing wave in both runs at Re 20."
+        "**H3 open**: the lowest mode does not ring with the period of a bouncing wave at both sound speeds of Re 20."
     };
     let mut study =
         Study::new("poiseuille-h3", "H3: pressure waves between the walls").prose(verdict);
-    let caption = "Lowest pressure mode of the seed's Poiseuille flow at Re 20 against time in \
-                   crossings of the channel by sound, for two sound speeds: equal periods on \
-                   this axis are periods in proportion to 1/c0.";
+    let caption = "Lowest pressure mode of the seed's Poiseuille flow at Re 20 against time before the \
+                   end of the run in crossings of the channel by sound, for two sound speeds, each the run \
+                   of the median period: equal periods on this axis are periods in proportion to 1/c0.";
     let mut plot =
-        Plot::new("", Axis::linear("(t − t₀) c0/L [-]"), Axis::linear("pressure mode [ρV²]"));
-    for r in found.iter().filter(|r| r.re == 20.0) {
-        let name = format!("c0/V = {}", r.sound);
-        plot = plot.layer(Series::line(name, r.series.clone()));
-        study = study.judge(gate(r.sound), r.period);
+        Plot::new("", Axis::linear("(t − t_end) c0/L [-]"), Axis::linear("pressure mode [ρV²]"));
+    for (sound, ring) in &medians {
+        plot = plot.layer(Series::line(format!("c0/V = {sound}"), ring.series.clone()));
+        study = study.judge(gate(*sound), ring.period);
     }
     let plot = plot.layer(Layer::horizontal(0.0, "")).legend(Legend::Auto);
     let figure = Figure::new("poiseuille-waves", caption).panel(plot).panel_size(620.0, 260.0);
