@@ -405,7 +405,8 @@ fn waves() -> Study {
          their order, the lowest mode rings with the period of a wave that bounces between the \
          walls, at half the period for twice the sound speed, and grows until the run ends (H4)."
     } else {
-        "**H3 open**: the lowest mode does not ring with the period of a bouncing wave at both sound speeds of Re 20."
+        "**H3 open**: the lowest mode does not ring with the period of a bouncing wave at both sound \
+         speeds of Re 20."
     };
     let mut study =
         Study::new("poiseuille-h3", "H3: pressure waves between the walls").prose(verdict);
