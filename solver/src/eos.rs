@@ -1,4 +1,4 @@
-//! Equations of state: Tait (7), (8) with its background pressure.
+//! Equations of state: Tait (7), (8) with its background pressure, and the solid's linear one (12).
 
 use crate::lane::Lane;
 
@@ -45,6 +45,27 @@ impl EquationOfState for Tait {
     }
 }
 
+/// (12) p = ⁰c² (ρ − ⁰ρ), so that (13) K = ⁰ρ ⁰c² is the bulk modulus of the solid.
+#[derive(Clone, Copy, Debug)]
+pub struct Linear {
+    /// Initial (reference) density ⁰ρ \[kg/m³\].
+    pub density: f64,
+    /// Bulk sound speed ⁰c \[m/s\].
+    pub sound_speed: f64,
+}
+
+impl EquationOfState for Linear {
+    #[inline(always)]
+    fn pressure(&self, density: f64) -> f64 {
+        self.sound_speed * self.sound_speed * (density - self.density)
+    }
+
+    #[inline(always)]
+    fn sound_speed<V: Lane>(&self, _: V) -> V {
+        V::all(self.sound_speed)
+    }
+}
+
 /// xⁿ by squaring, n ≥ 0. Not `powi`: its order of multiplication, and so its bits, change with what
 /// the compiler knows about n where it is inlined.
 #[inline(always)]
@@ -64,6 +85,14 @@ fn power<V: Lane>(x: V, n: i32) -> V {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+
+    #[test]
+    fn the_solid_has_one_sound_speed() {
+        let rubber = Linear { density: 1010.0, sound_speed: 852.0 };
+        assert_eq!(rubber.pressure(1010.0), 0.0);
+        assert_eq!(rubber.pressure(1011.0), 852.0 * 852.0);
+        assert_eq!(rubber.sound_speed(3.0), 852.0);
+    }
 
     #[test]
     fn sound_speed_is_the_slope_of_the_pressure() {

@@ -10,6 +10,7 @@
 //! | W, F = −W'/r | kernel \[1/m²\] and its gradient factor \[1/m⁴\]: ∇ᵢWᵢⱼ = −F rᵢⱼ |
 //! | h, η², ⁰r | smoothing length \[m\], guard against 0/0 \[m²\], initial spacing \[m\] |
 //! | m, ρ, V = m/ρ, p, c | mass, density, volume, pressure, sound speed |
+//! | σ = −p δ + S, μ | stress and its deviator \[Pa\], shear modulus \[Pa\] |
 //!
 //! Reading order: [`kernel`] and [`lane`] (numbers of the pair loop), [`terms`] (the equations),
 //! [`scene`] (what a simulation starts from), [`integrator`], then [`simulation`]. The row loop is in
@@ -36,15 +37,15 @@ pub mod walls;
 
 pub use domain::Domain;
 pub use engine::{Engine, Fault, Limits};
-pub use eos::{EquationOfState, Tait};
+pub use eos::{EquationOfState, Linear, Tait};
 pub use integrator::{Euler, Integrator, Leapfrog, PredictorCorrector};
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
-pub use numbers::Numbers;
+pub use numbers::{Numbers, Symmetric};
 pub use particles::{Evolved, Particle, Rate, Role};
 pub use scene::{Compose, Scene, SceneError, Scheme, lattice};
 pub use simulation::{Checkpoint, Divergence, Flow, Observer, Outcome, Simulation, Work};
 pub use terms::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, Pressure,
-    Shifting, Term, Viscosity, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Continuity,
+    DensityDiffusion, JaumannRate, Pressure, PrincipalStress, Shifting, Term, Viscosity, Xsph,
 };
 pub use walls::{Ghosts, InterfaceWall, Open, PlaneWall};

@@ -1,7 +1,7 @@
 //! [`Numbers`]: a fixed set of numbers that a term keeps a particle, liftable to lanes.
 //!
 //! What a particle shows its neighbours, what a row sums and what a term integrates are all such
-//! sets: `()`, one number, a vector, three numbers, or tuples of these. `()` takes no memory and
+//! sets: `()`, one number, a vector, a symmetric tensor, or tuples of these. `()` takes no memory and
 //! no time, which is how a scene leaves out what it does not need.
 
 use nalgebra::Vector2;
@@ -89,6 +89,72 @@ impl Numbers for Vector2<f64> {
     #[inline(always)]
     fn is_finite(&self) -> bool {
         self.x.is_finite() && self.y.is_finite()
+    }
+}
+
+/// A symmetric tensor of the plane: three numbers, not four.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Symmetric<V = f64> {
+    /// Along x.
+    pub xx: V,
+    /// Along y.
+    pub yy: V,
+    /// Shear.
+    pub xy: V,
+}
+
+impl<V: Lane> Symmetric<V> {
+    /// The product with a vector.
+    #[inline(always)]
+    pub fn times(self, r: Vector2<V>) -> Vector2<V> {
+        Vector2::new(self.xx * r.x + self.xy * r.y, self.xy * r.x + self.yy * r.y)
+    }
+}
+
+impl<V: Lane> std::ops::Add for Symmetric<V> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { xx: self.xx + other.xx, yy: self.yy + other.yy, xy: self.xy + other.xy }
+    }
+}
+
+impl<V: Lane> std::ops::Mul<V> for Symmetric<V> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: V) -> Self {
+        Self { xx: self.xx * factor, yy: self.yy * factor, xy: self.xy * factor }
+    }
+}
+
+impl Numbers for Symmetric {
+    type In<V: Lane> = Symmetric<V>;
+
+    #[inline(always)]
+    fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Symmetric<V> {
+        Symmetric {
+            xx: V::gather(|k| read(k).xx),
+            yy: V::gather(|k| read(k).yy),
+            xy: V::gather(|k| read(k).xy),
+        }
+    }
+    #[inline(always)]
+    fn spread<V: Lane>(self) -> Symmetric<V> {
+        Symmetric { xx: V::all(self.xx), yy: V::all(self.yy), xy: V::all(self.xy) }
+    }
+    #[inline(always)]
+    fn total<V: Lane>(lanes: Symmetric<V>) -> Self {
+        Self { xx: lanes.xx.total(), yy: lanes.yy.total(), xy: lanes.xy.total() }
+    }
+    #[inline(always)]
+    fn advanced(self, dt: f64, rate: Self) -> Self {
+        self + rate * dt
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.xx.is_finite() && self.yy.is_finite() && self.xy.is_finite()
     }
 }
 

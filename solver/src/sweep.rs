@@ -78,7 +78,8 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         let position = own.position.spread::<Wide>();
         let velocity = own.velocity.spread::<Wide>();
         let common = own.common.spread::<Wide>();
-        let own_shows = (self.project)(&own.shows).spread::<Wide>();
+        let shown = (self.project)(&own.shows);
+        let own_shows = shown.spread::<Wide>();
         let mut sum = T::Sum::default().spread::<Wide>();
         for chunk in neighbours {
             let others = chunk.map(|c| &self.columns[c as usize]);
@@ -97,7 +98,7 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         }
         let position = if self.moving { own.velocity } else { Vector2::zeros() };
         let mut rate = Rate { position, ..Rate::default() };
-        self.terms.finish(&own.common, T::Sum::total::<Wide>(sum), &mut rate);
+        self.terms.finish(&own.common, shown, T::Sum::total::<Wide>(sum), &mut rate);
         rate
     }
 }

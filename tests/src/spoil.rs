@@ -122,9 +122,9 @@ impl<X: Numbers, T: Term<X>> Term<X> for Spoiled<T> {
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common<f64>, shows: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
         let mut part = Rate::default();
-        self.term.finish(own, sum, &mut part);
+        self.term.finish(own, shows, sum, &mut part);
         rate.position += part.position * self.factor;
         rate.velocity += part.velocity * self.factor;
         rate.density += part.density * self.factor;
@@ -154,7 +154,7 @@ impl<X> Term<X> for Sided {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.velocity += sum;
     }
 }

@@ -85,7 +85,7 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
         rate.velocity += sum;
     }
 }

@@ -21,7 +21,7 @@ impl<X> Term<X> for BodyForce {
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: (), _: &mut ()) {}
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, _: (), rate: &mut Rate<X>) {
         rate.velocity += self.0;
     }
 }

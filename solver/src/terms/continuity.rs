@@ -24,7 +24,7 @@ impl<X> Term<X> for Continuity {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, sum: f64, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: f64, rate: &mut Rate<X>) {
         rate.density -= sum;
     }
 }

@@ -28,7 +28,7 @@ impl<X> Term<X> for DensityDiffusion {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, sum: f64, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: f64, rate: &mut Rate<X>) {
         rate.density += 2.0 * self.diffusivity * sum;
     }
 }

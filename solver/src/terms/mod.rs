@@ -7,20 +7,26 @@
 mod artificial_stress;
 mod artificial_viscosity;
 mod body_force;
+mod cauchy_stress;
 mod continuity;
 mod density_diffusion;
+mod jaumann_rate;
 mod pressure;
 mod shifting;
+mod tensile_stress;
 mod viscosity;
 mod xsph;
 
 pub use artificial_stress::{ArtificialStress, Tensile};
 pub use artificial_viscosity::{Always, Approaching, ArtificialViscosity, Switch};
 pub use body_force::BodyForce;
+pub use cauchy_stress::CauchyStress;
 pub use continuity::Continuity;
 pub use density_diffusion::DensityDiffusion;
+pub use jaumann_rate::JaumannRate;
 pub use pressure::Pressure;
 pub use shifting::Shifting;
+pub use tensile_stress::{ComponentStress, PrincipalStress, TensileStress};
 pub use viscosity::Viscosity;
 pub use xsph::Xsph;
 
@@ -81,7 +87,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
         sum: &mut <Self::Sum as Numbers>::In<V>,
     );
     /// Turns the sum into rates.
-    fn finish(&self, own: &Common<f64>, sum: Self::Sum, rate: &mut Rate<X>);
+    fn finish(&self, own: &Common<f64>, shows: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>);
 }
 
 impl<X> Term<X> for () {
@@ -93,7 +99,7 @@ impl<X> Term<X> for () {
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: (), _: &mut ()) {}
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), _: &mut Rate<X>) {}
+    fn finish(&self, _: &Common<f64>, _: (), _: (), _: &mut Rate<X>) {}
 }
 
 /// Implements [`Term`] for a tuple: each member in turn, in the order of the equation.
@@ -122,8 +128,8 @@ macro_rules! tuple_of_terms {
                 $(self.$index.pair(pair, own.$index, other.$index, &mut sum.$index);)+
             }
             #[inline(always)]
-            fn finish(&self, own: &Common<f64>, sum: Self::Sum, rate: &mut Rate<X>) {
-                $(self.$index.finish(own, sum.$index, rate);)+
+            fn finish(&self, own: &Common<f64>, shows: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
+                $(self.$index.finish(own, shows.$index, sum.$index, rate);)+
             }
         }
     };

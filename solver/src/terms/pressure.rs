@@ -59,7 +59,7 @@ impl<X, E: EquationOfState, R: Tensile> Term<X> for Pressure<E, R> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.velocity += sum;
     }
 }

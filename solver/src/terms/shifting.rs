@@ -49,7 +49,7 @@ impl<X> Term<X> for Shifting {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
         rate.position += sum * (self.amplitude * self.max_speed * self.h);
     }
 }

@@ -33,7 +33,7 @@ impl<X> Term<X> for Viscosity {
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
         rate.velocity -= sum * (2.0 * self.mu / own.density);
     }
 }

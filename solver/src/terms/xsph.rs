@@ -29,7 +29,7 @@ impl<X> Term<X> for Xsph {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
         rate.position -= sum * (2.0 * self.epsilon);
     }
 }

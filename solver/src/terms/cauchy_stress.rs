@@ -1,0 +1,54 @@
+use nalgebra::Vector2;
+
+use super::{Pair, TensileStress, Term};
+use crate::{
+    eos::EquationOfState,
+    kernel::Kernel,
+    lane::Lane,
+    numbers::{Numbers, Symmetric},
+    particles::{Common, Rate},
+};
+
+/// (9) dvᵢᵃ/dt = Σⱼ mⱼ (σᵢᵃᵇ/ρᵢ² + σⱼᵃᵇ/ρⱼ²) ∂Wᵢⱼ/∂xᵢᵇ \[m/s²\], (10) σᵃᵇ = −p δᵃᵇ + Sᵃᵇ, and the stress
+/// part of (15) with R ≠ ().
+///
+/// S is what the scheme integrates as `X`, by [`super::JaumannRate`]. The pair force need not be
+/// central: linear momentum is conserved exactly, angular momentum is not.
+#[derive(Clone, Copy, Debug)]
+pub struct CauchyStress<E, R = ()> {
+    /// Equation of state p(ρ), [`crate::Linear`] in the seed.
+    pub eos: E,
+    /// `()`, [`super::PrincipalStress`] or [`super::ComponentStress`].
+    pub tensile: R,
+}
+
+impl<E: EquationOfState, R: TensileStress> Term<Symmetric> for CauchyStress<E, R> {
+    /// σ/ρ² \[m⁵/(kg s²)\] and what the artificial stress shows.
+    type Shows = (Symmetric, R::Shows);
+    type Sum = Vector2<f64>;
+
+    #[inline(always)]
+    fn shows(&self, own: &Common<f64>, deviator: &Symmetric) -> Self::Shows {
+        let p = self.eos.pressure(own.density);
+        let Symmetric { xx, yy, xy } = *deviator;
+        let stress = Symmetric { xx: xx - p, yy: yy - p, xy } * (1.0 / (own.density * own.density));
+        (stress, self.tensile.shows(stress))
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: <Self::Shows as Numbers>::In<V>,
+        other: <Self::Shows as Numbers>::In<V>,
+        sum: &mut Vector2<V>,
+    ) {
+        let stress = own.0 + other.0 + self.tensile.pair(pair, own.1, other.1);
+        *sum -= stress.times(pair.r) * (pair.other.mass * pair.f);
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Self::Sum, rate: &mut Rate<Symmetric>) {
+        rate.velocity += sum;
+    }
+}

@@ -1,0 +1,53 @@
+use nalgebra::Vector2;
+
+use super::{Pair, Term};
+use crate::{
+    kernel::Kernel,
+    lane::Lane,
+    numbers::Symmetric,
+    particles::{Common, Rate},
+};
+
+/// (11) dSᵃᵇ/dt = 2μ (εᵃᵇ − δᵃᵇ εᶜᶜ/3) + Sᵃᶜ Ωᵇᶜ + Ωᵃᶜ Sᶜᵇ \[Pa/s\], with ε and Ω the symmetric and the
+/// antisymmetric part of ∂ᵇvᵃ = Σⱼ (mⱼ/ρⱼ)(vⱼᵃ − vᵢᵃ) ∂Wᵢⱼ/∂xᵢᵇ.
+///
+/// The 1/3 is that of plane strain: Sᶻᶻ = −(Sˣˣ + Sʸʸ) is implied.
+#[derive(Clone, Copy, Debug)]
+pub struct JaumannRate {
+    /// μ \[Pa\].
+    pub shear_modulus: f64,
+}
+
+impl Term<Symmetric> for JaumannRate {
+    /// S, for the particle's own rotation; neighbours do not read it.
+    type Shows = Symmetric;
+    /// ∇u and ∇v \[1/s\].
+    type Sum = (Vector2<f64>, Vector2<f64>);
+
+    #[inline(always)]
+    fn shows(&self, _: &Common<f64>, deviator: &Symmetric) -> Symmetric {
+        *deviator
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        _: Symmetric<V>,
+        _: Symmetric<V>,
+        sum: &mut (Vector2<V>, Vector2<V>),
+    ) {
+        let gradient = pair.r * (pair.other.volume * pair.f);
+        sum.0 += gradient * pair.v.x;
+        sum.1 += gradient * pair.v.y;
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, s: Symmetric, (u, v): Self::Sum, rate: &mut Rate<Symmetric>) {
+        let (two_mu, mean) = (2.0 * self.shear_modulus, (u.x + v.y) / 3.0);
+        let spin = 0.5 * (u.y - v.x);
+        rate.extra.xx += two_mu * (u.x - mean) + 2.0 * spin * s.xy;
+        rate.extra.yy += two_mu * (v.y - mean) - 2.0 * spin * s.xy;
+        rate.extra.xy += two_mu * 0.5 * (u.y + v.x) + spin * (s.yy - s.xx);
+    }
+}

@@ -1,0 +1,125 @@
+use super::Pair;
+use crate::{
+    kernel::Kernel,
+    lane::Lane,
+    numbers::{Numbers, Symmetric},
+};
+
+/// What [`super::CauchyStress`] adds to the pair stress where the solid is in tension: nothing, or an
+/// artificial stress Rᵢⱼᵃᵇ φᵢⱼⁿ, (21) Rᵢⱼ = Rᵢ + Rⱼ.
+pub trait TensileStress: Copy + Send + Sync + 'static {
+    /// What a particle shows.
+    type Shows: Numbers;
+    /// From σ/ρ² of a particle.
+    fn shows(&self, stress_over_density_squared: Symmetric) -> Self::Shows;
+    /// Rᵢⱼ φᵢⱼⁿ, in the unit of σ/ρ².
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: <Self::Shows as Numbers>::In<V>,
+        other: <Self::Shows as Numbers>::In<V>,
+    ) -> Symmetric<V>;
+}
+
+impl TensileStress for () {
+    type Shows = ();
+    #[inline(always)]
+    fn shows(&self, _: Symmetric) {}
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: ()) -> Symmetric<V> {
+        Symmetric { xx: V::nil(), yy: V::nil(), xy: V::nil() }
+    }
+}
+
+/// Strength and range of an artificial stress, (18) φᵢⱼ = W(dᵢⱼ)/W(⁰r).
+#[derive(Clone, Copy, Debug)]
+struct Shape {
+    xi: f64,
+    n: u32,
+    inverse_w: f64,
+}
+
+impl Shape {
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: Symmetric<V>,
+        other: Symmetric<V>,
+    ) -> Symmetric<V> {
+        let phi = pair.w() * V::all(self.inverse_w);
+        (own + other) * (0..self.n).fold(V::all(1.0), |product, _| product * phi)
+    }
+}
+
+/// (20) in principal axes (Gray, Monaghan & Swift 2001): Rᵢ has the axes of σᵢ, and
+/// R = −ξ σ/ρ² along each axis in tension, 0 along one in compression. Frame-invariant.
+#[derive(Clone, Copy, Debug)]
+pub struct PrincipalStress(Shape);
+
+/// (20) as the seed writes it: R = −ξ σᵃᵇ/ρ² for each component by itself where σᵃᵇ > 0, else 0.
+/// Turning the axes changes it.
+#[derive(Clone, Copy, Debug)]
+pub struct ComponentStress(Shape);
+
+impl PrincipalStress {
+    /// Strength ξ, exponent n, and W at the initial spacing \[1/m²\].
+    pub fn new(xi: f64, n: u32, w_at_spacing: f64) -> Self {
+        Self(Shape { xi, n, inverse_w: 1.0 / w_at_spacing })
+    }
+}
+
+impl ComponentStress {
+    /// Strength ξ, exponent n, and W at the initial spacing \[1/m²\].
+    pub fn new(xi: f64, n: u32, w_at_spacing: f64) -> Self {
+        Self(Shape { xi, n, inverse_w: 1.0 / w_at_spacing })
+    }
+}
+
+impl TensileStress for PrincipalStress {
+    type Shows = Symmetric;
+
+    #[inline(always)]
+    fn shows(&self, stress: Symmetric) -> Symmetric {
+        // σ = m + r D with D = [[cos 2θ, sin 2θ], [sin 2θ, -cos 2θ]] has the eigenvalues m ± r.
+        let (m, d) = (0.5 * (stress.xx + stress.yy), 0.5 * (stress.xx - stress.yy));
+        let r = (d * d + stress.xy * stress.xy).sqrt();
+        let (high, low) = ((m + r).max(0.0), (m - r).max(0.0));
+        let mean = 0.5 * (high + low);
+        let along = if r > 0.0 { 0.5 * (high - low) / r } else { 0.0 };
+        let tension =
+            Symmetric { xx: mean + along * d, yy: mean - along * d, xy: along * stress.xy };
+        tension * -self.0.xi
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: Symmetric<V>,
+        other: Symmetric<V>,
+    ) -> Symmetric<V> {
+        self.0.pair(pair, own, other)
+    }
+}
+
+impl TensileStress for ComponentStress {
+    type Shows = Symmetric;
+
+    #[inline(always)]
+    fn shows(&self, stress: Symmetric) -> Symmetric {
+        let tension =
+            Symmetric { xx: stress.xx.max(0.0), yy: stress.yy.max(0.0), xy: stress.xy.max(0.0) };
+        tension * -self.0.xi
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: Symmetric<V>,
+        other: Symmetric<V>,
+    ) -> Symmetric<V> {
+        self.0.pair(pair, own, other)
+    }
+}
