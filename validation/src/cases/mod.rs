@@ -4,6 +4,7 @@ pub mod acoustic_wave;
 pub mod channel;
 mod couette;
 mod poiseuille;
+pub mod rings;
 pub mod shear_wave;
 pub mod wave;
 
@@ -18,6 +19,7 @@ pub const CASES: &[&dyn Case] = &[
     &poiseuille::POISEUILLE,
     &acoustic_wave::ACOUSTIC_WAVE,
     &shear_wave::SHEAR_WAVE,
+    rings::RUBBER_RINGS,
 ];
 
 /// The case of that name.

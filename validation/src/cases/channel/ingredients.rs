@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use solver::terms::{Approaching, Tensile};
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, Euler, Ghosts,
-    Integrator, InterfaceWall, Kernel, Leapfrog, Particle, PlaneWall, PredictorCorrector, Pressure,
-    Shifting, Tait, Term, Viscosity, Xsph,
+    Integrator, InterfaceWall, Kernel, Leapfrog, Numbers, Particle, PlaneWall, PredictorCorrector,
+    Pressure, Shifting, Tait, Term, Viscosity, Xsph,
 };
 
 use super::Setup;
@@ -192,19 +192,19 @@ impl Arrangement for InterfaceWall {
 }
 
 /// An integrator and the theory of its time step.
-pub trait Stepping: Integrator<()> {
+pub trait Stepping<X: Numbers = ()>: Integrator<X> {
     /// Which theory.
     const THEORY: time_step::Integrator;
 }
 
-impl Stepping for PredictorCorrector {
+impl<X: Numbers> Stepping<X> for PredictorCorrector<X> {
     const THEORY: time_step::Integrator = time_step::Integrator::PredictorCorrector;
 }
 
-impl Stepping for Leapfrog {
+impl<X: Numbers> Stepping<X> for Leapfrog {
     const THEORY: time_step::Integrator = time_step::Integrator::Leapfrog;
 }
 
-impl Stepping for Euler {
+impl<X: Numbers> Stepping<X> for Euler {
     const THEORY: time_step::Integrator = time_step::Integrator::Euler;
 }
