@@ -157,7 +157,7 @@ impl<'a> Series<'a> {
     pub fn sample(&mut self, time: f64, particles: &[Particle<Symmetric>]) {
         let (rings, dx) = (self.rings, self.rings.dx);
         let (left, right) = particles.split_at(particles.len() / 2);
-        if self.samples % FRAGMENTS_EVERY == 0 {
+        if self.samples.is_multiple_of(FRAGMENTS_EVERY) {
             self.pieces = fragments(left, dx) + fragments(right, dx);
             self.most_pieces = self.most_pieces.max(self.pieces);
         }
@@ -183,6 +183,24 @@ impl<'a> Series<'a> {
         self.rows.iter().map(|row| row[k]).collect()
     }
 
+    /// (t \[L/c0\], column number `k`) of every sample.
+    pub fn points(&self, k: usize) -> Vec<(f64, f64)> {
+        self.rows.iter().map(|row| (row[0], row[k])).collect()
+    }
+
+    /// A number that [`super::reference`] compares.
+    pub fn metric(&self, name: &str) -> Option<f64> {
+        let column = |k: usize| self.rows.iter().map(move |row| row[k]);
+        let last = self.rows.last()?;
+        Some(match name {
+            "restitution" => last[2] / self.rings.settings.speed,
+            "x_c_min" => column(1).fold(f64::INFINITY, f64::min),
+            "width_min" => column(3).fold(f64::INFINITY, f64::min),
+            "height_max" => column(4).fold(f64::NEG_INFINITY, f64::max),
+            _ => return None,
+        })
+    }
+
     /// The series as columns.
     pub fn profile(&self) -> Profile {
         let add = |profile: Profile, (k, (name, unit)): (usize, &(&str, &str))| {
@@ -193,26 +211,22 @@ impl<'a> Series<'a> {
 
     /// Metrics of the whole run.
     pub fn measure(&self, record: &mut Record) {
-        let rings = self.rings;
         let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
             record.metrics.insert(name.into(), Metric::new(value, unit, formula));
         };
         let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return };
-        let speed = rings.settings.speed;
-        put("restitution", last[2] / speed, "-", "velocity of the centre of mass at the end/V");
+        let found = |name: &str| self.metric(name).unwrap_or(f64::NAN);
+        let formula = "velocity of the centre of mass at the end/V";
+        put("restitution", found("restitution"), "-", formula);
         put("pieces", last[5], "1", "connected pieces at the end, 1.5 dx; two rings are 2");
         let formula = "most connected pieces at any time";
         put("pieces_most", self.most_pieces as f64, "1", formula);
-        let extreme = |k: usize, sign: f64| {
-            let better = |a: &[f64; COLUMNS], row: &[f64; COLUMNS]| sign * row[k] > sign * a[k];
-            self.rows.iter().fold(*first, |a, row| if better(&a, row) { *row } else { a })
-        };
-        let (narrow, tall, near) = (extreme(3, -1.0), extreme(4, 1.0), extreme(1, -1.0));
-        put("width_min", narrow[3], "L", "least extent of a ring along the line of flight");
-        put("t_width_min", narrow[0], "L/c0", "when");
-        put("height_max", tall[4], "L", "largest extent of a ring across it");
-        put("x_c_min", near[1], "L", "least distance of a ring's centre of mass from the plane");
-        put("x_c_200", last[1], "L", "that distance at the end");
+        let formula = "least extent of a ring along the line of flight";
+        put("width_min", found("width_min"), "L", formula);
+        put("height_max", found("height_max"), "L", "largest extent of a ring across it");
+        let formula = "least distance of a ring's centre of mass from the plane";
+        put("x_c_min", found("x_c_min"), "L", formula);
+        put("x_c_end", last[1], "L", "that distance at the end");
         let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
         let lost = 1.0 - energy(last) / energy(first);
         put("energy_lost", lost, "-", "1 - (kinetic + strain energy) at the end/at the start");

@@ -6,6 +6,7 @@
 
 mod measure;
 mod plan;
+mod reference;
 mod run;
 mod setup;
 mod studies;

@@ -8,6 +8,7 @@ use solver::{
 use super::{
     RingSettings, Rings, Tensile,
     measure::{self, Series},
+    reference::Reference,
 };
 use crate::{
     case::RunError,
@@ -78,6 +79,9 @@ pub fn run_scene<S: Scheme<Extra = Symmetric>>(
     if status == Status::Completed {
         series.sample(simulation.time(), &particles);
         series.measure(&mut record);
+        if let Some(reference) = Reference::of(&rings.settings) {
+            reference.compare(&series, &mut record);
+        }
         let momentum = measure::momentum_error(rings, &particles);
         let formula = "|sum m v| at the end/momentum of one ring, exactly 0";
         record.metrics.insert("momentum".into(), Metric::new(momentum, "-", formula));
