@@ -11,6 +11,9 @@ pub const MUTANTS: &str = include_str!("../../../tests/gate_power.csv");
 /// A gate a line: its group, its name, how many mutants fail it.
 pub const GATES: &str = include_str!("../../../tests/gate_power_gates.csv");
 
+/// The same for rubber: mutant, how many gates it fails, of how many, which.
+pub const RUBBER: &str = include_str!("../../../tests/ring_power.csv");
+
 const ABOUT: &str = "A gate that passes says little until something fails it. Each line is the \
     program with one thing spoiled, run through planned runs of the quick tier (Couette and \
     Poiseuille flow at 10 and 20 rows, at Re 0.5 and 20, the waves, and some points of the \
@@ -60,6 +63,23 @@ fn gates() -> Table {
     })
 }
 
+fn rubber() -> Table {
+    let columns = vec![
+        Column::text("rubber with"),
+        Column::num("gates that it fails", "1"),
+        Column::num("of", "1"),
+        Column::text("which"),
+    ];
+    let caption = "The same for the elastic solid: the rings at spacing 0.2 L, elastic waves, and a block \
+                   that begins to turn. Measured by `tests/tests/ring_power.rs`.";
+    rows(RUBBER).1.iter().fold(Table::new(caption, columns), |table, row| {
+        let count = |k: usize| Cell::count(row.get(k).and_then(|n| n.parse().ok()).unwrap_or(0));
+        let which = row.get(3).unwrap_or(&"").split(' ').map(|gate| format!("`{gate}`"));
+        let which = Cell::text(which.collect::<Vec<String>>().join(" "));
+        table.row(vec![Cell::text(row[0]), count(1), count(2), which])
+    })
+}
+
 /// The study: tables without judgement, for the test is the judge.
 pub fn study() -> Study {
     let (_, rows) = rows(GATES);
@@ -77,6 +97,7 @@ pub fn study() -> Study {
         .prose(ABOUT)
         .block(mutants())
         .prose(idle)
+        .block(rubber())
         .block(Block::Details { summary: "Gate by gate".into(), blocks: vec![gates().into()] })
 }
 
@@ -93,6 +114,7 @@ mod tests {
         }
         let survivors = rows(MUTANTS).1.into_iter().filter(|row| row.last() == Some(&"none"));
         assert_eq!(survivors.count(), 0, "a mutant that no gate sees");
-        assert_eq!(study().blocks.len(), 4);
+        assert!(rows(RUBBER).1.iter().all(|row| row.len() == 4 && row[1] != "0"));
+        assert_eq!(study().blocks.len(), 5);
     }
 }

@@ -1,0 +1,257 @@
+//! What the gates of the elastic solid are worth: rubber with one thing spoiled, through the planned
+//! run of the rings at spacing 0.2 L and through elastic waves. Each must fail a gate; which ones
+//! stands in `ring_power.csv`, written anew with `INSTA_UPDATE=always`.
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+use solver::{
+    ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, JaumannRate, Kernel,
+    Leapfrog, Linear, Open, PrincipalStress, Rate, Scene, Symmetric, Term, Xsph, lane::Lane,
+    numbers::Numbers, particles::Common, terms::Pair,
+};
+use std::path::Path;
+use validation::{
+    case::{Planned, Tier},
+    cases::rings::{self, Rings, Rubber},
+    gate::Gate,
+    record::Record,
+    runner::Context,
+    studies::elastic_waves::{self, ElasticWave, Turning},
+};
+
+/// What is wrong; all neutral by default.
+#[derive(Clone, Copy, Debug)]
+struct Fault {
+    name: &'static str,
+    shear_modulus: f64,
+    rotates: bool,
+    tensile: f64,
+    own_side: f64,
+    time_step: fn(&Rings) -> f64,
+}
+
+const NONE: Fault = Fault {
+    name: "nothing",
+    shear_modulus: 1.0,
+    rotates: true,
+    tensile: 1.0,
+    own_side: 1.0,
+    time_step: |_| 1.0,
+};
+
+const FAULTS: [Fault; 5] = [
+    Fault { name: "shear modulus x 1.05", shear_modulus: 1.05, ..NONE },
+    Fault { name: "stress not rotated", rotates: false, ..NONE },
+    Fault { name: "artificial stress with the wrong sign", tensile: -1.0, ..NONE },
+    Fault {
+        name: "c0 for c_p in the time step",
+        time_step: |r| (r.cp + r.v) / (r.c0 + r.v),
+        ..NONE
+    },
+    Fault { name: "stress of the neighbour alone", own_side: 0.0, ..NONE },
+];
+
+/// (9) with a weight for the particle's own stress.
+#[derive(Clone, Debug)]
+struct SidedStress<R>(CauchyStress<Linear, R>, f64);
+
+impl<R> Term<Symmetric> for SidedStress<R>
+where
+    CauchyStress<Linear, R>:
+        Term<Symmetric, Sum = Vector2<f64>, Shows = (Symmetric, <Self as Shown>::Tensile)>,
+    Self: Shown,
+    R: Clone + Send + Sync + 'static,
+{
+    type Shows = (Symmetric, <Self as Shown>::Tensile);
+    type Sum = Vector2<f64>;
+
+    fn shows(&self, own: &Common<f64>, extra: &Symmetric) -> Self::Shows {
+        self.0.shows(own, extra)
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: <Self::Shows as Numbers>::In<V>,
+        other: <Self::Shows as Numbers>::In<V>,
+        sum: &mut Vector2<V>,
+    ) {
+        self.0.pair(pair, (own.0 * V::all(self.1), own.1), other, sum);
+    }
+
+    fn finish(
+        &self,
+        own: &Common<f64>,
+        shows: Self::Shows,
+        sum: Vector2<f64>,
+        rate: &mut Rate<Symmetric>,
+    ) {
+        self.0.finish(own, shows, sum, rate);
+    }
+}
+
+/// What an artificial stress shows.
+trait Shown {
+    type Tensile: Numbers;
+}
+
+impl Shown for SidedStress<PrincipalStress> {
+    type Tensile = Symmetric;
+}
+
+impl Shown for SidedStress<()> {
+    type Tensile = ();
+}
+
+/// (11) with or without the rotation of the stress.
+#[derive(Clone, Debug)]
+struct PerhapsRotating(JaumannRate, bool);
+
+impl Term<Symmetric> for PerhapsRotating {
+    type Shows = Symmetric;
+    type Sum = <JaumannRate as Term<Symmetric>>::Sum;
+
+    fn shows(&self, own: &Common<f64>, extra: &Symmetric) -> Symmetric {
+        self.0.shows(own, extra)
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: Symmetric<V>,
+        other: Symmetric<V>,
+        sum: &mut <Self::Sum as Numbers>::In<V>,
+    ) {
+        self.0.pair(pair, own, other, sum);
+    }
+
+    fn finish(&self, own: &Common<f64>, s: Symmetric, sum: Self::Sum, rate: &mut Rate<Symmetric>) {
+        self.0.finish(own, if self.1 { s } else { Symmetric::default() }, sum, rate);
+    }
+}
+
+type Spoiled = Compose<
+    CubicSpline,
+    (SidedStress<PrincipalStress>, ArtificialViscosity<Linear>),
+    (Continuity, PerhapsRotating, Xsph),
+    Open,
+    Leapfrog,
+    Symmetric,
+>;
+
+fn rate(healthy: JaumannRate, fault: &Fault) -> PerhapsRotating {
+    let shear_modulus = healthy.shear_modulus * fault.shear_modulus;
+    PerhapsRotating(JaumannRate { shear_modulus }, fault.rotates)
+}
+
+fn planned() -> Planned {
+    let case = validation::cases::find("rubber_rings").expect("a case");
+    let is_it = |p: &Planned| p.variant == "leapfrog" && p.set == ["spacing=0.2"];
+    case.plan(Tier::Quick).into_iter().find(is_it).expect("a planned run")
+}
+
+fn collide(planned: &Planned, fault: &Fault) -> Record {
+    let settings = rings::settings(planned.variant, &planned.set).expect("planned settings");
+    let mut rings = Rings::new::<Leapfrog>(&settings, false).expect("sound settings");
+    rings.dt *= (fault.time_step)(&rings);
+    let healthy: Scene<Rubber<PrincipalStress, Leapfrog>> = rings.scene();
+    let (stress, viscosity) = healthy.forces;
+    let xi = fault.tensile * settings.xi;
+    let w = solver::Smoothing::<CubicSpline>::new(rings.h).w(rings.dx * rings.dx);
+    let tensile = PrincipalStress::new(xi, settings.stress_exponent as u32, w);
+    let stress = SidedStress(CauchyStress { tensile, ..stress }, fault.own_side);
+    let (continuity, jaumann, xsph) = healthy.drift;
+    let scene = Scene::<Spoiled> {
+        h: healthy.h,
+        domain: healthy.domain,
+        particles: healthy.particles,
+        forces: (stress, viscosity),
+        drift: (continuity, rate(jaumann, fault), xsph),
+        walls: Open,
+        skin: healthy.skin,
+        skin_share: healthy.skin_share,
+        limits: healthy.limits,
+        parallel_from: healthy.parallel_from,
+    };
+    let context = Context::default();
+    rings::run_scene(&rings, planned.variant, "leapfrog", scene, &context).expect("a run")
+}
+
+type Rippled =
+    Compose<CubicSpline, SidedStress<()>, (Continuity, PerhapsRotating), Open, Leapfrog, Symmetric>;
+
+/// The error of the frequency of a wave.
+fn ripple(wave: &ElasticWave, fault: &Fault) -> f64 {
+    let healthy = wave.scene::<CubicSpline>();
+    let (continuity, jaumann) = healthy.drift;
+    let forces = SidedStress(healthy.forces, fault.own_side);
+    let drift = (continuity, rate(jaumann, fault));
+    let scene: Scene<Rippled> =
+        Scene::new(healthy.h, healthy.domain, healthy.particles, forces, drift, Open);
+    wave.frequency_error(scene)
+}
+
+/// The error of the turn of the stress.
+fn turn(turning: &Turning, fault: &Fault) -> f64 {
+    let healthy = turning.scene::<CubicSpline>();
+    let (continuity, jaumann) = healthy.drift;
+    let forces = SidedStress(healthy.forces, fault.own_side);
+    let drift = (continuity, rate(jaumann, fault));
+    let scene: Scene<Rippled> =
+        Scene::new(healthy.h, healthy.domain, healthy.particles, forces, drift, Open);
+    turning.error(scene)
+}
+
+/// Gates that this fault fails, and how many there are.
+fn failed(fault: &Fault) -> (Vec<String>, usize) {
+    let planned = planned();
+    let record = collide(&planned, fault);
+    let fails = |gate: &Gate, value: Option<f64>| gate.judge(value).verdict.is_failure();
+    let mut failed: Vec<String> = planned
+        .gates
+        .iter()
+        .filter(|gate| fails(gate, record.metric(&gate.metric)))
+        .map(|gate| gate.id.clone())
+        .collect();
+    for is_transverse in [false, true] {
+        let wave = ElasticWave { is_transverse, h_over_dx: 1.5 };
+        let gate = elastic_waves::gate(CubicSpline::NAME, &wave);
+        if fails(&gate, Some(ripple(&wave, fault))) {
+            failed.push(gate.id);
+        }
+    }
+    let turning = Turning { h_over_dx: 1.5 };
+    if fails(&turning.gate(), Some(turn(&turning, fault))) {
+        failed.push(turning.gate().id);
+    }
+    (failed, planned.gates.len() + 3)
+}
+
+#[test]
+fn no_fault_has_the_bits_of_the_case() {
+    let planned = planned();
+    let case = validation::cases::find("rubber_rings").expect("a case");
+    let own = case.run(planned.variant, &planned.set, &Context::default()).expect("a run");
+    let wrapped = collide(&planned, &NONE);
+    assert!(own.state.is_some() && own.state == wrapped.state);
+    assert_eq!(failed(&NONE).0, Vec::<String>::new());
+}
+
+#[test]
+fn every_spoiled_rubber_fails_a_gate() {
+    let results: Vec<(Vec<String>, usize)> = FAULTS.par_iter().map(failed).collect();
+    let mut text = "mutant,gates that it fails,of,which\n".to_string();
+    for (fault, (failed, all)) in FAULTS.iter().zip(&results) {
+        text += &format!("{},{},{all},{}\n", fault.name, failed.len(), failed.join(" "));
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("ring_power.csv");
+    if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+        std::fs::write(&path, &text).expect("a file that can be written");
+    }
+    let survivors: Vec<&str> =
+        FAULTS.iter().zip(&results).filter(|(_, r)| r.0.is_empty()).map(|(f, _)| f.name).collect();
+    assert!(survivors.is_empty(), "no gate sees these: {survivors:?}\n{text}");
+    assert_eq!(std::fs::read_to_string(&path).unwrap_or_default(), text);
+}
