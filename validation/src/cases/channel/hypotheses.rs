@@ -16,7 +16,7 @@ use crate::{
     gate::{Bound, Evidence, Gate},
     report::{
         Axis, Block, CategoryMap, Cell, Colour, Column, Figure, Layer, Legend, Plot, Series,
-        Status, Table, sci, sig,
+        Status, Table, exact, sci, sig,
     },
     suite::Study,
 };
@@ -174,8 +174,8 @@ impl Map {
             title: STEP_NAMES[rule].into(),
             x_label: "Re [-]".into(),
             y_label: "c0/V [-]".into(),
-            x: reynolds(self.tier).iter().map(|re| sig(*re, 3)).collect(),
-            y: sounds(self.tier).iter().map(|c| sig(*c, 3)).collect(),
+            x: reynolds(self.tier).iter().map(|re| exact(*re)).collect(),
+            y: sounds(self.tier).iter().map(|c| exact(*c)).collect(),
             categories: names.iter().map(|n| n.to_string()).zip(colours).collect(),
             cells: (0..sounds(self.tier).len())
                 .map(|c| rows.iter().map(|row| row.get(c).and_then(cell)).collect())
@@ -330,7 +330,7 @@ fn cures(case: &'static dyn Case, tier: Tier) -> Study {
     for (row, (_, what)) in found.chunks(list.len()).zip(CURES) {
         let first = row.iter().zip(list).find(|(s, _)| s.mostly_fails()).map(|(_, re)| *re);
         let mut cells = vec![Cell::text(what)];
-        cells.push(first.map_or(Cell::text("none"), |re| Cell::num(re, 3)));
+        cells.push(first.map_or(Cell::text("none"), Cell::exact));
         cells.extend(row.iter().map(outcome));
         table = table.row(cells);
     }
@@ -539,8 +539,8 @@ fn waves_table(found: &[Rings]) -> Table {
     for rings in found.iter().filter(|rings| !rings.runs.is_empty()) {
         let periods: Vec<String> = rings.runs.iter().map(|r| sig(r.period, 3)).collect();
         table = table.row(vec![
-            Cell::num(rings.re, 3),
-            Cell::num(rings.sound, 3),
+            Cell::exact(rings.re),
+            Cell::exact(rings.sound),
             Cell::count(rings.runs.len() as u64),
             Cell::sci(rings.median(|run| run.amplitude), 2),
             Cell::num(rings.median(|run| run.growth), 2),
