@@ -76,12 +76,19 @@ impl Bound {
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Bound::Below(high) => write!(f, "at most {high:?}"),
-            Bound::Above(low) => write!(f, "at least {low:?}"),
-            Bound::Within(low, high) => write!(f, "{low:?} to {high:?}"),
-            Bound::Equals(expected) => write!(f, "exactly {expected:?}"),
+            Bound::Below(high) => write!(f, "at most {}", shown(*high)),
+            Bound::Above(low) => write!(f, "at least {}", shown(*low)),
+            Bound::Within(low, high) => write!(f, "{} to {}", shown(*low), shown(*high)),
+            Bound::Equals(expected) => write!(f, "exactly {}", shown(*expected)),
         }
     }
+}
+
+/// Seven significant digits at most, for people: `300`, `1.78398`, `1e-10`.
+fn shown(value: f64) -> String {
+    let rounded = format!("{value:.6e}").parse().unwrap_or(value);
+    let text = format!("{rounded:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_string)
 }
 
 /// What stands behind a bound, strongest first.

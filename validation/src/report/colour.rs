@@ -28,9 +28,12 @@ impl Colour {
     /// Okabe–Ito yellow; too pale for lines, good for cells.
     pub const YELLOW: Self = Self(240, 228, 66);
 
+    /// A dark brown, beside the Okabe–Ito colours: darker than vermillion to every eye.
+    pub const BROWN: Self = Self(112, 66, 20);
+
     /// The colour of the `i`th series that names none.
     pub fn cycle(i: usize) -> Self {
-        const CYCLE: [Colour; 7] = [
+        const CYCLE: [Colour; 8] = [
             Colour::BLUE,
             Colour::VERMILLION,
             Colour::GREEN,
@@ -38,6 +41,7 @@ impl Colour {
             Colour::ORANGE,
             Colour::SKY,
             Colour::BLACK,
+            Colour::BROWN,
         ];
         CYCLE[i % CYCLE.len()]
     }

@@ -384,6 +384,14 @@ impl Series {
         Self { shape: Some(shape), marked: true, ..self }
     }
 
+    /// Colour, marker and line of the `i`th of many curves that may lie on each other: of any three in a
+    /// row, one is solid with full markers, and the next two lie dashed and dotted with open ones on top.
+    pub fn cycle(self, i: usize) -> Self {
+        let dash = [Dash::Solid, Dash::Dashed, Dash::Dotted][(i + 1) % 3];
+        let open = dash != Dash::Solid;
+        Self { open, ..self.colour(Colour::cycle(i)).shape(Shape::cycle(i)).dash(dash) }
+    }
+
     /// Makes the markers open.
     pub fn open(self) -> Self {
         Self { open: true, ..self }

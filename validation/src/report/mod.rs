@@ -29,7 +29,7 @@ pub use figure::{
     Align, CategoryMap, Dash, Figure, Layer, Legend, Orientation, Panel, ParticleMap, Plot, Series,
     Shape,
 };
-pub use number::{percent, sci, seconds, sig};
+pub use number::{exact, percent, sci, seconds, sig};
 pub use page::{Block, Counts, Page, Section};
 pub use render::{png, svg};
 pub use table::{Cell, Column, Status, Table};

@@ -26,6 +26,16 @@ pub fn sig(x: f64, digits: usize) -> String {
     minus(format!("{x:.decimals$}"))
 }
 
+/// The digits that a number has, at most seven: `20`, `0.0125`.
+pub fn exact(x: f64) -> String {
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-4..1e6).contains(&rounded.abs()) {
+        minus(format!("{}", rounded + 0.0))
+    } else {
+        sci(rounded, 3)
+    }
+}
+
 /// `digits` significant digits as `1.2·10⁻⁴`.
 pub fn sci(x: f64, digits: usize) -> String {
     if !x.is_finite() {
@@ -75,6 +85,11 @@ mod tests {
         assert_eq!(sci(1.2e-4, 2), "1.2·10⁻⁴");
         assert_eq!(sci(-9.99e12, 2), "−1.0·10¹³");
         assert_eq!(percent(0.012_3, 2), "1.2\u{a0}%");
+        assert_eq!(exact(20.0), "20");
+        assert_eq!(exact(0.0125), "0.0125");
+        assert_eq!(exact(0.1 + 0.2), "0.3");
+        assert_eq!(exact(-0.0), "0");
+        assert_eq!(exact(f64::NAN), "NaN");
         assert_eq!(seconds(0.003_2), "3.20\u{a0}ms");
         assert_eq!(seconds(750.0), "12.5\u{a0}min");
     }

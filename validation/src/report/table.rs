@@ -77,6 +77,11 @@ impl Cell {
         Self::formatted(value, number::sig(value, digits))
     }
 
+    /// A number that was chosen, with the digits that it has and no more: `20`, `0.0125`.
+    pub fn exact(value: f64) -> Self {
+        Self::formatted(value, number::exact(value))
+    }
+
     /// A whole number, in full.
     pub fn count(value: u64) -> Self {
         Self::formatted(value as f64, value.to_string())

@@ -23,8 +23,8 @@ pub(super) fn ticks(scale: Scale, lo: f64, hi: f64, count: usize) -> Ticks {
 
 /// The given values as ticks, those outside the range left out.
 pub(super) fn fixed(values: &[f64], lo: f64, hi: f64) -> Ticks {
-    let inside = values.iter().copied().filter(|v| (lo..=hi).contains(v));
-    Ticks { major: inside.map(|v| (v, plain(v))).collect(), minor: Vec::new(), exponent: 0 }
+    let inside = values.iter().copied().filter(|v| (lo..=hi).contains(v)).collect();
+    Ticks { major: with_labels(inside), minor: Vec::new(), exponent: 0 }
 }
 
 /// Ticks at multiples of 1, 2 or 5 times a power of ten.
@@ -87,7 +87,7 @@ fn logarithmic(lo: f64, hi: f64, count: usize) -> Ticks {
         let labelled = choices.iter().find(fits).unwrap_or(&choices[2]);
         let major: Vec<f64> = multiples(labelled).filter(inside).collect();
         let minor = multiples(all).filter(inside).filter(|v| !major.contains(v)).collect();
-        (major.into_iter().map(|v| (v, plain(v))).collect(), minor)
+        (with_labels(major), minor)
     };
     Ticks { major, minor, exponent: 0 }
 }
@@ -109,17 +109,25 @@ pub(super) fn superscript(k: i32) -> String {
     k.to_string().chars().map(digit).collect()
 }
 
-/// The shortest text of a value with few digits: `0.02`, `50`, `3·10⁻⁴`.
+/// Values with their labels, all of one format: `0.02`, `50` if that suits each, else `2·10⁻²`.
+fn with_labels(values: Vec<f64>) -> Vec<(f64, String)> {
+    let is_plain = |v: &f64| *v == 0.0 || (-2.001..4.0).contains(&v.abs().log10());
+    let label = if values.iter().all(is_plain) { plain } else { scientific };
+    values.into_iter().map(|v| (v, label(v))).collect()
+}
+
+/// The shortest text of a value with few digits: `0.02`, `50`.
 fn plain(v: f64) -> String {
+    let rounded = format!("{v:.6}");
+    minus(rounded.trim_end_matches('0').trim_end_matches('.').to_string())
+}
+
+/// `3·10⁻⁴`, or `10⁻³`.
+fn scientific(v: f64) -> String {
     if v == 0.0 {
         return "0".into();
     }
-    let k = v.abs().log10();
-    if (-2.001..4.0).contains(&k) {
-        let rounded = format!("{v:.6}");
-        return minus(rounded.trim_end_matches('0').trim_end_matches('.').to_string());
-    }
-    let k = (k + 1e-9).floor() as i32;
+    let k = (v.abs().log10() + 1e-9).floor() as i32;
     let mantissa = v / 10f64.powi(k);
     if (mantissa - 1.0).abs() < 1e-9 {
         return power_of_ten(k);
@@ -189,6 +197,13 @@ mod tests {
             labels(&logarithmic(1.5e-5, 6e-5, 6)),
             ["2·10⁻⁵", "3·10⁻⁵", "4·10⁻⁵", "5·10⁻⁵", "6·10⁻⁵"]
         );
+    }
+
+    #[test]
+    fn one_axis_has_one_format() {
+        let t = logarithmic(1.5e-3, 0.04, 6);
+        assert_eq!(labels(&t), ["2·10⁻³", "5·10⁻³", "10⁻²", "2·10⁻²"]);
+        assert_eq!(labels(&fixed(&[1e-4, 0.5], 0.0, 1.0)), ["10⁻⁴", "5·10⁻¹"]);
     }
 
     #[test]

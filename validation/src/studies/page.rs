@@ -160,7 +160,7 @@ fn gate_table<'a>(caption: &str, judged: impl Iterator<Item = &'a Judged>) -> Ta
     ];
     let mut table = Table::new(caption, columns);
     for Judged { gate, judgement } in judged {
-        let value = judgement.value.map_or(Cell::text("not measured"), |v| Cell::num(v, 4));
+        let value = judgement.value.map_or(Cell::text("not measured"), measured);
         let margin = judgement.margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
         let because = match &judgement.verdict {
             Verdict::Limitation(reason) => format!("{} — limitation: {reason}", gate.because),
@@ -177,6 +177,12 @@ fn gate_table<'a>(caption: &str, judged: impl Iterator<Item = &'a Judged>) -> Ta
         ]);
     }
     table
+}
+
+/// A measured value: a whole number as such, any other with four digits.
+fn measured(value: f64) -> Cell {
+    let is_whole = value == value.trunc() && value.abs() < 1e6;
+    if is_whole { Cell::exact(value) } else { Cell::num(value, 4) }
 }
 
 fn evidence(evidence: Evidence) -> &'static str {

@@ -65,9 +65,18 @@ pub fn pareto(points: &[Point]) -> Vec<&Point> {
     front
 }
 
-/// The cheapest point with at most this error.
+/// Is there a next finer level of the same ladder, and is the error larger there? Then it was small
+/// because parts of it cancelled.
+fn rises_when_finer(points: &[Point], point: &Point) -> bool {
+    let ladder = points.iter().filter(|p| p.variant == point.variant && p.note == point.note);
+    let finer = ladder.filter(|p| p.rows > point.rows).min_by_key(|p| p.rows);
+    finer.is_some_and(|finer| finer.error.is_nan() || finer.error > point.error)
+}
+
+/// The cheapest point with at most this error, of those whose error does not rise at the next finer
+/// level.
 pub fn cheapest(points: &[Point], error: f64) -> Option<&Point> {
-    let good = points.iter().filter(|p| p.error <= error);
+    let good = points.iter().filter(|p| p.error <= error && !rises_when_finer(points, p));
     good.min_by(|a, b| a.median_seconds().total_cmp(&b.median_seconds()))
 }
 
@@ -102,8 +111,7 @@ fn panel(
         let own: Vec<&Point> =
             points.iter().filter(|p| p.variant == variant && p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let mut series =
-            Series::line_markers(variant, line).colour(Colour::cycle(k)).shape(Shape::cycle(k));
+        let mut series = Series::line_markers(variant, line).cycle(k);
         if title.contains("time") {
             series = series.x_bars(own.iter().map(|p| p.spread()).collect());
         }
@@ -189,5 +197,16 @@ mod tests {
         assert_eq!(points[0].spread(), (1.0, 3.0));
         assert_eq!(cheapest(&points, 1e-2).map(|p| p.variant), Some("fast and bad"));
         assert!(cheapest(&points, 1e-5).is_none());
+    }
+
+    #[test]
+    fn an_error_that_rises_at_the_next_level_is_not_the_cheapest() {
+        let of = |rows: usize, error: f64, seconds: f64| Point {
+            rows,
+            ..point("cancels", error, &[seconds])
+        };
+        let points = [of(10, 1e-3, 0.1), of(20, 2e-3, 1.0), of(40, 5e-4, 9.0)];
+        assert_eq!(cheapest(&points, 1e-3).map(|p| p.rows), Some(40));
+        assert_eq!(cheapest(&points, 3e-3).map(|p| p.rows), Some(20));
     }
 }

@@ -9,6 +9,7 @@ pub mod plan;
 mod run;
 mod settings;
 mod setup;
+mod starts;
 mod studies;
 mod variants;
 

@@ -107,7 +107,8 @@ pub fn study(tier: Tier) -> Study {
 const LEAD: &str = "What breaks a naive program: vanishing and huge Reynolds numbers, steps beyond \
     the limit, sound a thousand times too fast, particles on top of each other or far from all \
     others. Each entry has a criterion of its own; where a run cannot succeed, the criterion is that \
-    it says so, in time.";
+    it says so, in time. Of a disturbed lattice only the energy is judged, which must not rise; the errors \
+    of energy and velocity beside it are reported.";
 
 fn status(verdict: &Verdict) -> Status {
     match verdict {
