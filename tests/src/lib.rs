@@ -42,7 +42,7 @@ impl Random {
 }
 
 /// A scheme without the walls, whose rates are looked at.
-pub type RatesOf<K, F, D, W = Open> = Compose<K, F, D, W, RateInstead>;
+pub type RatesOf<K, F, D, W = Open, X = ()> = Compose<K, F, D, W, RateInstead, X>;
 
 /// Puts the rates where the state was. Not a time integration: it shows one right-hand side.
 #[derive(Default)]
@@ -68,10 +68,9 @@ impl<X: Numbers> Integrator<X> for RateInstead {
 }
 
 /// Keeps the particles of the first step and stops, before anyone takes the rates for a state.
-#[derive(Default)]
-struct First(Vec<Particle>);
+struct First<X>(Vec<Particle<X>>);
 
-impl<S: Scheme<Extra = ()>> Observer<S> for First {
+impl<S: Scheme> Observer<S> for First<S::Extra> {
     fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
         self.0 = simulation.particles();
         Flow::Stop
@@ -79,28 +78,38 @@ impl<S: Scheme<Extra = ()>> Observer<S> for First {
 }
 
 /// d/dt of every particle, in the order of the scene; 0 for interface particles.
-pub fn rates<K: Kernel, F: Term<()>, D: Term<()>, W: Walls<()>>(
-    scene: Scene<RatesOf<K, F, D, W>>,
-) -> Vec<Rate<()>> {
-    let mut first = First::default();
+pub fn rates<K: Kernel, F: Term<X>, D: Term<X>, W: Walls<X>, X: Numbers>(
+    scene: Scene<RatesOf<K, F, D, W, X>>,
+) -> Vec<Rate<X>> {
+    let mut first = First(Vec::new());
     let outcome = scene.build().expect("a sound scene").advance(1.0, 1.0, &mut first);
     assert_eq!(outcome, Outcome::Stopped);
-    let rate = |p: Particle| match p.role {
-        Role::Interface => Rate::default(),
-        _ => Rate { position: p.position, velocity: p.velocity, density: p.density, extra: () },
+    let rate = |p: Particle<X>| {
+        let Particle { role, position, velocity, density, extra, .. } = p;
+        match role {
+            Role::Interface => Rate::default(),
+            _ => Rate { position, velocity, density, extra },
+        }
     };
     first.0.into_iter().map(rate).collect()
 }
 
 /// The rates of particles in an open domain.
-pub fn open_rates<K: Kernel, F: Term<()>, D: Term<()>>(
+pub fn open_rates<K: Kernel, F: Term<X>, D: Term<X>, X: Numbers>(
     h: f64,
-    particles: &[Particle],
+    particles: &[Particle<X>],
     forces: F,
     drift: D,
-) -> Vec<Rate<()>> {
+) -> Vec<Rate<X>> {
     let particles = particles.to_vec();
-    rates::<K, F, D, Open>(Scene::new(h, Domain::open(), particles, forces, drift, Open))
+    rates::<K, F, D, Open, X>(Scene::new(h, Domain::open(), particles, forces, drift, Open))
+}
+
+/// Σ numbers / Σ |numbers|.
+pub fn relative_sum(numbers: impl Iterator<Item = f64>) -> f64 {
+    let (sum, size) = numbers.fold((0.0, 0.0), |(s, a), x| (s + x, a + x.abs()));
+    assert!(size > 0.0, "a sum of nothing shows nothing");
+    sum / size
 }
 
 /// A square lattice of n × n particles in the unit square, density 1, moved by up to `jitter`

@@ -60,7 +60,7 @@ fn check(
 ) {
     let mut active = 0;
     for pair in pairs() {
-        let rates = open_rates::<CubicSpline, _, _>(H, &pair, forces.clone(), drift.clone());
+        let rates = open_rates::<CubicSpline, _, _, _>(H, &pair, forces.clone(), drift.clone());
         for (i, j) in [(0, 1), (1, 0)] {
             let (r, v) = (pair[i].position - pair[j].position, pair[i].velocity - pair[j].velocity);
             let expected = formula(&pair[i], &pair[j], r, v);
@@ -202,9 +202,9 @@ fn body_force_is_an_acceleration() {
 fn a_tuple_of_terms_is_their_sum() {
     let (viscosity, force) = (Viscosity { mu: 1.7, eta2: 1e-4 }, BodyForce(Vector2::new(0.0, 9.0)));
     for pair in pairs() {
-        let rate = |forces| open_rates::<CubicSpline, _, _>(H, &pair, forces, ())[0].velocity;
+        let rate = |forces| open_rates::<CubicSpline, _, _, _>(H, &pair, forces, ())[0].velocity;
         let both = rate((viscosity, force));
-        let alone = open_rates::<CubicSpline, _, _>(H, &pair, viscosity, ())[0].velocity;
+        let alone = open_rates::<CubicSpline, _, _, _>(H, &pair, viscosity, ())[0].velocity;
         assert!((both - alone - force.0).norm() < 1e-12 * both.norm());
     }
 }

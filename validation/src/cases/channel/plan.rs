@@ -56,7 +56,7 @@ pub const REYNOLDS: [(f64, f64); 9] = [
 ];
 
 /// Couette flow has no force that disorders rows; the quick tier spends its time on Poiseuille flow.
-const QUICK_COUETTE: f64 = 100.0;
+const QUICK_COUETTE: f64 = 20.0;
 
 /// Reynolds numbers above those, to see where the rule breaks: reported, not judged.
 const BEYOND: [(f64, f64); 3] = [(1000.0, 1.0), (2000.0, 1.0), (5000.0, 0.5)];

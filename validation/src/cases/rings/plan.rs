@@ -11,8 +11,9 @@ pub const LADDER: [&str; 4] = ["seed", "leapfrog", "no-artificial-stress", "comp
 /// Spacings of a variant.
 pub fn spacings(variant: &str, tier: Tier) -> &'static [f64] {
     match (tier, variant) {
-        (Tier::Quick, "componentwise" | "leapfrog") => &[0.2],
-        (Tier::Quick, _) => &[0.2, 0.1],
+        // The cheapest variant shows what the spacing does.
+        (Tier::Quick, "leapfrog") => &[0.2, 0.1],
+        (Tier::Quick, _) => &[0.2],
         (Tier::Full, _) => &[0.2, 0.1, 0.05],
     }
 }
@@ -71,7 +72,7 @@ fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
         "a ring is one piece: rubber does not break, and finite elements find no strain near that";
     let pieces = gate(id(), "pieces_most", Bound::Equals(2.0), Evidence::Reference, whole);
     match (variant, spacing) {
-        // M2: without artificial stress the tensile instability tears the rings.
+        // M2 at the paper's speed; at spacing 0.2 L the rings hold all the same.
         ("no-artificial-stress", 0.1) => gates.push(pieces.expected_to_fail()),
         ("no-artificial-stress", _) => gates.push(pieces.reported()),
         _ => gates.push(pieces),
@@ -119,7 +120,12 @@ fn fast_gates(variant: &str, spacing: f64, speed: f64) -> Vec<Gate> {
     let whole =
         "M2: with artificial stress rings stay in one piece at any speed below a fifth of sound";
     let pieces = gate(id(), "pieces_most", Bound::Equals(2.0), Evidence::Reference, whole);
-    gates.push(if variant == "seed" { pieces } else { pieces.reported() });
+    gates.push(match variant {
+        "seed" => pieces,
+        // M2: without artificial stress the tensile instability tears the rings.
+        "no-artificial-stress" if speed == 0.12 => pieces.expected_to_fail(),
+        _ => pieces.reported(),
+    });
     if variant == "seed" && speed == 0.03 {
         let because = "as at the paper's speed, and no setting was chosen with this one";
         let bound = Bound::Below(0.5 * spacing);
