@@ -281,3 +281,27 @@ impl<S: Scheme<Extra = ()>> Observer<S> for Series {
         Going::Continue
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use solver::{CubicSpline, PredictorCorrector};
+
+    use super::{Setup, depends_on_viscosity};
+    use crate::cases::channel::{ChannelSettings, Flow};
+
+    #[test]
+    fn steady_couette_flow_does_not_show_its_viscosity() {
+        let shows = |flow, tau| {
+            let settings = ChannelSettings::default();
+            let setup = Setup::new::<CubicSpline, PredictorCorrector>(flow, &settings, true);
+            let setup = setup.expect("the defaults are valid");
+            let fluid = setup.rows(0.5 * setup.dx, 20);
+            depends_on_viscosity(&setup, &fluid, setup.time(tau))
+        };
+        assert_eq!(
+            [0.02, 0.2, 0.5, 1.0].map(|tau| shows(Flow::Couette, tau)),
+            [true, true, false, false]
+        );
+        assert!([0.02, 0.2, 1.0].into_iter().all(|tau| shows(Flow::Poiseuille, tau)));
+    }
+}
