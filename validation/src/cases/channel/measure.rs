@@ -180,8 +180,8 @@ fn shear_error(setup: &Setup, fluid: &[Particle], wall: usize, t: f64) -> f64 {
 }
 
 /// Does the exact flow still show its viscosity? A change of ν by 2 % must move it by 0.1 %
-/// (relative L2): steady Couette flow has the same profile whatever ν, and a fit to it would only amplify other
-/// errors.
+/// (relative L2): steady Couette flow has the same profile whatever ν, and a fit to it would only
+/// amplify other errors.
 fn depends_on_viscosity(setup: &Setup, fluid: &[Particle], t: f64) -> bool {
     let nu = setup.settings.nu;
     let (mut moved, mut all) = (0.0, 0.0);
