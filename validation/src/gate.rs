@@ -345,6 +345,13 @@ mod tests {
     const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
     #[test]
+    fn bounds_are_shown_without_rounding_dust() {
+        assert_eq!(Bound::Below(0.1 + 0.2).to_string(), "at most 0.3");
+        assert_eq!(Bound::Equals(300.0).to_string(), "exactly 300");
+        assert_eq!(Bound::Within(-1e-10, 1.78398).to_string(), "-1e-10 to 1.78398");
+    }
+
+    #[test]
     fn only_a_finite_number_inside_passes() {
         let bounds =
             [Bound::Below(1.0), Bound::Above(1.0), Bound::Within(0.0, 1.0), Bound::Equals(1.0)];

@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn one_axis_has_one_format() {
         let t = logarithmic(1.5e-3, 0.04, 6);
-        assert_eq!(labels(&t), ["2·10⁻³", "5·10⁻³", "10⁻²", "2·10⁻²"]);
+        assert_eq!(labels(&t), ["2·10⁻³", "3·10⁻³", "5·10⁻³", "10⁻²", "2·10⁻²", "3·10⁻²"]);
         assert_eq!(labels(&fixed(&[1e-4, 0.5], 0.0, 1.0)), ["10⁻⁴", "5·10⁻¹"]);
     }
 

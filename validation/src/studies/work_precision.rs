@@ -91,7 +91,7 @@ pub fn figure(id: &str, caption: &str, error: &str, points: &[Point], peers: &[P
         panel("Error against run time", "stepping loop, one core [s]", error, points, seconds);
     clock.layers.splice(0..0, peer_layers(peers));
     let front = pareto(points).iter().map(|p| (p.median_seconds(), p.error)).collect();
-    let line = Series::line("Pareto front", front).colour(Colour::BLACK).dash(Dash::Dashed);
+    let line = Series::line("Pareto front", front).colour(Colour::GREY).dash(Dash::DashDot);
     clock = clock.layer(line).legend(Legend::Outside);
     let counted = panel("Error against work", "pair interactions [1]", error, points, pairs);
     Figure::new(id, caption).panel(clock).panel(counted.legend(Legend::Hidden)).columns(2)

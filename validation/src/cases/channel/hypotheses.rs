@@ -148,11 +148,12 @@ impl Map {
         let gate = Gate::new(
             "poiseuille.map.first-failing-re",
             "first_failing_re",
-            Bound::Within(7.0, 70.0),
+            Bound::Within(2.2, 14.0),
             Evidence::Regression,
-            "H4: with the seed's settings and c0 = 10 V most starts hold Re 5 and most fail at Re 100, so \
-             the first Reynolds number of the map at which most fail is 10, 20 or 50. The ends are half-way \
-             in the logarithm to 5 and to 100, so no outcome of the map lies at an end",
+            "H4: with the seed's settings and c0 = 10 V every start holds Re 1, and every start fails at \
+             Re 5, where only a perfect lattice holds (0.99 %, but 5.6 % with a disorder of 1e-6 dx). The \
+             ends are half-way in the logarithm between 1 and 5, and between 10 and 20, so no outcome of \
+             the map lies at an end",
         );
         study.judge(gate, self.first_failing().unwrap_or(f64::NAN))
     }
@@ -213,7 +214,8 @@ impl Map {
         format!(
             "**H4** (with rising Re the waves grow until the run is unstable) **{verdict}**: at c0 = \
              {JUDGED_SOUND} V and fixed Courant number there fail {}. Supported means that none fails at \
-             the lowest Re, all at the highest, and never fewer at a higher one.",
+             the lowest Re, all at the highest, and never fewer at a higher one. It says that runs fail, \
+             not that waves are the reason.",
             counts.join(", ")
         )
     }
@@ -346,7 +348,8 @@ fn cures(case: &'static dyn Case, tier: Tier) -> Study {
 /// What the table of cures shows, from the numbers.
 fn cures_in_words(fails: impl Fn(&str) -> bool) -> String {
     let names = |wanted: bool| {
-        let of_this_kind = CURES.iter().filter(|(variant, _)| fails(variant) == wanted);
+        let tried = CURES.iter().skip(1);
+        let of_this_kind = tried.filter(|(variant, _)| fails(variant) == wanted);
         let names: Vec<&str> = of_this_kind.map(|(_, what)| *what).collect();
         if names.is_empty() { "none".to_string() } else { names.join("; ") }
     };
@@ -355,8 +358,11 @@ fn cures_in_words(fails: impl Fn(&str) -> bool) -> String {
             "From most starts these hold every Reynolds number of the table: {}.",
             names(false)
         ),
-        format!("These fail at some: {}.", names(true)),
+        format!("These fail from most starts at some: {}.", names(true)),
     ];
+    if fails("seed") {
+        words.insert(0, "The seed as it is fails.".into());
+    }
     if fails("seed") && fails("cure-leapfrog") {
         let text = "Time integration alone is not the cause: the leapfrog, which neither damps nor \
                     amplifies sound, fails as well.";
@@ -367,6 +373,12 @@ fn cures_in_words(fails: impl Fn(&str) -> bool) -> String {
                     positive (background pressure), which points to the tensile instability where p < 0. \
                     A background pressure in proportion to ρc0² pushes where the particles are not in \
                     order, and its error in the table is the price.";
+        words.push(text.into());
+    }
+    if !fails("cure-shifting") && fails("cure-background") {
+        let text = "What keeps particles apart cures it (shifting). A background pressure of 0.05 ρc0² \
+                    does not do so from most starts, so that the tensile instability where p < 0 is the \
+                    cause is not shown here.";
         words.push(text.into());
     }
     words.join(" ")
