@@ -351,6 +351,20 @@ fn touching(variant: &'static str, speed: &str) -> Planned {
     let welded = "bars on one lattice are one bar: (3) and (11) know no surface, so the contact pulls as \
                   soon as the first expansion returns, and the front that returns is as wide as the \
                   kernel, wider with viscosity: what it has not delivered by then is missing";
+    let time = gate(
+        &id,
+        "contact_time_error",
+        near,
+        "between 10 % and 90 % of the exchange the stress is constant, so its time is that of the jump \
+         conditions; the lattice's G1 is within 2 % of 1",
+    );
+    let time = match (variant, speed) {
+        ("bare", _) | (_, "1e-4" | "1e-3" | "1e-2") => time,
+        _ => time.with_limitation(
+            "compressed by 10 % along x the lattice has G1 = 0.991, which takes 0.9 %, and viscosity, \
+             whose beta matters at this speed, widens the front beyond the first tenth of the exchange",
+        ),
+    };
     let gates = vec![
         gate(
             &id,
@@ -359,13 +373,7 @@ fn touching(variant: &'static str, speed: &str) -> Planned {
             "the jump conditions hold whatever dissipates in the front; the lattice's G1 is within 2 % \
              of 1",
         ),
-        gate(
-            &id,
-            "contact_time_error",
-            near,
-            "between 10 % and 90 % of the exchange the stress is constant, so its time is that of the \
-             jump conditions; the lattice's G1 is within 2 % of 1",
-        ),
+        time,
         gate(
             &id,
             "exchange",
@@ -382,10 +390,10 @@ fn touching(variant: &'static str, speed: &str) -> Planned {
 /// Two bars that start out of each other's reach: the contact is what the kernel makes of it.
 fn apart(variant: &'static str, speed: &str, end: &str) -> Planned {
     let id = format!("{variant}.apart{speed}");
-    let soft = "across a gap of nearly 2 h the pressure of the faces rises as a power of how deep one is \
-                in the other's support, so a contact of strain V/c_p is some 0.1 dx deep and takes \
-                0.1 dx/V: longer than 2 L/c_p = 80 dx/c_p for V below 1e-3 c_p, and then the bars meet \
-                as on a spring; artificial viscosity dissipates in it";
+    let soft = "faces meet across 2 h, and their density rises as about 0.14 (d/h)^3.5 with the depth d \
+                of one in the other's support: a contact of strain V/c_p is 0.2, 0.4, 0.7 dx deep at \
+                1e-4, 1e-3, 1e-2 c_p and takes d/V, which is 2 L/c_p = 80 dx/c_p at 1e-2 c_p and far \
+                longer below: the bars meet as on a spring, and artificial viscosity dissipates in it";
     let goal = "equal elastic bars exchange their velocities, and the contact bears rho c_p V; 2 % for \
                 the lattice as for bars in touch";
     let gates = vec![

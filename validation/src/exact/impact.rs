@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn slow_strips_meet_as_linear_theory_has_it() {
-        let (bulk, shear, density) = (3.0, 0.7, 2.0);
+        let (bulk, shear, density) = (3.0_f64, 0.7_f64, 2.0_f64);
         let c = ((bulk + 4.0 / 3.0 * shear) / density).sqrt();
         let slow = Impact::new(bulk, shear, density, 1e-5 * c);
         assert_relative_eq!(slow.stress, density * c * 1e-5 * c, max_relative = 2e-5);
