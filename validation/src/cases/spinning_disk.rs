@@ -135,7 +135,8 @@ impl Problem for SpinningDisk {
         );
         let end = s.end * std::f64::consts::TAU * s.radius / speed;
         let every = end / SAMPLES;
-        let interior = s.radius - 2.0 * solid.h(dx) - dx;
+        // One support for the gradient, one for the neighbours that XSPH has moved before it.
+        let interior = s.radius - 4.0 * solid.h(dx) - dx;
         let (series, first) = (Vec::new(), None);
         let mut seen = Seen { material, until: every, every, series, interior, first };
         let (start, mass) = start(&scene.particles);
@@ -188,7 +189,7 @@ fn first_step(seen: &Seen, scale: f64, record: &mut Record) {
         "interior_strain",
         inside,
         "largest ((S_xx - S_yy)^2/2 + 2 S_xy^2)^(1/2)/(2 mu dt) over the spin after one step, of \
-         particles farther than 2 h + dx from the rim",
+         particles farther than 4 h + dx from the rim",
     );
     put("rim_strain", rim, "root mean square of the same for the other particles");
 }
