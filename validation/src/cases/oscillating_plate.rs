@@ -157,7 +157,7 @@ impl Problem for OscillatingPlate {
         let material = solid.material;
         let (dx, speed) = (s.thickness / s.n as f64, s.speed * material.sound_speed());
         let (value, most) = (s.length / dx * s.n as f64, 1e6);
-        if !(value <= most) {
+        if value > most {
             let setting = "n, length or thickness";
             return Err(RunError::TooMuch { what: "the particles", value, most, setting });
         }

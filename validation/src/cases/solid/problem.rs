@@ -174,7 +174,7 @@ pub fn describe<P: Problem, M: Method>(
 /// Refused where more than ten million steps would be needed.
 fn steps_and_frames(end: f64, dt: f64, context: &Context) -> Result<Vec<f64>, RunError> {
     let (value, most) = (end / dt, 1e7);
-    if !(value <= most) {
+    if value > most {
         return Err(RunError::TooMuch { what: "the steps", value, most, setting: "end or dt" });
     }
     let count = context.frames.as_ref().map_or(1, |(_, count)| *count.max(&1));
