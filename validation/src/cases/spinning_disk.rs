@@ -56,7 +56,8 @@ struct Seen {
     series: Vec<[f64; 5]>,
     /// Particles farther from the centre than this miss neighbours \[m\].
     interior: f64,
-    /// Shear squared after the first step: the largest inside, the mean in the rim \[Pa²\], and the step \[s\].
+    /// Shear squared after the first step: the largest inside, the mean in the rim \[Pa²\]; and the
+    /// step \[s\].
     first: Option<([f64; 2], f64)>,
 }
 
