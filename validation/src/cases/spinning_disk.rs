@@ -238,8 +238,8 @@ const RIM: &str = "the velocity gradient in (11) is a sum over neighbours that i
     rotation with spin W it makes W e M with M = sum V r grad W, which is a number times the unit matrix \
     inside and is not in the rim, 2 h wide, where neighbours are missing. There a rotation is taken for \
     shear, in axes that turn with the body, so the stress grows from the first step on, and its forces, \
-    which are not central, brake the disk. It is of space and not of time, and falls with the share of \
-    the rim";
+    which are not central, brake the disk. It is of space and not of time; \
+    the drift falls with finer spacing, but slower than the share of the rim";
 
 /// One run of a revolution.
 fn spin(variant: &'static str, n: usize) -> Planned {
