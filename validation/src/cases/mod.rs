@@ -3,11 +3,16 @@
 pub mod acoustic_wave;
 pub mod channel;
 mod couette;
+mod elastic_bar;
+mod oscillating_plate;
 mod poiseuille;
 pub mod rings;
 pub mod shear_wave;
+pub mod solid;
+mod spinning_disk;
 pub mod wave;
 
+use self::solid::SolidCase;
 use crate::{
     case::{Case, RunError},
     settings::nearest,
@@ -19,6 +24,9 @@ pub const CASES: &[&dyn Case] = &[
     &poiseuille::POISEUILLE,
     &acoustic_wave::ACOUSTIC_WAVE,
     &shear_wave::SHEAR_WAVE,
+    &SolidCase::<elastic_bar::ElasticBar>::CASE,
+    &SolidCase::<spinning_disk::SpinningDisk>::CASE,
+    &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
 ];
 

@@ -2,6 +2,7 @@
 
 pub mod couette;
 pub mod damped_mode;
+pub mod impact;
 pub mod poiseuille;
 
 pub use couette::Couette;

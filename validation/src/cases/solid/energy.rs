@@ -1,0 +1,125 @@
+//! The energies of an elastic body per unit depth, from its particles.
+
+use nalgebra::Vector2;
+use solver::{Evolved, Scheme, Simulation, Symmetric};
+
+use super::Material;
+
+/// Energies \[J/m\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Σ m v²/2.
+    pub kinetic: f64,
+    /// Σ m e with de = p dρ/ρ² and (12): e = ⁰c² (ln(ρ/⁰ρ) + ⁰ρ/ρ − 1).
+    pub compression: f64,
+    /// Σ (m/ρ) S:S/(4μ) with Sᶻᶻ = −(Sˣˣ + Sʸʸ).
+    pub shear: f64,
+}
+
+impl Energy {
+    /// Of all fluid particles of a simulation.
+    pub fn of<S: Scheme<Extra = Symmetric>>(simulation: &Simulation<S>, of: &Material) -> Self {
+        simulation.fluid().fold(Self::default(), |sum, (mass, p)| sum + Self::of_one(mass, p, of))
+    }
+
+    /// Of one particle of this mass \[kg/m\].
+    pub fn of_one(mass: f64, particle: &Evolved<Symmetric>, material: &Material) -> Self {
+        let ratio = particle.density / material.density;
+        let c2 = material.bulk / material.density;
+        // ln(1 + x) − x/(1 + x): neither term alone is small where their difference is.
+        let x = ratio - 1.0;
+        Self {
+            kinetic: 0.5 * mass * particle.velocity.norm_squared(),
+            compression: mass * c2 * (x.ln_1p() - x / ratio),
+            shear: mass / particle.density * norm_squared(&particle.extra) / (4.0 * material.shear),
+        }
+    }
+
+    /// Elastic energy.
+    pub fn strain(&self) -> f64 {
+        self.compression + self.shear
+    }
+
+    /// All of it.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.strain()
+    }
+}
+
+impl std::ops::Add for Energy {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            kinetic: self.kinetic + other.kinetic,
+            compression: self.compression + other.compression,
+            shear: self.shear + other.shear,
+        }
+    }
+}
+
+/// S:S of a deviator of plane strain \[Pa²\]: Sᶻᶻ = −(Sˣˣ + Sʸʸ) counts too.
+pub fn norm_squared(s: &Symmetric) -> f64 {
+    let zz = -(s.xx + s.yy);
+    s.xx * s.xx + s.yy * s.yy + zz * zz + 2.0 * s.xy * s.xy
+}
+
+/// Angular momentum about the centre of mass \[kg m²/s per m\].
+pub fn angular_momentum<S: Scheme>(simulation: &Simulation<S>) -> f64 {
+    let sums = simulation.fluid().fold(
+        (0.0, Vector2::zeros(), Vector2::zeros()),
+        |(mass, first, momentum), (m, p)| {
+            (mass + m, first + p.position * m, momentum + p.velocity * m)
+        },
+    );
+    let (centre, drift) = (sums.1 / sums.0, sums.2 / sums.0);
+    let spin =
+        |(m, p): (f64, &Evolved<S::Extra>)| m * (p.position - centre).perp(&(p.velocity - drift));
+    simulation.fluid().map(spin).fold(0.0, |sum, one| sum + one)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn particle(density: f64, speed: f64, extra: Symmetric) -> Evolved<Symmetric> {
+        let velocity = Vector2::new(0.6 * speed, -0.8 * speed);
+        Evolved { position: Vector2::zeros(), velocity, density, extra }
+    }
+
+    #[test]
+    fn simple_states_have_the_energies_of_the_books() {
+        let material = Material { density: 2.0, bulk: 8.0, shear: 3.0 };
+        let nothing = Symmetric::default();
+        let at_rest = Energy::of_one(5.0, &particle(2.0, 0.0, nothing), &material);
+        assert_eq!(at_rest, Energy::default());
+        let moving = Energy::of_one(5.0, &particle(2.0, 3.0, nothing), &material);
+        assert_relative_eq!(moving.total(), 22.5, max_relative = 1e-15);
+        // Small compression: V K e²/2; V = 2.5.
+        let e = 1e-5;
+        let pressed = Energy::of_one(5.0, &particle(2.0 * (1.0 + e), 0.0, nothing), &material);
+        assert_relative_eq!(pressed.compression, 2.5 * 8.0 * e * e / 2.0, max_relative = 1e-4);
+        // Simple shear by g: S_xy = mu g, energy V mu g²/2.
+        let sheared = Symmetric { xy: 3.0 * 0.01, ..nothing };
+        let sheared = Energy::of_one(5.0, &particle(2.0, 0.0, sheared), &material);
+        assert_relative_eq!(sheared.shear, 2.5 * 3.0 * 1e-4 / 2.0, max_relative = 1e-12);
+        // Uniaxial strain e: S = 2 mu e (2/3, -1/3, -1/3), energy V (4/3) mu e²/2.
+        let (xx, yy) = (4.0 / 3.0 * 3.0 * e, -2.0 / 3.0 * 3.0 * e);
+        let along =
+            Energy::of_one(5.0, &particle(2.0, 0.0, Symmetric { xx, yy, xy: 0.0 }), &material);
+        assert_relative_eq!(along.shear, 2.5 * 4.0 / 3.0 * 3.0 * e * e / 2.0, max_relative = 1e-12);
+    }
+
+    /// The compression energy is the work of (12): de = p dρ/ρ².
+    #[test]
+    fn the_compression_energy_is_the_work_of_the_pressure() {
+        let material = Material { density: 2.0, bulk: 8.0, shear: 3.0 };
+        let energy =
+            |rho: f64| Energy::of_one(1.0, &particle(rho, 0.0, Symmetric::default()), &material);
+        for rho in [1.6, 1.9, 2.3, 3.0] {
+            let d = 1e-5;
+            let slope = (energy(rho + d).compression - energy(rho - d).compression) / (2.0 * d);
+            assert_relative_eq!(slope, 4.0 * (rho - 2.0) / (rho * rho), max_relative = 1e-7);
+        }
+    }
+}
