@@ -275,6 +275,12 @@ fn order_row(variant: &str, finest: f64, found: Option<&Convergence>) -> Vec<Cel
 const TIMED_AGAIN_BELOW: f64 = 0.08;
 /// Timings of a run that is timed again.
 const REPETITIONS: usize = 5;
+/// The same in the quick tier, which has to be quick.
+const QUICK_REPETITIONS: usize = 3;
+
+fn repetitions(tier: Tier) -> usize {
+    if tier == Tier::Quick { QUICK_REPETITIONS } else { REPETITIONS }
+}
 
 fn cost(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
     let (metric, label) = error_metric(flow);
@@ -288,9 +294,10 @@ fn cost(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRun]) -> 
     };
     let caption = format!(
         "{label} against the cost of the whole run to νt/L² = 1, Re = 0.5. Left: processor seconds of \
-         the stepping loop, median of up to {REPETITIONS} interleaved runs, bars from fastest to \
+         the stepping loop, median of up to {} interleaved runs, bars from fastest to \
          slowest; other codes were timed on another machine, {others}. Right: pair interactions, which \
          no noise touches. Rows: {}.",
+        repetitions(tier),
         rows.join(", ")
     );
     let study = Study::new(&id, "Error against run time")
@@ -337,7 +344,7 @@ fn timed_points(
     for &k in &again {
         points[k].seconds.clear();
     }
-    for _ in 0..REPETITIONS {
+    for _ in 0..repetitions(tier) {
         for &k in &again {
             let planned = &runs[k].planned;
             if let Ok(record) = case.run(planned.variant, &planned.set, &Context::default()) {
