@@ -1,11 +1,14 @@
 //! What is measured of the rings, sample by sample and at the end.
 
 use nalgebra::Vector2;
-use solver::{Flow as Going, Observer, Particle, Scheme, Simulation, Symmetric};
+use solver::{Evolved, Flow as Going, Observer, Particle, Scheme, Simulation, Symmetric};
 use std::collections::HashMap;
 
 use super::Rings;
-use crate::record::{Metric, Profile, Record};
+use crate::{
+    cases::solid::{Energy, Material},
+    record::{Metric, Profile, Record},
+};
 
 /// Samples of a run, at most, and how many of them pass between two counts of fragments.
 const SAMPLES: f64 = 800.0;
@@ -26,39 +29,14 @@ pub struct Side {
     pub height: f64,
 }
 
-/// Energies of both rings per unit depth \[J/m\].
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Energies {
-    /// Σ m v²/2.
-    pub kinetic: f64,
-    /// Σ m ∫ p/ρ² dρ = Σ m c₀² (ln(ρ/⁰ρ) + ⁰ρ/ρ − 1), by (12).
-    pub compression: f64,
-    /// Σ V S:S/(4μ), with Sᶻᶻ = −(Sˣˣ + Sʸʸ).
-    pub shear: f64,
-}
-
-impl Energies {
-    /// Of these particles.
-    pub fn of(rings: &Rings, particles: &[Particle<Symmetric>]) -> Self {
-        let mut sum = Self::default();
-        for p in particles {
-            let ratio = p.density / rings.settings.rho;
-            let Symmetric { xx, yy, xy } = p.extra;
-            let zz = xx + yy;
-            let square = xx * xx + yy * yy + zz * zz + 2.0 * xy * xy;
-            sum.kinetic += 0.5 * p.mass * p.velocity.norm_squared();
-            sum.compression += p.mass * rings.c0 * rings.c0 * (ratio.ln() + 1.0 / ratio - 1.0);
-            if rings.mu > 0.0 {
-                sum.shear += p.mass / p.density * square / (4.0 * rings.mu);
-            }
-        }
-        sum
-    }
-
-    /// All of it.
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.compression + self.shear
-    }
+/// Energies of these particles.
+fn energy(rings: &Rings, particles: &[Particle<Symmetric>]) -> Energy {
+    let (density, bulk) = (rings.settings.rho, rings.settings.bulk_modulus);
+    let material = Material { density, bulk, shear: rings.mu };
+    particles.iter().fold(Energy::default(), |sum, p| {
+        let Particle { position, velocity, density, extra, .. } = *p;
+        sum + Energy::of_one(p.mass, &Evolved { position, velocity, density, extra }, &material)
+    })
 }
 
 /// The particles in the frame whose x axis is the line of flight, as the scene orders them.
@@ -163,7 +141,7 @@ impl<'a> Series<'a> {
         }
         self.samples += 1;
         let seen = side(right, dx);
-        let energies = Energies::of(rings, particles);
+        let energies = energy(rings, particles);
         let mirror = mirror_error(left, right) / dx;
         self.rows.push([
             time * rings.c0,
@@ -310,11 +288,11 @@ mod tests {
     fn energies_are_those_of_simple_states() {
         let rings = Rings::new::<Leapfrog>(&RingSettings::default(), false).unwrap();
         let mut p = Particle::fluid(Vector2::zeros(), Vector2::new(0.6, 0.8), 1.0, 0.01);
-        let at_rest = Energies::of(&rings, &[p]);
+        let at_rest = energy(&rings, &[p]);
         assert!((at_rest.kinetic - 0.005).abs() < 1e-15 && at_rest.compression.abs() < 1e-15);
         // Small compression: K e²/2 an area; pure shear: tau²/(2 mu) an area.
         (p.density, p.extra.xy) = (1.0 + 1e-4, 1e-4);
-        let strained = Energies::of(&rings, &[p]);
+        let strained = energy(&rings, &[p]);
         assert!((strained.compression / (0.01 * 0.5e-8) - 1.0).abs() < 1e-3);
         assert!((strained.shear / (0.01 * 1e-8 / (2.0 * 0.22)) - 1.0).abs() < 1e-3);
     }

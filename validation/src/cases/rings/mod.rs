@@ -15,7 +15,6 @@ use solver::{
     ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Symmetric, terms::TensileStress,
 };
 
-pub use measure::{Energies, Side};
 pub use run::{Rubber, run_scene};
 pub use setup::{Rings, Tensile};
 

@@ -28,10 +28,16 @@ impl Energy {
         let c2 = material.bulk / material.density;
         // ln(1 + x) − x/(1 + x): neither term alone is small where their difference is.
         let x = ratio - 1.0;
+        // Without a shear modulus there is no shear stress to hold energy.
+        let shear = if material.shear > 0.0 {
+            mass / particle.density * norm_squared(&particle.extra) / (4.0 * material.shear)
+        } else {
+            0.0
+        };
         Self {
             kinetic: 0.5 * mass * particle.velocity.norm_squared(),
             compression: mass * c2 * (x.ln_1p() - x / ratio),
-            shear: mass / particle.density * norm_squared(&particle.extra) / (4.0 * material.shear),
+            shear,
         }
     }
 
