@@ -266,11 +266,10 @@ impl<S: Scheme> Engine<S> {
     }
 
     fn fill_images(&mut self) {
-        let real = self.fixed.len();
-        let (particles, images) = self.columns.split_at_mut(real);
-        let maps = &self.neighbours.maps;
-        for (column, image) in images.iter_mut().zip(&self.neighbours.images) {
-            *column = maps[image.map as usize].apply(&particles[image.source as usize]);
+        let (real, maps) = (self.fixed.len(), &self.neighbours.maps);
+        for (k, image) in self.neighbours.images.iter().enumerate() {
+            let source = &self.columns[image.source as usize];
+            self.columns[real + k] = maps[image.map as usize].apply(source);
         }
     }
 

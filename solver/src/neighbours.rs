@@ -19,7 +19,7 @@ pub(crate) const LANES: usize = 4;
 /// Rows a unit of parallel work; fixed, so that nothing depends on the number of threads.
 pub(crate) const BLOCK: usize = 512;
 
-/// An extra column: which particle it copies, and by which map.
+/// An extra column: which earlier column it copies, a particle or an image, and by which map.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Image {
     pub source: u32,
@@ -114,14 +114,11 @@ pub(crate) struct Neighbours {
 impl Neighbours {
     /// Rows that reach `radius` = support + skin \[m\], empty until built.
     pub fn new(radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> Self {
-        let mut maps = vec![Map::identity()];
-        maps.extend(mirrors.iter().map(Map::mirror));
+        let mut maps: Vec<_> = mirrors.iter().copied().map(Map::Mirror).collect();
         for axis in 0..2 {
             if let Some(period) = domain.period[axis] {
                 let shift = if axis == 0 { Vector2::x() } else { Vector2::y() } * period;
-                let shifted = maps.clone();
-                maps.extend(shifted.iter().map(|m| m.shifted(shift)));
-                maps.extend(shifted.iter().map(|m| m.shifted(-shift)));
+                maps.extend([Map::Shift(shift), Map::Shift(-shift)]);
             }
         }
         Self {
@@ -192,45 +189,39 @@ impl Neighbours {
         search.fill_blocks(wall_rows, fluid, wall, parallel);
     }
 
-    /// Appends the images within reach: ghosts of particles near a wall, then periodic copies of
-    /// all of these. The maps are numbered as [`Neighbours::new`] composes them.
+    /// Appends the images within reach: ghosts of particles near a wall, then along each axis the
+    /// periodic copies of all of these. Maps are used in the order of [`Neighbours::new`].
     fn make_images(&mut self, domain: &Domain, mirrors: &[PlaneWall]) {
         self.images.clear();
         let real = self.points.len();
         for source in 0..real {
             for (m, wall) in mirrors.iter().enumerate() {
-                let depth = (self.points[source] - wall.point).dot(&wall.normal);
-                if depth.abs() < self.radius {
-                    self.add_image(source as u32, 1 + m as u32);
+                if wall.depth(self.points[source]).abs() < self.radius {
+                    self.add_image(source, m);
                 }
             }
         }
-        let mut maps_so_far = 1 + mirrors.len() as u32;
+        let mut shift = mirrors.len();
         for axis in 0..2 {
             let Some(period) = domain.period[axis] else { continue };
             let along = || self.points[..real].iter().map(|p| p[axis]);
             let (low, high) = (along().fold(f64::MAX, f64::min), along().fold(f64::MIN, f64::max));
-            for k in 0..self.points.len() {
-                let (source, map) = if k < real {
-                    (k as u32, 0)
-                } else {
-                    (self.images[k - real].source, self.images[k - real].map)
-                };
-                let x = self.points[k][axis];
+            for source in 0..self.points.len() {
+                let x = self.points[source][axis];
                 if x + period < high + self.radius {
-                    self.add_image(source, map + maps_so_far);
+                    self.add_image(source, shift);
                 }
                 if x - period > low - self.radius {
-                    self.add_image(source, map + 2 * maps_so_far);
+                    self.add_image(source, shift + 1);
                 }
             }
-            maps_so_far *= 3;
+            shift += 2;
         }
     }
 
-    fn add_image(&mut self, source: u32, map: u32) {
-        let place = self.maps[map as usize].place(self.points[source as usize]);
-        self.images.push(Image { source, map });
+    fn add_image(&mut self, source: usize, map: usize) {
+        let place = self.maps[map].place(self.points[source]);
+        self.images.push(Image { source: source as u32, map: map as u32 });
         self.points.push(place);
     }
 
@@ -385,15 +376,17 @@ mod tests {
         let (n, images) = (points.len() as u32, &neighbours.images);
         let sentinel = n + images.len() as u32;
         let row = neighbours.rows[i / BLOCK].row(i % BLOCK).iter().flatten();
-        row.filter(|&&c| c != sentinel)
-            .map(|&c| match c.checked_sub(n) {
-                None => (c, points[c as usize]),
-                Some(k) => {
-                    let Image { source, map } = images[k as usize];
-                    (source, neighbours.maps[map as usize].place(points[source as usize]))
-                }
-            })
-            .collect()
+        row.filter(|&&c| c != sentinel).map(|&c| seen(neighbours, points, c)).collect()
+    }
+
+    /// The particle that a column copies, however often, and where the column is.
+    fn seen(neighbours: &Neighbours, points: &[Vector2<f64>], column: u32) -> Seen {
+        let Some(k) = (column as usize).checked_sub(points.len()) else {
+            return (column, points[column as usize]);
+        };
+        let Image { source, map } = neighbours.images[k];
+        let (particle, place) = seen(neighbours, points, source);
+        (particle, neighbours.maps[map as usize].place(place))
     }
 
     /// Whether each entry of one list is in the other, as often.
