@@ -76,14 +76,15 @@ fn coarse(value: u8) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Axis, Plot, Series};
+    use crate::report::{Axis, Legend, Plot, Series};
 
     fn frame(y: f64) -> Figure {
         let line = Series::line("line", vec![(0.0, 0.0), (1.0, y)]);
         let plot = Plot::new("", Axis::linear("x [m]").range(0.0, 1.0), {
             Axis::linear("y [m]").range(0.0, 3.0)
         });
-        Figure::new("frame", "").panel(plot.layer(line)).panel_size(80.0, 60.0)
+        let plot = plot.layer(line).legend(Legend::Hidden);
+        Figure::new("frame", "").panel(plot).panel_size(80.0, 60.0)
     }
 
     #[test]

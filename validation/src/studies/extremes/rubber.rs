@@ -100,9 +100,9 @@ pub fn fast(_: Tier) -> Vec<Entry> {
 pub fn alone(tier: Tier) -> Vec<Entry> {
     let steps = if tier == Tier::Full { 100_000 } else { 5_000 };
     let one = |name: &str, what: &str, speed: f64, because: &str| {
-        // Two layers; a Courant step of 0.4 h/(c_p + V) is about 0.26 L/c0 long.
+        // Two layers; a Courant step of 0.4 h/(c_p + V) is at most 0.264 L/c0 long.
         let set = ["spacing=0.5".into(), "centre=9000".into(), format!("speed={speed}")];
-        let end = format!("end={}", f64::from(steps) * 0.25);
+        let end = format!("end={}", f64::from(steps) * 0.265);
         let set: Vec<&str> = set.iter().map(String::as_str).chain([end.as_str()]).collect();
         let setting = format!("at least {steps} steps at {speed} c0, 2 layers, spacing 0.5 L");
         let entry = Entry::new(name, [what.to_string(), setting], "change of extents [L]", {
