@@ -42,6 +42,7 @@ macro_rules! embedded {
 /// Every package of `references/` with its tables.
 const EMBEDDED: &[Embedded] = embedded! {
     "peers_channel": ["errors.csv"],
+    "periodic_hill_geometry": ["segments.csv"],
     "published_sph_errors": ["errors.csv"],
     "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "checks.csv"],
 };

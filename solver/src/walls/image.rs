@@ -12,16 +12,24 @@ pub enum Map {
     /// The ghost across a no-slip wall: x' = x − 2dn, v' = 2U − v + d² ∂²v/∂n², at the depth d of
     /// the source in the fluid.
     Mirror(PlaneWall),
+    /// The ghost across both walls of a corner there \[m\]: x' = 2c − x, v' = v.
+    Turn(Vector2<f64>),
     /// The copy a period away: x' = x + s \[m\].
     Shift(Vector2<f64>),
 }
 
 impl Map {
+    /// The ghost across two walls at a right angle: half a turn about their corner.
+    pub fn corner([a, b]: [&PlaneWall; 2]) -> Self {
+        Self::Turn(a.point - b.normal * b.depth(a.point))
+    }
+
     /// Where the image of a point is \[m\].
     #[inline(always)]
     pub fn place(&self, point: Vector2<f64>) -> Vector2<f64> {
         match self {
             Self::Mirror(wall) => point - wall.normal * (2.0 * wall.depth(point)),
+            Self::Turn(corner) => corner * 2.0 - point,
             Self::Shift(by) => point + by,
         }
     }
@@ -37,7 +45,7 @@ impl Map {
                     wall.velocity * 2.0 - source.velocity + wall.curvature * (depth * depth);
                 Column { position, velocity, ..*source }
             }
-            Self::Shift(_) => Column { position, ..*source },
+            Self::Turn(_) | Self::Shift(_) => Column { position, ..*source },
         }
     }
 }
@@ -65,5 +73,22 @@ mod tests {
         assert_eq!((ghost.common.density, ghost.shows), (2.0, 9.0));
         let back = map.place(ghost.position) - position;
         assert!(back.norm() < 1e-14, "mirroring twice is the identity");
+    }
+
+    #[test]
+    fn a_ghost_across_a_corner_is_the_mirror_of_the_mirror() {
+        let corner = Vector2::new(1.0, 2.0);
+        let wall = |n: Vector2<f64>| PlaneWall::new(corner, n, Vector2::zeros());
+        let walls = [wall(Vector2::new(-0.6, 0.8)), wall(Vector2::new(0.8, 0.6))];
+        let [a, b] = walls.map(Map::Mirror);
+        let common = Common { mass: 1.0, density: 2.0, volume: 0.5 };
+        let velocity = Vector2::new(1.0, 7.0);
+        let source = Column { position: Vector2::new(1.3, 2.9), velocity, common, shows: 9.0 };
+        let ghost = Map::corner([&walls[0], &walls[1]]).apply(&source);
+        for twice in [a.apply(&b.apply(&source)), b.apply(&a.apply(&source))] {
+            assert!((ghost.position - twice.position).norm() < 1e-14);
+            assert!((ghost.velocity - twice.velocity).norm() < 1e-14);
+        }
+        assert!((ghost.position + source.position - corner * 2.0).norm() < 1e-14, "half a turn");
     }
 }

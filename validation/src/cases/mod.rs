@@ -4,6 +4,7 @@ pub mod acoustic_wave;
 pub mod channel;
 mod couette;
 mod elastic_bar;
+pub mod hydrostatic;
 mod oscillating_plate;
 mod poiseuille;
 pub mod rings;
@@ -28,6 +29,7 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<spinning_disk::SpinningDisk>::CASE,
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
+    hydrostatic::HYDROSTATIC,
 ];
 
 /// The case of that name.
