@@ -208,6 +208,11 @@ const FACES: &str = "velocity gradients are not corrected, so that (11) sees les
     thickness these are all or more than half of them. The error falls as h/H does: the same gate holds \
     with 20";
 
+/// Why the plate without stabilisation does.
+const BARE: &str = "the same at faces, and more the finer the plate is, 35 % and 42 % with 5 and 10 particles: \
+    without viscosity and artificial stress, motion at the scale of the spacing takes up the energy. Why it \
+    grows with n is not known";
+
 fn swing(variant: &'static str, n: usize) -> Planned {
     let id = format!("oscillating_plate.{variant}.{n}");
     let period = Gate::new(
@@ -220,6 +225,7 @@ fn swing(variant: &'static str, n: usize) -> Planned {
     );
     let period = match (variant, n) {
         (_, 20..) => period,
+        ("bare", _) => period.with_limitation(BARE),
         _ => period.with_limitation(FACES),
     };
     let amplitude = Gate::new(

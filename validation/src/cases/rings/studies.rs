@@ -350,25 +350,34 @@ fn fracture(tier: Tier, runs: &[JudgedRun]) -> Study {
 fn cost(tier: Tier, runs: &[JudgedRun]) -> Study {
     let count: usize = plan::LADDER.iter().map(|v| plan::spacings(v, tier).len()).sum();
     let ladder = &runs[..count.min(runs.len())];
-    let point = |run: &JudgedRun| Point {
-        variant: run.planned.variant,
-        rows: (1.0 / setting(&run.record, "spacing")).round() as usize,
-        note: String::new(),
-        error: metric(&run.record, "restitution_error"),
-        seconds: vec![run.record.cost.cpu_s],
-        cost: run.record.cost.clone(),
-        status: run.record.status.clone(),
+    let points = |error: &str| -> Vec<Point> {
+        let point = |run: &JudgedRun| Point {
+            variant: run.planned.variant,
+            rows: (1.0 / setting(&run.record, "spacing")).round() as usize,
+            note: String::new(),
+            error: metric(&run.record, error),
+            seconds: vec![run.record.cost.cpu_s],
+            cost: run.record.cost.clone(),
+            status: run.record.status.clone(),
+        };
+        ladder.iter().map(point).collect()
     };
-    let points: Vec<Point> = ladder.iter().map(point).collect();
-    let caption = "Relative error of the restitution against finite elements over the cost of the run to t \
-                   = 200 L/c0, spacings 0.2 L and finer; rows are layers through the thickness. Timed once, \
-                   side by side with other runs; pair interactions are exact.";
-    let id = "rubber-rings-work-precision";
-    let label = "relative error of restitution [-]";
-    let table = rate_table(ladder);
-    Study::new(id, "Error against run time")
-        .block(work_precision::figure(id, caption, label, &points, &[]))
-        .block(table)
+    let mut study = Study::new("rubber-rings-work-precision", "Error against run time");
+    for (error, what) in [
+        ("restitution_error", "restitution"),
+        ("width_min_error", "least width"),
+        ("height_max_error", "largest height"),
+    ] {
+        let id = format!("rubber-rings-work-precision-{}", what.replace(' ', "-"));
+        let caption = format!(
+            "Relative error of the {what} of a ring against finite elements over the cost of the run to t \
+             = 200 L/c0, spacings 0.2 L and finer; rows are layers through the thickness. Timed once, side \
+             by side with other runs; pair interactions are exact."
+        );
+        let label = format!("relative error of {what} [-]");
+        study = study.block(work_precision::figure(&id, &caption, &label, &points(error), &[]));
+    }
+    study.block(rate_table(ladder))
 }
 
 fn rate_table(runs: &[JudgedRun]) -> Table {
