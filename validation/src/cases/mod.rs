@@ -4,12 +4,14 @@ pub mod acoustic_wave;
 pub mod channel;
 mod couette;
 mod elastic_bar;
+mod elliptic_drop;
 mod oscillating_plate;
 mod poiseuille;
 pub mod rings;
 pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
+pub mod water;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -28,6 +30,7 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<spinning_disk::SpinningDisk>::CASE,
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
+    &elliptic_drop::EllipticDrop,
 ];
 
 /// The case of that name.
