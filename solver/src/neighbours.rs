@@ -140,6 +140,11 @@ impl Neighbours {
         self.rows.iter().chain(&self.wall_rows).map(|b| b.pairs).sum()
     }
 
+    /// The particle that a column copies, however often; of the sentinel itself.
+    pub fn particle(&self, column: usize) -> usize {
+        particle(&self.images, self.built_at.len(), column)
+    }
+
     /// Memory held \[bytes\].
     pub fn bytes(&self) -> usize {
         self.rows.iter().chain(&self.wall_rows).map(Block::bytes).sum::<usize>()
@@ -188,13 +193,7 @@ impl Neighbours {
         let Self { rows, wall_rows, points, cell_starts, candidates, radius, images, .. } = self;
         let search = Search { grid, points, cell_starts, candidates, radius2: *radius * *radius };
         let real = self.built_at.len();
-        let is_fluid = |column: u32| {
-            let mut particle = column as usize;
-            while let Some(image) = particle.checked_sub(real) {
-                particle = images[image].source as usize;
-            }
-            particle < fluid
-        };
+        let is_fluid = |column: u32| particle(images, real, column as usize) < fluid;
         search.fill_blocks(rows, 0, fluid, parallel, &|_| true);
         search.fill_blocks(wall_rows, fluid, wall, parallel, &|c| !FLUID_ONLY || is_fluid(c));
     }
@@ -259,6 +258,12 @@ impl Neighbours {
         starts.rotate_right(1);
         starts[0] = 0;
     }
+}
+
+/// The particle at the end of the chain of images that begins with a column.
+fn particle(images: &[Image], real: usize, column: usize) -> usize {
+    let image = column.checked_sub(real).and_then(|k| images.get(k));
+    image.map_or(column, |image| particle(images, real, image.source as usize))
 }
 
 /// What building rows reads.

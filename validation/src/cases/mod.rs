@@ -4,6 +4,7 @@ pub mod acoustic_wave;
 pub mod channel;
 mod couette;
 mod elastic_bar;
+mod elliptic_drop;
 pub mod hydrostatic;
 mod oscillating_plate;
 mod poiseuille;
@@ -11,6 +12,7 @@ pub mod rings;
 pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
+pub mod water;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -30,6 +32,7 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
     hydrostatic::HYDROSTATIC,
+    &elliptic_drop::EllipticDrop,
 ];
 
 /// The case of that name.
