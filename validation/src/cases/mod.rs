@@ -11,6 +11,7 @@ pub mod rings;
 pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
+mod taylor_couette;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -30,6 +31,7 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
     hydrostatic::HYDROSTATIC,
+    &taylor_couette::Gap,
 ];
 
 /// The case of that name.
