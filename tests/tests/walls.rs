@@ -4,8 +4,8 @@
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, EquationOfState, ExtrapolatingWall,
-    Kernel, Leapfrog, NoSlip, Outcome, Particle, Pressure, QuinticSpline, Role, Scene, Smoothing,
-    Tait, WendlandC2, walls::WallVelocity,
+    Kernel, Leapfrog, Outcome, Particle, Pressure, QuinticSpline, Role, Scene, Smoothing, Tait,
+    WendlandC2, walls::WallVelocity,
 };
 use touchstone_tests::{Random, V2, open_rates, relative_sum};
 
@@ -121,7 +121,7 @@ fn check<K: Kernel>() {
         near(&clipped[k], expected.max(floor), wall.velocity);
         below += u32::from(expected < floor);
     }
-    assert!(below > 3 && alone == 1, "{below} below {floor} Pa, {alone} alone");
+    assert!(below > 3 && alone > 0 && alone < 4, "{below} below {floor} Pa, {alone} alone");
     // Images of wall particles show what their sources do, also those filled before the sweep.
     let images = &sticky[all.len()..];
     let of_walls = images.iter().filter(|image| image.place.y < 0.0);

@@ -13,6 +13,7 @@ pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
 pub mod water;
+mod taylor_couette;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -33,6 +34,7 @@ pub const CASES: &[&dyn Case] = &[
     rings::RUBBER_RINGS,
     hydrostatic::HYDROSTATIC,
     &elliptic_drop::EllipticDrop,
+    &taylor_couette::Gap,
 ];
 
 /// The case of that name.
