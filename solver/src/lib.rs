@@ -46,6 +46,7 @@ pub use scene::{Compose, Scene, SceneError, Scheme, lattice};
 pub use simulation::{Checkpoint, Divergence, Flow, Observer, Outcome, Simulation, Work};
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Continuity,
-    DensityDiffusion, JaumannRate, Pressure, PrincipalStress, Shifting, Term, Viscosity, Xsph,
+    DensityDiffusion, JaumannRate, Pressure, PrincipalStress, ShiftAdvection,
+    Shifting, Term, Viscosity, Xsph,
 };
 pub use walls::{Ghosts, InterfaceWall, Open, PlaneWall};

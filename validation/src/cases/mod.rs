@@ -4,12 +4,14 @@ pub mod acoustic_wave;
 pub mod channel;
 mod couette;
 mod elastic_bar;
+pub mod fluid;
 mod oscillating_plate;
 mod poiseuille;
 pub mod rings;
 pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
+pub mod taylor_green;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -28,6 +30,7 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<spinning_disk::SpinningDisk>::CASE,
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
+    taylor_green::TAYLOR_GREEN,
 ];
 
 /// The case of that name.

@@ -4,10 +4,12 @@ pub mod couette;
 pub mod damped_mode;
 pub mod impact;
 pub mod poiseuille;
+pub mod taylor_green;
 
 pub use couette::Couette;
 pub use damped_mode::DampedMode;
 pub use poiseuille::Poiseuille;
+pub use taylor_green::TaylorGreen;
 
 /// A series is summed until the rigorous bound on its tail, relative to the velocity scale, is
 /// below this.
