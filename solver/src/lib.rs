@@ -46,7 +46,7 @@ pub use scene::{Compose, Scene, SceneError, Scheme, lattice};
 pub use simulation::{Checkpoint, Divergence, Flow, Observer, Outcome, Simulation, Work};
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Continuity,
-    DensityDiffusion, JaumannRate, Pressure, PrincipalStress, ShiftAdvection,
-    Shifting, Term, Viscosity, Xsph,
+    ConsistentContinuity, ConsistentPressure, ConsistentViscosity, DensityDiffusion, Hydrostatic,
+    JaumannRate, Pressure, PrincipalStress, ShiftAdvection, Shifting, Term, Viscosity, Xsph,
 };
-pub use walls::{Ghosts, InterfaceWall, Open, PlaneWall};
+pub use walls::{ExtrapolatingWall, Ghosts, InterfaceWall, NoSlip, Open, PlaneWall};

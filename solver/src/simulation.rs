@@ -275,6 +275,7 @@ impl<S: Scheme> Simulation<S> {
             + self.engine.columns.capacity() * size_of::<Column<Shows<S>>>()
             + self.engine.order.capacity() * size_of::<u32>()
             + self.engine.extents.capacity() * size_of::<Extent>()
+            + self.engine.extrapolated.capacity() * size_of::<Evolved<S::Extra>>()
             + self.engine.neighbours.bytes()
             + self.integrator.bytes()
     }

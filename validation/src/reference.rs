@@ -42,6 +42,9 @@ macro_rules! embedded {
 /// Every package of `references/` with its tables.
 const EMBEDDED: &[Embedded] = embedded! {
     "peers_channel": ["errors.csv"],
+    "peers_taylor_green": ["errors.csv"],
+    "periodic_hill": ["profiles.csv", "wall.csv", "line.csv", "summary.csv", "checks.csv"],
+    "periodic_hill_geometry": ["segments.csv"],
     "published_sph_errors": ["errors.csv"],
     "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "checks.csv"],
 };

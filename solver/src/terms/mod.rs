@@ -8,6 +8,7 @@ mod artificial_stress;
 mod artificial_viscosity;
 mod body_force;
 mod cauchy_stress;
+mod consistent;
 mod continuity;
 mod density_diffusion;
 mod jaumann_rate;
@@ -22,8 +23,9 @@ pub use artificial_stress::{ArtificialStress, Tensile};
 pub use artificial_viscosity::{Always, Approaching, ArtificialViscosity, Switch};
 pub use body_force::BodyForce;
 pub use cauchy_stress::CauchyStress;
+pub use consistent::{ConsistentContinuity, ConsistentPressure, ConsistentViscosity};
 pub use continuity::Continuity;
-pub use density_diffusion::DensityDiffusion;
+pub use density_diffusion::{DensityDiffusion, Hydrostatic, Rest};
 pub use jaumann_rate::JaumannRate;
 pub use pressure::Pressure;
 pub use shift_advection::ShiftAdvection;
@@ -235,7 +237,8 @@ mod tests {
         check_vector::<K>(Xsph { epsilon: 0.5 });
         check_vector::<K>(Shifting::new(0.5, 0.35, w));
         check_number::<K>(Continuity);
-        check_number::<K>(DensityDiffusion { diffusivity: 0.1 });
+        check_number::<K>(DensityDiffusion::new(0.1));
+        check_number::<K>(DensityDiffusion::hydrostatic(0.1, eos, Vector2::new(0.3, -0.2)));
     }
 
     #[test]

@@ -1,6 +1,9 @@
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
-use super::{Pair, Shifting, Term};
+use super::{
+    Pair, Shifting, Term,
+    consistent::{inverse, weights},
+};
 use crate::{
     kernel::Kernel,
     lane::Lane,
@@ -18,9 +21,6 @@ use crate::{
 /// [`Shifting`] in the drift. Momentum is no longer conserved exactly.
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftAdvection(pub Shifting);
-
-/// Least determinant of the second bracket: 1 inside a body of particles, 0 on a line.
-const SINGULAR: f64 = 1e-3;
 
 impl<X> Term<X> for ShiftAdvection {
     type Shows = ();
@@ -43,22 +43,18 @@ impl<X> Term<X> for ShiftAdvection {
         _: (),
         sum: &mut <Self::Sum as Numbers>::In<V>,
     ) {
-        let weight = pair.other.volume * pair.f;
-        let (x, y) = (pair.r.x * weight, pair.r.y * weight);
+        let (weight, moments) = weights(pair);
         sum.0 += self.0.push(pair);
-        sum.1 += pair.v * x;
-        sum.2 += pair.v * y;
-        sum.3 = sum.3 + Symmetric { xx: pair.r.x * x, yy: pair.r.y * y, xy: pair.r.x * y };
+        sum.1 += pair.v * weight.x;
+        sum.2 += pair.v * weight.y;
+        sum.3 = sum.3 + moments;
     }
 
     #[inline(always)]
     fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
-        let (push, along_x, along_y, Symmetric { xx, yy, xy }) = sum;
-        let determinant = xx * yy - xy * xy;
-        if determinant > SINGULAR {
-            let shift = self.0.velocity(push);
-            let inverse = Matrix2::new(yy, -xy, -xy, xx) / determinant;
-            let moved = inverse * shift;
+        let (push, along_x, along_y, moments) = sum;
+        if let Some(inverse) = inverse(moments) {
+            let moved = inverse * self.0.velocity(push);
             rate.velocity += along_x * moved.x + along_y * moved.y;
         }
     }

@@ -3,8 +3,8 @@
 
 use nalgebra::Vector2;
 use solver::{
-    BodyForce, Continuity, DensityDiffusion, Kernel, Pressure, ShiftAdvection, Shifting, Smoothing,
-    Tait, Term, Viscosity,
+    BodyForce, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
+    DensityDiffusion, Kernel, Pressure, ShiftAdvection, Shifting, Smoothing, Tait, Term, Viscosity,
 };
 
 use super::channel::Stepping;
@@ -72,7 +72,7 @@ pub trait Ingredient: Term<()> {
 }
 
 /// Settings that some term of some variant reads, and others do not have.
-pub const OPTIONAL: &[&str] = &["diffusion", "shift"];
+pub const OPTIONAL: &[&str] = &["diffusion", "shift", "eta2_over_h2"];
 
 /// Refuses an assignment to a setting that no term of the variant reads.
 pub fn refuse_unused(
@@ -106,9 +106,28 @@ impl Ingredient for Pressure<Tait> {
 }
 
 impl Ingredient for Viscosity {
+    const USES: &'static [&'static str] = &["eta2_over_h2"];
     fn new(fluid: &Fluid) -> Self {
         let eta2 = fluid.eta2_over_h2 * fluid.h * fluid.h;
         Viscosity { mu: fluid.eos.density * fluid.nu, eta2 }
+    }
+}
+
+impl Ingredient for ConsistentContinuity {
+    fn new(_: &Fluid) -> Self {
+        ConsistentContinuity
+    }
+}
+
+impl Ingredient for ConsistentPressure<Tait> {
+    fn new(fluid: &Fluid) -> Self {
+        ConsistentPressure { eos: fluid.eos }
+    }
+}
+
+impl Ingredient for ConsistentViscosity {
+    fn new(fluid: &Fluid) -> Self {
+        ConsistentViscosity { nu: fluid.nu }
     }
 }
 
@@ -121,7 +140,7 @@ impl Ingredient for BodyForce {
 impl Ingredient for DensityDiffusion {
     const USES: &'static [&'static str] = &["diffusion"];
     fn new(fluid: &Fluid) -> Self {
-        DensityDiffusion { diffusivity: fluid.diffusion * fluid.h * fluid.eos.sound_speed }
+        DensityDiffusion::new(fluid.diffusion * fluid.h * fluid.eos.sound_speed)
     }
 }
 

@@ -5,6 +5,7 @@ pub mod channel;
 mod couette;
 mod elastic_bar;
 pub mod fluid;
+pub mod hydrostatic;
 mod oscillating_plate;
 mod poiseuille;
 pub mod rings;
@@ -31,6 +32,7 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
     taylor_green::TAYLOR_GREEN,
+    hydrostatic::HYDROSTATIC,
 ];
 
 /// The case of that name.

@@ -2,12 +2,14 @@
 
 pub mod couette;
 pub mod damped_mode;
+pub mod hydrostatic;
 pub mod impact;
 pub mod poiseuille;
 pub mod taylor_green;
 
 pub use couette::Couette;
 pub use damped_mode::DampedMode;
+pub use hydrostatic::Hydrostatic;
 pub use poiseuille::Poiseuille;
 pub use taylor_green::TaylorGreen;
 

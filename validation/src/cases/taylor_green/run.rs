@@ -82,14 +82,6 @@ impl Setup {
         Ok(Self { settings: s.clone(), exact, fluid, dt, dt_limit })
     }
 
-    /// The density at which the equation of state gives this pressure above the background \[kg/m³\].
-    fn density(&self, pressure: f64) -> f64 {
-        let Tait { density, sound_speed, gamma, .. } = self.fluid.eos;
-        let gamma = f64::from(gamma);
-        let stiffness = sound_speed * sound_speed * density / gamma;
-        density * (1.0 + pressure / stiffness).powf(1.0 / gamma)
-    }
-
     /// Particles of equal volume with the velocity and the pressure of the flow at their places.
     fn particles(&self) -> Vec<Particle> {
         let (s, dx) = (&self.settings, self.fluid.dx);
@@ -98,7 +90,8 @@ impl Setup {
         solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n)
             .map(|x| x + Vector2::new(shake(), shake()))
             .map(|x| {
-                let density = self.density(self.exact.pressure(x, 0.0));
+                let pressure = self.exact.pressure(x, 0.0) + self.fluid.eos.background;
+                let density = self.fluid.eos.density(pressure);
                 Particle::fluid(x, self.exact.velocity(x, 0.0), density, dx * dx)
             })
             .collect()
