@@ -7,11 +7,13 @@ mod elastic_bar;
 pub mod fluid;
 pub mod hydrostatic;
 mod oscillating_plate;
+pub mod periodic_hill;
 mod poiseuille;
 pub mod rings;
 pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
+mod taylor_couette;
 pub mod taylor_green;
 pub mod wave;
 
@@ -32,7 +34,9 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
     taylor_green::TAYLOR_GREEN,
+    periodic_hill::PERIODIC_HILL,
     hydrostatic::HYDROSTATIC,
+    &taylor_couette::Gap,
 ];
 
 /// The case of that name.

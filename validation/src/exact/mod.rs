@@ -5,12 +5,14 @@ pub mod damped_mode;
 pub mod hydrostatic;
 pub mod impact;
 pub mod poiseuille;
+pub mod taylor_couette;
 pub mod taylor_green;
 
 pub use couette::Couette;
 pub use damped_mode::DampedMode;
 pub use hydrostatic::Hydrostatic;
 pub use poiseuille::Poiseuille;
+pub use taylor_couette::TaylorCouette;
 pub use taylor_green::TaylorGreen;
 
 /// A series is summed until the rigorous bound on its tail, relative to the velocity scale, is
