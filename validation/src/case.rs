@@ -128,6 +128,9 @@ pub enum RunError {
     /// The scene is not one.
     #[error("the settings make an impossible scene: {0}")]
     Scene(#[from] solver::SceneError),
+    /// The numbers that a case is built on could not be had.
+    #[error("a reference that the case needs: {0}")]
+    Reference(String),
     /// A folder or file could not be written.
     #[error(transparent)]
     File(#[from] FileError),

@@ -5,15 +5,18 @@ pub mod channel;
 mod couette;
 mod elastic_bar;
 mod elliptic_drop;
+pub mod fluid;
 pub mod hydrostatic;
 mod oscillating_plate;
+pub mod periodic_hill;
 mod poiseuille;
 pub mod rings;
 pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
-pub mod water;
 mod taylor_couette;
+pub mod taylor_green;
+pub mod water;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -32,6 +35,8 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<spinning_disk::SpinningDisk>::CASE,
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
+    taylor_green::TAYLOR_GREEN,
+    periodic_hill::PERIODIC_HILL,
     hydrostatic::HYDROSTATIC,
     &elliptic_drop::EllipticDrop,
     &taylor_couette::Gap,
