@@ -11,7 +11,7 @@ use crate::{
     reference::Reference as Package,
     report::{
         Axis, CategoryMap, Cell, Colour, ColourMap, Column, Figure, Film, Legend, ParticleMap,
-        Plot, Series, Table, sig,
+        Plot, Series, Table, percent, sig,
     },
     runner::Context,
     studies::work_precision::{self, Point},
@@ -91,6 +91,49 @@ fn histories(runs: &[JudgedRun]) -> Study {
         .block(figure.panel_size(420.0, 260.0))
         .block(errors_table(runs))
         .block(phases_table(runs))
+        .block(energies(runs))
+}
+
+/// Energies of the finest run, and what each term has added.
+fn energies(runs: &[JudgedRun]) -> Figure {
+    let record = of(runs, "leapfrog", SPEED, 0.0).last();
+    let spacing = record.map_or(f64::NAN, |record| setting(record, "spacing"));
+    let caption = format!(
+        "Energy of both rings over that at the start, variant `leapfrog`, spacing {} L. Left: kinetic, \
+         compression and shear energy and their sum. Right: what each term has added. The elastic law \
+         itself adds a little, because stress rates integrated in time are not the slope of an energy at \
+         finite strain; XSPH has no work of its own. Sum on the left and works on the right close to {}.",
+        sig(spacing, 2),
+        percent(record.map_or(f64::NAN, |record| metric(record, "energy_gap")), 2)
+    );
+    let empty = Profile::default();
+    let budget = record.and_then(|r| r.profiles.get("budget")).unwrap_or(&empty);
+    let t = column(budget, "t");
+    let points = |values: &[f64]| t.iter().copied().zip(values.iter().copied()).collect::<Vec<_>>();
+    let sum = |names: &[&str]| -> Vec<f64> {
+        (0..t.len()).map(|k| names.iter().map(|name| column(budget, name)[k]).sum()).collect()
+    };
+    let plot = |label: &str, lines: &[(&str, Vec<f64>)]| {
+        let plot = Plot::new("", Axis::linear("t [L/c0]"), Axis::linear(label));
+        lines.iter().enumerate().fold(plot, |plot, (k, (title, values))| {
+            plot.layer(Series::line(*title, points(values)).colour(Colour::cycle(k)))
+        })
+    };
+    let kept = [
+        ("kinetic", sum(&["kinetic"])),
+        ("compression", sum(&["compression"])),
+        ("shear", sum(&["shear"])),
+        ("sum", sum(&["kinetic", "compression", "shear"])),
+    ];
+    let added = [
+        ("artificial viscosity", sum(&["work_viscosity"])),
+        ("artificial stress", sum(&["work_stress"])),
+        ("elastic law", sum(&["work_elastic"])),
+    ];
+    Figure::new("rubber-rings-energy", caption)
+        .columns(2)
+        .panel(plot("energy/E(0) [-]", &kept))
+        .panel(plot("added/E(0) [-]", &added))
 }
 
 /// Phases of contact of every run that has a reference, beside those of finite elements.
