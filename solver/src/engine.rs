@@ -82,6 +82,8 @@ pub struct Engine<S: Scheme> {
     pub(crate) order: Vec<u32>,
     /// What was found in each block while filling columns.
     pub(crate) extents: Vec<Extent>,
+    /// What wall particles extrapolate: empty where they do not.
+    pub(crate) extrapolated: Vec<Evolved<S::Extra>>,
 }
 
 /// Largest squares found while filling columns.
@@ -168,7 +170,8 @@ impl<S: Scheme> Engine<S> {
             self.forces.prepare(speed);
             self.drift.prepare(speed);
         }
-        self.fill_images();
+        self.fill_images(0);
+        self.extrapolate(state);
         Ok(())
     }
 
@@ -181,7 +184,8 @@ impl<S: Scheme> Engine<S> {
             self.built_inside_a_step = true;
             self.fill(state)?;
         }
-        self.fill_images();
+        self.fill_images(0);
+        self.extrapolate(state);
         Ok(())
     }
 
@@ -214,7 +218,7 @@ impl<S: Scheme> Engine<S> {
 
     fn sweep_walls(&self, targets: &mut State<S>, update: impl Update<S::Extra>) {
         let [fluid, wall] = self.counts;
-        if wall > 0 {
+        if wall > 0 && !S::Walls::EXTRAPOLATES {
             let terms = self.walls.rows();
             let unseen = |_: &Shows<S>| Default::default();
             let sweep = self.sweep(&terms, unseen, false);
@@ -225,11 +229,7 @@ impl<S: Scheme> Engine<S> {
 
     /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
     /// the state that was looked at last. dx/dt is without v.
-    pub fn rates<T: Term<S::Extra>>(
-        &self,
-        state: &State<S>,
-        terms: &T,
-    ) -> Vec<Rate<S::Extra>> {
+    pub fn rates<T: Term<S::Extra>>(&self, state: &State<S>, terms: &T) -> Vec<Rate<S::Extra>> {
         let real = state.len();
         let source = |k: usize| match self.neighbours.images.get(k.wrapping_sub(real)) {
             Some(image) => image.source as usize,
@@ -247,8 +247,12 @@ impl<S: Scheme> Engine<S> {
         sweep.rates(&self.neighbours.rows, 0, self.counts[0])
     }
 
-    /// The rates of wall particles by the terms of the walls, for the state that was looked at last.
+    /// The rates of wall particles by the terms of the walls, for the state that was looked at last;
+    /// none where these do not give rates but extrapolate.
     pub fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
+        if S::Walls::EXTRAPOLATES {
+            return Vec::new();
+        }
         let ([fluid, wall], terms) = (self.counts, self.walls.rows());
         let unseen = |_: &Shows<S>| Default::default();
         self.sweep(&terms, unseen, false).rates(&self.neighbours.wall_rows, fluid, wall)
@@ -296,13 +300,44 @@ impl<S: Scheme> Engine<S> {
         if extent.sound { Ok(extent) } else { Err(self.find_fault(state)) }
     }
 
-    fn fill_images(&mut self) {
+    /// Refills the images of the particles from `first` on.
+    fn fill_images(&mut self, first: usize) {
         let real = self.fixed.len();
         let (particles, images) = self.columns.split_at_mut(real);
         let maps = &self.neighbours.maps;
-        for (column, image) in images.iter_mut().zip(&self.neighbours.images) {
+        let images = images.iter_mut().zip(&self.neighbours.images);
+        for (column, image) in images.filter(|(_, image)| image.source as usize >= first) {
             *column = maps[image.map as usize].apply(&particles[image.source as usize]);
         }
+    }
+
+    /// Has wall particles that extrapolate show what the fluid before them implies, and their images
+    /// too.
+    fn extrapolate(&mut self, state: &State<S>) {
+        let [fluid, wall] = self.counts;
+        if !S::Walls::EXTRAPOLATES || wall == 0 {
+            return;
+        }
+        let mut set = std::mem::take(&mut self.extrapolated);
+        set.clear();
+        set.extend_from_slice(&state[fluid..fluid + wall]);
+        let terms = self.walls.rows();
+        let sweep = self.sweep(&terms, |_: &Shows<S>| Default::default(), false);
+        let rows = &self.neighbours.wall_rows;
+        sweep.run(rows, fluid, &mut set, self.parallel, |_, target, rate| {
+            target.velocity += rate.velocity;
+            target.density = rate.density;
+        });
+        for (column, Evolved { velocity, density, extra, .. }) in
+            self.columns[fluid..].iter_mut().zip(&set)
+        {
+            let (mass, density) = (column.common.mass, *density);
+            let common = Common { mass, density, volume: mass / density };
+            let shows = (self.forces.shows(&common, extra), self.drift.shows(&common, extra));
+            *column = Column { position: column.position, velocity: *velocity, common, shows };
+        }
+        self.extrapolated = set;
+        self.fill_images(fluid);
     }
 
     /// Puts fluid particles in the order of their cells, and all inside the period.
@@ -320,7 +355,12 @@ impl<S: Scheme> Engine<S> {
     pub(crate) fn build(&mut self, state: &State<S>) {
         self.neighbours.place(state.iter().map(|e| e.position));
         let mirrors = self.walls.mirrors();
-        self.neighbours.build(&self.domain, mirrors, self.counts, self.parallel);
+        let (neighbours, counts) = (&mut self.neighbours, self.counts);
+        if S::Walls::EXTRAPOLATES {
+            neighbours.build::<true>(&self.domain, mirrors, counts, self.parallel);
+        } else {
+            neighbours.build::<false>(&self.domain, mirrors, counts, self.parallel);
+        }
         let columns = state.len() + self.neighbours.images.len();
         self.columns.resize(columns + 1, Column::sentinel());
         self.columns[columns] = Column::sentinel();

@@ -5,7 +5,9 @@ use crate::lane::Lane;
 /// Pressure from density.
 pub trait EquationOfState: Copy + Send + Sync + 'static {
     /// p(ρ) \[Pa\].
-    fn pressure(&self, density: f64) -> f64;
+    fn pressure<V: Lane>(&self, density: V) -> V;
+    /// ρ(p) \[kg/m³\], the inverse.
+    fn density(&self, pressure: f64) -> f64;
     /// c(ρ) = √(dp/dρ) \[m/s\].
     fn sound_speed<V: Lane>(&self, density: V) -> V;
 }
@@ -28,13 +30,34 @@ impl Tait {
     pub fn new(density: f64, sound_speed: f64) -> Self {
         Self { density, sound_speed, gamma: 7, background: 0.0 }
     }
+
+    /// (8) K \[Pa\].
+    #[inline(always)]
+    fn stiffness(&self) -> f64 {
+        self.sound_speed * self.sound_speed * self.density / f64::from(self.gamma)
+    }
+
+    /// The enthalpy w = ∫ dp/ρ from ⁰ρ on = ⁰c² \[(ρ/⁰ρ)^(γ−1) − 1\]/(γ−1) \[J/kg\], for γ > 1: in a
+    /// fluid at rest ∇w is the gravity, whatever the density.
+    #[inline(always)]
+    pub fn enthalpy<V: Lane>(&self, density: V) -> V {
+        let scale = self.sound_speed * self.sound_speed / f64::from(self.gamma - 1);
+        V::all(scale) * (power(density / V::all(self.density), self.gamma - 1) - V::all(1.0))
+    }
 }
 
 impl EquationOfState for Tait {
     #[inline(always)]
-    fn pressure(&self, density: f64) -> f64 {
-        let stiffness = self.sound_speed * self.sound_speed * self.density / f64::from(self.gamma);
-        self.background + stiffness * (power(density / self.density, self.gamma) - 1.0)
+    fn pressure<V: Lane>(&self, density: V) -> V {
+        let compression = power(density / V::all(self.density), self.gamma) - V::all(1.0);
+        V::all(self.background) + V::all(self.stiffness()) * compression
+    }
+
+    /// The least pressure that a density has is ⁰p − K; below it, almost nothing is left.
+    fn density(&self, pressure: f64) -> f64 {
+        let ratio = (pressure - self.background) / self.stiffness() + 1.0;
+        // Not `max`, which would make a number of NaN.
+        self.density * root(if ratio < f64::EPSILON { f64::EPSILON } else { ratio }, self.gamma)
     }
 
     /// c² = dp/dρ = ⁰c² (ρ/⁰ρ)^(γ−1).
@@ -56,8 +79,12 @@ pub struct Linear {
 
 impl EquationOfState for Linear {
     #[inline(always)]
-    fn pressure(&self, density: f64) -> f64 {
-        self.sound_speed * self.sound_speed * (density - self.density)
+    fn pressure<V: Lane>(&self, density: V) -> V {
+        V::all(self.sound_speed * self.sound_speed) * (density - V::all(self.density))
+    }
+
+    fn density(&self, pressure: f64) -> f64 {
+        self.density + pressure / (self.sound_speed * self.sound_speed)
     }
 
     #[inline(always)]
@@ -81,10 +108,55 @@ fn power<V: Lane>(x: V, n: i32) -> V {
     product
 }
 
+/// The n-th root of x > 0 by Newton's method, n ≥ 1: of + − × ÷ alone, so with the same bits on every
+/// machine, which `powf` does not promise.
+fn root(x: f64, n: i32) -> f64 {
+    // Not below the root (Bernoulli), from where every step of Newton's leads down, as xⁿ is convex.
+    let mut root = 1.0 + (x - 1.0) / f64::from(n);
+    loop {
+        let next = root - (root - x / power(root, n - 1)) / f64::from(n);
+        if next < root {
+            root = next;
+        } else {
+            return root;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+
+    #[test]
+    fn density_is_the_inverse_of_pressure() {
+        for gamma in [1, 2, 7] {
+            let water = Tait { gamma, background: 3.0, ..Tait::new(1000.0, 12.0) };
+            assert_eq!(water.density(3.0), 1000.0, "without a rounding");
+            for density in [500.0, 999.9, 1000.0, 1001.0, 1300.0, 4000.0] {
+                let back = water.density(water.pressure(density));
+                assert_relative_eq!(back, density, max_relative = 1e-13);
+            }
+            let torn = water.density(-1e9);
+            assert!(torn > 0.0 && torn < 10.0, "no density has that pressure: {torn}");
+            assert!(water.density(f64::NAN).is_nan());
+        }
+        let rubber = Linear { density: 1010.0, sound_speed: 852.0 };
+        assert_eq!(rubber.density(rubber.pressure(1011.0)), 1011.0);
+    }
+
+    /// dw = dp/ρ.
+    #[test]
+    fn the_slope_of_the_enthalpy_is_the_volume() {
+        let water = Tait { background: 3.0, ..Tait::new(1000.0, 12.0) };
+        assert_eq!(water.enthalpy(1000.0), 0.0);
+        for density in [980.0, 1000.0, 1030.0] {
+            let d = 0.01;
+            let rise = water.pressure(density + d) - water.pressure(density - d);
+            let enthalpy = water.enthalpy(density + d) - water.enthalpy(density - d);
+            assert_relative_eq!(enthalpy * density, rise, max_relative = 1e-8);
+        }
+    }
 
     #[test]
     fn the_solid_has_one_sound_speed() {

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::{
     domain::Domain,
-    walls::{Map, PlaneWall},
+    walls::{Map, PlaneWall, corners},
 };
 
 /// Neighbours handled at once.
@@ -116,6 +116,7 @@ impl Neighbours {
     pub fn new(radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> Self {
         let mut maps = vec![Map::identity()];
         maps.extend(mirrors.iter().map(Map::mirror));
+        maps.extend(corners(mirrors).map(Map::corner));
         for axis in 0..2 {
             if let Some(period) = domain.period[axis] {
                 let shift = if axis == 0 { Vector2::x() } else { Vector2::y() } * period;
@@ -173,8 +174,9 @@ impl Neighbours {
         });
     }
 
-    /// Builds the rows of the first `fluid` placed particles and of the `wall` ones after them.
-    pub fn build(
+    /// Builds the rows of the first `fluid` placed particles and of the `wall` ones after them. With
+    /// `FLUID_ONLY` the rows of the latter list fluid particles and their images alone.
+    pub fn build<const FLUID_ONLY: bool>(
         &mut self,
         domain: &Domain,
         mirrors: &[PlaneWall],
@@ -186,26 +188,32 @@ impl Neighbours {
         self.make_images(domain, mirrors);
         let grid = Grid::new(&self.points, self.radius);
         self.sort_into_cells(&grid);
-        let Self { rows, wall_rows, points, cell_starts, candidates, radius, .. } = self;
+        let Self { rows, wall_rows, points, cell_starts, candidates, radius, images, .. } = self;
         let search = Search { grid, points, cell_starts, candidates, radius2: *radius * *radius };
-        search.fill_blocks(rows, 0, fluid, parallel);
-        search.fill_blocks(wall_rows, fluid, wall, parallel);
+        let real = self.built_at.len();
+        let is_fluid = |column: u32| match (column as usize).checked_sub(real) {
+            None => (column as usize) < fluid,
+            Some(image) => (images[image].source as usize) < fluid,
+        };
+        search.fill_blocks(rows, 0, fluid, parallel, &|_| true);
+        search.fill_blocks(wall_rows, fluid, wall, parallel, &|c| !FLUID_ONLY || is_fluid(c));
     }
 
-    /// Appends the images within reach: ghosts of particles near a wall, then periodic copies of
-    /// all of these. The maps are numbered as [`Neighbours::new`] composes them.
+    /// Appends the images within reach: ghosts of particles near a wall or a corner, then periodic
+    /// copies of all of these. The maps are numbered as [`Neighbours::new`] composes them.
     fn make_images(&mut self, domain: &Domain, mirrors: &[PlaneWall]) {
         self.images.clear();
         let real = self.points.len();
         for source in 0..real {
-            for (m, wall) in mirrors.iter().enumerate() {
-                let depth = (self.points[source] - wall.point).dot(&wall.normal);
-                if depth.abs() < self.radius {
-                    self.add_image(source as u32, 1 + m as u32);
-                }
+            let (point, radius) = (self.points[source], self.radius);
+            let near = |wall: &PlaneWall| (point - wall.point).dot(&wall.normal).abs() < radius;
+            let at_walls = mirrors.iter().map(near);
+            let in_corners = corners(mirrors).map(|walls| walls.into_iter().all(near));
+            for (map, _) in (1..).zip(at_walls.chain(in_corners)).filter(|(_, near)| *near) {
+                self.add_image(source as u32, map);
             }
         }
-        let mut maps_so_far = 1 + mirrors.len() as u32;
+        let mut maps_so_far = 1 + (mirrors.len() + corners(mirrors).count()) as u32;
         for axis in 0..2 {
             let Some(period) = domain.period[axis] else { continue };
             let along = || self.points[..real].iter().map(|p| p[axis]);
@@ -268,11 +276,19 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn fill_blocks(&self, blocks: &mut Vec<Block>, first: usize, count: usize, parallel: bool) {
+    /// The rows of `count` particles from `first` on, of the columns that `lists` admits.
+    fn fill_blocks(
+        &self,
+        blocks: &mut Vec<Block>,
+        first: usize,
+        count: usize,
+        parallel: bool,
+        lists: &(impl Fn(u32) -> bool + Sync),
+    ) {
         blocks.resize_with(count.div_ceil(BLOCK), Block::default);
         let fill = |(b, block): (usize, &mut Block)| {
             let start = first + b * BLOCK;
-            self.fill_block(block, start..(start + BLOCK).min(first + count));
+            self.fill_block(block, start..(start + BLOCK).min(first + count), lists);
         };
         if parallel {
             blocks.par_iter_mut().enumerate().for_each(fill);
@@ -281,14 +297,19 @@ impl Search<'_> {
         }
     }
 
-    fn fill_block(&self, block: &mut Block, rows: std::ops::Range<usize>) {
+    fn fill_block(
+        &self,
+        block: &mut Block,
+        rows: std::ops::Range<usize>,
+        lists: &impl Fn(u32) -> bool,
+    ) {
         block.starts.clear();
         block.starts.push(0);
         block.chunks.clear();
         block.pairs = 0;
         let mut found = std::mem::take(&mut block.found);
         for i in rows {
-            let count = self.find(&mut found, i);
+            let count = self.find(&mut found, i, lists);
             let sentinel = self.points.len() as u32;
             found.resize(found.len().max(count + LANES), sentinel);
             found[count..count + LANES].fill(sentinel);
@@ -301,7 +322,8 @@ impl Search<'_> {
     }
 
     /// Neighbours of particle i in the order of cells, then of columns; never itself.
-    fn find(&self, found: &mut Vec<u32>, i: usize) -> usize {
+    #[inline(always)]
+    fn find(&self, found: &mut Vec<u32>, i: usize, lists: &impl Fn(u32) -> bool) -> usize {
         let own = self.points[i];
         let [cx, cy] = self.grid.cell(own);
         let mut count = 0;
@@ -312,7 +334,9 @@ impl Search<'_> {
             found.resize(found.len().max(count + run.len()), 0);
             for candidate in &self.candidates[run] {
                 let (dx, dy) = (candidate.x - own.x, candidate.y - own.y);
-                let near = (dx * dx + dy * dy < self.radius2) & (candidate.column as usize != i);
+                let near = (dx * dx + dy * dy < self.radius2)
+                    & (candidate.column as usize != i)
+                    & lists(candidate.column);
                 // Always written, kept if near: no branch to mispredict.
                 found[count] = candidate.column;
                 count += usize::from(near);
@@ -364,9 +388,15 @@ mod tests {
         };
         let mut seen = Vec::new();
         for (j, &point) in points.iter().enumerate() {
-            let mirrored =
-                mirrors.iter().map(|w| point - w.normal * (2.0 * (point - w.point).dot(&w.normal)));
-            for (m, place) in std::iter::once(point).chain(mirrored).enumerate() {
+            let across = |w: &PlaneWall, point: Vector2<f64>| {
+                point - w.normal * (2.0 * (point - w.point).dot(&w.normal))
+            };
+            let mirrored = mirrors.iter().map(|w| across(w, point));
+            let square = |a: &PlaneWall, b: &PlaneWall| a.normal.dot(&b.normal) == 0.0;
+            let pairs = (0..mirrors.len()).flat_map(|a| (0..a).map(move |b| [a, b]));
+            let pairs = pairs.map(|ab| ab.map(|k| &mirrors[k])).filter(|[a, b]| square(a, b));
+            let twice = pairs.map(|[a, b]| across(a, across(b, point)));
+            for (m, place) in std::iter::once(point).chain(mirrored).chain(twice).enumerate() {
                 for (sx, sy) in
                     shifts(0).into_iter().flat_map(|x| shifts(1).into_iter().map(move |y| (x, y)))
                 {
@@ -413,7 +443,7 @@ mod tests {
         let mut neighbours = Neighbours::new(radius, domain, mirrors);
         let n = points.len();
         neighbours.place(points.iter().copied());
-        neighbours.build(domain, mirrors, [n, 0], false);
+        neighbours.build::<false>(domain, mirrors, [n, 0], false);
         let mut pairs = 0;
         for i in 0..n {
             let expected = brute_force(points, i, radius, domain, mirrors);
@@ -426,7 +456,7 @@ mod tests {
         // The parallel path builds the same rows in the same order.
         let mut parallel = Neighbours::new(radius, domain, mirrors);
         parallel.place(points.iter().copied());
-        parallel.build(domain, mirrors, [n, 0], true);
+        parallel.build::<false>(domain, mirrors, [n, 0], true);
         for (a, b) in neighbours.rows.iter().zip(&parallel.rows) {
             assert_eq!((&a.starts, &a.chunks), (&b.starts, &b.chunks));
         }
@@ -438,6 +468,8 @@ mod tests {
         let walls = [horizontal(0.0, 1.0), horizontal(3.0, -1.0)];
         let slanted = PlaneWall::new(Vector2::zeros(), Vector2::new(0.6, 0.8), Vector2::zeros());
         let corner = PlaneWall::new(Vector2::zeros(), Vector2::new(1.0, 0.0), Vector2::zeros());
+        let end = Vector2::new(4.0, 0.0);
+        let side = PlaneWall::new(end, Vector2::new(-1.0, 0.0), Vector2::zeros());
         let shifted = Domain { low: Vector2::new(-1.0, 7.0), ..Domain::torus(4.0, 3.0) };
         for seed in 0..2 {
             let mut random = Random(seed);
@@ -449,6 +481,7 @@ mod tests {
                 check(&points, radius, &Domain::channel(4.0), &walls);
                 check(&points, radius, &Domain::open(), &[slanted]);
                 check(&points, radius, &Domain::open(), &[walls[0], corner]);
+                check(&points, radius, &Domain::open(), &[walls[0], corner, side, walls[1]]);
                 let wrapped: Vec<_> = points.iter().map(|p| shifted.wrap(*p)).collect();
                 check(&wrapped, radius, &shifted, &[]);
             }
@@ -506,7 +539,7 @@ mod tests {
         let mut lost = 0;
         let n = points.len();
         neighbours.place(points.iter().copied());
-        neighbours.build(&domain, &mirrors, [n, 0], false);
+        neighbours.build::<false>(&domain, &mirrors, [n, 0], false);
         for _ in 0..60 {
             for point in &mut points {
                 *point += (random.point([1.0, 1.0]) - Vector2::repeat(0.5)) * 0.03;
@@ -515,7 +548,7 @@ mod tests {
             let moved = points.iter().zip(&neighbours.built_at).map(|(p, b)| (p - b).norm());
             if moved.fold(0.0, f64::max) > share * skin {
                 neighbours.place(points.iter().copied());
-                neighbours.build(&domain, &mirrors, [n, 0], false);
+                neighbours.build::<false>(&domain, &mirrors, [n, 0], false);
                 *builds += 1;
             }
             for i in 0..n {

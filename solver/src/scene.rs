@@ -15,7 +15,7 @@ use crate::{
     particles::{Evolved, Fixed, Particle, Role},
     simulation::{Checkpoint, Simulation, Work},
     terms::Term,
-    walls::{PlaneWall, Walls},
+    walls::{PlaneWall, RIGHT_ANGLE, Walls},
 };
 
 /// A composition of types: the whole method. What is not named here is not in the program.
@@ -252,6 +252,7 @@ impl<S: Scheme> Scene<S> {
             work: Work::default(),
             order: Vec::new(),
             extents: Vec::new(),
+            extrapolated: Vec::new(),
         };
         (engine, particles.iter().map(evolved).collect())
     }
@@ -281,6 +282,14 @@ impl<S: Scheme> Scene<S> {
         Ok(())
     }
 
+    /// |cos| of the angle between this mirror and one before it, if it is neither 0, for which there are
+    /// images across the corner, nor 1.
+    fn askew(&self, wall: usize) -> Option<f64> {
+        let mirrors = self.walls.mirrors();
+        let cosines = mirrors[..wall].iter().map(|m| m.normal.dot(&mirrors[wall].normal).abs());
+        cosines.into_iter().find(|c| *c > RIGHT_ANGLE && (c - 1.0).abs() > 1e-12)
+    }
+
     /// A mirror with another normal would stretch its image, and one that moves along its normal
     /// would have to take its plane with it.
     fn check_walls(&self) -> Result<(), SceneError> {
@@ -294,6 +303,8 @@ impl<S: Scheme> Scene<S> {
                 ("a velocity along its normal of", across, "0")
             } else if !sum.is_finite() {
                 ("a sum of its numbers of", sum, "a finite one")
+            } else if let Some(cosine) = self.askew(wall) {
+                ("a cosine with another wall of", cosine, "0, a corner, or 1, beside it")
             } else {
                 continue;
             };

@@ -248,7 +248,8 @@ impl<S: Scheme> Simulation<S> {
         self.engine.rates(&self.state, terms)
     }
 
-    /// What the walls' own terms do to each particle of [`Simulation::walls`] now, likewise.
+    /// What the walls' own terms do to each particle of [`Simulation::walls`] now, likewise; empty
+    /// where walls extrapolate.
     pub fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
         self.engine.wall_rates()
     }
@@ -297,6 +298,7 @@ impl<S: Scheme> Simulation<S> {
             + self.engine.columns.capacity() * size_of::<Column<Shows<S>>>()
             + self.engine.order.capacity() * size_of::<u32>()
             + self.engine.extents.capacity() * size_of::<Extent>()
+            + self.engine.extrapolated.capacity() * size_of::<Evolved<S::Extra>>()
             + self.engine.neighbours.bytes()
             + self.integrator.bytes()
     }

@@ -8,9 +8,9 @@
 
 use nalgebra::DVector;
 use solver::{
-    BodyForce, Compose, Continuity, CubicSpline, Euler, Ghosts, InterfaceWall, Kernel, Leapfrog,
-    Outcome, PredictorCorrector, Pressure, QuinticSpline, Scheme, Simulation, Tait, Viscosity,
-    WendlandC2,
+    BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, InterfaceWall,
+    Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, Pressure, QuinticSpline, Scheme, Simulation,
+    Tait, Viscosity, WendlandC2,
 };
 use validation::{
     cases::channel::{
@@ -48,6 +48,7 @@ fn rule(setup: &Setup, walls: &str) -> WallRule {
         ("interface-wall", _) => WallRule::InterfaceWall,
         ("ghosts", true) => WallRule::CurvedGhosts,
         ("ghosts", false) => WallRule::Ghosts,
+        ("extrapolating-wall", _) => WallRule::Adami,
         _ => panic!("no rule for {walls}"),
     }
 }
@@ -164,6 +165,11 @@ fn interface_walls_are_the_matrix_to_round_off() {
     check_walls::<InterfaceWall>(false);
 }
 
+#[test]
+fn extrapolating_walls_are_the_matrix_to_round_off() {
+    check_walls::<ExtrapolatingWall<Tait, NoSlip>>(false);
+}
+
 /// u of every particle at νt/L² = `tau`, from runs with dt, dt/2, dt/4 and dt/8: their errors of the
 /// order of the integrator and of the next two are taken out.
 fn extrapolated<S>(settings: &ChannelSettings, flow: Flow, tau: f64) -> Vec<(f64, f64)>
@@ -217,6 +223,7 @@ fn with_dt_extrapolated_away_runs_are_the_exponential_of_the_matrix() {
     check_exponential::<QuinticSpline, Ghosts>(QUINTIC, true);
     check_exponential::<WendlandC2, InterfaceWall>(WENDLAND, false);
     check_exponential::<QuinticSpline, InterfaceWall>(QUINTIC, false);
+    check_exponential::<QuinticSpline, ExtrapolatingWall<Tait, NoSlip>>(QUINTIC, false);
 }
 
 /// The matrix of a record, which knows its kernel and its walls by name.

@@ -148,7 +148,7 @@ fn the_drift_of_xsph_carries_no_mass() {
 fn density_diffusion_conserves_the_volume_weighted_sum_and_only_that() {
     for seed in 0..5 {
         let cloud = cloud(seed);
-        let diffusion = DensityDiffusion { diffusivity: 0.1 * H * 12.0 };
+        let diffusion = DensityDiffusion::new(0.1 * H * 12.0);
         let rates = open_rates::<QuinticSpline, _, _, _>(H, &cloud, (), diffusion);
         let by_volume = cloud.iter().zip(&rates).map(|(p, r)| p.mass / p.density * r.density);
         assert!(relative_sum(by_volume).abs() < ROUND_OFF);

@@ -173,7 +173,7 @@ fn xsph_is_equation_22() {
 /// Molteni & Colagrossi: 2 δ h c Σ Vⱼ (ρⱼ − ρᵢ) (rⱼ − rᵢ)·∇ᵢWᵢⱼ / d².
 #[test]
 fn density_diffusion_is_that_of_molteni_and_colagrossi() {
-    check((), DensityDiffusion { diffusivity: 0.1 * H * C }, |i, j, r, _| {
+    check((), DensityDiffusion::new(0.1 * H * C), |i, j, r, _| {
         let slope = (-r).dot(&grad_w(r)) / r.norm_squared();
         let density = 2.0 * 0.1 * H * C * j.mass / j.density * (j.density - i.density) * slope;
         Rate { density, ..Rate::default() }

@@ -1,49 +1,73 @@
 //! A run that goes on from a checkpoint has the bits of one that was never interrupted.
 
+use nalgebra::Vector2;
 use solver::{
-    Checkpoint, Compose, Continuity, CubicSpline, Domain, Flow, Integrator, Leapfrog, Observer,
-    Open, Outcome, PredictorCorrector, Pressure, Role, Scene, SceneError, Shifting, Simulation,
-    Smoothing, Tait, Viscosity,
+    Checkpoint, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Integrator,
+    Leapfrog, NoSlip, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure, Role, Scene,
+    SceneError, Scheme, Shifting, Simulation, Smoothing, Tait, Viscosity, lattice, walls::Walls,
 };
 use touchstone_tests::{bits, patch};
 
-type Method<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), (Continuity, Shifting), Open, I>;
+type Method<I, W = Open> =
+    Compose<CubicSpline, (Pressure<Tait>, Viscosity), (Continuity, Shifting), W, I>;
 
 const H: f64 = 0.08;
 const DT: f64 = 1.0 / 64.0;
 
 fn scene<I: Integrator<()>>() -> Scene<Method<I>> {
+    scene_of(Domain::torus(1.0, 1.0), patch(16, 0.15, 7), Open)
+}
+
+/// The same fluid between walls that extrapolate.
+fn channel<I: Integrator<()>>() -> Scene<Method<I, ExtrapolatingWall<Tait, NoSlip>>> {
+    let dx = 1.0 / 16.0;
+    let mut particles = patch(16, 0.05, 7);
+    for first in [-2.5 * dx, 1.0 + 0.5 * dx] {
+        let rows = lattice(Vector2::new(0.5 * dx, first), dx, 16, 3);
+        particles.extend(rows.map(|x| {
+            Particle::fluid(x, Vector2::zeros(), 1.0, dx * dx).with_role(Role::Wall)
+        }));
+    }
+    let walls = ExtrapolatingWall::no_slip(Tait::new(1.0, 1.0), Vector2::new(0.1, 0.0));
+    scene_of(Domain::channel(1.0), particles, walls)
+}
+
+fn scene_of<I: Integrator<()>, W: Walls<()>>(
+    domain: Domain,
+    particles: Vec<Particle>,
+    walls: W,
+) -> Scene<Method<I, W>> {
     let pressure = Pressure::new(Tait { background: 0.3, ..Tait::new(1.0, 1.0) });
     let forces = (pressure, Viscosity { mu: 0.01, eta2: 1e-4 * H * H });
     let w = Smoothing::<CubicSpline>::new(H).w(1.0 / 256.0);
     let drift = (Continuity, Shifting::new(0.5, H, w));
-    Scene::new(H, Domain::torus(1.0, 1.0), patch(16, 0.15, 7), forces, drift, Open)
+    Scene::new(H, domain, particles, forces, drift, walls)
 }
 
 /// Stops after so many steps of the run.
 struct After(u64);
 
-impl<I: Integrator<()>> Observer<Method<I>> for After {
-    fn after_step(&mut self, simulation: &Simulation<Method<I>>) -> Flow {
+impl<S: Scheme> Observer<S> for After {
+    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
         if simulation.work().steps == self.0 { Flow::Stop } else { Flow::Continue }
     }
 }
 
 /// A checkpoint after each of 12 steps, between builds of the rows and just after them. dt is a
 /// power of two, so that the rest of the time divides into the same steps.
-fn check<I: Integrator<()>>() {
+fn check<S: Scheme<Extra = ()>>(scene: impl Fn() -> Scene<S>) {
     let until = 40.0 * DT;
-    let mut whole = scene::<I>().build().unwrap();
+    let mut whole = scene().build().unwrap();
     assert_eq!(whole.advance(until, DT, &mut ()), Outcome::Reached);
     let mut between_builds = 0;
     for steps in 9..=20 {
-        let mut first = scene::<I>().build().unwrap();
+        let mut first = scene().build().unwrap();
         assert_eq!(first.advance(until, DT, &mut After(steps)), Outcome::Stopped);
         let checkpoint = first.checkpoint();
         drop(first);
         let moved = checkpoint.particles.iter().zip(&checkpoint.built_at);
         between_builds += u32::from(moved.clone().any(|((_, p), at)| p.position != *at));
-        let mut second = scene::<I>().resume(&checkpoint).unwrap();
+        let mut second = scene().resume(&checkpoint).unwrap();
         assert_eq!(second.checkpoint(), checkpoint, "nothing is lost on the way");
         assert_eq!(second.advance(until, DT, &mut ()), Outcome::Reached);
         assert_eq!(bits(&second.particles()), bits(&whole.particles()), "from step {steps}");
@@ -56,12 +80,14 @@ fn check<I: Integrator<()>>() {
 
 #[test]
 fn leapfrog_goes_on_with_the_same_bits() {
-    check::<Leapfrog>();
+    check(scene::<Leapfrog>);
+    check(channel::<Leapfrog>);
 }
 
 #[test]
 fn the_predictor_corrector_goes_on_with_the_same_bits() {
-    check::<PredictorCorrector>();
+    check(scene::<PredictorCorrector>);
+    check(channel::<PredictorCorrector>);
 }
 
 /// Why a checkpoint is more than the particles: without the rows' age, the order and the lag the

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, Domain, Ghosts, Integrator, InterfaceWall, Leapfrog, Open,
+    Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Ghosts, Integrator, InterfaceWall, Leapfrog, NoSlip, Open,
     Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, Scheme, Shifting,
     Smoothing, Tait, Viscosity, lattice, walls::Walls,
 };
@@ -105,6 +105,17 @@ fn a_channel_of_wall_particles_has_the_same_bits_on_any_number_of_threads() {
     });
     check("walls, predictor-corrector", || {
         scene::<_, PredictorCorrector>(Domain::channel(1.0), walled(), InterfaceWall)
+    });
+}
+
+#[test]
+fn a_channel_of_extrapolating_walls_has_the_same_bits_on_any_number_of_threads() {
+    let walls = || ExtrapolatingWall::no_slip(Tait::new(1.0, 1.0), Vector2::new(0.1, -0.2));
+    check("extrapolating walls, leapfrog", || {
+        scene::<ExtrapolatingWall<Tait, NoSlip>, Leapfrog>(Domain::channel(1.0), walled(), walls())
+    });
+    check("extrapolating walls, predictor-corrector", || {
+        scene::<_, PredictorCorrector>(Domain::channel(1.0), walled(), walls())
     });
 }
 

@@ -2,7 +2,7 @@
 //! pushed before it breaks.
 //!
 //! [`cases`] are the benchmarks; [`suite`] runs and judges them; [`studies`] turn many runs into
-//! statements. [`exact`] holds solutions of the equations, [`theory`] solutions of the *discretised*
+//! statements. [`geometry`] says where particles of walls stand. [`exact`] holds solutions of the equations, [`theory`] solutions of the *discretised*
 //! equations (which a correct program must reproduce to round-off), [`metrics`] the distance between
 //! them and a run. [`record`], [`mod@reference`] and [`mod@report`] are what goes in and comes out.
 
@@ -12,6 +12,7 @@ pub mod cases;
 pub mod exact;
 pub mod files;
 pub mod gate;
+pub mod geometry;
 pub mod manifest;
 pub mod metrics;
 pub mod number;

@@ -1,21 +1,77 @@
+use nalgebra::Vector2;
+
 use super::{Pair, Term};
 use crate::{
+    eos::Tait,
     kernel::Kernel,
     lane::Lane,
     particles::{Common, Rate},
 };
 
-/// dρᵢ/dt += 2 δ h ⁰c Σⱼ Vⱼ F(dᵢⱼ) (ρⱼ − ρᵢ) \[kg/m³/s\] (Molteni & Colagrossi 2009).
-///
-/// Damps pressure noise at the scale of h and leaves the velocity alone. Not fit for a hydrostatic
-/// column, whose density gradient it levels out.
-#[derive(Clone, Copy, Debug)]
-pub struct DensityDiffusion {
-    /// δ h ⁰c \[m²/s\]; δ = 0.1 by custom.
-    pub diffusivity: f64,
+/// The state that [`DensityDiffusion`] leaves alone: `()`, a uniform density, or [`Hydrostatic`].
+pub trait Rest: Copy + Send + Sync + 'static {
+    /// ρⱼ − ρᵢ beyond the difference at rest \[kg/m³\]; odd in the pair.
+    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>) -> V;
 }
 
-impl<X> Term<X> for DensityDiffusion {
+impl Rest for () {
+    #[inline(always)]
+    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>) -> V {
+        pair.other.density - pair.own.density
+    }
+}
+
+/// A column of fluid at rest under gravity: (⁰ρ/⁰c²) \[w(ρⱼ) − w(ρᵢ) − g·(rⱼ − rᵢ)\] in place of
+/// ρⱼ − ρᵢ, w the enthalpy of (7).
+///
+/// At rest ∇w = g, so every pair of particles has 0, wherever they are and however far the column is
+/// compressed. For ρ − ⁰ρ ≪ ⁰ρ it is the hydrostatic correction of Fourtakas et al. 2019. Where g is not
+/// what the pressure bears, as in free fall, it is the density of a column that is kept.
+#[derive(Clone, Copy, Debug)]
+pub struct Hydrostatic {
+    /// Gives w(ρ).
+    pub eos: Tait,
+    /// g \[m/s²\].
+    pub gravity: Vector2<f64>,
+}
+
+impl Rest for Hydrostatic {
+    #[inline(always)]
+    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>) -> V {
+        let Self { eos, gravity } = self;
+        let fall = V::all(gravity.x) * pair.r.x + V::all(gravity.y) * pair.r.y;
+        let enthalpy = eos.enthalpy(pair.other.density) - eos.enthalpy(pair.own.density);
+        V::all(eos.density / (eos.sound_speed * eos.sound_speed)) * (enthalpy + fall)
+    }
+}
+
+/// dρᵢ/dt += 2 δ h ⁰c Σⱼ Vⱼ F(dᵢⱼ) (ρⱼ − ρᵢ) \[kg/m³/s\] (Molteni & Colagrossi 2009).
+///
+/// Damps pressure noise at the scale of h and leaves the velocity alone. As it stands it levels out the
+/// density of a hydrostatic column; with [`Hydrostatic`] it keeps the column.
+#[derive(Clone, Copy, Debug)]
+pub struct DensityDiffusion<R = ()> {
+    /// δ h ⁰c \[m²/s\]; δ = 0.1 by custom.
+    pub diffusivity: f64,
+    /// What is left alone.
+    pub rest: R,
+}
+
+impl DensityDiffusion {
+    /// Towards a uniform density, with δ h ⁰c \[m²/s\].
+    pub fn new(diffusivity: f64) -> Self {
+        Self { diffusivity, rest: () }
+    }
+}
+
+impl DensityDiffusion<Hydrostatic> {
+    /// Towards a column at rest, with δ h ⁰c \[m²/s\] and g \[m/s²\].
+    pub fn hydrostatic(diffusivity: f64, eos: Tait, gravity: Vector2<f64>) -> Self {
+        Self { diffusivity, rest: Hydrostatic { eos, gravity } }
+    }
+}
+
+impl<X, R: Rest> Term<X> for DensityDiffusion<R> {
     type Shows = ();
     type Sum = f64;
 
@@ -24,7 +80,7 @@ impl<X> Term<X> for DensityDiffusion {
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut V) {
-        *sum += pair.other.volume * pair.f * (pair.other.density - pair.own.density);
+        *sum += pair.other.volume * pair.f * self.rest.excess(pair);
     }
 
     #[inline(always)]

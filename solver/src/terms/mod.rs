@@ -22,7 +22,7 @@ pub use artificial_viscosity::{Always, Approaching, ArtificialViscosity, Switch}
 pub use body_force::BodyForce;
 pub use cauchy_stress::CauchyStress;
 pub use continuity::Continuity;
-pub use density_diffusion::DensityDiffusion;
+pub use density_diffusion::{DensityDiffusion, Hydrostatic, Rest};
 pub use jaumann_rate::JaumannRate;
 pub use pressure::Pressure;
 pub use shifting::Shifting;
@@ -233,7 +233,8 @@ mod tests {
         check_vector::<K>(Xsph { epsilon: 0.5 });
         check_vector::<K>(Shifting::new(0.5, 0.35, w));
         check_number::<K>(Continuity);
-        check_number::<K>(DensityDiffusion { diffusivity: 0.1 });
+        check_number::<K>(DensityDiffusion::new(0.1));
+        check_number::<K>(DensityDiffusion::hydrostatic(0.1, eos, Vector2::new(0.3, -0.2)));
     }
 
     #[test]

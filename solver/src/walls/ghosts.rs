@@ -27,8 +27,23 @@ impl PlaneWall {
     }
 }
 
+/// |cos| of an angle that counts as a right one, at most.
+pub(crate) const RIGHT_ANGLE: f64 = 1e-12;
+
+/// The pairs of walls that make a corner.
+pub(crate) fn corners(walls: &[PlaneWall]) -> impl Iterator<Item = [&PlaneWall; 2]> {
+    let pairs = walls.iter().enumerate().flat_map(|(k, b)| walls[..k].iter().map(move |a| [a, b]));
+    pairs.filter(|[a, b]| a.normal.dot(&b.normal).abs() <= RIGHT_ANGLE)
+}
+
 /// Walls represented by ghosts: each particle within reach has an image across the wall with the
 /// density and pressure of its original (inferred) and the velocity 2U − v + d² ∂²v/∂n².
+///
+/// Where two walls meet at a right angle, the fluid between them, a particle within reach of both has an
+/// image across both as well: the mirror of its mirror, turned by half a turn about the corner, with
+/// the velocity v. (One wall after the other gives v ± 2(U₁ − U₂), by the order; v is the mean.) Other
+/// angles are refused, because their images of images never end. Walls are of infinite length: a tank
+/// has a bottom and two sides, and is open at the top because there is no wall.
 #[derive(Clone, Debug, Default)]
 pub struct Ghosts {
     /// The walls.

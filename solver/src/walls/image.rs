@@ -43,6 +43,13 @@ impl Map {
         }
     }
 
+    /// The ghost across two walls at a right angle.
+    pub fn corner([a, b]: [&PlaneWall; 2]) -> Self {
+        let (a, b) = (Self::mirror(a), Self::mirror(b));
+        let offset = a.linear * b.offset + a.offset;
+        Self { linear: a.linear * b.linear, offset, ..Self::identity() }
+    }
+
     /// The same image, shifted.
     pub fn shifted(self, by: Vector2<f64>) -> Self {
         Self { offset: self.offset + by, ..self }
@@ -91,5 +98,22 @@ mod tests {
         assert_eq!((ghost.common.density, ghost.shows), (2.0, 9.0));
         let back = map.place(ghost.position) - position;
         assert!(back.norm() < 1e-14, "mirroring twice is the identity");
+    }
+
+    #[test]
+    fn a_ghost_across_a_corner_is_the_mirror_of_the_mirror() {
+        let corner = Vector2::new(1.0, 2.0);
+        let wall = |n: Vector2<f64>| PlaneWall::new(corner, n, Vector2::zeros());
+        let walls = [wall(Vector2::new(-0.6, 0.8)), wall(Vector2::new(0.8, 0.6))];
+        let [a, b] = [Map::mirror(&walls[0]), Map::mirror(&walls[1])];
+        let common = Common { mass: 1.0, density: 2.0, volume: 0.5 };
+        let velocity = Vector2::new(1.0, 7.0);
+        let source = Column { position: Vector2::new(1.3, 2.9), velocity, common, shows: 9.0 };
+        let ghost = Map::corner([&walls[0], &walls[1]]).apply(&source);
+        for twice in [a.apply(&b.apply(&source)), b.apply(&a.apply(&source))] {
+            assert!((ghost.position - twice.position).norm() < 1e-14);
+            assert!((ghost.velocity - twice.velocity).norm() < 1e-14);
+        }
+        assert!((ghost.position + source.position - corner * 2.0).norm() < 1e-14, "half a turn");
     }
 }

@@ -18,7 +18,9 @@ use crate::{
     gate::{Bound, Evidence, Gate},
     number,
     record::{self, Metric, Profile, Record},
-    report::{Axis, Cell, Colour, ColourMap, Column, Figure, ParticleMap, Plot, Series, Table, sig},
+    report::{
+        Axis, Cell, Colour, ColourMap, Column, Figure, ParticleMap, Plot, Series, Table, sig,
+    },
     runner::{self, Context},
     settings::{Field, Settings},
     suite::{JudgedRun, Study},
@@ -50,13 +52,8 @@ const NAME: &str = "elliptic_drop";
 const SAMPLES: usize = 80;
 
 type Water<R = ()> = (Pressure<Tait, R>, ArtificialViscosity<Tait>, BodyForce);
-type Seed = Compose<
-    CubicSpline,
-    Water<ArtificialStress>,
-    (Continuity, Xsph),
-    Open,
-    PredictorCorrector,
->;
+type Seed =
+    Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), Open, PredictorCorrector>;
 type Modern = Compose<WendlandC2, Water, (Continuity, DensityDiffusion), Open, Leapfrog>;
 type Plain = Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
 
@@ -116,7 +113,7 @@ impl Drop {
             .filter(|x| x.norm() <= s.radius)
             .map(|x| {
                 let inside = 1.0 - x.norm_squared() / (s.radius * s.radius);
-                let density = medium.density_at(s.rho * circle.central_pressure() * inside);
+                let density = medium.eos.density(s.rho * circle.central_pressure() * inside);
                 let velocity = Vector2::new(-x.x, x.y) * s.strain;
                 Particle::fluid(x, velocity, density, dx * dx)
             })
@@ -217,12 +214,10 @@ where
     let uses = [S::Forces::uses(), S::Drift::uses()].concat();
     let [dt, limit] =
         medium.time_step::<S::Kernel, S::Integrator>(&uses, context.allow_unstable)?;
-    let (forces, drift) =
-        (S::Forces::new::<S::Kernel>(medium), S::Drift::new::<S::Kernel>(medium));
+    let (forces, drift) = (S::Forces::new::<S::Kernel>(medium), S::Drift::new::<S::Kernel>(medium));
     let mut ledger = Ledger::new(medium.water(), &forces, &drift);
     let particles = drop.particles.clone();
-    let mut scene =
-        Scene::<S>::new(medium.h, Domain::open(), particles, forces, drift, Open);
+    let mut scene = Scene::<S>::new(medium.h, Domain::open(), particles, forces, drift, Open);
     if context.threads <= 1 {
         scene.parallel_from = usize::MAX;
     }
@@ -267,9 +262,11 @@ fn finish<S: Scheme<Extra = ()>>(
     let half = particles.iter().map(|p| (p.position - centre).y.abs()).fold(0.0, f64::max);
     let exact = drop.exact.after(simulation.time());
     let value = (half + 0.5 * drop.medium.dx) / exact.b;
-    let formula = "distance of the outermost particle from the centre along y, plus dx/2, over b_exact";
+    let formula =
+        "distance of the outermost particle from the centre along y, plus dx/2, over b_exact";
     record.metrics.insert("tip_end".into(), Metric::new(value, "-", formula));
-    let numbers = |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
+    let numbers =
+        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
     let state: Vec<[f64; 5]> = particles.iter().map(numbers).collect();
     record.state = Some(record::digest(state.as_flattened()));
     if context.keep_particles {
@@ -338,6 +335,8 @@ fn plan(tier: Tier) -> Vec<Planned> {
             runs.push(run.judged(gates(&format!("{variant}.{n}"), *n)));
         }
     }
+    let narrow = ["n=40".to_string(), "h_over_dx=1.5".to_string()];
+    runs.push(Planned::new("modern", &narrow).judged(invariants("modern.narrow")));
     for variant in ["seed", "modern"] {
         let set = ["n=20".into(), format!("gravity={FALL}")];
         runs.push(Planned::new(variant, &set).judged(invariants(&format!("{variant}.falling"))));
@@ -357,9 +356,16 @@ fn gates(id: &str, n: usize) -> Vec<Gate> {
                 spacing, so of first order in it";
     let bound = Bound::Below(0.01 * (40.0 / n as f64).max(0.5));
     let mut gates = invariants(id);
-    gates.extend(["a_error", "b_error"].map(|m| gate(id, m, bound, Evidence::Analytic, axes)));
+    gates.extend(["a_error", "b_error"].map(|m| {
+        let gate = gate(id, m, bound, Evidence::Analytic, axes);
+        if id.starts_with("seed") { gate.with_limitation(STRINGS) } else { gate }
+    }));
     gates
 }
+
+const STRINGS: &str = "the strain leaves half a spacing along x and two along y: the cubic spline at h/dx 1.5 \
+                       lets particles form strings there, and artificial stress, which rises with the \
+                       fourth power of W, pushes them apart";
 
 fn invariants(id: &str) -> Vec<Gate> {
     let round_off = "forces of pairs are equal and opposite, and the only other force is gravity, which \
@@ -391,7 +397,8 @@ fn study(runs: &[JudgedRun]) -> Study {
         .block(table(runs));
     for variant in ["seed", "modern"] {
         let of = |gravity: f64| {
-            let mut of_variant = runs.iter().map(|run| &run.record).filter(|r| r.variant == variant);
+            let mut of_variant =
+                runs.iter().map(|run| &run.record).filter(|r| r.variant == variant);
             of_variant.find(|r| setting(r, "n") == 20.0 && setting(r, "gravity") == gravity)
         };
         let (Some(still), Some(falling)) = (of(0.0), of(FALL)) else { continue };
@@ -399,8 +406,13 @@ fn study(runs: &[JudgedRun]) -> Study {
         let because = "gravity acts on all particles alike, so a drop that falls deforms like one that \
                        does not; round-off of its places, in a flow that is smooth";
         let id = format!("{NAME}.{variant}.falls-in-shape");
-        let gate = Gate::new(id, "difference of a_end and b_end", Bound::Below(1e-9),
-            Evidence::Invariant, because);
+        let gate = Gate::new(
+            id,
+            "difference of a_end and b_end",
+            Bound::Below(1e-9),
+            Evidence::Invariant,
+            because,
+        );
         study = study.judge(gate, change("a_end").max(change("b_end")));
     }
     study
@@ -414,7 +426,7 @@ fn figure(runs: &[JudgedRun]) -> Figure {
     let mut plot = Plot::new("", axes.0, axes.1);
     let mut drop = None;
     for (k, variant) in ["seed", "modern"].into_iter().enumerate() {
-        let at_40 = |r: &&Record| r.variant == variant && setting(r, "n") == 40.0;
+        let at_40 = |r: &&Record| r.variant == variant && setting(r, "n") == 40.0; // the first: h/dx 2
         let Some(record) = runs.iter().map(|run| &run.record).find(at_40) else { continue };
         let Some(series) = record.profiles.get("series") else { continue };
         let (a, r) = (setting(record, "strain"), setting(record, "radius"));
@@ -445,7 +457,8 @@ fn picture(record: &Record) -> ParticleMap {
     let (a, r) = (setting(record, "strain"), setting(record, "radius"));
     let scale = setting(record, "rho") * Exact::circle(r, a).central_pressure();
     let xy = column(profile, "x").iter().zip(column(profile, "y"));
-    let points = xy.zip(column(profile, "p")).map(|((x, y), p)| (x / r, y / r, p / scale)).collect();
+    let points =
+        xy.zip(column(profile, "p")).map(|((x, y), p)| (x / r, y / r, p / scale)).collect();
     let axes = (Axis::linear("x [R]"), Axis::linear("y [R]"));
     let title = format!("A t = {}", sig(setting(record, "end"), 2));
     ParticleMap::new(&title, axes, "p/p(0) [-]", ColourMap::Sequential, points)
@@ -456,11 +469,13 @@ fn table(runs: &[JudgedRun]) -> Table {
     let columns = vec![
         Column::text("variant"),
         Column::num("particles across", "1"),
+        Column::num("h/dx", "-"),
         Column::num("gravity", "A^2 R"),
         Column::num("error of a", "-"),
         Column::num("error of b", "-"),
         Column::num("tip over b", "-"),
         Column::num("energy that viscosity took", "-"),
+        Column::num("that artificial stress gave", "-"),
         Column::num("energy not accounted for", "-"),
         Column::num("steps", "1"),
     ];
@@ -471,11 +486,13 @@ fn table(runs: &[JudgedRun]) -> Table {
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::num(setting(record, "n"), 3),
+            Cell::num(setting(record, "h_over_dx"), 2),
             Cell::num(setting(record, "gravity"), 2),
             Cell::percent(metric(record, "a_error"), 2),
             Cell::percent(metric(record, "b_error"), 2),
             Cell::num(metric(record, "tip_end"), 4),
             Cell::percent(-metric(record, "work_viscosity"), 2),
+            Cell::percent(metric(record, "work_stress"), 2),
             Cell::sci(metric(record, "energy_gap"), 2),
             Cell::count(record.cost.steps),
         ]);

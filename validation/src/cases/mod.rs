@@ -3,8 +3,10 @@
 pub mod acoustic_wave;
 pub mod channel;
 mod couette;
+pub mod dam_break;
 mod elastic_bar;
 mod elliptic_drop;
+pub mod hydrostatic;
 mod oscillating_plate;
 mod poiseuille;
 pub mod rings;
@@ -31,6 +33,8 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
     &elliptic_drop::EllipticDrop,
+    dam_break::DAM_BREAK,
+    hydrostatic::HYDROSTATIC,
 ];
 
 /// The case of that name.

@@ -3,12 +3,14 @@
 pub mod couette;
 pub mod damped_mode;
 pub mod elliptic_drop;
+pub mod hydrostatic;
 pub mod impact;
 pub mod poiseuille;
 
 pub use couette::Couette;
 pub use damped_mode::DampedMode;
 pub use elliptic_drop::EllipticDrop;
+pub use hydrostatic::Hydrostatic;
 pub use poiseuille::Poiseuille;
 
 /// A series is summed until the rigorous bound on its tail, relative to the velocity scale, is

@@ -10,7 +10,7 @@
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion,
     EquationOfState, Evolved, Pressure, Rate, Scheme, Simulation, Term, Viscosity, Xsph,
-    terms::Switch,
+    terms::{Rest, Switch},
 };
 
 /// ∂E/∂y · ẏ of a particle with this mass \[kg/m\], state and rate \[W/m\]; dx/dt is without v.
@@ -103,7 +103,7 @@ itemised! {
     ArtificialViscosity<E, W> { E: EquationOfState, W: Switch } = VISCOSITY,
     Viscosity {} = "viscosity",
     Xsph {} = XSPH,
-    DensityDiffusion {} = DIFFUSION,
+    DensityDiffusion<R> { R: Rest } = DIFFUSION,
 }
 
 macro_rules! tuple_of_items {
@@ -177,17 +177,20 @@ mod tests {
     };
 
     use super::*;
-    use crate::{metrics::energy::{Water, water_slope}, random::Random};
+    use crate::{
+        metrics::energy::{Water, water_slope},
+        random::Random,
+    };
 
-    type Forces =
-        (Pressure<Tait, ArtificialStress>, ArtificialViscosity<Tait>, BodyForce);
+    type Forces = (Pressure<Tait, ArtificialStress>, ArtificialViscosity<Tait>, BodyForce);
     type Drift = (Continuity, DensityDiffusion, Xsph);
     type Method = Compose<CubicSpline, Forces, Drift, InterfaceWall, PredictorCorrector>;
 
     const DX: f64 = 0.1;
-    const WATER: Water =
-        Water { eos: Tait { density: 2.0, sound_speed: 9.0, gamma: 7, background: 0.0 },
-            gravity: Vector2::new(0.7, -3.0) };
+    const WATER: Water = Water {
+        eos: Tait { density: 2.0, sound_speed: 9.0, gamma: 7, background: 0.0 },
+        gravity: Vector2::new(0.7, -3.0),
+    };
 
     /// Water in disorder over wall particles, some of it under tension.
     fn scene() -> Scene<Method> {
@@ -210,7 +213,7 @@ mod tests {
             ArtificialViscosity::new(0.4, 0.8, h, eos),
             BodyForce(WATER.gravity),
         );
-        let diffusion = DensityDiffusion { diffusivity: 0.1 * h * eos.sound_speed };
+        let diffusion = DensityDiffusion::new(0.1 * h * eos.sound_speed);
         let drift = (Continuity, diffusion, Xsph { epsilon: 0.4 });
         Scene::new(h, Domain::open(), particles, forces, drift, InterfaceWall)
     }

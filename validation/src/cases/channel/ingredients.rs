@@ -4,9 +4,9 @@
 use nalgebra::Vector2;
 use solver::terms::{Approaching, Tensile};
 use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, Euler, Ghosts,
-    Integrator, InterfaceWall, Kernel, Leapfrog, Numbers, Particle, PlaneWall, PredictorCorrector,
-    Pressure, Shifting, Tait, Term, Viscosity, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, Euler,
+    ExtrapolatingWall, Ghosts, Integrator, InterfaceWall, Kernel, Leapfrog, NoSlip, Numbers, Particle,
+    PlaneWall, PredictorCorrector, Pressure, Shifting, Tait, Term, Viscosity, Xsph,
 };
 
 use super::Setup;
@@ -109,7 +109,7 @@ impl Ingredient for Xsph {
 impl Ingredient for DensityDiffusion {
     const USES: &'static [&'static str] = &["diffusion"];
     fn new(setup: &Setup) -> Self {
-        DensityDiffusion { diffusivity: setup.settings.diffusion * setup.h * setup.eos.sound_speed }
+        DensityDiffusion::new(setup.settings.diffusion * setup.h * setup.eos.sound_speed)
     }
 }
 
@@ -183,10 +183,24 @@ impl Arrangement for InterfaceWall {
 
     /// Rows at j dx: interface rows on the plates are rows of the same lattice.
     fn particles<K: Kernel>(setup: &Setup) -> Vec<Particle> {
-        let support = K::SUPPORT * setup.h;
         let mut particles = setup.rows(setup.dx, setup.settings.rows - 1);
-        particles.extend(setup.wall_rows(0.0, -1.0, 0.0, support));
-        particles.extend(setup.wall_rows(setup.settings.width, 1.0, setup.plate_speed(), support));
+        particles.extend(setup.wall_rows(0.0, K::SUPPORT * setup.h));
+        particles
+    }
+}
+
+impl Arrangement for ExtrapolatingWall<Tait, NoSlip> {
+    const NAME: &'static str = "extrapolating-wall";
+    const USES: &'static [&'static str] = &[];
+
+    fn walls(setup: &Setup) -> Self {
+        Self::no_slip(setup.eos, Vector2::new(setup.force, 0.0))
+    }
+
+    /// Rows at (j + 1/2) dx, behind the plates as between them.
+    fn particles<K: Kernel>(setup: &Setup) -> Vec<Particle> {
+        let mut particles = setup.rows(0.5 * setup.dx, setup.settings.rows);
+        particles.extend(setup.wall_rows(0.5, K::SUPPORT * setup.h));
         particles
     }
 }

@@ -175,13 +175,28 @@ impl Setup {
             .collect()
     }
 
-    /// Particles of a wall: interface on it and wall rows behind, all with its velocity.
-    pub fn wall_rows(&self, y: f64, outwards: f64, speed: f64, support: f64) -> Vec<Particle> {
-        let behind = (support / self.dx - 1e-9).floor() as usize;
+    /// Particles of both plates: rows out to the support, the first one `first` dx behind the surface,
+    /// all with the velocity of the plate. On the surface, at 0, they are of the interface.
+    pub fn wall_rows(&self, first: f64, support: f64) -> Vec<Particle> {
+        let mut particles = self.rows_behind([0.0, -1.0], 0.0, first, support);
+        let (top, speed) = (self.settings.width, self.plate_speed());
+        particles.extend(self.rows_behind([top, 1.0], speed, first, support));
+        particles
+    }
+
+    /// Those of the plate at y, with the fluid on the other side than `outwards`.
+    fn rows_behind(
+        &self,
+        [y, outwards]: [f64; 2],
+        speed: f64,
+        first: f64,
+        support: f64,
+    ) -> Vec<Particle> {
+        let last = (support / self.dx - first - 1e-9).floor() as usize;
         let mut particles = Vec::new();
-        for k in 0..=behind {
-            let role = if k == 0 { Role::Interface } else { Role::Wall };
-            for p in self.rows(y + outwards * k as f64 * self.dx, 1) {
+        for behind in (0..=last).map(|k| first + k as f64) {
+            let role = if behind == 0.0 { Role::Interface } else { Role::Wall };
+            for p in self.rows(y + outwards * behind * self.dx, 1) {
                 let velocity = Vector2::new(speed, 0.0);
                 particles.push(Particle { velocity, ..p }.with_role(role));
             }

@@ -2,8 +2,8 @@
 
 use solver::{
     ArtificialStress, ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion,
-    Ghosts, InterfaceWall, Leapfrog, PredictorCorrector, Pressure, QuinticSpline, Scheme, Shifting,
-    Tait, Term, Viscosity, WendlandC2, Xsph,
+    ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlip, PredictorCorrector, Pressure,
+    QuinticSpline, Scheme, Shifting, Tait, Term, Viscosity, WendlandC2, Xsph,
 };
 
 use super::{
@@ -155,6 +155,11 @@ fn moderns<B: Ingredient>() -> Vec<ChannelVariant> {
                 modern(s);
                 s.wall_curvature = true;
             },
+        ),
+        variant::<Modern<Fluid<B>, Continuity, ExtrapolatingWall<Tait, NoSlip>>>(
+            "extrapolating-wall",
+            "plain with wall particles that extrapolate velocity and pressure (Adami, Hu & Adams 2012)",
+            modern,
         ),
         variant::<Modern<Fluid<B>, Stabilised>>(
             "modern",

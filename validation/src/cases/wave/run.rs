@@ -147,7 +147,7 @@ impl Wave {
     /// The same with density diffusion.
     pub fn diffusive_scene<K: Kernel, I: Stepping>(&self) -> Scene<SchemeWith<K, Diffusive, I>> {
         let diffusivity = self.settings.diffusion * self.h * self.sound_speed;
-        self.scene_with((Continuity, DensityDiffusion { diffusivity }))
+        self.scene_with((Continuity, DensityDiffusion::new(diffusivity)))
     }
 
     fn scene_with<K: Kernel, D: Term<()>, I: Stepping>(

@@ -145,7 +145,7 @@ impl<K: Kernel> NoisyBox<K> {
     pub fn damped<I: Stepping>(&self) -> Scene<Damped<K, I>> {
         let (eos, h) = (Tait::new(1.0, 1.0), self.h());
         let damping = Damping::new(self.alpha, 0.0, h, eos);
-        let diffusion = DensityDiffusion { diffusivity: self.delta * h };
+        let diffusion = DensityDiffusion::new(self.delta * h);
         let forces = (Pressure::new(eos), self.viscosity(), damping);
         self.scene(forces, (Continuity, diffusion), Open)
     }

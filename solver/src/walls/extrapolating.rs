@@ -1,0 +1,147 @@
+//! Wall particles that take pressure, and with [`NoSlip`] velocity, over from the fluid before them
+//! (Adami, Hu & Adams 2012).
+
+use nalgebra::Vector2;
+
+use super::Walls;
+use crate::{
+    eos::EquationOfState,
+    kernel::Kernel,
+    lane::Lane,
+    numbers::Numbers,
+    particles::{Common, Rate},
+    terms::{Pair, Term},
+};
+
+/// Walls represented by rows of [`crate::Role::Wall`] behind the surface, the first half a spacing
+/// behind it. They stand still, evolve nothing, and before each sweep take over from the fluid f that
+/// they see, and from it alone:
+///
+/// - p_w = Σ_f \[p_f + ρ_f (g − a_w)·r_wf\] W_wf / Σ_f W_wf, and from it the density, ρ_w = ρ(p_w);
+/// - with `U` = [`NoSlip`] u_w = 2 u_wall − Σ_f u_f W_wf / Σ_f W_wf, which all terms see in place of the
+///   velocity of the wall particle, u_wall. With `U` = `()` the particle keeps that velocity and nothing
+///   is summed: enough where no viscosity makes the fluid stick.
+///
+/// A wall particle that sees no fluid keeps the velocity and the density it was given: the support is
+/// mutual, so no fluid sees it either.
+#[derive(Clone, Copy, Debug)]
+pub struct ExtrapolatingWall<E, U = ()> {
+    /// Gives p(ρ) and ρ(p): that of the pressure term.
+    pub eos: E,
+    /// g − a_w: the body force less the acceleration of the wall \[m/s²\].
+    pub acceleration: Vector2<f64>,
+    /// p_w is not below this \[Pa\]: 0 where there is a free surface, above which the wall would suck
+    /// the fluid up; −∞ by default.
+    pub least_pressure: f64,
+    /// `()` or [`NoSlip`].
+    pub velocity: U,
+}
+
+impl<E> ExtrapolatingWall<E> {
+    /// A wall whose particles keep their velocity, under g − a_w \[m/s²\].
+    pub fn new(eos: E, acceleration: Vector2<f64>) -> Self {
+        Self { eos, acceleration, least_pressure: f64::NEG_INFINITY, velocity: () }
+    }
+}
+
+impl<E> ExtrapolatingWall<E, NoSlip> {
+    /// A wall that the fluid sticks to, under g − a_w \[m/s²\].
+    pub fn no_slip(eos: E, acceleration: Vector2<f64>) -> Self {
+        Self { eos, acceleration, least_pressure: f64::NEG_INFINITY, velocity: NoSlip }
+    }
+}
+
+impl<E, U> ExtrapolatingWall<E, U> {
+    /// The same wall with pressures not below this \[Pa\].
+    pub fn not_below(self, least_pressure: f64) -> Self {
+        Self { least_pressure, ..self }
+    }
+}
+
+/// What an [`ExtrapolatingWall`] does about the velocity: `()`, nothing, or [`NoSlip`].
+pub trait WallVelocity: Copy + Send + Sync + 'static {
+    /// Σ (u_wall − u_f) W.
+    type Sum: Numbers;
+    /// Adds a fluid particle of weight `w`, with `v` = u_wall − u_f.
+    fn add<V: Lane>(v: Vector2<V>, w: V, sum: &mut <Self::Sum as Numbers>::In<V>);
+    /// u_w − u_wall \[m/s\] from the sum and Σ W.
+    fn beyond(sum: Self::Sum, weight: f64) -> Vector2<f64>;
+}
+
+impl WallVelocity for () {
+    type Sum = ();
+    #[inline(always)]
+    fn add<V: Lane>(_: Vector2<V>, _: V, _: &mut ()) {}
+    #[inline(always)]
+    fn beyond(_: (), _: f64) -> Vector2<f64> {
+        Vector2::zeros()
+    }
+}
+
+/// u_w = 2 u_wall − Σ_f u_f W_wf / Σ_f W_wf.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoSlip;
+
+impl WallVelocity for NoSlip {
+    type Sum = Vector2<f64>;
+    #[inline(always)]
+    fn add<V: Lane>(v: Vector2<V>, w: V, sum: &mut Vector2<V>) {
+        *sum += v * w;
+    }
+    #[inline(always)]
+    fn beyond(sum: Vector2<f64>, weight: f64) -> Vector2<f64> {
+        sum / weight
+    }
+}
+
+impl<X, E: EquationOfState, U: WallVelocity> Walls<X> for ExtrapolatingWall<E, U> {
+    type Rows = Self;
+    const EXTRAPOLATES: bool = true;
+
+    fn rows(&self) -> Self {
+        *self
+    }
+}
+
+/// The sums over the fluid f, and from them ρ_w and u_w − u_wall in the places of their rates.
+impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U> {
+    type Shows = ();
+    /// Σ W \[1/m²\], Σ \[p + ρ (g − a_w)·r\] W \[Pa/m²\], and what is summed of the velocity.
+    type Sum = (f64, f64, U::Sum);
+
+    #[inline(always)]
+    fn shows(&self, _: &Common<f64>, _: &X) {}
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        _: (),
+        _: (),
+        (weight, pressure, velocity): &mut <Self::Sum as Numbers>::In<V>,
+    ) {
+        let (w, density) = (pair.w(), pair.other.density);
+        let a = self.acceleration;
+        let across = V::all(a.x) * pair.r.x + V::all(a.y) * pair.r.y;
+        *weight += w;
+        *pressure += (self.eos.pressure(density) + density * across) * w;
+        U::add(pair.v, w, velocity);
+    }
+
+    #[inline(always)]
+    fn finish(
+        &self,
+        own: &Common<f64>,
+        _: (),
+        (weight, pressure, velocity): Self::Sum,
+        rate: &mut Rate<X>,
+    ) {
+        if weight > 0.0 {
+            let pressure = (pressure / weight).max(self.least_pressure);
+            rate.density = self.eos.density(pressure);
+            rate.velocity = U::beyond(velocity, weight);
+        } else {
+            rate.density = own.density;
+        }
+    }
+}

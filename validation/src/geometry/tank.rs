@@ -1,0 +1,122 @@
+//! An open rectangular tank: a bottom, two sides, and no lid.
+
+use nalgebra::Vector2;
+use solver::{Ghosts, PlaneWall, lattice};
+
+/// The inside of a tank, from its lower left corner at the origin.
+///
+/// Particles stand on a square lattice of which the walls are lines, so bottom, sides and corners are
+/// rows of one lattice: no gap and no overlap.
+#[derive(Clone, Copy, Debug)]
+pub struct Tank {
+    /// Spacings across the tank.
+    pub columns: usize,
+    /// Spacings up to its rim.
+    pub rows: usize,
+    /// Spacing \[m\].
+    pub dx: f64,
+}
+
+/// Particles of the walls of a [`Tank`].
+#[derive(Clone, Debug, Default)]
+pub struct TankWalls {
+    /// On the surface.
+    pub interface: Vec<Vector2<f64>>,
+    /// Behind it.
+    pub wall: Vec<Vector2<f64>>,
+}
+
+impl Tank {
+    /// Width of the inside \[m\].
+    pub fn width(&self) -> f64 {
+        self.columns as f64 * self.dx
+    }
+
+    /// For [`solver::InterfaceWall`]: interface particles on bottom and sides, up to the rim, and wall
+    /// particles behind them, out to the `support` \[m\]. The fluid's first row is at dx, see
+    /// [`Tank::fluid`].
+    pub fn interface_walls(&self, support: f64) -> TankWalls {
+        let mut walls = TankWalls::default();
+        let behind = (support / self.dx - 1e-9).floor() as i32;
+        let (columns, rows) = (self.columns as i32, self.rows as i32);
+        for (i, j) in (-behind..=rows).flat_map(|j| (-behind..=columns + behind).map(move |i| (i, j))) {
+            let (across, up) = (0..=columns, 0..=rows);
+            let is_inside = across.contains(&i) && up.contains(&j);
+            let is_surface = is_inside && (i == 0 || i == columns || j == 0);
+            let point = Vector2::new(f64::from(i), f64::from(j)) * self.dx;
+            if is_surface {
+                walls.interface.push(point);
+            } else if !is_inside {
+                walls.wall.push(point);
+            }
+        }
+        walls
+    }
+
+    /// For [`solver::ExtrapolatingWall`]: rows from half a spacing behind bottom and sides on, up to the
+    /// rim, out to the `support` \[m\]. The fluid's first row is at dx/2.
+    pub fn rows_behind(&self, support: f64) -> Vec<Vector2<f64>> {
+        let behind = (support / self.dx + 0.5 - 1e-9).floor() as usize;
+        let first = Vector2::repeat((0.5 - behind as f64) * self.dx);
+        let all = lattice(first, self.dx, self.columns + 2 * behind, self.rows + behind);
+        all.filter(|p| !(p.y > 0.0 && p.x > 0.0 && p.x < self.width())).collect()
+    }
+
+    /// Walls that mirror the fluid: bottom, left and right side, of infinite height.
+    pub fn ghosts(&self) -> Ghosts {
+        let wall = |point, normal| PlaneWall::new(point, normal, Vector2::zeros());
+        let (origin, right) = (Vector2::zeros(), Vector2::new(self.width(), 0.0));
+        let walls = vec![
+            wall(origin, Vector2::y()),
+            wall(origin, Vector2::x()),
+            wall(right, -Vector2::x()),
+        ];
+        Ghosts { walls }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TANK: Tank = Tank { columns: 9, rows: 7, dx: 0.1 };
+
+    /// Each lattice point outside of the fluid, once, out to the support and not beyond.
+    fn check(walls: &[Vector2<f64>], first: f64, [behind, columns, rows]: [i32; 3]) {
+        let cell = |p: &Vector2<f64>| p.map(|x| (x / TANK.dx - first).round() as i32);
+        let mut cells: Vec<_> = walls.iter().map(|p| (cell(p).x, cell(p).y)).collect();
+        cells.sort_unstable();
+        let is_water = |i: i32, j: i32| (0..columns).contains(&i) && j >= 0;
+        let all = (-behind..columns + behind).flat_map(|i| (-behind..rows).map(move |j| (i, j)));
+        let expected: Vec<_> = all.filter(|(i, j)| !is_water(*i, *j)).collect();
+        assert_eq!(cells, expected);
+        for p in walls {
+            let off = p / TANK.dx - Vector2::repeat(first) - cell(p).map(f64::from);
+            assert!(off.amax() < 1e-12, "{p} is off the lattice");
+        }
+    }
+
+    #[test]
+    fn walls_and_water_fill_one_lattice_without_gap_or_overlap() {
+        for (support, behind) in [(0.31, 3), (0.25, 2), (0.24, 2), (0.26, 3)] {
+            check(&TANK.rows_behind(support), 0.5, [behind, 9, 7]);
+        }
+        let walls = TANK.interface_walls(0.3);
+        let all = [walls.interface.clone(), walls.wall].concat();
+        // Water from column 1 to 8 and row 1 up; the walls reach the rim at row 7, behind it row -2.
+        let moved: Vec<_> = all.iter().map(|p| p - Vector2::repeat(TANK.dx)).collect();
+        check(&moved, 0.0, [3, 8, 7]);
+        assert_eq!(walls.interface.len(), 10 + 2 * 7);
+        let width = TANK.width();
+        let on_wall = |p: &Vector2<f64>| p.x == 0.0 || (p.x - width).abs() < 1e-12 || p.y == 0.0;
+        assert!(walls.interface.iter().all(|p| on_wall(p) && p.y >= 0.0));
+    }
+
+    #[test]
+    fn ghosts_face_the_water() {
+        let middle = Vector2::new(0.5 * TANK.width(), 0.3);
+        for wall in TANK.ghosts().walls {
+            assert!((middle - wall.point).dot(&wall.normal) > 0.0);
+        }
+    }
+}
