@@ -46,6 +46,7 @@ pub use scene::{Compose, Scene, SceneError, Scheme, lattice};
 pub use simulation::{Checkpoint, Divergence, Flow, Observer, Outcome, Simulation, Work};
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Continuity,
-    DensityDiffusion, Hydrostatic, JaumannRate, Pressure, PrincipalStress, Shifting, Term, Viscosity, Xsph,
+    DensityDiffusion, Hydrostatic, JaumannRate, Pressure, PrincipalStress, Shifting, Term,
+    Viscosity, Xsph,
 };
 pub use walls::{ExtrapolatingWall, Ghosts, InterfaceWall, NoSlip, Open, PlaneWall};

@@ -9,8 +9,8 @@
 use nalgebra::DVector;
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, InterfaceWall,
-    Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, Pressure, QuinticSpline, Scheme, Simulation,
-    Tait, Viscosity, WendlandC2,
+    Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, Pressure, QuinticSpline, Scheme,
+    Simulation, Tait, Viscosity, WendlandC2,
 };
 use validation::{
     cases::channel::{

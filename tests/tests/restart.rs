@@ -24,9 +24,9 @@ fn channel<I: Integrator<()>>() -> Scene<Method<I, ExtrapolatingWall<Tait, NoSli
     let mut particles = patch(16, 0.05, 7);
     for first in [-2.5 * dx, 1.0 + 0.5 * dx] {
         let rows = lattice(Vector2::new(0.5 * dx, first), dx, 16, 3);
-        particles.extend(rows.map(|x| {
-            Particle::fluid(x, Vector2::zeros(), 1.0, dx * dx).with_role(Role::Wall)
-        }));
+        particles.extend(
+            rows.map(|x| Particle::fluid(x, Vector2::zeros(), 1.0, dx * dx).with_role(Role::Wall)),
+        );
     }
     let walls = ExtrapolatingWall::no_slip(Tait::new(1.0, 1.0), Vector2::new(0.1, 0.0));
     scene_of(Domain::channel(1.0), particles, walls)

@@ -5,9 +5,9 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Ghosts, Integrator, InterfaceWall, Leapfrog, NoSlip, Open,
-    Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, Scheme, Shifting,
-    Smoothing, Tait, Viscosity, lattice, walls::Walls,
+    Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Ghosts, Integrator, InterfaceWall,
+    Leapfrog, NoSlip, Open, Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role,
+    Scene, Scheme, Shifting, Smoothing, Tait, Viscosity, lattice, walls::Walls,
 };
 use touchstone_tests::{Random, V2, bits, patch};
 

@@ -4,8 +4,8 @@
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, EquationOfState, ExtrapolatingWall,
-    Kernel, Leapfrog, NoSlip, Outcome, Particle, Pressure, QuinticSpline, Role, Scene, Smoothing,
-    Tait, WendlandC2, walls::WallVelocity,
+    Kernel, Leapfrog, Outcome, Particle, Pressure, QuinticSpline, Role, Scene, Smoothing, Tait,
+    WendlandC2, walls::WallVelocity,
 };
 use touchstone_tests::{Random, V2, open_rates, relative_sum};
 
@@ -93,8 +93,7 @@ fn check<K: Kernel>() {
     let sticky = shown::<K, _>(&all, ExtrapolatingWall::no_slip(water(), GRAVITY));
     let smooth = shown::<K, _>(&all, ExtrapolatingWall::new(water(), GRAVITY));
     let floor = 20.0;
-    let clipped =
-        shown::<K, _>(&all, ExtrapolatingWall::new(water(), GRAVITY).not_below(floor));
+    let clipped = shown::<K, _>(&all, ExtrapolatingWall::new(water(), GRAVITY).not_below(floor));
     let (mut below, mut alone) = (0, 0);
     for (k, wall) in walls.iter().enumerate() {
         let k = fluid.len() + k;
@@ -107,7 +106,10 @@ fn check<K: Kernel>() {
         };
         let near = |seen: &Shown, pressure: f64, velocity: V2| {
             let found = water().pressure(seen.density);
-            assert!((found - pressure).abs() < 1e-7 * pressure.abs().max(1e3), "{found} {pressure}");
+            assert!(
+                (found - pressure).abs() < 1e-7 * pressure.abs().max(1e3),
+                "{found} {pressure}"
+            );
             assert!((seen.velocity - velocity).norm() < 1e-12, "{seen:?}");
             assert!((seen.mass_over_volume / seen.density - 1.0).abs() < 1e-15);
             let stress = found / (seen.density * seen.density);
@@ -119,7 +121,7 @@ fn check<K: Kernel>() {
         near(&clipped[k], expected.max(floor), wall.velocity);
         below += u32::from(expected < floor);
     }
-    assert!(below > 3 && alone == 1, "{below} below {floor} Pa, {alone} alone");
+    assert!(below > 3 && alone > 0 && alone < 4, "{below} below {floor} Pa, {alone} alone");
     // Images of wall particles show what their sources do, also those filled before the sweep.
     let images = &sticky[all.len()..];
     let of_walls = images.iter().filter(|image| image.place.y < 0.0);

@@ -8,8 +8,8 @@ mod interface;
 
 pub use extrapolating::{ExtrapolatingWall, NoSlip, WallVelocity};
 pub use ghosts::{Ghosts, PlaneWall};
-pub use image::Map;
 pub(crate) use ghosts::{RIGHT_ANGLE, corners};
+pub use image::Map;
 pub use interface::InterfaceWall;
 
 use crate::terms::Term;

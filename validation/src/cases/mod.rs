@@ -14,6 +14,7 @@ pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
 pub mod water;
+mod taylor_couette;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -35,6 +36,7 @@ pub const CASES: &[&dyn Case] = &[
     &elliptic_drop::EllipticDrop,
     dam_break::DAM_BREAK,
     hydrostatic::HYDROSTATIC,
+    &taylor_couette::Gap,
 ];
 
 /// The case of that name.

@@ -46,8 +46,7 @@ mod tests {
     fn the_column_is_in_equilibrium_and_obeys_the_equation_of_state() {
         for compressibility in [1e-4_f64, 1e-2, 0.1, 1.0] {
             let sound_speed = (9.81 / compressibility).sqrt();
-            let column =
-                Hydrostatic { density: 1000.0, sound_speed, gamma: 7.0, gravity: 9.81 };
+            let column = Hydrostatic { density: 1000.0, sound_speed, gamma: 7.0, gravity: 9.81 };
             let eos = Tait::new(1000.0, sound_speed);
             assert_eq!((column.pressure(0.0), column.density(0.0)), (0.0, 1000.0));
             for depth in [-0.02, 0.1, 0.5, 1.0] {

@@ -182,7 +182,9 @@ mod tests {
             let sum = |at: &Point| -> f64 {
                 let seen = shifts.iter().flat_map(|s| {
                     let shift = self.period * *s;
-                    self.points.iter().map(move |(p, v)| v * kernel.w((at - p + shift).norm_squared()))
+                    self.points
+                        .iter()
+                        .map(move |(p, v)| v * kernel.w((at - p + shift).norm_squared()))
                 });
                 seen.sum()
             };

@@ -39,7 +39,9 @@ impl Tank {
         let mut walls = TankWalls::default();
         let behind = (support / self.dx - 1e-9).floor() as i32;
         let (columns, rows) = (self.columns as i32, self.rows as i32);
-        for (i, j) in (-behind..=rows).flat_map(|j| (-behind..=columns + behind).map(move |i| (i, j))) {
+        for (i, j) in
+            (-behind..=rows).flat_map(|j| (-behind..=columns + behind).map(move |i| (i, j)))
+        {
             let (across, up) = (0..=columns, 0..=rows);
             let is_inside = across.contains(&i) && up.contains(&j);
             let is_surface = is_inside && (i == 0 || i == columns || j == 0);

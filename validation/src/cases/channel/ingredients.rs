@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use solver::terms::{Approaching, Tensile};
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, Euler,
-    ExtrapolatingWall, Ghosts, Integrator, InterfaceWall, Kernel, Leapfrog, NoSlip, Numbers, Particle,
-    PlaneWall, PredictorCorrector, Pressure, Shifting, Tait, Term, Viscosity, Xsph,
+    ExtrapolatingWall, Ghosts, Integrator, InterfaceWall, Kernel, Leapfrog, NoSlip, Numbers,
+    Particle, PlaneWall, PredictorCorrector, Pressure, Shifting, Tait, Term, Viscosity, Xsph,
 };
 
 use super::Setup;

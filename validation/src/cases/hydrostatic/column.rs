@@ -2,17 +2,16 @@
 
 use nalgebra::Vector2;
 use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, DensityDiffusion, Domain,
-    ExtrapolatingWall, Ghosts, Hydrostatic, InterfaceWall, Kernel, Particle, Pressure, Role, Scene,
-    Smoothing, Tait, Term, Xsph, lattice, terms::Tensile, walls::Walls,
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, DensityDiffusion,
+    Domain, ExtrapolatingWall, Ghosts, Hydrostatic, InterfaceWall, Kernel, Particle, Pressure,
+    Role, Scene, Smoothing, Tait, Term, Xsph, lattice, terms::Tensile, walls::Walls,
 };
 
 use super::{HydrostaticSettings, TankVariant, run};
 use crate::{
     case::{RunError, Variant},
     cases::channel::Stepping,
-    exact,
-    geometry,
+    exact, geometry,
     random::Random,
     theory::{
         lattice::SquareLattice,
@@ -85,7 +84,11 @@ impl Column {
     fn check<I: Stepping>(&self, allow_unstable: bool) -> Result<(), RunError> {
         let Self { settings: s, dt, dt_limit: limit, .. } = self;
         let too_much = |what, value, most, setting| {
-            if value > most { Err(RunError::TooMuch { what, value, most, setting }) } else { Ok(()) }
+            if value > most {
+                Err(RunError::TooMuch { what, value, most, setting })
+            } else {
+                Ok(())
+            }
         };
         let particles = s.rows as f64 * s.columns as f64;
         too_much("the number of time steps", self.end() / dt, MOST_STEPS, "end, courant or rows")?;
@@ -171,13 +174,8 @@ impl Column {
 }
 
 /// Kernel, artificial stress, what is added to the drift, walls, integrator.
-pub type Method<K, R, D, W, I> = Compose<
-    K,
-    (Pressure<Tait, R>, ArtificialViscosity<Tait>, BodyForce),
-    (Continuity, D),
-    W,
-    I,
->;
+pub type Method<K, R, D, W, I> =
+    Compose<K, (Pressure<Tait, R>, ArtificialViscosity<Tait>, BodyForce), (Continuity, D), W, I>;
 
 /// A term that stabilises, and the settings that only it reads.
 pub trait Part: Term<()> {
@@ -261,9 +259,7 @@ impl TankWall for InterfaceWall {
         let walls = column.tank().interface_walls(support);
         let level = column.level::<Self>();
         let with = |role: Role| {
-            move |x: Vector2<f64>| {
-                column.at_rest(x, level, column.settings.uniform).with_role(role)
-            }
+            move |x: Vector2<f64>| column.at_rest(x, level, column.settings.uniform).with_role(role)
         };
         let interface = walls.interface.into_iter().map(with(Role::Interface));
         interface.chain(walls.wall.into_iter().map(with(Role::Wall))).collect()

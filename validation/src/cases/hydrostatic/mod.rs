@@ -41,7 +41,7 @@ crate::settings! {
         /// smoothing length over spacing
         h_over_dx: f64 ["-"] in 0.9..=3.0 = 1.2,
         /// Courant number of the time step, with the sound speed at the bottom
-        courant: f64 ["-"] in 1e-6..=10.0 = 0.4,
+        courant: f64 ["-"] in 1e-6..=10.0 = 0.25,
         /// end of the run
         end: f64 ["4 H/c0"] in 1e-3..=1e5 = 20.0,
         /// each particle starts this far from its place, at random

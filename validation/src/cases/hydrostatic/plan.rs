@@ -45,7 +45,8 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
         for variant in TABLE.into_iter().filter(|v| *v != "modern") {
             runs.extend(COMPRESSIBILITIES.map(|c| run(variant, c, &[])));
         }
-        for set in [["rows=40", "columns=20"], ["jitter=0.1", "end=40"], ["uniform=true", "end=40"]] {
+        for set in [["rows=40", "columns=20"], ["jitter=0.1", "end=40"], ["uniform=true", "end=40"]]
+        {
             runs.push(run("modern", "0.01", &set));
         }
     }

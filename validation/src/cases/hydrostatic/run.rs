@@ -87,7 +87,9 @@ fn stops(column: &Column, context: &Context) -> Vec<f64> {
     let end = column.end();
     let frames = context.frames.as_ref().map_or(1, |(_, count)| *count.max(&1));
     let frames = (1..=frames).map(|k| end * (k as f64 / frames as f64));
-    let mut stops: Vec<f64> = (1..).map(|k| f64::from(k) * column.period()).take_while(|t| *t < end)
+    let mut stops: Vec<f64> = (1..)
+        .map(|k| f64::from(k) * column.period())
+        .take_while(|t| *t < end)
         .chain(frames)
         .collect();
     stops.sort_by(f64::total_cmp);
@@ -100,7 +102,8 @@ fn water<S: Scheme<Extra = ()>>(simulation: &Simulation<S>) -> Vec<Particle> {
 }
 
 fn state(particles: &[Particle]) -> Vec<f64> {
-    let numbers = |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
+    let numbers =
+        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
     particles.iter().flat_map(numbers).collect()
 }
 

@@ -18,7 +18,8 @@ pub fn studies(tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
         let of = |variant: &'static str| {
             runs.iter().map(|run| &run.record).filter(move |r| r.variant == variant && is_plain(r))
         };
-        let caption = "Every wall with every density treatment, Wendland C2, h/dx 1.5, leapfrog, 20 rows.";
+        let caption =
+            "Every wall with every density treatment, Wendland C2, h/dx 1.5, leapfrog, 20 rows.";
         let by_wall = table(caption, TABLE.into_iter().flat_map(of));
         let study = Study::new("hydrostatic-walls", "Walls and density treatments");
         studies.push(study.block(by_wall));

@@ -68,8 +68,7 @@ impl Vortex {
         let eos = Tait::new(1.0, c0);
         let forces = (Pressure::new(eos), Viscosity { mu: 1.0 / RE, eta2: 1e-6 * h * h });
         let w = Smoothing::<QuinticSpline>::new(h).w(dx * dx);
-        let drift =
-            (Continuity, DensityDiffusion::new(0.1 * h * c0), Shifting::new(0.5, h, w));
+        let drift = (Continuity, DensityDiffusion::new(0.1 * h * c0), Shifting::new(0.5, h, w));
         let mut scene = Scene::new(h, Domain::torus(1.0, 1.0), particles, forces, drift, Open);
         scene.parallel_from = usize::MAX;
         scene.limits = Limits { density: [0.1, 10.0], speed: 10.0 * (1.0 + c0) };
