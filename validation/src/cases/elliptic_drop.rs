@@ -322,6 +322,7 @@ impl Case for EllipticDrop {
 /// Particles across the drop.
 fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
     match (tier, variant) {
+        (Tier::Quick, "seed") => &[20],
         (Tier::Quick, _) => &[20, 40],
         (Tier::Full, _) => &[20, 40, 80, 160],
     }
@@ -498,4 +499,54 @@ fn table(runs: &[JudgedRun]) -> Table {
         ]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ran(variant: &str, set: &[&str]) -> Record {
+        let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
+        EllipticDrop.run(variant, &set, &Context::default()).expect("a run")
+    }
+
+    #[test]
+    fn the_particles_of_the_start_are_the_exact_drop() {
+        let drop = Drop::new(&DropSettings::default());
+        let start = shape(drop.particles.iter().map(seen));
+        assert!(
+            (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12
+        );
+        assert!(start.velocity.norm() < 1e-12 && start.centre.norm() < 1e-12);
+        let pressure = |p: &Particle| drop.medium.eos.pressure(p.density);
+        let most = drop.particles.iter().map(pressure).fold(0.0, f64::max);
+        let exact = 1000.0 * drop.exact.central_pressure();
+        assert!((most / exact - 1.0).abs() < 0.02, "{most} {exact}");
+    }
+
+    #[test]
+    fn a_drop_falls_freely_and_keeps_its_momentum() {
+        for variant in ["seed", "modern", "plain"] {
+            let short = ["n=12", "end=0.2"];
+            let (still, falling) =
+                (ran(variant, &short), ran(variant, &[&short[..], &["gravity=2"]].concat()));
+            for record in [&still, &falling] {
+                assert!(metric(record, "momentum_error") < 1e-13);
+                assert!(metric(record, "centre_error") < 1e-13);
+            }
+            let difference = metric(&still, "b_end") - metric(&falling, "b_end");
+            assert!(difference.abs() < 1e-10, "{variant}: {difference:e}");
+        }
+    }
+
+    #[test]
+    fn a_drop_that_makes_no_sense_is_refused() {
+        let refused = |variant: &str, set: &str| {
+            EllipticDrop.run(variant, &[set.to_string()], &Context::default()).err()
+        };
+        assert!(matches!(refused("modern", "n=2"), Some(RunError::Setting(_))));
+        assert!(matches!(refused("modern", "xsph=0.1"), Some(RunError::Unused { .. })));
+        assert!(matches!(refused("modern", "courant=3"), Some(RunError::TimeStep { .. })));
+        assert!(matches!(refused("modrn", "n=20"), Some(RunError::Variant { .. })));
+    }
 }

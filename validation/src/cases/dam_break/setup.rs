@@ -212,3 +212,53 @@ impl Dam {
         scene
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use solver::InterfaceWall;
+
+    use super::*;
+    use crate::cases::dam_break::{LOBOVSKY, Modern, Seed, settings};
+
+    fn dam(set: &[&str]) -> Result<Dam, RunError> {
+        let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
+        Dam::new::<Modern>(&settings("modern", &set)?, false)
+    }
+
+    #[test]
+    fn the_column_fills_its_corner_and_bears_its_weight() {
+        let dam = dam(&["n=20"]).unwrap();
+        assert!(dam.is_martin_moyce() && !dam.is_lobovsky());
+        for (water, on_surface) in
+            [(dam.water::<ExtrapolatingWall<Tait>>(), 0.0), (dam.water::<InterfaceWall>(), 0.5)]
+        {
+            assert_eq!(water.len(), 800);
+            let most = |f: fn(&Particle) -> f64| water.iter().map(f).fold(0.0, f64::max);
+            let right = most(|p| p.position.x) + (0.5 - on_surface) * dam.medium.dx;
+            assert!((right / 0.05715 - 1.0).abs() < 1e-12);
+            let bottom = dam.medium.eos.pressure(most(|p| p.density));
+            assert!((bottom / dam.unit_pressure() - 1.0 + 0.5 / 40.0).abs() < 1e-9, "{bottom}");
+        }
+    }
+
+    #[test]
+    fn the_experiments_are_told_apart_at_any_scale() {
+        let tank = dam(&LOBOVSKY).unwrap();
+        assert!(tank.is_lobovsky() && !tank.is_martin_moyce());
+        assert!(!dam(&["tank=0.2"]).unwrap().is_martin_moyce(), "its end would be reached");
+        assert!(dam(&["width=1", "height=2", "tank=10"]).unwrap().is_martin_moyce());
+    }
+
+    #[test]
+    fn scenes_that_make_no_sense_are_refused_with_their_setting() {
+        assert!(matches!(dam(&["tank=0.05"]), Err(RunError::TooMuch { .. })));
+        assert!(matches!(dam(&["courant=2"]), Err(RunError::TimeStep { .. })));
+        assert!(matches!(dam(&["n=2000", "tank=100"]), Err(RunError::TooMuch { .. })));
+        assert!(matches!(dam(&["xsph=0.5"]), Err(RunError::Unused { .. })));
+        assert!(matches!(dam(&["courant=1e-6"]), Err(RunError::TooMuch { .. })));
+        // Without viscosity the predictor-corrector has no stable step.
+        let inviscid = settings("seed", &["alpha=0".to_string()]).unwrap();
+        let refused = Dam::new::<Seed<InterfaceWall>>(&inviscid, false);
+        assert!(matches!(refused, Err(RunError::TimeStep { .. })));
+    }
+}
