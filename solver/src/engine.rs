@@ -243,8 +243,12 @@ impl<S: Scheme> Engine<S> {
         sweep.rates(&self.neighbours.rows, 0, self.counts[0])
     }
 
-    /// The rates of wall particles by the terms of the walls, for the state that was looked at last.
+    /// The rates of wall particles by the terms of the walls, for the state that was looked at last;
+    /// none where these do not give rates but extrapolate.
     pub fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
+        if S::Walls::EXTRAPOLATES {
+            return Vec::new();
+        }
         let ([fluid, wall], terms) = (self.counts, self.walls.rows());
         let unseen = |_: &Shows<S>| Default::default();
         self.sweep(&terms, unseen, false).rates(&self.neighbours.wall_rows, fluid, wall)

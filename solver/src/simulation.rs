@@ -254,7 +254,8 @@ impl<S: Scheme> Simulation<S> {
         self.engine.rates(&self.state, terms)
     }
 
-    /// What the walls' own terms do to each particle of [`Simulation::walls`] now, likewise.
+    /// What the walls' own terms do to each particle of [`Simulation::walls`] now, likewise; empty
+    /// where walls extrapolate.
     pub fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
         self.engine.wall_rates()
     }

@@ -113,7 +113,7 @@ impl Drop {
             .filter(|x| x.norm() <= s.radius)
             .map(|x| {
                 let inside = 1.0 - x.norm_squared() / (s.radius * s.radius);
-                let density = medium.density_at(s.rho * circle.central_pressure() * inside);
+                let density = medium.eos.density(s.rho * circle.central_pressure() * inside);
                 let velocity = Vector2::new(-x.x, x.y) * s.strain;
                 Particle::fluid(x, velocity, density, dx * dx)
             })
@@ -322,6 +322,7 @@ impl Case for EllipticDrop {
 /// Particles across the drop.
 fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
     match (tier, variant) {
+        (Tier::Quick, "seed") => &[20],
         (Tier::Quick, _) => &[20, 40],
         (Tier::Full, _) => &[20, 40, 80, 160],
     }
@@ -335,6 +336,8 @@ fn plan(tier: Tier) -> Vec<Planned> {
             runs.push(run.judged(gates(&format!("{variant}.{n}"), *n)));
         }
     }
+    let narrow = ["n=40".to_string(), "h_over_dx=1.5".to_string()];
+    runs.push(Planned::new("modern", &narrow).judged(invariants("modern.narrow")));
     for variant in ["seed", "modern"] {
         let set = ["n=20".into(), format!("gravity={FALL}")];
         runs.push(Planned::new(variant, &set).judged(invariants(&format!("{variant}.falling"))));
@@ -354,9 +357,16 @@ fn gates(id: &str, n: usize) -> Vec<Gate> {
                 spacing, so of first order in it";
     let bound = Bound::Below(0.01 * (40.0 / n as f64).max(0.5));
     let mut gates = invariants(id);
-    gates.extend(["a_error", "b_error"].map(|m| gate(id, m, bound, Evidence::Analytic, axes)));
+    gates.extend(["a_error", "b_error"].map(|m| {
+        let gate = gate(id, m, bound, Evidence::Analytic, axes);
+        if id.starts_with("seed") { gate.with_limitation(STRINGS) } else { gate }
+    }));
     gates
 }
+
+const STRINGS: &str = "the strain leaves half a spacing along x and two along y: the cubic spline at h/dx 1.5 \
+                       lets particles form strings there, and artificial stress, which rises with the \
+                       fourth power of W, pushes them apart";
 
 fn invariants(id: &str) -> Vec<Gate> {
     let round_off = "forces of pairs are equal and opposite, and the only other force is gravity, which \
@@ -417,7 +427,7 @@ fn figure(runs: &[JudgedRun]) -> Figure {
     let mut plot = Plot::new("", axes.0, axes.1);
     let mut drop = None;
     for (k, variant) in ["seed", "modern"].into_iter().enumerate() {
-        let at_40 = |r: &&Record| r.variant == variant && setting(r, "n") == 40.0;
+        let at_40 = |r: &&Record| r.variant == variant && setting(r, "n") == 40.0; // the first: h/dx 2
         let Some(record) = runs.iter().map(|run| &run.record).find(at_40) else { continue };
         let Some(series) = record.profiles.get("series") else { continue };
         let (a, r) = (setting(record, "strain"), setting(record, "radius"));
@@ -460,11 +470,13 @@ fn table(runs: &[JudgedRun]) -> Table {
     let columns = vec![
         Column::text("variant"),
         Column::num("particles across", "1"),
+        Column::num("h/dx", "-"),
         Column::num("gravity", "A^2 R"),
         Column::num("error of a", "-"),
         Column::num("error of b", "-"),
         Column::num("tip over b", "-"),
         Column::num("energy that viscosity took", "-"),
+        Column::num("that artificial stress gave", "-"),
         Column::num("energy not accounted for", "-"),
         Column::num("steps", "1"),
     ];
@@ -475,14 +487,66 @@ fn table(runs: &[JudgedRun]) -> Table {
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::num(setting(record, "n"), 3),
+            Cell::num(setting(record, "h_over_dx"), 2),
             Cell::num(setting(record, "gravity"), 2),
             Cell::percent(metric(record, "a_error"), 2),
             Cell::percent(metric(record, "b_error"), 2),
             Cell::num(metric(record, "tip_end"), 4),
             Cell::percent(-metric(record, "work_viscosity"), 2),
+            Cell::percent(metric(record, "work_stress"), 2),
             Cell::sci(metric(record, "energy_gap"), 2),
             Cell::count(record.cost.steps),
         ]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ran(variant: &str, set: &[&str]) -> Record {
+        let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
+        EllipticDrop.run(variant, &set, &Context::default()).expect("a run")
+    }
+
+    #[test]
+    fn the_particles_of_the_start_are_the_exact_drop() {
+        let drop = Drop::new(&DropSettings::default());
+        let start = shape(drop.particles.iter().map(seen));
+        assert!(
+            (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12
+        );
+        assert!(start.velocity.norm() < 1e-12 && start.centre.norm() < 1e-12);
+        let pressure = |p: &Particle| drop.medium.eos.pressure(p.density);
+        let most = drop.particles.iter().map(pressure).fold(0.0, f64::max);
+        let exact = 1000.0 * drop.exact.central_pressure();
+        assert!((most / exact - 1.0).abs() < 0.02, "{most} {exact}");
+    }
+
+    #[test]
+    fn a_drop_falls_freely_and_keeps_its_momentum() {
+        for variant in ["seed", "modern", "plain"] {
+            let short = ["n=12", "end=0.2"];
+            let (still, falling) =
+                (ran(variant, &short), ran(variant, &[&short[..], &["gravity=2"]].concat()));
+            for record in [&still, &falling] {
+                assert!(metric(record, "momentum_error") < 1e-13);
+                assert!(metric(record, "centre_error") < 1e-13);
+            }
+            let difference = metric(&still, "b_end") - metric(&falling, "b_end");
+            assert!(difference.abs() < 1e-10, "{variant}: {difference:e}");
+        }
+    }
+
+    #[test]
+    fn a_drop_that_makes_no_sense_is_refused() {
+        let refused = |variant: &str, set: &str| {
+            EllipticDrop.run(variant, &[set.to_string()], &Context::default()).err()
+        };
+        assert!(matches!(refused("modern", "n=2"), Some(RunError::Setting(_))));
+        assert!(matches!(refused("modern", "xsph=0.1"), Some(RunError::Unused { .. })));
+        assert!(matches!(refused("modern", "courant=3"), Some(RunError::TimeStep { .. })));
+        assert!(matches!(refused("modrn", "n=20"), Some(RunError::Variant { .. })));
+    }
 }

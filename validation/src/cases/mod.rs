@@ -3,6 +3,7 @@
 pub mod acoustic_wave;
 pub mod channel;
 mod couette;
+pub mod dam_break;
 mod elastic_bar;
 mod elliptic_drop;
 pub mod fluid;
@@ -37,6 +38,7 @@ pub const CASES: &[&dyn Case] = &[
     rings::RUBBER_RINGS,
     taylor_green::TAYLOR_GREEN,
     periodic_hill::PERIODIC_HILL,
+    dam_break::DAM_BREAK,
     hydrostatic::HYDROSTATIC,
     &elliptic_drop::EllipticDrop,
     &taylor_couette::Gap,

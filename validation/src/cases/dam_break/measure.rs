@@ -1,8 +1,10 @@
 //! What is measured of the water: front, heights, levels, momentum, and pressure on the far wall.
 
 use nalgebra::Vector2;
-use solver::{EquationOfState, Evolved, Flow as Going, Kernel, Observer, Scheme, Simulation,
-    Smoothing, Tait, Term};
+use solver::{
+    EquationOfState, Evolved, Flow as Going, Kernel, Observer, Scheme, Simulation, Smoothing, Tait,
+    Term,
+};
 
 use super::Dam;
 use crate::record::{Metric, Profile, Record};
@@ -12,8 +14,10 @@ pub const SENSORS: [f64; 4] = [0.003, 0.015, 0.030, 0.080];
 const DIAMETER: f64 = 0.0042;
 /// Places of the level probes, from the back wall \[m\].
 pub const PROBES: [f64; 4] = [0.300, 0.865, 1.114, 1.3625];
-/// The front is that of the water below this share of the column's height: not of spray above it.
-const FLOOR: f64 = 0.25;
+
+/// A particle this far behind the surface of a wall is lost \[dx\]. A splash may dent a wall of
+/// particles, whose surface lies half a spacing before the first of them.
+const LOST: f64 = 0.5;
 
 /// Depth of water at x: Σ V hat((x_i − x)/w)/w with the hat function 1 − |ξ| of half-width w = 2 dx.
 ///
@@ -26,10 +30,13 @@ fn depth<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, x: f64, w:
     })
 }
 
-/// x of the foremost particle of the water near the floor \[m\].
-fn foremost<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, floor: f64) -> f64 {
-    let low = particles.filter(|(_, p)| p.position.y < floor);
-    low.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
+/// x of the foremost particle of the water that counts \[m\].
+fn foremost<'a>(
+    particles: impl Iterator<Item = (f64, &'a Evolved<()>)>,
+    counts: impl Fn(Vector2<f64>) -> bool,
+) -> f64 {
+    let water = particles.filter(|(_, p)| counts(p.position));
+    water.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// One sample: t \[s\]; front, height at the back wall, levels \[m\]; particles outside; kinetic Mach
@@ -41,6 +48,7 @@ struct Sample {
     height: f64,
     levels: [f64; 4],
     outside: f64,
+    deepest: f64,
     speed: f64,
     density: [f64; 2],
 }
@@ -76,16 +84,17 @@ impl<'a, F: Term<()>> Seen<'a, F> {
     /// Takes a sample of a simulation that has been brought to a time.
     pub fn sample<S: Scheme<Extra = ()>>(&mut self, simulation: &Simulation<S>) {
         let (s, dx) = (&self.dam.settings, self.dam.medium.dx);
-        let foremost = foremost(simulation.fluid(), FLOOR * s.height);
+        let counts = |place| (self.dam.is_front)(place, s.height);
+        let foremost = foremost(simulation.fluid(), counts);
         if self.samples.is_empty() {
             self.start = foremost;
         }
         let (width, w) = (self.dam.tank.width(), 2.0 * dx);
-        let is_outside = |p: &Evolved<()>| {
-            let Vector2 { x, y, .. } = p.position;
-            x < 0.0 || x > width || y < 0.0
+        let depth_of = |p: &Evolved<()>| {
+            (-p.position.x).max(p.position.x - width).max(-p.position.y).max(0.0) / dx
         };
-        let outside = simulation.fluid().filter(|(_, p)| is_outside(p)).count() as f64;
+        let outside = simulation.fluid().filter(|(_, p)| depth_of(p) > LOST).count() as f64;
+        let deepest = simulation.fluid().map(|(_, p)| depth_of(p)).fold(0.0, f64::max);
         let fastest = simulation.fluid().map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max);
         let fold = |f: fn(f64, f64) -> f64| {
             simulation.fluid().map(|(_, p)| p.density / s.rho - 1.0).fold(f64::NAN, f)
@@ -97,6 +106,7 @@ impl<'a, F: Term<()>> Seen<'a, F> {
             height: depth(simulation.fluid(), w, w),
             levels: PROBES.map(|x| depth(simulation.fluid(), x, w)),
             outside,
+            deepest,
             speed: fastest,
             density: [fold(f64::min), fold(f64::max)],
         });
@@ -145,7 +155,12 @@ impl<'a, F: Term<()>> Seen<'a, F> {
             record.metrics.insert(name.into(), Metric::new(value, unit, formula));
         };
         let most = |f: &dyn Fn(&Sample) -> f64| self.samples.iter().map(f).fold(f64::NAN, f64::max);
-        put("outside", most(&|s| s.outside), "1", "most particles outside of bottom and sides");
+        let formula = "most particles more than dx/2 behind bottom and sides at any time";
+        put("outside", most(&|s| s.outside), "1", formula);
+        let last = self.samples.last().map_or(f64::NAN, |s| s.outside);
+        put("outside_end", last, "1", "those at the end");
+        let formula = "the deepest that a particle was behind bottom or sides";
+        put("outside_depth", most(&|s| s.deepest), "dx", formula);
         let mach = most(&|s| s.speed) / medium.eos.sound_speed;
         put("mach", mach, "-", "largest speed of a particle/c0");
         put("density_most", most(&|s| s.density[1]), "-", "largest rho/rho_0 - 1");
@@ -221,7 +236,9 @@ impl<K: Kernel> Gauge<K> {
         for row in &self.rows {
             let number = (row[0] / block).floor();
             match blocks.last_mut() {
-                Some((last, sum, count)) if *last == number => (*sum, *count) = (*sum + row[k + 1], *count + 1.0),
+                Some((last, sum, count)) if *last == number => {
+                    (*sum, *count) = (*sum + row[k + 1], *count + 1.0)
+                }
                 _ => blocks.push((number, row[k + 1], 1.0)),
             }
         }
@@ -273,6 +290,7 @@ impl<S: Scheme<Extra = ()>, K: Kernel> Observer<S> for Gauge<K> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cases::dam_break::setup::near_the_floor;
     use solver::WendlandC2;
 
     fn still(x: f64, y: f64) -> Evolved<()> {
@@ -283,19 +301,19 @@ mod tests {
     #[test]
     fn depth_is_exact_for_a_lattice_wherever_the_probe_is() {
         let dx = 0.1;
-        let water: Vec<_> = solver::lattice(Vector2::new(0.05, 0.05), dx, 20, 7)
-            .map(|p| still(p.x, p.y))
-            .collect();
+        let water: Vec<_> =
+            solver::lattice(Vector2::new(0.05, 0.05), dx, 20, 7).map(|p| still(p.x, p.y)).collect();
         let all = || water.iter().map(|p| (1000.0 * dx * dx, p));
         for x in [0.2, 0.73, 1.111, 1.8] {
             assert!((depth(all(), x, 2.0 * dx) - 0.7).abs() < 1e-12);
         }
         assert!((depth(all(), 2.0, 2.0 * dx) - 0.35).abs() < 1e-12, "half of the probe is dry");
         assert_eq!(depth(all(), 3.0, 2.0 * dx), 0.0);
-        assert!((foremost(all(), 0.15) - 1.95).abs() < 1e-12);
+        let low = |place| near_the_floor(place, 0.6);
+        assert!((foremost(all(), low) - 1.95).abs() < 1e-12);
         let spray = still(9.0, 5.0);
         let with_spray = all().chain([(1.0, &spray)]);
-        assert!((foremost(with_spray, 0.15) - 1.95).abs() < 1e-12);
+        assert!((foremost(with_spray, low) - 1.95).abs() < 1e-12);
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! The two experiments, and the distance from them.
 
-use super::{Dam, measure::{Gauge, PROBES, SENSORS, Seen}};
+use super::{
+    Dam,
+    measure::{Gauge, PROBES, SENSORS, Seen},
+};
 use crate::{
     record::{Metric, Profile, Record},
     reference::{Reference as Package, ReferenceError, Table},
@@ -148,7 +151,8 @@ impl Put<'_> {
         let shift = best_shift(pairs, range);
         let formula = format!("rms distance of {what} over the points of the experiment");
         self.metric(&format!("{name}_rms"), all(0.0), &formula);
-        let formula = format!("the same with the clock of the computation put forward by {name}_shift");
+        let formula =
+            format!("the same with the clock of the computation put forward by {name}_shift");
         self.metric(&format!("{name}_rms_shifted"), all(shift), &formula);
         let formula = "that shift, of the least rms, in the experiment's unit of time";
         self.metric(&format!("{name}_shift"), shift, formula);
@@ -231,9 +235,14 @@ fn pressures<K: Kernel>(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge<K>, put: &
         .map(|k| scaled(&gauge.pressure(k, BLOCK * unit), unit, scale, 0.0))
         .collect();
     let (ours, theirs) = (arrival(&curves[0]), arrival(&lobovsky.pressure[0]));
-    let formula = "t (g/H)^(1/2) at which P1 first exceeds 0.1 rho g H; pressures are aligned by it";
+    let formula =
+        "t (g/H)^(1/2) at which P1 first exceeds 0.1 rho g H; pressures are aligned by it";
     put.metric("arrival", ours, formula);
-    put.metric("arrival_measured", theirs, "the same of the experiment, on the clock of its pressures");
+    put.metric(
+        "arrival_measured",
+        theirs,
+        "the same of the experiment, on the clock of its pressures",
+    );
     for (k, computed) in curves.iter().enumerate() {
         let name = format!("P{}", k + 1);
         let measured = &lobovsky.pressure[k];
@@ -249,6 +258,8 @@ fn pressures<K: Kernel>(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge<K>, put: &
     let level = noise(&curves[1], ours + WINDOWS[0]);
     let formula = "rms distance of P2/(rho g H) from its running mean over 0.1 (H/g)^(1/2)";
     put.metric("pressure_noise", level, formula);
+    let theirs = noise(&lobovsky.pressure[1], theirs + WINDOWS[0]);
+    put.metric("pressure_noise_measured", theirs, "the same of the experiment, sampled at 2 kHz");
     let mut profile = Profile::default();
     let times = curves[0].iter().map(|(t, _)| *t).collect();
     profile = profile.with("t", "(H/g)^(1/2)", times);
@@ -266,7 +277,8 @@ mod tests {
     #[test]
     fn a_curve_that_starts_late_is_found_shifted() {
         let early: Curve = (0..100).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t)).collect();
-        let late: Curve = (8..60).map(|k| 0.07 * f64::from(k)).map(|t| (t, (t - 0.21).powi(2))).collect();
+        let late: Curve =
+            (8..60).map(|k| 0.07 * f64::from(k)).map(|t| (t, (t - 0.21).powi(2))).collect();
         let shift = best_shift(&[(early.clone(), late.clone())], 1.0);
         assert!((shift - 0.21).abs() < 2e-3, "{shift}");
         assert!(rms(&early, &late, shift) < 1e-3 && rms(&early, &late, 0.0) > 0.5);
@@ -286,13 +298,18 @@ mod tests {
             impulse(&lobovsky.aside, at, window) / impulse(&lobovsky.pressure[1], at, window) - 1.0
         };
         let [short, long] = WINDOWS.map(spread);
-        assert!((-0.08..-0.03).contains(&short) && (-0.16..-0.10).contains(&long), "{short} {long}");
+        assert!(
+            (-0.08..-0.03).contains(&short) && (-0.16..-0.10).contains(&long),
+            "{short} {long}"
+        );
     }
 
     #[test]
     fn noise_is_what_a_running_mean_leaves() {
         let curve = |amplitude: f64| -> Curve {
-            (0..1000).map(|k| (0.01 * f64::from(k), if k % 2 == 0 { amplitude } else { -amplitude })).collect()
+            (0..1000)
+                .map(|k| (0.01 * f64::from(k), if k % 2 == 0 { amplitude } else { -amplitude }))
+                .collect()
         };
         assert!(noise(&curve(0.0), 0.0) < 1e-12);
         assert!((noise(&curve(0.5), 0.0) - 0.5).abs() < 0.06);

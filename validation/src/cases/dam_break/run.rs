@@ -1,6 +1,6 @@
 //! One run of the collapse: scene, stepping, record.
 
-use solver::{Integrator, Kernel, Particle, Scene, Scheme, Simulation, EquationOfState};
+use solver::{EquationOfState, Integrator, Kernel, Particle, Scene, Scheme, Simulation};
 
 use super::{
     Dam, DamSettings, NAME, Vessel,
@@ -21,19 +21,15 @@ use crate::{
 
 /// Times at which particles are kept for pictures, shares of the run.
 pub const PICTURES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-/// Samples of a run.
-const SAMPLES: usize = 300;
+/// Time between samples \[(H/g)^(1/2)\], rounded to whole steps: powers are summed over them.
+const SAMPLE: f64 = 0.015;
 
 /// The observers of a run, for a scene that has the types of a variant or of a spoiled one.
 pub trait Watched: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>> {}
 impl<S: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>>> Watched for S {}
 
 /// Runs and measures.
-pub fn run<S>(
-    variant: &str,
-    settings: &DamSettings,
-    context: &Context,
-) -> Result<Record, RunError>
+pub fn run<S>(variant: &str, settings: &DamSettings, context: &Context) -> Result<Record, RunError>
 where
     S: Scheme<Extra = ()>,
     S::Forces: Ingredient,
@@ -64,16 +60,18 @@ pub fn run_scene<S: Watched>(
     let frames = Frames::of(context)?;
     let mut simulation = scene.build()?;
     let stops = stops(dam, context);
-    let times: Vec<f64> = stops.iter().map(|s| s.0).collect();
+    let times: Vec<f64> = stops.iter().map(|s| s.time).collect();
     let mut failed = None;
     let (status, cost) =
         runner::drive(&mut simulation, dam.dt, &times, context, &mut gauge, &mut |s, k| {
             seen.sample(s);
             ledger.sample(s);
-            if let (true, Some(frames)) = (stops[k].1, &frames) {
+            if let (true, Some(frames)) = (stops[k].frame, &frames) {
                 failed = failed.take().or(frames.write(s, &dam.medium.eos).err());
             }
-            keep(dam, s, context, &mut record);
+            if let (true, Some(share)) = (context.keep_particles, stops[k].picture) {
+                record.profiles.insert(format!("particles@{share}"), picture(dam, s));
+            }
         });
     if let Some(error) = failed {
         return Err(error.into());
@@ -112,36 +110,46 @@ fn begin<S: Scheme>(dam: &Dam, variant: &str, walls: &str, context: &Context) ->
     record
 }
 
-/// (time \[s\], whether a frame is due), ascending.
-fn stops(dam: &Dam, context: &Context) -> Vec<(f64, bool)> {
-    let end = dam.settings.end * dam.unit_time();
-    let at = |k: usize, count: usize| end * (k as f64 / count as f64);
-    let mut stops: Vec<(f64, bool)> = (0..=SAMPLES).map(|k| (at(k, SAMPLES), false)).collect();
-    if let Some((_, count)) = context.frames {
-        stops.extend((1..=count).map(|k| (at(k, count), true)));
+/// A time at which the run stops to be looked at.
+struct Stop {
+    /// \[s\].
+    time: f64,
+    /// Whether a frame is due.
+    frame: bool,
+    /// The picture that is due, by its share of the run.
+    picture: Option<f64>,
+}
+
+/// Stops, ascending: a whole number of steps apart, so that none is shortened.
+fn stops(dam: &Dam, context: &Context) -> Vec<Stop> {
+    let (end, dt) = (dam.settings.end * dam.unit_time(), dam.dt);
+    let every = (SAMPLE * dam.unit_time() / dt).round().max(1.0) * dt;
+    let count = (end / every - 0.5).floor().max(0.0) as usize;
+    let at = |k: usize| Stop { time: k as f64 * every, frame: false, picture: None };
+    let mut stops: Vec<Stop> = (0..=count).map(at).collect();
+    stops.push(Stop { time: end, frame: false, picture: None });
+    for share in PICTURES {
+        let nearest = (share * end / every).round() as usize;
+        let last = stops.len() - 1;
+        stops[nearest.min(last)].picture = Some(share);
     }
-    stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((_, count)) = context.frames {
+        let frame = |k: usize| end * (k as f64 / count as f64);
+        stops.extend((1..=count).map(|k| Stop { time: frame(k), frame: true, picture: None }));
+        stops.sort_by(|a, b| a.time.total_cmp(&b.time));
+    }
     stops
 }
 
-/// Keeps x, y and the pressure at the times of pictures.
-fn keep<S: Scheme<Extra = ()>>(
-    dam: &Dam,
-    simulation: &Simulation<S>,
-    context: &Context,
-    record: &mut Record,
-) {
-    let share = simulation.time() / (dam.settings.end * dam.unit_time());
-    let is_due = PICTURES.into_iter().find(|due| (due - share).abs() < 1e-9);
-    let (true, Some(due)) = (context.keep_particles, is_due) else { return };
+/// x, y and the pressure.
+fn picture<S: Scheme<Extra = ()>>(dam: &Dam, simulation: &Simulation<S>) -> Profile {
     let fluid: Vec<_> = simulation.fluid().map(|(_, p)| *p).collect();
     let unit = dam.settings.height;
     let pressure = |density: f64| dam.medium.eos.pressure(density) / dam.unit_pressure();
-    let profile = Profile::default()
+    Profile::default()
         .with("x", "H", fluid.iter().map(|p| p.position.x / unit).collect())
         .with("y", "H", fluid.iter().map(|p| p.position.y / unit).collect())
-        .with("p", "rho g H", fluid.iter().map(|p| pressure(p.density)).collect());
-    record.profiles.insert(format!("particles@{due}"), profile);
+        .with("p", "rho g H", fluid.iter().map(|p| pressure(p.density)).collect())
 }
 
 /// All of the state, in the order of the scene.

@@ -20,6 +20,9 @@ use crate::{
 const MOST_STEPS: f64 = 1e7;
 const MOST_PARTICLES: f64 = 2e6;
 
+/// Steps of the fastest water that neighbour rows reach ahead, there and back.
+const SKIN_STEPS: f64 = 4.0;
+
 /// The numbers of one run.
 #[derive(Clone, Debug)]
 pub struct Dam {
@@ -35,6 +38,14 @@ pub struct Dam {
     pub dt: f64,
     /// Its theoretical limit \[s\], see [`Medium::time_step`].
     pub dt_limit: f64,
+    /// Whether water at this place counts when the foremost particle is looked for, in a column of this
+    /// height \[m\]: [`near_the_floor`], so that spray does not.
+    pub is_front: fn(Vector2<f64>, f64) -> bool,
+}
+
+/// Below a quarter of the height of the column.
+pub fn near_the_floor(place: Vector2<f64>, height: f64) -> bool {
+    place.y < 0.25 * height
 }
 
 /// A tank that settings can make.
@@ -125,14 +136,14 @@ impl Dam {
         // The front of a dam break in shallow water runs at 2 (g H)^(1/2).
         let medium = Medium::new(s.numerics(), dx, s.c0 * fall, gravity, 2.0 * fall);
         let uses = [S::Forces::uses(), S::Drift::uses()].concat();
-        let [dt, dt_limit] =
-            medium.time_step::<S::Kernel, S::Integrator>(&uses, allow_unstable)?;
+        let [dt, dt_limit] = medium.time_step::<S::Kernel, S::Integrator>(&uses, allow_unstable)?;
         let steps = s.end * s.height / fall / dt;
         if steps > MOST_STEPS {
             let setting = "end, dt, courant, c0 or n";
             return Err(too_much("the number of time steps", steps, MOST_STEPS, setting));
         }
-        Ok(Self { settings: s.clone(), medium, tank, counts, dt, dt_limit })
+        let is_front = near_the_floor;
+        Ok(Self { settings: s.clone(), medium, tank, counts, dt, dt_limit, is_front })
     }
 
     /// (H/g)^(1/2) \[s\], the unit of time.
@@ -191,9 +202,63 @@ impl Dam {
         let drift = S::Drift::new::<S::Kernel>(medium);
         let walls = S::Walls::new(medium, tank);
         let mut scene = Scene::new(medium.h, Domain::open(), particles, forces, drift, walls);
+        // The fastest water crosses the usual skin in a step or two; rows that last longer are worth
+        // their length.
+        scene.skin = scene.skin.max(SKIN_STEPS * self.dt * medium.speed);
         // Water that is twice as dense, or as fast as sound, is no water any more.
         let (rho, c0) = (medium.numerics.rho, medium.eos.sound_speed);
-        scene.limits = Limits { density: [0.5 * rho, 2.0 * rho], speed: c0.max(2.0 * medium.speed) };
+        scene.limits =
+            Limits { density: [0.5 * rho, 2.0 * rho], speed: c0.max(2.0 * medium.speed) };
         scene
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use solver::InterfaceWall;
+
+    use super::*;
+    use crate::cases::dam_break::{LOBOVSKY, Modern, Seed, settings};
+
+    fn dam(set: &[&str]) -> Result<Dam, RunError> {
+        let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
+        Dam::new::<Modern>(&settings("modern", &set)?, false)
+    }
+
+    #[test]
+    fn the_column_fills_its_corner_and_bears_its_weight() {
+        let dam = dam(&["n=20"]).unwrap();
+        assert!(dam.is_martin_moyce() && !dam.is_lobovsky());
+        for (water, on_surface) in
+            [(dam.water::<ExtrapolatingWall<Tait>>(), 0.0), (dam.water::<InterfaceWall>(), 0.5)]
+        {
+            assert_eq!(water.len(), 800);
+            let most = |f: fn(&Particle) -> f64| water.iter().map(f).fold(0.0, f64::max);
+            let right = most(|p| p.position.x) + (0.5 - on_surface) * dam.medium.dx;
+            assert!((right / 0.05715 - 1.0).abs() < 1e-12);
+            let bottom = dam.medium.eos.pressure(most(|p| p.density));
+            assert!((bottom / dam.unit_pressure() - 1.0 + 0.5 / 40.0).abs() < 1e-9, "{bottom}");
+        }
+    }
+
+    #[test]
+    fn the_experiments_are_told_apart_at_any_scale() {
+        let tank = dam(&LOBOVSKY).unwrap();
+        assert!(tank.is_lobovsky() && !tank.is_martin_moyce());
+        assert!(!dam(&["tank=0.2"]).unwrap().is_martin_moyce(), "its end would be reached");
+        assert!(dam(&["width=1", "height=2", "tank=10"]).unwrap().is_martin_moyce());
+    }
+
+    #[test]
+    fn scenes_that_make_no_sense_are_refused_with_their_setting() {
+        assert!(matches!(dam(&["tank=0.05"]), Err(RunError::TooMuch { .. })));
+        assert!(matches!(dam(&["courant=2"]), Err(RunError::TimeStep { .. })));
+        assert!(matches!(dam(&["n=2000", "tank=100"]), Err(RunError::TooMuch { .. })));
+        assert!(matches!(dam(&["xsph=0.5"]), Err(RunError::Unused { .. })));
+        assert!(matches!(dam(&["courant=1e-6"]), Err(RunError::TooMuch { .. })));
+        // Without viscosity the predictor-corrector has no stable step.
+        let inviscid = settings("seed", &["alpha=0".to_string()]).unwrap();
+        let refused = Dam::new::<Seed<InterfaceWall>>(&inviscid, false);
+        assert!(matches!(refused, Err(RunError::TimeStep { .. })));
     }
 }

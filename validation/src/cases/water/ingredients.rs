@@ -1,6 +1,6 @@
 //! How each term is made from the settings of water, and which settings it reads.
 
-use solver::terms::{Approaching, Tensile};
+use solver::terms::{Approaching, Hydrostatic, Tensile};
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, Kernel,
     Pressure, Tait, Xsph,
@@ -87,8 +87,16 @@ impl Ingredient for Xsph {
 
 impl Ingredient for DensityDiffusion {
     fn new<K: Kernel>(medium: &Medium) -> Self {
-        let diffusivity = medium.numerics.diffusion * medium.h * medium.eos.sound_speed;
-        DensityDiffusion::new(diffusivity)
+        DensityDiffusion::new(medium.diffusivity())
+    }
+    fn uses() -> Vec<&'static str> {
+        vec!["diffusion"]
+    }
+}
+
+impl Ingredient for DensityDiffusion<Hydrostatic> {
+    fn new<K: Kernel>(medium: &Medium) -> Self {
+        DensityDiffusion::hydrostatic(medium.diffusivity(), medium.eos, medium.gravity)
     }
     fn uses() -> Vec<&'static str> {
         vec!["diffusion"]

@@ -70,16 +70,14 @@ impl Medium {
         Smoothing::<K>::new(self.h).w(self.dx * self.dx)
     }
 
+    /// δ h ⁰c of the density diffusion \[m²/s\].
+    pub fn diffusivity(&self) -> f64 {
+        self.numerics.diffusion * self.h * self.eos.sound_speed
+    }
+
     /// What the energy depends on.
     pub fn water(&self) -> Water {
         Water { eos: self.eos, gravity: self.gravity }
-    }
-
-    /// The density at which the pressure is p \[kg/m³\], (7) solved for ρ.
-    pub fn density_at(&self, pressure: f64) -> f64 {
-        let Tait { density, sound_speed, gamma, background } = self.eos;
-        let stiffness = sound_speed * sound_speed * density / f64::from(gamma);
-        density * (((pressure - background) / stiffness).ln_1p() / f64::from(gamma)).exp()
     }
 
     /// Time step and its theoretical limit \[s\]: a resting lattice with artificial viscosity on every

@@ -33,8 +33,9 @@ macro_rules! water_settings {
                 $($own)*
                 /// density at rest
                 rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
-                /// smoothing length over spacing
-                h_over_dx: f64 ["-"] in 0.8..=3.0 = 1.2,
+                /// smoothing length over spacing: 1.5 as in the rings; at 1.2 artificial stress adds more
+                /// energy than viscosity can take
+                h_over_dx: f64 ["-"] in 0.8..=3.0 = 1.5,
                 /// artificial viscosity: linear part
                 alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
                 /// artificial viscosity: quadratic part
