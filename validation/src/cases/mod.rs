@@ -4,14 +4,19 @@ pub mod acoustic_wave;
 pub mod channel;
 mod couette;
 mod elastic_bar;
+mod elliptic_drop;
+pub mod fluid;
 pub mod hydrostatic;
 mod oscillating_plate;
+pub mod periodic_hill;
 mod poiseuille;
 pub mod rings;
 pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
 mod taylor_couette;
+pub mod taylor_green;
+pub mod water;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -30,7 +35,10 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<spinning_disk::SpinningDisk>::CASE,
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
+    taylor_green::TAYLOR_GREEN,
+    periodic_hill::PERIODIC_HILL,
     hydrostatic::HYDROSTATIC,
+    &elliptic_drop::EllipticDrop,
     &taylor_couette::Gap,
 ];
 

@@ -2,16 +2,20 @@
 
 pub mod couette;
 pub mod damped_mode;
+pub mod elliptic_drop;
 pub mod hydrostatic;
 pub mod impact;
 pub mod poiseuille;
 pub mod taylor_couette;
+pub mod taylor_green;
 
 pub use couette::Couette;
 pub use damped_mode::DampedMode;
+pub use elliptic_drop::EllipticDrop;
 pub use hydrostatic::Hydrostatic;
 pub use poiseuille::Poiseuille;
 pub use taylor_couette::TaylorCouette;
+pub use taylor_green::TaylorGreen;
 
 /// A series is summed until the rigorous bound on its tail, relative to the velocity scale, is
 /// below this.

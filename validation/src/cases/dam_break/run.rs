@@ -1,0 +1,154 @@
+//! One run of the collapse: scene, stepping, record.
+
+use solver::{Integrator, Kernel, Particle, Scene, Scheme, Simulation, EquationOfState};
+
+use super::{
+    Dam, DamSettings, NAME, Vessel,
+    measure::{Gauge, Seen},
+    reference,
+};
+use crate::{
+    case::RunError,
+    cases::{
+        channel::Stepping,
+        water::{Ingredient, Ledger},
+    },
+    metrics::budget::Itemised,
+    number,
+    record::{self, Profile, Record, Status},
+    runner::{self, Context, Frames},
+};
+
+/// Times at which particles are kept for pictures, shares of the run.
+pub const PICTURES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+/// Samples of a run.
+const SAMPLES: usize = 300;
+
+/// The observers of a run, for a scene that has the types of a variant or of a spoiled one.
+pub trait Watched: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>> {}
+impl<S: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>>> Watched for S {}
+
+/// Runs and measures.
+pub fn run<S>(
+    variant: &str,
+    settings: &DamSettings,
+    context: &Context,
+) -> Result<Record, RunError>
+where
+    S: Scheme<Extra = ()>,
+    S::Forces: Ingredient,
+    S::Drift: Ingredient,
+    S::Walls: Vessel,
+    S::Integrator: Stepping,
+{
+    let dam = Dam::new::<S>(settings, context.allow_unstable)?;
+    run_scene::<S>(&dam, variant, S::Walls::NAME, dam.scene::<S>(), context)
+}
+
+/// Runs a scene and measures it against the setup: the same measuring for a scene that is not what
+/// its settings say.
+pub fn run_scene<S: Watched>(
+    dam: &Dam,
+    variant: &str,
+    walls: &str,
+    mut scene: Scene<S>,
+    context: &Context,
+) -> Result<Record, RunError> {
+    if context.threads <= 1 {
+        scene.parallel_from = usize::MAX;
+    }
+    let mut record = begin::<S>(dam, variant, walls, context);
+    let mut ledger = Ledger::new(dam.medium.water(), &scene.forces, &scene.drift);
+    let mut seen = Seen::new(dam, &scene.forces);
+    let mut gauge = Gauge::<S::Kernel>::new(dam);
+    let frames = Frames::of(context)?;
+    let mut simulation = scene.build()?;
+    let stops = stops(dam, context);
+    let times: Vec<f64> = stops.iter().map(|s| s.0).collect();
+    let mut failed = None;
+    let (status, cost) =
+        runner::drive(&mut simulation, dam.dt, &times, context, &mut gauge, &mut |s, k| {
+            seen.sample(s);
+            ledger.sample(s);
+            if let (true, Some(frames)) = (stops[k].1, &frames) {
+                failed = failed.take().or(frames.write(s, &dam.medium.eos).err());
+            }
+            keep(dam, s, context, &mut record);
+        });
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    let mass = simulation.fluid().map(|(mass, _)| mass).sum::<f64>();
+    seen.measure(mass, &mut record);
+    let fall = 0.5 * mass * dam.settings.gravity * dam.settings.height;
+    ledger.measure(fall, "M g H/2, the potential energy of the column", &mut record);
+    if status == Status::Completed
+        && let Err(error) = reference::compare(dam, &seen, &gauge, &mut record)
+    {
+        // Packages are embedded and checked by a test.
+        record.numerics.insert("reference".into(), error.to_string().into());
+    }
+    record.state = Some(record::digest(&state(&simulation.particles())));
+    (record.status, record.cost) = (status, cost);
+    Ok(record)
+}
+
+/// A record with what the run chose.
+fn begin<S: Scheme>(dam: &Dam, variant: &str, walls: &str, context: &Context) -> Record {
+    let json = serde_json::to_value(&dam.settings).unwrap_or_default();
+    let mut record = Record::new(NAME, variant, json, context.threads.max(1));
+    let numbers = [
+        ("h/dx", dam.settings.h_over_dx),
+        ("dx [m]", dam.medium.dx),
+        ("c0 [m/s]", dam.medium.eos.sound_speed),
+        ("dt [s]", dam.dt),
+        ("dt/limit", dam.dt / dam.dt_limit),
+    ];
+    let numerics = &mut record.numerics;
+    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
+    numerics.insert("kernel".into(), S::Kernel::NAME.into());
+    numerics.insert("integrator".into(), S::Integrator::NAME.into());
+    numerics.insert("walls".into(), walls.into());
+    record
+}
+
+/// (time \[s\], whether a frame is due), ascending.
+fn stops(dam: &Dam, context: &Context) -> Vec<(f64, bool)> {
+    let end = dam.settings.end * dam.unit_time();
+    let at = |k: usize, count: usize| end * (k as f64 / count as f64);
+    let mut stops: Vec<(f64, bool)> = (0..=SAMPLES).map(|k| (at(k, SAMPLES), false)).collect();
+    if let Some((_, count)) = context.frames {
+        stops.extend((1..=count).map(|k| (at(k, count), true)));
+    }
+    stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+    stops
+}
+
+/// Keeps x, y and the pressure at the times of pictures.
+fn keep<S: Scheme<Extra = ()>>(
+    dam: &Dam,
+    simulation: &Simulation<S>,
+    context: &Context,
+    record: &mut Record,
+) {
+    let share = simulation.time() / (dam.settings.end * dam.unit_time());
+    let is_due = PICTURES.into_iter().find(|due| (due - share).abs() < 1e-9);
+    let (true, Some(due)) = (context.keep_particles, is_due) else { return };
+    let fluid: Vec<_> = simulation.fluid().map(|(_, p)| *p).collect();
+    let unit = dam.settings.height;
+    let pressure = |density: f64| dam.medium.eos.pressure(density) / dam.unit_pressure();
+    let profile = Profile::default()
+        .with("x", "H", fluid.iter().map(|p| p.position.x / unit).collect())
+        .with("y", "H", fluid.iter().map(|p| p.position.y / unit).collect())
+        .with("p", "rho g H", fluid.iter().map(|p| pressure(p.density)).collect());
+    record.profiles.insert(format!("particles@{due}"), profile);
+}
+
+/// All of the state, in the order of the scene.
+fn state(particles: &[Particle]) -> Vec<f64> {
+    let numbers = |p: &Particle| {
+        let (x, v) = (p.position, p.velocity);
+        [x.x, x.y, v.x, v.y, p.density]
+    };
+    particles.iter().flat_map(numbers).collect()
+}
