@@ -230,14 +230,10 @@ impl<S: Scheme> Engine<S> {
     /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
     /// the state that was looked at last. dx/dt is without v.
     pub fn rates<T: Term<S::Extra>>(&self, state: &State<S>, terms: &T) -> Vec<Rate<S::Extra>> {
-        let real = state.len();
-        let source = |k: usize| match self.neighbours.images.get(k.wrapping_sub(real)) {
-            Some(image) => image.source as usize,
-            None => k,
-        };
         let column = |(k, c): (usize, &Column<Shows<S>>)| {
             let Column { position, velocity, common, .. } = *c;
-            let of = state.get(source(k)).map_or(S::Extra::default(), |e| e.extra);
+            let of =
+                state.get(self.neighbours.particle(k)).map_or(S::Extra::default(), |e| e.extra);
             Column { position, velocity, common, shows: terms.shows(&common, &of) }
         };
         let columns: Vec<_> = self.columns.iter().enumerate().map(column).collect();
@@ -300,14 +296,14 @@ impl<S: Scheme> Engine<S> {
         if extent.sound { Ok(extent) } else { Err(self.find_fault(state)) }
     }
 
-    /// Refills the images of the particles from `first` on.
+    /// Refills the images of the particles from `first` on; an image of an image belongs to both.
     fn fill_images(&mut self, first: usize) {
-        let real = self.fixed.len();
-        let (particles, images) = self.columns.split_at_mut(real);
-        let maps = &self.neighbours.maps;
-        let images = images.iter_mut().zip(&self.neighbours.images);
-        for (column, image) in images.filter(|(_, image)| image.source as usize >= first) {
-            *column = maps[image.map as usize].apply(&particles[image.source as usize]);
+        let (real, maps) = (self.fixed.len(), &self.neighbours.maps);
+        for (k, image) in self.neighbours.images.iter().enumerate() {
+            let source = image.source as usize;
+            if source >= first {
+                self.columns[real + k] = maps[image.map as usize].apply(&self.columns[source]);
+            }
         }
     }
 

@@ -221,6 +221,12 @@ impl<S: Scheme> Simulation<S> {
         &self.engine.kernel
     }
 
+    /// The terms of dv/dt, to be changed between stretches: a force that drives the flow, say. They are no
+    /// part of a checkpoint.
+    pub fn forces_mut(&mut self) -> &mut S::Forces {
+        &mut self.engine.forces
+    }
+
     /// Number of fluid particles.
     pub fn fluid_count(&self) -> usize {
         self.engine.counts[0]

@@ -38,12 +38,20 @@ pub struct Planned {
     pub set: Vec<String>,
     /// Judged on the record of this run.
     pub gates: Vec<Gate>,
+    /// Roughly how long it takes \[s\]; only the order counts: long runs start first, so that no core
+    /// waits for the last one.
+    pub seconds: f64,
 }
 
 impl Planned {
     /// A run without gates.
     pub fn new(variant: &'static str, set: &[String]) -> Self {
-        Self { variant, set: set.to_vec(), gates: Vec::new() }
+        Self { variant, set: set.to_vec(), gates: Vec::new(), seconds: 1.0 }
+    }
+
+    /// The same run, which takes roughly so long \[s\].
+    pub fn taking(self, seconds: f64) -> Self {
+        Self { seconds, ..self }
     }
 
     /// The same run, judged.
@@ -120,6 +128,9 @@ pub enum RunError {
     /// The scene is not one.
     #[error("the settings make an impossible scene: {0}")]
     Scene(#[from] solver::SceneError),
+    /// The numbers that a case is built on could not be had.
+    #[error("a reference that the case needs: {0}")]
+    Reference(String),
     /// A folder or file could not be written.
     #[error(transparent)]
     File(#[from] FileError),

@@ -44,6 +44,8 @@ const EMBEDDED: &[Embedded] = embedded! {
     "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
     "dambreak_martin_moyce": ["front.csv", "height.csv"],
     "peers_channel": ["errors.csv"],
+    "peers_taylor_green": ["errors.csv"],
+    "periodic_hill": ["profiles.csv", "wall.csv", "line.csv", "summary.csv", "checks.csv"],
     "periodic_hill_geometry": ["segments.csv"],
     "published_sph_errors": ["errors.csv"],
     "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "checks.csv"],

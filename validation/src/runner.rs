@@ -40,6 +40,8 @@ pub struct Context<'a> {
     pub frames: Option<(PathBuf, usize)>,
     /// Keep the particles of the last time in the record.
     pub keep_particles: bool,
+    /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
+    pub pictures: Option<usize>,
     /// Told how far the run is.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     /// Set from outside to stop.
@@ -79,14 +81,15 @@ impl<S: Scheme> Observer<S> for Watch<'_> {
 /// Steps through `times` \[s\], ascending; `at(simulation, k)` is called at the k-th. Returns how the
 /// run ended, and what the stepping alone cost.
 ///
-/// `observer` watches every step beside the runner's own.
+/// `observer` watches every step beside the runner's own. What `at` does to the simulation is no part of
+/// the cost.
 pub fn drive<S: Scheme>(
     simulation: &mut Simulation<S>,
     dt: f64,
     times: &[f64],
     context: &Context,
     observer: &mut impl Observer<S>,
-    at: &mut dyn FnMut(&Simulation<S>, usize),
+    at: &mut dyn FnMut(&mut Simulation<S>, usize),
 ) -> (Status, Cost) {
     let mut cost = Cost { threads: context.threads.max(1), ..Cost::default() };
     let end = times.last().copied().unwrap_or_default();

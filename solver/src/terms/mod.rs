@@ -8,10 +8,12 @@ mod artificial_stress;
 mod artificial_viscosity;
 mod body_force;
 mod cauchy_stress;
+mod consistent;
 mod continuity;
 mod density_diffusion;
 mod jaumann_rate;
 mod pressure;
+mod shift_advection;
 mod shifting;
 mod tensile_stress;
 mod viscosity;
@@ -21,12 +23,16 @@ pub use artificial_stress::{ArtificialStress, Tensile};
 pub use artificial_viscosity::{Always, Approaching, ArtificialViscosity, Switch};
 pub use body_force::BodyForce;
 pub use cauchy_stress::CauchyStress;
+pub use consistent::{ConsistentContinuity, ConsistentPressure, ConsistentViscosity};
 pub use continuity::Continuity;
 pub use density_diffusion::{DensityDiffusion, Hydrostatic, Rest};
 pub use jaumann_rate::JaumannRate;
 pub use pressure::Pressure;
+pub use shift_advection::ShiftAdvection;
 pub use shifting::Shifting;
-pub use tensile_stress::{ComponentStress, PrincipalStress, TensileStress};
+pub use tensile_stress::{
+    Axes, ComponentStress, Componentwise, InTension, Principal, PrincipalStress, TensileStress,
+};
 pub use viscosity::Viscosity;
 pub use xsph::Xsph;
 

@@ -26,6 +26,21 @@ impl Shifting {
     pub fn new(amplitude: f64, h: f64, w_at_spacing: f64) -> Self {
         Self { amplitude, h, inverse_w: 1.0 / w_at_spacing, max_speed: 0.0 }
     }
+
+    /// −Vⱼ \[1 + 0.2 (Wᵢⱼ/W(⁰r))⁴\] ∇ᵢWᵢⱼ \[1/m\].
+    #[inline(always)]
+    pub(super) fn push<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>) -> Vector2<V> {
+        let phi = pair.w() * V::all(self.inverse_w);
+        let phi2 = phi * phi;
+        let bracket = V::all(1.0) + V::all(0.2) * phi2 * phi2;
+        pair.r * (pair.other.volume * pair.f * bracket)
+    }
+
+    /// The velocity of the shift \[m/s\] from the sum of the pushes.
+    #[inline(always)]
+    pub(super) fn velocity(&self, sum: Vector2<f64>) -> Vector2<f64> {
+        sum * (self.amplitude * self.max_speed * self.h)
+    }
 }
 
 impl<X> Term<X> for Shifting {
@@ -42,14 +57,11 @@ impl<X> Term<X> for Shifting {
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
-        let phi = pair.w() * V::all(self.inverse_w);
-        let phi2 = phi * phi;
-        let bracket = V::all(1.0) + V::all(0.2) * phi2 * phi2;
-        *sum += pair.r * (pair.other.volume * pair.f * bracket);
+        *sum += self.push(pair);
     }
 
     #[inline(always)]
     fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
-        rate.position += sum * (self.amplitude * self.max_speed * self.h);
+        rate.position += self.velocity(sum);
     }
 }

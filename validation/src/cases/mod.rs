@@ -6,15 +6,18 @@ mod couette;
 pub mod dam_break;
 mod elastic_bar;
 mod elliptic_drop;
+pub mod fluid;
 pub mod hydrostatic;
 mod oscillating_plate;
+pub mod periodic_hill;
 mod poiseuille;
 pub mod rings;
 pub mod shear_wave;
 pub mod solid;
 mod spinning_disk;
-pub mod water;
 mod taylor_couette;
+pub mod taylor_green;
+pub mod water;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -35,6 +38,8 @@ pub const CASES: &[&dyn Case] = &[
     rings::RUBBER_RINGS,
     &elliptic_drop::EllipticDrop,
     dam_break::DAM_BREAK,
+    taylor_green::TAYLOR_GREEN,
+    periodic_hill::PERIODIC_HILL,
     hydrostatic::HYDROSTATIC,
     &taylor_couette::Gap,
 ];

@@ -7,6 +7,7 @@ pub mod hydrostatic;
 pub mod impact;
 pub mod poiseuille;
 pub mod taylor_couette;
+pub mod taylor_green;
 
 pub use couette::Couette;
 pub use damped_mode::DampedMode;
@@ -14,6 +15,7 @@ pub use elliptic_drop::EllipticDrop;
 pub use hydrostatic::Hydrostatic;
 pub use poiseuille::Poiseuille;
 pub use taylor_couette::TaylorCouette;
+pub use taylor_green::TaylorGreen;
 
 /// A series is summed until the rigorous bound on its tail, relative to the velocity scale, is
 /// below this.

@@ -432,6 +432,8 @@ pub struct ParticleMap {
     pub label: String,
     /// Diameter of a dot in units of x and y (the particle spacing, say); `None` guesses.
     pub diameter: Option<f64>,
+    /// Black lines over the dots, (x, y).
+    pub lines: Vec<Vec<(f64, f64)>>,
 }
 
 impl ParticleMap {
@@ -444,12 +446,19 @@ impl ParticleMap {
         points: Vec<(f64, f64, f64)>,
     ) -> Self {
         let (title, label) = (title.into(), label.into());
-        Self { title, x, y, points, map, values: None, label, diameter: None }
+        let lines = Vec::new();
+        Self { title, x, y, points, map, values: None, label, diameter: None, lines }
     }
 
     /// Sets the ends of the colour bar.
     pub fn values(self, lo: f64, hi: f64) -> Self {
         Self { values: Some((lo, hi)), ..self }
+    }
+
+    /// Adds a black line over the dots.
+    pub fn line(mut self, points: Vec<(f64, f64)>) -> Self {
+        self.lines.push(points);
+        self
     }
 
     /// Sets the diameter of a dot in units of x and y.

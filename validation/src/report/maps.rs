@@ -95,6 +95,15 @@ impl<'a> Particles<'a> {
                 None => canvas.marker(at, Shape::Cross, 8.0, Colour::BLACK, false),
             }
         }
+        for line in &self.map.lines {
+            let place = |&(x, y): &(f64, f64)| {
+                let (ux, uy) = (self.x.unit(x)?, self.y.unit(y)?);
+                Some((area.left + ux * area.width, area.bottom() - uy * area.height))
+            };
+            let points: Vec<_> =
+                line.iter().filter_map(place).filter(|p| area.contains(*p)).collect();
+            canvas.path(&points, Colour::BLACK, 1.4);
+        }
         canvas.frame(area, Colour::BLACK, 1.0);
         self.bar(canvas, area);
     }

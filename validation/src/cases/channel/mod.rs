@@ -15,6 +15,7 @@ mod variants;
 
 pub use case::ChannelCase;
 pub use ingredients::{Arrangement, Ingredient, Stepping};
+pub use measure::state;
 pub use run::{run, run_scene, scene};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};

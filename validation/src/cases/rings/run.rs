@@ -31,6 +31,14 @@ pub type Rubber<R, I> = Compose<
 /// Times at which particles are kept for pictures, shares of the run.
 pub const PICTURES: [f64; 6] = [0.0, 0.16, 0.3, 0.4, 0.6, 1.0];
 
+/// Those times, or as many as were asked for.
+fn pictures(context: &Context) -> Vec<f64> {
+    match context.pictures {
+        Some(count) => (0..count).map(|k| k as f64 / (count - 1).max(1) as f64).collect(),
+        None => PICTURES.to_vec(),
+    }
+}
+
 /// Runs and measures.
 pub fn run<R, I>(
     variant: &str,
@@ -118,7 +126,7 @@ fn begin(rings: &Rings, variant: &str, integrator: &str, context: &Context) -> R
 /// (time \[s\], whether a frame is due), ascending.
 fn stops(rings: &Rings, context: &Context) -> Vec<(f64, bool)> {
     let end = rings.settings.end / rings.c0;
-    let pictures = PICTURES.into_iter().filter(|share| *share > 0.0);
+    let pictures = pictures(context).into_iter().filter(|share| *share > 0.0);
     let mut stops: Vec<(f64, bool)> = pictures.map(|share| (share * end, false)).collect();
     if let Some((_, count)) = context.frames {
         stops.extend((1..=count).map(|k| (end * k as f64 / count as f64, true)));
@@ -136,7 +144,7 @@ fn keep<S: Scheme<Extra = Symmetric>>(
     record: &mut Record,
 ) {
     let end = rings.settings.end / rings.c0;
-    let is_due = PICTURES.into_iter().find(|share| share * end == time);
+    let is_due = pictures(context).into_iter().find(|share| share * end == time);
     let (true, Some(share)) = (context.keep_particles, is_due) else { return };
     let all = measure::seen(rings, simulation);
     let column = |f: &dyn Fn(&Particle<Symmetric>) -> f64| all.iter().map(f).collect::<Vec<f64>>();

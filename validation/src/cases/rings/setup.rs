@@ -2,9 +2,9 @@
 
 use nalgebra::{Rotation2, Vector2};
 use solver::{
-    ArtificialViscosity, CauchyStress, ComponentStress, Continuity, CubicSpline, Domain,
-    Integrator, JaumannRate, Limits, Linear, Open, Particle, PrincipalStress, Scene, Smoothing,
-    Symmetric, Xsph, terms::TensileStress,
+    ArtificialViscosity, CauchyStress, Continuity, CubicSpline, Domain, Integrator, JaumannRate,
+    Limits, Linear, Open, Particle, Scene, Smoothing, Symmetric, Xsph,
+    terms::{Axes, InTension, TensileStress},
 };
 use std::f64::consts::TAU;
 
@@ -59,13 +59,7 @@ impl Tensile for () {
     fn of(_: &Rings) -> Self {}
 }
 
-impl Tensile for PrincipalStress {
-    fn of(rings: &Rings) -> Self {
-        Self::new(rings.settings.xi, rings.settings.stress_exponent as u32, rings.w_at_spacing())
-    }
-}
-
-impl Tensile for ComponentStress {
+impl<A: Axes> Tensile for InTension<A> {
     fn of(rings: &Rings) -> Self {
         Self::new(rings.settings.xi, rings.settings.stress_exponent as u32, rings.w_at_spacing())
     }

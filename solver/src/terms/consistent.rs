@@ -1,0 +1,157 @@
+//! Terms that are exact for linear fields wherever the particles are: the gradient of a field f is
+//! ∇f = M⁻¹ Σⱼ Vⱼ (fᵢ − fⱼ) F rᵢⱼ with the moments M = Σⱼ Vⱼ rᵢⱼ ⊗ F rᵢⱼ of the particle's own neighbours,
+//! the unit matrix in the continuum (Bonet & Lok 1999; schemes of Negi & Ramachandran 2022).
+//!
+//! M is summed in the same traversal, so nothing is shown or stored for it. What they cost is
+//! conservation: the forces of a pair are not opposite any more, and nothing pushes crowded particles
+//! apart. They need [`super::Shifting`].
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::{Pair, Term};
+use crate::{
+    eos::EquationOfState,
+    kernel::Kernel,
+    lane::Lane,
+    numbers::{Numbers, Symmetric},
+    particles::{Common, Rate},
+};
+
+/// Least determinant of the moments: 1 inside a body of particles, 0 on a line.
+const SINGULAR: f64 = 1e-3;
+
+/// Vⱼ F rᵢⱼ \[1/m\], and its share of the moments.
+#[inline(always)]
+pub(super) fn weights<V: Lane, K: Kernel>(pair: &Pair<V, K>) -> (Vector2<V>, Symmetric<V>) {
+    let weight = pair.r * (pair.other.volume * pair.f);
+    let (xx, yy, xy) = (pair.r.x * weight.x, pair.r.y * weight.y, pair.r.x * weight.y);
+    (weight, Symmetric { xx, yy, xy })
+}
+
+/// M⁻¹, `None` where there are too few neighbours for a gradient.
+#[inline(always)]
+pub(super) fn inverse(moments: Symmetric) -> Option<Matrix2<f64>> {
+    let Symmetric { xx, yy, xy } = moments;
+    let determinant = xx * yy - xy * xy;
+    (determinant > SINGULAR).then(|| Matrix2::new(yy, -xy, -xy, xx) / determinant)
+}
+
+/// dvᵢ/dt += −∇p/ρᵢ \[m/s²\], in place of [`super::Pressure`]. Where neighbours lie on a line, 0.
+#[derive(Clone, Copy, Debug)]
+pub struct ConsistentPressure<E> {
+    /// Equation of state p(ρ).
+    pub eos: E,
+}
+
+impl<X, E: EquationOfState> Term<X> for ConsistentPressure<E> {
+    /// p \[Pa\].
+    type Shows = f64;
+    type Sum = (Vector2<f64>, Symmetric);
+
+    #[inline(always)]
+    fn shows(&self, own: &Common<f64>, _: &X) -> f64 {
+        self.eos.pressure(own.density)
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        own: V,
+        other: V,
+        sum: &mut <Self::Sum as Numbers>::In<V>,
+    ) {
+        let (weight, moments) = weights(pair);
+        sum.0 += weight * (own - other);
+        sum.1 = sum.1 + moments;
+    }
+
+    #[inline(always)]
+    fn finish(&self, own: &Common<f64>, _: f64, sum: Self::Sum, rate: &mut Rate<X>) {
+        if let Some(inverse) = inverse(sum.1) {
+            rate.velocity -= inverse * sum.0 / own.density;
+        }
+    }
+}
+
+/// dvᵢ/dt += −(4ν/tr M) Σⱼ Vⱼ F (vᵢⱼ − (rᵢⱼ·∇)v) \[m/s²\], in place of [`super::Viscosity`]: 0 for a linear
+/// field on any particles, exact for a parabola where M is a number times the unit matrix, as on a
+/// lattice. Where neighbours lie on a line, without the second part.
+#[derive(Clone, Copy, Debug)]
+pub struct ConsistentViscosity {
+    /// Kinematic viscosity ν \[m²/s\].
+    pub nu: f64,
+}
+
+impl<X> Term<X> for ConsistentViscosity {
+    type Shows = ();
+    /// Σ V F v, Σ V F r, Σ V F v x, Σ V F v y, M.
+    type Sum = (Vector2<f64>, Vector2<f64>, Vector2<f64>, Vector2<f64>, Symmetric);
+
+    #[inline(always)]
+    fn shows(&self, _: &Common<f64>, _: &X) {}
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        _: (),
+        _: (),
+        sum: &mut <Self::Sum as Numbers>::In<V>,
+    ) {
+        let (weight, moments) = weights(pair);
+        sum.0 += pair.v * (pair.other.volume * pair.f);
+        sum.1 += weight;
+        sum.2 += pair.v * weight.x;
+        sum.3 += pair.v * weight.y;
+        sum.4 = sum.4 + moments;
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
+        let (apart, weight, along_x, along_y, moments) = sum;
+        let trace = moments.xx + moments.yy;
+        let linear = inverse(moments).map_or_else(Vector2::zeros, |inverse| {
+            let place = inverse * weight;
+            along_x * place.x + along_y * place.y
+        });
+        if trace > SINGULAR {
+            rate.velocity -= (apart - linear) * (4.0 * self.nu / trace);
+        }
+    }
+}
+
+/// dρᵢ/dt += −ρᵢ ∇·v \[kg/m³/s\], in place of [`super::Continuity`]. Where neighbours lie on a line, 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ConsistentContinuity;
+
+impl<X> Term<X> for ConsistentContinuity {
+    type Shows = ();
+    /// Σ V F v x, Σ V F v y, M.
+    type Sum = (Vector2<f64>, Vector2<f64>, Symmetric);
+
+    #[inline(always)]
+    fn shows(&self, _: &Common<f64>, _: &X) {}
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        _: (),
+        _: (),
+        sum: &mut <Self::Sum as Numbers>::In<V>,
+    ) {
+        let (weight, moments) = weights(pair);
+        sum.0 += pair.v * weight.x;
+        sum.1 += pair.v * weight.y;
+        sum.2 = sum.2 + moments;
+    }
+
+    #[inline(always)]
+    fn finish(&self, own: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
+        if let Some(inverse) = inverse(sum.2) {
+            let gradient = Matrix2::from_columns(&[sum.0, sum.1]) * inverse;
+            rate.density -= own.density * gradient.trace();
+        }
+    }
+}

@@ -1,0 +1,61 @@
+use nalgebra::Vector2;
+
+use super::{
+    Pair, Shifting, Term,
+    consistent::{inverse, weights},
+};
+use crate::{
+    kernel::Kernel,
+    lane::Lane,
+    numbers::{Numbers, Symmetric},
+    particles::{Common, Rate},
+};
+
+/// What shifting must do to the velocity: dvᵢ/dt += (δuᵢ·∇)v \[m/s²\], δu the velocity of
+/// [`Shifting`].
+///
+/// A particle that is moved by δu beside the flow carries its velocity to where the fluid has another
+/// one; with this term it takes the velocity of its new place (quasi-Lagrangian form, Sun et al. 2019).
+/// The gradient is ∇v = [Σⱼ Vⱼ vᵢⱼ ⊗ F rᵢⱼ] [Σⱼ Vⱼ rᵢⱼ ⊗ F rᵢⱼ]⁻¹, exact for a linear field on any
+/// particles; where they lie on a line it is taken as 0. Belongs into the forces, beside the same
+/// [`Shifting`] in the drift. Momentum is no longer conserved exactly.
+#[derive(Clone, Copy, Debug)]
+pub struct ShiftAdvection(pub Shifting);
+
+impl<X> Term<X> for ShiftAdvection {
+    type Shows = ();
+    /// Σ of the shift, Σ Vⱼ vᵢⱼ F x, Σ Vⱼ vᵢⱼ F y, Σ Vⱼ rᵢⱼ ⊗ F rᵢⱼ.
+    type Sum = (Vector2<f64>, Vector2<f64>, Vector2<f64>, Symmetric);
+    const NEEDS_SPEED: bool = true;
+
+    fn prepare(&mut self, max_speed: f64) {
+        <Shifting as Term<X>>::prepare(&mut self.0, max_speed);
+    }
+
+    #[inline(always)]
+    fn shows(&self, _: &Common<f64>, _: &X) {}
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        _: (),
+        _: (),
+        sum: &mut <Self::Sum as Numbers>::In<V>,
+    ) {
+        let (weight, moments) = weights(pair);
+        sum.0 += self.0.push(pair);
+        sum.1 += pair.v * weight.x;
+        sum.2 += pair.v * weight.y;
+        sum.3 = sum.3 + moments;
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
+        let (push, along_x, along_y, moments) = sum;
+        if let Some(inverse) = inverse(moments) {
+            let moved = inverse * self.0.velocity(push);
+            rate.velocity += along_x * moved.x + along_y * moved.y;
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Terms that are exact for linear fields, on particles that lie anyhow.
+
+use nalgebra::{Matrix2, Vector2};
+use solver::{
+    ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Linear, Particle, QuinticSpline,
+    Term, Viscosity, WendlandC2, lattice,
+};
+use touchstone_tests::{Random, open_rates, patch};
+
+const N: usize = 14;
+const DX: f64 = 1.0 / N as f64;
+const ROUND_OFF: f64 = 1e-11;
+
+/// A disturbed patch with v = A x + b and a density that gives p = g·x.
+fn linear(seed: u64, gradient: Matrix2<f64>, slope: Vector2<f64>, eos: Linear) -> Vec<Particle> {
+    let mut particles = patch(N, 0.3, seed);
+    for p in &mut particles {
+        p.velocity = gradient * p.position + Vector2::new(0.4, -0.1);
+        p.density = eos.density + slope.dot(&p.position) / (eos.sound_speed * eos.sound_speed);
+    }
+    particles
+}
+
+#[test]
+fn gradient_and_divergence_of_linear_fields_are_exact_anywhere() {
+    let (gradient, slope) = (Matrix2::new(0.3, -1.7, 0.9, -0.2), Vector2::new(2.0, -0.7));
+    let eos = Linear { density: 1.0, sound_speed: 10.0 };
+    for seed in 0..3 {
+        let particles = linear(seed, gradient, slope, eos);
+        let pressure = ConsistentPressure { eos };
+        let rates =
+            open_rates::<QuinticSpline, _, _, _>(DX, &particles, pressure, ConsistentContinuity);
+        for (rate, p) in rates.iter().zip(&particles) {
+            assert!((rate.velocity + slope / p.density).norm() < ROUND_OFF, "{}", rate.velocity);
+            assert!((rate.density + p.density * gradient.trace()).abs() < ROUND_OFF);
+        }
+    }
+}
+
+#[test]
+fn a_linear_field_has_no_viscous_force_anywhere() {
+    let eos = Linear { density: 1.0, sound_speed: 10.0 };
+    let particles = linear(5, Matrix2::new(0.3, -1.7, 0.9, -0.2), Vector2::zeros(), eos);
+    let largest = |forces: fn() -> Box<dyn Fn(&[Particle]) -> f64>| forces()(&particles);
+    fn of(forces: impl Term<()>) -> Box<dyn Fn(&[Particle]) -> f64> {
+        Box::new(move |particles| {
+            let rates = open_rates::<WendlandC2, _, _, _>(2.0 * DX, particles, forces.clone(), ());
+            rates.iter().map(|r| r.velocity.norm()).fold(0.0, f64::max)
+        })
+    }
+    assert!(largest(|| of(ConsistentViscosity { nu: 1.0 })) < 1e-9);
+    assert!(largest(|| of(Viscosity { mu: 1.0, eta2: 1e-8 })) > 1.0, "Morris' form has one");
+}
+
+/// On a lattice the moments are a number times the unit matrix: a parabola has the Laplacian 2.
+#[test]
+fn a_parabola_on_a_lattice_has_its_viscous_force() {
+    let at = |x: Vector2<f64>| Vector2::new(x.y * x.y, x.x * x.x - 3.0 * x.x * x.y);
+    let particles: Vec<Particle> = lattice(Vector2::repeat(0.5 * DX), DX, N, N)
+        .map(|x| Particle::fluid(x, at(x), 1.0, DX * DX))
+        .collect();
+    let viscosity = ConsistentViscosity { nu: 0.7 };
+    let rates = open_rates::<QuinticSpline, _, _, _>(DX, &particles, viscosity, ());
+    let inside = |p: &Particle| p.position.iter().all(|x| (3.5 * DX..1.0 - 3.5 * DX).contains(x));
+    let mut seen = 0;
+    for (rate, p) in rates.iter().zip(&particles).filter(|(_, p)| inside(p)) {
+        assert!(
+            (rate.velocity - Vector2::repeat(1.4)).norm() < 1e-9,
+            "{} {}",
+            rate.velocity,
+            p.position
+        );
+        seen += 1;
+    }
+    assert!(seen > 9);
+}
+
+#[test]
+fn particles_on_a_line_and_alone_feel_nothing_that_is_not_finite() {
+    let mut random = Random(3);
+    let at = |x: f64| Particle::fluid(Vector2::new(x, 0.0), Vector2::new(x, 1.0), 1.0, DX * DX);
+    let line: Vec<Particle> =
+        (0..9).map(|k| at(f64::from(k) * DX + random.between(0.0, 0.3 * DX))).collect();
+    let eos = Linear { density: 1.0, sound_speed: 10.0 };
+    for particles in [&line[..], &line[..1]] {
+        let forces = (ConsistentPressure { eos }, ConsistentViscosity { nu: 1.0 });
+        let rates =
+            open_rates::<QuinticSpline, _, _, _>(DX, particles, forces, ConsistentContinuity);
+        for rate in &rates {
+            assert!(rate.velocity.iter().all(|v| v.is_finite()) && rate.density == 0.0);
+        }
+    }
+}

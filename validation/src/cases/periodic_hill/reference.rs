@@ -1,0 +1,127 @@
+//! The finite-element flow of this Reynolds number, and its field between the stations.
+
+use nalgebra::Vector2;
+
+use super::HillSettings;
+use crate::reference::{Reference as Package, ReferenceError, Table};
+
+/// A profile across one section.
+#[derive(Clone, Debug, Default)]
+pub struct Station {
+    /// Place \[H\].
+    pub x: f64,
+    /// Heights \[H\], ascending.
+    pub y: Vec<f64>,
+    /// Velocity \[U_b\] at each.
+    pub v: Vec<Vector2<f64>>,
+}
+
+/// What finite elements say of one Reynolds number.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Profiles, in the order of x.
+    pub stations: Vec<Station>,
+    /// x \[H\], shear stress on the hill, on the lid \[ρ U_b²\].
+    pub wall: Vec<[f64; 3]>,
+    /// The line between bubble and stream \[H\]; empty where the flow does not separate.
+    pub line: Vec<(f64, f64)>,
+    /// (name, value, uncertainty).
+    numbers: Vec<(String, f64, f64)>,
+}
+
+impl Reference {
+    /// The reference of these settings; `None` where nothing was computed for them.
+    pub fn of(settings: &HillSettings) -> Result<Option<Self>, ReferenceError> {
+        if settings.crest == 0.0 {
+            return Ok(None);
+        }
+        let package = Package::load("periodic_hill")?;
+        let rows = |table: &Table| -> Result<Vec<usize>, ReferenceError> {
+            let re = table.numbers("re")?;
+            Ok((0..re.len()).filter(|&k| re[k] == settings.re).collect())
+        };
+        let summary = package.table("summary")?;
+        let kept = rows(summary)?;
+        if kept.is_empty() {
+            return Ok(None);
+        }
+        let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
+        let doubt = summary.numbers("uncertainty")?;
+        let numbers = kept.iter().map(|&k| (names[k].to_string(), values[k], doubt[k])).collect();
+        let wall = package.table("wall")?;
+        let columns = ["x", "hill_shear", "lid_shear"].map(|name| wall.numbers(name));
+        let [x, hill, lid] = columns;
+        let (x, hill, lid) = (x?, hill?, lid?);
+        let wall = rows(wall)?.into_iter().map(|k| [x[k], hill[k], lid[k]]).collect();
+        let line = package.table("line")?;
+        let (x, y) = (line.numbers("x")?, line.numbers("y")?);
+        let line = rows(line)?.into_iter().map(|k| (x[k], y[k])).collect();
+        let profiles = package.table("profiles")?;
+        let stations = Self::stations(profiles, &rows(profiles)?)?;
+        Ok(Some(Self { stations, wall, line, numbers }))
+    }
+
+    fn stations(table: &Table, rows: &[usize]) -> Result<Vec<Station>, ReferenceError> {
+        let (x, y) = (table.numbers("x")?, table.numbers("y")?);
+        let (u, v) = (table.numbers("u")?, table.numbers("v")?);
+        let mut stations: Vec<Station> = Vec::new();
+        for &k in rows {
+            if stations.last().is_none_or(|s| s.x != x[k]) {
+                stations.push(Station { x: x[k], ..Station::default() });
+            }
+            if let Some(station) = stations.last_mut() {
+                station.y.push(y[k]);
+                station.v.push(Vector2::new(u[k], v[k]));
+            }
+        }
+        Ok(stations)
+    }
+
+    /// A number of the summary.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.numbers.iter().find(|(n, ..)| n == name).map(|(_, value, _)| *value)
+    }
+
+    /// The velocity between stations, linear in x and in the share s of the section's height: a start
+    /// that is near the flow, and not the flow. Slip at the walls is small: the first of 200 points.
+    pub fn velocity(&self, x: f64, s: f64) -> Vector2<f64> {
+        let (count, period) = (self.stations.len(), 9.0);
+        let next = self.stations.iter().position(|station| station.x > x).unwrap_or(0);
+        let (a, b) = (&self.stations[(next + count - 1) % count], &self.stations[next]);
+        let span = (b.x - a.x).rem_euclid(period);
+        let share = (x - a.x).rem_euclid(period) / span;
+        let at = |station: &Station| {
+            let k = s * station.v.len() as f64 - 0.5;
+            let low = (k.max(0.0) as usize).min(station.v.len() - 2);
+            let t = (k - low as f64).clamp(0.0, 1.0);
+            station.v[low] * (1.0 - t) + station.v[low + 1] * t
+        };
+        at(a) * (1.0 - share) + at(b) * share
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_reynolds_numbers_have_a_reference_and_others_have_none() {
+        let at = |re| Reference::of(&HillSettings { re, ..HillSettings::default() });
+        for re in [10.0, 50.0, 100.0] {
+            let reference = at(re).expect("sound").expect("computed");
+            assert_eq!((reference.stations.len(), reference.wall.len()), (10, 361));
+            assert!(reference.stations.iter().all(|s| s.y.len() == 200));
+            assert_eq!(reference.number("separation").is_some(), re > 10.0);
+            // A station as it stands, and the flux through it.
+            let station = &reference.stations[3];
+            let there = reference.velocity(station.x, 100.5 / 200.0);
+            assert!((there - station.v[100]).norm() < 1e-12);
+            for station in &reference.stations {
+                let dy = station.y[1] - station.y[0];
+                let flux = station.v.iter().map(|v| v.x * dy).sum::<f64>();
+                assert!((flux / 2.035 - 1.0).abs() < 2e-4, "{flux} at {}", station.x);
+            }
+        }
+        assert!(at(30.0).expect("sound").is_none());
+    }
+}
