@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, Domain, Evolved, ExtrapolatingWall, Hydrostatic, Integrator, Leapfrog, NoSlip,
-    Open, Outcome, Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Shifting, Simulation,
-    Tait, Term, Viscosity, Xsph, engine::Shows, particles::Column,
+    DensityDiffusion, Domain, Evolved, ExtrapolatingWall, Hydrostatic, Integrator, Leapfrog,
+    NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Shifting,
+    Simulation, Tait, Term, Viscosity, Xsph, engine::Shows, particles::Column,
 };
 use touchstone_tests::{difference, patch};
 

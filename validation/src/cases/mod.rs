@@ -39,8 +39,8 @@ pub const CASES: &[&dyn Case] = &[
     taylor_green::TAYLOR_GREEN,
     periodic_hill::PERIODIC_HILL,
     dam_break::DAM_BREAK,
-    hydrostatic::HYDROSTATIC,
     &elliptic_drop::EllipticDrop,
+    hydrostatic::HYDROSTATIC,
     &taylor_couette::Gap,
 ];
 

@@ -21,6 +21,14 @@ use crate::{
 
 /// Times at which particles are kept for pictures, shares of the run.
 pub const PICTURES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+/// Those, or as many at equal intervals as the context asks for.
+fn pictures(context: &Context) -> Vec<f64> {
+    match context.pictures {
+        Some(count) => (0..count).map(|k| k as f64 / (count.max(2) - 1) as f64).collect(),
+        None => PICTURES.to_vec(),
+    }
+}
+
 /// Time between samples \[(H/g)^(1/2)\], rounded to whole steps: powers are summed over them.
 const SAMPLE: f64 = 0.015;
 
@@ -128,7 +136,7 @@ fn stops(dam: &Dam, context: &Context) -> Vec<Stop> {
     let at = |k: usize| Stop { time: k as f64 * every, frame: false, picture: None };
     let mut stops: Vec<Stop> = (0..=count).map(at).collect();
     stops.push(Stop { time: end, frame: false, picture: None });
-    for share in PICTURES {
+    for share in pictures(context) {
         let nearest = (share * end / every).round() as usize;
         let last = stops.len() - 1;
         stops[nearest.min(last)].picture = Some(share);

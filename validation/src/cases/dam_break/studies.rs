@@ -15,9 +15,10 @@ use crate::{
     record::{Profile, Record},
     reference::ReferenceError,
     report::{
-        Axis, Cell, Colour, ColourMap, Column, Dash, Figure, Layer, Legend, ParticleMap, Plot,
-        Series, Shape, Table, sig,
+        Axis, Cell, Colour, ColourMap, Column, Dash, Figure, Film, Layer, Legend, ParticleMap,
+        Plot, Series, Shape, Table, sig,
     },
+    runner::Context,
     studies::work_precision::{self, Point},
     suite::{JudgedRun, Study},
 };
@@ -25,7 +26,7 @@ use crate::{
 /// All of them.
 pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
     let mut studies = Vec::new();
-    for study in [free(runs), tank(runs)] {
+    for study in [free(runs), tank(case, runs)] {
         // Packages are embedded and checked by a test.
         studies.push(study.unwrap_or_else(|error| {
             Study::new("dam-break-reference", "Reference").prose(error.to_string())
@@ -170,7 +171,7 @@ fn free_table(records: &[&Record]) -> Table {
 }
 
 /// Lobovsky et al.
-fn tank(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
+fn tank(case: &'static dyn Case, runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
     let (records, lobovsky) = (of(runs, false), Lobovsky::load()?);
     let mut study =
         Study::new("dam-break-lobovsky", "Lobovsky et al. 2014: front, levels, pressures")
@@ -180,7 +181,10 @@ fn tank(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
     if let Some(record) = records.iter().rev().find(|r| r.variant == "modern") {
         study = study.block(pictures(record, "dam-break-lobovsky-pictures", (1.61 / 0.3, 2.0)));
     }
-    Ok(study)
+    Ok(match film(case) {
+        Ok(film) => study.block(film),
+        Err(error) => study.prose(error),
+    })
 }
 
 fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
@@ -308,21 +312,47 @@ fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
     );
     let mut figure = Figure::new(id, caption).columns(2);
     for share in PICTURES {
-        let empty = Profile::default();
-        let profile = record.profiles.get(&format!("particles@{share}")).unwrap_or(&empty);
-        let (x, y) = (column(profile, "x"), column(profile, "y"));
-        let values = column(profile, "p").iter();
-        let points = x.iter().zip(y).zip(values).map(|((x, y), p)| (*x, *y, *p)).collect();
-        let axes =
-            (Axis::linear("x [H]").range(0.0, width), Axis::linear("y [H]").range(0.0, height));
-        let title = format!("t √(g/H) = {}", sig(setting(record, "end") * share, 3));
-        let shorter = setting(record, "width").min(setting(record, "height"));
-        let dx = shorter / setting(record, "n") / setting(record, "height");
-        let map = ParticleMap::new(&title, axes, "p [ρ g H]", ColourMap::Sequential, points);
-        figure = figure.panel(map.diameter(dx).values(0.0, 1.0));
+        figure = figure.panel(picture(record, share, (width, height)));
     }
     figure.panel_size(430.0, 430.0 * height / width)
 }
+
+/// One of them.
+fn picture(record: &Record, share: f64, (width, height): (f64, f64)) -> ParticleMap {
+    let empty = Profile::default();
+    let profile = record.profiles.get(&format!("particles@{share}")).unwrap_or(&empty);
+    let (x, y) = (column(profile, "x"), column(profile, "y"));
+    let values = column(profile, "p").iter();
+    let points = x.iter().zip(y).zip(values).map(|((x, y), p)| (*x, *y, *p)).collect();
+    let axes = (Axis::linear("x [H]").range(0.0, width), Axis::linear("y [H]").range(0.0, height));
+    let title = format!("t √(g/H) = {}", sig(setting(record, "end") * share, 3));
+    let shorter = setting(record, "width").min(setting(record, "height"));
+    let dx = shorter / setting(record, "n") / setting(record, "height");
+    ParticleMap::new(&title, axes, "p [ρ g H]", ColourMap::Sequential, points)
+        .diameter(dx)
+        .values(0.0, 1.0)
+}
+
+/// The tank as a film: `modern` again, with a picture every quarter of √(H/g).
+fn film(case: &'static dyn Case) -> Result<Film, String> {
+    let context = Context { keep_particles: true, pictures: Some(FRAMES), ..Context::default() };
+    let set = plan::in_tank(FILM_ROWS);
+    let record = case.run("modern", &set, &context).map_err(|error| error.to_string())?;
+    let frame = |k: usize| {
+        let map = picture(&record, k as f64 / (FRAMES - 1) as f64, (1.61 / 0.3, 2.0));
+        Figure::new("frame", "").panel(map).panel_size(430.0, 160.0)
+    };
+    let frames: Vec<Figure> = (0..FRAMES).map(frame).collect();
+    let caption = format!(
+        "The water in the tank of Lobovsky et al. as a film, variant `modern`, H/dx = {FILM_ROWS}, coloured \
+         by pressure."
+    );
+    Film::new("dam-break-film", caption, &frames, 160)
+}
+
+/// Pictures of the film, and spacings along the height of its column.
+const FRAMES: usize = 25;
+const FILM_ROWS: usize = 20;
 
 /// Where the energy goes.
 fn energies(runs: &[JudgedRun]) -> Study {
