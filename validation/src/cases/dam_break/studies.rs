@@ -15,8 +15,8 @@ use crate::{
     record::{Profile, Record},
     reference::ReferenceError,
     report::{
-        Axis, Cell, Colour, ColourMap, Column, Dash, Figure, Film, Layer, Legend, ParticleMap, Plot,
-        Series, Shape, Table, sig,
+        Axis, Cell, Colour, ColourMap, Column, Dash, Figure, Film, Layer, Legend, ParticleMap,
+        Plot, Series, Shape, Table, sig,
     },
     runner::Context,
     studies::work_precision::{self, Point},
