@@ -369,8 +369,8 @@ fn gates(id: &str, n: usize) -> Vec<Gate> {
     gates
 }
 
-const STRINGS: &str = "the strain leaves half a spacing along x and two along y: the cubic spline at h/dx 1.5 \
-                       lets particles form strings there, and artificial stress, which rises with the \
+const STRINGS: &str = "the strain leaves half a spacing along x and two along y: the cubic spline at h/dx \
+                       1.5 lets particles form strings there, and artificial stress, which rises with the \
                        fourth power of W, pushes them apart";
 
 fn invariants(id: &str) -> Vec<Gate> {

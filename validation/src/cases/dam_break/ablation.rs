@@ -107,8 +107,8 @@ fn table(n: usize, end: &str, results: &[(Row, Record)]) -> Table {
         Column::num("a particle and step", "µs"),
     ];
     let caption = format!(
-        "One thing changed at a time, in the tank of Lobovsky et al. at H/dx = {n}, {end}. Errors of front and \
-         levels: rms after the best shift; of the impulse: mean over P1 to P3, for one √(H/g) from the \
+        "One thing changed at a time, in the tank of Lobovsky et al. at H/dx = {n}, {end}. Errors of front \
+         and levels: rms after the best shift; of the impulse: mean over P1 to P3, for one √(H/g) from the \
          arrival. Noise: rms distance of P2 from its running mean after that."
     );
     let mut table = Table::new(caption, columns);
@@ -165,11 +165,11 @@ fn claims(results: &[(Row, Record)]) -> String {
         None => "not run".into(),
     };
     format!(
-        "M1, artificial viscosity damps unphysical oscillation: noise of P2 in ρ g H is {} at α = 0.1 and {} at \
-         0.01; viscosity takes {} and {} of the energy. M2, artificial stress in the fluid: it adds {} to the \
-         energy, and noise is {} with it and {} without. M3, XSPH prevents unphysical motion: noise is {} at \
-         ε = 0.5 and {} at 0, and the least excursion of the density is {} and {}. M4, both walls work: \
-         with interface and wall particles {}; with ghosts {}.",
+        "M1, artificial viscosity damps unphysical oscillation: noise of P2 in ρ g H is {} at α = 0.1 and \
+         {} at 0.01; viscosity takes {} and {} of the energy. M2, artificial stress in the fluid: it adds \
+         {} to the energy, and noise is {} with it and {} without. M3, XSPH prevents unphysical motion: \
+         noise is {} at ε = 0.5 and {} at 0, and the least excursion of the density is {} and {}. M4, both \
+         walls work: with interface and wall particles {}; with ghosts {}.",
         noise("seed", &[]),
         noise("seed", &["alpha=0.01"]),
         took(&[]),
