@@ -45,8 +45,9 @@ pub use particles::{Evolved, Particle, Rate, Role};
 pub use scene::{Compose, Scene, SceneError, Scheme, lattice};
 pub use simulation::{Checkpoint, Divergence, Flow, Observer, Outcome, Simulation, Work};
 pub use terms::{
-    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Continuity,
-    ConsistentContinuity, ConsistentPressure, ConsistentViscosity, DensityDiffusion, Hydrostatic,
-    JaumannRate, Pressure, PrincipalStress, ShiftAdvection, Shifting, Term, Viscosity, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
+    ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion,
+    Hydrostatic, JaumannRate, Pressure, PrincipalStress, ShiftAdvection, Shifting, Term, Viscosity,
+    Xsph,
 };
 pub use walls::{ExtrapolatingWall, Ghosts, InterfaceWall, NoSlip, Open, PlaneWall};

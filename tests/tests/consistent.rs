@@ -28,7 +28,8 @@ fn gradient_and_divergence_of_linear_fields_are_exact_anywhere() {
     for seed in 0..3 {
         let particles = linear(seed, gradient, slope, eos);
         let pressure = ConsistentPressure { eos };
-        let rates = open_rates::<QuinticSpline, _, _, _>(DX, &particles, pressure, ConsistentContinuity);
+        let rates =
+            open_rates::<QuinticSpline, _, _, _>(DX, &particles, pressure, ConsistentContinuity);
         for (rate, p) in rates.iter().zip(&particles) {
             assert!((rate.velocity + slope / p.density).norm() < ROUND_OFF, "{}", rate.velocity);
             assert!((rate.density + p.density * gradient.trace()).abs() < ROUND_OFF);
@@ -63,7 +64,12 @@ fn a_parabola_on_a_lattice_has_its_viscous_force() {
     let inside = |p: &Particle| p.position.iter().all(|x| (3.5 * DX..1.0 - 3.5 * DX).contains(x));
     let mut seen = 0;
     for (rate, p) in rates.iter().zip(&particles).filter(|(_, p)| inside(p)) {
-        assert!((rate.velocity - Vector2::repeat(1.4)).norm() < 1e-9, "{} {}", rate.velocity, p.position);
+        assert!(
+            (rate.velocity - Vector2::repeat(1.4)).norm() < 1e-9,
+            "{} {}",
+            rate.velocity,
+            p.position
+        );
         seen += 1;
     }
     assert!(seen > 9);
@@ -78,7 +84,8 @@ fn particles_on_a_line_and_alone_feel_nothing_that_is_not_finite() {
     let eos = Linear { density: 1.0, sound_speed: 10.0 };
     for particles in [&line[..], &line[..1]] {
         let forces = (ConsistentPressure { eos }, ConsistentViscosity { nu: 1.0 });
-        let rates = open_rates::<QuinticSpline, _, _, _>(DX, particles, forces, ConsistentContinuity);
+        let rates =
+            open_rates::<QuinticSpline, _, _, _>(DX, particles, forces, ConsistentContinuity);
         for rate in &rates {
             assert!(rate.velocity.iter().all(|v| v.is_finite()) && rate.density == 0.0);
         }

@@ -29,8 +29,14 @@ fn shifts<K: Kernel>(h: f64, particles: &[Particle]) -> Vec<Vector2<f64>> {
 #[test]
 fn a_perfect_lattice_is_not_shifted_and_a_disturbed_one_is() {
     for (perfect, disturbed) in [
-        (shifts::<QuinticSpline>(DX, &patch(N, 0.0, 1)), shifts::<QuinticSpline>(DX, &patch(N, 0.2, 1))),
-        (shifts::<WendlandC2>(2.0 * DX, &patch(N, 0.0, 1)), shifts::<WendlandC2>(2.0 * DX, &patch(N, 0.2, 1))),
+        (
+            shifts::<QuinticSpline>(DX, &patch(N, 0.0, 1)),
+            shifts::<QuinticSpline>(DX, &patch(N, 0.2, 1)),
+        ),
+        (
+            shifts::<WendlandC2>(2.0 * DX, &patch(N, 0.0, 1)),
+            shifts::<WendlandC2>(2.0 * DX, &patch(N, 0.2, 1)),
+        ),
     ] {
         let largest = |shifts: &[Vector2<f64>]| shifts.iter().map(|s| s.norm()).fold(0.0, f64::max);
         assert!(largest(&perfect) < ROUND_OFF, "{:e}", largest(&perfect));
@@ -73,9 +79,8 @@ fn a_shifted_particle_takes_the_velocity_of_its_new_place() {
 #[test]
 fn on_a_line_and_alone_nothing_is_carried() {
     let mut random = Random(3);
-    let at = |x: f64, u: f64| {
-        Particle::fluid(Vector2::new(x, 0.0), Vector2::new(u, 1.0), 1.0, DX * DX)
-    };
+    let at =
+        |x: f64, u: f64| Particle::fluid(Vector2::new(x, 0.0), Vector2::new(u, 1.0), 1.0, DX * DX);
     let line: Vec<Particle> =
         (0..9).map(|k| at(f64::from(k) * DX + random.between(0.0, 0.3 * DX), 0.1)).collect();
     for particles in [&line[..], &line[..1]] {

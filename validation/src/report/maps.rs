@@ -100,7 +100,8 @@ impl<'a> Particles<'a> {
                 let (ux, uy) = (self.x.unit(x)?, self.y.unit(y)?);
                 Some((area.left + ux * area.width, area.bottom() - uy * area.height))
             };
-            let points: Vec<_> = line.iter().filter_map(place).filter(|p| area.contains(*p)).collect();
+            let points: Vec<_> =
+                line.iter().filter_map(place).filter(|p| area.contains(*p)).collect();
             canvas.path(&points, Colour::BLACK, 1.4);
         }
         canvas.frame(area, Colour::BLACK, 1.0);

@@ -97,7 +97,10 @@ impl Window {
     /// Adds a sample.
     pub fn sample<S: Scheme<Extra = ()>>(&mut self, setup: &Setup, s: &Simulation<S>) {
         let field = Field::of(setup, s);
-        add(&mut self.sections, places(setup).iter().map(|p| field.at(p[0], p[1])).map(|[u, v, _]| [u, v]));
+        add(
+            &mut self.sections,
+            places(setup).iter().map(|p| field.at(p[0], p[1])).map(|[u, v, _]| [u, v]),
+        );
         add(&mut self.wall, (0..WALL).map(|k| wall(setup, &field, along(k))));
         self.count += 1.0;
     }
@@ -150,23 +153,50 @@ pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, re
     let moved = |a: &[[f64; 2]], b: &[[f64; 2]]| rms(a.iter().zip(b).map(|(a, b)| a[0] - b[0]));
     let (early, late) = (moved(&sections[0], &sections[1]), moved(&sections[1], &sections[2]));
     let ratio = (late / early).min(0.9);
-    put("drift", late, "U_b", "rms over stations of the change of mean u from one window to the next");
-    let formula = "drift r/(1 - r), r the ratio of the last two drifts, not above 0.9: what a decay leaves";
+    put(
+        "drift",
+        late,
+        "U_b",
+        "rms over stations of the change of mean u from one window to the next",
+    );
+    let formula =
+        "drift r/(1 - r), r the ratio of the last two drifts, not above 0.9: what a decay leaves";
     put("unsteady", late * ratio / (1.0 - ratio), "U_b", formula);
     let wall = last.mean(&last.wall);
     let count = last.forces.len() as f64;
     let [force, flux] = [0, 1].map(|k| last.forces.iter().map(|f| f[k]).sum::<f64>() / count);
     put("force", force, "U_b^2/H", "mean body force of the last window");
-    put("force_ripple", rms(last.forces.iter().map(|f| f[0] / force - 1.0)), "-", "rms(force/mean - 1)");
-    put("flux", flux / FLUX - 1.0, "-", "mean flux over 2.035 U_b H, less 1, from the particles' volumes");
-    put("flux_ripple", rms(last.forces.iter().map(|f| f[1] / flux - 1.0)), "-", "rms(flux/mean - 1)");
+    put(
+        "force_ripple",
+        rms(last.forces.iter().map(|f| f[0] / force - 1.0)),
+        "-",
+        "rms(force/mean - 1)",
+    );
+    put(
+        "flux",
+        flux / FLUX - 1.0,
+        "-",
+        "mean flux over 2.035 U_b H, less 1, from the particles' volumes",
+    );
+    put(
+        "flux_ripple",
+        rms(last.forces.iter().map(|f| f[1] / flux - 1.0)),
+        "-",
+        "rms(flux/mean - 1)",
+    );
     let lid = setup.hill.lid();
     let through = |k: usize| {
         let u = &sections[2][k * POINTS..(k + 1) * POINTS];
         u.iter().map(|u| u[0]).sum::<f64>() / POINTS as f64 * (lid - setup.floor(STATIONS[k]))
     };
-    let worst = (0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()).fold(0.0, f64::max);
-    put("section_flux", worst, "-", "largest |flux through a station/flux wanted - 1|, interpolated");
+    let worst =
+        (0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()).fold(0.0, f64::max);
+    put(
+        "section_flux",
+        worst,
+        "-",
+        "largest |flux through a station/flux wanted - 1|, interpolated",
+    );
     // Trapezoidal rule over the period: the ends are the same point.
     let cell = along(1);
     let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * cell;

@@ -39,11 +39,7 @@ where
 }
 
 /// Runs the scheme `S` and measures.
-pub fn run<S>(
-    variant: &str,
-    settings: &HillSettings,
-    context: &Context,
-) -> Result<Record, RunError>
+pub fn run<S>(variant: &str, settings: &HillSettings, context: &Context) -> Result<Record, RunError>
 where
     S: Scheme<Extra = ()>,
     S::Forces: Ingredient + Driven,

@@ -56,8 +56,7 @@ impl Setup {
         let w_at_spacing = Fluid::w_at_spacing::<S::Kernel>(h, dx);
         let (eta2_over_h2, diffusion, shift, force) =
             (s.eta2_over_h2, s.diffusion, s.shift, s.force);
-        let fluid =
-            Fluid { nu, eos, dx, h, eta2_over_h2, diffusion, shift, force, w_at_spacing };
+        let fluid = Fluid { nu, eos, dx, h, eta2_over_h2, diffusion, shift, force, w_at_spacing };
         // The largest speed, over the crest, is below 1.6 U_b.
         let dt = (s.courant * h / (s.c0 + 1.6)).min(s.viscous * h * h / nu);
         let is_diffused = S::Drift::uses().contains(&"diffusion");

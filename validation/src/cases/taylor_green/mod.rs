@@ -7,8 +7,8 @@ mod studies;
 
 use solver::{
     Compose, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
-    DensityDiffusion, Leapfrog, Open, Pressure, QuinticSpline, Scheme, ShiftAdvection, Shifting, Tait,
-    Viscosity,
+    DensityDiffusion, Leapfrog, Open, Pressure, QuinticSpline, Scheme, ShiftAdvection, Shifting,
+    Tait, Viscosity,
 };
 
 pub use run::{Setup, run_scene, scene};

@@ -49,9 +49,8 @@ fn gates(variant: &str, n: usize, start: f64) -> Vec<Gate> {
         let id = format!("taylor_green.{variant}.{n}.{start}.{metric}");
         Gate::new(id, metric, bound, evidence, because)
     };
-    let goal = |most: f64, because: &str| {
-        gate("l2", Bound::Below(most), Evidence::Analytic, because)
-    };
+    let goal =
+        |most: f64, because: &str| gate("l2", Bound::Below(most), Evidence::Analytic, because);
     let best = "the best of the codes measured has 2.2 % at 50 x 50 and 1.5 % at 100 x 100 after the same \
                 time: the goal is to be better than that from either start";
     let mut gates = Vec::new();
@@ -63,7 +62,8 @@ fn gates(variant: &str, n: usize, start: f64) -> Vec<Gate> {
             _ => (0.02 * (50.0 / n as f64).powi(2), second),
         };
         gates.push(goal(most, because));
-        let energy = "1 % of the energy that is left is 0.3 % of the viscosity: e^-3.2 is left at the end";
+        let energy =
+            "1 % of the energy that is left is 0.3 % of the viscosity: e^-3.2 is left at the end";
         if n >= 50 {
             gates.push(gate("energy", Bound::Within(-0.01, 0.01), Evidence::Analytic, energy));
         }
@@ -80,7 +80,9 @@ fn gates(variant: &str, n: usize, start: f64) -> Vec<Gate> {
         }
     }
     if variant == "plain" {
-        gates.push(goal(0.02, "a control: without shifting strings and voids form").expected_to_fail());
+        gates.push(
+            goal(0.02, "a control: without shifting strings and voids form").expected_to_fail(),
+        );
     }
     gates
 }

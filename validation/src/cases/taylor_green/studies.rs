@@ -82,9 +82,8 @@ fn histories(tier: Tier, runs: &[JudgedRun]) -> Study {
             error = error.layer(Series::line(variant, errors).colour(Colour::cycle(k)));
         }
         if any {
-            figure = figure
-                .panel(energy.legend(Legend::Outside))
-                .panel(error.legend(Legend::Hidden));
+            figure =
+                figure.panel(energy.legend(Legend::Outside)).panel(error.legend(Legend::Hidden));
         }
     }
     Study::new("taylor-green-histories", "Decay and error through time")
@@ -199,12 +198,13 @@ fn cost(runs: &[JudgedRun]) -> Study {
             });
         }
     }
-    let caption = "Relative L2 error of the velocity vector at t = 2 L/U, Re 100, over the cost of the run: 25, \
-                   50 and 100 particles a side from a disturbed lattice. Timed once, side by side with \
+    let caption = "Relative L2 error of the velocity vector at t = 2 L/U, Re 100, over the cost of the run: \
+                   25, 50 and 100 particles a side from a disturbed lattice. Timed once, side by side with \
                    other runs; pair interactions are exact. Grey: PySPH EDAC (73 s, 456 s) and SPHinXsys \
                    (1.9 s, 16 s) at 50 and 100 a side on another machine.";
     let id = "taylor-green-work-precision";
-    let figure = work_precision::figure(id, caption, "error of the velocity [-]", &points, &peers());
+    let figure =
+        work_precision::figure(id, caption, "error of the velocity [-]", &points, &peers());
     let mut study = Study::new(id, "Error against run time").block(figure);
     let diverged = runs.iter().filter(|run| run.record.status != Status::Completed);
     let names: Vec<&str> = diverged.map(|run| run.planned.variant).collect();
