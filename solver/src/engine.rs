@@ -8,7 +8,7 @@ use crate::{
     neighbours::{BLOCK, Neighbours},
     numbers::Numbers,
     parallel,
-    particles::{Column, Common, Evolved, Fixed},
+    particles::{Column, Common, Evolved, Fixed, Rate},
     scene::Scheme,
     simulation::Work,
     sweep::{Sweep, Update},
@@ -227,6 +227,33 @@ impl<S: Scheme> Engine<S> {
         }
     }
 
+    /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
+    /// the state that was looked at last. dx/dt is without v.
+    pub fn rates<T: Term<S::Extra>>(&self, state: &State<S>, terms: &T) -> Vec<Rate<S::Extra>> {
+        let column = |(k, c): (usize, &Column<Shows<S>>)| {
+            let Column { position, velocity, common, .. } = *c;
+            let of =
+                state.get(self.neighbours.particle(k)).map_or(S::Extra::default(), |e| e.extra);
+            Column { position, velocity, common, shows: terms.shows(&common, &of) }
+        };
+        let columns: Vec<_> = self.columns.iter().enumerate().map(column).collect();
+        let project = |shows: &T::Shows| *shows;
+        let sweep =
+            Sweep { kernel: &self.kernel, terms, columns: &columns, project, moving: false };
+        sweep.rates(&self.neighbours.rows, 0, self.counts[0])
+    }
+
+    /// The rates of wall particles by the terms of the walls, for the state that was looked at last;
+    /// none where these do not give rates but extrapolate.
+    pub fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
+        if S::Walls::EXTRAPOLATES {
+            return Vec::new();
+        }
+        let ([fluid, wall], terms) = (self.counts, self.walls.rows());
+        let unseen = |_: &Shows<S>| Default::default();
+        self.sweep(&terms, unseen, false).rates(&self.neighbours.wall_rows, fluid, wall)
+    }
+
     fn sweep<'a, T, P>(&'a self, terms: &'a T, project: P, moving: bool) -> Rows<'a, S, T, P> {
         Sweep { kernel: &self.kernel, terms, columns: &self.columns, project, moving }
     }
@@ -269,14 +296,14 @@ impl<S: Scheme> Engine<S> {
         if extent.sound { Ok(extent) } else { Err(self.find_fault(state)) }
     }
 
-    /// Refills the images of the particles from `first` on.
+    /// Refills the images of the particles from `first` on; an image of an image belongs to both.
     fn fill_images(&mut self, first: usize) {
-        let real = self.fixed.len();
-        let (particles, images) = self.columns.split_at_mut(real);
-        let maps = &self.neighbours.maps;
-        let images = images.iter_mut().zip(&self.neighbours.images);
-        for (column, image) in images.filter(|(_, image)| image.source as usize >= first) {
-            *column = maps[image.map as usize].apply(&particles[image.source as usize]);
+        let (real, maps) = (self.fixed.len(), &self.neighbours.maps);
+        for (k, image) in self.neighbours.images.iter().enumerate() {
+            let source = image.source as usize;
+            if source >= first {
+                self.columns[real + k] = maps[image.map as usize].apply(&self.columns[source]);
+            }
         }
     }
 

@@ -19,7 +19,7 @@ pub(crate) const LANES: usize = 4;
 /// Rows a unit of parallel work; fixed, so that nothing depends on the number of threads.
 pub(crate) const BLOCK: usize = 512;
 
-/// An extra column: which particle it copies, and by which map.
+/// An extra column: which earlier column it copies, a particle or an image, and by which map.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Image {
     pub source: u32,
@@ -114,15 +114,12 @@ pub(crate) struct Neighbours {
 impl Neighbours {
     /// Rows that reach `radius` = support + skin \[m\], empty until built.
     pub fn new(radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> Self {
-        let mut maps = vec![Map::identity()];
-        maps.extend(mirrors.iter().map(Map::mirror));
+        let mut maps: Vec<_> = mirrors.iter().copied().map(Map::Mirror).collect();
         maps.extend(corners(mirrors).map(Map::corner));
         for axis in 0..2 {
             if let Some(period) = domain.period[axis] {
                 let shift = if axis == 0 { Vector2::x() } else { Vector2::y() } * period;
-                let shifted = maps.clone();
-                maps.extend(shifted.iter().map(|m| m.shifted(shift)));
-                maps.extend(shifted.iter().map(|m| m.shifted(-shift)));
+                maps.extend([Map::Shift(shift), Map::Shift(-shift)]);
             }
         }
         Self {
@@ -141,6 +138,11 @@ impl Neighbours {
     /// Neighbours of all rows, without padding.
     pub fn pairs(&self) -> u64 {
         self.rows.iter().chain(&self.wall_rows).map(|b| b.pairs).sum()
+    }
+
+    /// The particle that a column copies, however often; of the sentinel itself.
+    pub fn particle(&self, column: usize) -> usize {
+        particle(&self.images, self.built_at.len(), column)
     }
 
     /// Memory held \[bytes\].
@@ -191,54 +193,46 @@ impl Neighbours {
         let Self { rows, wall_rows, points, cell_starts, candidates, radius, images, .. } = self;
         let search = Search { grid, points, cell_starts, candidates, radius2: *radius * *radius };
         let real = self.built_at.len();
-        let is_fluid = |column: u32| match (column as usize).checked_sub(real) {
-            None => (column as usize) < fluid,
-            Some(image) => (images[image].source as usize) < fluid,
-        };
+        let is_fluid = |column: u32| particle(images, real, column as usize) < fluid;
         search.fill_blocks(rows, 0, fluid, parallel, &|_| true);
         search.fill_blocks(wall_rows, fluid, wall, parallel, &|c| !FLUID_ONLY || is_fluid(c));
     }
 
-    /// Appends the images within reach: ghosts of particles near a wall or a corner, then periodic
-    /// copies of all of these. The maps are numbered as [`Neighbours::new`] composes them.
+    /// Appends the images within reach: ghosts of particles near a wall or a corner, then along each
+    /// axis the periodic copies of all of these. Maps are used in the order of [`Neighbours::new`].
     fn make_images(&mut self, domain: &Domain, mirrors: &[PlaneWall]) {
         self.images.clear();
         let real = self.points.len();
         for source in 0..real {
             let (point, radius) = (self.points[source], self.radius);
-            let near = |wall: &PlaneWall| (point - wall.point).dot(&wall.normal).abs() < radius;
+            let near = |wall: &PlaneWall| wall.depth(point).abs() < radius;
             let at_walls = mirrors.iter().map(near);
             let in_corners = corners(mirrors).map(|walls| walls.into_iter().all(near));
-            for (map, _) in (1..).zip(at_walls.chain(in_corners)).filter(|(_, near)| *near) {
-                self.add_image(source as u32, map);
+            for (map, _) in (0..).zip(at_walls.chain(in_corners)).filter(|(_, near)| *near) {
+                self.add_image(source, map);
             }
         }
-        let mut maps_so_far = 1 + (mirrors.len() + corners(mirrors).count()) as u32;
+        let mut shift = mirrors.len() + corners(mirrors).count();
         for axis in 0..2 {
             let Some(period) = domain.period[axis] else { continue };
             let along = || self.points[..real].iter().map(|p| p[axis]);
             let (low, high) = (along().fold(f64::MAX, f64::min), along().fold(f64::MIN, f64::max));
-            for k in 0..self.points.len() {
-                let (source, map) = if k < real {
-                    (k as u32, 0)
-                } else {
-                    (self.images[k - real].source, self.images[k - real].map)
-                };
-                let x = self.points[k][axis];
+            for source in 0..self.points.len() {
+                let x = self.points[source][axis];
                 if x + period < high + self.radius {
-                    self.add_image(source, map + maps_so_far);
+                    self.add_image(source, shift);
                 }
                 if x - period > low - self.radius {
-                    self.add_image(source, map + 2 * maps_so_far);
+                    self.add_image(source, shift + 1);
                 }
             }
-            maps_so_far *= 3;
+            shift += 2;
         }
     }
 
-    fn add_image(&mut self, source: u32, map: u32) {
-        let place = self.maps[map as usize].place(self.points[source as usize]);
-        self.images.push(Image { source, map });
+    fn add_image(&mut self, source: usize, map: usize) {
+        let place = self.maps[map].place(self.points[source]);
+        self.images.push(Image { source: source as u32, map: map as u32 });
         self.points.push(place);
     }
 
@@ -264,6 +258,12 @@ impl Neighbours {
         starts.rotate_right(1);
         starts[0] = 0;
     }
+}
+
+/// The particle at the end of the chain of images that begins with a column.
+fn particle(images: &[Image], real: usize, column: usize) -> usize {
+    let image = column.checked_sub(real).and_then(|k| images.get(k));
+    image.map_or(column, |image| particle(images, real, image.source as usize))
 }
 
 /// What building rows reads.
@@ -415,15 +415,17 @@ mod tests {
         let (n, images) = (points.len() as u32, &neighbours.images);
         let sentinel = n + images.len() as u32;
         let row = neighbours.rows[i / BLOCK].row(i % BLOCK).iter().flatten();
-        row.filter(|&&c| c != sentinel)
-            .map(|&c| match c.checked_sub(n) {
-                None => (c, points[c as usize]),
-                Some(k) => {
-                    let Image { source, map } = images[k as usize];
-                    (source, neighbours.maps[map as usize].place(points[source as usize]))
-                }
-            })
-            .collect()
+        row.filter(|&&c| c != sentinel).map(|&c| seen(neighbours, points, c)).collect()
+    }
+
+    /// The particle that a column copies, however often, and where the column is.
+    fn seen(neighbours: &Neighbours, points: &[Vector2<f64>], column: u32) -> Seen {
+        let Some(k) = (column as usize).checked_sub(points.len()) else {
+            return (column, points[column as usize]);
+        };
+        let Image { source, map } = neighbours.images[k];
+        let (particle, place) = seen(neighbours, points, source);
+        (particle, neighbours.maps[map as usize].place(place))
     }
 
     /// Whether each entry of one list is in the other, as often.

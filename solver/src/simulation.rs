@@ -6,8 +6,9 @@ use crate::{
     engine::{Engine, Extent, Fault, Shows},
     integrator::Integrator,
     kernel::Smoothing,
-    particles::{Column, Evolved, Fixed, Particle, Role},
+    particles::{Column, Evolved, Fixed, Particle, Rate, Role},
     scene::Scheme,
+    terms::Term,
 };
 
 /// What was done, counted.
@@ -235,6 +236,28 @@ impl<S: Scheme> Simulation<S> {
     pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<S::Extra>)> {
         let fluid = self.engine.counts[0];
         self.engine.fixed[..fluid].iter().map(|f| f.mass).zip(&self.state[..fluid])
+    }
+
+    /// Wall particles with an evolving density, likewise.
+    pub fn walls(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<S::Extra>)> {
+        let [fluid, wall] = self.engine.counts;
+        let range = fluid..fluid + wall;
+        self.engine.fixed[range.clone()].iter().map(|f| f.mass).zip(&self.state[range])
+    }
+
+    /// What these terms by themselves do to each particle of [`Simulation::fluid`] now, after
+    /// [`Simulation::advance`] reached a time: one term of the scene, or one that it does not have.
+    /// dx/dt is without v. A scene that never asks has none of this in its program.
+    ///
+    /// Terms that depend on the largest speed take it as they were told last.
+    pub fn rates<T: Term<S::Extra>>(&self, terms: &T) -> Vec<Rate<S::Extra>> {
+        self.engine.rates(&self.state, terms)
+    }
+
+    /// What the walls' own terms do to each particle of [`Simulation::walls`] now, likewise; empty
+    /// where walls extrapolate.
+    pub fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
+        self.engine.wall_rates()
     }
 
     /// All particles as they are stored, with their numbers in the scene.

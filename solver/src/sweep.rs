@@ -68,6 +68,16 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         }
     }
 
+    /// The rates of the particles from column `first` on, one after another.
+    pub fn rates<X: Numbers>(&self, blocks: &[Block], first: usize, count: usize) -> Vec<Rate<X>>
+    where
+        T: Term<X>,
+        P: Fn(&S) -> T::Shows,
+    {
+        let row = |k: usize| self.row(&self.columns[first + k], blocks[k / BLOCK].row(k % BLOCK));
+        (0..count).map(row).collect()
+    }
+
     /// The rates of one particle.
     #[inline(always)]
     fn row<X: Numbers>(&self, own: &Column<S>, neighbours: &[[u32; LANES]]) -> Rate<X>

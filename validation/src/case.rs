@@ -38,12 +38,20 @@ pub struct Planned {
     pub set: Vec<String>,
     /// Judged on the record of this run.
     pub gates: Vec<Gate>,
+    /// Roughly how long it takes \[s\]; only the order counts: long runs start first, so that no core
+    /// waits for the last one.
+    pub seconds: f64,
 }
 
 impl Planned {
     /// A run without gates.
     pub fn new(variant: &'static str, set: &[String]) -> Self {
-        Self { variant, set: set.to_vec(), gates: Vec::new() }
+        Self { variant, set: set.to_vec(), gates: Vec::new(), seconds: 1.0 }
+    }
+
+    /// The same run, which takes roughly so long \[s\].
+    pub fn taking(self, seconds: f64) -> Self {
+        Self { seconds, ..self }
     }
 
     /// The same run, judged.

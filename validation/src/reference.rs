@@ -41,6 +41,8 @@ macro_rules! embedded {
 
 /// Every package of `references/` with its tables.
 const EMBEDDED: &[Embedded] = embedded! {
+    "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
+    "dambreak_martin_moyce": ["front.csv", "height.csv"],
     "peers_channel": ["errors.csv"],
     "peers_taylor_green": ["errors.csv"],
     "periodic_hill": ["profiles.csv", "wall.csv", "line.csv", "summary.csv", "checks.csv"],
@@ -728,5 +730,30 @@ mod tests {
         }
         let relations = table.texts("relation").unwrap();
         assert!(relations.iter().all(|relation| ["equal", "at most"].contains(relation)));
+    }
+
+    #[test]
+    fn the_columns_of_water_fall_and_their_fronts_advance() {
+        let numbers = |name: &str, table: &str, column: &str| -> Vec<f64> {
+            Reference::load(name).unwrap().table(table).unwrap().numbers(column).unwrap()
+        };
+        let rises = |values: &[f64]| values.windows(2).all(|w| w[0] < w[1]);
+        let (mm, tank) = ("dambreak_martin_moyce", "dambreak_lobovsky");
+        for (name, table, time) in [
+            (mm, "front", "T"),
+            (mm, "height", "tau"),
+            (tank, "front", "t"),
+            (tank, "levels", "t"),
+            (tank, "pressure", "t"),
+        ] {
+            assert!(rises(&numbers(name, table, time)), "{name} {table}");
+        }
+        assert!(rises(&numbers(mm, "front", "Z")) && rises(&numbers(tank, "front", "x")));
+        assert!(numbers(mm, "height", "H").windows(2).all(|w| w[1] < w[0]));
+        assert_eq!(numbers(tank, "levels", "H1_1")[0], 1.0);
+        // P1 rises at 2.43: the caveat on the origins of time.
+        let (t, p) = (numbers(tank, "pressure", "t"), numbers(tank, "pressure", "P1"));
+        let rise = t.iter().zip(&p).find(|(_, p)| **p > 0.1).map(|(t, _)| *t);
+        assert!(rise.is_some_and(|t| (t - 2.44).abs() < 0.02), "{rise:?}");
     }
 }

@@ -40,6 +40,8 @@ pub struct Context<'a> {
     pub frames: Option<(PathBuf, usize)>,
     /// Keep the particles of the last time in the record.
     pub keep_particles: bool,
+    /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
+    pub pictures: Option<usize>,
     /// Told how far the run is.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     /// Set from outside to stop.

@@ -1,6 +1,5 @@
 //! Runs the plans of cases, side by side, and judges them: what `verify` and `report` share.
 
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::{
@@ -144,19 +143,7 @@ pub fn run(
         .iter()
         .flat_map(|&case| case.plan(tier).into_iter().map(move |planned| (case, planned)))
         .collect();
-    let (done, all) = (AtomicUsize::new(0), plans.len());
-    let results: Result<Vec<JudgedRun>, RunError> = plans
-        .into_par_iter()
-        .map(|(case, planned)| {
-            let judged = run_planned(case, planned, watch.interrupt)?;
-            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if let Some(progress) = watch.progress {
-                progress(count, all, &format!("{} {}", case.name(), judged.planned.variant));
-            }
-            Ok(judged)
-        })
-        .collect();
-    let mut results = results?;
+    let mut results = run_longest_first(plans, watch)?;
     let mut suite = Suite { tier, cases: Vec::new(), studies: Vec::new() };
     if watch.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
         return Ok(suite); // nothing can be said of runs that were cut short
@@ -171,6 +158,35 @@ pub fn run(
         suite.studies = studies::of_the_method(tier);
     }
     Ok(suite)
+}
+
+/// Runs the plans side by side, and returns them in the order given. Each thread takes the longest run
+/// that is left.
+fn run_longest_first(
+    plans: Vec<(&'static dyn Case, Planned)>,
+    watch: &Watch,
+) -> Result<Vec<JudgedRun>, RunError> {
+    let all = plans.len();
+    let mut order: Vec<usize> = (0..all).collect();
+    order.sort_by(|&a, &b| plans[b].1.seconds.total_cmp(&plans[a].1.seconds));
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let work = |_: rayon::BroadcastContext<'_>| {
+        let mut mine = Vec::new();
+        while let Some(&k) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let (case, planned) = &plans[k];
+            mine.push((k, run_planned(*case, planned.clone(), watch.interrupt)?));
+            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if let Some(progress) = watch.progress {
+                progress(count, all, &format!("{} {}", case.name(), planned.variant));
+            }
+        }
+        Ok(mine)
+    };
+    let results: Result<Vec<Vec<(usize, JudgedRun)>>, RunError> =
+        rayon::broadcast(work).into_iter().collect();
+    let mut results: Vec<(usize, JudgedRun)> = results?.into_iter().flatten().collect();
+    results.sort_by_key(|(k, _)| *k);
+    Ok(results.into_iter().map(|(_, run)| run).collect())
 }
 
 /// Runs and judges one planned run. A run that diverges is a result, and its gates fail.

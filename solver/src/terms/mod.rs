@@ -30,7 +30,9 @@ pub use jaumann_rate::JaumannRate;
 pub use pressure::Pressure;
 pub use shift_advection::ShiftAdvection;
 pub use shifting::Shifting;
-pub use tensile_stress::{ComponentStress, PrincipalStress, TensileStress};
+pub use tensile_stress::{
+    Axes, ComponentStress, Componentwise, InTension, Principal, PrincipalStress, TensileStress,
+};
 pub use viscosity::Viscosity;
 pub use xsph::Xsph;
 

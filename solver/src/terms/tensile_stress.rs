@@ -1,3 +1,5 @@
+use std::marker::PhantomData;
+
 use super::Pair;
 use crate::{
     kernel::Kernel,
@@ -31,15 +33,70 @@ impl TensileStress for () {
     }
 }
 
-/// Strength and range of an artificial stress, (18) φᵢⱼ = W(dᵢⱼ)/W(⁰r).
+/// The part of a stress that pulls, in the axes in which (20) asks for tension.
+pub trait Axes: Copy + Send + Sync + 'static {
+    /// σ where it is in tension, 0 where it is in compression, in any unit.
+    fn tension(stress: Symmetric) -> Symmetric;
+}
+
+/// Principal axes (Gray, Monaghan & Swift 2001): R has the axes of σ. Frame-invariant.
 #[derive(Clone, Copy, Debug)]
-struct Shape {
+pub struct Principal;
+
+/// Component by component, as the seed writes (20): where σᵃᵇ > 0. Turning the axes changes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Componentwise;
+
+impl Axes for Principal {
+    #[inline(always)]
+    fn tension(stress: Symmetric) -> Symmetric {
+        // σ = m + r D with D = [[cos 2θ, sin 2θ], [sin 2θ, -cos 2θ]] has the eigenvalues m ± r.
+        let (m, d) = (0.5 * (stress.xx + stress.yy), 0.5 * (stress.xx - stress.yy));
+        let r = (d * d + stress.xy * stress.xy).sqrt();
+        let (high, low) = ((m + r).max(0.0), (m - r).max(0.0));
+        let mean = 0.5 * (high + low);
+        let along = if r > 0.0 { 0.5 * (high - low) / r } else { 0.0 };
+        Symmetric { xx: mean + along * d, yy: mean - along * d, xy: along * stress.xy }
+    }
+}
+
+impl Axes for Componentwise {
+    #[inline(always)]
+    fn tension(stress: Symmetric) -> Symmetric {
+        Symmetric { xx: stress.xx.max(0.0), yy: stress.yy.max(0.0), xy: stress.xy.max(0.0) }
+    }
+}
+
+/// (20) R = −ξ σ/ρ² where σ is in tension in the axes `A`, else 0; (18) φᵢⱼ = W(dᵢⱼ)/W(⁰r).
+#[derive(Clone, Copy, Debug)]
+pub struct InTension<A> {
     xi: f64,
     n: u32,
     inverse_w: f64,
+    axes: PhantomData<A>,
 }
 
-impl Shape {
+/// (20) in principal axes.
+pub type PrincipalStress = InTension<Principal>;
+
+/// (20) component by component.
+pub type ComponentStress = InTension<Componentwise>;
+
+impl<A> InTension<A> {
+    /// Strength ξ, exponent n, and W at the initial spacing \[1/m²\].
+    pub fn new(xi: f64, n: u32, w_at_spacing: f64) -> Self {
+        Self { xi, n, inverse_w: 1.0 / w_at_spacing, axes: PhantomData }
+    }
+}
+
+impl<A: Axes> TensileStress for InTension<A> {
+    type Shows = Symmetric;
+
+    #[inline(always)]
+    fn shows(&self, stress_over_density_squared: Symmetric) -> Symmetric {
+        A::tension(stress_over_density_squared) * -self.xi
+    }
+
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
@@ -49,77 +106,5 @@ impl Shape {
     ) -> Symmetric<V> {
         let phi = pair.w() * V::all(self.inverse_w);
         (own + other) * (0..self.n).fold(V::all(1.0), |product, _| product * phi)
-    }
-}
-
-/// (20) in principal axes (Gray, Monaghan & Swift 2001): Rᵢ has the axes of σᵢ, and
-/// R = −ξ σ/ρ² along each axis in tension, 0 along one in compression. Frame-invariant.
-#[derive(Clone, Copy, Debug)]
-pub struct PrincipalStress(Shape);
-
-/// (20) as the seed writes it: R = −ξ σᵃᵇ/ρ² for each component by itself where σᵃᵇ > 0, else 0.
-/// Turning the axes changes it.
-#[derive(Clone, Copy, Debug)]
-pub struct ComponentStress(Shape);
-
-impl PrincipalStress {
-    /// Strength ξ, exponent n, and W at the initial spacing \[1/m²\].
-    pub fn new(xi: f64, n: u32, w_at_spacing: f64) -> Self {
-        Self(Shape { xi, n, inverse_w: 1.0 / w_at_spacing })
-    }
-}
-
-impl ComponentStress {
-    /// Strength ξ, exponent n, and W at the initial spacing \[1/m²\].
-    pub fn new(xi: f64, n: u32, w_at_spacing: f64) -> Self {
-        Self(Shape { xi, n, inverse_w: 1.0 / w_at_spacing })
-    }
-}
-
-impl TensileStress for PrincipalStress {
-    type Shows = Symmetric;
-
-    #[inline(always)]
-    fn shows(&self, stress: Symmetric) -> Symmetric {
-        // σ = m + r D with D = [[cos 2θ, sin 2θ], [sin 2θ, -cos 2θ]] has the eigenvalues m ± r.
-        let (m, d) = (0.5 * (stress.xx + stress.yy), 0.5 * (stress.xx - stress.yy));
-        let r = (d * d + stress.xy * stress.xy).sqrt();
-        let (high, low) = ((m + r).max(0.0), (m - r).max(0.0));
-        let mean = 0.5 * (high + low);
-        let along = if r > 0.0 { 0.5 * (high - low) / r } else { 0.0 };
-        let tension =
-            Symmetric { xx: mean + along * d, yy: mean - along * d, xy: along * stress.xy };
-        tension * -self.0.xi
-    }
-
-    #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        own: Symmetric<V>,
-        other: Symmetric<V>,
-    ) -> Symmetric<V> {
-        self.0.pair(pair, own, other)
-    }
-}
-
-impl TensileStress for ComponentStress {
-    type Shows = Symmetric;
-
-    #[inline(always)]
-    fn shows(&self, stress: Symmetric) -> Symmetric {
-        let tension =
-            Symmetric { xx: stress.xx.max(0.0), yy: stress.yy.max(0.0), xy: stress.xy.max(0.0) };
-        tension * -self.0.xi
-    }
-
-    #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        own: Symmetric<V>,
-        other: Symmetric<V>,
-    ) -> Symmetric<V> {
-        self.0.pair(pair, own, other)
     }
 }

@@ -25,6 +25,12 @@ impl PlaneWall {
     pub fn new(point: Vector2<f64>, normal: Vector2<f64>, velocity: Vector2<f64>) -> Self {
         Self { point, normal, velocity, curvature: Vector2::zeros() }
     }
+
+    /// How deep in the fluid a point is \[m\], negative behind the wall.
+    #[inline(always)]
+    pub fn depth(&self, point: Vector2<f64>) -> f64 {
+        (point - self.point).dot(&self.normal)
+    }
 }
 
 /// |cos| of an angle that counts as a right one, at most.

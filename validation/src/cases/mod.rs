@@ -3,7 +3,9 @@
 pub mod acoustic_wave;
 pub mod channel;
 mod couette;
+pub mod dam_break;
 mod elastic_bar;
+mod elliptic_drop;
 pub mod fluid;
 pub mod hydrostatic;
 mod oscillating_plate;
@@ -15,6 +17,7 @@ pub mod solid;
 mod spinning_disk;
 mod taylor_couette;
 pub mod taylor_green;
+pub mod water;
 pub mod wave;
 
 use self::solid::SolidCase;
@@ -35,6 +38,8 @@ pub const CASES: &[&dyn Case] = &[
     rings::RUBBER_RINGS,
     taylor_green::TAYLOR_GREEN,
     periodic_hill::PERIODIC_HILL,
+    dam_break::DAM_BREAK,
+    &elliptic_drop::EllipticDrop,
     hydrostatic::HYDROSTATIC,
     &taylor_couette::Gap,
 ];

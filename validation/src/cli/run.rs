@@ -92,6 +92,7 @@ fn compute(
         threads: rayon::current_num_threads(),
         frames,
         keep_particles: false,
+        pictures: None,
         progress: Some(&show),
         interrupt: Some(world.interrupt),
     };

@@ -2,6 +2,7 @@
 
 pub mod couette;
 pub mod damped_mode;
+pub mod elliptic_drop;
 pub mod hydrostatic;
 pub mod impact;
 pub mod poiseuille;
@@ -10,6 +11,7 @@ pub mod taylor_green;
 
 pub use couette::Couette;
 pub use damped_mode::DampedMode;
+pub use elliptic_drop::EllipticDrop;
 pub use hydrostatic::Hydrostatic;
 pub use poiseuille::Poiseuille;
 pub use taylor_couette::TaylorCouette;

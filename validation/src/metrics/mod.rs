@@ -1,4 +1,6 @@
 //! Measures of a run, each one function with its formula.
 
+pub mod budget;
+pub mod energy;
 pub mod norms;
 pub mod profile;

@@ -20,6 +20,9 @@ pub struct Summary {
 /// Largest page.
 const LIMIT: usize = 5_000_000;
 
+/// Shapes of a drawing that shows something: an empty panel still has a background and a frame.
+const LEAST_SHAPES: usize = 3;
+
 /// A start tag with its attributes.
 struct Tag<'a> {
     name: &'a str,
@@ -155,6 +158,11 @@ impl<'a> Walk<'a> {
         match tag.name {
             "figure" if self.figure.is_some() => return Err("a figure inside a figure".into()),
             "figure" => self.figure = Some(Seen::default()),
+            "img" => {
+                if let Some(seen) = &mut self.figure {
+                    seen.shapes += LEAST_SHAPES;
+                }
+            }
             "table" => self.summary.tables += 1,
             "section" => self.summary.sections += 1,
             "polyline" | "polygon" | "circle" | "line" | "rect" | "text" | "path" => {
@@ -203,8 +211,7 @@ impl<'a> Walk<'a> {
         if name == "figure" {
             let seen = self.figure.take().unwrap_or_default();
             self.summary.figures += 1;
-            // An empty panel still has a background and a frame.
-            if seen.shapes < 3 {
+            if seen.shapes < LEAST_SHAPES {
                 return Err(format!("figure {} shows nothing", self.summary.figures));
             }
             if seen.caption < 12 {

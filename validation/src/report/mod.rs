@@ -9,6 +9,7 @@ mod canvas;
 mod check;
 mod colour;
 mod figure;
+mod film;
 mod font;
 mod frame;
 mod geometry;
@@ -29,6 +30,7 @@ pub use figure::{
     Align, CategoryMap, Dash, Figure, Layer, Legend, Orientation, Panel, ParticleMap, Plot, Series,
     Shape,
 };
+pub use film::Film;
 pub use number::{exact, percent, sci, seconds, sig};
 pub use page::{Block, Counts, Page, Section};
 pub use render::{png, svg};

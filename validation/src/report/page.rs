@@ -1,8 +1,9 @@
 //! One self-contained page: opens from disk, loads nothing, prints.
 
 use super::figure::Figure;
+use super::film::Film;
 use super::font;
-use super::inline::inline;
+use super::inline::{escape, inline};
 use super::render;
 use super::table::{Status, Table};
 use crate::files;
@@ -141,6 +142,8 @@ pub enum Block {
     List(Vec<String>),
     /// A drawing with its caption and number; its id is its anchor.
     Figure(Figure),
+    /// A figure that moves.
+    Film(Film),
     /// A table with its number.
     Table(Table),
     /// Blocks behind a click.
@@ -162,6 +165,12 @@ pub enum Block {
 impl From<Figure> for Block {
     fn from(figure: Figure) -> Self {
         Self::Figure(figure)
+    }
+}
+
+impl From<Film> for Block {
+    fn from(film: Film) -> Self {
+        Self::Film(film)
     }
 }
 
@@ -220,8 +229,8 @@ impl Page {
         if !self.png_folder.is_empty() {
             let images = folder.join(&self.png_folder);
             std::fs::create_dir_all(&images)?;
-            for figure in self.sections.iter().flat_map(figures) {
-                render::png(figure, &images.join(format!("{}.png", figure.id)))?;
+            for drawing in self.sections.iter().flat_map(drawings) {
+                drawing.write(&images)?;
             }
         }
         files::write_atomically(path, self.html().as_bytes()).map_err(io::Error::other)
@@ -230,16 +239,35 @@ impl Page {
 
 const VIEWPORT: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
 
-/// Every figure of a section.
-fn figures(section: &Section) -> Vec<&Figure> {
-    fn of(block: &Block) -> Vec<&Figure> {
+/// What has a PNG file.
+enum Drawing<'a> {
+    Figure(&'a Figure),
+    Film(&'a Film),
+}
+
+impl Drawing<'_> {
+    fn write(&self, folder: &Path) -> io::Result<()> {
+        let path = |id: &str| folder.join(format!("{id}.png"));
+        match self {
+            Self::Figure(figure) => render::png(figure, &path(&figure.id)),
+            Self::Film(film) => {
+                files::write_atomically(&path(&film.id), &film.png).map_err(io::Error::other)
+            }
+        }
+    }
+}
+
+/// Every drawing of a section.
+fn drawings(section: &Section) -> Vec<Drawing<'_>> {
+    fn of(block: &Block) -> Vec<Drawing<'_>> {
         match block {
-            Block::Figure(figure) => vec![figure],
+            Block::Figure(figure) => vec![Drawing::Figure(figure)],
+            Block::Film(film) => vec![Drawing::Film(film)],
             Block::Details { blocks, .. } => blocks.iter().flat_map(of).collect(),
             _ => Vec::new(),
         }
     }
-    section.blocks.iter().flat_map(of).chain(section.children.iter().flat_map(figures)).collect()
+    section.blocks.iter().flat_map(of).chain(section.children.iter().flat_map(drawings)).collect()
 }
 
 fn contents(sections: &[Section]) -> Markup {
@@ -279,7 +307,10 @@ impl Writer<'_> {
         match block {
             Block::Prose(paragraphs) => html! { @for p in paragraphs { p { (inline(p)) } } },
             Block::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
-            Block::Figure(figure) => self.figure(figure),
+            Block::Figure(figure) => {
+                self.figure(&figure.id, &figure.caption, PreEscaped(render::svg(figure)))
+            }
+            Block::Film(film) => self.figure(&film.id, &film.caption, film_markup(film)),
             Block::Table(table) => {
                 self.tables += 1;
                 table.markup(&format!("Table {}. ", self.tables))
@@ -296,20 +327,26 @@ impl Writer<'_> {
         }
     }
 
-    fn figure(&mut self, figure: &Figure) -> Markup {
+    fn figure(&mut self, id: &str, caption: &str, drawing: Markup) -> Markup {
         self.figures += 1;
-        let link = format!("{}/{}.png", self.png_folder, figure.id);
+        let link = format!("{}/{id}.png", self.png_folder);
         html! {
-            figure id=(figure.id) {
-                div.card { (PreEscaped(render::svg(figure))) }
+            figure id=(id) {
+                div.card { (drawing) }
                 figcaption {
                     b { "Figure " (self.figures) ". " }
-                    (inline(&figure.caption))
+                    (inline(caption))
                     @if !self.png_folder.is_empty() { " " a.png href=(link) { "PNG" } }
                 }
             }
         }
     }
+}
+
+/// The film as an image inside the page. The page is XML too: every element is closed.
+fn film_markup(film: &Film) -> Markup {
+    let (caption, image) = (escape(&film.caption), font::base64(&film.png));
+    PreEscaped(format!("<img alt=\"{caption}\" src=\"data:image/png;base64,{image}\"/>"))
 }
 
 /// JSON without characters that mean something to HTML or XML.

@@ -181,11 +181,12 @@ fn compact(text: &str) -> String {
         })
 }
 
-/// Pixels of the figure, three bytes each, with their width and height.
-pub(super) fn pixels(figure: &Figure) -> Result<(Vec<u8>, u32, u32), String> {
+/// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
+/// pixel.
+pub(super) fn pixels(figure: &Figure, density: u32) -> Result<(Vec<u8>, u32, u32), String> {
     let layout = layout(figure);
-    let scale = SUPERSAMPLE * DENSITY;
-    let (width, height) = (layout.size.0 as u32 * DENSITY, layout.size.1 as u32 * DENSITY);
+    let scale = SUPERSAMPLE * density;
+    let (width, height) = (layout.size.0 as u32 * density, layout.size.1 as u32 * density);
     let (fine_width, fine_height) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
     let mut fine = vec![255; (fine_width * fine_height * 3) as usize];
     let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
@@ -216,7 +217,7 @@ fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
 
 /// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
 pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
-    let (pixels, width, height) = pixels(figure).map_err(io::Error::other)?;
+    let (pixels, width, height) = pixels(figure, DENSITY).map_err(io::Error::other)?;
     let draw = |temporary: &Path| -> io::Result<()> {
         let mut backend = BitMapBackend::new(temporary, (width, height));
         backend.blit_bitmap((0, 0), (width, height), &pixels).map_err(io::Error::other)?;
@@ -237,7 +238,7 @@ mod tests {
     }
 
     fn dark_pixels(figure: &Figure) -> usize {
-        let (pixels, ..) = pixels(figure).unwrap();
+        let (pixels, ..) = pixels(figure, DENSITY).unwrap();
         pixels.chunks(3).filter(|p| p.iter().all(|&c| c < 100)).count()
     }
 
@@ -288,7 +289,7 @@ mod tests {
             svg(&figure(map.clone()));
             svg(&figure(map.values(1.0, values.first().copied().unwrap_or(1.0))));
         }
-        pixels(&figure(all_layers(&awkward, axes[0].clone(), axes[1].clone()))).unwrap();
+        pixels(&figure(all_layers(&awkward, axes[0].clone(), axes[1].clone())), DENSITY).unwrap();
     }
 
     #[test]

@@ -35,8 +35,8 @@ const JUDGED_SOUND: f64 = 10.0;
 
 fn reynolds(tier: Tier) -> &'static [f64] {
     match tier {
-        Tier::Quick => &[1.0, 5.0, 20.0, 50.0],
-        Tier::Full => &[0.5, 1.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0],
+        Tier::Quick => &[1.0, 5.0, 20.0],
+        Tier::Full => &[0.5, 1.0, 5.0, 10.0, 20.0, 50.0, 100.0],
     }
 }
 
@@ -53,7 +53,7 @@ fn end(tier: Tier) -> f64 {
 }
 
 /// Above this Reynolds number the full tier takes one start instead of three.
-const MANY_STARTS: f64 = 100.0;
+const MANY_STARTS: f64 = 20.0;
 
 /// How the time step of the map follows from the sound speed.
 #[derive(Clone, Copy, PartialEq)]
@@ -302,8 +302,8 @@ const CURES: [(&str, &str); 10] = [
 
 fn cures(case: &'static dyn Case, tier: Tier) -> Study {
     let (list, most): (&[f64], f64) = match tier {
-        Tier::Quick => (&[20.0, 50.0], 20.0),
-        Tier::Full => (&[5.0, 20.0, 50.0, 100.0, 200.0, 500.0], MANY_STARTS),
+        Tier::Quick => (&[20.0], 20.0),
+        Tier::Full => (&[5.0, 20.0, 50.0, 100.0, 200.0], MANY_STARTS),
     };
     let jobs: Vec<Job> = CURES
         .iter()

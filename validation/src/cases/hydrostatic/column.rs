@@ -127,7 +127,7 @@ impl Column {
 
     /// Height of the surface \[m\], half a spacing above the highest row.
     pub fn level<W: TankWall>(&self) -> f64 {
-        (self.settings.rows as f64 - 1.0 + W::FIRST_ROW) * self.dx
+        (self.settings.rows as f64 + 0.5 - W::FIRST_ROW) * self.dx
     }
 
     /// A particle that does not move, with the density that is exact at its place, or that of the

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use super::Rings;
 use crate::{
-    cases::solid::{Energy, Material},
+    cases::solid::Energy,
     record::{Metric, Profile, Record},
 };
 
@@ -31,8 +31,7 @@ pub struct Side {
 
 /// Energies of these particles.
 fn energy(rings: &Rings, particles: &[Particle<Symmetric>]) -> Energy {
-    let (density, bulk) = (rings.settings.rho, rings.settings.bulk_modulus);
-    let material = Material { density, bulk, shear: rings.mu };
+    let material = rings.material();
     particles.iter().fold(Energy::default(), |sum, p| {
         let Particle { position, velocity, density, extra, .. } = *p;
         sum + Energy::of_one(p.mass, &Evolved { position, velocity, density, extra }, &material)
@@ -217,27 +216,66 @@ impl<'a> Series<'a> {
             "dx",
             "max over particles and times of the distance from the mirror image",
         );
-        for (name, value) in ["t_impulse_1", "t_impulse_50", "t_impulse_99"]
-            .into_iter()
-            .zip(self.impulse_times([0.01, 0.5, 0.99]))
-        {
-            put(name, value, "L/c0", "when 1, 50, 99 % of the momentum has been exchanged");
+        let phases = self.phases();
+        put("phases", phases.len() as f64, "1", "phases of contact, at least 5 L/c0 apart");
+        for (k, phase) in phases.iter().enumerate().take(2) {
+            let name = |what: &str| format!("{what}@phase{}", k + 1);
+            let formula = "mass of a ring times the change of its velocity in this phase";
+            put(&name("impulse"), phase.impulse, "rho c0 L^2", formula);
+            for (share, time) in SHARES.iter().zip(phase.times) {
+                let what = format!("t_impulse_{}", 100.0 * share);
+                let formula = "when this share (in %) of the phase's impulse has passed";
+                put(&name(&what), time, "L/c0", formula);
+            }
         }
     }
 
-    /// When the velocity of the centre has changed by these shares of its whole change.
-    fn impulse_times<const N: usize>(&self, shares: [f64; N]) -> [f64; N] {
-        let (first, last) = (self.rows[0][2], self.rows[self.rows.len() - 1][2]);
-        shares.map(|share| {
+    /// Phases of contact: where the force on a ring is above 1 % of its largest, with pauses of less
+    /// than 5 L/c0 bridged, as in `references/rubber_rings`.
+    pub fn phases(&self) -> Vec<Phase> {
+        let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
+        let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
+        let least = TOUCH * forces.iter().copied().fold(0.0, f64::max);
+        let mut spans: Vec<[usize; 2]> = Vec::new();
+        for k in (0..forces.len()).filter(|&k| forces[k] > least) {
+            match spans.last_mut() {
+                Some([_, end]) if self.rows[k][0] - self.rows[*end][0] < PAUSE => *end = k + 1,
+                _ => spans.push([k, k + 1]),
+            }
+        }
+        spans.into_iter().map(|[start, end]| self.phase(&self.rows[start..=end])).collect()
+    }
+
+    fn phase(&self, rows: &[[f64; COLUMNS]]) -> Phase {
+        let s = &self.rings.settings;
+        let mass = std::f64::consts::PI * (s.outer * s.outer - s.inner * s.inner);
+        let (first, last) = (rows[0][2], rows[rows.len() - 1][2]);
+        let times = SHARES.map(|share| {
             let wanted = first + share * (last - first);
-            let crossing = self.rows.windows(2).find(|w| w[0][2] < wanted && w[1][2] >= wanted);
+            let crossing = rows.windows(2).find(|w| w[0][2] < wanted && w[1][2] >= wanted);
             crossing.map_or(f64::NAN, |w| {
                 let part = (wanted - w[0][2]) / (w[1][2] - w[0][2]);
                 w[0][0] + part * (w[1][0] - w[0][0])
             })
-        })
+        });
+        Phase { impulse: mass * (last - first), times }
     }
 }
+
+/// One phase of contact.
+#[derive(Clone, Copy, Debug)]
+pub struct Phase {
+    /// Mass of a ring times the change of its velocity \[ρ c₀ L²\].
+    pub impulse: f64,
+    /// When [`SHARES`] of it have passed \[L/c₀\].
+    pub times: [f64; 3],
+}
+
+/// Shares of a phase's impulse whose times are kept.
+pub const SHARES: [f64; 3] = [0.01, 0.5, 0.99];
+/// Force, over the largest, above which rings touch; pause that ends a phase \[L/c₀\].
+const TOUCH: f64 = 0.01;
+const PAUSE: f64 = 5.0;
 
 /// Largest distance of a particle from the mirror image of its partner.
 fn mirror_error(left: &[Particle<Symmetric>], right: &[Particle<Symmetric>]) -> f64 {

@@ -14,6 +14,7 @@ pub fn spacings(variant: &str, tier: Tier) -> &'static [f64] {
         // The cheapest variant shows what the spacing does.
         (Tier::Quick, "leapfrog") => &[0.2, 0.1],
         (Tier::Quick, _) => &[0.2],
+        (Tier::Full, "leapfrog") => &[0.2, 0.1],
         (Tier::Full, _) => &[0.2, 0.1, 0.05],
     }
 }
@@ -36,7 +37,7 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
     for variant in LADDER {
         for &spacing in spacings(variant, tier) {
             let run = Planned::new(variant, &[format!("spacing={spacing}")]);
-            runs.push(run.judged(gates(variant, spacing)));
+            runs.push(run.judged(gates(variant, spacing)).taking(seconds(spacing)));
         }
     }
     for &speed in speeds(tier) {
@@ -47,10 +48,12 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
             {
                 continue;
             }
-            for spacing in if tier == Tier::Quick { &[0.2][..] } else { &[0.2, 0.1] } {
+            // What depends on the axes is broken at any spacing.
+            let is_coarse = tier == Tier::Quick || variant == "componentwise";
+            for &spacing in if is_coarse { &[0.2][..] } else { &[0.2, 0.1] } {
                 let set = [format!("spacing={spacing}"), format!("speed={speed}")];
-                let run = Planned::new(variant, &set);
-                runs.push(run.judged(fast_gates(variant, *spacing, speed)));
+                let run = Planned::new(variant, &set).taking(seconds(spacing));
+                runs.push(run.judged(fast_gates(variant, spacing, speed)));
             }
         }
     }
@@ -58,6 +61,11 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
         runs.push(Planned::new(variant, &["spacing=0.2".into(), format!("angle={ANGLE}")]));
     }
     runs
+}
+
+/// Roughly what a run takes \[s\]: particles times steps.
+fn seconds(spacing: f64) -> f64 {
+    12.0 * (0.1 / spacing).powi(3)
 }
 
 fn gate(id: String, metric: &str, bound: Bound, evidence: Evidence, because: &str) -> Gate {
@@ -80,13 +88,22 @@ fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
     if variant == "no-artificial-stress" || variant == "componentwise" {
         return gates;
     }
-    gates.push(gate(id(), "mirror", Bound::Below(1e-6), Evidence::Invariant, MIRROR));
+    let mirror = gate(id(), "mirror", Bound::Below(1e-6), Evidence::Invariant, MIRROR);
+    gates.push(if spacing < 0.1 {
+        mirror.with_limitation(
+            "round-off grows faster in finer rings: 1e-13 dx at spacing 0.2, 1e-11 at 0.1, and beyond 1e-6 \
+             at 0.05 with two right-hand sides a step",
+        )
+    } else {
+        mirror
+    });
     let first_order = "a surface of particles is known to about a spacing, and sums are short of \
                        neighbours there: first order in dx/thickness, with a factor of a half";
     let allowed = 0.5 * spacing;
     for metric in ["restitution_error", "height_max_error"] {
         gates.push(gate(id(), metric, Bound::Below(allowed), Evidence::Reference, first_order));
     }
+    gates.extend(phase_gates(&id(), spacing, allowed));
     let soft = "the same; a ring of few layers is too soft in bending, as published SPH beams are by 7 \
                 to 12 %, and is flattened more";
     let width = gate(id(), "width_min_error", Bound::Below(allowed), Evidence::Reference, soft);
@@ -97,6 +114,29 @@ fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
     gates
 }
 
+/// Gates on the phases of contact.
+fn phase_gates(id: &str, spacing: f64, allowed: f64) -> Vec<Gate> {
+    let gate = |metric: &str, bound: Bound, because: &str| {
+        gate(id.to_string(), metric, bound, Evidence::Reference, because)
+    };
+    let because = "finite elements touch twice, and fly free for 15 L/c0 in between";
+    let phases = gate("phases", Bound::Equals(2.0), because);
+    if spacing > 0.1 {
+        return vec![phases.with_limitation(
+            "kernels of 5 layers reach 0.6 L across the gap that opens in between: the rings never let go",
+        )];
+    }
+    let because = "the impulse of a phase is momentum given and taken while rings are in touch; particles \
+                   touch from 3 dx on, first order in dx";
+    let impulse = |metric: &str| {
+        gate(metric, Bound::Below(allowed), because).with_limitation(
+            "rings of 10 and 20 layers share the impulse otherwise: 5 to 6 % less in the first phase, 6 to 7 % more \
+             in the second, and it hardly falls with the spacing; why is not known",
+        )
+    };
+    vec![phases, impulse("impulse_error@phase1"), impulse("impulse_error@phase2")]
+}
+
 const MIRROR: &str = "the scene is its own mirror image to the last bit; sums take neighbours in another \
                       order, and round-off of 1e-16 grows while rings bend";
 
@@ -104,12 +144,15 @@ fn invariants(id: &str) -> Vec<Gate> {
     let momentum = "forces of pairs are equal and opposite, so only round-off is left";
     let gained =
         "nothing drives the rings: stabilisation only takes energy; stress rates in time leave 1 %";
+    let budget = "what all terms add is what the energy changes by; powers at 200 times by the trapezoidal \
+                  rule leave about (dt/period)²/12 of a wave through the thickness, which carries some of it";
     let courant = "R8: waves of pressure and shear together travel at c_p, not at c0; theory allows about \
                    1.2 with this artificial viscosity";
     vec![
         gate(id.into(), "momentum", Bound::Below(1e-12), Evidence::Invariant, momentum),
         gate(id.into(), "courant", Bound::Below(0.400_000_1), Evidence::Theory, courant),
         gate(id.into(), "energy_gained", Bound::Below(0.01), Evidence::Invariant, gained),
+        gate(id.into(), "energy_gap", Bound::Below(0.02), Evidence::Invariant, budget),
     ]
 }
 
@@ -121,6 +164,11 @@ fn fast_gates(variant: &str, spacing: f64, speed: f64) -> Vec<Gate> {
         "M2: with artificial stress rings stay in one piece at any speed below a fifth of sound";
     let pieces = gate(id(), "pieces_most", Bound::Equals(2.0), Evidence::Reference, whole);
     gates.push(match variant {
+        // M2 fails here: a ring of ten layers loses a piece of each.
+        "seed" if (speed, spacing) == (0.2, 0.1) => pieces.with_limitation(
+            "at 0.2 c0 each the paper's artificial stress no longer holds rings of ten layers together: M2 \
+             ends between 0.12 and 0.2 c0",
+        ),
         "seed" => pieces,
         // M2: without artificial stress the tensile instability tears the rings.
         "no-artificial-stress" if speed == 0.12 => pieces.expected_to_fail(),

@@ -15,6 +15,9 @@ const LAW: &str = "hencky";
 pub struct Reference {
     /// (name, value, uncertainty).
     summary: Vec<(String, f64, f64)>,
+    /// Phases of contact: impulse \[ρ c₀ L²\] and times of [`super::measure::SHARES`] of it, with
+    /// their uncertainties.
+    pub phases: Vec<[(f64, f64); 4]>,
     /// Times \[L/c0\] and, at each, the columns of [`Reference::COLUMNS`] with their uncertainties.
     pub times: Vec<f64>,
     /// One list a column.
@@ -61,7 +64,20 @@ impl Reference {
             columns.push(rows.iter().map(|&k| (values[k], spread[k])).collect());
         }
         let times = rows.iter().map(|&k| t[k]).collect();
-        Ok(Some(Self { summary, times, columns }))
+        let phases = Self::phases_at(&package, speed)?;
+        Ok(Some(Self { summary, phases, times, columns }))
+    }
+
+    fn phases_at(package: &Package, speed: f64) -> Result<Vec<[(f64, f64); 4]>, ReferenceError> {
+        let table = package.table("phases")?;
+        let (speeds, laws) = (table.numbers("speed")?, table.texts("law")?);
+        let mut columns = Vec::new();
+        for name in ["impulse", "impulse_1", "impulse_50", "impulse_99"] {
+            columns.push((table.numbers(name)?, table.numbers(&format!("{name}_uncertainty"))?));
+        }
+        let of_run = |k: &usize| speeds[*k] == speed && laws[*k] == LAW;
+        let row = |k: usize| [0, 1, 2, 3].map(|c: usize| (columns[c].0[k], columns[c].1[k]));
+        Ok((0..speeds.len()).filter(of_run).map(row).collect())
     }
 
     /// A number of the summary with its uncertainty.
@@ -80,6 +96,11 @@ impl Reference {
             };
             let formula = format!("|{name} - finite elements|/finite elements");
             put(format!("{name}_error"), (found / exact - 1.0).abs(), "-", formula);
+        }
+        for (k, (exact, found)) in self.phases.iter().zip(series.phases()).enumerate() {
+            let name = format!("impulse_error@phase{}", k + 1);
+            let formula = "|impulse of the phase - finite elements|/finite elements".to_string();
+            put(name, (found.impulse / exact[0].0 - 1.0).abs(), "-", formula);
         }
         for (k, name) in Self::COLUMNS.iter().enumerate() {
             let unit = if *name == "v_c" { "c0" } else { "L" };
@@ -114,6 +135,7 @@ mod tests {
         let (restitution, spread) = paper.number("restitution").expect("measured");
         assert!((restitution - 0.7956).abs() < 1e-3 && spread < 0.01);
         assert!(at(0.03).is_some() && at(0.12).is_none());
+        assert!((paper.phases[0][0].0 - 1.19383).abs() < 1e-4 && paper.phases.len() == 2);
         let start = paper.columns.iter().map(|c| c[0].0).collect::<Vec<f64>>();
         assert_eq!(start, [5.0, -0.059, 8.0, 8.0]);
         let softer = RingSettings { shear_modulus: 0.2, ..RingSettings::default() };

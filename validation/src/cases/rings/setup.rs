@@ -2,16 +2,16 @@
 
 use nalgebra::{Rotation2, Vector2};
 use solver::{
-    ArtificialViscosity, CauchyStress, ComponentStress, Continuity, CubicSpline, Domain,
-    Integrator, JaumannRate, Limits, Linear, Open, Particle, PrincipalStress, Scene, Smoothing,
-    Symmetric, Xsph, terms::TensileStress,
+    ArtificialViscosity, CauchyStress, Continuity, CubicSpline, Domain, Integrator, JaumannRate,
+    Limits, Linear, Open, Particle, Scene, Smoothing, Symmetric, Xsph,
+    terms::{Axes, InTension, TensileStress},
 };
 use std::f64::consts::TAU;
 
 use super::{RingSettings, run::Rubber};
 use crate::{
     case::RunError,
-    cases::channel::Stepping,
+    cases::{channel::Stepping, solid::Material},
     theory::{
         lattice::SquareLattice,
         time_step::{self, Medium},
@@ -59,13 +59,7 @@ impl Tensile for () {
     fn of(_: &Rings) -> Self {}
 }
 
-impl Tensile for PrincipalStress {
-    fn of(rings: &Rings) -> Self {
-        Self::new(rings.settings.xi, rings.settings.stress_exponent as u32, rings.w_at_spacing())
-    }
-}
-
-impl Tensile for ComponentStress {
+impl<A: Axes> Tensile for InTension<A> {
     fn of(rings: &Rings) -> Self {
         Self::new(rings.settings.xi, rings.settings.stress_exponent as u32, rings.w_at_spacing())
     }
@@ -91,7 +85,7 @@ impl Rings {
         }
         let c0 = (s.bulk_modulus / s.rho).sqrt();
         let mu = s.shear_modulus * s.bulk_modulus;
-        let cp = ((s.bulk_modulus + 4.0 / 3.0 * mu) / s.rho).sqrt();
+        let cp = Material { density: s.rho, bulk: s.bulk_modulus, shear: mu }.p_wave_speed();
         let (v, h) = (s.speed * c0, s.h_over_dx * dx);
         let lattice = SquareLattice::<CubicSpline>::new(s.h_over_dx, 0.01);
         let medium = Medium { c0: cp, h, nu: 0.0, alpha: s.alpha * c0 / cp, delta: 0.0 };
@@ -114,6 +108,12 @@ impl Rings {
         }
         let eos = Linear { density: s.rho, sound_speed: c0 };
         Ok(Self { settings: s.clone(), c0, cp, mu, v, dx, h, eos, dt, dt_limit })
+    }
+
+    /// What the rings are made of.
+    pub fn material(&self) -> Material {
+        let RingSettings { rho: density, bulk_modulus: bulk, .. } = self.settings;
+        Material { density, bulk, shear: self.mu }
     }
 
     fn w_at_spacing(&self) -> f64 {

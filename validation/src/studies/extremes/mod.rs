@@ -6,6 +6,7 @@
 
 mod channel;
 mod odd;
+mod rubber;
 mod step;
 mod vortex;
 
@@ -57,6 +58,12 @@ impl Entry {
     }
 }
 
+impl From<Entry> for Vec<Entry> {
+    fn from(entry: Entry) -> Self {
+        vec![entry]
+    }
+}
+
 /// The groups of entries; each is one task.
 type Group = fn(Tier) -> Vec<Entry>;
 const GROUPS: &[Group] = &[
@@ -72,6 +79,11 @@ const GROUPS: &[Group] = &[
     odd::alone,
     odd::fast_blocks,
     odd::refused,
+    rubber::incompressible,
+    rubber::stiffer,
+    rubber::fast,
+    rubber::alone,
+    rubber::overlapping,
 ];
 
 /// The study.

@@ -1,0 +1,160 @@
+//! What the gates of the dam break are worth: the collapse with one thing spoiled, through planned runs
+//! at a/dx = 20. Each must fail a gate; which ones stands in `dam_power.csv`, written anew with
+//! `INSTA_UPDATE=always`.
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+use solver::{
+    BodyForce, Compose, Continuity, CubicSpline, InterfaceWall, Leapfrog, PredictorCorrector,
+    Scene, WendlandC2, Xsph, walls::Walls,
+};
+use std::path::Path;
+use validation::{
+    case::{Planned, Tier},
+    cases::dam_break::{self, Dam, Diffusion, Modern, NAME, Seed, Water},
+    gate::Gate,
+    record::Record,
+    runner::Context,
+};
+
+/// Walls whose particles keep the density, and so the pressure 0, that they were given.
+#[derive(Clone, Copy, Debug)]
+struct Frozen;
+
+impl Walls<()> for Frozen {
+    type Rows = ();
+    fn rows(&self) {}
+}
+
+type ModernFrozen = Compose<WendlandC2, Water, (Continuity, Diffusion), Frozen, Leapfrog>;
+type SeedFrozen = Compose<
+    CubicSpline,
+    Water<solver::ArtificialStress>,
+    (Continuity, Xsph),
+    Frozen,
+    PredictorCorrector,
+>;
+
+/// The same scene with walls of another type.
+fn frozen<A, B>(scene: Scene<A>) -> Scene<B>
+where
+    A: solver::Scheme<Extra = ()>,
+    B: solver::Scheme<Extra = (), Forces = A::Forces, Drift = A::Drift, Walls = Frozen>,
+{
+    Scene {
+        h: scene.h,
+        domain: scene.domain,
+        particles: scene.particles,
+        forces: scene.forces,
+        drift: scene.drift,
+        walls: Frozen,
+        skin: scene.skin,
+        skin_share: scene.skin_share,
+        limits: scene.limits,
+        parallel_from: scene.parallel_from,
+    }
+}
+
+fn planned(variant: &str) -> Planned {
+    let case = validation::cases::find(NAME).expect("a case");
+    let is_it = |p: &Planned| p.variant == variant && p.set == ["n=20"];
+    case.plan(Tier::Quick).into_iter().find(is_it).expect("a planned run")
+}
+
+fn modern() -> (Planned, Dam) {
+    let planned = planned("modern");
+    let settings = dam_break::settings("modern", &planned.set).expect("planned settings");
+    let dam = Dam::new::<Modern>(&settings, false).expect("sound settings");
+    (planned, dam)
+}
+
+fn seed(more: &[&str]) -> (Planned, Dam) {
+    let planned = planned("seed");
+    let mut set = planned.set.clone();
+    set.extend(more.iter().map(|text| text.to_string()));
+    let settings = dam_break::settings("seed", &set).expect("planned settings");
+    let dam = Dam::new::<Seed<InterfaceWall>>(&settings, false).expect("sound settings");
+    (planned, dam)
+}
+
+fn run<S: dam_break::Watched>(dam: &Dam, variant: &str, scene: Scene<S>) -> Record {
+    let context = Context::default();
+    dam_break::run_scene(dam, variant, "as spoiled", scene, &context).expect("a run")
+}
+
+/// A run with a fault, and the plan whose gates judge it.
+type Mutant = (&'static str, fn() -> (Planned, Record));
+
+const MUTANTS: [Mutant; 5] = [
+    ("gravity x 1.03", || {
+        let (planned, dam) = modern();
+        let mut scene = dam.scene::<Modern>();
+        scene.forces.2 = BodyForce(scene.forces.2.0 * 1.03);
+        let record = run(&dam, "modern", scene);
+        (planned, record)
+    }),
+    ("XSPH with the wrong sign", || {
+        let (planned, dam) = seed(&["xsph=-0.5"]);
+        let record = run(&dam, "seed", dam.scene::<Seed<InterfaceWall>>());
+        (planned, record)
+    }),
+    ("one-sided pressure at the wall", || {
+        let (planned, dam) = modern();
+        let record = run(&dam, "modern", frozen::<_, ModernFrozen>(dam.scene::<Modern>()));
+        (planned, record)
+    }),
+    ("wall density not evolved", || {
+        let (planned, dam) = seed(&[]);
+        let scene = frozen::<_, SeedFrozen>(dam.scene::<Seed<InterfaceWall>>());
+        let record = run(&dam, "seed", scene);
+        (planned, record)
+    }),
+    ("front of the wrong particle", || {
+        let (planned, mut dam) = modern();
+        dam.is_front = |place: Vector2<f64>, height| place.y > 0.5 * height;
+        let record = run(&dam, "modern", dam.scene::<Modern>());
+        (planned, record)
+    }),
+];
+
+fn failed(planned: &Planned, record: &Record) -> Vec<String> {
+    let fails = |gate: &&Gate| gate.judge(record.metric(&gate.metric)).verdict.is_failure();
+    planned.gates.iter().filter(fails).map(|gate| gate.id.clone()).collect()
+}
+
+#[test]
+fn no_fault_has_the_bits_of_the_case() {
+    let case = validation::cases::find(NAME).expect("a case");
+    let (planned, dam) = modern();
+    let own = case.run("modern", &planned.set, &Context::default()).expect("a run");
+    let same = run(&dam, "modern", dam.scene::<Modern>());
+    assert!(own.state.is_some() && own.state == same.state);
+    assert_eq!(failed(&planned, &same), Vec::<String>::new());
+}
+
+#[test]
+fn every_spoiled_collapse_fails_a_gate() {
+    let results: Vec<(Vec<String>, usize)> = MUTANTS
+        .par_iter()
+        .map(|(_, mutant)| {
+            let (planned, record) = mutant();
+            (failed(&planned, &record), planned.gates.len())
+        })
+        .collect();
+    let mut text = "mutant,gates that it fails,of,which\n".to_string();
+    for ((name, _), (failed, all)) in MUTANTS.iter().zip(&results) {
+        text += &format!("{name},{},{all},{}\n", failed.len(), failed.join(" "));
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("dam_power.csv");
+    if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+        std::fs::write(&path, &text).expect("a file that can be written");
+    }
+    let survivors: Vec<&str> = MUTANTS
+        .iter()
+        .zip(&results)
+        .filter(|(_, result)| result.0.is_empty())
+        .map(|(mutant, _)| mutant.0)
+        .collect();
+    assert!(survivors.is_empty(), "no gate sees these: {survivors:?}\n{text}");
+    assert_eq!(std::fs::read_to_string(&path).unwrap_or_default(), text);
+}

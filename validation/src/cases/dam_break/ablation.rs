@@ -1,0 +1,177 @@
+//! What each ingredient buys: the seed and the modern variant with one thing changed, in the tank of
+//! Lobovsky et al. at a coarse spacing, and what that says of the paper's claims.
+
+use rayon::prelude::*;
+
+use super::{plan::in_tank, studies::metric};
+use crate::{
+    case::{Case, Tier},
+    record::{Record, Status},
+    report::{Cell, Column, Table, percent, sig},
+    runner::Context,
+    suite::Study,
+};
+
+/// A row of the table: variant, settings.
+type Row = (&'static str, &'static [&'static str]);
+
+/// Rows of every tier: the parts that the claims are about.
+const QUICK: [Row; 6] = [
+    ("seed", &[]),
+    ("seed", &["alpha=0.01"]),
+    ("seed", &["xsph=0"]),
+    ("seed-no-stress", &[]),
+    ("ghosts", &[]),
+    ("modern", &[]),
+];
+
+/// Those of the full tier beside them.
+const FULL: [Row; 17] = [
+    ("seed", &["alpha=0"]),
+    ("seed", &["alpha=0.05"]),
+    ("seed", &["alpha=0.2"]),
+    ("seed", &["xsph=0.25"]),
+    ("seed", &["xsph=0.9"]),
+    ("seed", &["h_over_dx=1.2"]),
+    ("seed-diffusion", &[]),
+    ("seed-extrapolating", &[]),
+    ("seed-wendland", &[]),
+    ("seed-leapfrog", &[]),
+    ("modern", &["alpha=0"]),
+    ("modern", &["alpha=0.1"]),
+    ("modern", &["h_over_dx=2"]),
+    ("modern-bare", &[]),
+    ("modern-plain-diffusion", &[]),
+    ("modern-interface", &[]),
+    ("ghosts", &["xsph=0"]),
+];
+
+/// Spacings along the height, and the end: after the impact, before the wave breaks.
+fn scale(tier: Tier) -> (usize, &'static str) {
+    match tier {
+        Tier::Quick => (15, "end=4"),
+        Tier::Full => (30, "end=5"),
+    }
+}
+
+/// The study.
+pub fn study(case: &'static dyn Case, tier: Tier) -> Study {
+    let mut rows = QUICK.to_vec();
+    if tier == Tier::Full {
+        rows.extend(FULL);
+        rows.sort_by_key(|(variant, _)| *variant);
+    }
+    let (n, end) = scale(tier);
+    let run = |(variant, more): &Row| -> Option<Record> {
+        let mut set = in_tank(n);
+        set.push(end.into());
+        set.extend(more.iter().map(|text| text.to_string()));
+        // Without viscosity the predictor-corrector has no stable step at all: it runs as it is.
+        let context = Context { allow_unstable: true, ..Context::default() };
+        case.run(variant, &set, &context).ok()
+    };
+    let records: Vec<Option<Record>> = rows.par_iter().map(run).collect();
+    let results: Vec<(Row, Record)> =
+        rows.into_iter().zip(records).filter_map(|(row, r)| Some((row, r?))).collect();
+    Study::new("dam-break-ablation", "What each ingredient buys")
+        .block(table(n, end, &results))
+        .prose(claims(&results))
+}
+
+/// Mean of |relative error| of the impulses at P1 to P3.
+fn impulse(record: &Record) -> f64 {
+    (1..=3).map(|k| metric(record, &format!("impulse_P{k}@1")).abs()).sum::<f64>() / 3.0
+}
+
+/// Microseconds of a particle and step.
+fn step(record: &Record) -> f64 {
+    let cost = &record.cost;
+    1e6 * cost.cpu_s / (cost.steps as f64 * cost.particles as f64)
+}
+
+fn table(n: usize, end: &str, results: &[(Row, Record)]) -> Table {
+    let columns = vec![
+        Column::text("variant"),
+        Column::text("changed"),
+        Column::text("ended"),
+        Column::num("error of front", "H"),
+        Column::num("error of levels", "H"),
+        Column::num("error of impulse", "-"),
+        Column::num("viscosity took", "M g H/2"),
+        Column::num("stress gave", "M g H/2"),
+        Column::num("walls gave", "M g H/2"),
+        Column::num("noise of P2", "ρ g H"),
+        Column::num("density from", "-"),
+        Column::num("to", "-"),
+        Column::num("lost particles", "1"),
+        Column::num("a particle and step", "µs"),
+    ];
+    let caption = format!(
+        "One thing changed at a time, in the tank of Lobovsky et al. at H/dx = {n}, {end}. Errors of front and \
+         levels: rms after the best shift; of the impulse: mean over P1 to P3, for one √(H/g) from the \
+         arrival. Noise: rms distance of P2 from its running mean after that."
+    );
+    let mut table = Table::new(caption, columns);
+    for ((variant, more), record) in results {
+        let ended = match &record.status {
+            Status::Diverged { time, .. } => format!("diverged at {} s", sig(*time, 2)),
+            _ => "completed".into(),
+        };
+        let number = |name: &str| Cell::num(metric(record, name), 3);
+        let share = |name: &str, sign: f64| Cell::percent(sign * metric(record, name), 2);
+        table = table.row(vec![
+            Cell::text(format!("`{variant}`")),
+            Cell::text(more.join(", ")),
+            Cell::text(ended),
+            number("front_rms_shifted"),
+            number("levels_rms_shifted"),
+            Cell::percent(impulse(record), 2),
+            share("work_viscosity", -1.0),
+            share("work_stress", 1.0),
+            share("work_walls", 1.0),
+            number("pressure_noise"),
+            share("density_least", 1.0),
+            share("density_most", 1.0),
+            Cell::num(metric(record, "outside_end"), 3),
+            Cell::num(step(record), 3),
+        ]);
+    }
+    table
+}
+
+/// The claims M1 to M4 of the paper, answered from the rows.
+fn claims(results: &[(Row, Record)]) -> String {
+    let of = |variant: &str, more: &[&str]| {
+        results.iter().find(|((v, m), _)| *v == variant && *m == more).map(|(_, r)| r)
+    };
+    let text = |variant: &str, more: &[&str], name: &str, is_share: bool| match of(variant, more) {
+        Some(r) if r.status == Status::Completed && is_share => percent(metric(r, name), 2),
+        Some(r) if r.status == Status::Completed => sig(metric(r, name), 2),
+        Some(_) => "none (the run diverged)".into(),
+        None => "not run".into(),
+    };
+    let noise = |variant: &str, more: &[&str]| text(variant, more, "pressure_noise", false);
+    let lost = |variant: &str, more: &[&str]| text(variant, more, "work_viscosity", true);
+    format!(
+        "M1, artificial viscosity damps unphysical oscillation: noise of P2 is {} ρ g H at α = 0.01 and {} at \
+         0.1, for which viscosity adds {} and {} to the energy. M2, artificial stress: it adds {} to the \
+         energy, noise is {} with it and {} without. M3, XSPH prevents unphysical motion: noise is {} at \
+         ε = 0.5 and {} at 0; the density stays above {} and {}. M4, both walls work: with interface and wall \
+         particles walls add {} to the energy, with ghosts {}, and {} and {} particles are lost.",
+        noise("seed", &["alpha=0.01"]),
+        noise("seed", &[]),
+        lost("seed", &["alpha=0.01"]),
+        lost("seed", &[]),
+        text("seed", &[], "work_stress", true),
+        noise("seed", &[]),
+        noise("seed-no-stress", &[]),
+        noise("seed", &[]),
+        noise("seed", &["xsph=0"]),
+        text("seed", &[], "density_least", true),
+        text("seed", &["xsph=0"], "density_least", true),
+        text("seed", &[], "work_walls", true),
+        text("ghosts", &[], "work_walls", true),
+        text("seed", &[], "outside_end", false),
+        text("ghosts", &[], "outside_end", false),
+    )
+}

@@ -1,0 +1,512 @@
+//! What the runs say together: fronts, heights, levels and pressures over the experiments, pictures,
+//! energies, and error against run time.
+
+use super::{
+    ablation,
+    measure::{PROBES, SENSORS},
+    plan::{self, FRONT_SPREAD, PEERS},
+    reference::{self, Curve, Lobovsky},
+    run::PICTURES,
+    stability,
+};
+use crate::{
+    case::{Case, Tier},
+    cases::water::ITEMS,
+    record::{Profile, Record},
+    reference::ReferenceError,
+    report::{
+        Axis, Cell, Colour, ColourMap, Column, Dash, Figure, Film, Layer, Legend, ParticleMap,
+        Plot, Series, Shape, Table, sig,
+    },
+    runner::Context,
+    studies::work_precision::{self, Point},
+    suite::{JudgedRun, Study},
+};
+
+/// All of them.
+pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
+    let mut studies = Vec::new();
+    for study in [free(runs), tank(case, runs)] {
+        // Packages are embedded and checked by a test.
+        studies.push(study.unwrap_or_else(|error| {
+            Study::new("dam-break-reference", "Reference").prose(error.to_string())
+        }));
+    }
+    studies.push(energies(runs));
+    studies.push(cost(tier, runs));
+    studies.push(ablation::study(case, tier));
+    studies.push(stability::extremes(case));
+    if tier == Tier::Full {
+        studies.push(stability::limits(case));
+        studies.push(stability::sound(case));
+    }
+    studies
+}
+
+pub(super) fn setting(record: &Record, key: &str) -> f64 {
+    record.settings.get(key).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
+}
+
+pub(super) fn metric(record: &Record, name: &str) -> f64 {
+    record.metric(name).unwrap_or(f64::NAN)
+}
+
+fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
+    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
+}
+
+/// A column of a profile over its time, each in a unit.
+fn curve(record: &Record, profile: &str, name: &str, units: [f64; 2], zero: f64) -> Curve {
+    let Some(profile) = record.profiles.get(profile) else { return Vec::new() };
+    let points = column(profile, "t").iter().zip(column(profile, name));
+    points.map(|(t, y)| (t / units[0], (y - zero) / units[1])).collect()
+}
+
+/// Is it a run of the column of Martin & Moyce?
+fn is_free(record: &Record) -> bool {
+    setting(record, "height") > setting(record, "width")
+}
+
+/// Runs of one of the experiments, in the order of the plan.
+fn of(runs: &[JudgedRun], free: bool) -> Vec<&Record> {
+    runs.iter().map(|run| &run.record).filter(|record| is_free(record) == free).collect()
+}
+
+fn name_of(record: &Record, side: &str) -> String {
+    format!("{}, {side}/dx = {}", record.variant, setting(record, "n"))
+}
+
+/// A line of one run.
+fn line(record: &Record, side: &str, k: usize, points: Curve) -> Layer {
+    Series::line(name_of(record, side), points).colour(Colour::cycle(k)).into()
+}
+
+/// Martin & Moyce.
+fn free(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
+    let records = of(runs, true);
+    let [front, height] = reference::martin_moyce()?;
+    let band = |curve: &Curve, by: f64| curve.iter().map(|(t, y)| (*t, y - by, y + by)).collect();
+    let legend = [Legend::TopLeft, Legend::Hidden];
+    let labels = [
+        ["T = t √(2g/a) [-]", "front Z [a]"],
+        ["τ = t √(g/a) [-]", "height at the back wall [2a]"],
+    ];
+    let spreads = [FRONT_SPREAD, 0.5 / 18.0];
+    let caption = "A column of water of width a = 57.15 mm and height 2a, released at once. Left: place of \
+                   its front from the back wall; right: height left at the back wall. Circles: Martin & \
+                   Moyce 1952, released by a diaphragm; bands: ± 0.1 a, the spread of digitised curves, and \
+                   half of the distance of stations. Diamonds: what three other SPH codes agree on. No clock \
+                   is shifted; the table has the shifts.";
+    let mut figure = Figure::new("dam-break-martin-moyce", caption).columns(2);
+    for (k, measured) in [&front, &height].into_iter().enumerate() {
+        let end = if k == 0 { 3.6 } else { 2.6 };
+        let x = Axis::linear(labels[k][0]).range(0.0, end);
+        let mut plot = Plot::new("", x, Axis::linear(labels[k][1])).legend(legend[k]);
+        let shown: Curve = measured.iter().filter(|(t, _)| *t <= end).copied().collect();
+        plot = plot.layer(Layer::band("", band(&shown, spreads[k]), Colour::GREY));
+        for (n, record) in records.iter().enumerate() {
+            let (a, g) = (setting(record, "width"), setting(record, "gravity"));
+            let (name, unit, of) = match k {
+                0 => ("front", (0.5 * a / g).sqrt(), a),
+                _ => ("height", (a / g).sqrt(), 2.0 * a),
+            };
+            plot = plot.layer(line(record, "a", n, curve(record, "series", name, [unit, of], 0.0)));
+        }
+        if k == 0 {
+            let peers =
+                [(2.0, 0.5 * (PEERS[0].1 + PEERS[0].2)), (3.0, 0.5 * (PEERS[1].1 + PEERS[1].2))];
+            let peers = Series::markers("three other codes", peers.to_vec());
+            plot = plot.layer(peers.shape(Shape::Diamond).colour(Colour::BROWN));
+        }
+        let experiment = Series::markers("experiment", shown).colour(Colour::BLACK);
+        figure = figure.panel(plot.layer(experiment));
+    }
+    let study = Study::new("dam-break-martin-moyce", "Martin & Moyce 1952: front and height")
+        .block(figure.panel_size(430.0, 320.0))
+        .block(free_table(&records));
+    let modern = records.iter().rev().find(|r| r.variant == "modern");
+    Ok(match modern {
+        Some(record) => {
+            study.block(pictures(record, "dam-break-martin-moyce-pictures", (8.5, 2.0)))
+        }
+        None => study,
+    })
+}
+
+fn free_table(records: &[&Record]) -> Table {
+    let columns = vec![
+        Column::text("variant"),
+        Column::num("a/dx", "1"),
+        Column::num("Z at T = 2", "a"),
+        Column::num("Z at T = 3", "a"),
+        Column::num("rms of front", "a"),
+        Column::num("after shift", "a"),
+        Column::num("shift", "T"),
+        Column::num("rms of height", "2a"),
+        Column::num("after shift", "2a"),
+        Column::num("shift", "τ"),
+        Column::num("steps", "1"),
+    ];
+    let caption = "Distance from Martin & Moyce, as released and after the best shift of the clock; the \
+                   computation's clock is put forward by it. The experiment has Z = 2.36 at T = 2 and 3.70 at \
+                   T = 3; three other SPH codes have 2.62 to 2.66 and 3.97 to 4.00.";
+    let mut table = Table::new(caption, columns);
+    for record in records {
+        let number = |name: &str| Cell::num(metric(record, name), 3);
+        table = table.row(vec![
+            Cell::text(format!("`{}`", record.variant)),
+            Cell::num(setting(record, "n"), 3),
+            Cell::num(metric(record, "z@2"), 3),
+            Cell::num(metric(record, "z@3"), 3),
+            number("front_rms"),
+            number("front_rms_shifted"),
+            number("front_shift"),
+            number("height_rms"),
+            number("height_rms_shifted"),
+            number("height_shift"),
+            Cell::count(record.cost.steps),
+        ]);
+    }
+    table
+}
+
+/// Lobovsky et al.
+fn tank(case: &'static dyn Case, runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
+    let (records, lobovsky) = (of(runs, false), Lobovsky::load()?);
+    let mut study =
+        Study::new("dam-break-lobovsky", "Lobovsky et al. 2014: front, levels, pressures")
+            .block(levels(&records, &lobovsky))
+            .block(pressures(&records, &lobovsky))
+            .block(tank_table(&records));
+    if let Some(record) = records.iter().rev().find(|r| r.variant == "modern") {
+        study = study.block(pictures(record, "dam-break-lobovsky-pictures", (1.61 / 0.3, 2.0)));
+    }
+    Ok(match film(case) {
+        Ok(film) => study.block(film),
+        Err(error) => study.prose(error),
+    })
+}
+
+fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
+    let caption = "Water 300 mm deep and 600 mm long in a tank of 1610 mm. Front of the water, and depth at \
+                   four stations from the back wall, over the experiment (black; two series where there are \
+                   two, the band between them). Times count from the release and from the first motion of \
+                   the gate; no clock is shifted.";
+    let mut figure = Figure::new("dam-break-levels", caption).columns(3);
+    let end = 6.0;
+    let axis = |label: String| (Axis::linear("t √(g/H) [-]"), Axis::linear(label));
+    let unit = |record: &Record| (setting(record, "height") / setting(record, "gravity")).sqrt();
+    let (x, y) = axis("front from the gate [H]".into());
+    let mut plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::TopLeft);
+    for (k, record) in records.iter().enumerate() {
+        let (h, zero) = (setting(record, "height"), setting(record, "width"));
+        let points = curve(record, "series", "front", [unit(record), h], zero);
+        plot = plot.layer(line(record, "H", k, points));
+    }
+    let measured = Series::line("experiment", lobovsky.front.clone()).colour(Colour::BLACK);
+    figure = figure.panel(plot.layer(measured));
+    for (k, place) in PROBES.iter().enumerate() {
+        let (x, y) = axis("depth [H]".into());
+        let title = format!("H{}, x = {} m", k + 1, place);
+        let mut plot = Plot::new(title, x.range(0.0, end), y).legend(Legend::Hidden);
+        let until =
+            |curve: &Curve| -> Curve { curve.iter().filter(|(t, _)| *t <= end).copied().collect() };
+        let series: Vec<Curve> = lobovsky.levels[k].iter().map(until).collect();
+        if let [a, b] = &series[..] {
+            let between = a.iter().zip(b).map(|((t, a), (_, b))| (*t, a.min(*b), a.max(*b)));
+            plot = plot.layer(Layer::band("", between.collect(), Colour::GREY));
+        }
+        for one in series {
+            plot = plot.layer(Series::line("", one).colour(Colour::BLACK).width(1.0));
+        }
+        for (n, record) in records.iter().enumerate() {
+            let units = [unit(record), setting(record, "height")];
+            let points = curve(record, "series", &format!("H{}", k + 1), units, 0.0);
+            plot = plot.layer(line(record, "H", n, points));
+        }
+        figure = figure.panel(plot);
+    }
+    figure.panel_size(300.0, 220.0)
+}
+
+fn pressures(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
+    let caption = "Pressure on the far wall at four heights, mean over a sensor of 4.2 mm, against the time \
+                   since the wave arrives at P1. Black: one event of the experiment, means over 0.5 ms; grey \
+                   in P2: a second sensor at the same height in the same event. Peaks of single events \
+                   scatter; impulses are compared.";
+    let mut figure = Figure::new("dam-break-pressures", caption).columns(2);
+    let at = reference::arrival(&lobovsky.pressure[0]);
+    let since = |curve: &Curve, at: f64| -> Curve {
+        curve.iter().map(|(t, p)| (t - at, *p)).filter(|(t, _)| (-0.3..=3.4).contains(t)).collect()
+    };
+    for (k, height) in SENSORS.iter().enumerate() {
+        let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
+        let x = Axis::linear("(t − arrival) √(g/H) [-]");
+        let y = Axis::linear("pressure [ρ g H]").range(-0.2, 3.5);
+        let legend = if k == 0 { Legend::TopRight } else { Legend::Hidden };
+        let mut plot = Plot::new(title, x, y).legend(legend);
+        if k == 1 {
+            let aside = since(&lobovsky.aside, at);
+            plot = plot.layer(Series::line("", aside).colour(Colour::GREY).width(1.0));
+        }
+        for (n, record) in records.iter().enumerate() {
+            let arrival = metric(record, "arrival");
+            let points = curve(record, "pressure", &format!("P{}", k + 1), [1.0, 1.0], 0.0);
+            plot = plot.layer(line(record, "H", n, since(&points, arrival)));
+        }
+        let measured = Series::line("experiment", since(&lobovsky.pressure[k], at));
+        figure = figure.panel(plot.layer(measured.colour(Colour::BLACK).width(1.0)));
+    }
+    figure.panel_size(420.0, 240.0)
+}
+
+fn tank_table(records: &[&Record]) -> Table {
+    let columns = vec![
+        Column::text("variant"),
+        Column::num("H/dx", "1"),
+        Column::num("rms of front", "H"),
+        Column::num("after shift", "H"),
+        Column::num("rms of levels", "H"),
+        Column::num("after shift", "H"),
+        Column::num("arrival at P1", "√(H/g)"),
+        Column::num("impulse P1", "-"),
+        Column::num("P2", "-"),
+        Column::num("P3", "-"),
+        Column::num("P4", "-"),
+        Column::num("noise of P2", "ρ g H"),
+        Column::num("largest P1", "ρ g H"),
+    ];
+    let caption = "Distance from Lobovsky et al. Impulses: relative error from the arrival at P1 on, for one \
+                   √(H/g); two sensors of the experiment at one height differ by 7 % in it. The wave arrives \
+                   at P1 at 2.44 on the clock of the measured pressures, and would at about 2.6 by the \
+                   measured front. Noise of P2 in the experiment: see the metric `pressure_noise_measured`.";
+    let mut table = Table::new(caption, columns);
+    for record in records {
+        let number = |name: &str| Cell::num(metric(record, name), 3);
+        let impulse = |k: usize| Cell::percent(metric(record, &format!("impulse_P{k}@1")), 2);
+        table = table.row(vec![
+            Cell::text(format!("`{}`", record.variant)),
+            Cell::num(setting(record, "n"), 3),
+            number("front_rms"),
+            number("front_rms_shifted"),
+            number("levels_rms"),
+            number("levels_rms_shifted"),
+            number("arrival"),
+            impulse(1),
+            impulse(2),
+            impulse(3),
+            impulse(4),
+            number("pressure_noise"),
+            Cell::num(metric(record, "peak_P1"), 2),
+        ]);
+    }
+    table
+}
+
+/// Six times of a run, on the same axes.
+fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
+    let width = if is_free(record) { 0.5 * width } else { width };
+    let caption = format!(
+        "The water at six times, {}, coloured by pressure; dots have the size of a spacing.",
+        name_of(record, if is_free(record) { "a" } else { "H" })
+    );
+    let mut figure = Figure::new(id, caption).columns(2);
+    for share in PICTURES {
+        figure = figure.panel(picture(record, share, (width, height)));
+    }
+    figure.panel_size(430.0, 430.0 * height / width)
+}
+
+/// One of them.
+fn picture(record: &Record, share: f64, (width, height): (f64, f64)) -> ParticleMap {
+    let empty = Profile::default();
+    let profile = record.profiles.get(&format!("particles@{share}")).unwrap_or(&empty);
+    let (x, y) = (column(profile, "x"), column(profile, "y"));
+    let values = column(profile, "p").iter();
+    let points = x.iter().zip(y).zip(values).map(|((x, y), p)| (*x, *y, *p)).collect();
+    let axes = (Axis::linear("x [H]").range(0.0, width), Axis::linear("y [H]").range(0.0, height));
+    let title = format!("t √(g/H) = {}", sig(setting(record, "end") * share, 3));
+    let shorter = setting(record, "width").min(setting(record, "height"));
+    let dx = shorter / setting(record, "n") / setting(record, "height");
+    ParticleMap::new(&title, axes, "p [ρ g H]", ColourMap::Sequential, points)
+        .diameter(dx)
+        .values(0.0, 1.0)
+}
+
+/// The tank as a film: `modern` again, with a picture every quarter of √(H/g).
+fn film(case: &'static dyn Case) -> Result<Film, String> {
+    let context = Context { keep_particles: true, pictures: Some(FRAMES), ..Context::default() };
+    let set = plan::in_tank(FILM_ROWS);
+    let record = case.run("modern", &set, &context).map_err(|error| error.to_string())?;
+    let frame = |k: usize| {
+        let map = picture(&record, k as f64 / (FRAMES - 1) as f64, (1.61 / 0.3, 2.0));
+        Figure::new("frame", "").panel(map).panel_size(430.0, 160.0)
+    };
+    let frames: Vec<Figure> = (0..FRAMES).map(frame).collect();
+    let caption = format!(
+        "The water in the tank of Lobovsky et al. as a film, variant `modern`, H/dx = {FILM_ROWS}, coloured \
+         by pressure."
+    );
+    Film::new("dam-break-film", caption, &frames, 160)
+}
+
+/// Pictures of the film, and spacings along the height of its column.
+const FRAMES: usize = 25;
+const FILM_ROWS: usize = 20;
+
+/// Where the energy goes.
+fn energies(runs: &[JudgedRun]) -> Study {
+    let caption = "Energy of the column of Martin & Moyce over its potential energy at the start, M g H/2. \
+                   Lines: what the water has; dashed: what each term has taken so far, summed from its \
+                   power, where it is more than 1e-4. The black line is the sum of all, which must stay at its first value.";
+    let mut figure = Figure::new("dam-break-energy", caption).columns(2);
+    for record in of(runs, true) {
+        if setting(record, "n") == 20.0 && ["seed", "modern"].contains(&record.variant.as_str()) {
+            figure = figure.panel(energy_plot(record));
+        }
+    }
+    Study::new("dam-break-energy", "Energy, term by term")
+        .block(figure.panel_size(430.0, 280.0))
+        .block(energy_table(runs))
+}
+
+fn energy_plot(record: &Record) -> Plot {
+    let (h, g) = (setting(record, "height"), setting(record, "gravity"));
+    let mass = setting(record, "rho") * setting(record, "width") * h;
+    let units = [(h / g).sqrt(), 0.5 * mass * g * h];
+    let of =
+        |name: &str, sign: f64| curve(record, "energy", name, [units[0], sign * units[1]], 0.0);
+    let mut plot = Plot::new(
+        format!("`{}`", record.variant),
+        Axis::linear("t √(g/H) [-]"),
+        Axis::linear("energy [M g H/2]"),
+    )
+    .legend(Legend::Outside);
+    let mut sum = of("potential", 1.0);
+    for (k, name) in ["potential", "kinetic", "compression"].into_iter().enumerate() {
+        let points = of(name, 1.0);
+        if k > 0 {
+            sum.iter_mut().zip(&points).for_each(|(s, p)| s.1 += p.1);
+        }
+        plot = plot.layer(Series::line(name, points).colour(Colour::cycle(k)));
+    }
+    for (k, (name, key)) in ITEMS.into_iter().enumerate() {
+        let points = of(key, -1.0);
+        sum.iter_mut().zip(&points).for_each(|(s, p)| s.1 += p.1);
+        if points.iter().any(|(_, y)| y.abs() > 1e-4) {
+            let dashed = Series::line(name, points).colour(Colour::cycle(3 + k)).dash(Dash::Dashed);
+            plot = plot.layer(dashed);
+        }
+    }
+    plot.layer(Series::line("sum", sum).colour(Colour::BLACK))
+}
+
+fn energy_table(runs: &[JudgedRun]) -> Table {
+    let mut columns = vec![Column::text("variant"), Column::text("case"), Column::num("n", "1")];
+    columns.extend(ITEMS.map(|(name, _)| Column::num(name, "-")));
+    columns.push(Column::num("not accounted for", "-"));
+    columns.push(Column::num("momentum not accounted for", "-"));
+    let caption = "What each term has added to the energy until the end, over M g H/2 at the start; below 0 it \
+                   took energy. The work of the walls is what their pressure does beyond what they store. \
+                   Momentum over M √(g H).";
+    let mut table = Table::new(caption, columns);
+    for record in runs.iter().map(|run| &run.record) {
+        let mut cells = vec![
+            Cell::text(format!("`{}`", record.variant)),
+            Cell::text(if is_free(record) { "Martin & Moyce" } else { "Lobovsky" }),
+            Cell::num(setting(record, "n"), 3),
+        ];
+        cells.extend(ITEMS.map(|(_, key)| Cell::percent(metric(record, key), 3)));
+        cells.push(Cell::sci(metric(record, "energy_gap"), 2));
+        cells.push(Cell::sci(metric(record, "momentum_gap"), 2));
+        table = table.row(cells);
+    }
+    table
+}
+
+/// Error of the front against what it costs.
+fn cost(tier: Tier, runs: &[JudgedRun]) -> Study {
+    let finest = runs.iter().map(|run| &run.record).rfind(|r| is_free(r) && r.variant == "modern");
+    let front = |record: &Record| metric(record, "z@3");
+    let best = finest.map_or(f64::NAN, front);
+    let is_shown = |run: &&JudgedRun| {
+        is_free(&run.record) && finest.is_none_or(|f| !std::ptr::eq(f, &run.record))
+    };
+    let point = |run: &JudgedRun| Point {
+        variant: run.planned.variant,
+        rows: setting(&run.record, "n") as usize,
+        note: String::new(),
+        error: (front(&run.record) / best - 1.0).abs(),
+        seconds: vec![run.record.cost.cpu_s],
+        cost: run.record.cost.clone(),
+        status: run.record.status.clone(),
+    };
+    let points: Vec<Point> = runs.iter().filter(is_shown).map(point).collect();
+    let finest_n = finest.map_or(f64::NAN, |r| setting(r, "n"));
+    let caption = format!(
+        "Relative distance of the front at T = 3 from that of `modern` at a/dx = {finest_n}, over the cost of \
+         the run. Timed once, side by side with other runs; pair interactions are exact."
+    );
+    let id = "dam-break-work-precision";
+    let mut study = Study::new(id, "Error against run time").block(work_precision::figure(
+        id,
+        &caption,
+        "distance of the front from the finest run [-]",
+        &points,
+        &[],
+    ));
+    study = study.block(rate_table(runs));
+    if tier == Tier::Full {
+        study = study.prose(order(runs));
+    }
+    study
+}
+
+/// The observed order of the front.
+fn order(runs: &[JudgedRun]) -> String {
+    let ladder = |variant: &str| -> Vec<f64> {
+        let of = runs.iter().map(|run| &run.record).filter(|r| is_free(r) && r.variant == variant);
+        of.map(|record| metric(record, "z@3")).collect()
+    };
+    let say = |variant: &str| match ladder(variant)[..] {
+        [a, b, c] => {
+            let order = ((b - a) / (c - b)).abs().log2();
+            format!("`{variant}`: Z(3) = {a:.3}, {b:.3}, {c:.3}, order {order:.1}")
+        }
+        _ => format!("`{variant}`: not three resolutions"),
+    };
+    let all: Vec<String> = plan::JUDGED.iter().map(|variant| say(variant)).collect();
+    format!(
+        "Observed order of the front at a/dx = 20, 40, 80, from successive differences: {}.",
+        all.join("; ")
+    )
+}
+
+fn rate_table(runs: &[JudgedRun]) -> Table {
+    let columns = vec![
+        Column::text("variant"),
+        Column::text("case"),
+        Column::num("n", "1"),
+        Column::num("particles of water", "1"),
+        Column::num("steps", "1"),
+        Column::num("a particle and step", "µs"),
+        Column::num("solver memory a particle", "B"),
+    ];
+    let caption = "What a particle of water costs a step, walls and neighbour search included, timed side by \
+                   side with other runs.";
+    let mut table = Table::new(caption, columns);
+    for record in runs.iter().map(|run| &run.record) {
+        let cost = &record.cost;
+        let steps = cost.steps as f64 * cost.particles as f64;
+        table = table.row(vec![
+            Cell::text(format!("`{}`", record.variant)),
+            Cell::text(if is_free(record) { "Martin & Moyce" } else { "Lobovsky" }),
+            Cell::num(setting(record, "n"), 3),
+            Cell::count(cost.particles as u64),
+            Cell::count(cost.steps),
+            Cell::num(1e6 * cost.cpu_s / steps, 3),
+            Cell::num(cost.solver_bytes as f64 / cost.particles as f64, 3),
+        ]);
+    }
+    table
+}

@@ -1,0 +1,95 @@
+//! The energies of weakly compressible water under gravity, from its particles.
+
+use nalgebra::Vector2;
+use solver::{EquationOfState, Evolved, Rate, Scheme, Simulation, Tait};
+
+/// What the energy of a particle depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct Water {
+    /// Equation of state (7).
+    pub eos: Tait,
+    /// Acceleration g \[m/s²\].
+    pub gravity: Vector2<f64>,
+}
+
+/// Energies \[J/m\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Σ m v²/2.
+    pub kinetic: f64,
+    /// −Σ m g·x.
+    pub potential: f64,
+    /// Σ m e with de = p dρ/ρ², wall particles included: they take up what water presses into them.
+    pub compression: f64,
+}
+
+impl Energy {
+    /// All of it.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.potential + self.compression
+    }
+}
+
+impl Water {
+    /// e(ρ) = ∫ p/ρ² dρ from ⁰ρ \[J/kg\]: with x = ρ/⁰ρ and K of (8),
+    /// (K/⁰ρ) \[(x^(γ−1) − 1)/(γ−1) + 1/x − 1\] + (⁰p/⁰ρ) (1 − 1/x).
+    pub fn compression(&self, density: f64) -> f64 {
+        let Tait { density: rho, sound_speed, gamma, background } = self.eos;
+        let (x, gamma) = (density / rho, f64::from(gamma));
+        let k = sound_speed * sound_speed / gamma;
+        // (x^n − 1)/n → ln x for γ = 1.
+        let power = match gamma - 1.0 {
+            0.0 => x.ln(),
+            n => (n * x.ln()).exp_m1() / n,
+        };
+        k * (power + 1.0 / x - 1.0) + background / rho * (1.0 - 1.0 / x)
+    }
+
+    /// The energy of all particles.
+    pub fn energy<S: Scheme>(&self, simulation: &Simulation<S>) -> Energy {
+        let add = |sum: Energy, (mass, p): (f64, &Evolved<S::Extra>)| Energy {
+            kinetic: sum.kinetic + 0.5 * mass * p.velocity.norm_squared(),
+            potential: sum.potential - mass * self.gravity.dot(&p.position),
+            compression: sum.compression + mass * self.compression(p.density),
+        };
+        let fluid = simulation.fluid().fold(Energy::default(), add);
+        let pressed = |sum: f64, (mass, p): (f64, &Evolved<S::Extra>)| {
+            sum + mass * self.compression(p.density)
+        };
+        let compression = simulation.walls().fold(fluid.compression, pressed);
+        Energy { compression, ..fluid }
+    }
+}
+
+/// The slope of that energy: m (v·v̇ + (p/ρ²) ρ̇ − g·ẋ), ẋ without v, whose part is the work of
+/// gravity on both sides.
+pub fn water_slope<X>(water: &Water) -> impl Fn(f64, &Evolved<X>, &Rate<X>) -> f64 + use<X> {
+    let Water { eos, gravity } = *water;
+    move |mass, particle, rate| {
+        let Evolved { velocity, density, .. } = particle;
+        let pressure = eos.pressure(*density) / (density * density);
+        mass * (velocity.dot(&rate.velocity) + pressure * rate.density
+            - gravity.dot(&rate.position))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_compression_energy_is_the_work_of_the_pressure() {
+        for gamma in [1, 7] {
+            let eos = Tait { gamma, background: 5.0, ..Tait::new(2.0, 9.0) };
+            let water = Water { eos, gravity: Vector2::zeros() };
+            assert_eq!(water.compression(2.0), 0.0);
+            for density in [1.9, 1.999, 2.03, 2.4] {
+                let d = 1e-5;
+                let slope = water.compression(density + d) - water.compression(density - d);
+                let expected = eos.pressure(density) / (density * density);
+                let error = (slope / (2.0 * d) / expected - 1.0).abs();
+                assert!(error < 1e-6, "gamma {gamma}, {density}: {error:e}");
+            }
+        }
+    }
+}
