@@ -215,6 +215,10 @@ pub fn extremes(case: &'static dyn Case) -> Study {
 
 const TOUCHING: &str = "water that starts on the surface of the walls";
 
+const CROWDED: &str = "(3) knows how the density changes, not what it is: water half a spacing too near to a \
+                       wall has the pressure it was given, and a few particles slip between those of the \
+                       wall";
+
 /// The column moved by half a spacing down and to the left, so that its particles stand on the walls.
 fn touching(set: &[String]) -> Result<Record, RunError> {
     let dam = Dam::new::<Modern>(&settings("modern", set)?, false)?;
