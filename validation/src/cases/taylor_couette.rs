@@ -396,8 +396,8 @@ fn gates(variant: &str, layers: usize) -> Vec<Gate> {
             "l2",
             Bound::Below(most),
             Evidence::Theory,
-            "curved walls cost no more than flat ones: the error of plane Poiseuille flow, which bends more, \
-             by the row-reduced matrix of the same wall, 1.9/N^2 where it extrapolates, 0.22/N with interface \
+            "curved walls cost no more than flat ones: the error of plane Poiseuille flow, which bends \
+             more, by the row-reduced matrix of the same wall, 1.9/N^2 where it extrapolates, 0.22/N with interface \
              particles",
         ),
         Gate::new(
@@ -418,8 +418,8 @@ fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
 fn study(tier: Tier, runs: &[JudgedRun]) -> Study {
     let finest = levels(tier).last().copied().unwrap_or_default();
     let caption = format!(
-        "Velocity around the axis of every particle over its radius at t = 1 d^2/nu, {finest} spacings across \
-         the gap, on the exact line A r + B/r (left), and its error over the spacing, with the slopes of \
+        "Velocity around the axis of every particle over its radius at t = 1 d^2/nu, {finest} spacings \
+         across the gap, on the exact line A r + B/r (left), and its error over the spacing, with the slopes of \
          first and second order (right). Re = V d/nu = 0.5, outer radius twice the inner one."
     );
     let mut over = Plot::new("", Axis::linear("r/inner radius [-]"), Axis::linear("u/V [-]"));
