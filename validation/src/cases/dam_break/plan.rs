@@ -13,7 +13,7 @@ pub const JUDGED: [&str; 3] = ["seed", "ghosts", "modern"];
 pub fn martin_moyce(variant: &str, tier: Tier) -> &'static [usize] {
     match (tier, variant) {
         (Tier::Quick, "modern") => &[20, 40],
-        (Tier::Quick, _) => &[20],
+        (Tier::Quick, _) | (Tier::Full, "ghosts") => &[20],
         (Tier::Full, _) => &[20, 40, 80],
     }
 }
@@ -24,6 +24,7 @@ pub fn lobovsky(variant: &str, tier: Tier) -> &'static [usize] {
         (Tier::Quick, "modern") => &[30],
         (Tier::Quick, _) => &[],
         (Tier::Full, "modern") => &[30, 60, 120],
+        (Tier::Full, "ghosts") => &[30],
         (Tier::Full, _) => &[30, 60],
     }
 }
@@ -145,5 +146,5 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
     gates.into_iter().map(limited).collect()
 }
 
-const THIN: &str = "the jet that rises along the wall is a spacing or two thick at 80 mm, and its surface is at \
-                    p = 0: the mean over a support, from which the pressure is read, is low";
+const THIN: &str = "the jet that rises along the wall is a spacing or two thick at 80 mm, and its surface \
+                    is at p = 0: the mean over a support, from which the pressure is read, is low";

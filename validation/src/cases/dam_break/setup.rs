@@ -39,7 +39,7 @@ pub struct Dam {
     /// Its theoretical limit \[s\], see [`Medium::time_step`].
     pub dt_limit: f64,
     /// Whether water at this place counts when the foremost particle is looked for, in a column of this
-    /// height \[m\]: [`near_the_floor`], so that spray does not.
+    /// height \[m\]: below a quarter of it, so that spray does not.
     pub is_front: fn(Vector2<f64>, f64) -> bool,
 }
 

@@ -148,8 +148,8 @@ fn free_table(records: &[&Record]) -> Table {
         Column::num("steps", "1"),
     ];
     let caption = "Distance from Martin & Moyce, as released and after the best shift of the clock; the \
-                   computation's clock is put forward by it. The experiment has Z = 2.36 at T = 2 and 3.70 at \
-                   T = 3; three other SPH codes have 2.62 to 2.66 and 3.97 to 4.00.";
+                   computation's clock is put forward by it. The experiment has Z = 2.36 at T = 2 and 3.70 \
+                   at T = 3; three other SPH codes have 2.62 to 2.66 and 3.97 to 4.00.";
     let mut table = Table::new(caption, columns);
     for record in records {
         let number = |name: &str| Cell::num(metric(record, name), 3);
@@ -352,13 +352,14 @@ fn film(case: &'static dyn Case) -> Result<Film, String> {
 
 /// Pictures of the film, and spacings along the height of its column.
 const FRAMES: usize = 25;
-const FILM_ROWS: usize = 20;
+const FILM_ROWS: usize = 15;
 
 /// Where the energy goes.
 fn energies(runs: &[JudgedRun]) -> Study {
     let caption = "Energy of the column of Martin & Moyce over its potential energy at the start, M g H/2. \
                    Lines: what the water has; dashed: what each term has taken so far, summed from its \
-                   power, where it is more than 1e-4. The black line is the sum of all, which must stay at its first value.";
+                   power, where it is more than 1e-4. The black line is the sum of all, which must \
+                   stay at its first value.";
     let mut figure = Figure::new("dam-break-energy", caption).columns(2);
     for record in of(runs, true) {
         if setting(record, "n") == 20.0 && ["seed", "modern"].contains(&record.variant.as_str()) {
@@ -406,9 +407,9 @@ fn energy_table(runs: &[JudgedRun]) -> Table {
     columns.extend(ITEMS.map(|(name, _)| Column::num(name, "-")));
     columns.push(Column::num("not accounted for", "-"));
     columns.push(Column::num("momentum not accounted for", "-"));
-    let caption = "What each term has added to the energy until the end, over M g H/2 at the start; below 0 it \
-                   took energy. The work of the walls is what their pressure does beyond what they store. \
-                   Momentum over M √(g H).";
+    let caption = "What each term has added to the energy until the end, over M g H/2 at the start; below \
+                   0 it took energy. The work of the walls is what their pressure does beyond what they \
+                   store. Momentum over M √(g H).";
     let mut table = Table::new(caption, columns);
     for record in runs.iter().map(|run| &run.record) {
         let mut cells = vec![
@@ -444,8 +445,8 @@ fn cost(tier: Tier, runs: &[JudgedRun]) -> Study {
     let points: Vec<Point> = runs.iter().filter(is_shown).map(point).collect();
     let finest_n = finest.map_or(f64::NAN, |r| setting(r, "n"));
     let caption = format!(
-        "Relative distance of the front at T = 3 from that of `modern` at a/dx = {finest_n}, over the cost of \
-         the run. Timed once, side by side with other runs; pair interactions are exact."
+        "Relative distance of the front at T = 3 from that of `modern` at a/dx = {finest_n}, over the cost \
+         of the run. Timed once, side by side with other runs; pair interactions are exact."
     );
     let id = "dam-break-work-precision";
     let mut study = Study::new(id, "Error against run time").block(work_precision::figure(

@@ -130,8 +130,8 @@ fn phase_gates(id: &str, spacing: f64, allowed: f64) -> Vec<Gate> {
                    touch from 3 dx on, first order in dx";
     let impulse = |metric: &str| {
         gate(metric, Bound::Below(allowed), because).with_limitation(
-            "rings of 10 and 20 layers share the impulse otherwise: 5 to 6 % less in the first phase, 6 to 7 % more \
-             in the second, and it hardly falls with the spacing; why is not known",
+            "rings of 10 and 20 layers share the impulse otherwise: 5 to 6 % less in the first phase, 6 to \
+             7 % more in the second, and it hardly falls with the spacing; why is not known",
         )
     };
     vec![phases, impulse("impulse_error@phase1"), impulse("impulse_error@phase2")]

@@ -160,7 +160,8 @@ fn phases_table(runs: &[JudgedRun]) -> Table {
     ];
     let caption = "Rings touch twice: the poles first, which then swing back while the flanks fly on, and \
                    once more on the way out. At 5 layers, spacing 0.2 L, kernels reach across the gap that \
-                   opens in between, so that the rings never let go. A phase ends where the force stays below 1 % of its largest \
+                   opens in between, so that the rings never let go. \
+                   A phase ends where the force stays below 1 % of its largest \
                    for 5 L/c0. Finite elements: with their uncertainty.";
     let mut table = Table::new(caption, columns);
     let mut speeds = Vec::new();
