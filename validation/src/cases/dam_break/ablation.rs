@@ -3,7 +3,10 @@
 
 use rayon::prelude::*;
 
-use super::{plan::in_tank, studies::metric};
+use super::{
+    plan::in_tank,
+    studies::{self, metric, number, share},
+};
 use crate::{
     case::{Case, Tier},
     record::{Record, Status},
@@ -117,15 +120,15 @@ fn table(n: usize, end: &str, results: &[(Row, Record)]) -> Table {
             Status::Diverged { time, .. } => format!("diverged at {} s", sig(*time, 2)),
             _ => "completed".into(),
         };
-        let number = |name: &str| Cell::num(metric(record, name), 3);
-        let share = |name: &str, sign: f64| Cell::percent(sign * metric(record, name), 2);
+        let number = |name: &str| number(record, name);
+        let share = |name: &str, sign: f64| share(sign * metric(record, name));
         table = table.row(vec![
             Cell::text(format!("`{variant}`")),
             Cell::text(more.join(", ")),
             Cell::text(ended),
             number("front_rms_shifted"),
             number("levels_rms_shifted"),
-            Cell::percent(impulse(record), 2),
+            studies::share(impulse(record)),
             share("work_viscosity", -1.0),
             share("work_stress", 1.0),
             share("work_walls", 1.0),

@@ -5,7 +5,10 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 use solver::Role;
 
-use super::{Dam, LOBOVSKY, Modern, NAME, run_scene, settings, studies::metric};
+use super::{
+    Dam, LOBOVSKY, Modern, NAME, run_scene, settings,
+    studies::{metric, number},
+};
 use crate::{
     case::{Case, RunError},
     gate::{Bound, Evidence, Gate},
@@ -123,7 +126,7 @@ pub fn sound(case: &'static dyn Case) -> Study {
         .collect();
     for (c0, record) in SPEEDS.iter().zip(records) {
         let Some(record) = record else { continue };
-        let number = |name: &str| Cell::num(metric(&record, name), 3);
+        let number = |name: &str| number(&record, name);
         table = table.row(vec![
             Cell::num(*c0, 3),
             Cell::text(ended(&record)),

@@ -51,6 +51,19 @@ pub(super) fn metric(record: &Record, name: &str) -> f64 {
     record.metric(name).unwrap_or(f64::NAN)
 }
 
+/// A number, or a dash where there is none because the run ended early.
+pub(super) fn number(record: &Record, name: &str) -> Cell {
+    match metric(record, name) {
+        value if value.is_finite() => Cell::num(value, 3),
+        _ => Cell::text("–"),
+    }
+}
+
+/// The same as a percentage.
+pub(super) fn share(value: f64) -> Cell {
+    if value.is_finite() { Cell::percent(value, 2) } else { Cell::text("–") }
+}
+
 fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
     profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
 }
@@ -152,12 +165,12 @@ fn free_table(records: &[&Record]) -> Table {
                    at T = 3; three other SPH codes have 2.62 to 2.66 and 3.97 to 4.00.";
     let mut table = Table::new(caption, columns);
     for record in records {
-        let number = |name: &str| Cell::num(metric(record, name), 3);
+        let number = |name: &str| number(record, name);
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::num(setting(record, "n"), 3),
-            Cell::num(metric(record, "z@2"), 3),
-            Cell::num(metric(record, "z@3"), 3),
+            number("z@2"),
+            number("z@3"),
             number("front_rms"),
             number("front_rms_shifted"),
             number("front_shift"),
@@ -282,8 +295,8 @@ fn tank_table(records: &[&Record]) -> Table {
                    measured front. Noise of P2 in the experiment: see the metric `pressure_noise_measured`.";
     let mut table = Table::new(caption, columns);
     for record in records {
-        let number = |name: &str| Cell::num(metric(record, name), 3);
-        let impulse = |k: usize| Cell::percent(metric(record, &format!("impulse_P{k}@1")), 2);
+        let number = |name: &str| number(record, name);
+        let impulse = |k: usize| share(metric(record, &format!("impulse_P{k}@1")));
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::num(setting(record, "n"), 3),
@@ -297,7 +310,7 @@ fn tank_table(records: &[&Record]) -> Table {
             impulse(3),
             impulse(4),
             number("pressure_noise"),
-            Cell::num(metric(record, "peak_P1"), 2),
+            number("peak_P1"),
         ]);
     }
     table
