@@ -76,6 +76,12 @@ fn gates(variant: &str, re: f64, n: usize, more: &str) -> Vec<Gate> {
                    reference is known to 0.02 %";
     let mut gates = vec![
         gate("l2_u", Bound::Below(goal), Evidence::Reference, because),
+        gate(
+            "force_error",
+            Bound::Within(-goal, goal),
+            Evidence::Reference,
+            "the force goes with the velocity at the walls: the same goal as for the velocity",
+        ),
         none_outside,
         gate(
             "section_flux",

@@ -167,7 +167,8 @@ fn table(runs: &[JudgedRun]) -> Table {
 /// Particles by their velocity, with the line between bubble and stream of the reference.
 fn pictures(runs: &[JudgedRun]) -> Study {
     let caption = "Particles by their velocity along x, the finest run of the best variant. Black: the \
-                   floor, and the line between bubble and stream of the finite elements.";
+                   floor, and the line between bubble and stream of the finite elements. Colours end \
+                   at 0.5 U_b, so that the bubble shows.";
     let mut figure = Figure::new("periodic-hill-pictures", caption);
     for re in REYNOLDS {
         let (Some(record), Some(reference)) = (finest(runs, re), reference(re)) else { continue };
@@ -177,7 +178,7 @@ fn pictures(runs: &[JudgedRun]) -> Study {
         let title = format!("Re {re}, H/dx = {}", setting(record, "n"));
         let axes = (Axis::linear("x [H]"), Axis::linear("y [H]"));
         let map = ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points)
-            .values(-1.5, 1.5)
+            .values(-0.5, 0.5)
             .diameter(1.0 / setting(record, "n"))
             .line(floor())
             .line(reference.line);
