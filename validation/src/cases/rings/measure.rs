@@ -233,7 +233,11 @@ impl<'a> Series<'a> {
     /// Phases of contact: where the force on a ring is above 1 % of its largest, with pauses of less
     /// than 5 L/c0 bridged, as in `references/rubber_rings`.
     pub fn phases(&self) -> Vec<Phase> {
-        let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
+        // The last sample may stand at the time of the one before it.
+        let force = |w: &[[f64; COLUMNS]]| match w[1][0] - w[0][0] {
+            dt if dt > 0.0 => (w[1][2] - w[0][2]) / dt,
+            _ => 0.0,
+        };
         let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
         let least = TOUCH * forces.iter().copied().fold(0.0, f64::max);
         let mut spans: Vec<[usize; 2]> = Vec::new();
