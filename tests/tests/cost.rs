@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, Domain, Evolved, Integrator, Leapfrog, Open, Outcome, Particle,
-    PredictorCorrector, Pressure, QuinticSpline, Scene, Shifting, Simulation, Tait, Term,
-    Viscosity, Xsph, engine::Shows, particles::Column,
+    DensityDiffusion, Domain, Evolved, ExtrapolatingWall, Hydrostatic, Integrator, Leapfrog,
+    NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Shifting,
+    Simulation, Tait, Term, Viscosity, Xsph, engine::Shows, particles::Column,
 };
 use touchstone_tests::{difference, patch};
 
@@ -29,6 +29,10 @@ fn terms_take_the_memory_of_what_they_need_and_absent_ones_none() {
     assert_eq!(sizes::<BodyForce>(), [0, 0]);
     assert_eq!(sizes::<Continuity>(), [0, 8]);
     assert_eq!(sizes::<DensityDiffusion>(), [0, 8]);
+    assert_eq!(sizes::<DensityDiffusion<Hydrostatic>>(), [0, 8]);
+    // A wall sums a velocity only where the fluid sticks to it.
+    assert_eq!(sizes::<ExtrapolatingWall<Tait>>(), [0, 16]);
+    assert_eq!(sizes::<ExtrapolatingWall<Tait, NoSlip>>(), [0, 32]);
     assert_eq!(sizes::<Viscosity>(), [0, 16]);
     assert_eq!(sizes::<ArtificialViscosity<Tait>>(), [0, 16]);
     assert_eq!(sizes::<Xsph>(), [0, 16]);

@@ -176,7 +176,8 @@ fn collide(planned: &Planned, fault: &Fault) -> Record {
         parallel_from: healthy.parallel_from,
     };
     let context = Context::default();
-    rings::run_scene(&rings, planned.variant, "leapfrog", scene, &context).expect("a run")
+    rings::run_scene(&rings, planned.variant, "leapfrog", scene, &|_, _| Vec::new(), &context)
+        .expect("a run")
 }
 
 type Rippled =

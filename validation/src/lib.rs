@@ -2,9 +2,10 @@
 //! pushed before it breaks.
 //!
 //! [`cases`] are the benchmarks; [`suite`] runs and judges them; [`studies`] turn many runs into
-//! statements. [`geometry`] says where particles of walls stand. [`exact`] holds solutions of the equations, [`theory`] solutions of the *discretised*
-//! equations (which a correct program must reproduce to round-off), [`metrics`] the distance between
-//! them and a run. [`record`], [`mod@reference`] and [`mod@report`] are what goes in and comes out.
+//! statements. [`geometry`] says where particles of walls stand. [`exact`] holds solutions of the
+//! equations, [`theory`] solutions of the *discretised* equations (which a correct program must
+//! reproduce to round-off), [`metrics`] the distance between them and a run. [`record`],
+//! [`mod@reference`] and [`mod@report`] are what goes in and comes out.
 
 pub mod bench;
 pub mod case;

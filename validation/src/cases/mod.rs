@@ -36,10 +36,10 @@ pub const CASES: &[&dyn Case] = &[
     &SolidCase::<spinning_disk::SpinningDisk>::CASE,
     &SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
     rings::RUBBER_RINGS,
-    &elliptic_drop::EllipticDrop,
-    dam_break::DAM_BREAK,
     taylor_green::TAYLOR_GREEN,
     periodic_hill::PERIODIC_HILL,
+    dam_break::DAM_BREAK,
+    &elliptic_drop::EllipticDrop,
     hydrostatic::HYDROSTATIC,
     &taylor_couette::Gap,
 ];

@@ -209,8 +209,8 @@ const FACES: &str = "velocity gradients are not corrected, so that (11) sees les
     with 20";
 
 /// Why the plate without stabilisation does.
-const BARE: &str = "the same at faces, and more the finer the plate is, 35 % and 42 % with 5 and 10 particles: \
-    without viscosity and artificial stress, motion at the scale of the spacing takes up the energy. Why it \
+const BARE: &str = "the same at faces, and more the finer the plate is, 35 % and 42 % with 5 and 10 \
+    particles: without viscosity and artificial stress, motion at the scale of the spacing takes up the energy. Why it \
     grows with n is not known";
 
 fn swing(variant: &'static str, n: usize) -> Planned {
@@ -315,9 +315,9 @@ fn incompressible(runs: &[JudgedRun]) -> String {
     let list = others.collect::<Vec<String>>().join("; ");
     let base = percent(excess(&rubber), 3);
     format!(
-        "Poisson's ratio towards 1/2 at 5 particles through the thickness: at 0.3975 the period is {base} too \
-         long; {list}. The step shrinks as sqrt(1 - 2 nu) does. Artificial viscosity is in proportion to c0 = \
-         sqrt(K/rho), which grows as 1/sqrt(1 - 2 nu): accuracy is lost to damping, and a period that \
+        "Poisson's ratio towards 1/2 at 5 particles through the thickness: at 0.3975 the period is {base} \
+         too long; {list}. The step shrinks as sqrt(1 - 2 nu) does. Artificial viscosity is in proportion to \
+         c0 = sqrt(K/rho), which grows as 1/sqrt(1 - 2 nu): accuracy is lost to damping, and a period that \
          comes closer to theory on the way is no gain."
     )
 }

@@ -45,6 +45,14 @@ impl Film {
     }
 }
 
+/// One figure as a small PNG: for thousands of dots, each of which an SVG would name.
+pub(super) fn still(figure: &Figure) -> Result<Vec<u8>, String> {
+    let (pixels, width, height) = render::pixels(figure, DENSITY)?;
+    let mut png = Vec::new();
+    encode(&mut png, vec![pixels], (width, height), 1).map_err(|error| error.to_string())?;
+    Ok(png)
+}
+
 /// Writes frames of three bytes a pixel.
 fn encode(
     bytes: &mut Vec<u8>,
@@ -57,8 +65,10 @@ fn encode(
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Best);
     encoder.set_filter(png::FilterType::NoFilter); // flat colours: every filter makes it larger
-    encoder.set_animated(frames.len() as u32, 0)?;
-    encoder.set_frame_delay(milliseconds, 1000)?;
+    if frames.len() > 1 {
+        encoder.set_animated(frames.len() as u32, 0)?;
+        encoder.set_frame_delay(milliseconds, 1000)?;
+    }
     let mut writer = encoder.write_header()?;
     for pixels in frames {
         let coarse: Vec<u8> = pixels.into_iter().map(coarse).collect();

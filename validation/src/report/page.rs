@@ -1,7 +1,7 @@
 //! One self-contained page: opens from disk, loads nothing, prints.
 
 use super::figure::Figure;
-use super::film::Film;
+use super::film::{self, Film};
 use super::font;
 use super::inline::{escape, inline};
 use super::render;
@@ -307,10 +307,10 @@ impl Writer<'_> {
         match block {
             Block::Prose(paragraphs) => html! { @for p in paragraphs { p { (inline(p)) } } },
             Block::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
-            Block::Figure(figure) => {
-                self.figure(&figure.id, &figure.caption, PreEscaped(render::svg(figure)))
+            Block::Figure(figure) => self.figure(&figure.id, &figure.caption, drawing(figure)),
+            Block::Film(film) => {
+                self.figure(&film.id, &film.caption, image(&film.caption, &film.png))
             }
-            Block::Film(film) => self.figure(&film.id, &film.caption, film_markup(film)),
             Block::Table(table) => {
                 self.tables += 1;
                 table.markup(&format!("Table {}. ", self.tables))
@@ -343,10 +343,22 @@ impl Writer<'_> {
     }
 }
 
-/// The film as an image inside the page. The page is XML too: every element is closed.
-fn film_markup(film: &Film) -> Markup {
-    let (caption, image) = (escape(&film.caption), font::base64(&film.png));
-    PreEscaped(format!("<img alt=\"{caption}\" src=\"data:image/png;base64,{image}\"/>"))
+/// Bytes of an SVG beyond which a page has the figure in pixels: some thousand dots.
+const LARGEST_SVG: usize = 150_000;
+
+/// The figure as SVG, or as pixels where that would be too large.
+fn drawing(figure: &Figure) -> Markup {
+    let svg = render::svg(figure);
+    match (svg.len() > LARGEST_SVG).then(|| film::still(figure)) {
+        Some(Ok(png)) => image(&figure.caption, &png),
+        _ => PreEscaped(svg),
+    }
+}
+
+/// An image inside the page. The page is XML too: every element is closed.
+fn image(caption: &str, png: &[u8]) -> Markup {
+    let (caption, data) = (escape(caption), font::base64(png));
+    PreEscaped(format!("<img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"/>"))
 }
 
 /// JSON without characters that mean something to HTML or XML.

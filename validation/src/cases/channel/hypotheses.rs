@@ -53,7 +53,7 @@ fn end(tier: Tier) -> f64 {
 }
 
 /// Above this Reynolds number the full tier takes one start instead of three.
-const MANY_STARTS: f64 = 100.0;
+const MANY_STARTS: f64 = 20.0;
 
 /// How the time step of the map follows from the sound speed.
 #[derive(Clone, Copy, PartialEq)]

@@ -127,7 +127,7 @@ impl Column {
 
     /// Height of the surface \[m\], half a spacing above the highest row.
     pub fn level<W: TankWall>(&self) -> f64 {
-        (self.settings.rows as f64 - 1.0 + W::FIRST_ROW) * self.dx
+        (self.settings.rows as f64 + 0.5 - W::FIRST_ROW) * self.dx
     }
 
     /// A particle that does not move, with the density that is exact at its place, or that of the
@@ -289,9 +289,12 @@ impl TankWall for ExtrapolatingWall<Tait> {
         Self::new(column.eos, column.gravity() * column.settings.wall_gravity).not_below(0.0)
     }
 
+    /// With the mass of the water that would be in their place: what they push with is their mass by
+    /// p/ρ², and with that of the surface a compressed column would sink into the bottom.
     fn particles(column: &Column, support: f64) -> Vec<Particle> {
-        let points = column.tank().rows_behind(support).into_iter();
-        points.map(|x| column.at_rest(x, 0.0, true).with_role(Role::Wall)).collect()
+        let (points, level) = (column.tank().rows_behind(support), column.level::<Self>());
+        let at_rest = |x| column.at_rest(x, level, column.settings.uniform).with_role(Role::Wall);
+        points.into_iter().map(at_rest).collect()
     }
 }
 

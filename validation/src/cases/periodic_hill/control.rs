@@ -21,8 +21,10 @@ impl<A, B, C> Driven for (A, B, BodyForce, C) {
     }
 }
 
-/// f' = \[(u* − u)/T − u'\]/t, u the mean velocity along x over the fluid, u* the one wanted: where u' = f − d
-/// with the drag d of the walls, f follows d within t, and u goes to u* within T. In rest f = d whatever d is.
+/// f' = \[(u* − u)/T − u'\]/t, u the mean velocity along x over the fluid, u* the one wanted.
+///
+/// As u' = f − d with the drag d of the walls, f follows d within t, and u goes to u* within T. At rest
+/// f = d whatever d is.
 ///
 /// With t = T/4 both roots are −2/T: the fastest without overshoot.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use super::Rings;
 use crate::{
-    cases::solid::{Energy, Material},
+    cases::solid::Energy,
     record::{Metric, Profile, Record},
 };
 
@@ -31,8 +31,7 @@ pub struct Side {
 
 /// Energies of these particles.
 fn energy(rings: &Rings, particles: &[Particle<Symmetric>]) -> Energy {
-    let (density, bulk) = (rings.settings.rho, rings.settings.bulk_modulus);
-    let material = Material { density, bulk, shear: rings.mu };
+    let material = rings.material();
     particles.iter().fold(Energy::default(), |sum, p| {
         let Particle { position, velocity, density, extra, .. } = *p;
         sum + Energy::of_one(p.mass, &Evolved { position, velocity, density, extra }, &material)

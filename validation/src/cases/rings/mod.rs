@@ -4,6 +4,7 @@
 //! Judged against conservation, mirror symmetry, and an independent finite-element run of one ring
 //! against a frictionless plane (`references/rubber_rings`), which is half of this problem.
 
+mod budget;
 mod measure;
 mod plan;
 mod reference;

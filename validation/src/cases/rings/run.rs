@@ -7,12 +7,14 @@ use solver::{
 
 use super::{
     RingSettings, Rings, Tensile,
+    budget::{self, Budget},
     measure::{self, Series},
     reference::Reference,
 };
 use crate::{
     case::RunError,
     cases::channel::Stepping,
+    metrics::budget::Items,
     number,
     record::{self, Metric, Profile, Record, Status},
     runner::{self, Context, Frames},
@@ -50,8 +52,11 @@ where
     I: Stepping<Symmetric>,
 {
     let rings = Rings::new::<I>(settings, context.allow_unstable)?;
-    run_scene(&rings, variant, I::NAME, rings.scene::<R, I>(), context)
+    run_scene(&rings, variant, I::NAME, rings.scene::<R, I>(), &budget::powers::<R, _>, context)
 }
+
+/// What the terms of a scene do to its energy \[W/m\].
+pub type Powers<'a, S> = &'a dyn Fn(&Rings, &Simulation<S>) -> Items;
 
 /// Runs a scene and measures it against the setup: the same measuring for a scene that is not what
 /// its settings say.
@@ -60,6 +65,7 @@ pub fn run_scene<S: Scheme<Extra = Symmetric>>(
     variant: &str,
     integrator: &str,
     mut scene: Scene<S>,
+    powers: Powers<S>,
     context: &Context,
 ) -> Result<Record, RunError> {
     if context.threads <= 1 {
@@ -69,14 +75,21 @@ pub fn run_scene<S: Scheme<Extra = Symmetric>>(
     let mut record = begin(rings, variant, integrator, context);
     let frames = Frames::of(context)?;
     let mut series = Series::new(rings);
+    let mut budget = Budget::default();
+    simulation.advance(0.0, rings.dt, &mut ());
+    budget.sample(rings, &simulation, &powers(rings, &simulation));
     keep(rings, &simulation, 0.0, context, &mut record);
     let stops = stops(rings, context);
     let times: Vec<f64> = stops.iter().map(|s| s.0).collect();
     let mut failed_frame = None;
     let (status, cost) =
         runner::drive(&mut simulation, rings.dt, &times, context, &mut series, &mut |s, k| {
-            if let (true, Some(frames)) = (stops[k].1, &frames) {
-                failed_frame = failed_frame.take().or(frames.write(s, &rings.eos).err());
+            match (stops[k].1, &frames) {
+                (Due::Frame, Some(frames)) => {
+                    failed_frame = failed_frame.take().or(frames.write(s, &rings.eos).err());
+                }
+                (Due::Budget, _) => budget.sample(rings, s, &powers(rings, s)),
+                _ => {}
             }
             keep(rings, s, times[k], context, &mut record);
         });
@@ -87,6 +100,7 @@ pub fn run_scene<S: Scheme<Extra = Symmetric>>(
     if status == Status::Completed {
         series.sample(simulation.time(), &particles);
         series.measure(&mut record);
+        budget.measure(rings, &mut record);
         if let Some(reference) = Reference::of(&rings.settings) {
             reference.compare(&series, &mut record);
         }
@@ -123,13 +137,23 @@ fn begin(rings: &Rings, variant: &str, integrator: &str, context: &Context) -> R
     record
 }
 
-/// (time \[s\], whether a frame is due), ascending.
-fn stops(rings: &Rings, context: &Context) -> Vec<(f64, bool)> {
+/// What is due at a stop, beside pictures.
+#[derive(Clone, Copy)]
+enum Due {
+    Nothing,
+    Frame,
+    Budget,
+}
+
+/// (time \[s\], what is due), ascending.
+fn stops(rings: &Rings, context: &Context) -> Vec<(f64, Due)> {
     let end = rings.settings.end / rings.c0;
     let pictures = pictures(context).into_iter().filter(|share| *share > 0.0);
-    let mut stops: Vec<(f64, bool)> = pictures.map(|share| (share * end, false)).collect();
+    let mut stops: Vec<(f64, Due)> = pictures.map(|share| (share * end, Due::Nothing)).collect();
+    let sample = |k: usize| (end * k as f64 / budget::SAMPLES as f64, Due::Budget);
+    stops.extend((1..=budget::SAMPLES).map(sample));
     if let Some((_, count)) = context.frames {
-        stops.extend((1..=count).map(|k| (end * k as f64 / count as f64, true)));
+        stops.extend((1..=count).map(|k| (end * k as f64 / count as f64, Due::Frame)));
     }
     stops.sort_by(|a, b| a.0.total_cmp(&b.0));
     stops

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use super::{RingSettings, run::Rubber};
 use crate::{
     case::RunError,
-    cases::channel::Stepping,
+    cases::{channel::Stepping, solid::Material},
     theory::{
         lattice::SquareLattice,
         time_step::{self, Medium},
@@ -85,7 +85,7 @@ impl Rings {
         }
         let c0 = (s.bulk_modulus / s.rho).sqrt();
         let mu = s.shear_modulus * s.bulk_modulus;
-        let cp = ((s.bulk_modulus + 4.0 / 3.0 * mu) / s.rho).sqrt();
+        let cp = Material { density: s.rho, bulk: s.bulk_modulus, shear: mu }.p_wave_speed();
         let (v, h) = (s.speed * c0, s.h_over_dx * dx);
         let lattice = SquareLattice::<CubicSpline>::new(s.h_over_dx, 0.01);
         let medium = Medium { c0: cp, h, nu: 0.0, alpha: s.alpha * c0 / cp, delta: 0.0 };
@@ -108,6 +108,12 @@ impl Rings {
         }
         let eos = Linear { density: s.rho, sound_speed: c0 };
         Ok(Self { settings: s.clone(), c0, cp, mu, v, dx, h, eos, dt, dt_limit })
+    }
+
+    /// What the rings are made of.
+    pub fn material(&self) -> Material {
+        let RingSettings { rho: density, bulk_modulus: bulk, .. } = self.settings;
+        Material { density, bulk, shear: self.mu }
     }
 
     fn w_at_spacing(&self) -> f64 {

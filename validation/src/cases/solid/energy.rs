@@ -1,7 +1,7 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
 use nalgebra::Vector2;
-use solver::{Evolved, Scheme, Simulation, Symmetric};
+use solver::{Evolved, Rate, Scheme, Simulation, Symmetric};
 
 use super::Material;
 
@@ -63,10 +63,33 @@ impl std::ops::Add for Energy {
     }
 }
 
+/// The slope of the energy of a particle: m (v·v̇ + (p/ρ²) ρ̇ + S:Ṡ/(2μρ) − S:S ρ̇/(4μρ²)) \[W/m\].
+pub fn solid_slope(
+    material: &Material,
+) -> impl Fn(f64, &Evolved<Symmetric>, &Rate<Symmetric>) -> f64 + use<> {
+    let Material { density: rest, bulk, shear } = *material;
+    move |mass, particle, rate| {
+        let Evolved { velocity, density, extra, .. } = particle;
+        let pressure = bulk / rest * (density - rest) / (density * density);
+        let held = if shear > 0.0 {
+            let work = product(extra, &rate.extra) / (2.0 * shear * density);
+            work - norm_squared(extra) / (4.0 * shear * density * density) * rate.density
+        } else {
+            0.0
+        };
+        mass * (velocity.dot(&rate.velocity) + pressure * rate.density + held)
+    }
+}
+
 /// S:S of a deviator of plane strain \[Pa²\]: Sᶻᶻ = −(Sˣˣ + Sʸʸ) counts too.
 pub fn norm_squared(s: &Symmetric) -> f64 {
-    let zz = -(s.xx + s.yy);
-    s.xx * s.xx + s.yy * s.yy + zz * zz + 2.0 * s.xy * s.xy
+    product(s, s)
+}
+
+/// S:T of two of them.
+fn product(s: &Symmetric, t: &Symmetric) -> f64 {
+    let zz = (s.xx + s.yy) * (t.xx + t.yy);
+    s.xx * t.xx + s.yy * t.yy + zz + 2.0 * s.xy * t.xy
 }
 
 /// Angular momentum about the centre of mass \[kg m²/s per m\].
@@ -114,6 +137,22 @@ mod tests {
         let along =
             Energy::of_one(5.0, &particle(2.0, 0.0, Symmetric { xx, yy, xy: 0.0 }), &material);
         assert_relative_eq!(along.shear, 2.5 * 4.0 / 3.0 * 3.0 * e * e / 2.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn the_slope_is_that_of_the_energy() {
+        let material = Material { density: 2.0, bulk: 8.0, shear: 3.0 };
+        let start = particle(2.1, 0.7, Symmetric { xx: 0.3, yy: -0.1, xy: 0.2 });
+        let rate = Rate {
+            velocity: Vector2::new(0.4, 1.1),
+            density: -0.6,
+            extra: Symmetric { xx: 0.5, yy: 0.8, xy: -0.9 },
+            ..Rate::default()
+        };
+        let energy = |dt: f64| Energy::of_one(5.0, &start.advanced(dt, &rate), &material).total();
+        let d = 1e-6;
+        let slope = solid_slope(&material)(5.0, &start, &rate);
+        assert_relative_eq!((energy(d) - energy(-d)) / (2.0 * d), slope, max_relative = 1e-8);
     }
 
     /// The compression energy is the work of (12): de = p dρ/ρ².

@@ -6,7 +6,7 @@ mod material;
 mod method;
 mod problem;
 
-pub use energy::{Energy, angular_momentum, norm_squared};
+pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
 pub use material::{Material, Solid};
 pub use method::{Bare, Clamp, Method, Plain, Scheme, Seed};
 pub use problem::{Problem, Ran, SolidCase, describe, digest, run_to};

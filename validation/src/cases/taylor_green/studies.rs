@@ -198,8 +198,8 @@ fn cost(runs: &[JudgedRun]) -> Study {
             });
         }
     }
-    let caption = "Relative L2 error of the velocity vector at t = 2 L/U, Re 100, over the cost of the run: 25, \
-                   50 and 100 particles a side from a disturbed lattice. Timed once, side by side with \
+    let caption = "Relative L2 error of the velocity vector at t = 2 L/U, Re 100, over the cost of the run: \
+                   25, 50 and 100 particles a side from a disturbed lattice. Timed once, side by side with \
                    other runs; pair interactions are exact. Grey: PySPH EDAC (73 s, 456 s) and SPHinXsys \
                    (1.9 s, 16 s) at 50 and 100 a side on another machine.";
     let id = "taylor-green-work-precision";
