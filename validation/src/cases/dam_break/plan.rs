@@ -113,9 +113,11 @@ fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
     let height = "stations of the height are 1/18 of the column apart";
     let bound = Bound::Below(1.0 / 18.0);
     gates.push(gate(&id, "height_rms_shifted", bound, Evidence::Reference, height));
-    let limited = |gate: Gate| match (variant, &gate.purpose, gate.evidence) {
-        ("ghosts", _, Evidence::Reference) => gate.when_measured().with_limitation(MIRRORED),
-        ("seed", Purpose::Judge, Evidence::Reference) => gate.with_limitation(THICK),
+    let is_slow =
+        |gate: &Gate| gate.metric != "front_rms_shifted" && gate.purpose == Purpose::Judge;
+    let limited = |gate: Gate| match (variant, gate.evidence) {
+        ("ghosts", Evidence::Reference) => gate.when_measured().with_limitation(MIRRORED),
+        ("seed", Evidence::Reference) if is_slow(&gate) => gate.with_limitation(THICK),
         _ => gate,
     };
     gates.into_iter().map(limited).collect()

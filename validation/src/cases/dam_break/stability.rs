@@ -211,6 +211,7 @@ pub fn extremes(case: &'static dyn Case) -> Study {
         let id = format!("{NAME}.extreme.{}", name.replace(' ', "-"));
         let gate =
             Gate::new(id, "as it must (1)", Bound::Equals(1.0), Evidence::Invariant, because);
+        let gate = if name == TOUCHING { gate.with_limitation(CROWDED) } else { gate };
         study = study.judge(gate, f64::from(u8::from(is_good)));
     }
     study.block(table).prose(scaling(case))
@@ -218,9 +219,9 @@ pub fn extremes(case: &'static dyn Case) -> Study {
 
 const TOUCHING: &str = "water that starts on the surface of the walls";
 
-const CROWDED: &str = "(3) knows how the density changes, not what it is: water half a spacing too near to a \
-                       wall has the pressure it was given, and a few particles slip between those of the \
-                       wall";
+const CROWDED: &str = "(3) knows how the density changes, not what it is: water half a spacing too near \
+                       to a wall has the pressure it was given, and a few particles slip between those \
+                       of the wall";
 
 /// The column moved by half a spacing down and to the left, so that its particles stand on the walls.
 fn touching(set: &[String]) -> Result<Record, RunError> {
