@@ -320,7 +320,9 @@ fn cures(case: &'static dyn Case, tier: Tier) -> Study {
         vec![Column::text("seed with"), Column::num("first Re at which most fail", "-")];
     columns.extend(list.iter().map(|re| Column::text(format!("Re {re}"))));
     let starts = match tier {
-        Tier::Quick => "Each has one start, disordered by 1e-4 dx: one sample and no more.".to_string(),
+        Tier::Quick => {
+            "Each has one start, disordered by 1e-4 dx: one sample and no more.".to_string()
+        }
         Tier::Full => format!(
             "Up to Re {most} each has {} starts, disordered by {} dx; above one, 1e-4 dx, which is one \
              sample and no more.",
