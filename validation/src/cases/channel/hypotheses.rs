@@ -52,8 +52,25 @@ fn end(tier: Tier) -> f64 {
     if tier == Tier::Full { 1.5 } else { 1.0 }
 }
 
-/// Above this Reynolds number the full tier takes one start instead of three.
+/// Above this Reynolds number the full tier takes one start instead of three; the quick tier always.
 const MANY_STARTS: f64 = 20.0;
+
+fn starts(tier: Tier, re: f64) -> &'static [f64] {
+    starts_up_to(if tier == Tier::Full { MANY_STARTS } else { 0.0 }, re)
+}
+
+/// How many starts a cell has, in words.
+fn starts_in_words(tier: Tier) -> String {
+    match tier {
+        Tier::Quick => "Each has one start, disordered by 1e-4 dx: one sample and no more.".into(),
+        Tier::Full => format!(
+            "Up to Re {MANY_STARTS} each has {} starts, disordered by {} dx; above one, 1e-4 dx, which is \
+             one sample and no more.",
+            DISORDER.len(),
+            disorder(&DISORDER)
+        ),
+    }
+}
 
 /// How the time step of the map follows from the sound speed.
 #[derive(Clone, Copy, PartialEq)]
@@ -98,7 +115,7 @@ impl Map {
                 jobs.extend(sounds(tier)[..count].iter().map(|&sound| Job {
                     variant: "seed",
                     set: map_settings(tier, step, re, sound),
-                    starts: starts_up_to(MANY_STARTS, re),
+                    starts: starts(tier, re),
                 }));
             }
         }
@@ -115,21 +132,15 @@ impl Map {
     }
 
     fn study(&self) -> Study {
-        let alone = match self.tier {
-            Tier::Quick => String::new(),
-            Tier::Full => format!(" (above Re {MANY_STARTS} from one start, 1e-4 dx)"),
-        };
         let caption = format!(
             "Outcome of the seed's Poiseuille flow (cubic spline, h/dx 1.2, ghosts, \
              predictor-corrector, 20 rows) to νt/L² = {} over Reynolds number and sound speed, at fixed \
              Courant number 0.25 (left) and at the fixed time step of the highest sound speed (right). \
-             Each cell has {} starts whose places are disordered by {} dx{alone}: how many of them \
-             failed, and the median outcome, which is an error in per cent (worst relative L2 from \
+             {} A cell says how many failed, and the median outcome, which is an error in per cent (worst relative L2 from \
              νt/L² = 0.1 on) or, after a t, the νt/L² of the divergence. A run fails when it diverges or \
              its error exceeds 5 %.",
             end(self.tier),
-            DISORDER.len(),
-            disorder(&DISORDER),
+            starts_in_words(self.tier),
         );
         let figure = Figure::new("poiseuille-map", caption)
             .columns(2)
@@ -301,9 +312,9 @@ const CURES: [(&str, &str); 10] = [
 ];
 
 fn cures(case: &'static dyn Case, tier: Tier) -> Study {
-    let (list, most): (&[f64], f64) = match tier {
-        Tier::Quick => (&[20.0], 0.0),
-        Tier::Full => (&[5.0, 20.0, 50.0, 100.0, 200.0], MANY_STARTS),
+    let list: &[f64] = match tier {
+        Tier::Quick => &[20.0],
+        Tier::Full => &[5.0, 20.0, 50.0, 100.0, 200.0],
     };
     let jobs: Vec<Job> = CURES
         .iter()
@@ -311,7 +322,7 @@ fn cures(case: &'static dyn Case, tier: Tier) -> Study {
             list.iter().map(|re| Job {
                 variant,
                 set: vec![format!("re={re}"), format!("end={}", end(tier))],
-                starts: starts_up_to(most, *re),
+                starts: starts(tier, *re),
             })
         })
         .collect();
@@ -319,22 +330,12 @@ fn cures(case: &'static dyn Case, tier: Tier) -> Study {
     let mut columns =
         vec![Column::text("seed with"), Column::num("first Re at which most fail", "-")];
     columns.extend(list.iter().map(|re| Column::text(format!("Re {re}"))));
-    let starts = match tier {
-        Tier::Quick => {
-            "Each has one start, disordered by 1e-4 dx: one sample and no more.".to_string()
-        }
-        Tier::Full => format!(
-            "Up to Re {most} each has {} starts, disordered by {} dx; above one, 1e-4 dx, which is one \
-             sample and no more.",
-            DISORDER.len(),
-            disorder(&DISORDER)
-        ),
-    };
     let caption = format!(
-        "Cures of the instability at 20 rows, c0 by Morris' rule, to νt/L² = {}. {starts} A cell \
+        "Cures of the instability at 20 rows, c0 by Morris' rule, to νt/L² = {}. {} A cell \
          says how many failed, and the median outcome: worst relative L2 error from νt/L² = 0.1 on, or, \
          after a t, the νt/L² of the divergence. A run fails when it diverges or its error exceeds 5 %.",
         end(tier),
+        starts_in_words(tier),
     );
     let mut table = Table::new(caption, columns);
     for (row, (_, what)) in found.chunks(list.len()).zip(CURES) {

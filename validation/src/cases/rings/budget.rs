@@ -21,7 +21,7 @@ const ITEMS: [(&str, &str); 3] =
     [(VISCOSITY, "work_viscosity"), (STRESS, "work_stress"), (ELASTIC, "work_elastic")];
 
 /// Samples of a run.
-pub const SAMPLES: usize = 100;
+pub const SAMPLES: usize = 200;
 
 /// The powers of the terms of a scene with the artificial stress `R` \[W/m\]. XSPH moves particles and
 /// changes neither velocity, density nor stress: it has no power of its own.

@@ -20,15 +20,10 @@ use crate::{
 
 /// All of them.
 pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-    let mut studies = vec![
-        histories(runs),
-        pictures(case, runs),
-        fracture(tier, runs),
-        cost(tier, runs),
-        turned(runs),
-        laws(),
-    ];
+    let mut studies =
+        vec![histories(runs), pictures(case, runs), fracture(tier, runs), cost(tier, runs), laws()];
     if tier == Tier::Full {
+        studies.push(turned(runs));
         studies.push(maps(case));
     }
     studies
