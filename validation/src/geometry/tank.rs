@@ -34,7 +34,7 @@ impl Tank {
 
     /// For [`solver::InterfaceWall`]: interface particles on bottom and sides, up to the rim, and wall
     /// particles behind them, out to the `support` \[m\]. The fluid's first row is at dx, see
-    /// [`Tank::fluid`].
+    /// [`Tank`].
     pub fn interface_walls(&self, support: f64) -> TankWalls {
         let mut walls = TankWalls::default();
         let behind = (support / self.dx - 1e-9).floor() as i32;
