@@ -176,8 +176,15 @@ fn collide(planned: &Planned, fault: &Fault) -> Record {
         parallel_from: healthy.parallel_from,
     };
     let context = Context::default();
-    rings::run_scene(&rings, planned.variant, "leapfrog", scene, &|_, _| Vec::new(), &context)
-        .expect("a run")
+    rings::run_scene(
+        &rings,
+        planned.variant,
+        "leapfrog",
+        scene,
+        &rings::powers::<PrincipalStress, _>,
+        &context,
+    )
+    .expect("a run")
 }
 
 type Rippled =

@@ -210,8 +210,8 @@ const FACES: &str = "velocity gradients are not corrected, so that (11) sees les
 
 /// Why the plate without stabilisation does.
 const BARE: &str = "the same at faces, and more the finer the plate is, 35 % and 42 % with 5 and 10 \
-    particles: without viscosity and artificial stress, motion at the scale of the spacing takes up the energy. Why it \
-    grows with n is not known";
+    particles: without viscosity and artificial stress, motion at the scale of the spacing takes up the \
+    energy. Why it grows with n is not known";
 
 fn swing(variant: &'static str, n: usize) -> Planned {
     let id = format!("oscillating_plate.{variant}.{n}");

@@ -221,7 +221,7 @@ mod tests {
     /// Total energy a time dt after the start \[J/m\].
     fn energy(dt: f64) -> f64 {
         let mut simulation = scene().build().expect("a scene");
-        simulation.advance(dt, dt, &mut ());
+        simulation.advance(dt, 1.0, &mut ());
         WATER.energy(&simulation).total()
     }
 
@@ -256,10 +256,11 @@ mod tests {
         assert_eq!(items.len(), 5);
         assert!(of(&items, VISCOSITY) < 0.0, "viscosity heats");
         let total: f64 = items.iter().map(|(_, power)| power).sum();
-        let (dt, start) = (1e-5, energy(0.0));
+        let (dt, start) = (1e-6, energy(0.0));
         let (whole, half) = (energy(dt) - start, energy(0.5 * dt) - start);
         let slope = (4.0 * half - whole) / dt;
-        assert!((slope / total - 1.0).abs() < 1e-6, "{slope:e} {total:e} {items:?}");
+        // Differences over 1 µs leave some 1e-8 of truncation, and of round-off in E.
+        assert!((slope / total - 1.0).abs() < 1e-5, "{slope:e} {total:e} {items:?}");
     }
 
     #[test]

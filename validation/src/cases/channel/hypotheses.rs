@@ -136,9 +136,9 @@ impl Map {
             "Outcome of the seed's Poiseuille flow (cubic spline, h/dx 1.2, ghosts, \
              predictor-corrector, 20 rows) to νt/L² = {} over Reynolds number and sound speed, at fixed \
              Courant number 0.25 (left) and at the fixed time step of the highest sound speed (right). \
-             {} A cell says how many failed, and the median outcome, which is an error in per cent (worst relative L2 from \
-             νt/L² = 0.1 on) or, after a t, the νt/L² of the divergence. A run fails when it diverges or \
-             its error exceeds 5 %.",
+             {} A cell says how many failed, and the median outcome, which is an error in per cent \
+             (worst relative L2 from νt/L² = 0.1 on) or, after a t, the νt/L² of the divergence. A \
+             run fails when it diverges or its error exceeds 5 %.",
             end(self.tier),
             starts_in_words(self.tier),
         );

@@ -16,6 +16,7 @@ use solver::{
     ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Symmetric, terms::TensileStress,
 };
 
+pub use budget::powers;
 pub use run::{Rubber, run_scene};
 pub use setup::{Rings, Tensile};
 

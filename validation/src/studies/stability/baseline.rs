@@ -100,6 +100,7 @@ const DEFAULTS: &[(&str, [f64; 2])] = &[
     ("cure-shifting", [2.8455, 1.0098]),
     ("cure-both", [2.8455, 1.0098]),
     ("cure-leapfrog", [2.8877, 1.0248]),
+    ("extrapolating-wall", [1.3162, 1.0116]),
 ];
 
 const BECAUSE: &str = "what this study measured when its baseline was set, less 1 % for the \
