@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use rayon::prelude::*;
+
 use crate::{
     case::{Case, Planned, RunError, Tier},
     gate::{Gate, Judgement, Verdict},
@@ -119,7 +121,7 @@ impl Suite {
     }
 }
 
-/// Told after each run: runs done, runs in all, name of the run.
+/// Told after each run and each case's studies: how many are done, how many there are, the name.
 pub type Progress<'a> = dyn Fn(usize, usize, &str) + Sync + 'a;
 
 /// How a suite is watched and stopped.
@@ -143,42 +145,65 @@ pub fn run(
         .iter()
         .flat_map(|&case| case.plan(tier).into_iter().map(move |planned| (case, planned)))
         .collect();
-    let mut results = run_longest_first(plans, watch)?;
+    let parts = cases.len() + usize::from(with_method);
+    let told = Told { watch, all: plans.len() + parts, done: AtomicUsize::new(0) };
+    let mut results = run_longest_first(plans, &told)?;
     let mut suite = Suite { tier, cases: Vec::new(), studies: Vec::new() };
     if watch.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
         return Ok(suite); // nothing can be said of runs that were cut short
     }
+    let mut judged = Vec::new();
     for &case in cases {
         let rest = results.iter().position(|r| r.case != case.name()).unwrap_or(results.len());
-        let runs: Vec<JudgedRun> = results.drain(..rest).collect();
+        judged.push((case, results.drain(..rest).collect::<Vec<JudgedRun>>()));
+    }
+    // Side by side: at the end of a study that is parallel itself a thread would wait for the other.
+    let study = |(case, runs): (&'static dyn Case, Vec<JudgedRun>)| {
         let studies = case.studies(tier, &runs);
-        suite.cases.push(CaseResults { case, runs, studies });
-    }
-    if with_method {
-        suite.studies = studies::of_the_method(tier);
-    }
+        told.done(&format!("{} studies", case.name()));
+        CaseResults { case, runs, studies }
+    };
+    let method = || {
+        let studies = if with_method { studies::of_the_method(tier) } else { Vec::new() };
+        told.done("studies of the method");
+        studies
+    };
+    (suite.studies, suite.cases) =
+        rayon::join(method, || judged.into_par_iter().map(study).collect());
     Ok(suite)
+}
+
+/// Counts what is done, and says so.
+struct Told<'a> {
+    watch: &'a Watch<'a>,
+    all: usize,
+    done: AtomicUsize,
+}
+
+impl Told<'_> {
+    fn done(&self, name: &str) {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        if let Some(progress) = self.watch.progress {
+            progress(done.min(self.all), self.all, name);
+        }
+    }
 }
 
 /// Runs the plans side by side, and returns them in the order given. Each thread takes the longest run
 /// that is left.
 fn run_longest_first(
     plans: Vec<(&'static dyn Case, Planned)>,
-    watch: &Watch,
+    told: &Told,
 ) -> Result<Vec<JudgedRun>, RunError> {
-    let all = plans.len();
-    let mut order: Vec<usize> = (0..all).collect();
+    let mut order: Vec<usize> = (0..plans.len()).collect();
     order.sort_by(|&a, &b| plans[b].1.seconds.total_cmp(&plans[a].1.seconds));
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let next = AtomicUsize::new(0);
     let work = |_: rayon::BroadcastContext<'_>| {
         let mut mine = Vec::new();
         while let Some(&k) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
             let (case, planned) = &plans[k];
-            mine.push((k, run_planned(*case, planned.clone(), watch.interrupt)?));
-            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if let Some(progress) = watch.progress {
-                progress(count, all, &format!("{} {}", case.name(), planned.variant));
-            }
+            mine.push((k, run_planned(*case, planned.clone(), told.watch.interrupt)?));
+            told.done(&format!("{} {}", case.name(), planned.variant));
         }
         Ok(mine)
     };

@@ -62,8 +62,8 @@ crate::settings! {
         gamma: usize ["-"] in 1..=20 = 7,
         /// background pressure 0p
         background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
-        /// Courant number of the time step
-        courant: f64 ["-"] in 1e-6..=100.0 = 1.0,
+        /// Courant number of the time step: two thirds of the theoretical limit
+        courant: f64 ["-"] in 1e-6..=100.0 = 1.5,
         /// viscous number of the time step
         viscous: f64 ["-"] in 1e-6..=100.0 = 0.25,
         /// density diffusion δ
