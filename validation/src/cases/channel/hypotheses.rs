@@ -24,7 +24,7 @@ use crate::{
 /// The studies of the hypotheses.
 pub fn studies(case: &'static dyn Case, tier: Tier) -> Vec<Study> {
     let map = Map::run(case, tier);
-    vec![waves(), map.study(), cures(case, tier)]
+    vec![waves(tier), map.study(), cures(case, tier)]
 }
 
 /// Sound speeds of the map \[V\].
@@ -83,11 +83,16 @@ enum Step {
 
 const STEP_NAMES: [&str; 2] = ["fixed Courant number", "fixed time step"];
 
+/// Rules for the step in a tier: in the quick one the first alone.
+fn rules(tier: Tier) -> &'static [Step] {
+    if tier == Tier::Full { &[Step::Courant, Step::Fixed] } else { &[Step::Courant] }
+}
+
 /// Runs of the map.
 struct Map {
     tier: Tier,
     /// \[step rule\]\[Re\]\[c0\]
-    cells: [Vec<Vec<Starts>>; 2],
+    cells: Vec<Vec<Vec<Starts>>>,
 }
 
 /// The settings of a cell: V = Re ν/L with the defaults ν = 1e-6 m²/s, L = 1e-3 m.
@@ -108,7 +113,7 @@ impl Map {
     fn run(case: &'static dyn Case, tier: Tier) -> Self {
         let highest = sounds(tier).len() - 1;
         let mut jobs = Vec::new();
-        for step in [Step::Courant, Step::Fixed] {
+        for &step in rules(tier) {
             for &re in reynolds(tier) {
                 // At the highest sound speed both rules have the same step.
                 let count = if step == Step::Fixed { highest } else { highest + 1 };
@@ -123,32 +128,41 @@ impl Map {
         let mut rows = |count: usize| -> Vec<Vec<Starts>> {
             reynolds(tier).iter().map(|_| found.by_ref().take(count).collect()).collect()
         };
-        let courant = rows(highest + 1);
-        let mut fixed = rows(highest);
-        for (fixed, courant) in fixed.iter_mut().zip(&courant) {
-            fixed.extend(courant.last().cloned());
+        let mut cells = vec![rows(highest + 1)];
+        if rules(tier).contains(&Step::Fixed) {
+            let mut fixed = rows(highest);
+            for (fixed, courant) in fixed.iter_mut().zip(&cells[0]) {
+                fixed.extend(courant.last().cloned());
+            }
+            cells.push(fixed);
         }
-        Self { tier, cells: [courant, fixed] }
+        Self { tier, cells }
     }
 
     fn study(&self) -> Study {
+        let rules = match self.tier {
+            Tier::Full => {
+                "at fixed Courant number 0.25 (left) and at the fixed time step of the highest sound \
+                 speed (right)"
+            }
+            Tier::Quick => {
+                "at fixed Courant number 0.25 (the full tier has a fixed time step beside it)"
+            }
+        };
         let caption = format!(
             "Outcome of the seed's Poiseuille flow (cubic spline, h/dx 1.2, ghosts, \
-             predictor-corrector, 20 rows) to νt/L² = {} over Reynolds number and sound speed, at fixed \
-             Courant number 0.25 (left) and at the fixed time step of the highest sound speed (right). \
+             predictor-corrector, 20 rows) to νt/L² = {} over Reynolds number and sound speed, {rules}. \
              {} A cell says how many failed, and the median outcome, which is an error in per cent \
              (worst relative L2 from νt/L² = 0.1 on) or, after a t, the νt/L² of the divergence. A \
              run fails when it diverges or its error exceeds 5 %.",
             end(self.tier),
             starts_in_words(self.tier),
         );
-        let figure = Figure::new("poiseuille-map", caption)
-            .columns(2)
-            .panel(self.panel(0))
-            .panel(self.panel(1));
+        let figure = Figure::new("poiseuille-map", caption).columns(self.cells.len());
+        let figure = (0..self.cells.len()).fold(figure, |figure, k| figure.panel(self.panel(k)));
         let set = map_settings(self.tier, Step::Courant, 20.0, JUDGED_SOUND);
         let command = format!(
-            "One start of the cell Re 20, c0/V = 10 on the left again: `touchstone run poiseuille \
+            "One start of the cell Re 20, c0/V = 10 at fixed Courant number again: `touchstone run poiseuille \
              --variant seed --set {} --set jitter=1e-4 --allow-unstable`. Starts that differ in nothing \
              but round-off can end differently, so single runs are no evidence.",
             set.join(" --set ")
@@ -450,6 +464,11 @@ const WINDOW: f64 = 60.0;
 /// so that a single run says little.
 const STARTS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
+/// Those of a tier.
+fn wave_starts(tier: Tier) -> &'static [f64] {
+    if tier == Tier::Full { &STARTS } else { &STARTS[1..4] }
+}
+
 /// Watches the end of the seed's Poiseuille flow from a disordered start: divergence or νt/L² = 1.5.
 /// `None` for a run that is over before the window is full.
 fn ringing(re: f64, sound: f64, jitter: f64) -> Option<Ringing> {
@@ -476,8 +495,8 @@ fn ringing(re: f64, sound: f64, jitter: f64) -> Option<Ringing> {
 }
 
 /// The runs of one Re and c0/V from all starts, by period.
-fn ringings(re: f64, sound: f64) -> Vec<Ringing> {
-    let runs = STARTS.par_iter().map(|&jitter| ringing(re, sound, jitter));
+fn ringings(tier: Tier, re: f64, sound: f64) -> Vec<Ringing> {
+    let runs = wave_starts(tier).par_iter().map(|&jitter| ringing(re, sound, jitter));
     let mut found: Vec<Ringing> = runs.collect::<Vec<_>>().into_iter().flatten().collect();
     found.sort_by(|a, b| a.period.total_cmp(&b.period));
     found
@@ -514,10 +533,12 @@ const PERIOD: Bound = Bound::Within(0.8, 1.25);
 
 /// H3: the lowest pressure mode between the walls rings with the period 2L/c0 of a wave that
 /// bounces between them, whatever c0.
-fn waves() -> Study {
+fn waves(tier: Tier) -> Study {
     // (Re, c0/V)
     let settings = [(5.0, 10.0), (20.0, 10.0), (20.0, 20.0), (50.0, 10.0)];
-    let found = settings.map(|(re, sound)| Rings { re, sound, runs: ringings(re, sound) });
+    let settings = if tier == Tier::Full { &settings[..] } else { &settings[..3] };
+    let runs = |&(re, sound): &(f64, f64)| Rings { re, sound, runs: ringings(tier, re, sound) };
+    let found: Vec<Rings> = settings.iter().map(runs).collect();
     let because = "H3: waves bounce between the ghost walls, so the lowest mode has the period \
                    2L/c0, up to the dispersion of the kernel and the gaps that disorder opens";
     let mut study = Study::new("poiseuille-h3", "H3: pressure waves between the walls");
@@ -537,10 +558,10 @@ fn waves() -> Study {
     }
     let plot = plot.layer(Layer::horizontal(0.0, "")).legend(Legend::Auto);
     let figure = Figure::new("poiseuille-waves", caption).panel(plot).panel_size(620.0, 260.0);
-    study.block(waves_table(&found)).block(figure)
+    study.block(waves_table(tier, &found)).block(figure)
 }
 
-fn waves_table(found: &[Rings]) -> Table {
+fn waves_table(tier: Tier, found: &[Rings]) -> Table {
     let columns = vec![
         Column::num("Re", "-"),
         Column::num("c0/V", "-"),
@@ -550,12 +571,14 @@ fn waves_table(found: &[Rings]) -> Table {
         Column::num("dominant period", "2L/c0"),
         Column::text("all periods"),
     ];
-    let caption = "The lowest pressure mode cos(πy/L) of the seed's Poiseuille flow over the last 60 L/c0 \
-                   of a run, which ends by divergence or at νt/L² = 1.5: medians of runs whose initial \
-                   places are disordered by 1e-6 to 1e-2 dx, without those that are over too soon. In the \
-                   flow the mode is exactly 0. A wave that bounces between the walls has the period 2L/c0. \
-                   Growth is the amplitude at the dominant period in the last 30 L/c0 over that in the 30 \
-                   before.";
+    let caption = format!(
+        "The lowest pressure mode cos(πy/L) of the seed's Poiseuille flow over the last 60 L/c0 of a run, \
+         which ends by divergence or at νt/L² = 1.5: medians of runs whose initial places are disordered by \
+         {} dx, without those that are over too soon. In the flow the mode is exactly 0. A wave that bounces \
+         between the walls has the period 2L/c0. Growth is the amplitude at the dominant period in the last \
+         30 L/c0 over that in the 30 before.",
+        disorder(wave_starts(tier))
+    );
     let mut table = Table::new(caption, columns);
     for rings in found.iter().filter(|rings| !rings.runs.is_empty()) {
         let periods: Vec<String> = rings.runs.iter().map(|r| sig(r.period, 3)).collect();

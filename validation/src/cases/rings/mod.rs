@@ -78,6 +78,7 @@ struct RingVariant {
     variant: Variant,
     run: Run,
     has_stress: bool,
+    courant: f64,
 }
 
 #[rustfmt::skip] // one line a variant: a table
@@ -87,7 +88,8 @@ fn variants() -> Vec<RingVariant> {
         R: Tensile + TensileStress,
         I: Stepping<Symmetric>,
     {
-        RingVariant { variant: Variant { name, about }, run: run::run::<R, I>, has_stress }
+        let courant = RingSettings::default().courant;
+        RingVariant { variant: Variant { name, about }, run: run::run::<R, I>, has_stress, courant }
     }
     type Midpoint = PredictorCorrector<Symmetric>;
     vec![
@@ -98,8 +100,8 @@ fn variants() -> Vec<RingVariant> {
             "the seed without artificial stress", false),
         variant::<ComponentStress, Midpoint>("componentwise",
             "the seed with artificial stress component by component, as the paper writes it", true),
-        variant::<PrincipalStress, Leapfrog>("leapfrog",
-            "the seed with the staggered leapfrog: one right-hand side a step", true),
+        RingVariant { courant: LONG_STEPS, ..variant::<PrincipalStress, Leapfrog>("leapfrog",
+            "the seed with the staggered leapfrog: one right-hand side a step, and longer steps", true) },
     ]
 }
 
@@ -112,7 +114,7 @@ impl RingVariant {
                 return Err(RunError::Unused { key: key.into(), variant });
             }
         }
-        let mut settings = RingSettings::default();
+        let mut settings = RingSettings { courant: self.courant, ..RingSettings::default() };
         settings::apply(&mut settings, set)?;
         Ok(settings)
     }
@@ -124,6 +126,10 @@ pub fn settings(variant: &str, set: &[String]) -> Result<RingSettings, RunError>
 }
 
 const NAME: &str = "rubber_rings";
+
+/// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
+/// is that of the spacing: half of it changes the restitution by 0.15 % of its value.
+const LONG_STEPS: f64 = 0.8;
 
 /// The collision as a [`Case`].
 struct RubberRings;

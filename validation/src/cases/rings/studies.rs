@@ -340,6 +340,7 @@ fn fracture(tier: Tier, runs: &[JudgedRun]) -> Study {
         Column::text("variant"),
         Column::num("speed", "c0"),
         Column::num("spacing", "L"),
+        Column::num("Courant number", "-"),
         Column::num("most pieces", "1"),
         Column::num("pieces at the end", "1"),
         Column::num("restitution", "-"),
@@ -359,8 +360,11 @@ fn fracture(tier: Tier, runs: &[JudgedRun]) -> Study {
             "seed" if pieces == 2.0 => (seeds, whole) = (seeds + 1, whole + 1),
             "seed" => {
                 seeds += 1;
-                let at = [setting(record, "speed"), setting(record, "spacing")];
-                broken.push(format!("at {} c0 and spacing {} L", sig(at[0], 2), sig(at[1], 2)));
+                let [speed, spacing, courant] =
+                    ["speed", "spacing", "courant"].map(|name| sig(setting(record, name), 2));
+                broken.push(format!(
+                    "at {speed} c0, spacing {spacing} L and Courant number {courant}"
+                ));
             }
             "no-artificial-stress" => torn += usize::from(pieces > 2.0),
             _ => {}
@@ -370,6 +374,7 @@ fn fracture(tier: Tier, runs: &[JudgedRun]) -> Study {
             Cell::text(format!("`{}`", record.variant)),
             Cell::num(setting(record, "speed"), 3),
             Cell::num(setting(record, "spacing"), 3),
+            Cell::num(setting(record, "courant"), 2),
             Cell::num(pieces, 3),
             Cell::num(metric(record, "pieces"), 3),
             Cell::num(metric(record, "restitution"), 3),
@@ -379,7 +384,7 @@ fn fracture(tier: Tier, runs: &[JudgedRun]) -> Study {
     }
     let said = match (whole == seeds, torn > 0) {
         (true, true) => "supported".to_string(),
-        (false, true) => format!("supported but {}", broken.join(", ")),
+        (false, true) => format!("supported but {}", broken.join("; ")),
         _ => "refuted here".to_string(),
     };
     let more =
