@@ -162,18 +162,15 @@ impl Neighbours {
 
     /// The order that sorts the placed particles by cell, and inside a cell by place: the same for
     /// any order that they came in.
-    pub fn order(&self, order: &mut Vec<u32>) {
+    pub fn order(&mut self, order: &mut Vec<u32>) {
         let grid = Grid::new(&self.points, self.radius);
+        self.sort_into_cells(&grid);
+        for (&start, &end) in self.cell_starts.iter().zip(&self.cell_starts[1..]) {
+            let cell = &mut self.candidates[start as usize..end as usize];
+            cell.sort_unstable_by(|a, b| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
+        }
         order.clear();
-        order.extend(0..self.points.len() as u32);
-        let place = |&k: &u32| {
-            let p = self.points[k as usize];
-            (grid.index(p), p)
-        };
-        order.sort_unstable_by(|a, b| {
-            let ((cell_a, a), (cell_b, b)) = (place(a), place(b));
-            cell_a.cmp(&cell_b).then(a.y.total_cmp(&b.y)).then(a.x.total_cmp(&b.x))
-        });
+        order.extend(self.candidates.iter().map(|candidate| candidate.column));
     }
 
     /// Builds the rows of the first `fluid` placed particles and of the `wall` ones after them. With
