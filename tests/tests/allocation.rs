@@ -8,9 +8,11 @@ use std::{
     cell::Cell,
 };
 
+use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, Domain, Flow, Integrator, Leapfrog, Observer, Open, Outcome,
-    PredictorCorrector, Pressure, Scene, Simulation, Tait, Viscosity,
+    Compose, Continuity, CubicSpline, DensityDiffusion, Domain, Flow, Ghosts, Integrator, Leapfrog,
+    Observer, Open, Outcome, PlaneWall, PredictorCorrector, Pressure, Scene, Scheme, Shifting,
+    Simulation, Smoothing, Tait, Viscosity,
 };
 use touchstone_tests::patch;
 
@@ -37,23 +39,27 @@ unsafe impl GlobalAlloc for Counting {
 static COUNTING: Counting = Counting;
 
 type Method<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
+type Stabilised = (Continuity, DensityDiffusion, Shifting);
+type Channel = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Stabilised, Ghosts, Leapfrog>;
 
 /// Stops when rows have been built this often.
 struct Builds(u64);
 
-impl<I: Integrator<()>> Observer<Method<I>> for Builds {
-    fn after_step(&mut self, simulation: &Simulation<Method<I>>) -> Flow {
+impl<S: Scheme> Observer<S> for Builds {
+    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
         if simulation.work().list_builds < self.0 { Flow::Continue } else { Flow::Stop }
     }
 }
 
-fn check<I: Integrator<()>>() {
-    let h = 1.3 / 24.0;
+const H: f64 = 1.3 / 24.0;
+
+fn forces() -> (Pressure<Tait>, Viscosity) {
     let pressure = Pressure::new(Tait { background: 0.3, ..Tait::new(1.0, 1.0) });
-    let forces = (pressure, Viscosity { mu: 0.01, eta2: 1e-4 * h * h });
-    let domain = Domain::torus(1.0, 1.0);
-    let scene = Scene::<Method<I>>::new(h, domain, patch(24, 0.3, 3), forces, Continuity, Open);
-    let mut simulation = scene.build().unwrap();
+    (pressure, Viscosity { mu: 0.01, eta2: 1e-4 * H * H })
+}
+
+fn check<S: Scheme>(scene: Scene<S>) {
+    let (h, mut simulation) = (H, scene.build().unwrap());
     // The patch orders itself while it warms up, so rows and images grow no more after it.
     assert_eq!(simulation.advance(1e3, 0.2 * h, &mut Builds(40)), Outcome::Stopped);
     let (work, before) = (simulation.work(), ALLOCATIONS.get());
@@ -62,15 +68,32 @@ fn check<I: Integrator<()>>() {
     let allocations = ALLOCATIONS.get() - before;
     let steps = simulation.work().steps - work.steps;
     assert!(steps > 20, "{steps} steps with 20 builds");
-    assert_eq!(allocations, 0, "{} allocated in {steps} steps", I::NAME);
+    assert_eq!(allocations, 0, "{} allocated in {steps} steps", S::Integrator::NAME);
+}
+
+fn periodic<I: Integrator<()>>() -> Scene<Method<I>> {
+    let domain = Domain::torus(1.0, 1.0);
+    Scene::new(H, domain, patch(24, 0.3, 3), forces(), Continuity, Open)
 }
 
 #[test]
 fn a_step_of_leapfrog_allocates_nothing_even_when_rows_are_rebuilt() {
-    check::<Leapfrog>();
+    check(periodic::<Leapfrog>());
 }
 
 #[test]
 fn a_step_of_the_predictor_corrector_allocates_nothing_even_when_rows_are_rebuilt() {
-    check::<PredictorCorrector>();
+    check(periodic::<PredictorCorrector>());
+}
+
+/// Ghosts come and go with the particles near the walls, and every stabiliser is at work.
+#[test]
+fn a_step_between_ghost_walls_allocates_nothing_either() {
+    let wall = |y, normal| PlaneWall::new(Vector2::new(0.0, y), normal, Vector2::zeros());
+    let walls = Ghosts { walls: vec![wall(0.0, Vector2::y()), wall(1.0, -Vector2::y())] };
+    let dx = 1.0 / 24.0;
+    let w = Smoothing::<CubicSpline>::new(H).w(dx * dx);
+    let drift = (Continuity, DensityDiffusion::new(0.1 * H), Shifting::new(0.5, H, w));
+    let particles = patch(24, 0.3, 3);
+    check(Scene::<Channel>::new(H, Domain::channel(1.0), particles, forces(), drift, walls));
 }

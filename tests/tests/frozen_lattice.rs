@@ -114,7 +114,7 @@ where
     S::Walls: Arrangement,
     S::Integrator: Stepping,
 {
-    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, false).expect("settings");
+    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false).expect("settings");
     let mut simulation = scene::<S>(&setup).build().expect("a scene");
     let model = reduced::<S::Kernel>(&setup, rule(&setup, S::Walls::NAME));
     let name = format!("{flow:?}, {}, {settings:?}", std::any::type_name::<S>());
@@ -180,7 +180,7 @@ where
     S::Walls: Arrangement,
     S::Integrator: Stepping,
 {
-    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, false).expect("settings");
+    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false).expect("settings");
     // A whole number of steps at the coarsest level: the next ones halve it exactly.
     let (_, dt) = division(setup.time(tau), setup.dt);
     let run = |finer: f64| {
@@ -206,7 +206,7 @@ where
 fn check_exponential<K: Kernel, W: Arrangement>(kernel: (f64, f64), wall_curvature: bool) {
     for (flow, tau) in FLOWS.into_iter().flat_map(|flow| [(flow, 0.03), (flow, 0.1)]) {
         let s = ChannelSettings { wall_curvature, ..settings(20, kernel) };
-        let setup = Setup::new::<K, Leapfrog>(flow, &s, false).expect("settings");
+        let setup = Setup::new::<K, Leapfrog>(flow, &s, &[], false).expect("settings");
         let model = reduced::<K>(&setup, rule(&setup, W::NAME));
         let exact = model.at(setup.time(tau)).expect("regular");
         let leapfrog = extrapolated::<Channels<K, W, Leapfrog>>(&s, flow, tau);
@@ -254,7 +254,7 @@ fn check_variant(variant: &validation::cases::channel::ChannelVariant, flow: Flo
         _ => Integrator::PredictorCorrector,
     };
     // The kernel and the integrator decide on the limit of dt only, which is not used here.
-    let setup = Setup::new::<QuinticSpline, Leapfrog>(flow, &settings, true).expect(&name);
+    let setup = Setup::new::<QuinticSpline, Leapfrog>(flow, &settings, &[], true).expect(&name);
     let model = matrix_of(&record, &setup);
     let (mut u, mut before) = (DVector::zeros(model.y.len()), 0.0);
     for tau in TIMES.into_iter().filter(|tau| *tau <= settings.end) {
@@ -285,7 +285,7 @@ fn every_variant_is_its_matrix() {
 fn a_slightly_different_method_is_another_matrix() {
     let setup = |eta2: f64| {
         let s = settings(20, (CUBIC.0, CUBIC.1 * eta2));
-        Setup::new::<CubicSpline, Leapfrog>(Flow::Poiseuille, &s, false).expect("settings")
+        Setup::new::<CubicSpline, Leapfrog>(Flow::Poiseuille, &s, &[], false).expect("settings")
     };
     let at = |eta2: f64, wall: WallRule| {
         let setup = setup(eta2);

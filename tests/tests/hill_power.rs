@@ -151,7 +151,7 @@ where
 fn failed(fault: &Fault) -> (Vec<String>, usize) {
     let (planned, record) = (planned(), run(fault));
     let fails = |gate: &&validation::gate::Gate| {
-        gate.judge(record.metric(&gate.metric)).verdict.is_failure()
+        gate.judge(gate.value(&record)).verdict.is_failure()
     };
     let failed = planned.gates.iter().filter(fails).map(|gate| gate.id.clone()).collect();
     (failed, planned.gates.len())

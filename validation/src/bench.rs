@@ -219,7 +219,7 @@ where
     S::Walls: channel::Arrangement,
     Sweeps: Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Walls: channel::Arrangement>,
 {
-    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, false)?;
+    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false)?;
     let mut whole = channel::scene::<S>(&setup);
     whole.parallel_from = usize::MAX;
     let mut whole = whole.build()?;

@@ -23,6 +23,8 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::record::{Record, Status};
+
 /// Where a metric must lie; the ends belong to the bound.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -138,6 +140,9 @@ pub struct Gate {
     pub purpose: Purpose,
     /// may the metric be missing?
     pub may_be_missing: bool,
+    /// does it judge what was measured of a run that did not reach its end?
+    #[serde(default)]
+    pub even_if_diverged: bool,
 }
 
 /// What is wrong with a gate itself.
@@ -193,6 +198,7 @@ impl Gate {
             because: because.into(),
             purpose: Purpose::Judge,
             may_be_missing: false,
+            even_if_diverged: false,
         };
         match gate.check() {
             Ok(()) => gate,
@@ -218,6 +224,18 @@ impl Gate {
     /// The metric may be missing, as in the quick tier.
     pub fn when_measured(self) -> Self {
         Gate { may_be_missing: true, ..self }
+    }
+
+    /// What was measured before a run diverged counts as well; otherwise it is as good as missing.
+    pub fn even_if_diverged(self) -> Self {
+        Gate { even_if_diverged: true, ..self }
+    }
+
+    /// The number that the gate judges: none of a run that did not reach its end, however good it was
+    /// until then.
+    pub fn value(&self, record: &Record) -> Option<f64> {
+        let counts = record.status == Status::Completed || self.even_if_diverged;
+        if counts { record.metric(&self.metric) } else { None }
     }
 
     /// Has the gate a name, a metric, a sound bound and a reason?

@@ -222,7 +222,7 @@ pub fn run_planned(
 ) -> Result<JudgedRun, RunError> {
     let context = Context { threads: 1, interrupt, keep_particles: true, ..Context::default() };
     let record = case.run(planned.variant, &planned.set, &context)?;
-    let judge = |gate: &Gate| Judged::new(gate.clone(), record.metric(&gate.metric));
+    let judge = |gate: &Gate| Judged::new(gate.clone(), gate.value(&record));
     let judged = planned.gates.iter().map(judge).collect();
     Ok(JudgedRun { case: case.name(), planned, record, judged })
 }

@@ -19,7 +19,7 @@ use validation::{
     exact::{couette::Couette, poiseuille::Poiseuille},
     gate::Gate,
     metrics::norms::{Scale, l2},
-    record::Record,
+    record::{Record, Status},
     runner::Context,
     studies::stability::{self, NoisyBox, Point},
 };
@@ -66,7 +66,8 @@ pub enum Measured {
 impl Measured {
     pub fn value(&self, metric: &str) -> Option<f64> {
         match self {
-            Measured::Record(record) => record.metric(metric),
+            Measured::Record(record) if record.status == Status::Completed => record.metric(metric),
+            Measured::Record(_) => None,
             Measured::Number(value) => Some(*value),
             Measured::Errors(errors) => errors.iter().find(|(m, _)| m == metric).map(|(_, e)| *e),
         }
@@ -276,10 +277,11 @@ where
     let record = if fault.integrator {
         let scene = |setup: &_| spoil::<_, _, _, _, _, I::As>(healthy(setup), fault);
         let run = channel::run_scene::<Faulty<K, B, D, W, I::As>>;
-        run(flow, variant, settings, &context, scene)
+        run(flow, variant, settings, &[], &context, scene)
     } else {
         let scene = |setup: &_| spoil::<_, _, _, _, _, I>(healthy(setup), fault);
-        channel::run_scene::<Faulty<K, B, D, W, I>>(flow, variant, settings, &context, scene)
+        let run = channel::run_scene::<Faulty<K, B, D, W, I>>;
+        run(flow, variant, settings, &[], &context, scene)
     };
     record.expect("a planned run")
 }

@@ -18,13 +18,14 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let folder = OutputFolder::create(&arguments.out)?;
     let suite = verify::run(world.cases, arguments.tier.into(), true, arguments.threads, world)?;
     let path = folder.path().join("index.html");
+    let records = write_records(&suite, &folder)?;
+    let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";
+    folder.write("verdicts.json", verdicts.as_bytes())?;
+    // Records and verdicts are kept even if the page is found to be unsound.
     let page = page::assemble(&suite);
     check_page(&page.html()).map_err(|reason| {
         Failure::bug(anyhow::anyhow!("the page cannot be trusted to open: {reason}"))
     })?;
-    let records = write_records(&suite, &folder)?;
-    let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";
-    folder.write("verdicts.json", verdicts.as_bytes())?;
     // The page last: once it is there, everything that it speaks of is.
     page.write(&path).map_err(|reason| FileError::File { path: path.clone(), reason })?;
     let took = report::seconds(start.elapsed().as_secs_f64());

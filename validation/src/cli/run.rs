@@ -43,7 +43,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     let verdicts: Vec<Judged> = gates_of(case, variant, &settings)
         .into_iter()
         .map(|gate| {
-            let value = record.metric(&gate.metric);
+            let value = gate.value(&record);
             Judged::new(gate, value)
         })
         .collect();

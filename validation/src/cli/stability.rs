@@ -27,12 +27,29 @@ struct Effort {
     halvings: u32,
 }
 
+/// Settings that a case must have.
+const NEEDED: [&str; 3] = ["dt", "end", "jitter"];
+
+fn is_bisected(case: &dyn Case) -> bool {
+    NEEDED.iter().all(|name| case.fields().iter().any(|field| field.name == *name))
+}
+
 /// Steps over the theoretical limit that are tried; the ends are assumed stable and unstable.
 const FROM: f64 = 0.25;
 const TO: f64 = 8.0;
 
 pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
-    let cases = world.choose(&arguments.cases)?;
+    let (cases, rest): (Vec<_>, Vec<_>) =
+        world.choose(&arguments.cases)?.into_iter().partition(|&case| is_bisected(case));
+    if !arguments.cases.is_empty() && !rest.is_empty() {
+        let names: Vec<&str> = rest.iter().map(|case| case.name()).collect();
+        return Err(Failure::usage(anyhow::anyhow!(
+            "{} cannot be bisected here, which takes the settings {}; the limits of other cases are in the \
+             report",
+            names.join(", "),
+            NEEDED.join(", ")
+        )));
+    }
     let effort = match arguments.tier {
         arguments::Tier::Quick => Effort { steps: 400.0, halvings: 7 },
         arguments::Tier::Full => Effort { steps: 4000.0, halvings: 10 },
@@ -43,7 +60,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         .collect();
     let bar = Bar::new(all.len() as u64);
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let found: Result<Vec<Option<Found>>, Failure> = on_threads(arguments.threads, || {
+    let found: Result<Vec<Found>, Failure> = on_threads(arguments.threads, || {
         let find = |&(case, variant): &(&'static dyn Case, &'static str)| {
             let found = find(case, variant, &effort, world)?;
             let count = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
@@ -53,7 +70,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         all.par_iter().map(find).collect()
     });
     bar.clear();
-    let found: Vec<Found> = found?.into_iter().flatten().collect();
+    let found = found?;
     if world.is_interrupted() {
         return Err(Failure::interrupted("no limit is known"));
     }
@@ -104,17 +121,13 @@ fn precision(effort: &Effort) -> f64 {
     0.5 * ((TO / FROM).ln() / f64::from(1_u32 << effort.halvings)).exp_m1()
 }
 
-/// Bisects on the logarithm of dt; `None` for a case without a time step among its settings.
+/// Bisects on the logarithm of dt.
 fn find(
     case: &'static dyn Case,
     variant: &'static str,
     effort: &Effort,
     world: &World,
-) -> Result<Option<Found>, RunError> {
-    let has = |name: &str| case.fields().iter().any(|field| field.name == name);
-    if !["dt", "end", "jitter"].iter().all(|name| has(name)) {
-        return Ok(None);
-    }
+) -> Result<Found, RunError> {
     let context =
         || Context { allow_unstable: true, interrupt: Some(world.interrupt), ..Context::default() };
     let first = case.run(variant, &["end=1e-6".to_string()], &context())?;
@@ -132,5 +145,5 @@ fn find(
         let middle = (between[0] * between[1]).sqrt();
         between[usize::from(!is_stable(middle)?)] = middle;
     }
-    Ok(Some(Found { case: case.name(), variant, limit, between }))
+    Ok(Found { case: case.name(), variant, limit, between })
 }

@@ -81,7 +81,8 @@ impl Case for Staged {
 static RIGHT: Staged = Staged { name: "right", planned: &["right"] };
 static WRONG: Staged = Staged { name: "wrong", planned: &["right", "wrong"] };
 static PANICKING: Staged = Staged { name: "panicking", planned: &["right", "panicking"] };
-static ALL: [&dyn Case; 3] = [&RIGHT, &WRONG, &PANICKING];
+static DIVERGING: Staged = Staged { name: "diverging", planned: &["diverging"] };
+static ALL: [&dyn Case; 4] = [&RIGHT, &WRONG, &PANICKING, &DIVERGING];
 static SOUND: [&dyn Case; 2] = [&RIGHT, &WRONG];
 static NEVER: AtomicBool = AtomicBool::new(false);
 static ALREADY: AtomicBool = AtomicBool::new(true);
@@ -120,6 +121,8 @@ fn a_run_of_the_plan_is_judged_and_another_one_is_not() {
 fn verify_ends_with_the_verdict() {
     assert_eq!(exit("verify right"), Exit::Pass);
     assert_eq!(exit("verify right wrong --tier full --threads 2"), Exit::GateFailed);
+    // Its error was inside the bound until it diverged.
+    assert_eq!(exit("verify diverging"), Exit::GateFailed);
     assert_eq!(exit("verify panicking"), Exit::Bug, "a panic on another thread is one too");
     assert_eq!(exit_with(&ALREADY, "verify right", Path::new("")), Exit::Interrupted);
 }

@@ -231,7 +231,9 @@ impl Map {
             judged.iter().map(|(_, s)| s.failed() as f64 / s.count() as f64).collect();
         let rises = share.windows(2).all(|pair| pair[0] <= pair[1]);
         let (first, last) = (share.first(), share.last());
+        let few = self.tier == Tier::Quick;
         let verdict = match (first, last) {
+            (Some(0.0), Some(1.0)) if rises && few => "indicated by one start a cell",
             (Some(0.0), Some(1.0)) if rises => "supported",
             (_, Some(0.0)) if rises => "refuted here",
             _ => "open",
@@ -283,9 +285,10 @@ impl Map {
             ),
         };
         format!(
-            "**H5** (a lower sound speed stabilises the run) **{}**. Of c0 = {low} V and {high} V, by the \
+            "**H5** (a lower sound speed stabilises the run) **{}{}**. Of c0 = {low} V and {high} V, by the \
              ranges over the starts: {}. {rescue}",
             h5_verdict(first, second, overlap),
+            if self.tier == Tier::Quick { ", from one start a cell" } else { "" },
             words.join("; ")
         )
     }
@@ -476,7 +479,7 @@ fn ringing(re: f64, sound: f64, jitter: f64) -> Option<Ringing> {
     let v = re * defaults.nu / defaults.width;
     let settings = ChannelSettings { re, c0: Some(sound * v), jitter, ..defaults };
     let setup =
-        Setup::new::<CubicSpline, PredictorCorrector>(Flow::Poiseuille, &settings, true).ok()?;
+        Setup::new::<CubicSpline, PredictorCorrector>(Flow::Poiseuille, &settings, &[], true).ok()?;
     let mut simulation = scene::<Seed>(&setup).build().ok()?;
     let crossing = setup.settings.width / setup.eos.sound_speed;
     let scale = setup.settings.rho * setup.v * setup.v;
@@ -549,12 +552,13 @@ fn waves(tier: Tier) -> Study {
     let mut plot =
         Plot::new("", Axis::linear("(t − t_end) c0/L [-]"), Axis::linear("pressure mode [ρV²]"));
     for rings in found.iter().filter(|rings| rings.re == 20.0) {
+        let id = format!("poiseuille.h3.period.c{}", rings.sound);
+        let gate = Gate::new(id, "period", PERIOD, Evidence::Theory, because);
+        // NaN, which fails, if no run filled its window.
+        study = study.judge(gate, rings.median(|run| run.period));
         let Some(run) = rings.typical() else { continue };
         let name = format!("c0/V = {}", rings.sound);
         plot = plot.layer(Series::line(name, run.series.clone()));
-        let id = format!("poiseuille.h3.period.c{}", rings.sound);
-        let gate = Gate::new(id, "period", PERIOD, Evidence::Theory, because);
-        study = study.judge(gate, run.period);
     }
     let plot = plot.layer(Layer::horizontal(0.0, "")).legend(Legend::Auto);
     let figure = Figure::new("poiseuille-waves", caption).panel(plot).panel_size(620.0, 260.0);
@@ -604,7 +608,11 @@ fn h3(found: &[Rings]) -> String {
     };
     let period = |rings: &Rings| sig(rings.median(|run| run.period), 3);
     let amplitude = |rings: &Rings| rings.median(|run| run.amplitude);
-    let verdict = if low.bounces() && high.bounces() { "supported" } else { "open" };
+    let verdict = match (low.bounces() && high.bounces(), slow.bounces()) {
+        (true, true) => "supported",
+        (true, false) => "supported at Re 20, not at Re 5",
+        _ => "open",
+    };
     let slow_rings =
         if slow.bounces() { "rings with that period as well" } else { "does not have that period" };
     let growth: Vec<String> = found

@@ -293,7 +293,7 @@ mod tests {
     fn steady_couette_flow_does_not_show_its_viscosity() {
         let shows = |flow, tau| {
             let settings = ChannelSettings::default();
-            let setup = Setup::new::<CubicSpline, PredictorCorrector>(flow, &settings, true);
+            let setup = Setup::new::<CubicSpline, PredictorCorrector>(flow, &settings, &[], true);
             let setup = setup.expect("the defaults are valid");
             let fluid = setup.rows(0.5 * setup.dx, 20);
             depends_on_viscosity(&setup, &fluid, setup.time(tau))

@@ -35,7 +35,8 @@ where
     let domain = solver::Domain::channel(setup.length());
     let (forces, drift) = (S::Forces::new(setup), S::Drift::new(setup));
     let mut scene = Scene::new(setup.h, domain, particles, forces, drift, S::Walls::walls(setup));
-    scene.skin = (s.skin * setup.h).min(setup.length() - S::Kernel::SUPPORT * setup.h);
+    // Half a period at most; one that is shorter than two supports is refused by the scene itself.
+    scene.skin = (s.skin * setup.h).min(setup.length() - S::Kernel::SUPPORT * setup.h).max(0.0);
     // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
     let speed = 2.0 * (setup.eos.sound_speed + setup.v);
     scene.limits = Limits { density: [0.7 * s.rho, 1.3 * s.rho], speed };
@@ -56,7 +57,18 @@ where
     S::Walls: Arrangement,
     S::Integrator: Stepping,
 {
-    run_scene::<S>(flow, variant, settings, context, scene::<S>)
+    run_scene::<S>(flow, variant, settings, &uses::<S>(), context, scene::<S>)
+}
+
+/// Optional settings that the types of `S` read.
+pub fn uses<S>() -> Vec<&'static str>
+where
+    S: Scheme<Extra = ()>,
+    S::Forces: Ingredient,
+    S::Drift: Ingredient,
+    S::Walls: Arrangement,
+{
+    [S::Forces::uses(), S::Drift::uses(), S::Walls::USES.to_vec()].concat()
 }
 
 /// Runs the scene that `scene` makes of the setup, and measures it against the setup: the same
@@ -65,6 +77,7 @@ pub fn run_scene<S>(
     flow: Flow,
     variant: &str,
     settings: &ChannelSettings,
+    uses: &[&str],
     context: &Context,
     scene: impl FnOnce(&Setup) -> Scene<S>,
 ) -> Result<Record, RunError>
@@ -73,7 +86,8 @@ where
     S::Walls: Arrangement,
     S::Integrator: Stepping,
 {
-    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, context.allow_unstable)?;
+    let setup =
+        Setup::new::<S::Kernel, S::Integrator>(flow, settings, uses, context.allow_unstable)?;
     let mut scene = scene(&setup);
     if context.threads <= 1 {
         scene.parallel_from = usize::MAX;

@@ -18,7 +18,7 @@ crate::settings! {
         /// end of the run
         end: f64 ["L^2/nu"] in 1e-6..=100.0 = 1.0,
         /// smoothing length over spacing
-        h_over_dx: f64 ["-"] in 0.5..=5.0 = 1.2,
+        h_over_dx: f64 ["-"] in 0.8..=5.0 = 1.2,
         /// guard against 0/0 in the viscous term; the seed's 0.01 lowers the viscosity by about 1 %
         eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 0.01,
         /// sound speed; auto: the larger one of Morris' rule and c0_viscous ν/h

@@ -45,20 +45,24 @@ pub struct Setup {
     pub w_at_spacing: f64,
     /// Time step \[s\].
     pub dt: f64,
-    /// Its theoretical limit for sound and viscosity \[s\].
+    /// Its theoretical limit for sound, viscosity and what else damps \[s\].
     pub dt_limit: f64,
 }
 
 /// More steps than this are refused.
 const MOST_STEPS: f64 = 1e9;
+/// A sound speed above the range of the setting is refused, whatever it follows from \[m/s\].
+const MOST_SOUND: f64 = 1e6;
 /// More particles than this are refused.
 const MOST_PARTICLES: f64 = 2e7;
 
 impl Setup {
-    /// Follows the rules for the kernel `K` and the integrator `I`.
+    /// Follows the rules for the kernel `K`, the integrator `I` and terms that read the optional settings
+    /// `uses`.
     pub fn new<K: Kernel, I: Stepping>(
         flow: Flow,
         settings: &ChannelSettings,
+        uses: &[&str],
         allow_unstable: bool,
     ) -> Result<Self, RunError> {
         let s = settings;
@@ -81,7 +85,9 @@ impl Setup {
         let viscous = s.viscous * h * h / s.nu;
         let forced = if force > 0.0 { 0.25 * (h / force).sqrt() } else { f64::INFINITY };
         let dt = s.dt.unwrap_or(courant.min(viscous).min(forced));
-        let medium = Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: 0.0 };
+        let used = |key: &str, value: f64| if uses.contains(&key) { value } else { 0.0 };
+        let (alpha, delta) = (used("alpha", s.alpha), used("diffusion", s.diffusion));
+        let medium = Medium { c0: sound_speed, h, nu: s.nu, alpha, delta };
         let lattice = SquareLattice::<K>::new(s.h_over_dx, s.eta2_over_h2);
         let dt_limit =
             time_step::time_step_limit(&time_step::modes(&lattice, LIMIT_BOX, &medium), I::THEORY);
@@ -104,6 +110,11 @@ impl Setup {
     }
 
     fn check<I: Stepping>(&self, allow_unstable: bool) -> Result<(), RunError> {
+        let c0 = self.eos.sound_speed;
+        if c0 > MOST_SOUND {
+            let (what, setting) = ("the sound speed", "c0, re, nu or width");
+            return Err(RunError::TooMuch { what, value: c0, most: MOST_SOUND, setting });
+        }
         let (dt, limit) = (self.dt, self.dt_limit);
         if dt > limit && !allow_unstable {
             return Err(RunError::TimeStep { dt, limit, integrator: I::NAME });

@@ -7,7 +7,7 @@ use solver::{
 };
 
 use super::{
-    Arrangement, ChannelSettings, Flow, Ingredient, Stepping, ingredients::OPTIONAL, run::run,
+    Arrangement, ChannelSettings, Flow, Ingredient, Stepping, ingredients::OPTIONAL, run::{run, uses},
 };
 use crate::{
     case::{RunError, Variant},
@@ -71,8 +71,7 @@ where
     S::Walls: Arrangement,
     S::Integrator: Stepping,
 {
-    let uses = || [S::Forces::uses(), S::Drift::uses(), S::Walls::USES.to_vec()].concat();
-    ChannelVariant { variant: Variant { name, about }, adjust, run: run::<S>, uses }
+    ChannelVariant { variant: Variant { name, about }, adjust, run: run::<S>, uses: uses::<S> }
 }
 
 /// Quintic spline, h = dx, η² a mere guard, long steps, c0 up to where sound costs no step.

@@ -76,7 +76,10 @@ fn invariants(variant: &str, id: &str) -> Vec<Gate> {
         gate(id, "mach", Bound::Below(0.3), Evidence::Theory, slow),
     ];
     match variant {
-        "ghosts" => gates.into_iter().map(|gate| gate.with_limitation(MIRRORED)).collect(),
+        "ghosts" => {
+            let limited = |gate: Gate| gate.with_limitation(MIRRORED).even_if_diverged();
+            gates.into_iter().map(limited).collect()
+        }
         _ => gates,
     }
 }

@@ -56,8 +56,8 @@ crate::settings! {
         h_over_dx: f64 ["-"] in 0.9..=3.0 = 1.5,
         /// time step; auto: courant h/(c_p + speed), c_p = ((K + 4 mu/3)/rho)^(1/2)
         dt: Option<f64> ["s"] in 1e-15..=1e6 = None,
-        /// Courant number of the time step
-        courant: f64 ["-"] in 1e-6..=10.0 = 0.4,
+        /// Courant number of the time step: half the theoretical limit
+        courant: f64 ["-"] in 1e-6..=10.0 = 0.6,
         /// linear artificial viscosity
         alpha: f64 ["-"] in 0.0..=10.0 = 1.0,
         /// quadratic artificial viscosity

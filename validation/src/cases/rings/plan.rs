@@ -51,8 +51,10 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
             {
                 continue;
             }
-            // What depends on the axes is broken at any spacing.
-            let is_coarse = tier == Tier::Quick || variant == "componentwise";
+            // What depends on the axes is broken at any spacing, and slow rings without artificial stress
+            // are torn at the paper's speed already.
+            let is_slow = variant == "no-artificial-stress" && speed < 0.059;
+            let is_coarse = tier == Tier::Quick || variant == "componentwise" || is_slow;
             for &spacing in if is_coarse { &[0.2][..] } else { &[0.2, 0.1] } {
                 let set = [format!("spacing={spacing}"), format!("speed={speed}")];
                 let run = Planned::new(variant, &set).taking(seconds(spacing));
@@ -155,8 +157,8 @@ fn invariants(variant: &str, id: &str) -> Vec<Gate> {
     let budget = "what all terms add is what the energy changes by; powers at 200 times by the trapezoidal \
                   rule leave about (dt/period)²/12 of a wave through the thickness, which carries some of it";
     let courant = "R8: waves of pressure and shear together travel at c_p, not at c0; theory allows about \
-                   1.2 with this artificial viscosity, and a step of the case is a third of it, or two thirds";
-    let most = if variant == "leapfrog" { LONG_STEPS } else { 0.4 };
+                   1.2 with this artificial viscosity, and a step of the case is half of it, or two thirds";
+    let most = if variant == "leapfrog" { LONG_STEPS } else { 0.6 };
     vec![
         gate(id.into(), "momentum", Bound::Below(1e-12), Evidence::Invariant, momentum),
         gate(id.into(), "courant", Bound::Below(most + 1e-7), Evidence::Theory, courant),

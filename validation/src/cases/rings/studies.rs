@@ -541,7 +541,7 @@ fn maps(case: &'static dyn Case) -> Study {
         .iter()
         .flat_map(|n| XI.iter().map(move |xi| (n, xi)))
         .map(|(n, xi)| vec![set("xi", xi.to_string()), set("stress_exponent", n.to_string())])
-        .chain(N.iter().flat_map(|_| ALPHA.iter()).take(ALPHA.len()).map(|alpha| {
+        .chain(ALPHA.iter().map(|alpha| {
             vec![set("alpha", alpha.to_string()), set("beta", (2.0 * alpha).to_string())]
         }))
         .collect();
