@@ -114,7 +114,8 @@ where
     S::Walls: Arrangement,
     S::Integrator: Stepping,
 {
-    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false).expect("settings");
+    let setup =
+        Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false).expect("settings");
     let mut simulation = scene::<S>(&setup).build().expect("a scene");
     let model = reduced::<S::Kernel>(&setup, rule(&setup, S::Walls::NAME));
     let name = format!("{flow:?}, {}, {settings:?}", std::any::type_name::<S>());
@@ -180,7 +181,8 @@ where
     S::Walls: Arrangement,
     S::Integrator: Stepping,
 {
-    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false).expect("settings");
+    let setup =
+        Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false).expect("settings");
     // A whole number of steps at the coarsest level: the next ones halve it exactly.
     let (_, dt) = division(setup.time(tau), setup.dt);
     let run = |finer: f64| {

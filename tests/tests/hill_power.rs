@@ -150,9 +150,8 @@ where
 /// Gates that this fault fails, and how many there are.
 fn failed(fault: &Fault) -> (Vec<String>, usize) {
     let (planned, record) = (planned(), run(fault));
-    let fails = |gate: &&validation::gate::Gate| {
-        gate.judge(gate.value(&record)).verdict.is_failure()
-    };
+    let fails =
+        |gate: &&validation::gate::Gate| gate.judge(gate.value(&record)).verdict.is_failure();
     let failed = planned.gates.iter().filter(fails).map(|gate| gate.id.clone()).collect();
     (failed, planned.gates.len())
 }

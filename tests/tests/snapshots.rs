@@ -96,7 +96,10 @@ fn is_kept(case: &dyn Case, planned: &Planned) -> bool {
     // Theory is that of the lattice: on a disordered one only its gate means something.
     let is_ordered = !planned.set.iter().any(|set| set.starts_with("jitter"));
     let is_modern = flow.is_some() && planned.variant == "modern" && is_slow(planned);
-    is_ladder || is_modern || (case.name().ends_with("_wave") && is_ordered) || is_kept_solid(case, planned)
+    is_ladder
+        || is_modern
+        || (case.name().ends_with("_wave") && is_ordered)
+        || is_kept_solid(case, planned)
 }
 
 /// Re 0.0125, 0.5 and 1: where disorder has not made much of a rounding.

@@ -7,7 +7,7 @@ use super::{figure::Figure, render};
 /// Pixels of a film per CSS pixel: half of what a figure has, for the size of the page.
 const DENSITY: u32 = 1;
 /// Bits of a colour channel that are kept: edges stay smooth, and the file is a third smaller.
-const BITS: u8 = 5;
+const BITS: u8 = 4;
 
 /// Frames of one size, shown in order and again from the start.
 #[derive(Debug, Clone, PartialEq)]

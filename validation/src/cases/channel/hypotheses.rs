@@ -479,7 +479,8 @@ fn ringing(re: f64, sound: f64, jitter: f64) -> Option<Ringing> {
     let v = re * defaults.nu / defaults.width;
     let settings = ChannelSettings { re, c0: Some(sound * v), jitter, ..defaults };
     let setup =
-        Setup::new::<CubicSpline, PredictorCorrector>(Flow::Poiseuille, &settings, &[], true).ok()?;
+        Setup::new::<CubicSpline, PredictorCorrector>(Flow::Poiseuille, &settings, &[], true)
+            .ok()?;
     let mut simulation = scene::<Seed>(&setup).build().ok()?;
     let crossing = setup.settings.width / setup.eos.sound_speed;
     let scale = setup.settings.rho * setup.v * setup.v;

@@ -86,7 +86,7 @@ fn profiles(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
     if let Some(record) = run_of(flow, tier, runs, best, 20) {
         figure = figure.panel(error_panel(record));
     }
-    let mut study = Study::new(id, "Velocity profiles");
+    let mut study = Study::new(id, "Velocity profiles").prose(ASSUMED);
     if let Some(record) = run_of(flow, tier, runs, "seed", 20) {
         let walls = run_of(flow, tier, runs, "interface-wall", 20);
         study = study.block(Block::List(verdicts(flow, record, walls)));
@@ -97,6 +97,12 @@ fn profiles(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
         _ => study,
     }
 }
+
+const ASSUMED: &str = "Assumed where the paper is silent or its scan is damaged: plates 1 mm apart, water (ρ = \
+    1000 kg/m³, ν = 10⁻⁶ m²/s), V from Re = V L/ν, in Poiseuille flow the speed of the centre line; a \
+    periodic section as short as two supports allow, for the flow does not depend on x; the \
+    predictor-corrector read as the explicit midpoint rule; a square lattice at rest, rows half a spacing \
+    from ghost walls, and on the plates where there are interface particles.";
 
 /// H1, H2 and M4 of the paper in words.
 fn verdicts(flow: Flow, seed: &Record, walls: Option<&Record>) -> Vec<String> {

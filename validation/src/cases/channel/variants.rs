@@ -7,7 +7,9 @@ use solver::{
 };
 
 use super::{
-    Arrangement, ChannelSettings, Flow, Ingredient, Stepping, ingredients::OPTIONAL, run::{run, uses},
+    Arrangement, ChannelSettings, Flow, Ingredient, Stepping,
+    ingredients::OPTIONAL,
+    run::{run, uses},
 };
 use crate::{
     case::{RunError, Variant},

@@ -353,7 +353,7 @@ fn film(case: &'static dyn Case) -> Result<Film, String> {
     let record = case.run("modern", &set, &context).map_err(|error| error.to_string())?;
     let frame = |k: usize| {
         let map = picture(&record, k as f64 / (FRAMES - 1) as f64, (1.61 / 0.3, 2.0));
-        Figure::new("frame", "").panel(map).panel_size(430.0, 160.0)
+        Figure::new("frame", "").panel(map).panel_size(380.0, 145.0)
     };
     let frames: Vec<Figure> = (0..FRAMES).map(frame).collect();
     let caption = format!(

@@ -297,16 +297,16 @@ fn film(case: &'static dyn Case) -> Result<Film, String> {
     let axes = axes(&record, &shares);
     let frame = |share: &f64| {
         let map = picture(&record, *share, &time(*share), axes.clone());
-        Figure::new("frame", "").panel(map).panel_size(400.0, 200.0)
+        Figure::new("frame", "").panel(map).panel_size(350.0, 175.0)
     };
     let frames: Vec<Figure> = shares.iter().map(frame).collect();
     let caption = "The same collision as a film: spacing 0.2 L, variant `seed`, 0.059 c0 each, to t = 200 \
                    L/c0, coloured by the largest principal stress.";
-    Film::new("rubber-rings-film", caption, &frames, 160)
+    Film::new("rubber-rings-film", caption, &frames, 200)
 }
 
 /// Pictures of the film.
-const FRAMES: usize = 26;
+const FRAMES: usize = 21;
 
 fn time(share: f64) -> String {
     format!("t = {} L/c0", sig(200.0 * share, 3))
