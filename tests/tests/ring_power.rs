@@ -48,7 +48,7 @@ const FAULTS: [Fault; 5] = [
         time_step: |r| (r.cp + r.v) / (r.c0 + r.v),
         ..NONE
     },
-    Fault { name: "stress of the neighbour alone", own_side: 0.0, ..NONE },
+    Fault { name: "own stress x 0.99", own_side: 0.99, ..NONE },
 ];
 
 /// (9) with a weight for the particle's own stress.

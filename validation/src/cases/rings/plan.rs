@@ -51,10 +51,8 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
             {
                 continue;
             }
-            // What depends on the axes is broken at any spacing, and slow rings without artificial stress
-            // are torn at the paper's speed already.
-            let is_slow = variant == "no-artificial-stress" && speed < 0.059;
-            let is_coarse = tier == Tier::Quick || variant == "componentwise" || is_slow;
+            // What depends on the axes is broken at any spacing.
+            let is_coarse = tier == Tier::Quick || variant == "componentwise";
             for &spacing in if is_coarse { &[0.2][..] } else { &[0.2, 0.1] } {
                 let set = [format!("spacing={spacing}"), format!("speed={speed}")];
                 let run = Planned::new(variant, &set).taking(seconds(spacing));
@@ -63,9 +61,12 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
         }
     }
     if tier == Tier::Full {
-        // Whether rings of ten layers hold at 0.12 c0 depends on the step.
-        let set = ["spacing=0.1", "speed=0.12", "courant=0.8"].map(String::from);
-        runs.push(Planned::new("seed", &set).taking(seconds(0.1)));
+        // Whether rings of ten layers hold depends on the step at 0.12 c0, and on strength and reach.
+        for more in [&["speed=0.12", "courant=0.8"][..], &["xi=0.1"], &["h_over_dx=1.2"]] {
+            let set: Vec<String> =
+                ["spacing=0.1"].iter().chain(more).map(|text| text.to_string()).collect();
+            runs.push(Planned::new("seed", &set).taking(seconds(0.1)));
+        }
         let set = ["spacing=0.2".into(), format!("angle={ANGLE}")];
         runs.extend(["seed", "componentwise"].map(|variant| Planned::new(variant, &set)));
     }
@@ -106,16 +107,30 @@ fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
     } else {
         mirror
     });
+    gates.extend(reference_gates(&id(), spacing));
+    gates
+}
+
+/// Distances from finite elements; no setting was chosen with those at 0.03 c0.
+fn reference_gates(id: &str, spacing: f64) -> Vec<Gate> {
+    let mut gates = Vec::new();
     let first_order = "a surface of particles is known to about a spacing, and sums are short of \
                        neighbours there: first order in dx/thickness, with a factor of a half";
     let allowed = 0.5 * spacing;
     for metric in ["restitution_error", "height_max_error"] {
-        gates.push(gate(id(), metric, Bound::Below(allowed), Evidence::Reference, first_order));
+        gates.push(gate(
+            id.into(),
+            metric,
+            Bound::Below(allowed),
+            Evidence::Reference,
+            first_order,
+        ));
     }
-    gates.extend(phase_gates(&id(), spacing, allowed));
+    gates.extend(phase_gates(id, spacing, allowed));
     let soft = "the same; a ring of few layers is too soft in bending, as published SPH beams are by 7 \
                 to 12 %, and is flattened more";
-    let width = gate(id(), "width_min_error", Bound::Below(allowed), Evidence::Reference, soft);
+    let width =
+        gate(id.into(), "width_min_error", Bound::Below(allowed), Evidence::Reference, soft);
     gates.push(width.with_limitation(
         "rings of 5 and 10 layers are flattened further than finite elements by more than that; it falls \
          with the spacing",
@@ -140,8 +155,9 @@ fn phase_gates(id: &str, spacing: f64, allowed: f64) -> Vec<Gate> {
     let impulse = |metric: &str| {
         gate(metric, Bound::Below(allowed), because).with_limitation(
             "rings of 10 and 20 layers share the impulse otherwise: 5 to 6 % less in the first phase, 6 to \
-             7 % more in the second, and it hardly falls with the spacing; why is not known. Not viscosity, \
-             for a quarter of it leaves 4 and 6 %, and not XSPH, without which it is 6 and 6 %",
+             7 % more in the second, at 0.03 c0 7 and 12 %. One error seen twice, for the sum goes with the \
+             restitution. Viscosity has a part in it (a quarter leaves 4 and 6 %), XSPH has none; the rest is \
+             not explained",
         )
     };
     vec![phases, impulse("impulse_error@phase1"), impulse("impulse_error@phase2")]
@@ -152,16 +168,16 @@ const MIRROR: &str = "the scene is its own mirror image to the last bit; sums ta
 
 fn invariants(variant: &str, id: &str) -> Vec<Gate> {
     let momentum = "forces of pairs are equal and opposite, so only round-off is left";
-    let gained =
-        "nothing drives the rings: stabilisation only takes energy; stress rates in time leave 1 %";
+    let gained = "nothing drives the rings: artificial stress gives less than viscosity takes; stress rates in \
+                  time leave 1 %";
     let budget = "what all terms add is what the energy changes by; powers at 200 times by the trapezoidal \
                   rule leave about (dt/period)²/12 of a wave through the thickness, which carries some of it";
-    let courant = "R8: waves of pressure and shear together travel at c_p, not at c0; theory allows about \
-                   1.2 with this artificial viscosity, and a step of the case is half of it, or two thirds";
+    let courant = "the step is the one that was set, for waves of pressure and shear together, at c_p and not at \
+                   c0 (R8): half of what theory allows, about 1.2 with this artificial viscosity, or two thirds";
     let most = if variant == "leapfrog" { LONG_STEPS } else { 0.6 };
     vec![
         gate(id.into(), "momentum", Bound::Below(1e-12), Evidence::Invariant, momentum),
-        gate(id.into(), "courant", Bound::Below(most + 1e-7), Evidence::Theory, courant),
+        gate(id.into(), "courant", Bound::Below(most + 1e-7), Evidence::Invariant, courant),
         gate(id.into(), "energy_gained", Bound::Below(0.01), Evidence::Invariant, gained),
         gate(id.into(), "energy_gap", Bound::Below(0.02), Evidence::Invariant, budget),
     ]
@@ -186,9 +202,7 @@ fn fast_gates(variant: &str, spacing: f64, speed: f64) -> Vec<Gate> {
         _ => pieces.reported(),
     });
     if variant == "seed" && speed == 0.03 {
-        let because = "as at the paper's speed, and no setting was chosen with this one";
-        let bound = Bound::Below(0.5 * spacing);
-        gates.push(gate(id(), "restitution_error", bound, Evidence::Reference, because));
+        gates.extend(reference_gates(&id(), spacing));
     }
     gates
 }
