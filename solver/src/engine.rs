@@ -302,7 +302,8 @@ impl<S: Scheme> Engine<S> {
         for (k, image) in self.neighbours.images.iter().enumerate() {
             let source = image.source as usize;
             if source >= first {
-                self.columns[real + k] = maps[image.map as usize].apply(&self.columns[source]);
+                let map = &maps[image.map as usize];
+                self.columns[real + k] = map.apply(&self.columns[source], S::Walls::SLIPS);
             }
         }
     }

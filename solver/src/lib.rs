@@ -50,4 +50,4 @@ pub use terms::{
     Hydrostatic, JaumannRate, Pressure, PrincipalStress, ShiftAdvection, Shifting, Term, Viscosity,
     Xsph,
 };
-pub use walls::{ExtrapolatingWall, Ghosts, InterfaceWall, NoSlip, Open, PlaneWall};
+pub use walls::{ExtrapolatingWall, Ghosts, InterfaceWall, NoSlip, Open, PlaneWall, SlipGhosts};

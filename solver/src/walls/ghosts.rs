@@ -63,3 +63,101 @@ impl<X> Walls<X> for Ghosts {
         &self.walls
     }
 }
+
+/// Walls represented by ghosts along which the fluid slips: as [`Ghosts`], but an image is the mirror of
+/// the whole particle, velocity included, v − 2\[(v − U)·n\]n = v − 2(v·n)n, and across a corner −v. The
+/// motion U of a wall along itself, and its curvature, have no effect.
+///
+/// Pressure (5) and continuity (3) then do no work on these walls, in any arrangement: what the image of j
+/// does to i is the mirror of what the image of i does to j. Images of a no-slip wall do work on the
+/// velocity along it (what is left of −2 Σ m m' (p'/ρ'²) v_t·∇W).
+#[derive(Clone, Debug, Default)]
+pub struct SlipGhosts {
+    /// The walls.
+    pub walls: Vec<PlaneWall>,
+}
+
+impl<X> Walls<X> for SlipGhosts {
+    type Rows = ();
+    fn rows(&self) {}
+    const SLIPS: bool = true;
+    fn mirrors(&self) -> &[PlaneWall] {
+        &self.walls
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Compose, Continuity, Domain, EquationOfState, Leapfrog, Particle, Pressure, Scene, Tait,
+        WendlandC2,
+    };
+
+    type Method<W> = Compose<WendlandC2, Pressure<Tait>, Continuity, W, Leapfrog>;
+
+    const EOS: Tait = Tait { density: 2.0, sound_speed: 9.0, gamma: 7, background: 0.0 };
+
+    /// A bottom and two sides.
+    fn tank() -> Vec<PlaneWall> {
+        let wall = |x, y, normal| PlaneWall::new(Vector2::new(x, y), normal, Vector2::zeros());
+        let (x, y) = (Vector2::x(), Vector2::y());
+        vec![wall(0.0, 0.0, y), wall(0.0, 0.0, x), wall(1.0, 0.0, -x)]
+    }
+
+    /// Disordered water in the tank, each velocity a number of the row `random`, or all the same.
+    fn water(uniform: Option<Vector2<f64>>) -> Vec<Particle> {
+        let mut state = 1u32;
+        let mut random = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
+        };
+        crate::lattice(Vector2::repeat(0.05), 0.1, 10, 6)
+            .map(|x| {
+                let place = x + Vector2::new(random(), random()) * 0.08;
+                let velocity = Vector2::new(random(), random());
+                let density = 2.0 + 0.2 * random();
+                Particle::fluid(place, uniform.unwrap_or(velocity), density, 0.01)
+            })
+            .collect()
+    }
+
+    /// What pressure and continuity together do to kinetic and compression energy, over what each does;
+    /// and the largest |dρ/dt| of particles that no side reaches.
+    fn work_and_rate<W: Walls<()>>(walls: W, particles: Vec<Particle>) -> [f64; 2] {
+        let (pressure, domain) = (Pressure::new(EOS), Domain::open());
+        let scene = Scene::<Method<W>>::new(0.15, domain, particles, pressure, Continuity, walls);
+        let mut simulation = scene.build().expect("a scene");
+        simulation.advance(0.0, 1.0, &mut ());
+        let [pushed, squeezed] = [simulation.rates(&pressure), simulation.rates(&Continuity)];
+        let (mut sum, mut all, mut fastest) = (0.0f64, 0.0f64, 0.0f64);
+        for (k, (mass, p)) in simulation.fluid().enumerate() {
+            let kinetic = mass * p.velocity.dot(&pushed[k].velocity);
+            let stress = EOS.pressure(p.density) / (p.density * p.density);
+            let compression = mass * stress * squeezed[k].density;
+            sum += kinetic + compression;
+            all += kinetic.abs() + compression.abs();
+            if (0.35..0.65).contains(&p.position.x) {
+                fastest = fastest.max(squeezed[k].density.abs());
+            }
+        }
+        [sum / all, fastest]
+    }
+
+    #[test]
+    fn walls_along_which_water_slips_do_no_work_in_any_disorder() {
+        let [work, _] = work_and_rate(SlipGhosts { walls: tank() }, water(None));
+        assert!(work.abs() < 1e-14, "{work:e}");
+        let [work, _] = work_and_rate(Ghosts { walls: tank() }, water(None));
+        assert!(work.abs() > 1e-3, "images with the opposite velocity do: {work:e}");
+    }
+
+    #[test]
+    fn a_uniform_flow_along_a_wall_where_it_slips_keeps_its_density() {
+        let along = || water(Some(Vector2::new(3.0, 0.0)));
+        let [_, rate] = work_and_rate(SlipGhosts { walls: tank() }, along());
+        assert!(rate < 1e-13, "{rate:e}");
+        let [_, rate] = work_and_rate(Ghosts { walls: tank() }, along());
+        assert!(rate > 0.1, "images with the opposite velocity sum disorder: {rate:e}");
+    }
+}

@@ -9,10 +9,10 @@ use crate::{numbers::Numbers, particles::Column};
 /// What turns a particle, or an image of it, into an image.
 #[derive(Clone, Copy, Debug)]
 pub enum Map {
-    /// The ghost across a no-slip wall: x' = x − 2dn, v' = 2U − v + d² ∂²v/∂n², at the depth d of
-    /// the source in the fluid.
+    /// The ghost across a wall: x' = x − 2dn, v' = 2U − v + d² ∂²v/∂n², at the depth d of the source
+    /// in the fluid; where the fluid slips v' = v − 2(v·n)n.
     Mirror(PlaneWall),
-    /// The ghost across both walls of a corner there \[m\]: x' = 2c − x, v' = v.
+    /// The ghost across both walls of a corner there \[m\]: x' = 2c − x, v' = v; where it slips −v.
     Turn(Vector2<f64>),
     /// The copy a period away: x' = x + s \[m\].
     Shift(Vector2<f64>),
@@ -34,11 +34,17 @@ impl Map {
         }
     }
 
-    /// The image of a column. Scalars (density, pressure) are those of the source.
+    /// The image of a column, `slip` being [`super::Walls::SLIPS`]. Scalars (density, pressure) are those
+    /// of the source.
     #[inline(always)]
-    pub fn apply<S: Numbers>(&self, source: &Column<S>) -> Column<S> {
+    pub fn apply<S: Numbers>(&self, source: &Column<S>, slip: bool) -> Column<S> {
         let position = self.place(source.position);
         match self {
+            Self::Mirror(wall) if slip => {
+                let across = wall.normal * source.velocity.dot(&wall.normal);
+                Column { position, velocity: source.velocity - across * 2.0, ..*source }
+            }
+            Self::Turn(_) if slip => Column { position, velocity: -source.velocity, ..*source },
             Self::Mirror(wall) => {
                 let depth = wall.depth(source.position);
                 let velocity =
@@ -66,11 +72,13 @@ mod tests {
         let along = Vector2::new(0.8, 0.6);
         let position = point + along * 5.0 + normal * 0.25;
         let source = Column { position, velocity: Vector2::new(1.0, 7.0), common, shows: 9.0 };
-        let ghost = map.apply(&source);
+        let ghost = map.apply(&source, false);
         assert!((ghost.position - (point + along * 5.0 - normal * 0.25)).norm() < 1e-14);
         let expected = velocity * 2.0 - source.velocity + Vector2::new(0.0, 3.0) * 0.0625;
         assert!((ghost.velocity - expected).norm() < 1e-14);
         assert_eq!((ghost.common.density, ghost.shows), (2.0, 9.0));
+        let mirrored = map.apply(&source, true).velocity - source.velocity;
+        assert!((mirrored + normal * (2.0 * source.velocity.dot(&normal))).norm() < 1e-14);
         let back = map.place(ghost.position) - position;
         assert!(back.norm() < 1e-14, "mirroring twice is the identity");
     }
@@ -84,11 +92,16 @@ mod tests {
         let common = Common { mass: 1.0, density: 2.0, volume: 0.5 };
         let velocity = Vector2::new(1.0, 7.0);
         let source = Column { position: Vector2::new(1.3, 2.9), velocity, common, shows: 9.0 };
-        let ghost = Map::corner([&walls[0], &walls[1]]).apply(&source);
-        for twice in [a.apply(&b.apply(&source)), b.apply(&a.apply(&source))] {
-            assert!((ghost.position - twice.position).norm() < 1e-14);
-            assert!((ghost.velocity - twice.velocity).norm() < 1e-14);
+        let corner_map = Map::corner([&walls[0], &walls[1]]);
+        for slip in [false, true] {
+            let ghost = corner_map.apply(&source, slip);
+            let [a, b] = [a, b].map(|map| move |column: &Column<f64>| map.apply(column, slip));
+            for twice in [a(&b(&source)), b(&a(&source))] {
+                assert!((ghost.position - twice.position).norm() < 1e-14);
+                assert!((ghost.velocity - twice.velocity).norm() < 1e-14);
+            }
         }
+        let ghost = corner_map.apply(&source, false);
         assert!((ghost.position + source.position - corner * 2.0).norm() < 1e-14, "half a turn");
     }
 }

@@ -7,7 +7,7 @@ mod image;
 mod interface;
 
 pub use extrapolating::{ExtrapolatingWall, NoSlip, WallVelocity};
-pub use ghosts::{Ghosts, PlaneWall};
+pub use ghosts::{Ghosts, PlaneWall, SlipGhosts};
 pub(crate) use ghosts::{RIGHT_ANGLE, corners};
 pub use image::Map;
 pub use interface::InterfaceWall;
@@ -24,6 +24,8 @@ pub trait Walls<X>: Clone + Send + Sync + 'static {
     const EXTRAPOLATES: bool = false;
     /// Those terms.
     fn rows(&self) -> Self::Rows;
+    /// Whether images in [`Walls::mirrors`] keep the velocity along the wall.
+    const SLIPS: bool = false;
     /// Walls that mirror the fluid.
     fn mirrors(&self) -> &[PlaneWall] {
         &[]

@@ -326,7 +326,7 @@ fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
     match (tier, variant) {
         (Tier::Quick, "seed") => &[20],
         (Tier::Quick, _) => &[20, 40],
-        (Tier::Full, _) => &[20, 40, 80, 160],
+        (Tier::Full, _) => &[20, 40, 80],
     }
 }
 
@@ -335,6 +335,7 @@ fn plan(tier: Tier) -> Vec<Planned> {
     for variant in ["seed", "modern", "plain"] {
         for n in ladder(tier, variant) {
             let run = Planned::new(variant, &[format!("n={n}")]);
+            let run = run.taking(0.7 * (*n as f64 / 40.0).powi(3));
             runs.push(run.judged(gates(&format!("{variant}.{n}"), *n)));
         }
     }

@@ -1,7 +1,7 @@
 //! An open rectangular tank: a bottom, two sides, and no lid.
 
 use nalgebra::Vector2;
-use solver::{Ghosts, PlaneWall, lattice};
+use solver::{PlaneWall, lattice};
 
 /// The inside of a tank, from its lower left corner at the origin.
 ///
@@ -65,15 +65,10 @@ impl Tank {
     }
 
     /// Walls that mirror the fluid: bottom, left and right side, of infinite height.
-    pub fn ghosts(&self) -> Ghosts {
+    pub fn mirrors(&self) -> Vec<PlaneWall> {
         let wall = |point, normal| PlaneWall::new(point, normal, Vector2::zeros());
         let (origin, right) = (Vector2::zeros(), Vector2::new(self.width(), 0.0));
-        let walls = vec![
-            wall(origin, Vector2::y()),
-            wall(origin, Vector2::x()),
-            wall(right, -Vector2::x()),
-        ];
-        Ghosts { walls }
+        vec![wall(origin, Vector2::y()), wall(origin, Vector2::x()), wall(right, -Vector2::x())]
     }
 }
 
@@ -115,9 +110,9 @@ mod tests {
     }
 
     #[test]
-    fn ghosts_face_the_water() {
+    fn mirrors_face_the_water() {
         let middle = Vector2::new(0.5 * TANK.width(), 0.3);
-        for wall in TANK.ghosts().walls {
+        for wall in TANK.mirrors() {
             assert!((middle - wall.point).dot(&wall.normal) > 0.0);
         }
     }

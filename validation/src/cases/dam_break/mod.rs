@@ -5,6 +5,7 @@
 //! exact, momentum follows gravity and the force of the walls, and every term accounts for its energy.
 
 mod ablation;
+mod cost;
 mod measure;
 mod plan;
 mod reference;
@@ -16,7 +17,7 @@ mod studies;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
     DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, PredictorCorrector,
-    Pressure, Scheme, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+    Pressure, Scheme, SlipGhosts, Tait, WendlandC2, Xsph, terms::Hydrostatic,
 };
 
 pub use run::{Watched, run_scene};
@@ -155,6 +156,11 @@ fn ablations() -> Vec<WaterVariant<DamSettings>> {
                 Midpoint,
             >,
         >("seed-wendland", "the seed with Wendland C2", seed),
+        variant::<Seed<SlipGhosts>>(
+            "ghosts-slip",
+            "the seed with ghosts that keep the velocity along the wall",
+            seed,
+        ),
         variant::<Modern<Continuity>>("modern-bare", "modern without density diffusion", modern),
         variant::<Modern<(Continuity, DensityDiffusion)>>(
             "modern-plain-diffusion",
@@ -164,6 +170,16 @@ fn ablations() -> Vec<WaterVariant<DamSettings>> {
         variant::<Modern<(Continuity, Diffusion), InterfaceWall>>(
             "modern-interface",
             "modern with interface and wall particles",
+            modern,
+        ),
+        variant::<Modern<(Continuity, Diffusion), Ghosts>>(
+            "modern-ghosts",
+            "modern with ghosts",
+            modern,
+        ),
+        variant::<Modern<(Continuity, Diffusion), SlipGhosts>>(
+            "modern-ghosts-slip",
+            "modern with ghosts that keep the velocity along the wall",
             modern,
         ),
     ]

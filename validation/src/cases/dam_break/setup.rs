@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use solver::{
     Domain, EquationOfState, ExtrapolatingWall, Ghosts, InterfaceWall, Kernel, Limits, Particle,
-    Role, Scene, Scheme, Tait, walls::Walls,
+    Role, Scene, Scheme, SlipGhosts, Tait, walls::Walls,
 };
 
 use super::DamSettings;
@@ -82,18 +82,24 @@ impl Vessel for InterfaceWall {
     }
 }
 
-impl Vessel for Ghosts {
-    const NAME: &'static str = "ghosts";
-    const ON_SURFACE: bool = false;
+macro_rules! mirrored_vessel {
+    ($($walls:ident = $name:literal),+) => {$(
+        impl Vessel for $walls {
+            const NAME: &'static str = $name;
+            const ON_SURFACE: bool = false;
 
-    fn new(_: &Medium, tank: &Tank) -> Self {
-        tank.ghosts()
-    }
+            fn new(_: &Medium, tank: &Tank) -> Self {
+                Self { walls: tank.mirrors() }
+            }
 
-    fn particles(_: &Medium, _: &Tank, _: f64) -> Vec<Particle> {
-        Vec::new()
-    }
+            fn particles(_: &Medium, _: &Tank, _: f64) -> Vec<Particle> {
+                Vec::new()
+            }
+        }
+    )+};
 }
+
+mirrored_vessel!(Ghosts = "ghosts", SlipGhosts = "ghosts along which water slips");
 
 impl Vessel for ExtrapolatingWall<Tait> {
     const NAME: &'static str = "extrapolating wall";

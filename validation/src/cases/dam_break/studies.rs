@@ -2,7 +2,7 @@
 //! energies, and error against run time.
 
 use super::{
-    ablation,
+    ablation, cost,
     measure::{PROBES, SENSORS},
     plan::{self, FRONT_SPREAD, PEERS},
     reference::{self, Curve, Lobovsky},
@@ -19,7 +19,6 @@ use crate::{
         Plot, Series, Shape, Table, sig,
     },
     runner::Context,
-    studies::work_precision::{self, Point},
     suite::{JudgedRun, Study},
 };
 
@@ -33,8 +32,11 @@ pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<S
         }));
     }
     studies.push(energies(runs));
-    studies.push(cost(tier, runs));
-    studies.push(ablation::study(case, tier));
+    studies.push(cost::study(tier, runs));
+    studies.push(match tier {
+        Tier::Quick => ablation::elsewhere(),
+        Tier::Full => ablation::study(case),
+    });
     studies.push(stability::extremes(case));
     if tier == Tier::Full {
         studies.push(stability::limits(case));
@@ -64,19 +66,25 @@ pub(super) fn share(value: f64) -> Cell {
     if value.is_finite() { Cell::percent(value, 2) } else { Cell::text("–") }
 }
 
-fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
+pub(super) fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
     profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
 }
 
 /// A column of a profile over its time, each in a unit.
-fn curve(record: &Record, profile: &str, name: &str, units: [f64; 2], zero: f64) -> Curve {
+pub(super) fn curve(
+    record: &Record,
+    profile: &str,
+    name: &str,
+    units: [f64; 2],
+    zero: f64,
+) -> Curve {
     let Some(profile) = record.profiles.get(profile) else { return Vec::new() };
     let points = column(profile, "t").iter().zip(column(profile, name));
     points.map(|(t, y)| (t / units[0], (y - zero) / units[1])).collect()
 }
 
 /// Is it a run of the column of Martin & Moyce?
-fn is_free(record: &Record) -> bool {
+pub(super) fn is_free(record: &Record) -> bool {
     setting(record, "height") > setting(record, "width")
 }
 
@@ -89,14 +97,25 @@ fn name_of(record: &Record, side: &str) -> String {
     format!("{}, {side}/dx = {}", record.variant, setting(record, "n"))
 }
 
-/// A line of one run.
-fn line(record: &Record, side: &str, k: usize, points: Curve) -> Layer {
-    Series::line(name_of(record, side), points).colour(Colour::cycle(k)).into()
+/// A line of one of these runs: its variant has a colour, its finest resolution is solid.
+fn line(records: &[&Record], record: &Record, side: &str, points: Curve) -> Layer {
+    let colour = plan::JUDGED.iter().position(|variant| *variant == record.variant);
+    let is_finer =
+        |r: &&&Record| r.variant == record.variant && setting(r, "n") > setting(record, "n");
+    let dash = match records.iter().filter(is_finer).count() {
+        0 => Dash::Solid,
+        1 => Dash::Dashed,
+        _ => Dash::Dotted,
+    };
+    let series = Series::line(name_of(record, side), points).dash(dash);
+    series.colour(Colour::cycle(colour.unwrap_or_default())).into()
 }
 
 /// Martin & Moyce.
 fn free(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
     let records = of(runs, true);
+    let shown: Vec<&Record> =
+        records.iter().copied().filter(|record| setting(record, "n") >= 20.0).collect();
     let [front, height] = reference::martin_moyce()?;
     let band = |curve: &Curve, by: f64| curve.iter().map(|(t, y)| (*t, y - by, y + by)).collect();
     let legend = [Legend::TopLeft, Legend::Hidden];
@@ -115,15 +134,16 @@ fn free(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
         let end = if k == 0 { 3.6 } else { 2.6 };
         let x = Axis::linear(labels[k][0]).range(0.0, end);
         let mut plot = Plot::new("", x, Axis::linear(labels[k][1])).legend(legend[k]);
-        let shown: Curve = measured.iter().filter(|(t, _)| *t <= end).copied().collect();
-        plot = plot.layer(Layer::band("", band(&shown, spreads[k]), Colour::GREY));
-        for (n, record) in records.iter().enumerate() {
+        let until: Curve = measured.iter().filter(|(t, _)| *t <= end).copied().collect();
+        plot = plot.layer(Layer::band("", band(&until, spreads[k]), Colour::GREY));
+        for record in &shown {
             let (a, g) = (setting(record, "width"), setting(record, "gravity"));
             let (name, unit, of) = match k {
                 0 => ("front", (0.5 * a / g).sqrt(), a),
                 _ => ("height", (a / g).sqrt(), 2.0 * a),
             };
-            plot = plot.layer(line(record, "a", n, curve(record, "series", name, [unit, of], 0.0)));
+            let points = curve(record, "series", name, [unit, of], 0.0);
+            plot = plot.layer(line(&shown, record, "a", points));
         }
         if k == 0 {
             let peers =
@@ -131,7 +151,7 @@ fn free(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
             let peers = Series::markers("three other codes", peers.to_vec());
             plot = plot.layer(peers.shape(Shape::Diamond).colour(Colour::BROWN));
         }
-        let experiment = Series::markers("experiment", shown).colour(Colour::BLACK);
+        let experiment = Series::markers("experiment", until).colour(Colour::BLACK);
         figure = figure.panel(plot.layer(experiment));
     }
     let study = Study::new("dam-break-martin-moyce", "Martin & Moyce 1952: front and height")
@@ -188,10 +208,13 @@ fn tank(case: &'static dyn Case, runs: &[JudgedRun]) -> Result<Study, ReferenceE
     let (records, lobovsky) = (of(runs, false), Lobovsky::load()?);
     let mut study =
         Study::new("dam-break-lobovsky", "Lobovsky et al. 2014: front, levels, pressures")
-            .block(levels(&records, &lobovsky))
-            .block(pressures(&records, &lobovsky))
-            .block(tank_table(&records));
-    if let Some(record) = records.iter().rev().find(|r| r.variant == "modern") {
+            .block(levels(&records, &lobovsky));
+    let finest = records.iter().rev().find(|r| r.variant == "modern");
+    if let Some(record) = finest {
+        study = study.block(pressures(record, &lobovsky));
+    }
+    study = study.block(impulses(&records, &lobovsky)).block(tank_table(&records));
+    if let Some(record) = finest {
         study = study.block(pictures(record, "dam-break-lobovsky-pictures", (1.61 / 0.3, 2.0)));
     }
     Ok(match film(case) {
@@ -211,10 +234,10 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let unit = |record: &Record| (setting(record, "height") / setting(record, "gravity")).sqrt();
     let (x, y) = axis("front from the gate [H]".into());
     let mut plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::TopLeft);
-    for (k, record) in records.iter().enumerate() {
+    for record in records {
         let (h, zero) = (setting(record, "height"), setting(record, "width"));
         let points = curve(record, "series", "front", [unit(record), h], zero);
-        plot = plot.layer(line(record, "H", k, points));
+        plot = plot.layer(line(records, record, "H", points));
     }
     let measured = Series::line("experiment", lobovsky.front.clone()).colour(Colour::BLACK);
     figure = figure.panel(plot.layer(measured));
@@ -232,45 +255,90 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
         for one in series {
             plot = plot.layer(Series::line("", one).colour(Colour::BLACK).width(1.0));
         }
-        for (n, record) in records.iter().enumerate() {
+        for record in records {
             let units = [unit(record), setting(record, "height")];
             let points = curve(record, "series", &format!("H{}", k + 1), units, 0.0);
-            plot = plot.layer(line(record, "H", n, points));
+            plot = plot.layer(line(records, record, "H", points));
         }
         figure = figure.panel(plot);
     }
     figure.panel_size(300.0, 220.0)
 }
 
-fn pressures(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
-    let caption = "Pressure on the far wall at four heights, mean over a sensor of 4.2 mm, against the time \
-                   since the wave arrives at P1. Black: one event of the experiment, means over 0.5 ms; grey \
-                   in P2: a second sensor at the same height in the same event. Peaks of single events \
-                   scatter; impulses are compared.";
+/// Pressures of the finest run.
+fn pressures(finest: &Record, lobovsky: &Lobovsky) -> Figure {
+    let caption = format!(
+        "Pressure on the far wall at four heights, mean over a sensor of 4.2 mm and over 0.01 √(H/g), of \
+         {} (blue), against the time since the wave arrives at P1. Black: one event of the experiment, \
+         means over 0.5 ms; grey in P2: a second sensor at the same height in the same event. Axes are cut \
+         at 3.5 ρ g H: peaks are those of a nearly incompressible impact between particles, last as long as \
+         sound takes across a few spacings, and scatter in the experiment too. Impulses, the next figure, \
+         are judged.",
+        name_of(finest, "H")
+    );
     let mut figure = Figure::new("dam-break-pressures", caption).columns(2);
     let at = reference::arrival(&lobovsky.pressure[0]);
-    let since = |curve: &Curve, at: f64| -> Curve {
-        curve.iter().map(|(t, p)| (t - at, *p)).filter(|(t, _)| (-0.3..=3.4).contains(t)).collect()
-    };
     for (k, height) in SENSORS.iter().enumerate() {
         let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
         let x = Axis::linear("(t − arrival) √(g/H) [-]");
         let y = Axis::linear("pressure [ρ g H]").range(-0.2, 3.5);
-        let legend = if k == 0 { Legend::TopRight } else { Legend::Hidden };
-        let mut plot = Plot::new(title, x, y).legend(legend);
+        let mut plot = Plot::new(title, x, y).legend(Legend::Hidden);
+        let points = since(&pressure(finest, k), metric(finest, "arrival"));
+        plot = plot.layer(Series::line("", points).colour(Colour::SKY).width(1.0));
         if k == 1 {
             let aside = since(&lobovsky.aside, at);
             plot = plot.layer(Series::line("", aside).colour(Colour::GREY).width(1.0));
         }
-        for (n, record) in records.iter().enumerate() {
-            let arrival = metric(record, "arrival");
-            let points = curve(record, "pressure", &format!("P{}", k + 1), [1.0, 1.0], 0.0);
-            plot = plot.layer(line(record, "H", n, since(&points, arrival)));
-        }
-        let measured = Series::line("experiment", since(&lobovsky.pressure[k], at));
-        figure = figure.panel(plot.layer(measured.colour(Colour::BLACK).width(1.0)));
+        let measured = Series::line("", since(&lobovsky.pressure[k], at));
+        figure = figure.panel(plot.layer(measured.colour(Colour::BLACK)));
     }
-    figure.panel_size(420.0, 240.0)
+    figure.panel_size(420.0, 220.0)
+}
+
+/// Pressure at sensor k \[ρ g H\] over t \[(H/g)^(1/2)\].
+fn pressure(record: &Record, k: usize) -> Curve {
+    curve(record, "pressure", &format!("P{}", k + 1), [1.0, 1.0], 0.0)
+}
+
+/// The part of a curve about the arrival of the wave, from which its time counts.
+fn since(curve: &Curve, arrival: f64) -> Curve {
+    let from = curve.iter().map(|(t, p)| (t - arrival, *p));
+    from.filter(|(t, _)| (-0.3..=3.4).contains(t)).collect()
+}
+
+/// Impulses since the arrival of all runs.
+fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
+    let caption = "Impulse on the same sensors since the wave arrives at P1, the integral of the pressure. \
+                   Black: the experiment; band: ± 7 %, by which two sensors at one height of one event \
+                   differ at t = 1 after the arrival, where impulses are judged, within three times that.";
+    let mut figure = Figure::new("dam-break-impulses", caption).columns(2);
+    let so_far = |curve: &Curve, arrival: f64| -> Curve {
+        let later = since(curve, arrival).into_iter().filter(|(t, _)| *t >= 0.0);
+        let mut last = (0.0, 0.0, 0.0);
+        let add = |(t, p): (f64, f64)| {
+            last = (t, p, last.2 + 0.5 * (t - last.0) * (p + last.1));
+            (t, last.2)
+        };
+        later.map(add).collect()
+    };
+    let at = reference::arrival(&lobovsky.pressure[0]);
+    for (k, height) in SENSORS.iter().enumerate() {
+        let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
+        let x = Axis::linear("(t − arrival) √(g/H) [-]");
+        let y = Axis::linear("impulse [ρ g H √(H/g)]");
+        let legend = if k == 0 { Legend::TopLeft } else { Legend::Hidden };
+        let measured = so_far(&lobovsky.pressure[k], at);
+        let band = measured.iter().map(|(t, y)| (*t, 0.93 * y, 1.07 * y)).collect();
+        let mut plot = Plot::new(title, x, y).legend(legend);
+        plot = plot.layer(Layer::band("", band, Colour::GREY));
+        for record in records {
+            let points = so_far(&pressure(record, k), metric(record, "arrival"));
+            plot = plot.layer(line(records, record, "H", points));
+        }
+        let measured = Series::line("experiment", measured).colour(Colour::BLACK);
+        figure = figure.panel(plot.layer(measured));
+    }
+    figure.panel_size(420.0, 220.0)
 }
 
 fn tank_table(records: &[&Record]) -> Table {
@@ -391,7 +459,7 @@ fn energy_plot(record: &Record) -> Plot {
     let of =
         |name: &str, sign: f64| curve(record, "energy", name, [units[0], sign * units[1]], 0.0);
     let mut plot = Plot::new(
-        format!("`{}`", record.variant),
+        record.variant.as_str(),
         Axis::linear("t √(g/H) [-]"),
         Axis::linear("energy [M g H/2]"),
     )
@@ -408,7 +476,10 @@ fn energy_plot(record: &Record) -> Plot {
         let points = of(key, -1.0);
         sum.iter_mut().zip(&points).for_each(|(s, p)| s.1 += p.1);
         if points.iter().any(|(_, y)| y.abs() > 1e-4) {
-            let dashed = Series::line(name, points).colour(Colour::cycle(3 + k)).dash(Dash::Dashed);
+            // Black is the sum.
+            const COLOURS: [Colour; 5] =
+                [Colour::PURPLE, Colour::ORANGE, Colour::SKY, Colour::GREY, Colour::BROWN];
+            let dashed = Series::line(name, points).colour(COLOURS[k]).dash(Dash::Dashed);
             plot = plot.layer(dashed);
         }
     }
@@ -434,93 +505,6 @@ fn energy_table(runs: &[JudgedRun]) -> Table {
         cells.push(Cell::sci(metric(record, "energy_gap"), 2));
         cells.push(Cell::sci(metric(record, "momentum_gap"), 2));
         table = table.row(cells);
-    }
-    table
-}
-
-/// Error of the front against what it costs.
-fn cost(tier: Tier, runs: &[JudgedRun]) -> Study {
-    let finest = runs.iter().map(|run| &run.record).rfind(|r| is_free(r) && r.variant == "modern");
-    let front = |record: &Record| metric(record, "z@3");
-    let best = finest.map_or(f64::NAN, front);
-    let is_shown = |run: &&JudgedRun| {
-        is_free(&run.record) && finest.is_none_or(|f| !std::ptr::eq(f, &run.record))
-    };
-    let point = |run: &JudgedRun| Point {
-        variant: run.planned.variant,
-        rows: setting(&run.record, "n") as usize,
-        note: String::new(),
-        error: (front(&run.record) / best - 1.0).abs(),
-        seconds: vec![run.record.cost.cpu_s],
-        cost: run.record.cost.clone(),
-        status: run.record.status.clone(),
-    };
-    let points: Vec<Point> = runs.iter().filter(is_shown).map(point).collect();
-    let finest_n = finest.map_or(f64::NAN, |r| setting(r, "n"));
-    let caption = format!(
-        "Relative distance of the front at T = 3 from that of `modern` at a/dx = {finest_n}, over the cost \
-         of the run. Timed once, side by side with other runs; pair interactions are exact."
-    );
-    let id = "dam-break-work-precision";
-    let mut study = Study::new(id, "Error against run time").block(work_precision::figure(
-        id,
-        &caption,
-        "distance of the front from the finest run [-]",
-        &points,
-        &[],
-    ));
-    study = study.block(rate_table(runs));
-    if tier == Tier::Full {
-        study = study.prose(order(runs));
-    }
-    study
-}
-
-/// The observed order of the front.
-fn order(runs: &[JudgedRun]) -> String {
-    let ladder = |variant: &str| -> Vec<f64> {
-        let of = runs.iter().map(|run| &run.record).filter(|r| is_free(r) && r.variant == variant);
-        of.map(|record| metric(record, "z@3")).collect()
-    };
-    let say = |variant: &str| match ladder(variant)[..] {
-        [a, b, c] => {
-            let order = ((b - a) / (c - b)).abs().log2();
-            format!("`{variant}`: Z(3) = {a:.3}, {b:.3}, {c:.3}, order {order:.1}")
-        }
-        _ => format!("`{variant}`: not three resolutions"),
-    };
-    let all: Vec<String> = plan::JUDGED.iter().map(|variant| say(variant)).collect();
-    format!(
-        "Observed order of the front at a/dx = 20, 40, 80, from successive differences: {}.",
-        all.join("; ")
-    )
-}
-
-fn rate_table(runs: &[JudgedRun]) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::text("case"),
-        Column::num("n", "1"),
-        Column::num("particles of water", "1"),
-        Column::num("steps", "1"),
-        Column::num("a particle and step", "µs"),
-        Column::num("solver memory a particle", "B"),
-    ];
-    let caption = "What a particle of water costs a step, walls and neighbour search included, timed side by \
-                   side with other runs.";
-    let mut table = Table::new(caption, columns);
-    for record in runs.iter().map(|run| &run.record) {
-        let cost = &record.cost;
-        let steps = cost.steps as f64 * cost.particles as f64;
-        table = table.row(vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::text(if is_free(record) { "Martin & Moyce" } else { "Lobovsky" }),
-            Cell::num(setting(record, "n"), 3),
-            Cell::count(cost.particles as u64),
-            Cell::count(cost.steps),
-            Cell::num(1e6 * cost.cpu_s / steps, 3),
-            Cell::num(cost.solver_bytes as f64 / cost.particles as f64, 3),
-        ]);
     }
     table
 }

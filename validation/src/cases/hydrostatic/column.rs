@@ -271,7 +271,7 @@ impl TankWall for Ghosts {
     const FIRST_ROW: f64 = 0.5;
 
     fn walls(column: &Column) -> Self {
-        column.tank().ghosts()
+        Self { walls: column.tank().mirrors() }
     }
 
     fn particles(_: &Column, _: f64) -> Vec<Particle> {
