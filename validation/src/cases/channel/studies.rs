@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::{
     Flow, hypotheses,
-    plan::{LIKE_PEERS, ladder, ladder_of, levels},
+    plan::{COARSE_ROWS, LIKE_PEERS, ladder, ladder_of, levels},
 };
 use crate::{
     case::{Case, Tier},
@@ -300,14 +300,18 @@ fn cost(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRun]) -> 
     };
     let caption = format!(
         "{label} against the cost of the whole run to νt/L² = 1, Re = 0.5. Left: processor seconds of \
-         the stepping loop, median of up to {} interleaved runs, bars from fastest to \
+         the stepping loop on one thread, which are its wall time on a core of its own, median of up to {} interleaved runs, bars from fastest to \
          slowest; other codes were timed on another machine, {others}. Right: pair interactions, which \
          no noise touches. Rows: {}.",
         repetitions(tier),
         rows.join(", ")
     );
+    let figure = work_precision::figure(&id, &caption, label, &points, &peers(flow));
+    let coarse: Vec<JudgedRun> =
+        runs.iter().filter(|run| run.planned.set == [COARSE_ROWS]).cloned().collect();
+    let points = [points, timed_points(case, tier, &coarse, metric)].concat();
     let study = Study::new(&id, "Error against run time")
-        .block(work_precision::figure(&id, &caption, label, &points, &peers(flow)))
+        .block(figure)
         .block(work_precision::cheapest_table(CHEAPEST, &points));
     let like = if flow == Flow::Couette { points } else { like_peers(case, tier, runs, metric) };
     study.block(peer_table(flow, &like))
@@ -400,8 +404,8 @@ fn peer_table(flow: Flow, points: &[Point]) -> Table {
     let caption = format!(
         "Other codes on the same work (reference `peers_channel`: from rest to t = 1 s = L²/ν, their times \
          from another machine of the same class) against our cheapest setting with no more error, {when}. \
-         The plain scalar reimplementation is no package: a program written for this comparison. Of ours, \
-         points whose error rises at the next finer level do not count."
+         The plain scalar reimplementation is no package: a program written for this comparison, of this \
+         method. Of ours, points count whose finer levels have no more error either."
     );
     let mut table = Table::new(caption, columns);
     for (code, seconds, error) in peers(flow) {
