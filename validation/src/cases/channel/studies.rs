@@ -30,7 +30,7 @@ pub fn studies(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRu
         profiles(flow, tier, runs),
         orders(flow, tier, runs),
         cost(case, flow, tier, runs),
-        budget(case, flow),
+        budget(case, flow, tier),
         reynolds(flow, runs),
     ];
     if flow == Flow::Poiseuille {
@@ -433,7 +433,7 @@ struct Change {
 }
 
 /// The error budget: the same run with one thing changed.
-fn budget(case: &'static dyn Case, flow: Flow) -> Study {
+fn budget(case: &'static dyn Case, flow: Flow, tier: Tier) -> Study {
     let id = format!("{}-error-budget", name(flow));
     let (metric, label) = error_metric(flow);
     let columns = vec![
@@ -453,8 +453,10 @@ fn budget(case: &'static dyn Case, flow: Flow) -> Study {
     let mut study = Study::new(&id, "Error budget");
     let mut findings = Vec::new();
     // Without a body force `curved` is `plain`.
-    let variants: &[&str] =
-        if flow == Flow::Couette { &["seed", "plain"] } else { &["seed", "plain", "curved"] };
+    let variants: &[&str] = match (flow, tier) {
+        (Flow::Poiseuille, Tier::Full) => &["seed", "plain", "curved"],
+        _ => &["seed", "plain"],
+    };
     for &variant in variants {
         let changes = changes(case, variant, flow);
         let errors: Vec<f64> = changes
