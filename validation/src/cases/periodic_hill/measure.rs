@@ -296,6 +296,43 @@ fn profiles(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mu
     record.profiles.insert("wall".into(), walls);
 }
 
+/// How far wall particles are from where they belong \[dx\]: over the places along floor and lid, the
+/// largest difference between the depth of the nearest one and that of their first row.
+pub fn wall_offset<S: Scheme<Extra = ()>>(setup: &Setup, s: &Simulation<S>, first: f64) -> f64 {
+    let (dx, lid, period) = (setup.fluid.dx, setup.hill.lid(), setup.hill.period());
+    let all = s.particles();
+    let walls = || all.iter().filter(|p| p.role != Role::Fluid).map(|p| p.position);
+    let distance = |from: Vector2<f64>, to: &Vector2<f64>| {
+        let across = (to.x - from.x).abs().rem_euclid(period);
+        across.min(period - across).hypot(to.y - from.y)
+    };
+    let off = |place: Vector2<f64>, depth: &dyn Fn(Vector2<f64>) -> f64| {
+        let nearest =
+            walls().min_by(|a, b| distance(place, a).total_cmp(&distance(place, b))).map(depth);
+        (nearest.unwrap_or(f64::INFINITY) / dx - first).abs()
+    };
+    let floor = |p: Vector2<f64>| behind_floor(setup, p);
+    let ceiling = |p: Vector2<f64>| p.y - lid;
+    (0..WALL)
+        .map(along)
+        .map(|x| {
+            let (below, above) = (Vector2::new(x, setup.floor(x)), Vector2::new(x, lid));
+            off(below, &floor).max(off(above, &ceiling))
+        })
+        .fold(0.0, f64::max)
+}
+
+/// Distance from the floor \[m\], positive behind it, by Gauss and Newton's iteration for its foot.
+fn behind_floor(setup: &Setup, place: Vector2<f64>) -> f64 {
+    let mut x = place.x;
+    for _ in 0..20 {
+        let slope = setup.slope(x);
+        x += (place.x - x + (place.y - setup.floor(x)) * slope) / (1.0 + slope * slope);
+    }
+    let (slope, foot) = (setup.slope(x), Vector2::new(x, setup.floor(x)));
+    Vector2::new(slope, -1.0).normalize().dot(&(place - foot))
+}
+
 /// The fluid particles: x, y, speed, and how many are beyond the walls.
 pub fn particles<S: Scheme<Extra = ()>>(setup: &Setup, s: &Simulation<S>) -> (Profile, usize) {
     let all = s.particles();

@@ -10,6 +10,7 @@ mod plan;
 mod reference;
 mod run;
 mod setup;
+mod stability;
 mod studies;
 
 use solver::{
@@ -202,6 +203,6 @@ impl Case for Hills {
     }
 
     fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        studies::studies(tier, runs)
+        studies::studies(PERIODIC_HILL, tier, runs)
     }
 }

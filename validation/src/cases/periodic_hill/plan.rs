@@ -8,47 +8,63 @@ use crate::{
 /// The variant that is held to the goals.
 pub const BEST: &str = "carried";
 
+/// Spacings along the height of the hill.
+pub const SIDES: [usize; 4] = [5, 10, 20, FINEST];
+
+/// Those of the finest run. From rest it would take twenty minutes, so it starts from the reference; that
+/// coarser runs reach the same flow from there as from rest is gated.
+pub const FINEST: usize = 40;
+
 /// Variants, each at these resolutions in the full tier, from rest.
 pub const LADDER: [(&str, &[usize]); 6] = [
-    ("plain", &[10]),
-    ("interface-wall", &[10]),
-    ("modern", &[10, 20]),
-    ("carried", &[10, 20]),
-    ("mixed", &[10]),
-    ("consistent", &[10, 20]),
+    ("plain", &[5, 10]),
+    ("interface-wall", &[5, 10]),
+    ("modern", &[5, 10]),
+    ("carried", &[5, 10, 20]),
+    ("mixed", &[5, 10]),
+    ("consistent", &[5, 10]),
+];
+
+/// What a run starts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Fluid at rest.
+    Rest,
+    /// The reference, interpolated between its stations.
+    Reference,
+}
+
+/// The error budget: which part of the error a change of a setting shows.
+pub const BUDGET: [(&str, &str); 5] = [
+    ("time step", "courant=0.75"),
+    ("sound speed", "c0=30"),
+    ("h/dx", "h_over_dx=1.2"),
+    ("density diffusion", "diffusion=0.05"),
+    ("shifting", "shift=1.5"),
 ];
 
 /// The runs of a tier: first the ladder at Re 50, variant by variant.
 pub fn plan(tier: Tier) -> Vec<Planned> {
     if tier == Tier::Quick {
         // Three quarters of the time: what is left of the decay is gated, as everywhere.
-        return vec![run(BEST, 50.0, 10, 30.0, false)];
+        return vec![run(BEST, 50.0, 10, 30.0, Start::Rest)];
     }
     let mut runs = Vec::new();
     for (variant, resolutions) in LADDER {
-        runs.extend(resolutions.iter().map(|&n| run(variant, 50.0, n, END, false)));
+        runs.extend(resolutions.iter().map(|&n| run(variant, 50.0, n, END, Start::Rest)));
     }
-    runs.push(run(BEST, 50.0, FINEST, 10.0, true));
+    runs.push(run(BEST, 50.0, FINEST, 10.0, Start::Reference));
+    // At Re 10 the slowest decay is five times as fast.
+    runs.extend([10, 20].map(|n| run(BEST, 10.0, n, 10.0, Start::Rest)));
     // At Re 100 the bubble fills slowly: from rest twice as long, or from near the answer.
-    runs.push(run(BEST, 10.0, 10, 20.0, false));
-    runs.push(run(BEST, 10.0, 20, 20.0, false));
-    runs.push(run(BEST, 100.0, 10, 2.0 * END, false));
-    runs.push(run(BEST, 100.0, 20, END, true));
+    runs.push(run(BEST, 100.0, 10, 2.0 * END, Start::Rest));
+    runs.push(run(BEST, 100.0, 20, 20.0, Start::Reference));
     // From the interpolated reference: the same steady flow.
-    runs.push(run(BEST, 50.0, 10, END, true));
-    runs.push(run(BEST, 100.0, 10, 2.0 * END, true));
-    // The error budget, and a flat channel, whose flow is exact.
-    let budget =
-        ["courant=0.75", "c0=30", "h_over_dx=1.2", "diffusion=0.05", "shift=1.5", "crest=0"];
-    runs.extend(budget.map(|set| {
-        Planned::new(BEST, &["n=10".to_string(), set.to_string()]).taking(seconds(10, END))
-    }));
+    runs.extend([50.0, 100.0].map(|re| run(BEST, re, 10, END, Start::Reference)));
+    runs.extend(BUDGET.map(|(_, set)| Planned::new(BEST, &changed(set)).taking(seconds(10, END))));
+    runs.push(flat());
     runs
 }
-
-/// Spacings along the height of the hill of the finest run. From rest it would take half an hour, so it
-/// starts from the reference; that coarser runs reach the same flow from there as from rest is gated.
-pub const FINEST: usize = 40;
 
 /// End of a run from rest \[H/U_b\]: at constant flux transients decay within 20 H/U_b at Re 50.
 const END: f64 = 40.0;
@@ -58,24 +74,55 @@ fn seconds(n: usize, end: f64) -> f64 {
     0.4 * end * (n as f64 / 10.0).powi(3)
 }
 
-fn run(variant: &'static str, re: f64, n: usize, end: f64, from_reference: bool) -> Planned {
-    let mut set = vec![format!("re={re}"), format!("n={n}"), format!("end={end}")];
-    if from_reference {
+/// What distinguishes a run, but for its end.
+pub fn set(re: f64, n: usize, start: Start) -> Vec<String> {
+    let mut set = vec![format!("re={re}"), format!("n={n}")];
+    if start == Start::Reference {
         set.push("from_reference=true".into());
     }
-    let start = if from_reference { "reference." } else { "" };
+    set
+}
+
+/// A run of the error budget.
+pub fn changed(what: &str) -> Vec<String> {
+    vec!["re=50".into(), "n=10".into(), format!("end={END}"), what.into()]
+}
+
+fn run(variant: &'static str, re: f64, n: usize, end: f64, start: Start) -> Planned {
+    let mut set = set(re, n, start);
+    set.push(format!("end={end}"));
     Planned::new(variant, &set).judged(gates(variant, re, n, start)).taking(seconds(n, end))
 }
 
-fn gates(variant: &str, re: f64, n: usize, more: &str) -> Vec<Gate> {
+/// Without the hill the flow between floor and lid is a parabola.
+fn flat() -> Planned {
+    let (gap, flux, nu) = (3.035_f64, 2.035, 1.0 / 50.0);
+    let exact = 12.0 * nu * flux / gap.powi(3);
+    let force = Gate::new(
+        format!("periodic_hill.{BEST}.flat.force"),
+        "force",
+        Bound::Within(0.99 * exact, 1.01 * exact),
+        Evidence::Analytic,
+        "plane Poiseuille flow: 12 nu Q/D^3; the walls stand within 1 % of a spacing, which is 0.1 % of the \
+         force, and 30 spacings across a parabola are good for 0.5 %",
+    );
+    Planned::new(BEST, &changed("crest=0")).judged(vec![force]).taking(seconds(10, END))
+}
+
+fn gates(variant: &str, re: f64, n: usize, start: Start) -> Vec<Gate> {
+    let more = if start == Start::Reference { "reference." } else { "" };
     let gate = |metric: &str, bound: Bound, evidence: Evidence, because: &str| {
         let id = format!("periodic_hill.{more}{variant}.{re}.{n}.{metric}");
         Gate::new(id, metric, bound, evidence, because)
     };
     let none_outside =
         gate("outside", Bound::Equals(0.0), Evidence::Invariant, "no particle passes a wall");
-    if variant != BEST {
-        return if variant == "plain" { Vec::new() } else { vec![none_outside] };
+    if variant == "plain" {
+        return Vec::new();
+    }
+    // Below ten spacings the bubble has two rows: shown for the order, held to nothing.
+    if variant != BEST || n < 10 {
+        return vec![none_outside];
     }
     let goal = match n {
         40.. => 0.01,
@@ -95,12 +142,20 @@ fn gates(variant: &str, re: f64, n: usize, more: &str) -> Vec<Gate> {
         ),
         none_outside,
         gate(
-            "section_flux",
-            Bound::Below(if n >= 20 { 0.005 } else { 0.02 }),
+            "wall_offset",
+            Bound::Below(0.05),
             Evidence::Invariant,
-            "an incompressible steady flow has the same flux through every section: 0.5 %, twice Mach's \
-             density variation; at ten spacings four times that, for the field between particles and wall is \
-             interpolated to second order",
+            "rows follow the curve to a hundredth of a spacing, and more only at the kink of the crest: a \
+             hill 2 % too high is a fifth of a spacing at ten, which the velocity does not show, for the \
+             error of the method there is as large and of the other sign",
+        ),
+        gate(
+            "section_flux",
+            Bound::Below(if n >= 20 { 0.005 } else { 0.012 }),
+            Evidence::Invariant,
+            "a steady flow has the same flux through every section, but for Mach's density variation of \
+             (1.3/15)^2/2 = 0.4 %: 0.5 %. At ten spacings 0.8 % more: the line fitted to the field lies \
+             below a parabola by 0.27 h^2 |u''|",
         ),
         gate(
             "flux",

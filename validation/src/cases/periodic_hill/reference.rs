@@ -82,21 +82,37 @@ impl Reference {
         self.numbers.iter().find(|(n, ..)| n == name).map(|(_, value, _)| *value)
     }
 
-    /// The velocity between stations, linear in x and in the share s of the section's height: a start
-    /// that is near the flow, and not the flow. Slip at the walls is small: the first of 200 points.
-    pub fn velocity(&self, x: f64, s: f64) -> Vector2<f64> {
+    /// The velocity between stations, at the share s of a section `gap` \[H\] high: a start that is near the
+    /// flow, and not the flow. u·gap, whose mean over s is the flux, and v are cubic in x through the two
+    /// stations on each side, and linear in s; slip at the walls is small: the first of 200 points.
+    pub fn velocity(&self, x: f64, s: f64, gap: f64) -> Vector2<f64> {
         let (count, period) = (self.stations.len(), 9.0);
         let next = self.stations.iter().position(|station| station.x > x).unwrap_or(0);
-        let (a, b) = (&self.stations[(next + count - 1) % count], &self.stations[next]);
-        let span = (b.x - a.x).rem_euclid(period);
-        let share = (x - a.x).rem_euclid(period) / span;
-        let at = |station: &Station| {
-            let k = s * station.v.len() as f64 - 0.5;
-            let low = (k.max(0.0) as usize).min(station.v.len() - 2);
-            let t = (k - low as f64).clamp(0.0, 1.0);
-            station.v[low] * (1.0 - t) + station.v[low + 1] * t
+        let near = [count - 2, count - 1, 0, 1].map(|k| &self.stations[(next + k) % count]);
+        let ahead = near.map(|station| {
+            let distance = station.x - x;
+            distance - period * (distance / period).round()
+        });
+        let weight = |k: usize| -> f64 {
+            (0..4).filter(|&j| j != k).map(|j| ahead[j] / (ahead[j] - ahead[k])).product()
         };
-        at(a) * (1.0 - share) + at(b) * share
+        let at = |station: &Station| {
+            let points = station.v.len();
+            let k = s * points as f64 - 0.5;
+            let low = (k.max(0.0) as usize).min(points - 2);
+            let t = (k - low as f64).clamp(0.0, 1.0);
+            let v = station.v[low] * (1.0 - t) + station.v[low + 1] * t;
+            Vector2::new(v.x * station.gap() / gap, v.y)
+        };
+        near.iter().enumerate().map(|(k, station)| at(station) * weight(k)).sum()
+    }
+}
+
+impl Station {
+    /// Height of the section \[H\]: the points are the middles of equal parts.
+    fn gap(&self) -> f64 {
+        let last = self.y.len() - 1;
+        (self.y[last] - self.y[0]) * (1.0 + 1.0 / last as f64)
     }
 }
 
@@ -114,8 +130,14 @@ mod tests {
             assert_eq!(reference.number("separation").is_some(), re > 10.0);
             // A station as it stands, and the flux through it.
             let station = &reference.stations[3];
-            let there = reference.velocity(station.x, 100.5 / 200.0);
+            let there = reference.velocity(station.x, 100.5 / 200.0, station.gap());
             assert!((there - station.v[100]).norm() < 1e-12);
+            // The flux does not depend on the place, whatever the gap there.
+            for x in [0.0, 0.3, 1.7, 5.5, 8.7] {
+                let u = (0..200).map(|k| reference.velocity(x, (k as f64 + 0.5) / 200.0, 2.6).x);
+                let flux = u.sum::<f64>() / 200.0 * 2.6;
+                assert!((flux / 2.035 - 1.0).abs() < 4e-4, "{flux} at {x}");
+            }
             for station in &reference.stations {
                 let dy = station.y[1] - station.y[0];
                 let flux = station.v.iter().map(|v| v.x * dy).sum::<f64>();

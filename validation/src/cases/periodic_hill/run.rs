@@ -154,6 +154,9 @@ where
         let (particles, outside) = measure::particles(setup, &simulation);
         let formula = "particles behind the walls at the end";
         record.metrics.insert("outside".into(), Metric::new(outside as f64, "-", formula));
+        let offset = measure::wall_offset(setup, &simulation, S::Walls::FIRST);
+        let formula = "largest distance of the first row of wall particles from its place";
+        record.metrics.insert("wall_offset".into(), Metric::new(offset, "dx", formula));
         if context.keep_particles {
             record.profiles.insert("particles".into(), particles);
         }

@@ -128,7 +128,7 @@ impl Setup {
             for k in first..count as usize {
                 let y = floor + (k as f64 + W::FIRST) * spacing;
                 let place = Vector2::new(x, y);
-                let velocity = self.start(place, (y - floor) / gap);
+                let velocity = self.start(place, (y - floor) / gap, gap);
                 particles.push(Particle::fluid(place, velocity, 1.0, width * spacing));
             }
         }
@@ -153,10 +153,10 @@ impl Setup {
         [floor, Curve::new(|x| Vector2::new(x, lid), [period, 0.0], dx)]
     }
 
-    /// The velocity at the start \[m/s\], s the height over that of the section.
-    fn start(&self, place: Vector2<f64>, s: f64) -> Vector2<f64> {
+    /// The velocity at the start \[m/s\], s the height over that of the section, which is `gap`.
+    fn start(&self, place: Vector2<f64>, s: f64, gap: f64) -> Vector2<f64> {
         match &self.reference {
-            Some(reference) if self.settings.from_reference => reference.velocity(place.x, s),
+            Some(reference) if self.settings.from_reference => reference.velocity(place.x, s, gap),
             _ => Vector2::zeros(),
         }
     }

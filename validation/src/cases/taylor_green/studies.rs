@@ -1,6 +1,6 @@
 //! What the runs say together: decay and error through time, pictures, order, error against run time.
 
-use super::plan::{BEST, LADDER, SIDES, STARTS};
+use super::plan::{self, BEST, BUDGET, LADDER, SIDES, STARTS};
 use crate::{
     case::Tier,
     gate::{Bound, Evidence, Gate},
@@ -8,6 +8,7 @@ use crate::{
     reference::{Reference, ReferenceError},
     report::{
         Axis, Cell, Colour, ColourMap, Column, Figure, Legend, ParticleMap, Plot, Series, Table,
+        percent,
     },
     studies::{
         convergence::{self, Level},
@@ -18,9 +19,9 @@ use crate::{
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-    let mut studies = vec![histories(tier, runs), pictures(tier, runs)];
+    let mut studies = vec![histories(runs), pictures(tier, runs)];
     if tier == Tier::Full {
-        studies.extend([order(runs), cost(runs)]);
+        studies.extend([order(runs), budget(runs), cost(runs)]);
     }
     studies
 }
@@ -39,7 +40,7 @@ fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
 
 /// The run with just these settings.
 fn find<'a>(runs: &'a [JudgedRun], variant: &str, n: usize, start: f64) -> Option<&'a JudgedRun> {
-    let set = [format!("n={n}"), format!("perturb={start}")];
+    let set = plan::set(n, start);
     runs.iter().find(|run| run.planned.variant == variant && run.planned.set == set)
 }
 
@@ -54,13 +55,16 @@ fn points(record: &Record, name: &str) -> Vec<(f64, f64)> {
     column(series, "t").iter().copied().zip(column(series, name).iter().copied()).collect()
 }
 
+/// Most particles a side of a history: what finer runs show in the other figures.
+const SHOWN: usize = 50;
+
 /// Energy and error through time.
-fn histories(tier: Tier, runs: &[JudgedRun]) -> Study {
-    let n = if tier == Tier::Full { 50 } else { 32 };
+fn histories(runs: &[JudgedRun]) -> Study {
     let caption = format!(
-        "Taylor-Green vortices at Re 100, {n} x {n} particles. Left: kinetic energy over that at the start, \
-         black the exact decay. Right: relative L2 error of the velocity vector over the particles. A run \
-         that diverged ends where it did."
+        "Taylor-Green vortices at Re 100, each variant at the most particles a side that ran, up to {SHOWN} \
+         (in the legend). Left: kinetic energy over that at the start, black the exact decay. Right: \
+         relative L2 error of the velocity vector over the particles. A run that diverged ends where it \
+         did."
     );
     let mut figure = Figure::new("taylor-green-histories", caption).columns(2);
     for start in STARTS {
@@ -73,13 +77,15 @@ fn histories(tier: Tier, runs: &[JudgedRun]) -> Study {
         energy = energy.layer(Series::line("exact", exact).colour(Colour::BLACK).width(2.4));
         let mut any = false;
         for (k, variant) in LADDER.into_iter().enumerate() {
-            let Some(run) = find(runs, variant, n, start) else { continue };
+            let ran = (0..=SHOWN).rev().find_map(|n| Some((n, find(runs, variant, n, start)?)));
+            let Some((n, run)) = ran else { continue };
             any = true;
+            let name = format!("{variant}, {n} x {n}");
             let of = |t: f64, y: f64| (t, y * decay(t));
             let share = points(&run.record, "energy").into_iter().map(|(t, y)| of(t, y)).collect();
-            energy = energy.layer(Series::line(variant, share).colour(Colour::cycle(k)));
+            energy = energy.layer(Series::line(&name, share).colour(Colour::cycle(k)));
             let errors = points(&run.record, "error").into_iter().skip(1).collect();
-            error = error.layer(Series::line(variant, errors).colour(Colour::cycle(k)));
+            error = error.layer(Series::line(&name, errors).colour(Colour::cycle(k)));
         }
         if any {
             figure =
@@ -170,17 +176,59 @@ fn order(runs: &[JudgedRun]) -> Study {
             "its sums are exact for linear fields, so their errors fall as h^2; Mach's error of 0.3 % of \
              the speed does not fall, and disorder adds to it",
         );
-        study = study
-            .prose(format!(
-                "From the {}: order {:.2} ± {:.2} ({:?}).",
-                start_of(start),
-                found.order,
-                found.standard_error,
-                found.label
-            ))
-            .judge(gate, found.order);
+        let errors: Vec<String> = levels.iter().map(|l| percent(l.value, 2)).collect();
+        let local: Vec<String> = found.local_orders.iter().map(|p| format!("{p:.2}")).collect();
+        let text = format!(
+            "`{BEST}` from the {}, {SIDES:?} particles a side: errors {}. Order {:.2} ± {:.2} ({:?}), from \
+             one spacing to the next {}.",
+            start_of(start),
+            errors.join(", "),
+            found.order,
+            found.standard_error,
+            found.label,
+            local.join(", ")
+        );
+        study = study.prose(text).judge(gate, found.order);
     }
     study
+}
+
+/// One thing changed at a time, over the best variant at 50 x 50 from the disturbed lattice.
+fn budget(runs: &[JudgedRun]) -> Study {
+    let columns = vec![
+        Column::text("part"),
+        Column::text("change"),
+        Column::num("error of the velocity", "-"),
+        Column::num("change of it", "-"),
+        Column::num("energy less exact", "-"),
+        Column::num("time", "s"),
+    ];
+    let caption = "Error budget of `consistent`, 50 x 50 particles from the disturbed lattice, Re 100: one \
+                   thing changed at a time, at t = 2 L/U. Another disturbance (last row) says what is \
+                   chance. Time: of the stepping loop, one thread, side by side with other runs.";
+    let mut table = Table::new(caption, columns);
+    let study = Study::new("taylor-green-error-budget", "Error budget");
+    let Some(base) = find(runs, BEST, 50, 0.2) else { return study };
+    let changed = |set: &str| {
+        let is_it = |run: &&JudgedRun| run.planned.set == plan::changed(set);
+        runs.iter().find(is_it)
+    };
+    let mut rows =
+        vec![("none", "as it is", Some(base)), ("spacing", "dx/2", find(runs, BEST, 100, 0.2))];
+    rows.extend(BUDGET.iter().map(|(part, set)| (*part, *set, changed(set))));
+    for (part, change, run) in rows {
+        let Some(record) = run.map(|run| &run.record) else { continue };
+        let error = metric(record, "l2");
+        table = table.row(vec![
+            Cell::text(part),
+            Cell::text(change),
+            Cell::percent(error, 3),
+            Cell::percent(error - metric(&base.record, "l2"), 2),
+            Cell::percent(metric(record, "energy"), 2),
+            Cell::num(record.cost.cpu_s, 3),
+        ]);
+    }
+    study.block(table)
 }
 
 fn cost(runs: &[JudgedRun]) -> Study {
@@ -199,13 +247,14 @@ fn cost(runs: &[JudgedRun]) -> Study {
         }
     }
     let caption = "Relative L2 error of the velocity vector at t = 2 L/U, Re 100, over the cost of the run: \
-                   25, 50 and 100 particles a side from a disturbed lattice. Timed once, side by side with \
-                   other runs; pair interactions are exact. Grey: PySPH EDAC (73 s, 456 s) and SPHinXsys \
-                   (1.9 s, 16 s) at 50 and 100 a side on another machine.";
+                   25, 50 and, for `carried` and `consistent`, 100 particles a side from a disturbed \
+                   lattice. Timed once, side by side with other runs; pair interactions are exact. Grey: \
+                   PySPH EDAC (73 s, 456 s) and SPHinXsys (1.9 s, 16 s) at 50 and 100 a side on another \
+                   machine.";
     let id = "taylor-green-work-precision";
     let figure =
         work_precision::figure(id, caption, "error of the velocity [-]", &points, &peers());
-    let mut study = Study::new(id, "Error against run time").block(figure);
+    let mut study = Study::new(id, "Error against run time").block(figure).block(peer_table(runs));
     let diverged = runs.iter().filter(|run| run.record.status != Status::Completed);
     let names: Vec<&str> = diverged.map(|run| run.planned.variant).collect();
     if !names.is_empty() {
@@ -214,15 +263,63 @@ fn cost(runs: &[JudgedRun]) -> Study {
     study
 }
 
+/// Code, scheme, particles a side, error \[-\], seconds.
+type PeerRow = (String, String, f64, f64, f64);
+
 /// Codes whose time was measured.
-fn peers() -> Vec<Peer> {
-    let read = || -> Result<Vec<Peer>, ReferenceError> {
+fn peer_rows() -> Vec<PeerRow> {
+    let read = || -> Result<Vec<PeerRow>, ReferenceError> {
         let package = Reference::load("peers_taylor_green")?;
         let table = package.table("errors")?;
-        let (codes, errors) = (table.texts("code")?, table.numbers("error")?);
+        let (codes, schemes) = (table.texts("code")?, table.texts("scheme")?);
+        let (sides, errors) = (table.numbers("side")?, table.numbers("error")?);
         let seconds = table.optional("seconds")?;
-        let rows = codes.iter().zip(errors).zip(seconds);
-        Ok(rows.filter_map(|((c, e), s)| Some((c.to_string(), s?, e / 100.0))).collect())
+        let row = |k: usize| {
+            let (code, scheme) = (codes[k].to_string(), schemes[k].to_string());
+            Some((code, scheme, sides[k], errors[k] / 100.0, seconds[k]?))
+        };
+        Ok((0..codes.len()).filter_map(row).collect())
     };
     read().unwrap_or_default()
+}
+
+fn peers() -> Vec<Peer> {
+    peer_rows().into_iter().map(|(code, _, _, error, seconds)| (code, seconds, error)).collect()
+}
+
+/// Error and time beside those of other codes.
+fn peer_table(runs: &[JudgedRun]) -> Table {
+    let columns = vec![
+        Column::text("code"),
+        Column::text("scheme"),
+        Column::num("particles a side", "1"),
+        Column::num("error of the velocity", "-"),
+        Column::num("time", "s"),
+    ];
+    let caption = "Taylor-Green vortices at Re 100 from a lattice disturbed by 0.2 spacings, t = 2 L/U: \
+                   error and time of the stepping loop on one thread. touchstone: processor time in this \
+                   report, side by side with other runs. Others: `references/peers_taylor_green`, measured \
+                   once on a machine of two x86-64 cores. Between machines times compare within a factor of \
+                   about two: what is within that is no difference.";
+    let mut rows = peer_rows();
+    for variant in ["carried", BEST] {
+        for run in SIDES.into_iter().filter_map(|n| find(runs, variant, n, 0.2)) {
+            let record = &run.record;
+            let (side, error) = (setting(record, "n"), metric(record, "l2"));
+            let (code, scheme) = ("touchstone".into(), format!("`{variant}`"));
+            rows.push((code, scheme, side, error, record.cost.cpu_s));
+        }
+    }
+    rows.into_iter().fold(
+        Table::new(caption, columns),
+        |table, (code, scheme, side, error, time)| {
+            table.row(vec![
+                Cell::text(code),
+                Cell::text(scheme),
+                Cell::exact(side),
+                Cell::percent(error, 2),
+                Cell::num(time, 2),
+            ])
+        },
+    )
 }

@@ -1,0 +1,208 @@
+//! How far the flow over hills can be pushed: the time step against theory, and the Reynolds number.
+
+use rayon::prelude::*;
+
+use super::{NAME, plan::BEST};
+use crate::{
+    case::Case,
+    gate::{Bound, Evidence, Gate},
+    record::{Record, Status},
+    report::{Cell, Column, Table},
+    runner::Context,
+    studies::stability::largest_stable,
+    suite::Study,
+};
+
+/// Spacings along the height of the hill in all of these runs.
+const N: usize = 10;
+
+/// Variant, and its longest stable step over the default one when this study was introduced: not the
+/// truth, but the margin must not shrink unnoticed.
+const MARGINS: [(&str, f64); 3] = [("modern", 1.577), (BEST, 1.577), ("consistent", 1.577)];
+
+/// Resolution of the bisection, relative to the theoretical limit.
+const RESOLUTION: f64 = 0.02;
+
+/// Variant, Reynolds numbers, climbed until a run fails, and the highest one held when this study was
+/// introduced. 1000 is the most that the setting allows. `plain` is a control: it holds none.
+const CLIMBS: [(&str, &[f64], f64); 4] = [
+    ("plain", &[10.0], 10.0),
+    ("modern", &[100.0, 1000.0], 1000.0),
+    (BEST, &[100.0, 300.0, 1000.0], 1000.0),
+    ("consistent", &[100.0, 1000.0], 1000.0),
+];
+
+fn run(case: &dyn Case, variant: &str, set: &[String]) -> Option<Record> {
+    let context = Context { allow_unstable: true, ..Context::default() };
+    let mut all = vec![format!("n={N}")];
+    all.extend_from_slice(set);
+    case.run(variant, &all, &context).ok()
+}
+
+fn numeric(record: &Record, name: &str) -> f64 {
+    record.numerics.get(name).and_then(|v| v.as_f64()).unwrap_or(f64::NAN)
+}
+
+fn metric(record: &Record, name: &str) -> f64 {
+    record.metric(name).unwrap_or(f64::NAN)
+}
+
+/// Ended, and no sample of the kinetic energy is above twice that of the start, which is near the answer.
+fn is_stable(record: &Record) -> bool {
+    let series = record.profiles.get("series");
+    let energy = series.and_then(|s| s.columns.iter().find(|c| c.name == "kinetic energy"));
+    let energy = energy.map_or(&[][..], |c| &c.values);
+    let bounded = |first: &f64| energy.iter().all(|e| *e <= 2.0 * first);
+    record.status == Status::Completed && energy.first().is_some_and(bounded)
+}
+
+/// Default step and longest stable one, over the theoretical limit.
+fn longest(case: &dyn Case, variant: &str) -> [f64; 2] {
+    let short = |courant: f64, end: f64| {
+        let set =
+            ["from_reference=true".into(), format!("courant={courant}"), format!("end={end}")];
+        run(case, variant, &set)
+    };
+    let courant = 1.0;
+    let share = short(courant, 0.05).map_or(f64::NAN, |r| numeric(&r, "dt/limit"));
+    let default = run(case, variant, &["end=0.05".into()]);
+    let default = default.map_or(f64::NAN, |r| numeric(&r, "dt/limit"));
+    // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
+    let stable = |of_theory: f64| {
+        short(courant * of_theory / share, 3.0).is_some_and(|record| is_stable(&record))
+    };
+    let bracket = largest_stable(1.0, RESOLUTION, stable);
+    [default, bracket.map_or(f64::NAN, |b| b.stable)]
+}
+
+/// The longest stable step over the theoretical one, by bisection.
+pub fn limits(case: &'static dyn Case) -> Study {
+    let columns = vec![
+        Column::text("variant"),
+        Column::num("measured/theory", "-"),
+        Column::num("default/theory", "-"),
+        Column::num("measured/default", "-"),
+    ];
+    let caption = "The longest time step with which the flow at Re 50, H/dx = 10, goes on for 3 H/U_b from \
+                   the interpolated reference without diverging or doubling its kinetic energy, by bisection \
+                   to 2 %, over the limit of linear theory for a periodic lattice at rest. Walls, curvature \
+                   and particles in disorder are not in that theory.";
+    let mut table = Table::new(caption, columns);
+    let mut study = Study::new("periodic-hill-time-step", "Largest stable time step");
+    let found: Vec<[f64; 2]> =
+        MARGINS.par_iter().map(|(variant, _)| longest(case, variant)).collect();
+    for ((variant, margin), [default, measured]) in MARGINS.into_iter().zip(found) {
+        table = table.row(vec![
+            Cell::text(format!("`{variant}`")),
+            Cell::num(measured, 3),
+            Cell::num(default, 3),
+            Cell::num(measured / default, 3),
+        ]);
+        let gate = |what: &str, metric: &str, bound: Bound, evidence: Evidence, because: &str| {
+            Gate::new(format!("{NAME}.step.{variant}.{what}"), metric, bound, evidence, because)
+        };
+        let theory = gate(
+            "theory",
+            "measured/theory",
+            Bound::Within(default, 1.2),
+            Evidence::Theory,
+            "the default must be stable, and nothing in disorder makes sound slower or the stencil softer by \
+             a fifth: a limit far above that of the lattice would be a wrong theory",
+        );
+        let kept = gate(
+            "margin",
+            "longest stable dt/default dt",
+            Bound::Above(margin - RESOLUTION / default),
+            Evidence::Regression,
+            "what was measured when this study was introduced, less the resolution of the bisection",
+        );
+        study = study.judge(theory, measured).judge(kept, measured / default);
+    }
+    study.block(table)
+}
+
+/// One run of the climb: Reynolds number and record.
+fn climb(case: &dyn Case, variant: &str, numbers: &[f64]) -> Vec<(f64, Record)> {
+    let mut runs = Vec::new();
+    for &re in numbers {
+        let Some(record) = run(case, variant, &[format!("re={re}"), "end=20".into()]) else {
+            break;
+        };
+        let goes_on = holds(&record);
+        runs.push((re, record));
+        if !goes_on {
+            break;
+        }
+    }
+    runs
+}
+
+/// Completed, no particle behind a wall, and the force that holds the flux is one against a drag.
+fn holds(record: &Record) -> bool {
+    record.status == Status::Completed
+        && metric(record, "outside") == 0.0
+        && metric(record, "force") > 0.0
+}
+
+/// The highest Reynolds number that variants hold.
+pub fn reynolds(case: &'static dyn Case) -> Study {
+    let columns = vec![
+        Column::text("variant"),
+        Column::num("Re", "-"),
+        Column::num("U_b dx/ν", "-"),
+        Column::text("ended"),
+        Column::num("outside", "1"),
+        Column::num("force", "U_b^2/H"),
+        Column::num("ripple of it", "-"),
+        Column::num("flux of sections", "-"),
+        Column::num("windows differ by", "U_b"),
+    ];
+    let caption = "The Reynolds number raised until a run fails: H/dx = 10, from rest to 20 H/U_b. A variant \
+                   holds a Reynolds number if its run completes with no particle behind a wall and a force \
+                   along the flow. Force, ripple and flux are of the last 4 H/U_b; windows differ by: rms \
+                   over ten stations of the change of mean u from the 4 H/U_b before them. The flow still \
+                   develops then, and these numbers say nothing of its accuracy.";
+    let mut table = Table::new(caption, columns);
+    let mut study = Study::new("periodic-hill-reynolds", "Highest Reynolds number");
+    let found: Vec<_> =
+        CLIMBS.par_iter().map(|(variant, numbers, _)| climb(case, variant, numbers)).collect();
+    for ((variant, _, baseline), runs) in CLIMBS.into_iter().zip(found) {
+        for (re, record) in &runs {
+            table = table.row(row(variant, *re, record));
+        }
+        let held = runs.iter().filter(|(_, record)| holds(record)).map(|(re, _)| *re);
+        let gate = Gate::new(
+            format!("{NAME}.highest_re.{variant}"),
+            "highest Re held",
+            Bound::Above(baseline),
+            Evidence::Regression,
+            "what was measured when this study was introduced: it must not fall. Without shifting and \
+             density diffusion not even the lowest is held, a control",
+        );
+        let gate = if variant == "plain" { gate.expected_to_fail() } else { gate };
+        study = study.judge(gate, held.fold(0.0, f64::max));
+    }
+    study.block(table)
+}
+
+fn row(variant: &str, re: f64, record: &Record) -> Vec<Cell> {
+    let ended = match &record.status {
+        Status::Completed => "completed".to_string(),
+        Status::Diverged { time, field, .. } => format!("diverged at {time:.1} H/U_b: {field}"),
+        _ => "interrupted".into(),
+    };
+    let cell = |name: &str, show: &dyn Fn(f64) -> Cell| {
+        record.metric(name).map_or_else(|| Cell::text("–"), show)
+    };
+    vec![
+        Cell::text(format!("`{variant}`")),
+        Cell::exact(re),
+        Cell::num(re / N as f64, 2),
+        Cell::text(ended),
+        cell("outside", &|v| Cell::count(v as u64)),
+        cell("force", &|v| Cell::num(v, 3)),
+        cell("force_ripple", &|v| Cell::percent(v, 1)),
+        cell("section_flux", &|v| Cell::percent(v, 1)),
+        cell("drift", &|v| Cell::sci(v, 1)),
+    ]
+}
