@@ -19,7 +19,7 @@ use crate::{
     number,
     record::{self, Metric, Profile, Record},
     report::{
-        Axis, Cell, Colour, ColourMap, Column, Figure, ParticleMap, Plot, Series, Table, sig,
+        self, Axis, Cell, Colour, ColourMap, Column, Figure, ParticleMap, Plot, Series, Table, sig,
     },
     runner::{self, Context},
     settings::{Field, Settings},
@@ -426,30 +426,37 @@ fn study(runs: &[JudgedRun]) -> Study {
 }
 
 fn figure(runs: &[JudgedRun]) -> Figure {
-    let caption = "Left: semi-axes of the drop over time, 40 particles across, and the exact ones. Right: \
-                   the drop of the variant `modern` at the end, coloured by pressure over the exact \
-                   pressure at its centre at the start.";
+    let caption = "Left: semi-axes of the drop over time, 40 particles across, and the exact ones (`seed` in \
+                   the full tier only). Right: the drop of the variant `modern` at the end, coloured by \
+                   pressure over the exact pressure at its centre at the start; dots have the size of an \
+                   initial spacing, and the strain has left two of them between rows.";
     let axes = (Axis::linear("A t [-]"), Axis::linear("semi-axis [R]"));
     let mut plot = Plot::new("", axes.0, axes.1);
-    let mut drop = None;
-    for (k, variant) in ["seed", "modern"].into_iter().enumerate() {
-        let at_40 = |r: &&Record| r.variant == variant && setting(r, "n") == 40.0; // the first: h/dx 2.5
-        let Some(record) = runs.iter().map(|run| &run.record).find(at_40) else { continue };
-        let Some(series) = record.profiles.get("series") else { continue };
+    let at_40 = |variant: &str| {
+        // The first: h/dx 2.5.
+        let is_it = |r: &&Record| r.variant == variant && setting(r, "n") == 40.0;
+        runs.iter().map(|run| &run.record).find(is_it)
+    };
+    let points = |record: &Record, name: &str| -> Vec<(f64, f64)> {
+        let Some(series) = record.profiles.get("series") else { return Vec::new() };
         let (a, r) = (setting(record, "strain"), setting(record, "radius"));
-        let points = |name: &str| -> Vec<(f64, f64)> {
-            let points = column(series, "t").iter().zip(column(series, name));
-            points.map(|(t, y)| (a * t, y / r)).collect()
-        };
-        if k == 0 {
-            let exact = Series::line("exact", points("a_exact")).colour(Colour::BLACK);
-            plot = plot.layer(exact);
-            plot = plot.layer(Series::line("", points("b_exact")).colour(Colour::BLACK));
-        }
-        let sparse = |p: Vec<(f64, f64)>| p.into_iter().step_by(8).collect::<Vec<_>>();
-        plot = plot.layer(Series::markers(variant, sparse(points("a"))).cycle(k));
-        plot = plot.layer(Series::markers("", sparse(points("b"))).cycle(k));
+        let points = column(series, "t").iter().zip(column(series, name));
+        points.map(|(t, y)| (a * t, y / r)).collect()
+    };
+    let mut drop = None;
+    if let Some(record) = at_40("modern") {
+        let exact = |name: &str, axis| Series::line(name, points(record, axis));
+        plot = plot.layer(exact("exact", "a_exact").colour(Colour::BLACK));
+        plot = plot.layer(exact("", "b_exact").colour(Colour::BLACK));
         drop = Some(picture(record));
+    }
+    for (k, variant) in ["seed", "modern"].into_iter().enumerate() {
+        let Some(record) = at_40(variant) else { continue };
+        for (name, axis) in [(variant, "a"), ("", "b")] {
+            let sparse = points(record, axis).into_iter().step_by(8).collect();
+            let markers = Series::markers(name, sparse).colour(Colour::cycle(k));
+            plot = plot.layer(markers.shape(report::Shape::cycle(k)).open());
+        }
     }
     let figure = Figure::new("elliptic-drop", caption).columns(2).panel(plot);
     match drop {
@@ -466,7 +473,7 @@ fn picture(record: &Record) -> ParticleMap {
     let xy = column(profile, "x").iter().zip(column(profile, "y"));
     let points =
         xy.zip(column(profile, "p")).map(|((x, y), p)| (x / r, y / r, p / scale)).collect();
-    let axes = (Axis::linear("x [R]"), Axis::linear("y [R]"));
+    let axes = (Axis::linear("x [R]").range(-0.7, 0.7), Axis::linear("y [R]"));
     let title = format!("A t = {}", sig(setting(record, "end"), 2));
     ParticleMap::new(&title, axes, "p/p(0) [-]", ColourMap::Sequential, points)
         .diameter(2.0 / setting(record, "n"))

@@ -86,17 +86,23 @@ fn invariants(variant: &str, id: &str) -> Vec<Gate> {
         gate(id, "mach", Bound::Below(0.3), Evidence::Theory, slow),
     ];
     match variant {
-        "ghosts" => {
-            let limited = |gate: Gate| gate.with_limitation(MIRRORED).even_if_diverged();
-            gates.into_iter().map(limited).collect()
-        }
+        "ghosts" => gates.into_iter().map(mirrored).collect(),
         _ => gates,
     }
 }
 
+fn mirrored(gate: Gate) -> Gate {
+    let reason = if gate.metric == "outside" { CROSSED } else { MIRRORED };
+    gate.with_limitation(reason).even_if_diverged()
+}
+
 const MIRRORED: &str = "ghosts carry the opposite velocity, as the paper has it, along the wall too: along a \
                         wall that water runs past they double the difference that (3) sums, and in \
-                        disorder that is noise of the density, which does work";
+                        disorder that is noise of the density, which does work. `ghosts-slip`, which \
+                        differs in that alone, ends the run, and its walls do none (1e-17) until a particle \
+                        has crossed one";
+const CROSSED: &str = "what keeps a single particle from a ghost wall is its own image, and the gradient of the \
+                       kernel between both falls to 0 as they meet: fast ones cross, with `ghosts-slip` too";
 const THICK: &str = "artificial viscosity takes a quarter to a half of the energy at this resolution, so the \
                      front is later than the diaphragm made it";
 
@@ -110,6 +116,9 @@ pub const PEERS: [(&str, f64, f64); 2] = [("z@2", 2.62, 2.66), ("z@3", 3.97, 4.0
 fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
     let id = format!("martin-moyce.{variant}.{n}");
     let mut gates = invariants(variant, &id);
+    if n < 20 {
+        return gates; // for the order and the cost alone
+    }
     let peers = "three other codes agree within 0.04 that the front of two-dimensional water released at \
                  once is there; 0.1 is the spread of digitised curves of the experiment, which is slower";
     for (metric, low, high) in PEERS {
@@ -151,7 +160,8 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
         let bound = Bound::Within(-0.21, 0.21);
         let metric = format!("impulse_{sensor}@1");
         let gate = gate(&id, &metric, bound, Evidence::Reference, impulse);
-        gates.push(if sensor == "P4" { gate.with_limitation(THIN) } else { gate });
+        let is_high = ["P3", "P4"].contains(&sensor);
+        gates.push(if is_high { gate.with_limitation(TONGUE) } else { gate });
     }
     let limited = |gate: Gate| match (variant, &gate.purpose, gate.evidence) {
         ("ghosts", _, Evidence::Reference) => gate.when_measured().with_limitation(MIRRORED),
@@ -161,5 +171,9 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
     gates.into_iter().map(limited).collect()
 }
 
-const THIN: &str = "the jet that rises along the wall is a spacing or two thick at 80 mm, and its surface \
-                    is at p = 0: the mean over a support, from which the pressure is read, is low";
+const TONGUE: &str = "the tongue that reaches the far wall is 9 to 14 % thinner than measured (metric `tongue`), \
+                      so what presses at 30 mm, near its upper side, is weaker, and what presses at 80 mm, \
+                      above it, later: by the same at H/dx 60 and 120, and particles within 12 mm have the \
+                      pressure that is read, so it is neither the spacing nor the sensor. What the water of \
+                      the experiment has beside it is a gate, friction on the floor and a third dimension. \
+                      At 30 a support of 30 mm mixes in the pressure at the floor, which hides it at P3";

@@ -121,6 +121,14 @@ pub fn impulse(pressure: &[(f64, f64)], from: f64, window: f64) -> f64 {
     inside.windows(2).map(|w| 0.5 * (w[1].0 - w[0].0) * (w[0].1 + w[1].1)).sum()
 }
 
+/// Mean of a level \[H\] for one (H/g)^(1/2) from when it first exceeds 0.02: the thickness of what comes.
+fn tongue(level: &[(f64, f64)]) -> f64 {
+    let arrival = level.iter().find(|(_, y)| *y > 0.02).map_or(f64::NAN, |(t, _)| *t);
+    let next = level.iter().filter(|(t, _)| (arrival..=arrival + 1.0).contains(t));
+    let (sum, count) = next.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
+    sum / count
+}
+
 /// rms distance of a curve from its running mean, from t = `from` on.
 fn noise(pressure: &[(f64, f64)], from: f64) -> f64 {
     let later: Vec<(f64, f64)> = pressure.iter().filter(|(t, _)| *t >= from).copied().collect();
@@ -225,6 +233,10 @@ fn with_lobovsky<F: Term<()>, K: Kernel>(
         put.metric(&format!("H{}_rms", k + 1), rms(&pair.0, &pair.1, 0.0), formula);
     }
     put.compare("levels", &pairs, 0.6, "all four levels/H");
+    let [ours, theirs] = [tongue(&pairs[3].0), tongue(&pairs[3].1)];
+    let formula = "mean level at H4 for one (H/g)^(1/2) from when it first exceeds 0.02 H, over that of the \
+                   experiment, less 1";
+    put.metric("tongue", ours / theirs - 1.0, formula);
     pressures(dam, &lobovsky, gauge, &mut put);
     Ok(())
 }
@@ -302,6 +314,14 @@ mod tests {
             (-0.08..-0.03).contains(&short) && (-0.16..-0.10).contains(&long),
             "{short} {long}"
         );
+    }
+
+    #[test]
+    fn a_tongue_is_as_thick_as_its_mean_after_its_arrival() {
+        let step = |t: f64| if t < 1.995 { 0.0 } else { 0.1 + 0.02 * (t - 2.0) };
+        let level: Curve = (0..500).map(|k| 0.01 * f64::from(k)).map(|t| (t, step(t))).collect();
+        assert!((tongue(&level) - 0.11).abs() < 1e-3, "{}", tongue(&level));
+        assert!(tongue(&[(0.0, 0.0), (1.0, 0.0)]).is_nan(), "nothing has come");
     }
 
     #[test]
