@@ -220,7 +220,7 @@ fn failed(fault: &Fault) -> (Vec<String>, usize) {
     let mut failed: Vec<String> = planned
         .gates
         .iter()
-        .filter(|gate| fails(gate, record.metric(&gate.metric)))
+        .filter(|gate| fails(gate, gate.value(&record)))
         .map(|gate| gate.id.clone())
         .collect();
     for is_transverse in [false, true] {

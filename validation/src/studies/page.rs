@@ -232,8 +232,8 @@ fn run_table(runs: &[JudgedRun]) -> Table {
         Column::num("solver memory", "kB"),
         Column::text("state"),
     ];
-    let caption = "Every run of the plan. Runs were made side by side, so their times are only rough. The state is a digest of the bits \
-                   at the end: the same for any number of threads.";
+    let caption = "Every run of the plan. Runs were made side by side, so their times are only rough. The \
+                   state is a digest of the bits at the end: the same for any number of threads.";
     let mut table = Table::new(caption, columns);
     for run in runs {
         let (record, cost) = (&run.record, &run.record.cost);

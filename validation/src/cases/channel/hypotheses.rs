@@ -162,9 +162,9 @@ impl Map {
         let figure = (0..self.cells.len()).fold(figure, |figure, k| figure.panel(self.panel(k)));
         let set = map_settings(self.tier, Step::Courant, 20.0, JUDGED_SOUND);
         let command = format!(
-            "One start of the cell Re 20, c0/V = 10 at fixed Courant number again: `touchstone run poiseuille \
-             --variant seed --set {} --set jitter=1e-4 --allow-unstable`. Starts that differ in nothing \
-             but round-off can end differently, so single runs are no evidence.",
+            "One start of the cell Re 20, c0/V = 10 at fixed Courant number again: `touchstone run \
+             poiseuille --variant seed --set {} --set jitter=1e-4 --allow-unstable`. Starts that differ in \
+             nothing but round-off can end differently, so single runs are no evidence.",
             set.join(" --set ")
         );
         let mut study =

@@ -98,8 +98,8 @@ fn profiles(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
     }
 }
 
-const ASSUMED: &str = "Assumed where the paper is silent or its scan is damaged: plates 1 mm apart, water (ρ = \
-    1000 kg/m³, ν = 10⁻⁶ m²/s), V from Re = V L/ν, in Poiseuille flow the speed of the centre line; a \
+const ASSUMED: &str = "Assumed where the paper is silent or its scan is damaged: plates 1 mm apart, water \
+    (ρ = 1000 kg/m³, ν = 10⁻⁶ m²/s), V from Re = V L/ν, in Poiseuille flow the speed of the centre line; a \
     periodic section as short as two supports allow, for the flow does not depend on x; the \
     predictor-corrector read as the explicit midpoint rule; a square lattice at rest, rows half a spacing \
     from ghost walls, and on the plates where there are interface particles.";
@@ -299,10 +299,10 @@ fn cost(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRun]) -> 
         Flow::Poiseuille => "at Re 0.0125 except the plain reimplementation at 0.5",
     };
     let caption = format!(
-        "{label} against the cost of the whole run to νt/L² = 1, Re = 0.5. Left: processor seconds of \
-         the stepping loop on one thread, which are its wall time on a core of its own, median of up to {} interleaved runs, bars from fastest to \
-         slowest; other codes were timed on another machine, {others}. Right: pair interactions, which \
-         no noise touches. Rows: {}.",
+        "{label} against the cost of the whole run to νt/L² = 1, Re = 0.5. Left: processor seconds of the \
+         stepping loop on one thread, which are its wall time on a core of its own, median of up to {} \
+         interleaved runs, bars from fastest to slowest; other codes were timed on another machine, \
+         {others}. Right: pair interactions, which no noise touches. Rows: {}.",
         repetitions(tier),
         rows.join(", ")
     );

@@ -209,6 +209,10 @@ impl<'a> Series<'a> {
         put("energy_lost", lost, "-", "1 - (kinetic + strain energy) at the end/at the start");
         let gained = self.rows.iter().map(energy).fold(0.0, f64::max) / energy(first) - 1.0;
         put("energy_gained", gained, "-", "largest total energy at any time/at the start - 1");
+        let late = self.rows.iter().filter(|row| row[0] >= 0.9 * last[0]);
+        let pushed = late.map(|row| (row[2] - last[2]).abs()).fold(0.0, f64::max);
+        let formula = "max |v_c - v_c(end)|/V of a ring in the last tenth of the run";
+        put("pushed_by_itself", pushed / self.rings.settings.speed, "-", formula);
         let mirror = self.column(9).into_iter().fold(0.0, f64::max);
         put(
             "mirror",

@@ -107,7 +107,7 @@ pub fn run_scene<S: Scheme<Extra = Symmetric>>(
         let momentum = measure::momentum_error(rings, &particles);
         let formula = "|sum m v| at the end/momentum of one ring, exactly 0";
         record.metrics.insert("momentum".into(), Metric::new(momentum, "-", formula));
-        let courant = simulation.dt() * (rings.cp + rings.v) / rings.h;
+        let courant = rings.dt * (rings.cp + rings.v) / rings.h;
         let formula = "dt (c_p + V)/h, c_p = ((K + 4 mu/3)/rho)^(1/2)";
         record.metrics.insert("courant".into(), Metric::new(courant, "-", formula));
     }

@@ -139,8 +139,8 @@ pub fn stiff_sound(tier: Tier) -> Vec<Entry> {
     let what =
         ["c₀ a thousand times too fast".to_string(), format!("Taylor-Green, Mach 10⁻⁴, t = {end}")];
     let entry = Entry::new("sound.vortex", what, "growth of the error", Bound::Within(-0.01, 0.01));
-    let because = "the flow does not know c₀, and the sound of the start that goes with it is 1 % of the speed: Mach \
-         0.1 squared";
+    let because = "the flow does not know c₀, and the sound of the start that goes with it is 1 % of the \
+         speed: Mach 0.1 squared";
     let found = format!("error {} becomes {}", sci(usual), sci(stiff));
     vec![entry.because(Evidence::Theory, because).found(stiff - usual, found)]
 }
