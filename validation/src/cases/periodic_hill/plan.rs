@@ -141,6 +141,19 @@ fn gates(variant: &str, re: f64, n: usize, start: Start) -> Vec<Gate> {
             "the force goes with the velocity at the walls: the same goal as for the velocity",
         ),
         none_outside,
+    ];
+    gates.extend(balances(&gate, n, goal));
+    if re > 10.0 {
+        let because = "a tenth of H, the goal at 20 spacings: two spacings";
+        let bound = Bound::Within(-reach, reach);
+        gates.push(gate("reattachment_error", bound, Evidence::Reference, because));
+    }
+    gates
+}
+
+/// What holds whatever the flow is: walls in place, mass, momentum, steadiness.
+fn balances(gate: &dyn Fn(&str, Bound, Evidence, &str) -> Gate, n: usize, goal: f64) -> Vec<Gate> {
+    vec![
         gate(
             "wall_offset",
             Bound::Below(0.05),
@@ -178,11 +191,5 @@ fn gates(variant: &str, re: f64, n: usize, start: Start) -> Vec<Gate> {
             "what is left of a decay, extrapolated from three windows: a quarter of the goal. Where disorder \
              moves the windows more than the decay does, it is nine times that at most",
         ),
-    ];
-    if re > 10.0 {
-        let because = "a tenth of H, the goal at 20 spacings: two spacings";
-        let bound = Bound::Within(-reach, reach);
-        gates.push(gate("reattachment_error", bound, Evidence::Reference, because));
-    }
-    gates
+    ]
 }

@@ -41,9 +41,15 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
             runs.extend(sides.iter().map(|&n| run(variant, n, start)));
         }
     }
-    // How far the best variant goes, after its error budget.
-    let changes = BUDGET.iter().map(|(_, set)| *set).chain(["re=10", "re=1000"]);
-    runs.extend(changes.map(|set| Planned::new(BEST, &changed(set)).taking(seconds(50))));
+    let changes = BUDGET.iter().map(|(_, set)| changed(set));
+    runs.extend(changes.map(|set| Planned::new(BEST, &set).taking(seconds(50))));
+    // How far it goes; at Re 10 to the same decay.
+    let far = [vec!["re=10", "end=0.2"], vec!["re=1000"]];
+    runs.extend(far.map(|more| {
+        let mut set = set(50, 0.2);
+        set.extend(more.iter().map(ToString::to_string));
+        Planned::new(BEST, &set).taking(seconds(50))
+    }));
     runs
 }
 

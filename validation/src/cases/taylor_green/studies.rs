@@ -110,9 +110,10 @@ fn table(runs: &[JudgedRun]) -> Table {
         Column::num("nearest pair", "dx"),
         Column::num("time", "s"),
     ];
-    let caption = "All runs at t = 2 L/U. Viscosity found: from the fall of kinetic energy. Momentum: the \
-                   total one over the total mass, exactly 0 but for what a disturbed start has. Time: \
-                   of the stepping loop, one thread, side by side with other runs.";
+    let caption = "All runs at their end, t = 2 L/U where the settings say no other. Viscosity found: from \
+                   the fall of kinetic energy. Momentum: the total one over the total mass, exactly 0 but \
+                   for what a disturbed start has. Time: of the stepping loop, one thread, side by side \
+                   with other runs.";
     let mut table = Table::new(caption, columns);
     for JudgedRun { planned, record, .. } in runs {
         table = table.row(vec![
