@@ -187,8 +187,8 @@ pub fn settings(variant: &str, set: &[String]) -> Result<DamSettings, RunError> 
 const CASE: WaterCase<DamSettings> = WaterCase {
     name: NAME,
     about: "A column of water, held by a wall on its left, is released at once and collapses on a dry floor \
-            (Martin & Moyce 1952: twice as high as wide, on an endless floor; Lobovsky et al. 2014: 600 mm by \
-            300 mm in a tank of 1610 mm, whose far wall it strikes). Front, residual height, levels, \
+            (Martin & Moyce 1952: twice as high as wide, on an endless floor; Lobovsky et al. 2014: 600 mm \
+            by 300 mm in a tank of 1610 mm, whose far wall it strikes). Front, residual height, levels, \
             pressures and impulses are compared with the experiments; energy and momentum are accounted for \
             term by term.",
     variants,

@@ -107,9 +107,9 @@ const NAME: &str = "hydrostatic";
 pub const HYDROSTATIC: &dyn Case = &WaterCase {
     name: NAME,
     about: "Water at rest in an open tank, compressed by its own weight by g H/c0^2. The exact solution is \
-            rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing moves. After 20 \
-            acoustic periods 4 H/c0: the pressure, the level, the kinetic energy that should be 0, the gap \
-            between water and bottom, particles outside of the tank.",
+            rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing moves. After \
+            20 acoustic periods 4 H/c0: the pressure, the level, the kinetic energy that should be 0, the \
+            gap between water and bottom, particles outside of the tank.",
     variants,
     optional: &["xsph", "xi", "stress_exponent", "diffusion", "wall_gravity"],
     plan: plan::plan,
