@@ -101,9 +101,9 @@ const MIRRORED: &str = "ghosts carry the opposite velocity, as the paper has it,
                         disorder that is noise of the density, which does work. `ghosts-slip`, which \
                         differs in that alone, ends the run, and its walls do none (1e-17) until a particle \
                         has crossed one";
-const CROSSED: &str = "what keeps a single particle from a ghost wall is its own image, and the gradient of \
-                       the kernel between both falls to 0 as they meet: fast ones cross, with `ghosts-slip` \
-                       too";
+const CROSSED: &str = "in the plane of a ghost wall the water and its images push a particle alike from both \
+                       sides, and its own image not at all: pressed that near, it may cross, with \
+                       `ghosts-slip` too";
 const THICK: &str = "artificial viscosity takes a quarter to a half of the energy at this resolution, so the \
                      front is later than the diaphragm made it";
 
