@@ -10,10 +10,10 @@ use solver::{
 
 use super::{
     channel::Stepping,
-    water::{Ingredient, Ledger, Medium, WaterVariant},
+    water::{Ingredient, Ledger, Medium, OPTIONAL, WaterCase, WaterVariant},
 };
 use crate::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
+    case::{Case, Planned, RunError, Tier, Variant},
     exact::EllipticDrop as Exact,
     gate::{Bound, Evidence, Gate},
     number,
@@ -22,7 +22,6 @@ use crate::{
         self, Axis, Cell, Colour, ColourMap, Column, Figure, ParticleMap, Plot, Series, Table, sig,
     },
     runner::{self, Context},
-    settings::{Field, Settings},
     suite::{JudgedRun, Study},
 };
 
@@ -43,9 +42,6 @@ crate::water_settings! {
         end: f64 ["1/A"] in 1e-6..=10.0 = 0.8,
     }
 }
-
-/// The case.
-pub struct EllipticDrop;
 
 const NAME: &str = "elliptic_drop";
 /// Samples of a run.
@@ -281,45 +277,17 @@ fn finish<S: Scheme<Extra = ()>>(
     }
 }
 
-impl Case for EllipticDrop {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn about(&self) -> &'static str {
-        "A free drop in two dimensions, at first a circle, pulled into an ellipse by the uniform strain \
-         that it starts with; its semi-axes follow an ordinary differential equation exactly. No wall and \
-         no gravity, or gravity in which it falls freely, which must change nothing."
-    }
-
-    fn variants(&self) -> Vec<Variant> {
-        variants().into_iter().map(|v| v.variant).collect()
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        DropSettings::FIELDS
-    }
-
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        let variants = variants();
-        let chosen = case::find(NAME, &variants, variant, |v| v.variant.name)?;
-        Ok(serde_json::to_value(chosen.settings(set)?).unwrap_or_default())
-    }
-
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        let variants = variants();
-        let chosen = case::find(NAME, &variants, variant, |v| v.variant.name)?;
-        (chosen.run)(variant, &chosen.settings(set)?, context)
-    }
-
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        plan(tier)
-    }
-
-    fn studies(&self, _: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        vec![study(runs)]
-    }
-}
+/// The drop as a [`Case`].
+pub const ELLIPTIC_DROP: &dyn Case = &WaterCase {
+    name: NAME,
+    about: "A free drop in two dimensions, at first a circle, pulled into an ellipse by the uniform strain \
+            that it starts with; its semi-axes follow an ordinary differential equation exactly. No wall and \
+            no gravity, or gravity in which it falls freely, which must change nothing.",
+    variants,
+    optional: OPTIONAL,
+    plan,
+    studies: |_, runs| vec![study(runs)],
+};
 
 /// Particles across the drop.
 fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
@@ -522,7 +490,7 @@ mod tests {
 
     fn ran(variant: &str, set: &[&str]) -> Record {
         let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
-        EllipticDrop.run(variant, &set, &Context::default()).expect("a run")
+        ELLIPTIC_DROP.run(variant, &set, &Context::default()).expect("a run")
     }
 
     #[test]
@@ -557,7 +525,7 @@ mod tests {
     #[test]
     fn a_drop_that_makes_no_sense_is_refused() {
         let refused = |variant: &str, set: &str| {
-            EllipticDrop.run(variant, &[set.to_string()], &Context::default()).err()
+            ELLIPTIC_DROP.run(variant, &[set.to_string()], &Context::default()).err()
         };
         assert!(matches!(refused("modern", "n=2"), Some(RunError::Setting(_))));
         assert!(matches!(refused("modern", "xsph=0.1"), Some(RunError::Unused { .. })));

@@ -39,7 +39,7 @@ pub const CASES: &[&dyn Case] = &[
     taylor_green::TAYLOR_GREEN,
     periodic_hill::PERIODIC_HILL,
     dam_break::DAM_BREAK,
-    &elliptic_drop::EllipticDrop,
+    elliptic_drop::ELLIPTIC_DROP,
     hydrostatic::HYDROSTATIC,
     &taylor_couette::Gap,
 ];

@@ -25,15 +25,9 @@ pub use setup::{Dam, Vessel};
 
 use super::{
     channel::Stepping,
-    water::{Ingredient, WaterVariant},
+    water::{Ingredient, OPTIONAL, WaterCase, WaterVariant},
 };
-use crate::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
-    record::Record,
-    runner::Context,
-    settings::{Field, Settings},
-    suite::{JudgedRun, Study},
-};
+use crate::case::{Case, RunError, Variant};
 
 crate::water_settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
@@ -187,51 +181,21 @@ fn ablations() -> Vec<WaterVariant<DamSettings>> {
 
 /// The settings of a variant with `key=value` texts applied.
 pub fn settings(variant: &str, set: &[String]) -> Result<DamSettings, RunError> {
-    case::find(NAME, &variants(), variant, |v| v.variant.name)?.settings(set)
+    Ok(CASE.chosen(variant, set)?.0)
 }
 
-/// The collapse as a [`Case`].
-struct DamBreak;
+const CASE: WaterCase<DamSettings> = WaterCase {
+    name: NAME,
+    about: "A column of water, held by a wall on its left, is released at once and collapses on a dry floor \
+            (Martin & Moyce 1952: twice as high as wide, on an endless floor; Lobovsky et al. 2014: 600 mm \
+            by 300 mm in a tank of 1610 mm, whose far wall it strikes). Front, residual height, levels, \
+            pressures and impulses are compared with the experiments; energy and momentum are accounted for \
+            term by term.",
+    variants,
+    optional: OPTIONAL,
+    plan: plan::plan,
+    studies: |tier, runs| studies::studies(DAM_BREAK, tier, runs),
+};
 
 /// Collapsing columns.
-pub const DAM_BREAK: &dyn Case = &DamBreak;
-
-impl Case for DamBreak {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn about(&self) -> &'static str {
-        "A column of water, held by a wall on its left, is released at once and collapses on a dry floor \
-         (Martin & Moyce 1952: twice as high as wide, on an endless floor; Lobovsky et al. 2014: 600 mm by \
-         300 mm in a tank of 1610 mm, whose far wall it strikes). Front, residual height, levels, pressures \
-         and impulses are compared with the experiments; energy and momentum are accounted for term by \
-         term."
-    }
-
-    fn variants(&self) -> Vec<Variant> {
-        variants().into_iter().map(|v| v.variant).collect()
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        DamSettings::FIELDS
-    }
-
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        Ok(serde_json::to_value(settings(variant, set)?).unwrap_or_default())
-    }
-
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        let variants = variants();
-        let chosen = case::find(NAME, &variants, variant, |v| v.variant.name)?;
-        (chosen.run)(variant, &chosen.settings(set)?, context)
-    }
-
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        plan::plan(tier)
-    }
-
-    fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        studies::studies(DAM_BREAK, tier, runs)
-    }
-}
+pub const DAM_BREAK: &dyn Case = &CASE;

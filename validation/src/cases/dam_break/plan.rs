@@ -101,8 +101,9 @@ const MIRRORED: &str = "ghosts carry the opposite velocity, as the paper has it,
                         disorder that is noise of the density, which does work. `ghosts-slip`, which \
                         differs in that alone, ends the run, and its walls do none (1e-17) until a particle \
                         has crossed one";
-const CROSSED: &str = "what keeps a single particle from a ghost wall is its own image, and the gradient of the \
-                       kernel between both falls to 0 as they meet: fast ones cross, with `ghosts-slip` too";
+const CROSSED: &str = "in the plane of a ghost wall the water and its images push a particle alike from both \
+                       sides, and its own image not at all: pressed that near, it may cross, with \
+                       `ghosts-slip` too";
 const THICK: &str = "artificial viscosity takes a quarter to a half of the energy at this resolution, so the \
                      front is later than the diaphragm made it";
 
@@ -171,9 +172,10 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
     gates.into_iter().map(limited).collect()
 }
 
-const TONGUE: &str = "the tongue that reaches the far wall is 9 to 14 % thinner than measured (metric `tongue`), \
-                      so what presses at 30 mm, near its upper side, is weaker, and what presses at 80 mm, \
-                      above it, later: by the same at H/dx 60 and 120, and particles within 12 mm have the \
-                      pressure that is read, so it is neither the spacing nor the sensor. What the water of \
-                      the experiment has beside it is a gate, friction on the floor and a third dimension. \
-                      At 30 a support of 30 mm mixes in the pressure at the floor, which hides it at P3";
+const TONGUE: &str = "the tongue that reaches the far wall is 9 to 14 % thinner than measured (metric \
+                      `tongue`), so what presses at 30 mm, near its upper side, is weaker, and what presses \
+                      at 80 mm, above it, later: by the same at H/dx 60 and 120, and particles within 12 mm \
+                      have the pressure that is read, so it is neither the spacing nor the sensor. What the \
+                      water of the experiment has beside it is a gate, friction on the floor and a third \
+                      dimension. At 30 a support of 30 mm mixes in the pressure at the floor, which hides it \
+                      at P3";

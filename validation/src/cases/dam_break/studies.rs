@@ -358,8 +358,8 @@ fn tank_table(records: &[&Record]) -> Table {
         Column::num("noise of P2", "ρ g H"),
         Column::num("largest P1", "ρ g H"),
     ];
-    let caption = "Distance from Lobovsky et al. Tongue: relative error of the mean level at H4 for one √(H/g) \
-                   from its arrival. Impulses: relative error from the arrival at P1 on, for one \
+    let caption = "Distance from Lobovsky et al. Tongue: relative error of the mean level at H4 for one \
+                   √(H/g) from its arrival. Impulses: relative error from the arrival at P1 on, for one \
                    √(H/g); two sensors of the experiment at one height differ by 7 % in it. The wave arrives \
                    at P1 at 2.44 on the clock of the measured pressures, and would at about 2.6 by the \
                    measured front. Noise of P2 in the experiment: see the metric `pressure_noise_measured`.";

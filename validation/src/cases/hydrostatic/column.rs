@@ -7,10 +7,10 @@ use solver::{
     Role, Scene, Smoothing, Tait, Term, Xsph, lattice, terms::Tensile, walls::Walls,
 };
 
-use super::{HydrostaticSettings, TankVariant, run};
+use super::{HydrostaticSettings, run};
 use crate::{
     case::{RunError, Variant},
-    cases::channel::Stepping,
+    cases::{channel::Stepping, water::WaterVariant},
     exact, geometry,
     random::Random,
     theory::{
@@ -303,7 +303,7 @@ pub fn variant<K, R, D, W, I>(
     name: &'static str,
     about: &'static str,
     adjust: fn(&mut HydrostaticSettings),
-) -> TankVariant
+) -> WaterVariant<HydrostaticSettings>
 where
     K: Kernel,
     R: TensilePart,
@@ -312,5 +312,5 @@ where
     I: Stepping,
 {
     let uses = [R::USES, D::USES, W::USES].concat();
-    TankVariant { variant: Variant { name, about }, adjust, uses, run: run::run::<K, R, D, W, I> }
+    WaterVariant { variant: Variant { name, about }, adjust, uses, run: run::run::<K, R, D, W, I> }
 }

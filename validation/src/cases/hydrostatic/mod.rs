@@ -13,13 +13,8 @@ use solver::{
 
 pub use column::Column;
 
-use crate::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
-    record::Record,
-    runner::Context,
-    settings::{self, Field, Settings},
-    suite::{JudgedRun, Study},
-};
+use super::water::{WaterCase, WaterVariant};
+use crate::case::Case;
 
 crate::settings! {
     /// Settings of water at rest in an open tank.
@@ -65,19 +60,6 @@ crate::settings! {
     }
 }
 
-/// Settings that some variants do not read.
-const OPTIONAL: [&str; 5] = ["xsph", "xi", "stress_exponent", "diffusion", "wall_gravity"];
-
-type Run = fn(&str, &HydrostaticSettings, &Context) -> Result<Record, RunError>;
-
-/// A composition.
-struct TankVariant {
-    variant: Variant,
-    adjust: fn(&mut HydrostaticSettings),
-    uses: Vec<&'static str>,
-    run: Run,
-}
-
 /// Wendland C2 at h = 1.5 dx, long steps, and a fifth of the artificial viscosity: in water at rest there
 /// is little to damp.
 fn modern(s: &mut HydrostaticSettings) {
@@ -88,7 +70,7 @@ type Extrapolating = ExtrapolatingWall<Tait>;
 type Kept = DensityDiffusion<Hydrostatic>;
 
 #[rustfmt::skip] // one line a variant: a table
-fn variants() -> Vec<TankVariant> {
+fn variants() -> Vec<WaterVariant<HydrostaticSettings>> {
     type Midpoint = PredictorCorrector;
     let seed = |_: &mut HydrostaticSettings| {};
     vec![
@@ -119,68 +101,17 @@ fn variants() -> Vec<TankVariant> {
     ]
 }
 
-impl TankVariant {
-    fn settings(&self, set: &[String]) -> Result<HydrostaticSettings, RunError> {
-        for assignment in set {
-            let key = assignment.split('=').next().unwrap_or_default().trim();
-            if OPTIONAL.contains(&key) && !self.uses.contains(&key) {
-                let variant = self.variant.name.to_string();
-                return Err(RunError::Unused { key: key.into(), variant });
-            }
-        }
-        let mut settings = HydrostaticSettings::default();
-        (self.adjust)(&mut settings);
-        settings::apply(&mut settings, set)?;
-        settings.validate()?;
-        Ok(settings)
-    }
-}
-
 const NAME: &str = "hydrostatic";
 
-/// The tank as a [`Case`].
-struct Tank;
-
 /// Water at rest in an open tank.
-pub const HYDROSTATIC: &dyn Case = &Tank;
-
-impl Case for Tank {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn about(&self) -> &'static str {
-        "Water at rest in an open tank, compressed by its own weight by g H/c0^2. The exact solution is \
-         rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing moves. After 20 \
-         acoustic periods 4 H/c0: the pressure, the level, the kinetic energy that should be 0, the gap \
-         between water and bottom, particles outside of the tank."
-    }
-
-    fn variants(&self) -> Vec<Variant> {
-        variants().into_iter().map(|v| v.variant).collect()
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        HydrostaticSettings::FIELDS
-    }
-
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        let variants = variants();
-        let chosen = case::find(NAME, &variants, variant, |v| v.variant.name)?;
-        Ok(serde_json::to_value(chosen.settings(set)?).unwrap_or_default())
-    }
-
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        let variants = variants();
-        let chosen = case::find(NAME, &variants, variant, |v| v.variant.name)?;
-        (chosen.run)(variant, &chosen.settings(set)?, context)
-    }
-
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        plan::plan(tier)
-    }
-
-    fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        studies::studies(tier, runs)
-    }
-}
+pub const HYDROSTATIC: &dyn Case = &WaterCase {
+    name: NAME,
+    about: "Water at rest in an open tank, compressed by its own weight by g H/c0^2. The exact solution is \
+            rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing moves. After \
+            20 acoustic periods 4 H/c0: the pressure, the level, the kinetic energy that should be 0, the \
+            gap between water and bottom, particles outside of the tank.",
+    variants,
+    optional: &["xsph", "xi", "stress_exponent", "diffusion", "wall_gravity"],
+    plan: plan::plan,
+    studies: studies::studies,
+};

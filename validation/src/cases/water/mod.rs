@@ -4,20 +4,15 @@
 //! A free surface is nothing to the method: density follows (3), which knows no surface, and there is
 //! neither Morris viscosity nor a search for the surface.
 
+mod case;
 mod ingredients;
 mod ledger;
 mod medium;
 
+pub use case::{WaterCase, WaterVariant};
 pub use ingredients::{Ingredient, OPTIONAL, TensileIngredient};
 pub use ledger::{ITEMS, Ledger};
 pub use medium::{Medium, Numerics};
-
-use crate::{
-    case::{RunError, Variant},
-    record::Record,
-    runner::Context,
-    settings::{self, Settings},
-};
 
 /// Declares the settings of a case of water: its own, then those that every such case has, and turns
 /// the latter into [`Numerics`] by a method `numerics`.
@@ -66,34 +61,4 @@ macro_rules! water_settings {
             }
         }
     };
-}
-
-/// A variant: its name, its settings before `--set`, and the program that its types make.
-pub struct WaterVariant<T> {
-    /// Name and description.
-    pub variant: Variant,
-    /// Changes the default settings.
-    pub adjust: fn(&mut T),
-    /// Runs it: name of the variant, settings.
-    pub run: fn(&str, &T, &Context) -> Result<Record, RunError>,
-    /// Optional settings that its types read.
-    pub uses: Vec<&'static str>,
-}
-
-impl<T: Settings> WaterVariant<T> {
-    /// The settings of this variant with `key=value` texts applied.
-    pub fn settings(&self, set: &[String]) -> Result<T, RunError> {
-        let mut settings = T::default();
-        (self.adjust)(&mut settings);
-        settings::apply(&mut settings, set)?;
-        settings.validate()?;
-        for assignment in set {
-            let key = assignment.split('=').next().unwrap_or_default().trim();
-            if OPTIONAL.contains(&key) && !self.uses.contains(&key) {
-                let (key, variant) = (key.to_string(), self.variant.name.to_string());
-                return Err(RunError::Unused { key, variant });
-            }
-        }
-        Ok(settings)
-    }
 }
