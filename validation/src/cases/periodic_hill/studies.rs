@@ -27,7 +27,7 @@ use crate::{
 
 /// All of them.
 pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-    let mut studies = vec![ladder(runs), pictures(runs), walls(runs)];
+    let mut studies = vec![ladder(runs), pictures(runs), walls(runs), power()];
     if tier == Tier::Full {
         studies.extend([order(runs), starts(runs), budget(runs), cost(runs)]);
         studies.extend([stability::limits(case), stability::reynolds(case)]);
@@ -428,4 +428,30 @@ fn cost(runs: &[JudgedRun]) -> Study {
         &points,
         &[],
     ))
+}
+
+/// Mutant, how many gates it fails, of how many, which: written by `tests/tests/hill_power.rs`.
+const SPOILED: &str = include_str!("../../../../tests/hill_power.csv");
+
+/// What the gates are worth.
+fn power() -> Study {
+    let columns = vec![
+        Column::text("hills with"),
+        Column::num("gates that it fails", "1"),
+        Column::num("of", "1"),
+        Column::text("which"),
+    ];
+    let caption = "The run of the quick tier (Re 50, H/dx = 10, from rest to 30 H/U_b) with one thing \
+                   spoiled, judged by its own gates. Measured by `tests/tests/hill_power.rs`, which takes a \
+                   minute and a half and runs on request: `cargo test --test hill_power -- --ignored`.";
+    let mut table = Table::new(caption, columns);
+    for line in SPOILED.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [mutant, fails, of, which] = cells[..] else { continue };
+        let count = |text: &str| Cell::count(text.parse().unwrap_or_default());
+        let which: Vec<String> = which.split(' ').map(|gate| format!("`{gate}`")).collect();
+        let which = Cell::text(which.join(" "));
+        table = table.row(vec![Cell::text(mutant), count(fails), count(of), which]);
+    }
+    Study::new("periodic-hill-gate-power", "What the gates are worth").block(table)
 }
