@@ -166,7 +166,7 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
     }
     let limited = |gate: Gate| match (variant, &gate.purpose, gate.evidence) {
         ("ghosts", _, Evidence::Reference) => gate.when_measured().with_limitation(MIRRORED),
-        ("seed", Purpose::Judge, Evidence::Reference) => gate.with_limitation(THICK),
+        ("seed", _, Evidence::Reference) => gate.with_limitation(THICK),
         _ => gate,
     };
     gates.into_iter().map(limited).collect()

@@ -233,7 +233,7 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let axis = |label: String| (Axis::linear("t √(g/H) [-]"), Axis::linear(label));
     let unit = |record: &Record| (setting(record, "height") / setting(record, "gravity")).sqrt();
     let (x, y) = axis("front from the gate [H]".into());
-    let mut plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::TopLeft);
+    let mut plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::Auto);
     for record in records {
         let (h, zero) = (setting(record, "height"), setting(record, "width"));
         let points = curve(record, "series", "front", [unit(record), h], zero);
@@ -326,7 +326,7 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
         let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
         let x = Axis::linear("(t − arrival) √(g/H) [-]");
         let y = Axis::linear("impulse [ρ g H √(H/g)]");
-        let legend = if k == 0 { Legend::TopLeft } else { Legend::Hidden };
+        let legend = if k == 3 { Legend::Auto } else { Legend::Hidden };
         let measured = so_far(&lobovsky.pressure[k], at);
         let band = measured.iter().map(|(t, y)| (*t, 0.93 * y, 1.07 * y)).collect();
         let mut plot = Plot::new(title, x, y).legend(legend);
