@@ -48,7 +48,7 @@ crate::settings! {
         /// time step; auto: the least of courant h/(c0 + U) and viscous h²/ν
         dt: Option<f64> ["s"] in 1e-15..=1e3 = None,
         /// Courant number of the time step
-        courant: f64 ["-"] in 1e-6..=100.0 = 1.0,
+        courant: f64 ["-"] in 1e-6..=100.0 = 1.5,
         /// viscous number of the time step
         viscous: f64 ["-"] in 1e-6..=100.0 = 0.25,
         /// density diffusion δ
