@@ -28,7 +28,7 @@ pub fn studies(case: &'static dyn Case, tier: Tier) -> Vec<Study> {
 }
 
 /// Sound speeds of the map \[V\].
-const SOUND: [f64; 4] = [5.0, 10.0, 20.0, 40.0];
+const SOUND: [f64; 3] = [5.0, 10.0, 20.0];
 
 /// The sound speed at which H4 is judged \[V\]: Morris' rule with 1 % density variation.
 const JUDGED_SOUND: f64 = 10.0;
@@ -37,13 +37,6 @@ fn reynolds(tier: Tier) -> &'static [f64] {
     match tier {
         Tier::Quick => &[1.0, 5.0, 20.0],
         Tier::Full => &[0.5, 1.0, 5.0, 10.0, 20.0, 50.0, 100.0],
-    }
-}
-
-fn sounds(tier: Tier) -> &'static [f64] {
-    match tier {
-        Tier::Quick => &SOUND[..3],
-        Tier::Full => &SOUND,
     }
 }
 
@@ -101,7 +94,7 @@ fn map_settings(tier: Tier, step: Step, re: f64, sound: f64) -> Vec<String> {
     let mut set =
         vec![format!("re={re}"), format!("c0={}", sound * v), format!("end={}", end(tier))];
     if step == Step::Fixed {
-        let highest = sounds(tier).last().copied().unwrap_or(sound);
+        let highest = SOUND.last().copied().unwrap_or(sound);
         let (h, nu) = (1.2 * 1e-3 / 20.0, 1e-6);
         let dt = (0.25 * h / ((highest + 1.0) * v)).min(0.125 * h * h / nu);
         set.push(format!("dt={dt:e}"));
@@ -111,13 +104,13 @@ fn map_settings(tier: Tier, step: Step, re: f64, sound: f64) -> Vec<String> {
 
 impl Map {
     fn run(case: &'static dyn Case, tier: Tier) -> Self {
-        let highest = sounds(tier).len() - 1;
+        let highest = SOUND.len() - 1;
         let mut jobs = Vec::new();
         for &step in rules(tier) {
             for &re in reynolds(tier) {
                 // At the highest sound speed both rules have the same step.
                 let count = if step == Step::Fixed { highest } else { highest + 1 };
-                jobs.extend(sounds(tier)[..count].iter().map(|&sound| Job {
+                jobs.extend(SOUND[..count].iter().map(|&sound| Job {
                     variant: "seed",
                     set: map_settings(tier, step, re, sound),
                     starts: starts(tier, re),
@@ -201,9 +194,9 @@ impl Map {
             x_label: "Re [-]".into(),
             y_label: "c0/V [-]".into(),
             x: reynolds(self.tier).iter().map(|re| exact(*re)).collect(),
-            y: sounds(self.tier).iter().map(|c| exact(*c)).collect(),
+            y: SOUND.iter().map(|c| exact(*c)).collect(),
             categories: names.iter().map(|n| n.to_string()).zip(colours).collect(),
-            cells: (0..sounds(self.tier).len())
+            cells: (0..SOUND.len())
                 .map(|c| rows.iter().map(|row| row.get(c).and_then(cell)).collect())
                 .collect(),
         }
@@ -211,7 +204,7 @@ impl Map {
 
     /// (Re, starts) at the sound speed of H4 and fixed Courant number.
     fn judged(&self) -> Vec<(f64, &Starts)> {
-        let c = sounds(self.tier).iter().position(|s| *s == JUDGED_SOUND);
+        let c = SOUND.iter().position(|s| *s == JUDGED_SOUND);
         let rows = reynolds(self.tier).iter().zip(&self.cells[0]);
         rows.filter_map(|(re, row)| Some((*re, row.get(c?)?))).collect()
     }
@@ -274,7 +267,7 @@ impl Map {
                 words.push(format!("Re {re}, {name}: {said} ({low} against {high})"));
             }
         }
-        let (low, high) = (sounds(self.tier)[0], sounds(self.tier)[sounds(self.tier).len() - 1]);
+        let (low, high) = (SOUND[0], SOUND[SOUND.len() - 1]);
         let rescue = match rescued {
             0 => "Nowhere on the map does the lower sound speed turn a flow that fails from most starts \
                   into one that does not."
@@ -331,7 +324,7 @@ const CURES: [(&str, &str); 10] = [
 fn cures(case: &'static dyn Case, tier: Tier) -> Study {
     let list: &[f64] = match tier {
         Tier::Quick => &[20.0],
-        Tier::Full => &[5.0, 20.0, 50.0, 100.0, 200.0],
+        Tier::Full => &[5.0, 20.0, 100.0],
     };
     let jobs: Vec<Job> = CURES
         .iter()

@@ -28,7 +28,7 @@ pub const BUDGET: [(&str, &str); 6] = [
 ];
 
 /// The runs of a tier: in the full one first the ladder, variant by variant, start by start. At 100
-/// particles a side only what is held to a goal there, and from the disturbed start its neighbour.
+/// particles a side only what is held to a goal there.
 pub fn plan(tier: Tier) -> Vec<Planned> {
     if tier == Tier::Quick {
         return vec![run(BEST, 50, 0.2), run(BEST, 32, 0.0), run("plain", 32, 0.2)];
@@ -36,8 +36,7 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
     let mut runs = Vec::new();
     for variant in LADDER {
         for start in STARTS {
-            let all = variant == BEST || (variant == "carried" && start > 0.0);
-            let sides = if all { &SIDES[..] } else { &SIDES[..2] };
+            let sides = if variant == BEST { &SIDES[..] } else { &SIDES[..2] };
             runs.extend(sides.iter().map(|&n| run(variant, n, start)));
         }
     }
