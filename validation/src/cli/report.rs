@@ -23,11 +23,13 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     folder.write("verdicts.json", verdicts.as_bytes())?;
     // Records and verdicts are kept even if the page is found to be unsound.
     let page = page::assemble(&suite);
-    check_page(&page.html()).map_err(|reason| {
+    let html = page.html();
+    check_page(&html).map_err(|reason| {
         Failure::bug(anyhow::anyhow!("the page cannot be trusted to open: {reason}"))
     })?;
     // The page last: once it is there, everything that it speaks of is.
-    page.write(&path).map_err(|reason| FileError::File { path: path.clone(), reason })?;
+    page.write_html(&path, &html)
+        .map_err(|reason| FileError::File { path: path.clone(), reason })?;
     let took = report::seconds(start.elapsed().as_secs_f64());
     output::say(&format!(
         "{}\nreport: {} and {records} records beside it, in {took}",

@@ -8,6 +8,7 @@ use super::render;
 use super::table::{Status, Table};
 use crate::files;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use rayon::prelude::*;
 use std::io;
 use std::path::Path;
 
@@ -225,15 +226,19 @@ impl Page {
     /// Writes the page, and its figures' PNG files into their folder beside it. Every file appears
     /// whole or not at all.
     pub fn write(&self, path: &Path) -> io::Result<()> {
+        self.write_html(path, &self.html())
+    }
+
+    /// The same with what [`Page::html`] has said, which need not be said again.
+    pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
         if !self.png_folder.is_empty() {
             let images = folder.join(&self.png_folder);
             std::fs::create_dir_all(&images)?;
-            for drawing in self.sections.iter().flat_map(drawings) {
-                drawing.write(&images)?;
-            }
+            let drawings: Vec<Drawing> = self.sections.iter().flat_map(drawings).collect();
+            drawings.par_iter().try_for_each(|drawing| drawing.write(&images))?;
         }
-        files::write_atomically(path, self.html().as_bytes()).map_err(io::Error::other)
+        files::write_atomically(path, html.as_bytes()).map_err(io::Error::other)
     }
 }
 
