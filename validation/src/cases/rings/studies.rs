@@ -47,7 +47,13 @@ fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
     profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
 }
 
-/// Runs of this variant, speed and angle, in the order of the plan.
+/// Strength of the artificial stress and h/dx as they are meant.
+fn is_usual(record: &Record) -> bool {
+    let RingSettings { xi, h_over_dx, .. } = RingSettings::default();
+    setting(record, "xi") == xi && setting(record, "h_over_dx") == h_over_dx
+}
+
+/// Usual runs of this variant, speed and angle, in the order of the plan.
 fn of<'a>(
     runs: &'a [JudgedRun],
     variant: &'a str,
@@ -56,6 +62,7 @@ fn of<'a>(
 ) -> impl Iterator<Item = &'a Record> {
     runs.iter().map(|run| &run.record).filter(move |record| {
         record.variant == variant
+            && is_usual(record)
             && setting(record, "speed") == speed
             && setting(record, "angle") == angle
     })
@@ -176,7 +183,7 @@ fn phases_table(runs: &[JudgedRun]) -> Table {
             speeds.push(speed);
             table = table.row(reference_phases(speed, &reference));
         }
-        if setting(record, "angle") == 0.0 {
+        if setting(record, "angle") == 0.0 && is_usual(record) {
             table = table.row(found_phases(record));
         }
     }
@@ -240,7 +247,7 @@ fn errors_table(runs: &[JudgedRun]) -> Table {
         let settings = RingSettings { speed: setting(record, "speed"), ..RingSettings::default() };
         let Some(reference) = Reference::of(&settings) else { continue };
         let (exact, spread) = reference.number("restitution").unwrap_or((f64::NAN, f64::NAN));
-        if setting(record, "angle") != 0.0 {
+        if setting(record, "angle") != 0.0 || !is_usual(record) {
             continue;
         }
         table = table.row(vec![
