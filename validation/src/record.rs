@@ -185,6 +185,11 @@ impl Profile {
         self.columns.push(Column { name: name.into(), unit: unit.into(), values });
         self
     }
+
+    /// The values of a column, none if there is no such column.
+    pub fn column(&self, name: &str) -> &[f64] {
+        self.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
+    }
 }
 
 impl Record {
@@ -208,6 +213,26 @@ impl Record {
     /// A metric's value, `None` if it was not measured.
     pub fn metric(&self, name: &str) -> Option<f64> {
         self.metrics.get(name).map(|metric| metric.value)
+    }
+
+    /// A metric's value, NaN if it was not measured.
+    pub fn measured(&self, name: &str) -> f64 {
+        self.metric(name).unwrap_or(f64::NAN)
+    }
+
+    /// A setting as a number, NaN if it is none.
+    pub fn setting(&self, name: &str) -> f64 {
+        self.settings.get(name).and_then(Value::as_f64).unwrap_or(f64::NAN)
+    }
+
+    /// A number that the rules chose, NaN if they chose none.
+    pub fn chose(&self, name: &str) -> f64 {
+        self.numerics.get(name).and_then(Value::as_f64).unwrap_or(f64::NAN)
+    }
+
+    /// The values of a column of a profile, none if there is no such profile or column.
+    pub fn column(&self, profile: &str, name: &str) -> &[f64] {
+        self.profiles.get(profile).map_or(&[], |profile| profile.column(name))
     }
 
     /// The document, indented, with a newline at its end.

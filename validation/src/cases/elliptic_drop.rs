@@ -354,18 +354,6 @@ fn invariants(id: &str) -> Vec<Gate> {
     ]
 }
 
-fn metric(record: &Record, name: &str) -> f64 {
-    record.metric(name).unwrap_or(f64::NAN)
-}
-
-fn setting(record: &Record, key: &str) -> f64 {
-    record.settings.get(key).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
-}
-
-fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
-    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
-}
-
 fn study(runs: &[JudgedRun]) -> Study {
     let mut study = Study::new("elliptic-drop", "Semi-axes of a free drop")
         .block(figure(runs))
@@ -374,10 +362,10 @@ fn study(runs: &[JudgedRun]) -> Study {
         let of = |gravity: f64| {
             let mut of_variant =
                 runs.iter().map(|run| &run.record).filter(|r| r.variant == variant);
-            of_variant.find(|r| setting(r, "n") == 20.0 && setting(r, "gravity") == gravity)
+            of_variant.find(|r| r.setting("n") == 20.0 && r.setting("gravity") == gravity)
         };
         let (Some(still), Some(falling)) = (of(0.0), of(FALL)) else { continue };
-        let change = |name: &str| (metric(still, name) - metric(falling, name)).abs();
+        let change = |name: &str| (still.measured(name) - falling.measured(name)).abs();
         let because = "gravity acts on all particles alike, so a drop that falls deforms like one that \
                        does not; round-off of its places, in a flow that is smooth";
         let id = format!("{NAME}.{variant}.falls-in-shape");
@@ -402,13 +390,13 @@ fn figure(runs: &[JudgedRun]) -> Figure {
     let mut plot = Plot::new("", axes.0, axes.1);
     let at_40 = |variant: &str| {
         // The first: h/dx 2.5.
-        let is_it = |r: &&Record| r.variant == variant && setting(r, "n") == 40.0;
+        let is_it = |r: &&Record| r.variant == variant && r.setting("n") == 40.0;
         runs.iter().map(|run| &run.record).find(is_it)
     };
     let points = |record: &Record, name: &str| -> Vec<(f64, f64)> {
         let Some(series) = record.profiles.get("series") else { return Vec::new() };
-        let (a, r) = (setting(record, "strain"), setting(record, "radius"));
-        let points = column(series, "t").iter().zip(column(series, name));
+        let (a, r) = (record.setting("strain"), record.setting("radius"));
+        let points = series.column("t").iter().zip(series.column(name));
         points.map(|(t, y)| (a * t, y / r)).collect()
     };
     let mut drop = None;
@@ -436,15 +424,14 @@ fn figure(runs: &[JudgedRun]) -> Figure {
 fn picture(record: &Record) -> ParticleMap {
     let empty = Profile::default();
     let profile = record.profiles.get("particles").unwrap_or(&empty);
-    let (a, r) = (setting(record, "strain"), setting(record, "radius"));
-    let scale = setting(record, "rho") * Exact::circle(r, a).central_pressure();
-    let xy = column(profile, "x").iter().zip(column(profile, "y"));
-    let points =
-        xy.zip(column(profile, "p")).map(|((x, y), p)| (x / r, y / r, p / scale)).collect();
+    let (a, r) = (record.setting("strain"), record.setting("radius"));
+    let scale = record.setting("rho") * Exact::circle(r, a).central_pressure();
+    let xy = profile.column("x").iter().zip(profile.column("y"));
+    let points = xy.zip(profile.column("p")).map(|((x, y), p)| (x / r, y / r, p / scale)).collect();
     let axes = (Axis::linear("x [R]").range(-0.7, 0.7), Axis::linear("y [R]"));
-    let title = format!("A t = {}", sig(setting(record, "end"), 2));
+    let title = format!("A t = {}", sig(record.setting("end"), 2));
     ParticleMap::new(&title, axes, "p/p(0) [-]", ColourMap::Sequential, points)
-        .diameter(2.0 / setting(record, "n"))
+        .diameter(2.0 / record.setting("n"))
 }
 
 fn table(runs: &[JudgedRun]) -> Table {
@@ -469,15 +456,15 @@ fn table(runs: &[JudgedRun]) -> Table {
     for record in runs.iter().map(|run| &run.record) {
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(setting(record, "n"), 3),
-            Cell::num(setting(record, "h_over_dx"), 2),
-            Cell::num(setting(record, "gravity"), 2),
-            Cell::percent(metric(record, "a_error"), 2),
-            Cell::percent(metric(record, "b_error"), 2),
-            Cell::num(metric(record, "tip_end"), 4),
-            Cell::percent(-metric(record, "work_viscosity"), 2),
-            Cell::percent(metric(record, "work_stress"), 2),
-            Cell::sci(metric(record, "energy_gap"), 2),
+            Cell::num(record.setting("n"), 3),
+            Cell::num(record.setting("h_over_dx"), 2),
+            Cell::num(record.setting("gravity"), 2),
+            Cell::percent(record.measured("a_error"), 2),
+            Cell::percent(record.measured("b_error"), 2),
+            Cell::num(record.measured("tip_end"), 4),
+            Cell::percent(-record.measured("work_viscosity"), 2),
+            Cell::percent(record.measured("work_stress"), 2),
+            Cell::sci(record.measured("energy_gap"), 2),
             Cell::count(record.cost.steps),
         ]);
     }
@@ -514,10 +501,10 @@ mod tests {
             let (still, falling) =
                 (ran(variant, &short), ran(variant, &[&short[..], &["gravity=2"]].concat()));
             for record in [&still, &falling] {
-                assert!(metric(record, "momentum_error") < 1e-13);
-                assert!(metric(record, "centre_error") < 1e-13);
+                assert!(record.measured("momentum_error") < 1e-13);
+                assert!(record.measured("centre_error") < 1e-13);
             }
-            let difference = metric(&still, "b_end") - metric(&falling, "b_end");
+            let difference = still.measured("b_end") - falling.measured("b_end");
             assert!(difference.abs() < 1e-10, "{variant}: {difference:e}");
         }
     }

@@ -276,7 +276,7 @@ fn study(runs: &[JudgedRun]) -> Study {
     let caption = format!("Period of the cantilever; {theory:.4} s in the theory of thin plates.");
     let mut table = Table::new(caption, columns);
     for run in runs {
-        let metric = |name: &str| run.record.metric(name).unwrap_or(f64::NAN);
+        let metric = |name: &str| run.record.measured(name);
         table = table.row(vec![
             Cell::text(run.planned.variant),
             Cell::text(run.planned.set.join(", ")),
@@ -299,7 +299,7 @@ fn study(runs: &[JudgedRun]) -> Study {
 
 /// What becomes of the period towards Poisson's ratio 1/2, from the numbers.
 fn incompressible(runs: &[JudgedRun]) -> String {
-    let excess = |run: &&JudgedRun| run.record.metric("period_excess").unwrap_or(f64::NAN);
+    let excess = |run: &&JudgedRun| run.record.measured("period_excess");
     let has = |run: &&JudgedRun, text: &str| run.planned.set.iter().any(|set| set == text);
     let five = |run: &&JudgedRun| run.planned.variant == "plain" && has(run, "n=5");
     let Some(rubber) = runs.iter().find(|run| five(run) && run.planned.set.len() == 1) else {
@@ -310,7 +310,7 @@ fn incompressible(runs: &[JudgedRun]) -> String {
         let (steps, base) = (run.record.cost.steps as f64, rubber.record.cost.steps as f64);
         let lost =
             if excess(&run).is_nan() { "no period".into() } else { percent(excess(&run), 3) };
-        let swing = sig(run.record.metric("amplitude_ratio").unwrap_or(f64::NAN), 3);
+        let swing = sig(run.record.measured("amplitude_ratio"), 3);
         let steps = sig(steps / base, 2);
         Some(format!("{ratio}: {lost}, swings {swing} of theory, {steps} times the steps"))
     });

@@ -319,10 +319,10 @@ fn study(runs: &[JudgedRun]) -> Study {
     let caption = "A disk without stress that begins to spin, rim at 0.05 c0. What is 0 in a perfect \
                    method: the change of angular momentum, and the strain that one step sees in the rim.";
     let mut table = Table::new(caption, columns);
-    let metric = |run: &JudgedRun, name: &str| run.record.metric(name).unwrap_or(f64::NAN);
+    let metric = |run: &JudgedRun, name: &str| run.record.measured(name);
     for run in runs {
         let number = |name: &str| Cell::num(metric(run, name), 3);
-        let end = run.record.settings["end"].as_f64().unwrap_or(f64::NAN);
+        let end = run.record.setting("end");
         table = table.row(vec![
             Cell::text(run.planned.variant),
             Cell::text(run.planned.set.join(", ")),

@@ -409,10 +409,6 @@ fn gates(variant: &str, layers: usize) -> Vec<Gate> {
     ]
 }
 
-fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
-    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
-}
-
 /// The runs of a variant with their spacings, coarse to fine.
 fn ladder<'a>(tier: Tier, runs: &'a [JudgedRun], variant: &str) -> Vec<(usize, &'a Record)> {
     let records = runs.iter().map(|run| &run.record).filter(|r| r.variant == variant);
@@ -420,7 +416,7 @@ fn ladder<'a>(tier: Tier, runs: &'a [JudgedRun], variant: &str) -> Vec<(usize, &
 }
 
 fn error(record: &Record) -> f64 {
-    record.metric("l2").unwrap_or(f64::NAN)
+    record.measured("l2")
 }
 
 fn levels_of(ladder: &[(usize, &Record)]) -> Vec<Level> {
@@ -465,7 +461,7 @@ fn figure(tier: Tier, runs: &[JudgedRun]) -> Figure {
         fall = fall.layer(Series::line_markers(*name, points).cycle(k));
         let last = ladder.last().and_then(|(_, record)| record.profiles.get("velocity"));
         let Some(profile) = last else { continue };
-        let [r, u, exact] = ["r", "u", "u_exact"].map(|name| column(profile, name));
+        let [r, u, exact] = ["r", "u", "u_exact"].map(|name| profile.column(name));
         if k == 0 {
             let line = r.iter().zip(exact).map(|(r, u)| (*r, *u)).collect();
             over = over.layer(Series::line("exact", line).colour(Colour::BLACK));
@@ -504,7 +500,7 @@ fn table(tier: Tier, runs: &[JudgedRun]) -> Table {
                 Cell::text(format!("`{name}`")),
                 Cell::count(*layers as u64),
                 Cell::percent(error(record), 3),
-                Cell::sci(record.metric("radial_rms").unwrap_or(f64::NAN), 2),
+                Cell::sci(record.measured("radial_rms"), 2),
                 Cell::seconds(record.cost.cpu_s),
                 Cell::text(if is_last { order.clone() } else { String::new() }),
             ]);

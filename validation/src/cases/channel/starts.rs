@@ -35,7 +35,7 @@ impl Outcome {
         match record.status {
             // L²/ν is 1 s in these channels.
             Status::Diverged { time, .. } => Self::Diverged(time),
-            _ => Self::Reached(record.metric("l2_worst").unwrap_or(f64::NAN)),
+            _ => Self::Reached(record.measured("l2_worst")),
         }
     }
 

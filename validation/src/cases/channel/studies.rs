@@ -55,14 +55,6 @@ fn run_of<'a>(
     runs.get(ladder_of(flow, tier, variant).start + k).map(|run| &run.record)
 }
 
-fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
-    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
-}
-
-fn number(record: &Record, name: &str) -> f64 {
-    record.numerics.get(name).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
-}
-
 /// Times that fit into a figure.
 const SHOWN: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 1.0];
 /// Width of the channel that the default settings have \[m\].
@@ -106,7 +98,7 @@ const ASSUMED: &str = "Assumed where the paper is silent or its scan is damaged:
 
 /// H1, H2 and M4 of the paper in words.
 fn verdicts(flow: Flow, seed: &Record, walls: Option<&Record>) -> Vec<String> {
-    let worst = |record: &Record| record.metric("l2_worst").unwrap_or(f64::NAN);
+    let worst = |record: &Record| record.measured("l2_worst");
     let said = |supported: bool| if supported { "supported" } else { "refuted here" };
     let (name, what) = match flow {
         Flow::Couette => {
@@ -133,11 +125,11 @@ fn verdicts(flow: Flow, seed: &Record, walls: Option<&Record>) -> Vec<String> {
 }
 
 fn profile_panel(flow: Flow, record: &Record, title: &str) -> Plot {
-    let v = number(record, "V [m/s]");
+    let v = record.chose("V [m/s]");
     let mut plot = Plot::new(title, Axis::linear("u/V [-]"), Axis::linear("y/L [-]"));
     for (k, tau) in SHOWN.into_iter().enumerate() {
         let Some(profile) = record.profiles.get(&format!("u@{tau}")) else { continue };
-        let rows = column(profile, "u").iter().zip(column(profile, "y"));
+        let rows = profile.column("u").iter().zip(profile.column("y"));
         let points = rows.map(|(u, y)| (u / v, y / WIDTH)).collect();
         let colour = Colour::cycle(k);
         plot = plot.layer(Series::line("", exact_line(flow, tau)).colour(colour)).layer(
@@ -161,13 +153,13 @@ fn exact_line(flow: Flow, tau: f64) -> Vec<(f64, f64)> {
 }
 
 fn error_panel(record: &Record) -> Plot {
-    let v = number(record, "V [m/s]");
+    let v = record.chose("V [m/s]");
     let mut plot = Plot::new("error", Axis::linear("(u − u_exact)/V [-]"), Axis::linear("y/L [-]"));
     for (k, tau) in SHOWN.into_iter().enumerate() {
         let Some(profile) = record.profiles.get(&format!("u@{tau}")) else { continue };
-        let u = column(profile, "u").iter().zip(column(profile, "u_exact"));
+        let u = profile.column("u").iter().zip(profile.column("u_exact"));
         let points: Vec<(f64, f64)> =
-            u.zip(column(profile, "y")).map(|((u, e), y)| ((u - e) / v, y / WIDTH)).collect();
+            u.zip(profile.column("y")).map(|((u, e), y)| ((u - e) / v, y / WIDTH)).collect();
         let name = format!("νt/L² = {tau}");
         plot = plot.layer(
             Series::line_markers(name, points).colour(Colour::cycle(k)).shape(Shape::cycle(k)),
@@ -179,15 +171,15 @@ fn error_panel(record: &Record) -> Plot {
 /// Particles at the end of a run, coloured by velocity and by pressure.
 fn snapshot(flow: Flow, record: &Record) -> Figure {
     let id = format!("{}-particles", name(flow));
-    let dx = number(record, "dx [m]");
+    let dx = record.chose("dx [m]");
     let caption = "Particles of the seed's run at the end, νt/L² = 1, 20 rows of 20: velocity along the \
                    channel, and pressure, which is exactly zero in the flow. The pressure that is left \
                    is a pattern of rows that slide past each other. The section is periodic in x.";
     let empty = Profile::default();
     let particles = record.profiles.get("particles").unwrap_or(&empty);
     let map = |title: &str, field: &str, label: &str, colours| {
-        let (x, y) = (column(particles, "x"), column(particles, "y"));
-        let values = column(particles, field).iter();
+        let (x, y) = (particles.column("x"), particles.column("y"));
+        let values = particles.column(field).iter();
         let points = x.iter().zip(y).zip(values).map(|((x, y), v)| (*x, *y, *v)).collect();
         let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
         ParticleMap::new(title, axes, label, colours, points).diameter(0.9 * dx)
@@ -228,7 +220,7 @@ fn orders(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
         Table::new(format!("Observed order of {metric} over the rows of the ladder."), columns);
     for (k, variant) in ladder(flow).into_iter().enumerate() {
         let ladder = &runs[ladder_of(flow, tier, variant)];
-        let error = |run: &JudgedRun| run.record.metric(metric).unwrap_or(f64::NAN);
+        let error = |run: &JudgedRun| run.record.measured(metric);
         let levels: Vec<Level> = levels(tier)
             .iter()
             .zip(ladder)
@@ -344,7 +336,7 @@ fn timed_points(
         rows: run.record.settings.get("rows").and_then(|r| r.as_u64()).unwrap_or(0) as usize,
         note: String::new(),
         error: match run.record.status {
-            Status::Completed => run.record.metric(metric).unwrap_or(f64::NAN),
+            Status::Completed => run.record.measured(metric),
             _ => f64::NAN,
         },
         seconds: vec![run.record.cost.cpu_s],
@@ -522,7 +514,7 @@ fn budget_in_words(variant: &str, changes: &[Change], errors: &[f64]) -> Vec<Str
 fn series_row(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Cell> {
     let tau = if flow == Flow::Couette { 0.1 } else { 1.0 };
     let record = case.run(variant, &[], &Context::default());
-    let v = record.as_ref().map_or(f64::NAN, |record| number(record, "V [m/s]"));
+    let v = record.as_ref().map_or(f64::NAN, |record| record.chose("V [m/s]"));
     let t = tau * WIDTH * WIDTH / 1e-6;
     let moved = (1..20).map(|k| {
         let y = WIDTH * f64::from(k) / 20.0;
@@ -551,7 +543,7 @@ fn series_row(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Cell> {
 
 fn changes(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Change> {
     let base = case.run(variant, &[], &Context::default());
-    let base = |name: &str| base.as_ref().map_or(f64::NAN, |record| number(record, name));
+    let base = |name: &str| base.as_ref().map_or(f64::NAN, |record| record.chose(name));
     let (dt, c0) = (base("dt [s]"), base("c0 [m/s]"));
     let change = |what, part, set: &[String]| Change { what, part, set: set.to_vec(), against: 0 };
     let quarter = format!("dt={}", 0.25 * dt);
@@ -618,8 +610,8 @@ fn reynolds(flow: Flow, runs: &[JudgedRun]) -> Study {
     let modern = modern.filter(is_20_rows).filter(is_of_reynolds);
     for run in modern {
         let record = &run.record;
-        let metric = |name: &str| record.metric(name).unwrap_or(f64::NAN);
-        let set = |key: &str| record.settings.get(key).and_then(|v| v.as_f64()).unwrap_or(f64::NAN);
+        let metric = |name: &str| record.measured(name);
+        let set = |key: &str| record.setting(key);
         let reached = match record.status {
             Status::Completed => set("end"),
             Status::Diverged { time, .. } | Status::Interrupted { time, .. } => time,
@@ -627,8 +619,8 @@ fn reynolds(flow: Flow, runs: &[JudgedRun]) -> Study {
         };
         table = table.row(vec![
             Cell::exact(set("re")),
-            Cell::num(number(record, "c0/V"), 3),
-            Cell::num(number(record, "dt/limit"), 2),
+            Cell::num(record.chose("c0/V"), 3),
+            Cell::num(record.chose("dt/limit"), 2),
             Cell::num(reached, 3),
             Cell::percent(metric("l2_worst"), 2),
             Cell::sci(metric("p_rms"), 2),

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::{
     plan::in_tank,
-    studies::{self, metric, number, share},
+    studies::{self, number, share},
 };
 use crate::{
     case::{Case, RunError},
@@ -86,7 +86,7 @@ pub fn study(case: &'static dyn Case) -> Study {
 
 /// Mean of |relative error| of the impulses at P1 to P3.
 fn impulse(record: &Record) -> f64 {
-    (1..=3).map(|k| metric(record, &format!("impulse_P{k}@1")).abs()).sum::<f64>() / 3.0
+    (1..=3).map(|k| record.measured(&format!("impulse_P{k}@1")).abs()).sum::<f64>() / 3.0
 }
 
 /// Microseconds of a particle and step.
@@ -124,7 +124,7 @@ fn table(results: &[(Row, Record)]) -> Table {
             _ => "completed".into(),
         };
         let number = |name: &str| number(record, name);
-        let share = |name: &str, sign: f64| share(sign * metric(record, name));
+        let share = |name: &str, sign: f64| share(sign * record.measured(name));
         table = table.row(vec![
             Cell::text(format!("`{variant}`")),
             Cell::text(more.join(", ")),
@@ -138,7 +138,7 @@ fn table(results: &[(Row, Record)]) -> Table {
             number("pressure_noise"),
             share("density_least", 1.0),
             share("density_most", 1.0),
-            Cell::num(metric(record, "outside_end"), 3),
+            Cell::num(record.measured("outside_end"), 3),
             Cell::num(step(record), 3),
         ]);
     }
@@ -151,12 +151,12 @@ fn claims(results: &[(Row, Record)]) -> String {
         results.iter().find(|((v, m), _)| *v == variant && *m == more).map(|(_, r)| r)
     };
     let text = |variant: &str, more: &[&str], name: &str, factor: f64| match of(variant, more) {
-        Some(r) if r.status == Status::Completed => percent(factor * metric(r, name), 2),
+        Some(r) if r.status == Status::Completed => percent(factor * r.measured(name), 2),
         Some(_) => "unknown, for the run diverged".into(),
         None => "not run".into(),
     };
     let noise = |variant: &str, more: &[&str]| match of(variant, more) {
-        Some(r) if r.status == Status::Completed => sig(metric(r, "pressure_noise"), 2),
+        Some(r) if r.status == Status::Completed => sig(r.measured("pressure_noise"), 2),
         Some(_) => "unknown, for the run diverged".into(),
         None => "not run".into(),
     };
@@ -164,8 +164,8 @@ fn claims(results: &[(Row, Record)]) -> String {
     let walls = |variant: &str| match of(variant, &[]) {
         Some(r) => {
             let end = if r.status == Status::Completed { "" } else { " and the run diverges" };
-            let lost = metric(r, "outside_end");
-            let work = percent(metric(r, "work_walls"), 2);
+            let lost = r.measured("outside_end");
+            let work = percent(r.measured("work_walls"), 2);
             format!("the walls add {work} to the energy, {lost} particles are lost{end}")
         }
         None => "not run".into(),

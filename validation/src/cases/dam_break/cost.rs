@@ -4,7 +4,7 @@
 use super::{
     plan::PEERS,
     reference::{Curve, value},
-    studies::{curve, is_free, metric, setting},
+    studies::{curve, is_free},
 };
 use crate::{
     case::Tier,
@@ -24,7 +24,7 @@ pub fn study(tier: Tier, runs: &[JudgedRun]) -> Study {
     };
     let point = |run: &JudgedRun| Point {
         variant: run.planned.variant,
-        rows: setting(&run.record, "n") as usize,
+        rows: run.record.setting("n") as usize,
         note: String::new(),
         error: match run.record.status {
             Status::Completed => rms(&front(&run.record), &best, LATER),
@@ -35,7 +35,7 @@ pub fn study(tier: Tier, runs: &[JudgedRun]) -> Study {
         status: run.record.status.clone(),
     };
     let points: Vec<Point> = runs.iter().filter(is_shown).map(point).collect();
-    let finest_n = finest.map_or(f64::NAN, |r| setting(r, "n"));
+    let finest_n = finest.map_or(f64::NAN, |r| r.setting("n"));
     let caption = format!(
         "rms distance of the front Z(T), 1 ≤ T ≤ 3.3, from that of `modern` at a/dx = {finest_n}, over the \
          cost of the run. A variant approaches it with its points from left to right; rows are spacings \
@@ -59,7 +59,7 @@ const LATER: [f64; 2] = [1.0, 3.3];
 
 /// Z over T.
 fn front(record: &Record) -> Curve {
-    let (a, g) = (setting(record, "width"), setting(record, "gravity"));
+    let (a, g) = (record.setting("width"), record.setting("gravity"));
     curve(record, "series", "front", [(0.5 * a / g).sqrt(), a], 0.0)
 }
 
@@ -105,11 +105,11 @@ fn orders(mut study: Study, runs: &[JudgedRun]) -> Study {
         let Some(&[a, b, c]) = ladder.last_chunk::<3>() else { continue };
         let [p, least, most] = order([&front(a), &front(b), &front(c)]);
         let each = |of: &dyn Fn(&Record) -> String| [a, b, c].map(of).join(", ");
-        let z = |record: &Record| metric(record, "z@3");
+        let z = |record: &Record| record.measured("z@3");
         let limit = z(c) + (z(c) - z(b)) / (p.exp2() - 1.0);
         table = table.row(vec![
             Cell::text(format!("`{variant}`")),
-            Cell::text(each(&|r| sig(setting(r, "n"), 3))),
+            Cell::text(each(&|r| sig(r.setting("n"), 3))),
             Cell::text(each(&|r| sig(z(r), 4))),
             Cell::num(p, 2),
             Cell::text(format!("{} to {}", sig(least, 2), sig(most, 2))),
@@ -148,7 +148,7 @@ fn rate_table(runs: &[JudgedRun]) -> Table {
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::text(if is_free(record) { "Martin & Moyce" } else { "Lobovsky" }),
-            Cell::num(setting(record, "n"), 3),
+            Cell::num(record.setting("n"), 3),
             Cell::count(cost.particles as u64),
             Cell::count(cost.steps),
             Cell::num(1e6 * cost.cpu_s / steps, 3),

@@ -5,10 +5,7 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 use solver::Role;
 
-use super::{
-    Dam, LOBOVSKY, Modern, NAME, run_scene, settings,
-    studies::{metric, number},
-};
+use super::{Dam, LOBOVSKY, Modern, NAME, run_scene, settings, studies::number};
 use crate::{
     case::{Case, RunError},
     gate::{Bound, Evidence, Gate},
@@ -31,18 +28,14 @@ fn run(case: &'static dyn Case, variant: &str, set: &[String]) -> Result<Record,
 fn limit(case: &'static dyn Case, variant: &str, set: &[String]) -> f64 {
     let mut short = set.to_vec();
     short.push("end=0.01".into());
-    let number = |record: &Record, key: &str| record.numerics.get(key).and_then(|v| v.as_f64());
-    run(case, variant, &short)
-        .ok()
-        .and_then(|r| Some(number(&r, "dt [s]")? / number(&r, "dt/limit")?))
-        .unwrap_or(f64::NAN)
+    run(case, variant, &short).map_or(f64::NAN, |r| r.chose("dt [s]") / r.chose("dt/limit"))
 }
 
 /// A run that ended, with the energy that it began with.
 fn is_stable(record: &Record) -> bool {
     record.status == Status::Completed
-        && metric(record, "energy_gap") < 0.02
-        && metric(record, "mach") < 0.5
+        && record.measured("energy_gap") < 0.02
+        && record.measured("mach") < 0.5
 }
 
 /// The largest stable step over the theoretical one, by bisection.
@@ -79,9 +72,8 @@ pub fn limits(case: &'static dyn Case) -> Study {
                 let middle = 0.5 * (low + high);
                 if stable(middle) { low = middle } else { high = middle }
             }
-            let default = run(case, variant, set).ok();
-            let share = default.and_then(|r| r.numerics.get("dt/limit")?.as_f64());
-            [theory, low, share.unwrap_or(f64::NAN)]
+            let default = run(case, variant, set);
+            [theory, low, default.map_or(f64::NAN, |r| r.chose("dt/limit"))]
         })
         .collect();
     let mut study = Study::new("dam-break-time-step", "Largest stable time step");
@@ -131,11 +123,11 @@ pub fn sound(case: &'static dyn Case) -> Study {
             Cell::num(*c0, 3),
             Cell::text(ended(&record)),
             number("mach"),
-            Cell::percent(metric(&record, "density_least"), 2),
-            Cell::percent(metric(&record, "density_most"), 2),
+            Cell::percent(record.measured("density_least"), 2),
+            Cell::percent(record.measured("density_most"), 2),
             number("z@3"),
             number("front_rms_shifted"),
-            Cell::percent(-metric(&record, "work_viscosity"), 2),
+            Cell::percent(-record.measured("work_viscosity"), 2),
             Cell::count(record.cost.steps),
         ]);
     }
@@ -190,7 +182,7 @@ pub fn extremes(case: &'static dyn Case) -> Study {
                 continue;
             }
         };
-        let (lost, gap) = (metric(&record, "outside_end"), metric(&record, "energy_gap"));
+        let (lost, gap) = (record.measured("outside_end"), record.measured("energy_gap"));
         let must = if holds { "keep water and energy" } else { "end as diverged" };
         table = table.row(vec![
             Cell::text(name),
@@ -237,7 +229,7 @@ fn touching(set: &[String]) -> Result<Record, RunError> {
 fn scaling(case: &'static dyn Case) -> String {
     let z = |g: &str| {
         let record = run(case, "modern", &[format!("gravity={g}"), "n=10".into()]);
-        record.map_or(f64::NAN, |r| metric(&r, "z@3"))
+        record.map_or(f64::NAN, |r| r.measured("z@3"))
     };
     let (one, thousand) = (z("9.81"), z("9810"));
     format!(

@@ -45,17 +45,9 @@ pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<S
     studies
 }
 
-pub(super) fn setting(record: &Record, key: &str) -> f64 {
-    record.settings.get(key).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
-}
-
-pub(super) fn metric(record: &Record, name: &str) -> f64 {
-    record.metric(name).unwrap_or(f64::NAN)
-}
-
 /// A number, or a dash where there is none because the run ended early.
 pub(super) fn number(record: &Record, name: &str) -> Cell {
-    match metric(record, name) {
+    match record.measured(name) {
         value if value.is_finite() => Cell::num(value, 3),
         _ => Cell::text("–"),
     }
@@ -64,10 +56,6 @@ pub(super) fn number(record: &Record, name: &str) -> Cell {
 /// The same as a percentage.
 pub(super) fn share(value: f64) -> Cell {
     if value.is_finite() { Cell::percent(value, 2) } else { Cell::text("–") }
-}
-
-pub(super) fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
-    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
 }
 
 /// A column of a profile over its time, each in a unit.
@@ -79,13 +67,13 @@ pub(super) fn curve(
     zero: f64,
 ) -> Curve {
     let Some(profile) = record.profiles.get(profile) else { return Vec::new() };
-    let points = column(profile, "t").iter().zip(column(profile, name));
+    let points = profile.column("t").iter().zip(profile.column(name));
     points.map(|(t, y)| (t / units[0], (y - zero) / units[1])).collect()
 }
 
 /// Is it a run of the column of Martin & Moyce?
 pub(super) fn is_free(record: &Record) -> bool {
-    setting(record, "height") > setting(record, "width")
+    record.setting("height") > record.setting("width")
 }
 
 /// Runs of one of the experiments, in the order of the plan.
@@ -94,14 +82,14 @@ fn of(runs: &[JudgedRun], free: bool) -> Vec<&Record> {
 }
 
 fn name_of(record: &Record, side: &str) -> String {
-    format!("{}, {side}/dx = {}", record.variant, setting(record, "n"))
+    format!("{}, {side}/dx = {}", record.variant, record.setting("n"))
 }
 
 /// A line of one of these runs: its variant has a colour, its finest resolution is solid.
 fn line(records: &[&Record], record: &Record, side: &str, points: Curve) -> Layer {
     let colour = plan::JUDGED.iter().position(|variant| *variant == record.variant);
     let is_finer =
-        |r: &&&Record| r.variant == record.variant && setting(r, "n") > setting(record, "n");
+        |r: &&&Record| r.variant == record.variant && r.setting("n") > record.setting("n");
     let dash = match records.iter().filter(is_finer).count() {
         0 => Dash::Solid,
         1 => Dash::Dashed,
@@ -115,7 +103,7 @@ fn line(records: &[&Record], record: &Record, side: &str, points: Curve) -> Laye
 fn free(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
     let records = of(runs, true);
     let shown: Vec<&Record> =
-        records.iter().copied().filter(|record| setting(record, "n") >= 20.0).collect();
+        records.iter().copied().filter(|record| record.setting("n") >= 20.0).collect();
     let [front, height] = reference::martin_moyce()?;
     let band = |curve: &Curve, by: f64| curve.iter().map(|(t, y)| (*t, y - by, y + by)).collect();
     let legend = [Legend::TopLeft, Legend::Hidden];
@@ -137,7 +125,7 @@ fn free(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
         let until: Curve = measured.iter().filter(|(t, _)| *t <= end).copied().collect();
         plot = plot.layer(Layer::band("", band(&until, spreads[k]), Colour::GREY));
         for record in &shown {
-            let (a, g) = (setting(record, "width"), setting(record, "gravity"));
+            let (a, g) = (record.setting("width"), record.setting("gravity"));
             let (name, unit, of) = match k {
                 0 => ("front", (0.5 * a / g).sqrt(), a),
                 _ => ("height", (a / g).sqrt(), 2.0 * a),
@@ -188,7 +176,7 @@ fn free_table(records: &[&Record]) -> Table {
         let number = |name: &str| number(record, name);
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(setting(record, "n"), 3),
+            Cell::num(record.setting("n"), 3),
             number("z@2"),
             number("z@3"),
             number("front_rms"),
@@ -231,11 +219,11 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let mut figure = Figure::new("dam-break-levels", caption).columns(3);
     let end = 6.0;
     let axis = |label: String| (Axis::linear("t √(g/H) [-]"), Axis::linear(label));
-    let unit = |record: &Record| (setting(record, "height") / setting(record, "gravity")).sqrt();
+    let unit = |record: &Record| (record.setting("height") / record.setting("gravity")).sqrt();
     let (x, y) = axis("front from the gate [H]".into());
     let mut plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::Auto);
     for record in records {
-        let (h, zero) = (setting(record, "height"), setting(record, "width"));
+        let (h, zero) = (record.setting("height"), record.setting("width"));
         let points = curve(record, "series", "front", [unit(record), h], zero);
         plot = plot.layer(line(records, record, "H", points));
     }
@@ -256,7 +244,7 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
             plot = plot.layer(Series::line("", one).colour(Colour::BLACK).width(1.0));
         }
         for record in records {
-            let units = [unit(record), setting(record, "height")];
+            let units = [unit(record), record.setting("height")];
             let points = curve(record, "series", &format!("H{}", k + 1), units, 0.0);
             plot = plot.layer(line(records, record, "H", points));
         }
@@ -283,7 +271,7 @@ fn pressures(finest: &Record, lobovsky: &Lobovsky) -> Figure {
         let x = Axis::linear("(t − arrival) √(g/H) [-]");
         let y = Axis::linear("pressure [ρ g H]").range(-0.2, 3.5);
         let mut plot = Plot::new(title, x, y).legend(Legend::Hidden);
-        let points = since(&pressure(finest, k), metric(finest, "arrival"));
+        let points = since(&pressure(finest, k), finest.measured("arrival"));
         plot = plot.layer(Series::line("", points).colour(Colour::SKY).width(1.0));
         if k == 1 {
             let aside = since(&lobovsky.aside, at);
@@ -332,7 +320,7 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
         let mut plot = Plot::new(title, x, y).legend(legend);
         plot = plot.layer(Layer::band("", band, Colour::GREY));
         for record in records {
-            let points = so_far(&pressure(record, k), metric(record, "arrival"));
+            let points = so_far(&pressure(record, k), record.measured("arrival"));
             plot = plot.layer(line(records, record, "H", points));
         }
         let measured = Series::line("experiment", measured).colour(Colour::BLACK);
@@ -366,15 +354,15 @@ fn tank_table(records: &[&Record]) -> Table {
     let mut table = Table::new(caption, columns);
     for record in records {
         let number = |name: &str| number(record, name);
-        let impulse = |k: usize| share(metric(record, &format!("impulse_P{k}@1")));
+        let impulse = |k: usize| share(record.measured(&format!("impulse_P{k}@1")));
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(setting(record, "n"), 3),
+            Cell::num(record.setting("n"), 3),
             number("front_rms"),
             number("front_rms_shifted"),
             number("levels_rms"),
             number("levels_rms_shifted"),
-            share(metric(record, "tongue")),
+            share(record.measured("tongue")),
             number("arrival"),
             impulse(1),
             impulse(2),
@@ -404,13 +392,13 @@ fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
 fn picture(record: &Record, share: f64, (width, height): (f64, f64)) -> ParticleMap {
     let empty = Profile::default();
     let profile = record.profiles.get(&format!("particles@{share}")).unwrap_or(&empty);
-    let (x, y) = (column(profile, "x"), column(profile, "y"));
-    let values = column(profile, "p").iter();
+    let (x, y) = (profile.column("x"), profile.column("y"));
+    let values = profile.column("p").iter();
     let points = x.iter().zip(y).zip(values).map(|((x, y), p)| (*x, *y, *p)).collect();
     let axes = (Axis::linear("x [H]").range(0.0, width), Axis::linear("y [H]").range(0.0, height));
-    let title = format!("t √(g/H) = {}", sig(setting(record, "end") * share, 3));
-    let shorter = setting(record, "width").min(setting(record, "height"));
-    let dx = shorter / setting(record, "n") / setting(record, "height");
+    let title = format!("t √(g/H) = {}", sig(record.setting("end") * share, 3));
+    let shorter = record.setting("width").min(record.setting("height"));
+    let dx = shorter / record.setting("n") / record.setting("height");
     ParticleMap::new(&title, axes, "p [ρ g H]", ColourMap::Sequential, points)
         .diameter(dx)
         .values(0.0, 1.0)
@@ -445,7 +433,7 @@ fn energies(runs: &[JudgedRun]) -> Study {
                    stay at its first value.";
     let mut figure = Figure::new("dam-break-energy", caption).columns(2);
     for record in of(runs, true) {
-        if setting(record, "n") == 20.0 && ["seed", "modern"].contains(&record.variant.as_str()) {
+        if record.setting("n") == 20.0 && ["seed", "modern"].contains(&record.variant.as_str()) {
             figure = figure.panel(energy_plot(record));
         }
     }
@@ -455,8 +443,8 @@ fn energies(runs: &[JudgedRun]) -> Study {
 }
 
 fn energy_plot(record: &Record) -> Plot {
-    let (h, g) = (setting(record, "height"), setting(record, "gravity"));
-    let mass = setting(record, "rho") * setting(record, "width") * h;
+    let (h, g) = (record.setting("height"), record.setting("gravity"));
+    let mass = record.setting("rho") * record.setting("width") * h;
     let units = [(h / g).sqrt(), 0.5 * mass * g * h];
     let of =
         |name: &str, sign: f64| curve(record, "energy", name, [units[0], sign * units[1]], 0.0);
@@ -501,11 +489,11 @@ fn energy_table(runs: &[JudgedRun]) -> Table {
         let mut cells = vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::text(if is_free(record) { "Martin & Moyce" } else { "Lobovsky" }),
-            Cell::num(setting(record, "n"), 3),
+            Cell::num(record.setting("n"), 3),
         ];
-        cells.extend(ITEMS.map(|(_, key)| Cell::percent(metric(record, key), 3)));
-        cells.push(Cell::sci(metric(record, "energy_gap"), 2));
-        cells.push(Cell::sci(metric(record, "momentum_gap"), 2));
+        cells.extend(ITEMS.map(|(_, key)| Cell::percent(record.measured(key), 3)));
+        cells.push(Cell::sci(record.measured("energy_gap"), 2));
+        cells.push(Cell::sci(record.measured("momentum_gap"), 2));
         table = table.row(cells);
     }
     table

@@ -3,7 +3,7 @@
 use super::plan::{SHOWN, TABLE};
 use crate::{
     case::Tier,
-    record::{Profile, Record, Status},
+    record::{Record, Status},
     report::{Axis, Cell, Colour, Column, Figure, Legend, Plot, Series, Shape, Table},
     suite::{JudgedRun, Study},
 };
@@ -27,19 +27,11 @@ pub fn studies(tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
     studies
 }
 
-fn setting(record: &Record, key: &str) -> f64 {
-    record.settings.get(key).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
-}
-
 /// Whether a run differs from others by its variant and compressibility only.
 fn is_plain(record: &Record) -> bool {
-    setting(record, "rows") == 20.0
-        && setting(record, "end") == 20.0
-        && setting(record, "wall_gravity") == 1.0
-}
-
-fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
-    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
+    record.setting("rows") == 20.0
+        && record.setting("end") == 20.0
+        && record.setting("wall_gravity") == 1.0
 }
 
 /// p over y of the variants at g H/c₀² = 0.01, and how far it is from exact.
@@ -53,13 +45,13 @@ fn pressures(runs: &[JudgedRun]) -> Figure {
         Plot::new("", Axis::linear("(p - p_exact)/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
     for (k, variant) in SHOWN.into_iter().enumerate() {
         let is_shown = |r: &&Record| {
-            r.variant == variant && setting(r, "compressibility") == 0.01 && is_plain(r)
+            r.variant == variant && r.setting("compressibility") == 0.01 && is_plain(r)
         };
         let found = runs.iter().map(|run| &run.record).find(is_shown);
         let Some(profile) = found.and_then(|record| record.profiles.get("pressure")) else {
             continue;
         };
-        let [y, p, exact] = ["y", "p", "p_exact"].map(|name| column(profile, name));
+        let [y, p, exact] = ["y", "p", "p_exact"].map(|name| profile.column(name));
         if k == 0 {
             let line = exact.iter().zip(y).map(|(p, y)| (*p, *y)).collect();
             over = over.layer(Series::line("exact", line).colour(Colour::BLACK));
@@ -94,15 +86,15 @@ fn table<'a>(caption: &str, records: impl Iterator<Item = &'a Record>) -> Table 
     ];
     let mut table = Table::new(caption, columns);
     for record in records {
-        let metric = |name: &str| record.metric(name).unwrap_or(f64::NAN);
+        let metric = |name: &str| record.measured(name);
         let outside = match &record.status {
             Status::Completed => Cell::num(metric("outside"), 3),
             _ => Cell::text("did not finish"),
         };
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(setting(record, "compressibility"), 2),
-            Cell::num(setting(record, "rows"), 3),
+            Cell::num(record.setting("compressibility"), 2),
+            Cell::num(record.setting("rows"), 3),
             Cell::text(others(record)),
             Cell::percent(metric("p_l2"), 2),
             Cell::percent(metric("level_drift"), 2),
@@ -118,17 +110,17 @@ fn table<'a>(caption: &str, records: impl Iterator<Item = &'a Record>) -> Table 
 /// What else is not the default.
 fn others(record: &Record) -> String {
     let mut words = Vec::new();
-    if setting(record, "wall_gravity") != 1.0 {
+    if record.setting("wall_gravity") != 1.0 {
         words.push("wall without gravity".to_string());
     }
-    if setting(record, "jitter") != 0.0 {
-        words.push(format!("jitter {} dx", setting(record, "jitter")));
+    if record.setting("jitter") != 0.0 {
+        words.push(format!("jitter {} dx", record.setting("jitter")));
     }
     if record.settings.get("uniform").and_then(serde_json::Value::as_bool) == Some(true) {
         words.push("starts uncompressed".into());
     }
-    if setting(record, "end") != 20.0 {
-        words.push(format!("{} periods", setting(record, "end")));
+    if record.setting("end") != 20.0 {
+        words.push(format!("{} periods", record.setting("end")));
     }
     words.join(", ")
 }

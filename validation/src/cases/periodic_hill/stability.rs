@@ -39,37 +39,23 @@ fn run(case: &dyn Case, variant: &str, set: &[String]) -> Option<Record> {
     case.run(variant, &all, &context).ok()
 }
 
-fn numeric(record: &Record, name: &str) -> f64 {
-    record.numerics.get(name).and_then(|v| v.as_f64()).unwrap_or(f64::NAN)
-}
-
-fn metric(record: &Record, name: &str) -> f64 {
-    record.metric(name).unwrap_or(f64::NAN)
-}
-
 /// Ended, and no sample of the kinetic energy is above twice that of the start, which is near the answer.
 fn is_stable(record: &Record) -> bool {
-    let series = record.profiles.get("series");
-    let energy = series.and_then(|s| s.columns.iter().find(|c| c.name == "kinetic energy"));
-    let energy = energy.map_or(&[][..], |c| &c.values);
+    let energy = record.column("series", "kinetic energy");
     let bounded = |first: &f64| energy.iter().all(|e| *e <= 2.0 * first);
     record.status == Status::Completed && energy.first().is_some_and(bounded)
 }
 
 /// Default step and longest stable one, over the theoretical limit.
 fn longest(case: &dyn Case, variant: &str) -> [f64; 2] {
-    let short = |courant: f64, end: f64| {
-        let set =
-            ["from_reference=true".into(), format!("courant={courant}"), format!("end={end}")];
-        run(case, variant, &set)
-    };
-    let courant = 1.0;
-    let share = short(courant, 0.05).map_or(f64::NAN, |r| numeric(&r, "dt/limit"));
-    let default = run(case, variant, &["end=0.05".into()]);
-    let default = default.map_or(f64::NAN, |r| numeric(&r, "dt/limit"));
+    let short = run(case, variant, &["end=0.05".into()]);
+    let [courant, default] =
+        short.map_or([f64::NAN; 2], |r| [r.setting("courant"), r.chose("dt/limit")]);
     // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
     let stable = |of_theory: f64| {
-        short(courant * of_theory / share, 3.0).is_some_and(|record| is_stable(&record))
+        let courant = format!("courant={}", courant * of_theory / default);
+        let set = ["from_reference=true".into(), courant, "end=3".into()];
+        run(case, variant, &set).is_some_and(|record| is_stable(&record))
     };
     let bracket = largest_stable(1.0, RESOLUTION, stable);
     [default, bracket.map_or(f64::NAN, |b| b.stable)]
@@ -140,8 +126,8 @@ fn climb(case: &dyn Case, variant: &str, numbers: &[f64]) -> Vec<(f64, Record)> 
 /// Completed, no particle behind a wall, and the force that holds the flux is one against a drag.
 fn holds(record: &Record) -> bool {
     record.status == Status::Completed
-        && metric(record, "outside") == 0.0
-        && metric(record, "force") > 0.0
+        && record.measured("outside") == 0.0
+        && record.measured("force") > 0.0
 }
 
 /// The highest Reynolds number that variants hold.

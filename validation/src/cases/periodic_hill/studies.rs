@@ -13,7 +13,7 @@ use crate::{
     case::{Case, Tier},
     gate::{Bound, Evidence, Gate},
     geometry::Hill,
-    record::{Profile, Record, Status},
+    record::{Record, Status},
     report::{
         Axis, Cell, Colour, ColourMap, Column, Figure, Layer, Legend, ParticleMap, Plot, Series,
         Shape, Table, percent, sig,
@@ -33,20 +33,6 @@ pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<S
         studies.extend([stability::limits(case), stability::reynolds(case)]);
     }
     studies
-}
-
-fn setting(record: &Record, key: &str) -> f64 {
-    record.settings.get(key).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
-}
-
-fn metric(record: &Record, name: &str) -> f64 {
-    record.metric(name).unwrap_or(f64::NAN)
-}
-
-fn column<'a>(record: &'a Record, profile: &str, name: &str) -> &'a [f64] {
-    let profile = record.profiles.get(profile);
-    let found = profile.and_then(|p: &Profile| p.columns.iter().find(|c| c.name == name));
-    found.map_or(&[], |c| &c.values)
 }
 
 /// The planned run of this variant with just these settings, from rest or from the reference.
@@ -82,7 +68,7 @@ fn finest(runs: &[JudgedRun], re: f64) -> Option<&Record> {
 /// `H/dx = 10, from rest`.
 fn name_of(record: &Record) -> String {
     let start = if record.settings["from_reference"] == true { "the reference" } else { "rest" };
-    format!("H/dx = {}, from {start}", setting(record, "n"))
+    format!("H/dx = {}, from {start}", record.setting("n"))
 }
 
 fn reference(re: f64) -> Option<Reference> {
@@ -113,8 +99,8 @@ fn ladder(runs: &[JudgedRun]) -> Study {
                 Plot::new(title, Axis::linear(label), Axis::linear("y/H").range(0.0, 3.1))
                     .layer(Series::line("", floor()).colour(Colour::GREY));
             let of = |v: &Vector2<f64>| if name == "u" { v.x } else { v.y };
-            let (x, y) = (column(record, "stations", "x"), column(record, "stations", "y"));
-            let values = column(record, "stations", name);
+            let (x, y) = (record.column("stations", "x"), record.column("stations", "y"));
+            let values = record.column("stations", name);
             for (k, station) in reference.stations.iter().enumerate() {
                 let exact = station.y.iter().zip(&station.v);
                 let exact = exact.map(|(y, v)| (station.x + scale * of(v), *y)).collect();
@@ -165,20 +151,20 @@ fn table(runs: &[JudgedRun]) -> Table {
             Status::Diverged { time, .. } => format!("diverged at {time:.2} H/U_b"),
             _ => "interrupted".into(),
         };
-        let percent = |name: &str| Cell::percent(metric(record, name), 2);
+        let percent = |name: &str| Cell::percent(record.measured(name), 2);
         table = table.row(vec![
             Cell::text(format!("`{}`", planned.variant)),
             Cell::text(planned.set.join(", ")),
             percent("l2_u"),
             percent("l2_v"),
-            Cell::num(metric(record, "force"), 4),
+            Cell::num(record.measured("force"), 4),
             percent("force_error"),
             percent("force_ripple"),
-            Cell::num(metric(record, "separation"), 3),
-            Cell::num(metric(record, "reattachment"), 4),
+            Cell::num(record.measured("separation"), 3),
+            Cell::num(record.measured("reattachment"), 4),
             percent("section_flux"),
             percent("drag_balance"),
-            Cell::sci(metric(record, "unsteady"), 1),
+            Cell::sci(record.measured("unsteady"), 1),
             Cell::num(record.cost.cpu_s, 3),
             Cell::text(ended),
         ]);
@@ -194,14 +180,14 @@ fn pictures(runs: &[JudgedRun]) -> Study {
     let mut figure = Figure::new("periodic-hill-pictures", caption);
     for re in REYNOLDS {
         let (Some(record), Some(reference)) = (finest(runs, re), reference(re)) else { continue };
-        let (x, y) = (column(record, "particles", "x"), column(record, "particles", "y"));
-        let values = column(record, "particles", "u").iter();
+        let (x, y) = (record.column("particles", "x"), record.column("particles", "y"));
+        let values = record.column("particles", "u").iter();
         let points = x.iter().zip(y).zip(values).map(|((x, y), u)| (*x, *y, *u)).collect();
         let title = format!("Re {re}, {}", name_of(record));
         let axes = (Axis::linear("x [H]"), Axis::linear("y [H]"));
         let map = ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points)
             .values(-0.5, 0.5)
-            .diameter(1.0 / setting(record, "n"))
+            .diameter(1.0 / record.setting("n"))
             .line(floor())
             .line(reference.line);
         figure = figure.panel(map);
@@ -231,7 +217,7 @@ fn walls(runs: &[JudgedRun]) -> Study {
             for (c, n) in SIDES.into_iter().enumerate() {
                 let Some(record) = best(runs, re, n) else { continue };
                 any = true;
-                let (x, y) = (column(record, "wall", "x"), column(record, "wall", name));
+                let (x, y) = (record.column("wall", "x"), record.column("wall", name));
                 let line = x.iter().copied().zip(y.iter().copied()).collect();
                 let line = Series::line(name_of(record), line).colour(Colour::cycle(c));
                 plot = plot.layer(line);
@@ -251,8 +237,8 @@ fn order(runs: &[JudgedRun]) -> Study {
     let study = Study::new("periodic-hill-order", "Order of the best variant");
     let found = SIDES.into_iter().filter_map(|n| best(runs, 50.0, n));
     let level = |record: &Record| Level {
-        spacing: 1.0 / setting(record, "n"),
-        value: metric(record, "l2_u"),
+        spacing: 1.0 / record.setting("n"),
+        value: record.measured("l2_u"),
     };
     let records: Vec<&Record> = found.collect();
     let levels: Vec<Level> = records.iter().map(|record| level(record)).collect();
@@ -289,7 +275,7 @@ fn order(runs: &[JudgedRun]) -> Study {
 
 /// rms over stations of the difference of u of two runs \[U_b\].
 fn apart(a: &Record, b: &Record) -> f64 {
-    let (a, b) = (column(a, "stations", "u"), column(b, "stations", "u"));
+    let (a, b) = (a.column("stations", "u"), b.column("stations", "u"));
     let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
     (square / a.len().min(b.len()) as f64).sqrt()
 }
@@ -315,8 +301,8 @@ fn starts(runs: &[JudgedRun]) -> Study {
             "Re {re}, H/dx = 10: profiles of u from rest and from the reference differ by {} of U_b (rms \
              over ten stations), forces by {}, reattachment by {} H.",
             percent(apart, 2),
-            percent(metric(other, "force") / metric(rest, "force") - 1.0, 2),
-            sig(metric(other, "reattachment") - metric(rest, "reattachment"), 2),
+            percent(other.measured("force") / rest.measured("force") - 1.0, 2),
+            sig(other.measured("reattachment") - rest.measured("reattachment"), 2),
         );
         study = study.prose(text).judge(gate, apart);
     }
@@ -371,14 +357,14 @@ fn budget(runs: &[JudgedRun]) -> Study {
     ]);
     for (part, change, record, over) in rows {
         let (Some(record), Some(over)) = (record, over) else { continue };
-        let moved = |name: &str| metric(record, name) - metric(over, name);
+        let moved = |name: &str| record.measured(name) - over.measured(name);
         table = table.row(vec![
             Cell::text(part),
             Cell::text(change),
-            Cell::percent(metric(record, "l2_u"), 2),
+            Cell::percent(record.measured("l2_u"), 2),
             Cell::percent(moved("l2_u"), 2),
             Cell::percent(apart(record, over), 2),
-            Cell::percent(moved("force") / metric(over, "force"), 2),
+            Cell::percent(moved("force") / over.measured("force"), 2),
             Cell::num(moved("reattachment"), 2),
         ]);
     }
@@ -396,7 +382,7 @@ fn cost(runs: &[JudgedRun]) -> Study {
         for (n, start) in rest.chain(finest) {
             let Some(record) = find(runs, variant, 50.0, n, start) else { continue };
             let share = if record.status == Status::Completed {
-                STATED / setting(record, "end")
+                STATED / record.setting("end")
             } else {
                 1.0
             };
@@ -406,7 +392,7 @@ fn cost(runs: &[JudgedRun]) -> Study {
                 variant,
                 rows: n,
                 note: String::new(),
-                error: metric(record, "l2_u"),
+                error: record.measured("l2_u"),
                 seconds: vec![share * record.cost.cpu_s],
                 cost,
                 status: record.status.clone(),

@@ -35,22 +35,10 @@ pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<S
     studies
 }
 
-fn setting(record: &Record, key: &str) -> f64 {
-    record.settings.get(key).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
-}
-
-fn metric(record: &Record, name: &str) -> f64 {
-    record.metric(name).unwrap_or(f64::NAN)
-}
-
-fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
-    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
-}
-
 /// Strength of the artificial stress and h/dx as they are meant.
 fn is_usual(record: &Record) -> bool {
     let RingSettings { xi, h_over_dx, .. } = RingSettings::default();
-    setting(record, "xi") == xi && setting(record, "h_over_dx") == h_over_dx
+    record.setting("xi") == xi && record.setting("h_over_dx") == h_over_dx
 }
 
 /// Usual runs of this variant, speed and angle, in the order of the plan.
@@ -63,8 +51,8 @@ fn of<'a>(
     runs.iter().map(|run| &run.record).filter(move |record| {
         record.variant == variant
             && is_usual(record)
-            && setting(record, "speed") == speed
-            && setting(record, "angle") == angle
+            && record.setting("speed") == speed
+            && record.setting("angle") == angle
     })
 }
 
@@ -91,8 +79,8 @@ fn histories(runs: &[JudgedRun]) -> Study {
         let mut plot = Plot::new("", Axis::linear("t [L/c0]"), Axis::linear(label));
         for (n, record) in of(runs, variant, SPEED, 0.0).enumerate() {
             let Some(series) = record.profiles.get("series") else { continue };
-            let points = column(series, "t").iter().zip(column(series, name));
-            let title = format!("spacing {} L", sig(setting(record, "spacing"), 2));
+            let points = series.column("t").iter().zip(series.column(name));
+            let title = format!("spacing {} L", sig(record.setting("spacing"), 2));
             let line = Series::line(title, points.map(|(t, y)| (*t, *y)).collect());
             plot = plot.layer(line.colour(Colour::cycle(n)));
         }
@@ -115,21 +103,21 @@ fn histories(runs: &[JudgedRun]) -> Study {
 fn energies(runs: &[JudgedRun]) -> Figure {
     let variant = shown(runs);
     let record = of(runs, variant, SPEED, 0.0).last();
-    let spacing = record.map_or(f64::NAN, |record| setting(record, "spacing"));
+    let spacing = record.map_or(f64::NAN, |record| record.setting("spacing"));
     let caption = format!(
         "Energy of both rings over that at the start, variant `{variant}`, spacing {} L. Left: kinetic, \
          compression and shear energy and their sum. Right: what each term has added. The elastic law \
          itself adds a little, because stress rates integrated in time are not the slope of an energy at \
          finite strain; XSPH has no work of its own. Sum on the left and works on the right close to {}.",
         sig(spacing, 2),
-        percent(record.map_or(f64::NAN, |record| metric(record, "energy_gap")), 2)
+        percent(record.map_or(f64::NAN, |record| record.measured("energy_gap")), 2)
     );
     let empty = Profile::default();
     let budget = record.and_then(|r| r.profiles.get("budget")).unwrap_or(&empty);
-    let t = column(budget, "t");
+    let t = budget.column("t");
     let points = |values: &[f64]| t.iter().copied().zip(values.iter().copied()).collect::<Vec<_>>();
     let sum = |names: &[&str]| -> Vec<f64> {
-        (0..t.len()).map(|k| names.iter().map(|name| column(budget, name)[k]).sum()).collect()
+        (0..t.len()).map(|k| names.iter().map(|name| budget.column(name)[k]).sum()).collect()
     };
     let plot = |label: &str, lines: &[(&str, Vec<f64>)]| {
         let plot = Plot::new("", Axis::linear("t [L/c0]"), Axis::linear(label));
@@ -174,7 +162,7 @@ fn phases_table(runs: &[JudgedRun]) -> Table {
     let mut table = Table::new(caption, columns);
     let mut speeds = Vec::new();
     for record in runs.iter().map(|run| &run.record) {
-        let speed = setting(record, "speed");
+        let speed = record.setting("speed");
         let Some(reference) = Reference::of(&RingSettings { speed, ..RingSettings::default() })
         else {
             continue;
@@ -183,7 +171,7 @@ fn phases_table(runs: &[JudgedRun]) -> Table {
             speeds.push(speed);
             table = table.row(reference_phases(speed, &reference));
         }
-        if setting(record, "angle") == 0.0 && is_usual(record) {
+        if record.setting("angle") == 0.0 && is_usual(record) {
             table = table.row(found_phases(record));
         }
     }
@@ -207,9 +195,9 @@ fn reference_phases(speed: f64, reference: &Reference) -> Vec<Cell> {
 fn found_phases(record: &Record) -> Vec<Cell> {
     let mut row = vec![
         Cell::text(format!("`{}`", record.variant)),
-        Cell::num(setting(record, "speed"), 3),
-        Cell::num(setting(record, "spacing"), 3),
-        Cell::num(metric(record, "phases"), 1),
+        Cell::num(record.setting("speed"), 3),
+        Cell::num(record.setting("spacing"), 3),
+        Cell::num(record.measured("phases"), 1),
     ];
     for phase in ["phase1", "phase2"] {
         let times = ["t_impulse_1", "t_impulse_50", "t_impulse_99"];
@@ -217,8 +205,8 @@ fn found_phases(record: &Record) -> Vec<Cell> {
             row.extend([Cell::text("none"), Cell::text("")]);
             continue;
         }
-        row.push(Cell::num(metric(record, &format!("impulse@{phase}")), 4));
-        let times = times.map(|name| sig(metric(record, &format!("{name}@{phase}")), 4));
+        row.push(Cell::num(record.measured(&format!("impulse@{phase}")), 4));
+        let times = times.map(|name| sig(record.measured(&format!("{name}@{phase}")), 4));
         row.push(Cell::text(times.join(", ")));
     }
     row
@@ -244,24 +232,24 @@ fn errors_table(runs: &[JudgedRun]) -> Table {
                    dissipation has taken; the last column is what stabilisation took.";
     let mut table = Table::new(caption, columns);
     for record in runs.iter().map(|run| &run.record) {
-        let settings = RingSettings { speed: setting(record, "speed"), ..RingSettings::default() };
+        let settings = RingSettings { speed: record.setting("speed"), ..RingSettings::default() };
         let Some(reference) = Reference::of(&settings) else { continue };
         let (exact, spread) = reference.number("restitution").unwrap_or((f64::NAN, f64::NAN));
-        if setting(record, "angle") != 0.0 || !is_usual(record) {
+        if record.setting("angle") != 0.0 || !is_usual(record) {
             continue;
         }
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(setting(record, "speed"), 3),
-            Cell::num(setting(record, "spacing"), 3),
-            Cell::num(metric(record, "restitution"), 4),
+            Cell::num(record.setting("speed"), 3),
+            Cell::num(record.setting("spacing"), 3),
+            Cell::num(record.measured("restitution"), 4),
             Cell::num(exact, 4),
             Cell::sci(spread, 2),
-            Cell::percent(metric(record, "restitution_error"), 2),
-            Cell::percent(metric(record, "width_min_error"), 2),
-            Cell::percent(metric(record, "height_max_error"), 2),
-            Cell::num(metric(record, "x_c_rms"), 3),
-            Cell::percent(metric(record, "energy_lost"), 3),
+            Cell::percent(record.measured("restitution_error"), 2),
+            Cell::percent(record.measured("width_min_error"), 2),
+            Cell::percent(record.measured("height_max_error"), 2),
+            Cell::num(record.measured("x_c_rms"), 3),
+            Cell::percent(record.measured("energy_lost"), 3),
         ]);
     }
     table
@@ -286,15 +274,15 @@ fn pictures(case: &'static dyn Case, runs: &[JudgedRun]) -> Study {
         Err(why) => study.prose(format!("There is no film: {why}.")),
     };
     let torn = runs.iter().map(|run| &run.record).find(|record| {
-        record.variant == "no-artificial-stress" && metric(record, "pieces_most") > 2.0
+        record.variant == "no-artificial-stress" && record.measured("pieces_most") > 2.0
     });
     let Some(record) = torn else { return study };
     let caption = format!(
         "Rings without artificial stress (`no-artificial-stress`) at spacing {} L and {} c0 each, at t = 200 \
          L/c0: {} pieces, coloured by the largest principal stress. Rubber does not break; the method does.",
-        sig(setting(record, "spacing"), 2),
-        sig(setting(record, "speed"), 2),
-        metric(record, "pieces")
+        sig(record.setting("spacing"), 2),
+        sig(record.setting("speed"), 2),
+        record.measured("pieces")
     );
     let map = picture(record, 1.0, "", axes(record, &[1.0]));
     let figure = Figure::new("rubber-rings-fracture", caption).panel(map);
@@ -331,7 +319,7 @@ fn time(share: f64) -> String {
 fn axes(record: &Record, shares: &[f64]) -> (Axis, Axis) {
     let range = |name: &str| {
         let pictures = shares.iter().filter_map(|s| record.profiles.get(&format!("particles@{s}")));
-        let values = pictures.flat_map(|profile| column(profile, name));
+        let values = pictures.flat_map(|profile| profile.column(name));
         let reach = values.fold(0.0, |most: f64, x| most.max(x.abs())) + 0.5;
         Axis::linear(format!("{name} [L]")).range(-reach, reach)
     };
@@ -341,11 +329,11 @@ fn axes(record: &Record, shares: &[f64]) -> (Axis, Axis) {
 fn picture(record: &Record, share: f64, title: &str, axes: (Axis, Axis)) -> ParticleMap {
     let empty = Profile::default();
     let profile = record.profiles.get(&format!("particles@{share}")).unwrap_or(&empty);
-    let (x, y) = (column(profile, "x"), column(profile, "y"));
-    let values = column(profile, "stress").iter();
+    let (x, y) = (profile.column("x"), profile.column("y"));
+    let values = profile.column("stress").iter();
     let points = x.iter().zip(y).zip(values).map(|((x, y), s)| (*x, *y, *s)).collect();
     ParticleMap::new(title, axes, "σ₁ [K]", ColourMap::Diverging, points)
-        .diameter(setting(record, "spacing"))
+        .diameter(record.setting("spacing"))
         .values(-0.05, 0.05)
 }
 
@@ -369,20 +357,20 @@ fn fracture(tier: Tier, runs: &[JudgedRun]) -> Study {
     let mut table = Table::new(caption, columns);
     let (mut whole, mut torn, mut seeds, mut broken) = (0, 0, 0, Vec::new());
     for (record, set) in runs.iter().map(|run| (&run.record, &run.planned.set)) {
-        if setting(record, "angle") != 0.0 {
+        if record.setting("angle") != 0.0 {
             continue;
         }
         let usual = ["spacing=", "speed=", "courant="];
         let is_special = |set: &&String| !usual.iter().any(|name| set.starts_with(name));
         let changed: Vec<String> = set.iter().filter(is_special).cloned().collect();
-        let pieces = metric(record, "pieces_most");
+        let pieces = record.measured("pieces_most");
         match record.variant.as_str() {
             "seed" if !changed.is_empty() => {}
             "seed" if pieces == 2.0 => (seeds, whole) = (seeds + 1, whole + 1),
             "seed" => {
                 seeds += 1;
                 let [speed, spacing, courant] =
-                    ["speed", "spacing", "courant"].map(|name| sig(setting(record, name), 2));
+                    ["speed", "spacing", "courant"].map(|name| sig(record.setting(name), 2));
                 broken.push(format!(
                     "at {speed} c0, spacing {spacing} L and Courant number {courant}"
                 ));
@@ -419,15 +407,15 @@ fn fracture_row(record: &Record, changed: &[String]) -> Vec<Cell> {
     let ended = if record.status == Status::Completed { "completed" } else { "diverged" };
     vec![
         Cell::text(format!("`{}`", record.variant)),
-        Cell::num(setting(record, "speed"), 3),
-        Cell::num(setting(record, "spacing"), 3),
-        Cell::num(setting(record, "courant"), 2),
+        Cell::num(record.setting("speed"), 3),
+        Cell::num(record.setting("spacing"), 3),
+        Cell::num(record.setting("courant"), 2),
         Cell::text(changed.join(", ")),
-        Cell::num(metric(record, "pieces_most"), 3),
-        Cell::num(metric(record, "pieces"), 3),
-        Cell::num(metric(record, "restitution"), 3),
-        Cell::percent(metric(record, "energy_lost"), 2),
-        Cell::sci(metric(record, "mirror"), 2),
+        Cell::num(record.measured("pieces_most"), 3),
+        Cell::num(record.measured("pieces"), 3),
+        Cell::num(record.measured("restitution"), 3),
+        Cell::percent(record.measured("energy_lost"), 2),
+        Cell::sci(record.measured("mirror"), 2),
         Cell::text(ended),
     ]
 }
@@ -439,9 +427,9 @@ fn cost(tier: Tier, runs: &[JudgedRun]) -> Study {
     let points = |error: &str| -> Vec<Point> {
         let point = |run: &JudgedRun| Point {
             variant: run.planned.variant,
-            rows: (1.0 / setting(&run.record, "spacing")).round() as usize,
+            rows: (1.0 / run.record.setting("spacing")).round() as usize,
             note: String::new(),
-            error: metric(&run.record, error),
+            error: run.record.measured(error),
             seconds: vec![run.record.cost.cpu_s],
             cost: run.record.cost.clone(),
             status: run.record.status.clone(),
@@ -489,7 +477,7 @@ fn rate_table(runs: &[JudgedRun]) -> Table {
         let sweeps = if record.variant == "leapfrog" { 2.0 } else { 1.0 };
         let spacing = match record.case.as_str() {
             "couette" => Cell::text("Couette flow"),
-            _ => Cell::num(setting(record, "spacing"), 3),
+            _ => Cell::num(record.setting("spacing"), 3),
         };
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
@@ -517,10 +505,10 @@ fn turned(runs: &[JudgedRun]) -> Study {
                    Principal axes turn with the scene; components do not.";
     let mut table = Table::new(caption, columns);
     for variant in ["seed", "componentwise"] {
-        let straight = of(runs, variant, SPEED, 0.0).find(|r| setting(r, "spacing") == 0.2);
+        let straight = of(runs, variant, SPEED, 0.0).find(|r| r.setting("spacing") == 0.2);
         let turned = of(runs, variant, SPEED, plan::ANGLE).next();
         let (Some(straight), Some(turned)) = (straight, turned) else { continue };
-        let (a, b) = (metric(straight, "restitution"), metric(turned, "restitution"));
+        let (a, b) = (straight.measured("restitution"), turned.measured("restitution"));
         table = table.row(vec![
             Cell::text(format!("`{variant}`")),
             Cell::num(a, 8),
@@ -567,11 +555,11 @@ fn explained(runs: &[JudgedRun]) -> Option<String> {
             |k: &usize| names[*k] == "jaumann" && quantities[*k] == quantity && speeds[*k] == SPEED;
         (0..laws.len()).rev().find(is_it).map(|k| moved[k])
     };
-    let apart = |name: &str| Some(metric(record, name) - reference.number(name)?.0);
+    let apart = |name: &str| Some(record.measured(name) - reference.number(name)?.0);
     Some(format!(
         "Rings of {} layers (`{}`) less finite elements: restitution {}, of which the law of equations \
          (10) to (12) is {}; least width {} L, of which it is {} L. The rest is the method.",
-        sig(1.0 / setting(record, "spacing"), 2),
+        sig(1.0 / record.setting("spacing"), 2),
         record.variant,
         sig(apart("restitution")?, 2),
         sig(law("restitution")?, 2),
@@ -617,9 +605,9 @@ fn maps(case: &'static dyn Case) -> Study {
     let records: Vec<Option<Record>> = jobs.into_par_iter().map(pieces).collect();
     let cell = |record: &Option<Record>| {
         let record = record.as_ref()?;
-        Some(match metric(record, "pieces_most") {
+        Some(match record.measured("pieces_most") {
             n if n.is_nan() => (2, "diverged".to_string()),
-            2.0 => (0, format!("2; {}", sig(metric(record, "restitution"), 2))),
+            2.0 => (0, format!("2; {}", sig(record.measured("restitution"), 2))),
             n => (1, format!("{n}")),
         })
     };

@@ -26,18 +26,6 @@ pub fn studies(tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
     studies
 }
 
-fn setting(record: &Record, key: &str) -> f64 {
-    record.settings.get(key).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
-}
-
-fn metric(record: &Record, name: &str) -> f64 {
-    record.metric(name).unwrap_or(f64::NAN)
-}
-
-fn column<'a>(profile: &'a Profile, name: &str) -> &'a [f64] {
-    profile.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
-}
-
 /// The run with just these settings.
 fn find<'a>(runs: &'a [JudgedRun], variant: &str, n: usize, start: f64) -> Option<&'a JudgedRun> {
     let set = plan::set(n, start);
@@ -52,7 +40,7 @@ fn start_of(start: f64) -> &'static str {
 fn points(record: &Record, name: &str) -> Vec<(f64, f64)> {
     let empty = Profile::default();
     let series = record.profiles.get("series").unwrap_or(&empty);
-    column(series, "t").iter().copied().zip(column(series, name).iter().copied()).collect()
+    series.column("t").iter().copied().zip(series.column(name).iter().copied()).collect()
 }
 
 /// Most particles a side of a history: what finer runs show in the other figures.
@@ -119,12 +107,12 @@ fn table(runs: &[JudgedRun]) -> Table {
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::text(planned.set.join(", ")),
-            Cell::percent(metric(record, "l2"), 2),
-            Cell::percent(metric(record, "energy"), 2),
-            Cell::num(metric(record, "nu_eff"), 4),
-            Cell::percent(metric(record, "pressure_l2"), 2),
-            Cell::sci(metric(record, "momentum"), 2),
-            Cell::num(metric(record, "nearest"), 3),
+            Cell::percent(record.measured("l2"), 2),
+            Cell::percent(record.measured("energy"), 2),
+            Cell::num(record.measured("nu_eff"), 4),
+            Cell::percent(record.measured("pressure_l2"), 2),
+            Cell::sci(record.measured("momentum"), 2),
+            Cell::num(record.measured("nearest"), 3),
             Cell::num(record.cost.cpu_s, 3),
         ]);
     }
@@ -144,11 +132,11 @@ fn pictures(tier: Tier, runs: &[JudgedRun]) -> Study {
     for (variant, n, start) in shown {
         let Some(run) = find(runs, variant, n, start) else { continue };
         let Some(particles) = run.record.profiles.get("particles") else { continue };
-        let (x, y) = (column(particles, "x"), column(particles, "y"));
+        let (x, y) = (particles.column("x"), particles.column("y"));
         for (name, label, most) in
             [("speed", "|v| [U exp(bt)]", 1.0), ("error", "|v - exact| [U exp(bt)]", 0.05)]
         {
-            let values = column(particles, name).iter();
+            let values = particles.column(name).iter();
             let points = x.iter().zip(y).zip(values).map(|((x, y), v)| (*x, *y, *v)).collect();
             let title = format!("{variant}, {n} x {n}, from the {}", start_of(start));
             let axes = (Axis::linear("x [L]"), Axis::linear("y [L]"));
@@ -165,7 +153,7 @@ fn order(runs: &[JudgedRun]) -> Study {
     for start in STARTS {
         let level = |n: usize| {
             let run = find(runs, BEST, n, start)?;
-            Some(Level { spacing: 1.0 / n as f64, value: metric(&run.record, "l2") })
+            Some(Level { spacing: 1.0 / n as f64, value: run.record.measured("l2") })
         };
         let levels: Vec<Level> = SIDES.into_iter().filter_map(level).collect();
         let Ok(found) = convergence::convergence(&levels) else { continue };
@@ -219,13 +207,13 @@ fn budget(runs: &[JudgedRun]) -> Study {
     rows.extend(BUDGET.iter().map(|(part, set)| (*part, *set, changed(set))));
     for (part, change, run) in rows {
         let Some(record) = run.map(|run| &run.record) else { continue };
-        let error = metric(record, "l2");
+        let error = record.measured("l2");
         table = table.row(vec![
             Cell::text(part),
             Cell::text(change),
             Cell::percent(error, 3),
-            Cell::percent(error - metric(&base.record, "l2"), 2),
-            Cell::percent(metric(record, "energy"), 2),
+            Cell::percent(error - base.record.measured("l2"), 2),
+            Cell::percent(record.measured("energy"), 2),
             Cell::num(record.cost.cpu_s, 3),
         ]);
     }
@@ -238,9 +226,9 @@ fn cost(runs: &[JudgedRun]) -> Study {
         for run in SIDES.into_iter().filter_map(|n| find(runs, variant, n, 0.2)) {
             points.push(Point {
                 variant,
-                rows: setting(&run.record, "n") as usize,
+                rows: run.record.setting("n") as usize,
                 note: String::new(),
-                error: metric(&run.record, "l2"),
+                error: run.record.measured("l2"),
                 seconds: vec![run.record.cost.cpu_s],
                 cost: run.record.cost.clone(),
                 status: run.record.status.clone(),
@@ -306,7 +294,7 @@ fn peer_table(runs: &[JudgedRun]) -> Table {
     for variant in ["carried", BEST] {
         for run in SIDES.into_iter().filter_map(|n| find(runs, variant, n, 0.2)) {
             let record = &run.record;
-            let (side, error) = (setting(record, "n"), metric(record, "l2"));
+            let (side, error) = (record.setting("n"), record.measured("l2"));
             let (code, scheme) = ("touchstone".into(), format!("`{variant}`"));
             rows.push((code, scheme, side, error, record.cost.cpu_s));
         }

@@ -80,8 +80,8 @@ pub fn fast(_: Tier) -> Vec<Entry> {
     match run("rubber_rings", "seed", &["spacing=0.2", "speed=0.5", "end=30"]) {
         Ok(record) => match &record.status {
             Status::Completed => {
-                let momentum = record.metric("momentum").unwrap_or(f64::NAN);
-                let pieces = record.metric("pieces_most").unwrap_or(f64::NAN);
+                let momentum = record.measured("momentum");
+                let pieces = record.measured("pieces_most");
                 let found = format!("completed: {} in {pieces} pieces", sci(momentum));
                 entry.found(momentum, found)
             }
@@ -111,7 +111,7 @@ pub fn alone(tier: Tier) -> Vec<Entry> {
         .because(Evidence::Invariant, because);
         match run("rubber_rings", "seed", &set) {
             Ok(record) => {
-                let extent = |name: &str| record.metric(name).unwrap_or(f64::NAN);
+                let extent = |name: &str| record.measured(name);
                 let first = |name: &str| first_of(&record, name);
                 let change = (first("width") - extent("width_min"))
                     .abs()

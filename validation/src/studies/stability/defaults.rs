@@ -58,7 +58,7 @@ fn run(case: &dyn Case, variant: &str, set: &[String]) -> Option<Record> {
 
 /// A number that a run chose.
 fn chose(record: &Record, key: &str) -> f64 {
-    record.numerics.get(key).and_then(|value| value.as_f64()).unwrap_or(f64::NAN)
+    record.chose(key)
 }
 
 /// Bisects the longest stable step of a variant of Couette flow.
@@ -69,7 +69,7 @@ pub fn measure_default(variant: &'static str) -> DefaultStep {
     step.dt = chose(&record, "dt [s]");
     step.theory = step.dt / chose(&record, "dt/limit");
     // Of the default settings: L = 1 mm, ν = 1e-6 m²/s, so L²/ν = 1 s.
-    let unit = setting(&record, "width").powi(2) / setting(&record, "nu");
+    let unit = record.setting("width").powi(2) / record.setting("nu");
     let found = largest_stable(step.theory, RESOLUTION, |dt| {
         let set = [
             format!("dt={dt:e}"),
@@ -80,10 +80,6 @@ pub fn measure_default(variant: &'static str) -> DefaultStep {
     });
     step.measured = found.map_or(f64::NAN, |bracket| bracket.stable);
     step
-}
-
-fn setting(record: &Record, key: &str) -> f64 {
-    record.settings.get(key).and_then(|value| value.as_f64()).unwrap_or(f64::NAN)
 }
 
 /// Completed, and neither cross-flow nor error is as large as the flow itself.
