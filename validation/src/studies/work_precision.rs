@@ -2,7 +2,7 @@
 //! pair interactions, steps), of which two cannot be disturbed by what else the machine does.
 
 use crate::{
-    record::{Cost, Status},
+    record::{Cost, Record, Status},
     report::{Axis, Cell, Colour, Column, Dash, Figure, Layer, Legend, Plot, Series, Shape, Table},
 };
 
@@ -26,6 +26,14 @@ pub struct Point {
 }
 
 impl Point {
+    /// A run that was timed once. One that did not reach its end has no error, whatever it measured before.
+    pub fn of(variant: &'static str, rows: usize, error: f64, record: &Record) -> Self {
+        let error = if record.status == Status::Completed { error } else { f64::NAN };
+        let (seconds, cost) = (vec![record.cost.cpu_s], record.cost.clone());
+        let status = record.status.clone();
+        Self { variant, rows, note: String::new(), error, seconds, cost, status }
+    }
+
     /// Median of the repeated timings \[s\].
     pub fn median_seconds(&self) -> f64 {
         let mut sorted = self.seconds.clone();

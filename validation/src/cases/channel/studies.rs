@@ -331,17 +331,9 @@ fn timed_points(
     runs: &[JudgedRun],
     metric: &str,
 ) -> Vec<Point> {
-    let point = |run: &JudgedRun| Point {
-        variant: run.planned.variant,
-        rows: run.record.settings.get("rows").and_then(|r| r.as_u64()).unwrap_or(0) as usize,
-        note: String::new(),
-        error: match run.record.status {
-            Status::Completed => run.record.measured(metric),
-            _ => f64::NAN,
-        },
-        seconds: vec![run.record.cost.cpu_s],
-        cost: run.record.cost.clone(),
-        status: run.record.status.clone(),
+    let point = |run: &JudgedRun| {
+        let rows = run.record.setting("rows") as usize;
+        Point::of(run.planned.variant, rows, run.record.measured(metric), &run.record)
     };
     let mut points: Vec<Point> = runs.iter().map(point).collect();
     let most = if tier == Tier::Full { 10.0 * TIMED_AGAIN_BELOW } else { TIMED_AGAIN_BELOW };

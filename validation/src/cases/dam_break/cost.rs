@@ -9,7 +9,7 @@ use super::{
 use crate::{
     case::Tier,
     gate::{Bound, Evidence, Gate},
-    record::{Record, Status},
+    record::Record,
     report::{Cell, Column, Table, sig},
     studies::work_precision::{self, Point},
     suite::{JudgedRun, Study},
@@ -22,17 +22,10 @@ pub fn study(tier: Tier, runs: &[JudgedRun]) -> Study {
     let is_shown = |run: &&JudgedRun| {
         is_free(&run.record) && finest.is_none_or(|f| !std::ptr::eq(f, &run.record))
     };
-    let point = |run: &JudgedRun| Point {
-        variant: run.planned.variant,
-        rows: run.record.setting("n") as usize,
-        note: String::new(),
-        error: match run.record.status {
-            Status::Completed => rms(&front(&run.record), &best, LATER),
-            _ => f64::NAN,
-        },
-        seconds: vec![run.record.cost.cpu_s],
-        cost: run.record.cost.clone(),
-        status: run.record.status.clone(),
+    let point = |run: &JudgedRun| {
+        let record = &run.record;
+        let error = rms(&front(record), &best, LATER);
+        Point::of(run.planned.variant, record.setting("n") as usize, error, record)
     };
     let points: Vec<Point> = runs.iter().filter(is_shown).map(point).collect();
     let finest_n = finest.map_or(f64::NAN, |r| r.setting("n"));

@@ -381,22 +381,14 @@ fn cost(runs: &[JudgedRun]) -> Study {
         let finest = (variant == BEST).then_some((FINEST, Start::Reference));
         for (n, start) in rest.chain(finest) {
             let Some(record) = find(runs, variant, 50.0, n, start) else { continue };
-            let share = if record.status == Status::Completed {
-                STATED / record.setting("end")
-            } else {
-                1.0
-            };
-            let mut cost = record.cost.clone();
-            cost.pair_interactions = (share * cost.pair_interactions as f64) as u64;
-            points.push(Point {
-                variant,
-                rows: n,
-                note: String::new(),
-                error: record.measured("l2_u"),
-                seconds: vec![share * record.cost.cpu_s],
-                cost,
-                status: record.status.clone(),
-            });
+            let mut point = Point::of(variant, n, record.measured("l2_u"), record);
+            if record.status == Status::Completed {
+                let share = STATED / record.setting("end");
+                point.seconds[0] *= share;
+                let pairs = &mut point.cost.pair_interactions;
+                *pairs = (share * *pairs as f64) as u64;
+            }
+            points.push(point);
         }
     }
     let caption = format!(

@@ -425,14 +425,9 @@ fn cost(tier: Tier, runs: &[JudgedRun]) -> Study {
     let count: usize = plan::LADDER.iter().map(|v| plan::spacings(v, tier).len()).sum();
     let ladder = &runs[..count.min(runs.len())];
     let points = |error: &str| -> Vec<Point> {
-        let point = |run: &JudgedRun| Point {
-            variant: run.planned.variant,
-            rows: (1.0 / run.record.setting("spacing")).round() as usize,
-            note: String::new(),
-            error: run.record.measured(error),
-            seconds: vec![run.record.cost.cpu_s],
-            cost: run.record.cost.clone(),
-            status: run.record.status.clone(),
+        let point = |run: &JudgedRun| {
+            let layers = (1.0 / run.record.setting("spacing")).round() as usize;
+            Point::of(run.planned.variant, layers, run.record.measured(error), &run.record)
         };
         ladder.iter().map(point).collect()
     };

@@ -224,19 +224,17 @@ fn cost(runs: &[JudgedRun]) -> Study {
     let mut points = Vec::new();
     for variant in LADDER {
         for run in SIDES.into_iter().filter_map(|n| find(runs, variant, n, 0.2)) {
-            points.push(Point {
+            let record = &run.record;
+            points.push(Point::of(
                 variant,
-                rows: run.record.setting("n") as usize,
-                note: String::new(),
-                error: run.record.measured("l2"),
-                seconds: vec![run.record.cost.cpu_s],
-                cost: run.record.cost.clone(),
-                status: run.record.status.clone(),
-            });
+                record.setting("n") as usize,
+                record.measured("l2"),
+                record,
+            ));
         }
     }
     let caption = "Relative L2 error of the velocity vector at t = 2 L/U, Re 100, over the cost of the run: \
-                   25, 50 and, for `carried` and `consistent`, 100 particles a side from a disturbed \
+                   25, 50 and, for `consistent`, 100 particles a side from a disturbed \
                    lattice. Timed once, side by side with other runs; pair interactions are exact. Grey: \
                    PySPH EDAC (73 s, 456 s) and SPHinXsys (1.9 s, 16 s) at 50 and 100 a side on another \
                    machine.";
