@@ -13,8 +13,11 @@ use solver::{
     Simulation, Tait, Viscosity, WendlandC2,
 };
 use validation::{
-    cases::channel::{
-        Arrangement, ChannelSettings, Flow, Ingredient, Setup, Stepping, TIMES, scene, variants,
+    cases::{
+        channel::{
+            Arrangement, ChannelSettings, Flow, Ingredient, Setup, Stepping, TIMES, scene, variants,
+        },
+        composed::Composition,
     },
     record::{Record, Status},
     runner::Context,
@@ -242,14 +245,13 @@ fn matrix_of(record: &Record, setup: &Setup) -> RowModel {
 
 /// u of a record at the times of comparison against the matrix: settings, ingredients, runner and
 /// profile have a part in it.
-fn check_variant(variant: &validation::cases::channel::ChannelVariant, flow: Flow) {
+fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
     // c0 by Morris' rule alone: with sound as stiff as viscosity, round-off of the density would
     // push such slow flows about. It also leaves an artificial viscosity of 1e-7 nu.
     let set = ["re=1e-9", "end=0.2", "c0_viscous=0"].map(String::from);
     let settings = variant.settings(&set).expect("settings");
     let name = format!("{flow:?}, {}", variant.variant.name);
-    let record =
-        (variant.run)(flow, variant.variant.name, &settings, &Context::default()).expect(&name);
+    let record = (variant.run)(variant.variant.name, &settings, &Context::default()).expect(&name);
     assert_eq!(record.status, Status::Completed, "{name}");
     let by = match record.numerics["integrator"].as_str() {
         Some("leapfrog") => Integrator::Leapfrog,

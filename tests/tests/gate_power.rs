@@ -105,9 +105,8 @@ struct Matrix {
 fn matrix() -> Matrix {
     let jobs = jobs();
     let healthy: Vec<Measured> = jobs.par_iter().map(|job| job.run(&Fault::NONE)).collect();
-    let fails = |gate: &Gate, measured: &Measured| {
-        gate.judge(measured.value(&gate.metric)).verdict.is_failure()
-    };
+    let fails =
+        |gate: &Gate, measured: &Measured| gate.judge(measured.value(gate)).verdict.is_failure();
     let all = |job: &Job| job.gates().iter().map(|g| (job.group(), g.clone())).collect::<Vec<_>>();
     let gates: Vec<_> = jobs.iter().flat_map(all).collect();
     let failures = jobs.iter().zip(&healthy).flat_map(|(job, measured)| {

@@ -16,7 +16,10 @@ use solver::{
 
 use crate::{
     case::RunError,
-    cases::channel::{self, ChannelSettings, Flow, Ingredient, Setup, Stepping},
+    cases::{
+        channel::{self, ChannelSettings, Drive, Flow, Ingredient, Setup, Stepping},
+        composed::Composition,
+    },
 };
 
 /// The scheme whose right-hand side is measured.
@@ -186,24 +189,20 @@ type Modern<B, I> = Compose<QuinticSpline, (Pressure<Tait>, Viscosity, B), Stabi
 
 /// Times whole steps of the variants `seed` and `modern` of a channel flow driven by `B`, and as
 /// many bare sweeps, at so many rows, for about `budget` seconds each.
-pub fn shares<B: Ingredient>(
-    flow: Flow,
-    rows: usize,
-    budget: f64,
-) -> Result<[(&'static str, Share); 2], RunError> {
+pub fn shares<B: Drive>(rows: usize, budget: f64) -> Result<[(&'static str, Share); 2], RunError> {
     let variants = channel::variants::<B>();
     let settings = |name: &str| {
-        let find = |v: &&channel::ChannelVariant| v.variant.name == name;
+        let find = |v: &&Composition<ChannelSettings>| v.variant.name == name;
         let set = [format!("rows={rows}")];
         variants.iter().find(find).map_or_else(|| Ok(Default::default()), |v| v.settings(&set))
     };
     let seed = share::<Seed<B, PredictorCorrector>, Seed<B, Bare<PredictorCorrector>>>(
-        flow,
+        B::FLOW,
         &settings("seed")?,
         budget,
     )?;
     let modern = share::<Modern<B, Leapfrog>, Modern<B, Bare<Leapfrog>>>(
-        flow,
+        B::FLOW,
         &settings("modern")?,
         budget,
     )?;
@@ -219,7 +218,8 @@ where
     S::Walls: channel::Arrangement,
     Sweeps: Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Walls: channel::Arrangement>,
 {
-    let setup = Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false)?;
+    let setup =
+        Setup::new::<S::Kernel, S::Integrator>(flow, settings, &channel::uses::<S>(), false)?;
     let mut whole = channel::scene::<S>(&setup);
     whole.parallel_from = usize::MAX;
     let mut whole = whole.build()?;

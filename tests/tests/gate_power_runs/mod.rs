@@ -64,18 +64,19 @@ pub enum Measured {
 }
 
 impl Measured {
-    pub fn value(&self, metric: &str) -> Option<f64> {
+    pub fn value(&self, gate: &Gate) -> Option<f64> {
         match self {
-            Measured::Record(record) if record.status == Status::Completed => record.metric(metric),
-            Measured::Record(_) => None,
+            Measured::Record(record) => gate.value(record),
             Measured::Number(value) => Some(*value),
-            Measured::Errors(errors) => errors.iter().find(|(m, _)| m == metric).map(|(_, e)| *e),
+            Measured::Errors(errors) => {
+                errors.iter().find(|(metric, _)| *metric == gate.metric).map(|(_, error)| *error)
+            }
         }
     }
 
     /// Whether the gate is on something that was looked at: all of it, but for a reference.
     pub fn is_about(&self, gate: &Gate) -> bool {
-        !matches!(self, Measured::Errors(_)) || self.value(&gate.metric).is_some()
+        !matches!(self, Measured::Errors(_)) || self.value(gate).is_some()
     }
 
     pub fn state(&self) -> Option<String> {
@@ -192,8 +193,8 @@ impl Job {
         match self {
             Job::Channel(flow, planned) => {
                 let record = match flow {
-                    Flow::Couette => channel_run::<()>(*flow, planned, fault),
-                    Flow::Poiseuille => channel_run::<BodyForce>(*flow, planned, fault),
+                    Flow::Couette => channel_run::<()>(planned, fault),
+                    Flow::Poiseuille => channel_run::<BodyForce>(planned, fault),
                 };
                 Measured::Record(Box::new(record))
             }
@@ -232,10 +233,10 @@ impl Job {
 type Continuous<K, B, D, W, I> = Compose<K, (Pressure<Tait>, Morris, B), D, W, I>;
 
 /// What drives a channel.
-trait Drive: Ingredient + Spoilable<Spoiled: Term<()>> {}
-impl<B: Ingredient + Spoilable<Spoiled: Term<()>>> Drive for B {}
+trait SpoilableDrive: channel::Drive + Spoilable<Spoiled: Term<()>> {}
+impl<B: channel::Drive + Spoilable<Spoiled: Term<()>>> SpoilableDrive for B {}
 
-fn channel_run<B: Drive>(flow: Flow, planned: &Planned, fault: &Fault) -> Record {
+fn channel_run<B: SpoilableDrive>(planned: &Planned, fault: &Fault) -> Record {
     type Stabilised = (Continuity, DensityDiffusion, Shifting);
     let variants = channel::variants::<B>();
     let variant = variants.iter().find(|v| v.variant.name == planned.variant).expect("a variant");
@@ -249,7 +250,7 @@ fn channel_run<B: Drive>(flow: Flow, planned: &Planned, fault: &Fault) -> Record
         }
         other => panic!("{other} is not considered"),
     };
-    run(flow, planned.variant, &settings, fault)
+    run(B::FLOW, planned.variant, &settings, fault)
 }
 
 fn one_channel<K, B, D, W, I>(
@@ -260,7 +261,7 @@ fn one_channel<K, B, D, W, I>(
 ) -> Record
 where
     K: Kernel,
-    B: Drive,
+    B: SpoilableDrive,
     D: Ingredient + Spoilable<Spoiled: Term<()>>,
     W: Arrangement + Spoilable<Spoiled: Arrangement>,
     I: Mistaken,

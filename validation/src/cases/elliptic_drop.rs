@@ -10,7 +10,8 @@ use solver::{
 
 use super::{
     channel::Stepping,
-    water::{Ingredient, Ledger, Medium, OPTIONAL, WaterCase, WaterVariant},
+    composed::{Composed, Composition, lacking},
+    water::{Ingredient, Ledger, Medium, OPTIONAL},
 };
 use crate::{
     case::{Case, Planned, RunError, Tier, Variant},
@@ -57,15 +58,15 @@ fn variant<S>(
     name: &'static str,
     about: &'static str,
     adjust: fn(&mut DropSettings),
-) -> WaterVariant<DropSettings>
+) -> Composition<DropSettings>
 where
     S: Scheme<Extra = (), Walls = Open>,
     S::Forces: Ingredient,
     S::Drift: Ingredient,
     S::Integrator: Stepping,
 {
-    let uses = [S::Forces::uses(), S::Drift::uses()].concat();
-    WaterVariant { variant: Variant { name, about }, adjust, run: run::<S>, uses }
+    let lacks = lacking(OPTIONAL, &[S::Forces::uses(), S::Drift::uses()].concat());
+    Composition { variant: Variant { name, about }, adjust, run: run::<S>, lacks }
 }
 
 /// The strain moves rows apart to two spacings, and the Wendland kernel needs h/dx of 1.2 at least for
@@ -74,7 +75,7 @@ fn modern(s: &mut DropSettings) {
     (s.h_over_dx, s.alpha, s.courant) = (2.5, 0.02, 0.6);
 }
 
-fn variants() -> Vec<WaterVariant<DropSettings>> {
+fn variants() -> Vec<Composition<DropSettings>> {
     vec![
         variant::<Seed>(
             "seed",
@@ -278,13 +279,12 @@ fn finish<S: Scheme<Extra = ()>>(
 }
 
 /// The drop as a [`Case`].
-pub const ELLIPTIC_DROP: &dyn Case = &WaterCase {
+pub const ELLIPTIC_DROP: &dyn Case = &Composed {
     name: NAME,
     about: "A free drop in two dimensions, at first a circle, pulled into an ellipse by the uniform strain \
             that it starts with; its semi-axes follow an ordinary differential equation exactly. No wall and \
             no gravity, or gravity in which it falls freely, which must change nothing.",
     variants,
-    optional: OPTIONAL,
     plan,
     studies: |_, runs| vec![study(runs)],
 };

@@ -8,12 +8,9 @@ use solver::{
 };
 
 use super::channel::Stepping;
-use crate::{
-    case::RunError,
-    theory::{
-        lattice::SquareLattice,
-        time_step::{self, Medium},
-    },
+use crate::theory::{
+    lattice::SquareLattice,
+    time_step::{self, Medium},
 };
 
 /// The numbers that terms are made from.
@@ -73,21 +70,6 @@ pub trait Ingredient: Term<()> {
 
 /// Settings that some term of some variant reads, and others do not have.
 pub const OPTIONAL: &[&str] = &["diffusion", "shift", "eta2_over_h2"];
-
-/// Refuses an assignment to a setting that no term of the variant reads.
-pub fn refuse_unused(
-    set: &[String],
-    uses: &[&'static str],
-    variant: &'static str,
-) -> Result<(), RunError> {
-    for assignment in set {
-        let key = assignment.split('=').next().unwrap_or_default().trim();
-        if OPTIONAL.contains(&key) && !uses.contains(&key) {
-            return Err(RunError::Unused { key: key.into(), variant: variant.into() });
-        }
-    }
-    Ok(())
-}
 
 impl Ingredient for () {
     fn new(_: &Fluid) -> Self {}

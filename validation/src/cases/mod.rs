@@ -2,6 +2,7 @@
 
 pub mod acoustic_wave;
 pub mod channel;
+pub mod composed;
 mod couette;
 pub mod dam_break;
 mod elastic_bar;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use solver::BodyForce;
 use validation::bench;
-use validation::cases::{self, channel::Flow};
+use validation::cases;
 use validation::files::OutputFolder;
 use validation::manifest::{Known, Manifest};
 use validation::reference::Reference;
@@ -152,8 +152,8 @@ fn bench(world: &World) -> Result<(), Failure> {
 const ROWS: usize = 20;
 
 fn shares() -> Result<(), Failure> {
-    let couette = bench::shares::<()>(Flow::Couette, ROWS, BUDGET)?;
-    let poiseuille = bench::shares::<BodyForce>(Flow::Poiseuille, ROWS, BUDGET)?;
+    let couette = bench::shares::<()>(ROWS, BUDGET)?;
+    let poiseuille = bench::shares::<BodyForce>(ROWS, BUDGET)?;
     let all = [("couette", couette), ("poiseuille", poiseuille)];
     let rows: Vec<Vec<String>> = all
         .iter()

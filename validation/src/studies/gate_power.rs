@@ -11,7 +11,7 @@ pub const MUTANTS: &str = include_str!("../../../tests/gate_power.csv");
 /// A gate a line: its group, its name, how many mutants fail it.
 pub const GATES: &str = include_str!("../../../tests/gate_power_gates.csv");
 
-/// The same for rubber: mutant, how many gates it fails, of how many, which.
+/// The same for rubber, for [`of_one_scene`].
 pub const RUBBER: &str = include_str!("../../../tests/ring_power.csv");
 
 const ABOUT: &str = "A gate that passes says little until something fails it. Each line is the \
@@ -63,22 +63,24 @@ fn gates() -> Table {
     })
 }
 
-fn rubber() -> Table {
+/// The mutants of one scene: a line has the mutant, how many gates it fails, of how many, and which.
+pub fn of_one_scene(what: &str, text: &str, caption: &str) -> Table {
     let columns = vec![
-        Column::text("rubber with"),
+        Column::text(what),
         Column::num("gates that it fails", "1"),
         Column::num("of", "1"),
         Column::text("which"),
     ];
-    let caption = "The same for the elastic solid: the rings at spacing 0.2 L, elastic waves, and a block \
-                   that begins to turn. Measured by `tests/tests/ring_power.rs`.";
-    rows(RUBBER).1.iter().fold(Table::new(caption, columns), |table, row| {
+    rows(text).1.iter().fold(Table::new(caption, columns), |table, row| {
         let count = |k: usize| Cell::count(row.get(k).and_then(|n| n.parse().ok()).unwrap_or(0));
         let which = row.get(3).unwrap_or(&"").split(' ').map(|gate| format!("`{gate}`"));
         let which = Cell::text(which.collect::<Vec<String>>().join(" "));
         table.row(vec![Cell::text(row[0]), count(1), count(2), which])
     })
 }
+
+const OF_RUBBER: &str = "The same for the elastic solid: the rings at spacing 0.2 L, elastic waves, and a \
+    block that begins to turn. Measured by `tests/tests/ring_power.rs`.";
 
 /// The study: tables without judgement, for the test is the judge.
 pub fn study() -> Study {
@@ -97,7 +99,7 @@ pub fn study() -> Study {
         .prose(ABOUT)
         .block(mutants())
         .prose(idle)
-        .block(rubber())
+        .block(of_one_scene("rubber with", RUBBER, OF_RUBBER))
         .block(Block::Details { summary: "Gate by gate".into(), blocks: vec![gates().into()] })
 }
 

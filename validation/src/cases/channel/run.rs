@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use solver::{Integrator, Kernel, Limits, Role, Scene, Scheme};
 
 use super::{
-    Arrangement, ChannelSettings, Flow, Ingredient, Setup, Stepping, TIMES,
+    Arrangement, ChannelSettings, Drive, Flow, Ingredient, Setup, Stepping, TIMES,
     measure::{self, Seen, Series},
 };
 use crate::{
@@ -43,21 +43,21 @@ where
     scene
 }
 
-/// Runs the scheme `S` and measures.
-pub fn run<S>(
-    flow: Flow,
+/// Runs the scheme `S` of the flow driven by `B` and measures.
+pub fn run<B, S>(
     variant: &str,
     settings: &ChannelSettings,
     context: &Context,
 ) -> Result<Record, RunError>
 where
+    B: Drive,
     S: Scheme<Extra = ()>,
     S::Forces: Ingredient,
     S::Drift: Ingredient,
     S::Walls: Arrangement,
     S::Integrator: Stepping,
 {
-    run_scene::<S>(flow, variant, settings, &uses::<S>(), context, scene::<S>)
+    run_scene::<S>(B::FLOW, variant, settings, &uses::<S>(), context, scene::<S>)
 }
 
 /// Optional settings that the types of `S` read.

@@ -25,7 +25,8 @@ pub use setup::{Dam, Vessel};
 
 use super::{
     channel::Stepping,
-    water::{Ingredient, OPTIONAL, WaterCase, WaterVariant},
+    composed::{Composed, Composition, lacking},
+    water::{Ingredient, OPTIONAL},
 };
 use crate::case::{Case, RunError, Variant};
 
@@ -73,7 +74,7 @@ fn variant<S>(
     name: &'static str,
     about: &'static str,
     adjust: fn(&mut DamSettings),
-) -> WaterVariant<DamSettings>
+) -> Composition<DamSettings>
 where
     S: Scheme<Extra = ()>,
     S::Forces: Ingredient,
@@ -81,8 +82,8 @@ where
     S::Walls: Vessel,
     S::Integrator: Stepping,
 {
-    let uses = [S::Forces::uses(), S::Drift::uses()].concat();
-    WaterVariant { variant: Variant { name, about }, adjust, run: run::run::<S>, uses }
+    let lacks = lacking(OPTIONAL, &[S::Forces::uses(), S::Drift::uses()].concat());
+    Composition { variant: Variant { name, about }, adjust, run: run::run::<S>, lacks }
 }
 
 /// The seed's step: at Courant number 0.4 the predictor-corrector needs α = 0.03 on every pair, and
@@ -97,7 +98,7 @@ fn modern(s: &mut DamSettings) {
 }
 
 /// The variants that are judged, then those of the ablation.
-fn variants() -> Vec<WaterVariant<DamSettings>> {
+fn variants() -> Vec<Composition<DamSettings>> {
     let mut all = vec![
         variant::<Seed<InterfaceWall>>(
             "seed",
@@ -118,7 +119,7 @@ fn variants() -> Vec<WaterVariant<DamSettings>> {
 }
 
 /// The seed, and the modern variant, with one part changed.
-fn ablations() -> Vec<WaterVariant<DamSettings>> {
+fn ablations() -> Vec<Composition<DamSettings>> {
     type Midpoint = PredictorCorrector;
     vec![
         variant::<Seed<InterfaceWall, Leapfrog>>("seed-leapfrog", "the seed, leapfrog", seed),
@@ -181,10 +182,10 @@ fn ablations() -> Vec<WaterVariant<DamSettings>> {
 
 /// The settings of a variant with `key=value` texts applied.
 pub fn settings(variant: &str, set: &[String]) -> Result<DamSettings, RunError> {
-    Ok(CASE.chosen(variant, set)?.0)
+    CASE.settings_of(variant, set)
 }
 
-const CASE: WaterCase<DamSettings> = WaterCase {
+const CASE: Composed<DamSettings> = Composed {
     name: NAME,
     about: "A column of water, held by a wall on its left, is released at once and collapses on a dry floor \
             (Martin & Moyce 1952: twice as high as wide, on an endless floor; Lobovsky et al. 2014: 600 mm \
@@ -192,7 +193,6 @@ const CASE: WaterCase<DamSettings> = WaterCase {
             pressures and impulses are compared with the experiments; energy and momentum are accounted for \
             term by term.",
     variants,
-    optional: OPTIONAL,
     plan: plan::plan,
     studies: |tier, runs| studies::studies(DAM_BREAK, tier, runs),
 };

@@ -12,6 +12,7 @@ use crate::{
     record::{Record, Status},
     report::{Cell, Column, Table, sig},
     runner::Context,
+    studies::stability::largest_stable,
     suite::Study,
 };
 
@@ -37,6 +38,9 @@ fn is_stable(record: &Record) -> bool {
         && record.measured("energy_gap") < 0.02
         && record.measured("mach") < 0.5
 }
+
+/// Of the bisection, relative to the theoretical limit.
+const RESOLUTION: f64 = 0.02;
 
 /// The largest stable step over the theoretical one, by bisection.
 pub fn limits(case: &'static dyn Case) -> Study {
@@ -67,13 +71,9 @@ pub fn limits(case: &'static dyn Case) -> Study {
                 set.push(format!("dt={}", share * theory));
                 run(case, variant, &set).is_ok_and(|record| is_stable(&record))
             };
-            let (mut low, mut high) = (0.2, 1.6);
-            for _ in 0..6 {
-                let middle = 0.5 * (low + high);
-                if stable(middle) { low = middle } else { high = middle }
-            }
+            let found = largest_stable(1.0, RESOLUTION, stable).map_or(f64::NAN, |b| b.stable);
             let default = run(case, variant, set);
-            [theory, low, default.map_or(f64::NAN, |r| r.chose("dt/limit"))]
+            [theory, found, default.map_or(f64::NAN, |r| r.chose("dt/limit"))]
         })
         .collect();
     let mut study = Study::new("dam-break-time-step", "Largest stable time step");

@@ -19,6 +19,7 @@ use crate::{
         Plot, Series, Shape, Table, sig,
     },
     runner::Context,
+    studies::gate_power,
     suite::{JudgedRun, Study},
 };
 
@@ -42,7 +43,20 @@ pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<S
         studies.push(stability::limits(case));
         studies.push(stability::sound(case));
     }
+    studies.push(power());
     studies
+}
+
+/// What the gates see of four mistakes, and one of the measurement.
+fn power() -> Study {
+    let caption = "The column of Martin & Moyce with one thing spoiled, judged by its own gates. Measured by \
+                   `tests/tests/dam_power.rs`, which compares this table exactly.";
+    let text = include_str!("../../../../tests/dam_power.csv");
+    Study::new("dam-break-gate-power", "What the gates are worth").block(gate_power::of_one_scene(
+        "dam break with",
+        text,
+        caption,
+    ))
 }
 
 /// A number, or a dash where there is none because the run ended early.

@@ -10,7 +10,10 @@ use solver::{
 use super::{HydrostaticSettings, run};
 use crate::{
     case::{RunError, Variant},
-    cases::{channel::Stepping, water::WaterVariant},
+    cases::{
+        channel::Stepping,
+        composed::{Composition, lacking},
+    },
     exact, geometry,
     random::Random,
     theory::{
@@ -298,12 +301,15 @@ impl TankWall for ExtrapolatingWall<Tait> {
     }
 }
 
+/// Settings that some types do not read.
+const OPTIONAL: &[&str] = &["xsph", "xi", "stress_exponent", "diffusion", "wall_gravity"];
+
 /// A variant: its types, and how it changes the default settings.
 pub fn variant<K, R, D, W, I>(
     name: &'static str,
     about: &'static str,
     adjust: fn(&mut HydrostaticSettings),
-) -> WaterVariant<HydrostaticSettings>
+) -> Composition<HydrostaticSettings>
 where
     K: Kernel,
     R: TensilePart,
@@ -311,6 +317,6 @@ where
     W: TankWall,
     I: Stepping,
 {
-    let uses = [R::USES, D::USES, W::USES].concat();
-    WaterVariant { variant: Variant { name, about }, adjust, uses, run: run::run::<K, R, D, W, I> }
+    let lacks = lacking(OPTIONAL, &[R::USES, D::USES, W::USES].concat());
+    Composition { variant: Variant { name, about }, adjust, run: run::run::<K, R, D, W, I>, lacks }
 }

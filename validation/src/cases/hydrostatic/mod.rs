@@ -13,7 +13,7 @@ use solver::{
 
 pub use column::Column;
 
-use super::water::{WaterCase, WaterVariant};
+use super::composed::{Composed, Composition};
 use crate::case::Case;
 
 crate::settings! {
@@ -70,7 +70,7 @@ type Extrapolating = ExtrapolatingWall<Tait>;
 type Kept = DensityDiffusion<Hydrostatic>;
 
 #[rustfmt::skip] // one line a variant: a table
-fn variants() -> Vec<WaterVariant<HydrostaticSettings>> {
+fn variants() -> Vec<Composition<HydrostaticSettings>> {
     type Midpoint = PredictorCorrector;
     let seed = |_: &mut HydrostaticSettings| {};
     vec![
@@ -104,14 +104,13 @@ fn variants() -> Vec<WaterVariant<HydrostaticSettings>> {
 const NAME: &str = "hydrostatic";
 
 /// Water at rest in an open tank.
-pub const HYDROSTATIC: &dyn Case = &WaterCase {
+pub const HYDROSTATIC: &dyn Case = &Composed {
     name: NAME,
     about: "Water at rest in an open tank, compressed by its own weight by g H/c0^2. The exact solution is \
             rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing moves. After \
             20 acoustic periods 4 H/c0: the pressure, the level, the kinetic energy that should be 0, the \
             gap between water and bottom, particles outside of the tank.",
     variants,
-    optional: &["xsph", "xi", "stress_exponent", "diffusion", "wall_gravity"],
     plan: plan::plan,
     studies: studies::studies,
 };

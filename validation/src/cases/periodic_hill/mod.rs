@@ -23,14 +23,12 @@ pub use control::Driven;
 pub use run::{run_scene, scene};
 pub use setup::{HillWall, Setup};
 
-use super::{channel::Stepping, fluid};
-use crate::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
-    record::Record,
-    runner::Context,
-    settings::{self, Field, Settings},
-    suite::{JudgedRun, Study},
+use super::{
+    channel::Stepping,
+    composed::{Composed, Composition, lacking},
+    fluid::{Ingredient, OPTIONAL},
 };
+use crate::case::{Case, RunError, Variant};
 
 crate::settings! {
     /// Settings of the flow over hills. H = U_b = ρ = 1.
@@ -76,27 +74,20 @@ crate::settings! {
     }
 }
 
-type Run = fn(&str, &HillSettings, &Context) -> Result<Record, RunError>;
-
-/// A composition.
-struct HillVariant {
-    variant: Variant,
+fn variant<S>(
+    name: &'static str,
+    about: &'static str,
     adjust: fn(&mut HillSettings),
-    run: Run,
-    uses: fn() -> Vec<&'static str>,
-}
-
-fn variant<S>(name: &'static str, about: &'static str, adjust: fn(&mut HillSettings)) -> HillVariant
+) -> Composition<HillSettings>
 where
     S: Scheme<Extra = ()>,
-    S::Forces: fluid::Ingredient + Driven,
-    S::Drift: fluid::Ingredient,
+    S::Forces: Ingredient + Driven,
+    S::Drift: Ingredient,
     S::Walls: HillWall,
     S::Integrator: Stepping,
 {
-    use fluid::Ingredient;
-    let uses = || [S::Forces::uses(), S::Drift::uses()].concat();
-    HillVariant { variant: Variant { name, about }, adjust, run: run::run::<S>, uses }
+    let lacks = lacking(OPTIONAL, &[S::Forces::uses(), S::Drift::uses()].concat());
+    Composition { variant: Variant { name, about }, adjust, run: run::run::<S>, lacks }
 }
 
 type Extrapolating = ExtrapolatingWall<Tait, NoSlip>;
@@ -113,7 +104,7 @@ fn strong(s: &mut HillSettings) {
     s.shift = 3.0;
 }
 
-fn variants() -> Vec<HillVariant> {
+fn variants() -> Vec<Composition<HillSettings>> {
     vec![
         variant::<Quintic<Pairs, Continuity>>(
             "plain",
@@ -152,57 +143,20 @@ const NAME: &str = "periodic_hill";
 
 /// The settings of a variant with `key=value` texts applied.
 pub fn settings(variant: &str, set: &[String]) -> Result<HillSettings, RunError> {
-    let variants = variants();
-    let chosen = case::find(NAME, &variants, variant, |v| v.variant.name)?;
-    let mut settings = HillSettings::default();
-    (chosen.adjust)(&mut settings);
-    settings::apply(&mut settings, set)?;
-    settings.validate()?;
-    fluid::refuse_unused(set, &(chosen.uses)(), chosen.variant.name)?;
-    Ok(settings)
+    CASE.settings_of(variant, set)
 }
 
-struct Hills;
+const CASE: Composed<HillSettings> = Composed {
+    name: NAME,
+    about: "A channel with hills on its floor, one every nine heights, and a flat lid. A body force drives a \
+            given flux through it. From Re 50 on the flow leaves the wall behind the crest and comes back \
+            to it in the trough, or on the next hill: steady, laminar, with curved walls that are convex at \
+            the crest and concave at the foot. The reference is a finite-element computation of this \
+            project, for none is published.",
+    variants,
+    plan: plan::plan,
+    studies: |tier, runs| studies::studies(PERIODIC_HILL, tier, runs),
+};
 
 /// Flow over periodic hills.
-pub const PERIODIC_HILL: &dyn Case = &Hills;
-
-impl Case for Hills {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn about(&self) -> &'static str {
-        "A channel with hills on its floor, one every nine heights, and a flat lid. A body force drives a \
-         given flux through it. From Re 50 on the flow leaves the wall behind the crest and comes back \
-         to it in the trough, or on the next hill: steady, laminar, with curved walls that are convex at \
-         the crest and concave at the foot. The reference is a finite-element computation of this project, \
-         for none is published."
-    }
-
-    fn variants(&self) -> Vec<Variant> {
-        variants().into_iter().map(|v| v.variant).collect()
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        HillSettings::FIELDS
-    }
-
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        Ok(serde_json::to_value(settings(variant, set)?).unwrap_or_default())
-    }
-
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        let variants = variants();
-        let chosen = case::find(NAME, &variants, variant, |v| v.variant.name)?;
-        (chosen.run)(variant, &settings(variant, set)?, context)
-    }
-
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        plan::plan(tier)
-    }
-
-    fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        studies::studies(PERIODIC_HILL, tier, runs)
-    }
-}
+pub const PERIODIC_HILL: &dyn Case = &CASE;

@@ -20,6 +20,7 @@ use crate::{
     },
     studies::{
         convergence::{self, Level},
+        gate_power,
         work_precision::{self, Point},
     },
     suite::{JudgedRun, Study},
@@ -413,23 +414,9 @@ const SPOILED: &str = include_str!("../../../../tests/hill_power.csv");
 
 /// What the gates are worth.
 fn power() -> Study {
-    let columns = vec![
-        Column::text("hills with"),
-        Column::num("gates that it fails", "1"),
-        Column::num("of", "1"),
-        Column::text("which"),
-    ];
     let caption = "The run of the quick tier (Re 50, H/dx = 10, from rest to 30 H/U_b) with one thing \
                    spoiled, judged by its own gates. Measured by `tests/tests/hill_power.rs`, which takes a \
                    minute and a half and runs on request: `cargo test --test hill_power -- --ignored`.";
-    let mut table = Table::new(caption, columns);
-    for line in SPOILED.lines().skip(1) {
-        let cells: Vec<&str> = line.split(',').collect();
-        let [mutant, fails, of, which] = cells[..] else { continue };
-        let count = |text: &str| Cell::count(text.parse().unwrap_or_default());
-        let which: Vec<String> = which.split(' ').map(|gate| format!("`{gate}`")).collect();
-        let which = Cell::text(which.join(" "));
-        table = table.row(vec![Cell::text(mutant), count(fails), count(of), which]);
-    }
+    let table = gate_power::of_one_scene("hills with", SPOILED, caption);
     Study::new("periodic-hill-gate-power", "What the gates are worth").block(table)
 }

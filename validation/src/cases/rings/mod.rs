@@ -20,14 +20,11 @@ pub use budget::powers;
 pub use run::{Rubber, run_scene};
 pub use setup::{Rings, Tensile};
 
-use super::channel::Stepping;
-use crate::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
-    record::Record,
-    runner::Context,
-    settings::{self, Field, Settings},
-    suite::{JudgedRun, Study},
+use super::{
+    channel::Stepping,
+    composed::{Composed, Composition, lacking},
 };
+use crate::case::{Case, RunError, Variant};
 
 crate::settings! {
     /// Settings of the collision of two rings; L is 1 m.
@@ -71,108 +68,71 @@ crate::settings! {
     }
 }
 
-type Run = fn(&str, &RingSettings, &Context) -> Result<Record, RunError>;
+/// Settings of the artificial stress.
+const OPTIONAL: &[&str] = &["xi", "stress_exponent"];
 
-/// A composition.
-struct RingVariant {
-    variant: Variant,
-    run: Run,
-    has_stress: bool,
-    courant: f64,
+fn variant<R, I>(
+    name: &'static str,
+    about: &'static str,
+    adjust: fn(&mut RingSettings),
+) -> Composition<RingSettings>
+where
+    R: Tensile + TensileStress,
+    I: Stepping<Symmetric>,
+{
+    let lacks = lacking(OPTIONAL, R::USES);
+    Composition { variant: Variant { name, about }, adjust, run: run::run::<R, I>, lacks }
 }
 
-#[rustfmt::skip] // one line a variant: a table
-fn variants() -> Vec<RingVariant> {
-    fn variant<R, I>(name: &'static str, about: &'static str, has_stress: bool) -> RingVariant
-    where
-        R: Tensile + TensileStress,
-        I: Stepping<Symmetric>,
-    {
-        let courant = RingSettings::default().courant;
-        RingVariant { variant: Variant { name, about }, run: run::run::<R, I>, has_stress, courant }
-    }
+/// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
+/// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
+const LONG_STEPS: f64 = 0.8;
+
+fn variants() -> Vec<Composition<RingSettings>> {
     type Midpoint = PredictorCorrector<Symmetric>;
     vec![
-        variant::<PrincipalStress, Midpoint>("seed",
+        variant::<PrincipalStress, Midpoint>(
+            "seed",
             "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \
-             stress in principal axes", true),
-        variant::<(), Midpoint>("no-artificial-stress",
-            "the seed without artificial stress", false),
-        variant::<ComponentStress, Midpoint>("componentwise",
-            "the seed with artificial stress component by component, as the paper writes it", true),
-        RingVariant { courant: LONG_STEPS, ..variant::<PrincipalStress, Leapfrog>("leapfrog",
-            "the seed with the staggered leapfrog: one right-hand side a step, and longer steps", true) },
+             stress in principal axes",
+            |_| {},
+        ),
+        variant::<(), Midpoint>(
+            "no-artificial-stress",
+            "the seed without artificial stress",
+            |_| {},
+        ),
+        variant::<ComponentStress, Midpoint>(
+            "componentwise",
+            "the seed with artificial stress component by component, as the paper writes it",
+            |_| {},
+        ),
+        variant::<PrincipalStress, Leapfrog>(
+            "leapfrog",
+            "the seed with the staggered leapfrog: one right-hand side a step, and longer steps",
+            |s| s.courant = LONG_STEPS,
+        ),
     ]
-}
-
-impl RingVariant {
-    fn settings(&self, set: &[String]) -> Result<RingSettings, RunError> {
-        for assignment in set {
-            let key = assignment.split('=').next().unwrap_or_default().trim();
-            if !self.has_stress && ["xi", "stress_exponent"].contains(&key) {
-                let variant = self.variant.name.to_string();
-                return Err(RunError::Unused { key: key.into(), variant });
-            }
-        }
-        let mut settings = RingSettings { courant: self.courant, ..RingSettings::default() };
-        settings::apply(&mut settings, set)?;
-        Ok(settings)
-    }
 }
 
 /// The settings of a variant with `key=value` texts applied.
 pub fn settings(variant: &str, set: &[String]) -> Result<RingSettings, RunError> {
-    case::find(NAME, &variants(), variant, |v| v.variant.name)?.settings(set)
+    CASE.settings_of(variant, set)
 }
+
+const CASE: Composed<RingSettings> = Composed {
+    name: NAME,
+    about: "Two rubber rings, inner radius 3, outer radius 4, fly at each other at 0.059 of the bulk sound \
+            speed each, touch, flatten, and part. Plane strain, shear modulus 0.22 K. By symmetry it is one \
+            ring against a frictionless plane, which finite elements have computed independently. Momentum \
+            and mirror symmetry are exact, and a ring must not break: numerical fracture is the tensile \
+            instability that artificial stress is there to prevent.",
+    variants,
+    plan: plan::plan,
+    studies: |tier, runs| studies::studies(RUBBER_RINGS, tier, runs),
+};
 
 const NAME: &str = "rubber_rings";
 
-/// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
-/// is that of the spacing: half of it changes the restitution by 0.15 % of its value.
-const LONG_STEPS: f64 = 0.8;
-
-/// The collision as a [`Case`].
-struct RubberRings;
-
 /// Colliding rubber rings.
-pub const RUBBER_RINGS: &dyn Case = &RubberRings;
-
-impl Case for RubberRings {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn about(&self) -> &'static str {
-        "Two rubber rings, inner radius 3, outer radius 4, fly at each other at 0.059 of the bulk sound \
-         speed each, touch, flatten, and part. Plane strain, shear modulus 0.22 K. By symmetry it is one \
-         ring against a frictionless plane, which finite elements have computed independently. Momentum \
-         and mirror symmetry are exact, and a ring must not break: numerical fracture is the tensile \
-         instability that artificial stress is there to prevent."
-    }
-
-    fn variants(&self) -> Vec<Variant> {
-        variants().into_iter().map(|v| v.variant).collect()
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        RingSettings::FIELDS
-    }
-
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        Ok(serde_json::to_value(settings(variant, set)?).unwrap_or_default())
-    }
-
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        let variants = variants();
-        let chosen = case::find(NAME, &variants, variant, |v| v.variant.name)?;
-        (chosen.run)(variant, &chosen.settings(set)?, context)
-    }
-
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        plan::plan(tier)
-    }
-
-    fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        studies::studies(RUBBER_RINGS, tier, runs)
-    }
-}
+pub const RUBBER_RINGS: &dyn Case = &CASE;

@@ -51,15 +51,19 @@ pub struct Rings {
 
 /// An artificial stress that settings can make.
 pub trait Tensile: TensileStress {
+    /// Settings that it reads.
+    const USES: &'static [&'static str];
     /// The artificial stress of a setup.
     fn of(rings: &Rings) -> Self;
 }
 
 impl Tensile for () {
+    const USES: &'static [&'static str] = &[];
     fn of(_: &Rings) -> Self {}
 }
 
 impl<A: Axes> Tensile for InTension<A> {
+    const USES: &'static [&'static str] = super::OPTIONAL;
     fn of(rings: &Rings) -> Self {
         Self::new(rings.settings.xi, rings.settings.stress_exponent as u32, rings.w_at_spacing())
     }

@@ -365,7 +365,7 @@ fn fracture(tier: Tier, runs: &[JudgedRun]) -> Study {
         let changed: Vec<String> = set.iter().filter(is_special).cloned().collect();
         let pieces = record.measured("pieces_most");
         match record.variant.as_str() {
-            "seed" if !changed.is_empty() => {}
+            "seed" if !is_usual(record) => {}
             "seed" if pieces == 2.0 => (seeds, whole) = (seeds + 1, whole + 1),
             "seed" => {
                 seeds += 1;

@@ -4,12 +4,10 @@
 //! A free surface is nothing to the method: density follows (3), which knows no surface, and there is
 //! neither Morris viscosity nor a search for the surface.
 
-mod case;
 mod ingredients;
 mod ledger;
 mod medium;
 
-pub use case::{WaterCase, WaterVariant};
 pub use ingredients::{Ingredient, OPTIONAL, TensileIngredient};
 pub use ledger::{ITEMS, Ledger};
 pub use medium::{Medium, Numerics};
