@@ -64,7 +64,7 @@ impl EquationOfState for Tait {
     #[inline(always)]
     fn sound_speed<V: Lane>(&self, density: V) -> V {
         let ratio = density / V::all(self.density);
-        V::all(self.sound_speed) * power(ratio, self.gamma - 1).simd_sqrt()
+        V::all(self.sound_speed) * power(ratio, self.gamma - 1).sqrt()
     }
 }
 

@@ -141,13 +141,13 @@ impl<K: Kernel> Smoothing<K> {
     /// W(r) \[1/m²\] from r² \[m²\].
     #[inline(always)]
     pub fn w<V: Lane>(&self, r2: V) -> V {
-        K::shape(r2.simd_sqrt() * V::all(self.inv_h)) * V::all(self.w_factor)
+        K::shape(r2.sqrt() * V::all(self.inv_h)) * V::all(self.w_factor)
     }
 
     /// F(r) = -W'(r)/r \[1/m⁴\] from r² \[m²\].
     #[inline(always)]
     pub fn f<V: Lane>(&self, r2: V) -> V {
-        K::slope(r2.simd_sqrt() * V::all(self.inv_h)) * V::all(self.f_factor)
+        K::slope(r2.sqrt() * V::all(self.inv_h)) * V::all(self.f_factor)
     }
 }
 

@@ -34,6 +34,8 @@ pub mod simulation;
 pub mod sweep;
 pub mod terms;
 pub mod walls;
+#[cfg(target_arch = "x86_64")]
+mod ymm;
 
 pub use domain::Domain;
 pub use engine::{Engine, Fault, Limits};

@@ -15,6 +15,9 @@ use crate::{
     terms::{Pair, Term},
 };
 
+#[cfg(target_arch = "x86_64")]
+use crate::lane::Ymm;
+
 type Wide = WideF64x4;
 
 /// What becomes of a row: the index of its particle, the particle, and its rates.
@@ -46,7 +49,16 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         P: Fn(&S) -> T::Shows + Sync,
     {
         parallel::for_each_block(targets, parallel, &|b, targets| {
-            self.block(&blocks[b], first + b * BLOCK, targets, &update);
+            let (block, first) = (&blocks[b], first + b * BLOCK);
+            #[cfg(target_arch = "x86_64")]
+            if Ymm::is_there() {
+                #[allow(unsafe_code)]
+                // SAFETY: the processor has AVX2.
+                unsafe {
+                    return self.block_of_fours(block, first, targets, &update);
+                }
+            }
+            self.block(block, first, targets, &update);
         });
     }
 
@@ -62,8 +74,39 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         T: Term<X>,
         P: Fn(&S) -> T::Shows,
     {
+        self.rows::<Wide, X>(block, first, targets, update);
+    }
+
+    /// The same, compiled for processors with registers for four numbers.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    #[inline(never)]
+    fn block_of_fours<X: Numbers>(
+        &self,
+        block: &Block,
+        first: usize,
+        targets: &mut [Evolved<X>],
+        update: &impl Update<X>,
+    ) where
+        T: Term<X>,
+        P: Fn(&S) -> T::Shows,
+    {
+        self.rows::<Ymm, X>(block, first, targets, update);
+    }
+
+    #[inline(always)]
+    fn rows<V: Lane, X: Numbers>(
+        &self,
+        block: &Block,
+        first: usize,
+        targets: &mut [Evolved<X>],
+        update: &impl Update<X>,
+    ) where
+        T: Term<X>,
+        P: Fn(&S) -> T::Shows,
+    {
         for (k, target) in targets.iter_mut().enumerate() {
-            let rate = self.row(&self.columns[first + k], block.row(k));
+            let rate = self.row::<V, X>(&self.columns[first + k], block.row(k));
             update(first + k, target, &rate);
         }
     }
@@ -74,33 +117,35 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         T: Term<X>,
         P: Fn(&S) -> T::Shows,
     {
-        let row = |k: usize| self.row(&self.columns[first + k], blocks[k / BLOCK].row(k % BLOCK));
+        let row = |k: usize| {
+            self.row::<Wide, X>(&self.columns[first + k], blocks[k / BLOCK].row(k % BLOCK))
+        };
         (0..count).map(row).collect()
     }
 
     /// The rates of one particle.
     #[inline(always)]
-    fn row<X: Numbers>(&self, own: &Column<S>, neighbours: &[[u32; LANES]]) -> Rate<X>
+    fn row<V: Lane, X: Numbers>(&self, own: &Column<S>, neighbours: &[[u32; LANES]]) -> Rate<X>
     where
         T: Term<X>,
         P: Fn(&S) -> T::Shows,
     {
-        let position = own.position.spread::<Wide>();
-        let velocity = own.velocity.spread::<Wide>();
-        let common = own.common.spread::<Wide>();
+        let position = own.position.spread::<V>();
+        let velocity = own.velocity.spread::<V>();
+        let common = own.common.spread::<V>();
         let shown = (self.project)(&own.shows);
-        let own_shows = shown.spread::<Wide>();
-        let mut sum = T::Sum::default().spread::<Wide>();
+        let own_shows = shown.spread::<V>();
+        let mut sum = T::Sum::default().spread::<V>();
         for chunk in neighbours {
             let others = chunk.map(|c| &self.columns[c as usize]);
             let other = Common {
-                mass: Wide::gather(|k| others[k].common.mass),
-                density: Wide::gather(|k| others[k].common.density),
-                volume: Wide::gather(|k| others[k].common.volume),
+                mass: V::gather(|k| others[k].common.mass),
+                density: V::gather(|k| others[k].common.density),
+                volume: V::gather(|k| others[k].common.volume),
             };
-            let r = position - gather_vector::<Wide>(|k| others[k].position);
-            let v = velocity - gather_vector::<Wide>(|k| others[k].velocity);
-            let shows = T::Shows::gather::<Wide>(|k| (self.project)(&others[k].shows));
+            let r = position - gather_vector::<V>(|k| others[k].position);
+            let v = velocity - gather_vector::<V>(|k| others[k].velocity);
+            let shows = T::Shows::gather::<V>(|k| (self.project)(&others[k].shows));
             let r2 = r.x * r.x + r.y * r.y;
             let f = self.kernel.f(r2);
             let pair = Pair { r, r2, v, f, own: common, other, kernel: self.kernel };
@@ -108,7 +153,7 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         }
         let position = if self.moving { own.velocity } else { Vector2::zeros() };
         let mut rate = Rate { position, ..Rate::default() };
-        self.terms.finish(&own.common, shown, T::Sum::total::<Wide>(sum), &mut rate);
+        self.terms.finish(&own.common, shown, T::Sum::total::<V>(sum), &mut rate);
         rate
     }
 }

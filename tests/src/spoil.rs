@@ -116,7 +116,9 @@ impl<X: Numbers, T: Term<X>> Term<X> for Spoiled<T> {
         sum: &mut <Self::Sum as Numbers>::In<V>,
     ) {
         let &Pair { r, r2, v, f, own: common, other: others, kernel } = pair;
-        let f = f.select(r2.simd_le(V::all(self.sight2)), V::nil());
+        // 1 up to there and 0 beyond, where the quotient is 1 exactly.
+        let beyond = (r2 - V::all(self.sight2)).positive();
+        let f = f * (V::all(1.0) - beyond / (beyond + V::all(f64::MIN_POSITIVE)));
         let seen = Pair { r, r2, v, f, own: common, other: others, kernel };
         self.term.pair(&seen, own, other, sum);
     }

@@ -5,9 +5,9 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Ghosts, Integrator, InterfaceWall,
-    Leapfrog, NoSlip, Open, Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role,
-    Scene, Scheme, Shifting, Smoothing, Tait, Viscosity, lattice, walls::Walls,
+    Compose, Continuity, CubicSpline, Domain, Euler, ExtrapolatingWall, Ghosts, Integrator,
+    InterfaceWall, Leapfrog, NoSlip, Open, Outcome, Particle, PlaneWall, PredictorCorrector,
+    Pressure, Role, Scene, Scheme, Shifting, Smoothing, Tait, Viscosity, lattice, walls::Walls,
 };
 use touchstone_tests::{Random, V2, bits, patch};
 
@@ -138,4 +138,28 @@ fn walls_stand_still_and_interfaces_keep_their_density() {
         }
     }
     assert!(walls_changed > 80, "the density of {walls_changed} wall particles followed the fluid");
+}
+
+/// Rates by name are summed by the form of the row loop that every machine has, a step by the one for
+/// the registers that this machine has: on a processor with AVX2, not the same program.
+#[test]
+fn a_step_has_the_bits_of_the_portable_row_loop() {
+    let mut simulation = periodic::<Euler>().build().unwrap();
+    let dt = 0.1 * DX;
+    assert_eq!(simulation.advance(2.0 * dt, dt, &mut ()), Outcome::Reached);
+    let forces = simulation.forces_mut().clone();
+    let rates = simulation.rates(&forces);
+    let drift = simulation.rates(&Continuity);
+    let before: Vec<_> = simulation.fluid().map(|(_, p)| *p).collect();
+    let (builds, step) = (simulation.work().list_builds, 3.0 * dt - simulation.time());
+    assert_eq!(simulation.advance(3.0 * dt, dt, &mut ()), Outcome::Reached);
+    assert_eq!(simulation.work().list_builds, builds, "the particles kept their order");
+    let mut changed = 0;
+    for (k, (_, after)) in simulation.fluid().enumerate() {
+        let velocity = before[k].velocity + rates[k].velocity * step;
+        let density = before[k].density + drift[k].density * step;
+        assert_eq!((after.velocity, after.density), (velocity, density), "particle {k}");
+        changed += u32::from(after.velocity != before[k].velocity);
+    }
+    assert!(changed > 2000, "{changed} particles were accelerated");
 }

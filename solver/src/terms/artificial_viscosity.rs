@@ -78,7 +78,7 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
         let mu = h * S::admit(pair.v.dot(&pair.r)) / (pair.r2 + V::all(self.eta2));
         let c = self.eos.sound_speed(pair.own.density) + self.eos.sound_speed(pair.other.density);
         // |μ|, not μ: for a pair that recedes under `Always`, +β μ² would push it on.
-        let quadratic = V::all(-2.0 * self.beta) * mu.simd_abs();
+        let quadratic = V::all(-2.0 * self.beta) * mu.abs();
         let pi =
             mu * (quadratic - V::all(self.alpha) * c) / (pair.own.density + pair.other.density);
         *sum += pair.r * (pair.other.mass * pair.f * pi);

@@ -1,6 +1,7 @@
 //! Flow between two parallel plates from rest, what Couette and Poiseuille flow have in common:
 //! settings, the rules that turn them into a scene, variants and measurements.
 
+mod floor;
 mod hypotheses;
 mod ingredients;
 mod measure;

@@ -3,7 +3,9 @@
 use rayon::prelude::*;
 
 use super::{
-    Flow, hypotheses,
+    Flow,
+    floor::LatticeFloor,
+    hypotheses,
     plan::{COARSE_ROWS, LIKE_PEERS, ladder, ladder_of, levels},
 };
 use crate::{
@@ -198,11 +200,17 @@ fn error_metric(flow: Flow) -> (&'static str, &'static str) {
     }
 }
 
+/// νt/L² of the error that ladders are judged by.
+fn compared_at(flow: Flow) -> f64 {
+    if flow == Flow::Couette { 0.1 } else { 1.0 }
+}
+
 fn orders(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
     let (metric, label) = error_metric(flow);
     let id = format!("{}-convergence", name(flow));
+    let at = compared_at(flow);
     let mut study = Study::new(&id, "Order of accuracy");
-    let caption = format!(
+    let figure = format!(
         "{label} against spacing, Re = 0.5. The triangle shows second order. The order in the table is a \
          least-squares fit over all levels; 95 % interval of Student's t."
     );
@@ -215,9 +223,15 @@ fn orders(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
         Column::text("label"),
         Column::num("finest error", "-"),
         Column::num("fitted floor", "-"),
+        Column::num("lattice in place makes", "-"),
+        Column::num("slid rows make", "-"),
     ];
-    let mut table =
-        Table::new(format!("Observed order of {metric} over the rows of the ladder."), columns);
+    let caption = format!(
+        "Observed order of {metric} over the rows of the ladder; last, the errors that the viscosity of a \
+         square lattice makes at any spacing, in place and with rows that shear has slid past each other."
+    );
+    let mut table = Table::new(caption, columns);
+    let mut floors = Vec::new();
     for (k, variant) in ladder(flow).into_iter().enumerate() {
         let ladder = &runs[ladder_of(flow, tier, variant)];
         let error = |run: &JudgedRun| run.record.measured(metric);
@@ -238,18 +252,35 @@ fn orders(flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
                 Gate::new("poiseuille.plain.order", "order", bound, Evidence::Theory, because);
             study = study.judge(gate, found.as_ref().map_or(f64::NAN, |c| c.order));
         }
-        table = table.row(order_row(variant, finest, found.ok().as_ref()));
+        let lattice = ladder.last().and_then(|run| LatticeFloor::of(&run.record, flow, at));
+        if let (Ok(c), Some(lattice)) = (&found, lattice)
+            && let Some(floor) = c.floor
+        {
+            let [floor, cause] = [percent(floor.error, 2), lattice.cause(floor.error)];
+            floors.push(format!("`{variant}` stops at {floor}: {cause}."));
+        }
+        table = table.row(order_row(variant, finest, found.ok().as_ref(), lattice));
     }
     plot = plot.layer(Layer::slope(2.0)).legend(Legend::Outside);
-    study.block(Figure::new(&id, caption).panel(plot)).block(table)
+    study.block(Figure::new(&id, figure).panel(plot)).block(table).block(Block::List(floors))
 }
 
-fn order_row(variant: &str, finest: f64, found: Option<&Convergence>) -> Vec<Cell> {
+fn order_row(
+    variant: &str,
+    finest: f64,
+    found: Option<&Convergence>,
+    lattice: Option<LatticeFloor>,
+) -> Vec<Cell> {
+    let part = |part: fn(LatticeFloor) -> f64| {
+        lattice.map_or(Cell::text("–"), |lattice| Cell::percent(part(lattice), 2))
+    };
+    let lattice = [part(|l| l.in_place), part(|l| l.slid)];
     let Some(c) = found else {
         let rest = (0..4).map(|_| Cell::text("–"));
         let mut row = vec![Cell::text(format!("`{variant}`"))];
         row.extend(rest);
         row.extend([Cell::percent(finest, 2), Cell::text("–")]);
+        row.extend(lattice);
         return row;
     };
     let local: Vec<String> = c.local_orders.iter().map(|p| sig(*p, 2)).collect();
@@ -258,7 +289,7 @@ fn order_row(variant: &str, finest: f64, found: Option<&Convergence>) -> Vec<Cel
         Label::FloorReached => "floor reached",
         Label::NotAsymptotic => "not asymptotic",
     };
-    vec![
+    let mut row = vec![
         Cell::text(format!("`{variant}`")),
         Cell::text(format!("{} ± {}", sig(c.order, 3), sig(c.standard_error, 2))),
         Cell::text(format!("{} … {}", sig(c.interval[0], 2), sig(c.interval[1], 2))),
@@ -266,7 +297,9 @@ fn order_row(variant: &str, finest: f64, found: Option<&Convergence>) -> Vec<Cel
         Cell::text(label),
         Cell::percent(finest, 2),
         c.floor.map_or(Cell::text("–"), |floor| Cell::percent(floor.error, 2)),
-    ]
+    ];
+    row.extend(lattice);
+    row
 }
 
 /// Runs up to this many processor seconds are timed again \[s\].
@@ -412,6 +445,8 @@ fn peer_table(flow: Flow, points: &[Point]) -> Table {
 struct Change {
     what: &'static str,
     part: &'static str,
+    /// A wall is another variant, all else is the one in question.
+    variant: &'static str,
     set: Vec<String>,
     against: usize,
 }
@@ -446,7 +481,7 @@ fn budget(case: &'static dyn Case, flow: Flow, tier: Tier) -> Study {
         let errors: Vec<f64> = changes
             .par_iter()
             .map(|change| {
-                let record = case.run(variant, &change.set, &Context::default());
+                let record = case.run(change.variant, &change.set, &Context::default());
                 record.ok().and_then(|r| r.metric(metric)).unwrap_or(f64::NAN)
             })
             .collect();
@@ -504,7 +539,7 @@ fn budget_in_words(variant: &str, changes: &[Change], errors: &[f64]) -> Vec<Str
 
 /// How much the exact series moves with twice the terms, in V: the part of the reference.
 fn series_row(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Cell> {
-    let tau = if flow == Flow::Couette { 0.1 } else { 1.0 };
+    let tau = compared_at(flow);
     let record = case.run(variant, &[], &Context::default());
     let v = record.as_ref().map_or(f64::NAN, |record| record.chose("V [m/s]"));
     let t = tau * WIDTH * WIDTH / 1e-6;
@@ -533,11 +568,16 @@ fn series_row(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Cell> {
     ]
 }
 
-fn changes(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Change> {
+fn changes(case: &dyn Case, variant: &'static str, flow: Flow) -> Vec<Change> {
     let base = case.run(variant, &[], &Context::default());
     let base = |name: &str| base.as_ref().map_or(f64::NAN, |record| record.chose(name));
     let (dt, c0) = (base("dt [s]"), base("c0 [m/s]"));
-    let change = |what, part, set: &[String]| Change { what, part, set: set.to_vec(), against: 0 };
+    let change =
+        |what, part, set: &[String]| Change { what, part, variant, set: set.to_vec(), against: 0 };
+    let (wall, other) = match variant {
+        "seed" => ("interface and wall particles", "interface-wall"),
+        _ => ("wall particles that extrapolate", "extrapolating-wall"),
+    };
     let quarter = format!("dt={}", 0.25 * dt);
     let double = format!("c0={}", 2.0 * c0);
     let mut changes = vec![
@@ -552,6 +592,7 @@ fn changes(case: &dyn Case, variant: &str, flow: Flow) -> Vec<Change> {
         change("h/dx + 0.3", "kernel sums on the lattice", &[h_over_dx(variant)]),
         change("eta² × 1e-3", "guard in the viscous term", &[eta(variant)]),
         change("40 rows", "spacing: wall and kernel", &["rows=40".into()]),
+        Change { variant: other, ..change(wall, "wall", &[]) },
     ];
     if flow == Flow::Poiseuille {
         let curved = (variant != "curved").to_string();

@@ -54,10 +54,10 @@ fn momentum(particles: &[Particle], initial: Vector2<f64>) -> f64 {
 
 /// A lattice at rest for very many steps, without and with background pressure.
 pub fn rest(tier: Tier) -> Vec<Entry> {
-    let [many, some] = if tier == Tier::Full { [1_000_000, 100_000] } else { [100_000, 10_000] };
-    let mut entries = rest_of::<CubicSpline>("rest", 1.2, [5, many], 0.0);
+    let pressed = if tier == Tier::Full { 1_000_000 } else { 10_000 };
+    let mut entries = rest_of::<CubicSpline>("rest", 1.2, [5, 100_000], 0.0);
     // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
-    entries.extend(rest_of::<WendlandC2>("pressed", 2.0, [9, some], 0.05));
+    entries.extend(rest_of::<WendlandC2>("pressed", 2.0, [9, pressed], 0.05));
     entries
 }
 

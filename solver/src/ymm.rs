@@ -1,0 +1,175 @@
+//! Four numbers in one register of a processor that has AVX2: the only unsafe code of the crate.
+//!
+//! The default build may use nothing but what every x86-64 processor has, registers for two numbers.
+//! Asked at run time, nearly all of them have registers for four, and the row loop is compiled a
+//! second time for these. Measured: see `CHANGELOG.md`.
+
+#![allow(unsafe_code)]
+
+use std::{
+    arch::x86_64::{
+        __m256d, _mm_add_pd, _mm_cvtsd_f64, _mm_unpackhi_pd, _mm256_add_pd, _mm256_andnot_pd,
+        _mm256_castpd256_pd128, _mm256_div_pd, _mm256_extractf128_pd, _mm256_max_pd, _mm256_mul_pd,
+        _mm256_set1_pd, _mm256_setr_pd, _mm256_sqrt_pd, _mm256_sub_pd, _mm256_xor_pd,
+    },
+    ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign},
+};
+
+use num_traits::Zero;
+
+use crate::lane::Lane;
+
+/// Four numbers in one register.
+///
+/// # Safety
+///
+/// Values of this type are made where the processor is known to have AVX2, and nowhere else: that is
+/// what every `unsafe` of this file relies on. The type is not visible outside of the crate; the row
+/// loop asks [`Ymm::is_there`] first.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(crate) struct Ymm(__m256d);
+
+impl Ymm {
+    /// Whether the processor has such registers. The answer is kept by the standard library.
+    #[inline(always)]
+    pub fn is_there() -> bool {
+        std::is_x86_feature_detected!("avx2")
+    }
+
+    /// The four numbers.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; 4] {
+        // SAFETY: both are four f64 in the same order.
+        unsafe { std::mem::transmute(self.0) }
+    }
+}
+
+/// The operators, each one instruction.
+macro_rules! operators {
+    ($($Op:ident $op:ident $OpAssign:ident $op_assign:ident $instruction:ident;)+) => {$(
+        impl $Op for Ymm {
+            type Output = Self;
+            #[inline(always)]
+            fn $op(self, other: Self) -> Self {
+                // SAFETY: see `Ymm`.
+                Self(unsafe { $instruction(self.0, other.0) })
+            }
+        }
+
+        impl $OpAssign for Ymm {
+            #[inline(always)]
+            fn $op_assign(&mut self, other: Self) {
+                *self = $Op::$op(*self, other);
+            }
+        }
+    )+};
+}
+
+operators! {
+    Add add AddAssign add_assign _mm256_add_pd;
+    Sub sub SubAssign sub_assign _mm256_sub_pd;
+    Mul mul MulAssign mul_assign _mm256_mul_pd;
+    Div div DivAssign div_assign _mm256_div_pd;
+}
+
+impl Neg for Ymm {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // SAFETY: see `Ymm`. A change of sign, of 0 too, as for f64.
+        Self(unsafe { _mm256_xor_pd(self.0, _mm256_set1_pd(-0.0)) })
+    }
+}
+
+impl PartialEq for Ymm {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_array() == other.to_array()
+    }
+}
+
+impl Zero for Ymm {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::all(0.0)
+    }
+    fn is_zero(&self) -> bool {
+        *self == Self::zero()
+    }
+}
+
+impl Lane for Ymm {
+    #[inline(always)]
+    fn all(x: f64) -> Self {
+        // SAFETY: see `Ymm`.
+        Self(unsafe { _mm256_set1_pd(x) })
+    }
+    #[inline(always)]
+    fn gather(read: impl Fn(usize) -> f64) -> Self {
+        // SAFETY: see `Ymm`.
+        Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see `Ymm`. Correctly rounded, as for f64.
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: see `Ymm`.
+        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn at_least(self, floor: Self) -> Self {
+        // SAFETY: see `Ymm`.
+        Self(unsafe { _mm256_max_pd(self.0, floor.0) })
+    }
+    #[inline(always)]
+    fn total(self) -> f64 {
+        // SAFETY: see `Ymm`. (a + c) + (b + d), as the other lanes.
+        unsafe {
+            let pairs =
+                _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+            _mm_cvtsd_f64(_mm_add_pd(pairs, _mm_unpackhi_pd(pairs, pairs)))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use simba::simd::WideF64x4;
+
+    /// Numbers with signs, a zero of either sign, and extremes.
+    const A: [f64; 4] = [-0.0, 1.0 / 3.0, -1e-300, 2e200];
+    const B: [f64; 4] = [0.0, -7.1, 3e-310, 1e150];
+
+    /// What every operation makes of A and B, in lanes of type `V`.
+    fn results<V: Lane>(array: impl Fn(V) -> [f64; 4]) -> Vec<u64> {
+        let [a, b] = [A, B].map(|numbers| V::gather(|k| numbers[k]));
+        let (mut sum, mut less, mut times, mut over) = (a, a, a, a);
+        sum += b;
+        less -= b;
+        times *= b;
+        over /= b;
+        let all = [
+            [a + b, a - b, a * b, a / b],
+            [sum, less, times, over],
+            [-a, -b, a.abs(), b.abs()],
+            [a.at_least(b), b.at_least(a), a.positive(), b.positive()],
+            [a.abs().sqrt(), b.abs().sqrt(), V::all(0.1), V::nil()],
+        ];
+        let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
+        let lanes = all.into_iter().flatten().flat_map(array).map(bits);
+        lanes.chain([a.total(), b.total(), (a * b).total()].map(bits)).collect()
+    }
+
+    #[test]
+    fn every_operation_has_the_bits_of_the_portable_one() {
+        if Ymm::is_there() {
+            let portable = results::<WideF64x4>(|lanes| lanes.0.to_array());
+            assert_eq!(results::<Ymm>(Ymm::to_array), portable);
+            assert!(portable.iter().any(|bits| *bits == (-0.0f64).to_bits()));
+        }
+    }
+}
