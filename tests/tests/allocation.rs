@@ -1,6 +1,7 @@
 //! A step allocates nothing, once the buffers have found their size.
 //!
-//! The one place of the project that needs `unsafe`: a global allocator cannot be written without.
+//! The one place outside of the row loop that needs `unsafe`: a global allocator cannot be written
+//! without.
 #![allow(unsafe_code)]
 
 use std::{

@@ -64,26 +64,20 @@ impl LatticeFloor {
         Some(Self { in_place, slid, unguarded: errors(NO_GUARD) })
     }
 
-    /// Where this floor is, and what makes it: the part of an error that stopped falling.
+    /// What makes an error that stopped falling: the nearer one of the two lattices, if it is within a
+    /// factor of two; η², if the error would be less than half without.
     pub fn cause(&self, floor: f64) -> String {
-        let Self { in_place, slid, unguarded } = *self;
-        let [low, high] = [in_place.min(slid), in_place.max(slid)];
-        let range = format!("between {} and {}", percent(low, 2), percent(high, 2));
-        if !(0.5 * low..=2.0 * high).contains(&floor) {
-            return format!(
-                "*open*: the lattice factor makes {range}, which this is not; see the error budget"
-            );
-        }
-        let without = unguarded[0].max(unguarded[1]);
-        let part =
-            if without < 0.5 * high { "η² in the lattice factor" } else { "lattice factor" };
-        format!(
-            "*{part}*: the viscosity of a lattice in place makes {}, of slid rows {}, without η² {} and {}",
-            percent(in_place, 2),
-            percent(slid, 2),
-            percent(unguarded[0], 2),
-            percent(unguarded[1], 2)
-        )
+        let of = [("a lattice in place", self.in_place), ("slid rows", self.slid)];
+        let off = |k: usize| (of[k].1 / floor).ln().abs();
+        let k = usize::from(off(1) < off(0));
+        let ((lattice, with), without) = (of[k], self.unguarded[k]);
+        let part = match (off(k) <= 2_f64.ln(), without < 0.5 * with) {
+            (true, true) => "*η²*",
+            (true, false) => "*lattice factor*",
+            (false, _) => "*open*, see the error budget",
+        };
+        let [with, without] = [with, without].map(|error| percent(error, 2));
+        format!("{part}: the viscosity of {lattice} makes {with}, without η² {without}")
     }
 }
 
@@ -113,7 +107,8 @@ mod tests {
             LatticeFloor { in_place, slid, unguarded: errors(NO_GUARD) }
         };
         assert_relative_eq!(floor(0.01).in_place, 1.0 / 0.98069 - 1.0, max_relative = 1e-3);
-        assert!(floor(0.01).cause(0.0036).starts_with("*η²"));
+        assert!(floor(0.01).cause(0.018).starts_with("*η²*"));
+        assert!(floor(0.01).cause(0.0036).starts_with("*lattice factor*"));
         assert!(floor(1e-6).cause(0.0065).starts_with("*lattice factor*"));
         assert!(floor(1e-6).cause(0.1).starts_with("*open*"));
     }

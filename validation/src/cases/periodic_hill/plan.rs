@@ -1,5 +1,6 @@
 //! The judged runs and their gates.
 
+use super::setup::FLUX;
 use crate::{
     case::{Planned, Tier},
     gate::{Bound, Evidence, Gate},
@@ -110,8 +111,8 @@ fn finest() -> Planned {
 
 /// Without the hill the flow between floor and lid is a parabola.
 fn flat() -> Planned {
-    let (gap, flux, nu) = (3.035_f64, 2.035, 1.0 / 50.0);
-    let exact = 12.0 * nu * flux / gap.powi(3);
+    let (gap, nu) = (1.0 + FLUX, 1.0 / 50.0);
+    let exact = 12.0 * nu * FLUX / gap.powi(3);
     let force = Gate::new(
         format!("periodic_hill.{BEST}.flat.force"),
         "force",
