@@ -237,10 +237,12 @@ impl<S: Scheme> Engine<S> {
             Column { position, velocity, common, shows: terms.shows(&common, &of) }
         };
         let columns: Vec<_> = self.columns.iter().enumerate().map(column).collect();
-        let project = |shows: &T::Shows| *shows;
-        let sweep =
-            Sweep { kernel: &self.kernel, terms, columns: &columns, project, moving: false };
-        sweep.rates(&self.neighbours.rows, 0, self.counts[0])
+        let (kernel, columns, project) = (&self.kernel, &columns, |shows: &T::Shows| *shows);
+        Sweep { kernel, terms, columns, project, moving: false }.rates(
+            &self.neighbours.rows,
+            0,
+            self.counts[0],
+        )
     }
 
     /// The rates of wall particles by the terms of the walls, for the state that was looked at last;

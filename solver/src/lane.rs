@@ -1,28 +1,23 @@
 //! Lanes: the number type of the pair loop, one neighbour (`f64`) or four at once (`WideF64x4`, and
-//! [`Ymm`] where the processor has registers for four).
+//! `Ymm` where the processor has registers for four).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
 //! row loop runs it on four neighbours. No form contracts `a * b + c`, and the lanes are added in a
 //! fixed order, so the bits do not depend on the machine.
 
-use std::{fmt::Debug, ops::Neg};
+use std::ops::Neg;
 
-use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Vector2};
-use num_traits::Zero;
+use nalgebra::{
+    ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar, Vector2,
+};
 use simba::simd::WideF64x4;
-
-#[cfg(target_arch = "x86_64")]
-pub(crate) use crate::ymm::Ymm;
 
 /// A real number per neighbour.
 pub trait Lane:
     Copy
-    + PartialEq
-    + Debug
+    + Scalar
     + Send
     + Sync
-    + 'static
-    + Zero
     + Neg<Output = Self>
     + ClosedAddAssign
     + ClosedSubAssign
@@ -42,72 +37,64 @@ pub trait Lane:
     /// The sum over the neighbours, always in the same order.
     fn total(self) -> f64;
 
-    /// Nothing.
-    #[inline(always)]
-    fn nil() -> Self {
-        Self::all(0.0)
-    }
-
     /// The positive part, max(self, 0).
     #[inline(always)]
     fn positive(self) -> Self {
-        self.at_least(Self::nil())
+        self.at_least(Self::all(0.0))
     }
 }
 
-impl Lane for f64 {
-    #[inline(always)]
-    fn all(x: f64) -> Self {
-        x
-    }
-    #[inline(always)]
-    fn gather(read: impl Fn(usize) -> f64) -> Self {
-        read(0)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.abs()
-    }
-    #[inline(always)]
-    fn at_least(self, floor: Self) -> Self {
-        self.max(floor)
-    }
-    #[inline(always)]
-    fn total(self) -> f64 {
-        self
-    }
+/// Implements [`Lane`] by what each operation is for the type.
+macro_rules! lane {
+    (
+        $Type:ty: all($x:ident) = $all:expr, gather($read:ident) = $gather:expr,
+        sqrt($a:ident) = $sqrt:expr, abs = $abs:expr, at_least($floor:ident) = $at_least:expr,
+        total = $total:expr
+    ) => {
+        impl $crate::lane::Lane for $Type {
+            #[inline(always)]
+            fn all($x: f64) -> Self {
+                $all
+            }
+            #[inline(always)]
+            fn gather($read: impl Fn(usize) -> f64) -> Self {
+                $gather
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                let $a = self;
+                $sqrt
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                let $a = self;
+                $abs
+            }
+            #[inline(always)]
+            fn at_least(self, $floor: Self) -> Self {
+                let $a = self;
+                $at_least
+            }
+            #[inline(always)]
+            fn total(self) -> f64 {
+                let $a = self;
+                $total
+            }
+        }
+    };
+}
+pub(crate) use lane;
+
+lane! {
+    f64: all(x) = x, gather(read) = read(0),
+    sqrt(a) = a.sqrt(), abs = a.abs(), at_least(floor) = a.max(floor), total = a
 }
 
-impl Lane for WideF64x4 {
-    #[inline(always)]
-    fn all(x: f64) -> Self {
-        WideF64x4(wide::f64x4::splat(x))
-    }
-    #[inline(always)]
-    fn gather(read: impl Fn(usize) -> f64) -> Self {
-        WideF64x4(wide::f64x4::from([read(0), read(1), read(2), read(3)]))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        WideF64x4(self.0.sqrt())
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        WideF64x4(self.0.abs())
-    }
-    #[inline(always)]
-    fn at_least(self, floor: Self) -> Self {
-        WideF64x4(self.0.fast_max(floor.0))
-    }
-    #[inline(always)]
-    fn total(self) -> f64 {
-        let [a, b, c, d] = self.0.to_array();
-        (a + c) + (b + d)
-    }
+lane! {
+    WideF64x4: all(x) = Self(wide::f64x4::splat(x)),
+    gather(read) = Self(wide::f64x4::from([read(0), read(1), read(2), read(3)])),
+    sqrt(a) = Self(a.0.sqrt()), abs = Self(a.0.abs()), at_least(floor) = Self(a.0.fast_max(floor.0)),
+    total = { let [a, b, c, d] = a.0.to_array(); (a + c) + (b + d) }
 }
 
 /// A vector per neighbour.

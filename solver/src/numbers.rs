@@ -25,23 +25,6 @@ pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 
     fn is_finite(&self) -> bool;
 }
 
-impl Numbers for () {
-    type In<V: Lane> = ();
-
-    #[inline(always)]
-    fn gather<V: Lane>(_: impl Fn(usize) -> Self) {}
-    #[inline(always)]
-    fn spread<V: Lane>(self) {}
-    #[inline(always)]
-    fn total<V: Lane>(_: ()) {}
-    #[inline(always)]
-    fn advanced(self, _: f64, _: Self) {}
-    #[inline(always)]
-    fn is_finite(&self) -> bool {
-        true
-    }
-}
-
 impl Numbers for f64 {
     type In<V: Lane> = V;
 
@@ -160,34 +143,36 @@ impl Numbers for Symmetric {
 
 /// Implements [`Numbers`] for a tuple, member by member.
 macro_rules! tuple_of_numbers {
-    ($($member:ident $index:tt),+) => {
-        impl<$($member: Numbers),+> Numbers for ($($member,)+) {
-            type In<V: Lane> = ($($member::In<V>,)+);
+    ($($member:ident $index:tt),*) => {
+        #[allow(unused_variables, clippy::unused_unit)] // of the empty tuple
+        impl<$($member: Numbers),*> Numbers for ($($member,)*) {
+            type In<V: Lane> = ($($member::In<V>,)*);
 
             #[inline(always)]
             fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Self::In<V> {
-                ($($member::gather(|k| read(k).$index),)+)
+                ($($member::gather(|k| read(k).$index),)*)
             }
             #[inline(always)]
             fn spread<V: Lane>(self) -> Self::In<V> {
-                ($(self.$index.spread(),)+)
+                ($(self.$index.spread(),)*)
             }
             #[inline(always)]
             fn total<V: Lane>(lanes: Self::In<V>) -> Self {
-                ($($member::total::<V>(lanes.$index),)+)
+                ($($member::total::<V>(lanes.$index),)*)
             }
             #[inline(always)]
             fn advanced(self, dt: f64, rate: Self) -> Self {
-                ($(self.$index.advanced(dt, rate.$index),)+)
+                ($(self.$index.advanced(dt, rate.$index),)*)
             }
             #[inline(always)]
             fn is_finite(&self) -> bool {
-                $(self.$index.is_finite())&&+
+                true $(&& self.$index.is_finite())*
             }
         }
     };
 }
 
+tuple_of_numbers!();
 tuple_of_numbers!(A 0);
 tuple_of_numbers!(A 0, B 1);
 tuple_of_numbers!(A 0, B 1, C 2);

@@ -259,11 +259,8 @@ impl<S: Scheme> Scene<S> {
 
     fn check(&self) -> Result<(), SceneError> {
         let length = |name, value: f64, valid: bool, range| {
-            if valid && value.is_finite() {
-                Ok(())
-            } else {
-                Err(SceneError::Length { name, value, range })
-            }
+            let error = SceneError::Length { name, value, range };
+            if valid && value.is_finite() { Ok(()) } else { Err(error) }
         };
         length("smoothing length", self.h, self.h > 0.0, "above 0")?;
         length("skin", self.skin, self.skin >= 0.0, "of at least 0")?;

@@ -3,7 +3,7 @@
 //! for any number of threads.
 
 use nalgebra::Vector2;
-use simba::simd::WideF64x4;
+use simba::simd::WideF64x4 as Wide;
 
 use crate::{
     kernel::{Kernel, Smoothing},
@@ -16,9 +16,30 @@ use crate::{
 };
 
 #[cfg(target_arch = "x86_64")]
-use crate::lane::Ymm;
+use crate::ymm::Ymm;
 
-type Wide = WideF64x4;
+/// A block of rows in lanes of one type.
+macro_rules! block {
+    ($(#[$attribute:meta])+ $block:ident, $V:ty) => {
+        $(#[$attribute])+
+        #[inline(never)]
+        fn $block<X: Numbers>(
+            &self,
+            block: &Block,
+            first: usize,
+            targets: &mut [Evolved<X>],
+            update: &impl Update<X>,
+        ) where
+            T: Term<X>,
+            P: Fn(&S) -> T::Shows,
+        {
+            for (k, target) in targets.iter_mut().enumerate() {
+                let rate = self.row::<$V, X>(&self.columns[first + k], block.row(k));
+                update(first + k, target, &rate);
+            }
+        }
+    };
+}
 
 /// What becomes of a row: the index of its particle, the particle, and its rates.
 pub trait Update<X>: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {}
@@ -52,63 +73,23 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
             let (block, first) = (&blocks[b], first + b * BLOCK);
             #[cfg(target_arch = "x86_64")]
             if Ymm::is_there() {
-                #[allow(unsafe_code)]
                 // SAFETY: the processor has AVX2.
-                unsafe {
-                    return self.block_of_fours(block, first, targets, &update);
-                }
+                #[allow(unsafe_code)]
+                return unsafe { self.block_of_fours(block, first, targets, &update) };
             }
             self.block(block, first, targets, &update);
         });
     }
 
-    /// One block of rows. Not inlined: its share of a profile is the share of the row loop.
-    #[inline(never)]
-    fn block<X: Numbers>(
-        &self,
-        block: &Block,
-        first: usize,
-        targets: &mut [Evolved<X>],
-        update: &impl Update<X>,
-    ) where
-        T: Term<X>,
-        P: Fn(&S) -> T::Shows,
-    {
-        self.rows::<Wide, X>(block, first, targets, update);
+    block! {
+        /// One block of rows. Not inlined: its share of a profile is the share of the row loop.
+        block, Wide
     }
-
-    /// The same, compiled for processors with registers for four numbers.
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    #[inline(never)]
-    fn block_of_fours<X: Numbers>(
-        &self,
-        block: &Block,
-        first: usize,
-        targets: &mut [Evolved<X>],
-        update: &impl Update<X>,
-    ) where
-        T: Term<X>,
-        P: Fn(&S) -> T::Shows,
-    {
-        self.rows::<Ymm, X>(block, first, targets, update);
-    }
-
-    #[inline(always)]
-    fn rows<V: Lane, X: Numbers>(
-        &self,
-        block: &Block,
-        first: usize,
-        targets: &mut [Evolved<X>],
-        update: &impl Update<X>,
-    ) where
-        T: Term<X>,
-        P: Fn(&S) -> T::Shows,
-    {
-        for (k, target) in targets.iter_mut().enumerate() {
-            let rate = self.row::<V, X>(&self.columns[first + k], block.row(k));
-            update(first + k, target, &rate);
-        }
+    block! {
+        /// The same, compiled for processors with registers for four numbers.
+        #[target_feature(enable = "avx2")]
+        block_of_fours, Ymm
     }
 
     /// The rates of the particles from column `first` on, one after another.

@@ -6,18 +6,10 @@
 
 #![allow(unsafe_code)]
 
-use std::{
-    arch::x86_64::{
-        __m256d, _mm_add_pd, _mm_cvtsd_f64, _mm_unpackhi_pd, _mm256_add_pd, _mm256_andnot_pd,
-        _mm256_castpd256_pd128, _mm256_div_pd, _mm256_extractf128_pd, _mm256_max_pd, _mm256_mul_pd,
-        _mm256_set1_pd, _mm256_setr_pd, _mm256_sqrt_pd, _mm256_sub_pd, _mm256_xor_pd,
-    },
-    ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign},
-};
+use std::arch::x86_64::*;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use num_traits::Zero;
-
-use crate::lane::Lane;
+use crate::lane::lane;
 
 /// Four numbers in one register.
 ///
@@ -32,13 +24,11 @@ pub(crate) struct Ymm(__m256d);
 
 impl Ymm {
     /// Whether the processor has such registers. The answer is kept by the standard library.
-    #[inline(always)]
     pub fn is_there() -> bool {
         std::is_x86_feature_detected!("avx2")
     }
 
     /// The four numbers.
-    #[inline(always)]
     pub fn to_array(self) -> [f64; 4] {
         // SAFETY: both are four f64 in the same order.
         unsafe { std::mem::transmute(self.0) }
@@ -88,56 +78,23 @@ impl PartialEq for Ymm {
     }
 }
 
-impl Zero for Ymm {
-    #[inline(always)]
-    fn zero() -> Self {
-        Self::all(0.0)
-    }
-    fn is_zero(&self) -> bool {
-        *self == Self::zero()
-    }
-}
-
-impl Lane for Ymm {
-    #[inline(always)]
-    fn all(x: f64) -> Self {
-        // SAFETY: see `Ymm`.
-        Self(unsafe { _mm256_set1_pd(x) })
-    }
-    #[inline(always)]
-    fn gather(read: impl Fn(usize) -> f64) -> Self {
-        // SAFETY: see `Ymm`.
-        Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: see `Ymm`. Correctly rounded, as for f64.
-        Self(unsafe { _mm256_sqrt_pd(self.0) })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        // SAFETY: see `Ymm`.
-        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
-    }
-    #[inline(always)]
-    fn at_least(self, floor: Self) -> Self {
-        // SAFETY: see `Ymm`.
-        Self(unsafe { _mm256_max_pd(self.0, floor.0) })
-    }
-    #[inline(always)]
-    fn total(self) -> f64 {
-        // SAFETY: see `Ymm`. (a + c) + (b + d), as the other lanes.
-        unsafe {
-            let pairs =
-                _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
-            _mm_cvtsd_f64(_mm_add_pd(pairs, _mm_unpackhi_pd(pairs, pairs)))
-        }
+// SAFETY: see `Ymm`. Roots are correctly rounded, as for f64; lanes are added as (a + c) + (b + d).
+lane! {
+    Ymm: all(x) = Self(unsafe { _mm256_set1_pd(x) }),
+    gather(read) = Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) }),
+    sqrt(a) = Self(unsafe { _mm256_sqrt_pd(a.0) }),
+    abs = Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.0) }),
+    at_least(floor) = Self(unsafe { _mm256_max_pd(a.0, floor.0) }),
+    total = unsafe {
+        let pairs = _mm_add_pd(_mm256_castpd256_pd128(a.0), _mm256_extractf128_pd::<1>(a.0));
+        _mm_cvtsd_f64(_mm_add_pd(pairs, _mm_unpackhi_pd(pairs, pairs)))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lane::Lane;
     use simba::simd::WideF64x4;
 
     /// Numbers with signs, a zero of either sign, and extremes.
@@ -157,7 +114,7 @@ mod tests {
             [sum, less, times, over],
             [-a, -b, a.abs(), b.abs()],
             [a.at_least(b), b.at_least(a), a.positive(), b.positive()],
-            [a.abs().sqrt(), b.abs().sqrt(), V::all(0.1), V::nil()],
+            [a.abs().sqrt(), b.abs().sqrt(), V::all(0.1), V::all(0.0)],
         ];
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
         let lanes = all.into_iter().flatten().flat_map(array).map(bits);

@@ -22,7 +22,7 @@ impl Tensile for () {
     fn shows(&self, _: f64) {}
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: ()) -> V {
-        V::nil()
+        V::all(0.0)
     }
 }
 

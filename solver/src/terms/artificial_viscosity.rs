@@ -75,7 +75,7 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
         let h = V::all(pair.kernel.h());
-        let mu = h * S::admit(pair.v.dot(&pair.r)) / (pair.r2 + V::all(self.eta2));
+        let mu = h * S::admit(pair.parting()) / (pair.r2 + V::all(self.eta2));
         let c = self.eos.sound_speed(pair.own.density) + self.eos.sound_speed(pair.other.density);
         // |μ|, not μ: for a pair that recedes under `Always`, +β μ² would push it on.
         let quadratic = V::all(-2.0 * self.beta) * mu.abs();

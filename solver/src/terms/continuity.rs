@@ -20,7 +20,7 @@ impl<X> Term<X> for Continuity {
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut V) {
-        *sum += pair.other.mass * pair.f * pair.v.dot(&pair.r);
+        *sum += pair.other.mass * pair.f * pair.parting();
     }
 
     #[inline(always)]

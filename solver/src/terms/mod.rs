@@ -69,6 +69,12 @@ impl<V: Lane, K: Kernel> Pair<'_, V, K> {
     pub fn w(&self) -> V {
         self.kernel.w(self.r2)
     }
+
+    /// vᵢⱼ·rᵢⱼ \[m²/s\], negative where the two approach.
+    #[inline(always)]
+    pub fn parting(&self) -> V {
+        self.v.x * self.r.x + self.v.y * self.r.y
+    }
 }
 
 /// One term of the equations. `X` is what a particle integrates beyond x, v and ρ.
@@ -96,32 +102,21 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     fn finish(&self, own: &Common<f64>, shows: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>);
 }
 
-impl<X> Term<X> for () {
-    type Shows = ();
-    type Sum = ();
-
-    #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-    #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: (), _: &mut ()) {}
-    #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), _: (), _: &mut Rate<X>) {}
-}
-
 /// Implements [`Term`] for a tuple: each member in turn, in the order of the equation.
 macro_rules! tuple_of_terms {
-    ($($member:ident $index:tt),+) => {
-        impl<X, $($member: Term<X>),+> Term<X> for ($($member,)+) {
-            type Shows = ($($member::Shows,)+);
-            type Sum = ($($member::Sum,)+);
-            const NEEDS_SPEED: bool = $($member::NEEDS_SPEED)||+;
+    ($($member:ident $index:tt),*) => {
+        #[allow(unused_variables, clippy::unused_unit)] // of the empty tuple
+        impl<X, $($member: Term<X>),*> Term<X> for ($($member,)*) {
+            type Shows = ($($member::Shows,)*);
+            type Sum = ($($member::Sum,)*);
+            const NEEDS_SPEED: bool = false $(|| $member::NEEDS_SPEED)*;
 
             fn prepare(&mut self, max_speed: f64) {
-                $(self.$index.prepare(max_speed);)+
+                $(self.$index.prepare(max_speed);)*
             }
             #[inline(always)]
             fn shows(&self, own: &Common<f64>, extra: &X) -> Self::Shows {
-                ($(self.$index.shows(own, extra),)+)
+                ($(self.$index.shows(own, extra),)*)
             }
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(
@@ -131,16 +126,17 @@ macro_rules! tuple_of_terms {
                 other: <Self::Shows as Numbers>::In<V>,
                 sum: &mut <Self::Sum as Numbers>::In<V>,
             ) {
-                $(self.$index.pair(pair, own.$index, other.$index, &mut sum.$index);)+
+                $(self.$index.pair(pair, own.$index, other.$index, &mut sum.$index);)*
             }
             #[inline(always)]
             fn finish(&self, own: &Common<f64>, shows: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
-                $(self.$index.finish(own, shows.$index, sum.$index, rate);)+
+                $(self.$index.finish(own, shows.$index, sum.$index, rate);)*
             }
         }
     };
 }
 
+tuple_of_terms!();
 tuple_of_terms!(A 0);
 tuple_of_terms!(A 0, B 1);
 tuple_of_terms!(A 0, B 1, C 2);
@@ -155,7 +151,7 @@ mod tests {
     use simba::simd::WideF64x4;
 
     #[cfg(target_arch = "x86_64")]
-    use crate::lane::Ymm;
+    use crate::ymm::Ymm;
 
     /// Lanes of four.
     trait Four: Lane {

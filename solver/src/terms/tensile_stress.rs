@@ -29,7 +29,7 @@ impl TensileStress for () {
     fn shows(&self, _: Symmetric) {}
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: ()) -> Symmetric<V> {
-        Symmetric { xx: V::nil(), yy: V::nil(), xy: V::nil() }
+        Symmetric { xx: V::all(0.0), yy: V::all(0.0), xy: V::all(0.0) }
     }
 }
 
