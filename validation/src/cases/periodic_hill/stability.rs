@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{NAME, plan::BEST};
+use super::{NAME, plan::BEST, studies::shown};
 use crate::{
     case::Case,
     gate::{Bound, Evidence, Gate},
@@ -177,18 +177,15 @@ fn row(variant: &str, re: f64, record: &Record) -> Vec<Cell> {
         Status::Diverged { time, field, .. } => format!("diverged at {time:.1} H/U_b: {field}"),
         _ => "interrupted".into(),
     };
-    let cell = |name: &str, show: &dyn Fn(f64) -> Cell| {
-        record.metric(name).map_or_else(|| Cell::text("–"), show)
-    };
     vec![
         Cell::text(format!("`{variant}`")),
         Cell::exact(re),
         Cell::num(re / N as f64, 2),
         Cell::text(ended),
-        cell("outside", &|v| Cell::count(v as u64)),
-        cell("force", &|v| Cell::num(v, 3)),
-        cell("force_ripple", &|v| Cell::percent(v, 1)),
-        cell("section_flux", &|v| Cell::percent(v, 1)),
-        cell("drift", &|v| Cell::sci(v, 1)),
+        shown(record, "outside", |v| Cell::count(v as u64)),
+        shown(record, "force", |v| Cell::num(v, 3)),
+        shown(record, "force_ripple", |v| Cell::percent(v, 1)),
+        shown(record, "section_flux", |v| Cell::percent(v, 1)),
+        shown(record, "drift", |v| Cell::sci(v, 1)),
     ]
 }

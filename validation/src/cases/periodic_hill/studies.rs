@@ -134,43 +134,67 @@ fn table(runs: &[JudgedRun]) -> Table {
         Column::num("ripple", "-"),
         Column::num("separation", "H"),
         Column::num("reattachment", "H"),
+        Column::num("error of shear", "-"),
         Column::num("flux of sections", "-"),
         Column::num("drag balance", "-"),
         Column::num("unsteady", "U_b"),
         Column::num("time", "s"),
         Column::text("ended"),
     ];
-    let caption = "All runs. Errors are rms over the points of ten stations against finite elements; force \
-                   and ripple (rms) over the last fifth of the run; flux of sections is the largest error \
-                   of ten; drag balance is the stress at the walls over the force, less 1; unsteady is what \
-                   is left of the decay, extrapolated. Time: processor time of the whole run to its end, \
+    let caption = "All runs, after what finite elements have. Errors are rms over the points of ten stations \
+                   against finite elements; force and ripple (rms) over the last fifth of the run; error of \
+                   shear is rms over the hill, of the largest shear there; flux of sections is the largest \
+                   error of ten; drag balance is the stress at the walls over the force, less 1; unsteady \
+                   is what is left of the decay, extrapolated. A dash: a run that diverged, no bubble, or \
+                   no finite elements to compare with. Time: processor time of the whole run to its end, \
                    one thread, side by side with other runs.";
-    let mut table = Table::new(caption, columns);
-    for JudgedRun { planned, record, .. } in runs {
-        let ended = match &record.status {
-            Status::Completed => "completed".to_string(),
-            Status::Diverged { time, .. } => format!("diverged at {time:.2} H/U_b"),
-            _ => "interrupted".into(),
-        };
-        let percent = |name: &str| Cell::percent(record.measured(name), 2);
-        table = table.row(vec![
-            Cell::text(format!("`{}`", planned.variant)),
-            Cell::text(planned.set.join(", ")),
-            percent("l2_u"),
-            percent("l2_v"),
-            Cell::num(record.measured("force"), 4),
-            percent("force_error"),
-            percent("force_ripple"),
-            Cell::num(record.measured("separation"), 3),
-            Cell::num(record.measured("reattachment"), 4),
-            percent("section_flux"),
-            percent("drag_balance"),
-            Cell::sci(record.measured("unsteady"), 1),
-            Cell::num(record.cost.cpu_s, 3),
-            Cell::text(ended),
-        ]);
-    }
-    table
+    let of_elements = REYNOLDS.into_iter().filter(|&re| finest(runs, re).is_some());
+    let rows = of_elements.filter_map(elements_row).chain(runs.iter().map(run_row));
+    rows.fold(Table::new(caption, columns), Table::row)
+}
+
+/// A metric as `show` has it; a dash where there is none.
+pub fn shown(record: &Record, name: &str, show: impl Fn(f64) -> Cell) -> Cell {
+    record.metric(name).map_or_else(|| Cell::text("–"), show)
+}
+
+/// What finite elements have in the columns of the table of runs.
+fn elements_row(re: f64) -> Option<Vec<Cell>> {
+    let reference = reference(re)?;
+    let none = || Cell::text("–");
+    let number =
+        |name: &str, digits| reference.number(name).map_or_else(none, |v| Cell::num(v, digits));
+    let mut row = vec![Cell::text("finite elements"), Cell::text(format!("re={re}"))];
+    row.extend([none(), none(), number("force", 4), none(), none()]);
+    row.extend([number("separation", 3), number("reattachment", 4)]);
+    row.extend((0..6).map(|_| none()));
+    Some(row)
+}
+
+fn run_row(JudgedRun { planned, record, .. }: &JudgedRun) -> Vec<Cell> {
+    let ended = match &record.status {
+        Status::Completed => "completed".to_string(),
+        Status::Diverged { time, .. } => format!("diverged at {time:.2} H/U_b"),
+        _ => "interrupted".into(),
+    };
+    let percent = |name: &str| shown(record, name, |v| Cell::percent(v, 2));
+    vec![
+        Cell::text(format!("`{}`", planned.variant)),
+        Cell::text(planned.set.join(", ")),
+        percent("l2_u"),
+        percent("l2_v"),
+        shown(record, "force", |v| Cell::num(v, 4)),
+        percent("force_error"),
+        percent("force_ripple"),
+        shown(record, "separation", |v| Cell::num(v, 3)),
+        shown(record, "reattachment", |v| Cell::num(v, 4)),
+        percent("shear_error"),
+        percent("section_flux"),
+        percent("drag_balance"),
+        shown(record, "unsteady", |v| Cell::sci(v, 1)),
+        Cell::num(record.cost.cpu_s, 3),
+        Cell::text(ended),
+    ]
 }
 
 /// Particles by their velocity, with the line between bubble and stream of the reference.
