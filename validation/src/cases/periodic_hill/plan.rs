@@ -55,8 +55,8 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
         runs.extend(resolutions.iter().map(|&n| run(variant, 50.0, n, END, Start::Rest)));
     }
     runs.push(finest());
-    // At Re 10 the slowest decay is five times as fast, 0.55 U_b/H: at 10 H/U_b it still leaves 0.3 % of U_b,
-    // as much as the error at H/dx = 20, and by its rate a fifteenth of that at 15.
+    // At Re 10 the slowest decay is five times as fast, and yet it leaves 0.3 % of U_b at 10 H/U_b, as much
+    // as the error at H/dx = 20; at 15 it leaves 0.06 % (H/dx = 10).
     runs.extend([10, 20].map(|n| run(BEST, 10.0, n, 15.0, Start::Rest)));
     // At Re 100 the bubble fills slowly: from rest twice as long, or from near the answer.
     runs.push(run(BEST, 100.0, 10, 2.0 * END, Start::Rest));

@@ -132,11 +132,11 @@ pub fn reynolds(case: &'static dyn Case) -> Study {
         Column::num("windows differ by", "U_b"),
     ];
     let caption = "Every variant at the highest Reynolds number that the setting allows, 1000, a lower bound \
-                   of what it holds, and `plain` at 10, the lowest tried: H/dx = 10, from rest to 20 H/U_b. A \
-                   variant holds a Reynolds number if its run completes with no particle behind a wall and \
-                   a force along the flow. Force, ripple and flux are of the last 4 H/U_b; windows differ \
-                   by: rms over ten stations of the change of mean u from the 4 H/U_b before them. The flow \
-                   still develops then, and these numbers say nothing of its accuracy.";
+                   of what it holds, and `plain` at 10, the lowest tried: H/dx = 10, from rest to 20 H/U_b. \
+                   A variant holds a Reynolds number if its run completes with no particle behind a wall \
+                   and a force along the flow. Force, ripple and flux are of the last 4 H/U_b; windows \
+                   differ by: rms over ten stations of the change of mean u from the 4 H/U_b before them. \
+                   The flow still develops then, and these numbers say nothing of its accuracy.";
     let mut table = Table::new(caption, columns);
     let mut study = Study::new("periodic-hill-reynolds", "Highest Reynolds number");
     let tried =
