@@ -94,13 +94,13 @@ fn table(runs: &[JudgedRun]) -> Table {
         Column::num("energy less exact", "-"),
         Column::num("viscosity found", "nu"),
         Column::num("error of the pressure", "-"),
-        Column::num("momentum", "U"),
+        Column::num("momentum added", "U"),
         Column::num("nearest pair", "dx"),
         Column::num("time", "s"),
     ];
     let caption = "All runs at their end, t = 2 L/U where the settings say no other. Viscosity found: from \
-                   the fall of kinetic energy. Momentum: the total one over the total mass, exactly 0 but \
-                   for what a disturbed start has. Time: of the stepping loop, one thread, side by side \
+                   the fall of kinetic energy. Momentum added: the change of the total one from start to \
+                   end over the total mass, exactly 0; that of a disturbed start does not count. Time: of the stepping loop, one thread, side by side \
                    with other runs.";
     let mut table = Table::new(caption, columns);
     for JudgedRun { planned, record, .. } in runs {
@@ -111,7 +111,7 @@ fn table(runs: &[JudgedRun]) -> Table {
             Cell::percent(record.measured("energy"), 2),
             Cell::num(record.measured("nu_eff"), 4),
             Cell::percent(record.measured("pressure_l2"), 2),
-            Cell::sci(record.measured("momentum"), 2),
+            Cell::sci(record.measured("momentum_added"), 2),
             Cell::num(record.measured("nearest"), 3),
             Cell::num(record.cost.cpu_s, 3),
         ]);
