@@ -509,6 +509,7 @@ fn cost(runs: &[JudgedRun]) -> Study {
         for (n, start) in rest.chain(finest) {
             let Some(record) = find(runs, variant, 50.0, n, start) else { continue };
             let mut point = Point::of(variant, n, record.measured("l2_u"), record);
+            (point.resolution, point.time) = (format!("H/dx = {n}"), "H/U_b");
             if record.status == Status::Completed {
                 let share = STATED / record.setting("end");
                 point.seconds[0] *= share;
