@@ -38,7 +38,7 @@ fn terms_take_the_memory_of_what_they_need_and_absent_ones_none() {
     assert_eq!(sizes::<ArtificialViscosity<Tait>>(), [0, 16]);
     assert_eq!(sizes::<Xsph>(), [0, 16]);
     assert_eq!(sizes::<Shifting>(), [0, 16]);
-    // Beside the shift the gradient of both velocities, and a symmetric matrix of three numbers.
+    // Beside the shift the gradient of both components of velocity, and a symmetric matrix.
     assert_eq!(sizes::<ShiftAdvection>(), [0, 16 + 32 + 24]);
     assert_eq!(sizes::<Pressure<Tait>>(), [8, 16]);
     // What is exact for linear fields sums that matrix each, and the viscosity what it has to take off.
