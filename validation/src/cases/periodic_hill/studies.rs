@@ -381,9 +381,9 @@ fn of_finest(records: &[&Record], levels: &[Level]) -> String {
 fn reasons(runs: &[JudgedRun]) -> Option<String> {
     let row = |variant: &str, n: usize| -> Option<String> {
         let record = find(runs, variant, 50.0, n, Start::Rest)?;
-        let [error, force, drag] =
-            ["l2_u", "force_error", "drag_balance"].map(|m| percent(record.measured(m), 2));
-        let seconds = sig(record.cost.cpu_s, 3);
+        let metric = |name: &str| Some(percent(record.metric(name)?, 2));
+        let (error, force) = (metric("l2_u")?, metric("force_error")?);
+        let (drag, seconds) = (metric("drag_balance")?, sig(record.cost.cpu_s, 3));
         Some(format!("`{variant}` {error}, {force}, {drag}, {seconds} s"))
     };
     let at = |n| -> Option<String> {
