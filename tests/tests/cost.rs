@@ -2,10 +2,11 @@
 
 use nalgebra::Vector2;
 use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, Domain, Evolved, ExtrapolatingWall, Hydrostatic, Integrator, Leapfrog,
-    NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Shifting,
-    Simulation, Tait, Term, Viscosity, Xsph, engine::Shows, particles::Column,
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
+    ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
+    Evolved, ExtrapolatingWall, Hydrostatic, Integrator, Leapfrog, NoSlip, Open, Outcome, Particle,
+    PredictorCorrector, Pressure, QuinticSpline, Scene, ShiftAdvection, Shifting, Simulation, Tait,
+    Term, Viscosity, Xsph, engine::Shows, particles::Column,
 };
 use touchstone_tests::{difference, patch};
 
@@ -37,7 +38,13 @@ fn terms_take_the_memory_of_what_they_need_and_absent_ones_none() {
     assert_eq!(sizes::<ArtificialViscosity<Tait>>(), [0, 16]);
     assert_eq!(sizes::<Xsph>(), [0, 16]);
     assert_eq!(sizes::<Shifting>(), [0, 16]);
+    // Beside the shift the gradient of both components of velocity, and a symmetric matrix.
+    assert_eq!(sizes::<ShiftAdvection>(), [0, 16 + 32 + 24]);
     assert_eq!(sizes::<Pressure<Tait>>(), [8, 16]);
+    // What is exact for linear fields sums that matrix each, and the viscosity what it has to take off.
+    assert_eq!(sizes::<ConsistentPressure<Tait>>(), [8, 16 + 24]);
+    assert_eq!(sizes::<ConsistentContinuity>(), [0, 32 + 24]);
+    assert_eq!(sizes::<ConsistentViscosity>(), [0, 16 + 16 + 32 + 24]);
     assert_eq!(sizes::<Pressure<Tait, ArtificialStress>>(), [16, 16]);
     assert_eq!(sizes::<(BodyForce, (), Pressure<Tait>, BodyForce)>(), [8, 16]);
 }

@@ -13,6 +13,10 @@ pub struct Point {
     pub variant: &'static str,
     /// Rows.
     pub rows: usize,
+    /// What the rows are called, `10 rows` if the case says no other.
+    pub resolution: String,
+    /// Unit of the time at which it diverged.
+    pub time: &'static str,
     /// What else is special about it, to follow the rows; mostly nothing.
     pub note: String,
     /// Its error \[-\]; NaN if the run failed.
@@ -31,7 +35,8 @@ impl Point {
         let error = if record.status == Status::Completed { error } else { f64::NAN };
         let (seconds, cost) = (vec![record.cost.cpu_s], record.cost.clone());
         let status = record.status.clone();
-        Self { variant, rows, note: String::new(), error, seconds, cost, status }
+        let (resolution, note) = (format!("{rows} rows"), String::new());
+        Self { variant, rows, resolution, time: "s", note, error, seconds, cost, status }
     }
 
     /// Median of the repeated timings \[s\].
@@ -52,7 +57,8 @@ impl Point {
         match &self.status {
             Status::Completed => None,
             Status::Diverged { time, .. } => {
-                Some(format!("{} {} rows: diverged at t = {time:.3} s", self.variant, self.rows))
+                let Self { variant, resolution, time: unit, .. } = self;
+                Some(format!("{variant}, {resolution}: diverged at t = {time:.3} {unit}"))
             }
             Status::Refused { reason } => Some(reason.clone()),
             Status::Interrupted { .. } => Some("interrupted".into()),
@@ -159,7 +165,7 @@ pub fn cheapest_table(caption: &str, points: &[Point]) -> Table {
         use crate::report::seconds;
         table = table.row(vec![
             wanted,
-            Cell::text(format!("`{}`, {} rows", p.variant, p.rows)),
+            Cell::text(format!("`{}`, {}", p.variant, p.resolution)),
             Cell::percent(p.error, 2),
             Cell::seconds(p.median_seconds()),
             Cell::text(format!("{} – {} ({})", seconds(fast), seconds(slow), p.seconds.len())),
@@ -179,6 +185,8 @@ mod tests {
         Point {
             variant,
             rows: 10,
+            resolution: "10 rows".into(),
+            time: "s",
             note: String::new(),
             error,
             seconds: seconds.to_vec(),

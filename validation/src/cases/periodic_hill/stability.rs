@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{NAME, plan::BEST};
+use super::{NAME, plan::BEST, studies::shown};
 use crate::{
     case::Case,
     gate::{Bound, Evidence, Gate},
@@ -23,13 +23,15 @@ const MARGINS: [(&str, f64); 3] = [("modern", 1.577), (BEST, 1.577), ("consisten
 /// Resolution of the bisection, relative to the theoretical limit.
 const RESOLUTION: f64 = 0.02;
 
-/// Variant, Reynolds numbers, climbed until a run fails, and the highest one held when this study was
-/// introduced. 1000 is the most that the setting allows. `plain` is a control: it holds none.
-const CLIMBS: [(&str, &[f64], f64); 4] = [
-    ("plain", &[10.0], 10.0),
-    ("modern", &[100.0, 1000.0], 1000.0),
-    (BEST, &[100.0, 300.0, 1000.0], 1000.0),
-    ("consistent", &[100.0, 1000.0], 1000.0),
+/// Variant and the Reynolds number it is tried at. 1000 is the most that the setting allows, and all but
+/// `plain` hold it: lower ones would say nothing more. `plain` is a control, tried at the lowest alone.
+const TRIED: [(&str, f64); 6] = [
+    ("plain", 10.0),
+    ("interface-wall", 1000.0),
+    ("modern", 1000.0),
+    (BEST, 1000.0),
+    ("mixed", 1000.0),
+    ("consistent", 1000.0),
 ];
 
 fn run(case: &dyn Case, variant: &str, set: &[String]) -> Option<Record> {
@@ -72,7 +74,9 @@ pub fn limits(case: &'static dyn Case) -> Study {
     let caption = "The longest time step with which the flow at Re 50, H/dx = 10, goes on for 3 H/U_b from \
                    the interpolated reference without diverging or doubling its kinetic energy, by bisection \
                    to 2 %, over the limit of linear theory for a periodic lattice at rest. Walls, curvature \
-                   and particles in disorder are not in that theory.";
+                   and particles in disorder are not in that theory. Of six variants three: one each with \
+                   sums over pairs, with shifted velocities and with consistent sums; `plain`, \
+                   `interface-wall` and `mixed` were not tried.";
     let mut table = Table::new(caption, columns);
     let mut study = Study::new("periodic-hill-time-step", "Largest stable time step");
     let found: Vec<[f64; 2]> =
@@ -107,22 +111,6 @@ pub fn limits(case: &'static dyn Case) -> Study {
     study.block(table)
 }
 
-/// One run of the climb: Reynolds number and record.
-fn climb(case: &dyn Case, variant: &str, numbers: &[f64]) -> Vec<(f64, Record)> {
-    let mut runs = Vec::new();
-    for &re in numbers {
-        let Some(record) = run(case, variant, &[format!("re={re}"), "end=20".into()]) else {
-            break;
-        };
-        let goes_on = holds(&record);
-        runs.push((re, record));
-        if !goes_on {
-            break;
-        }
-    }
-    runs
-}
-
 /// Completed, no particle behind a wall, and the force that holds the flux is one against a drag.
 fn holds(record: &Record) -> bool {
     record.status == Status::Completed
@@ -130,7 +118,7 @@ fn holds(record: &Record) -> bool {
         && record.measured("force") > 0.0
 }
 
-/// The highest Reynolds number that variants hold.
+/// A Reynolds number that variants hold.
 pub fn reynolds(case: &'static dyn Case) -> Study {
     let columns = vec![
         Column::text("variant"),
@@ -143,30 +131,30 @@ pub fn reynolds(case: &'static dyn Case) -> Study {
         Column::num("flux of sections", "-"),
         Column::num("windows differ by", "U_b"),
     ];
-    let caption = "The Reynolds number raised until a run fails: H/dx = 10, from rest to 20 H/U_b. A variant \
-                   holds a Reynolds number if its run completes with no particle behind a wall and a force \
-                   along the flow. Force, ripple and flux are of the last 4 H/U_b; windows differ by: rms \
-                   over ten stations of the change of mean u from the 4 H/U_b before them. The flow still \
-                   develops then, and these numbers say nothing of its accuracy.";
+    let caption = "Every variant at the highest Reynolds number that the setting allows, 1000, a lower bound \
+                   of what it holds, and `plain` at 10, the lowest tried: H/dx = 10, from rest to 20 H/U_b. \
+                   A variant holds a Reynolds number if its run completes with no particle behind a wall \
+                   and a force along the flow. Force, ripple and flux are of the last 4 H/U_b; windows \
+                   differ by: rms over ten stations of the change of mean u from the 4 H/U_b before them. \
+                   The flow still develops then, and these numbers say nothing of its accuracy.";
     let mut table = Table::new(caption, columns);
     let mut study = Study::new("periodic-hill-reynolds", "Highest Reynolds number");
-    let found: Vec<_> =
-        CLIMBS.par_iter().map(|(variant, numbers, _)| climb(case, variant, numbers)).collect();
-    for ((variant, _, baseline), runs) in CLIMBS.into_iter().zip(found) {
-        for (re, record) in &runs {
-            table = table.row(row(variant, *re, record));
-        }
-        let held = runs.iter().filter(|(_, record)| holds(record)).map(|(re, _)| *re);
+    let tried =
+        |(variant, re): &(&str, f64)| run(case, variant, &[format!("re={re}"), "end=20".into()]);
+    let found: Vec<_> = TRIED.par_iter().map(tried).collect();
+    for ((variant, re), record) in TRIED.into_iter().zip(found) {
+        table = record.iter().fold(table, |table, record| table.row(row(variant, re, record)));
+        let held = if record.is_some_and(|record| holds(&record)) { re } else { 0.0 };
         let gate = Gate::new(
             format!("{NAME}.highest_re.{variant}"),
             "highest Re held",
-            Bound::Above(baseline),
+            Bound::Above(re),
             Evidence::Regression,
             "what was measured when this study was introduced: it must not fall. Without shifting and \
-             density diffusion not even the lowest is held, a control",
+             density diffusion not even Re 10, the lowest tried, is held, a control",
         );
         let gate = if variant == "plain" { gate.expected_to_fail() } else { gate };
-        study = study.judge(gate, held.fold(0.0, f64::max));
+        study = study.judge(gate, held);
     }
     study.block(table)
 }
@@ -177,18 +165,15 @@ fn row(variant: &str, re: f64, record: &Record) -> Vec<Cell> {
         Status::Diverged { time, field, .. } => format!("diverged at {time:.1} H/U_b: {field}"),
         _ => "interrupted".into(),
     };
-    let cell = |name: &str, show: &dyn Fn(f64) -> Cell| {
-        record.metric(name).map_or_else(|| Cell::text("–"), show)
-    };
     vec![
         Cell::text(format!("`{variant}`")),
         Cell::exact(re),
         Cell::num(re / N as f64, 2),
         Cell::text(ended),
-        cell("outside", &|v| Cell::count(v as u64)),
-        cell("force", &|v| Cell::num(v, 3)),
-        cell("force_ripple", &|v| Cell::percent(v, 1)),
-        cell("section_flux", &|v| Cell::percent(v, 1)),
-        cell("drift", &|v| Cell::sci(v, 1)),
+        shown(record, "outside", |v| Cell::count(v as u64)),
+        shown(record, "force", |v| Cell::num(v, 3)),
+        shown(record, "force_ripple", |v| Cell::percent(v, 1)),
+        shown(record, "section_flux", |v| Cell::percent(v, 1)),
+        shown(record, "drift", |v| Cell::sci(v, 1)),
     ]
 }
