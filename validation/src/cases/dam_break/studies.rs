@@ -218,7 +218,10 @@ fn tank(case: &'static dyn Case, runs: &[JudgedRun]) -> Result<Study, ReferenceE
     if let Some(record) = finest {
         study = study.block(pressures(record, &lobovsky));
     }
-    study = study.block(impulses(&records, &lobovsky)).block(tank_table(&records));
+    study = study
+        .block(impulses(&records, &lobovsky))
+        .block(tank_table(&records))
+        .block(impact_table(&records));
     if let Some(record) = finest {
         study = study.block(pictures(record, "dam-break-lobovsky-pictures", (1.61 / 0.3, 2.0)));
     }
@@ -314,8 +317,9 @@ fn since(curve: &Curve, arrival: f64) -> Curve {
 /// Impulses since the arrival of all runs.
 fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let caption = "Impulse on the same sensors since the wave arrives at P1, the integral of the pressure. \
-                   Black: the experiment; band: ± 7 %, by which two sensors at one height of one event \
-                   differ at t = 1 after the arrival, where impulses are judged, within three times that.";
+                   Black: the experiment; band: ± the difference of two sensors at the height of P2, side \
+                   by side in one event, at each time, in every panel. Impulses are judged at 1, where that \
+                   is 6.0 % of P2, within three times as many per cent. `ghosts` diverges before.";
     let mut figure = Figure::new("dam-break-impulses", caption).columns(2);
     let so_far = |curve: &Curve, arrival: f64| -> Curve {
         let later = since(curve, arrival).into_iter().filter(|(t, _)| *t >= 0.0);
@@ -327,17 +331,22 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
         later.map(add).collect()
     };
     let at = reference::arrival(&lobovsky.pressure[0]);
+    let [two, aside] = [&lobovsky.pressure[1], &lobovsky.aside].map(|curve| so_far(curve, at));
     for (k, height) in SENSORS.iter().enumerate() {
         let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
         let x = Axis::linear("(t − arrival) √(g/H) [-]");
         let y = Axis::linear("impulse [ρ g H √(H/g)]");
         let legend = if k == 3 { Legend::Auto } else { Legend::Hidden };
         let measured = so_far(&lobovsky.pressure[k], at);
-        let band = measured.iter().map(|(t, y)| (*t, 0.93 * y, 1.07 * y)).collect();
+        let apart = two.iter().zip(&aside).map(|((_, a), (_, b))| (a - b).abs());
+        let band = measured.iter().zip(apart).map(|((t, y), by)| (*t, y - by, y + by)).collect();
         let mut plot = Plot::new(title, x, y).legend(legend);
         plot = plot.layer(Layer::band("", band, Colour::GREY));
         for record in records {
             let points = so_far(&pressure(record, k), record.measured("arrival"));
+            if points.is_empty() {
+                continue;
+            }
             plot = plot.layer(line(records, record, "H", points));
         }
         let measured = Series::line("experiment", measured).colour(Colour::BLACK);
@@ -359,27 +368,16 @@ fn tank_table(records: &[&Record]) -> Table {
         Column::num("after shift", "H"),
         Column::num("levels shift", "√(H/g)"),
         Column::num("tongue at H4", "-"),
-        Column::num("arrival at P1", "√(H/g)"),
-        Column::num("impulse P1", "-"),
-        Column::num("P2", "-"),
-        Column::num("P3", "-"),
-        Column::num("P4", "-"),
-        Column::num("noise of P2", "ρ g H"),
-        Column::num("largest P1", "ρ g H"),
     ];
     let caption = "Distance from Lobovsky et al., as released and after the best shift of the clock; the \
                    computation's clock is put forward by it. Front and levels share one clock in the \
                    experiment, yet their best shifts differ: no one delay explains both distances. Speed \
                    of the front: slope of a straight line through it from t = 1 to 2.3 √(H/g), which no \
                    shift of the clock hides. Tongue: relative error of the mean level at H4 for one \
-                   √(H/g) from its arrival. Impulses: relative error from the arrival at P1 on, for one \
-                   √(H/g); two sensors of the experiment at one height differ by 7 % in it. The wave arrives \
-                   at P1 at 2.44 on the clock of the measured pressures, and would at about 2.6 by the \
-                   measured front. Noise of P2 in the experiment: see the metric `pressure_noise_measured`.";
+                   √(H/g) from its arrival.";
     let mut table = Table::new(caption, columns);
     for record in records {
         let number = |name: &str| number(record, name);
-        let impulse = |k: usize| share(record.measured(&format!("impulse_P{k}@1")));
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::num(record.setting("n"), 3),
@@ -392,14 +390,47 @@ fn tank_table(records: &[&Record]) -> Table {
             number("levels_rms_shifted"),
             number("levels_shift"),
             share(record.measured("tongue")),
-            number("arrival"),
-            impulse(1),
-            impulse(2),
-            impulse(3),
-            impulse(4),
-            number("pressure_noise"),
-            number("peak_P1"),
         ]);
+    }
+    table
+}
+
+/// What strikes the far wall.
+fn impact_table(records: &[&Record]) -> Table {
+    let mut columns = vec![
+        Column::text("variant"),
+        Column::num("H/dx", "1"),
+        Column::num("arrival at P1", "√(H/g)"),
+    ];
+    let windows =
+        reference::WINDOWS.into_iter().flat_map(|window| (1..=4).map(move |k| (k, window)));
+    columns.extend(
+        windows
+            .clone()
+            .map(|(k, window)| Column::num(format!("impulse P{k} to {}", sig(window, 2)), "-")),
+    );
+    columns.extend([Column::num("noise of P2", "ρ g H"), Column::num("largest P1", "ρ g H")]);
+    let caption = "Impulses on the far wall: relative error against Lobovsky et al. from the arrival at P1 \
+                   on, for 1 and for 2.5 √(H/g); two sensors of the experiment at the height of P2 differ by \
+                   6.0 % and 13.5 % in them. Only those to 1, when the jet has risen, are judged. The wave \
+                   arrives at P1 at 2.44 on the clock of the measured \
+                   pressures, and would at about 2.6 by the measured front. Noise of P2 in the experiment: \
+                   0.020. A negative pressure is tension, and an error below −100 % a negative impulse.";
+    let mut table = Table::new(caption, columns);
+    for record in records {
+        let number = |name: &str| number(record, name);
+        let mut cells = vec![
+            Cell::text(format!("`{}`", record.variant)),
+            Cell::num(record.setting("n"), 3),
+            number("arrival"),
+        ];
+        cells.extend(
+            windows
+                .clone()
+                .map(|(k, window)| share(record.measured(&format!("impulse_P{k}@{window}")))),
+        );
+        cells.extend([number("pressure_noise"), number("peak_P1")]);
+        table = table.row(cells);
     }
     table
 }
