@@ -106,11 +106,11 @@ const CROSSED: &str = "in the plane of a ghost wall the water and its images pus
                        `ghosts-slip` too";
 const THICK: &str = "artificial viscosity takes 37 to 48 % of the energy at these resolutions, so the front \
                      is later than the diaphragm made it";
-const SPENT: &str = "artificial viscosity takes 73 % of the energy until the end, so what reaches the far wall \
-                     is late, at 3.04 instead of 2.44, and slow";
+const SPENT: &str = "artificial viscosity takes 73 % of the energy until the end, so what reaches the far \
+                     wall is late, at 3.04 instead of 2.44, and slow";
 const TENSION: &str = "the impulse is negative, a net tension: what little water comes to 80 mm has lost \
-                       density there, and nothing cuts the equation of state at 0; and it comes late and slow, for \
-                       artificial viscosity takes 73 % of the energy";
+                       density there, and nothing cuts the equation of state at 0; and it comes late and \
+                       slow, for artificial viscosity takes 73 % of the energy";
 
 const LAYER: &str = "particles next to the back wall lag, in a layer of a few spacings that at a/dx 20 \
                      reaches the probe at 0.2 a: at tau 2.45 the height over 2a is 0.10 more than measured \
