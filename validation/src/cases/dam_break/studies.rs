@@ -233,9 +233,10 @@ fn tank(case: &'static dyn Case, runs: &[JudgedRun]) -> Result<Study, ReferenceE
 
 fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let caption = "Water 300 mm deep and 600 mm long in a tank of 1610 mm. Front of the water, and depth at \
-                   four stations from the back wall, over the experiment (black; two series where there are \
-                   two, the band between them). Times count from the release and from the first motion of \
-                   the gate; no clock is shifted.";
+                   four stations from the back wall, over the experiment of Lobovsky et al. (black; two \
+                   series where there are two, the band between them). Front and H1 have no band: their \
+                   uncertainty is not stated by the source, and there is one series of each. Times count \
+                   from the release and from the first motion of the gate; no clock is shifted.";
     let mut figure = Figure::new("dam-break-levels", caption).columns(3);
     let end = 6.0;
     let axis = |label: String| (Axis::linear("t √(g/H) [-]"), Axis::linear(label));
@@ -507,7 +508,7 @@ fn film(case: &'static dyn Case) -> Result<Film, String> {
     let frames: Vec<Figure> = (0..FRAMES).map(frame).collect();
     let caption = format!(
         "The water in the tank of Lobovsky et al. as a film, variant `modern`, H/dx = {FILM_ROWS}, coloured \
-         by pressure."
+         by pressure, which is cut at 0 and 1 ρ g H."
     );
     Film::new("dam-break-film", caption, &frames, 160)
 }
@@ -518,7 +519,9 @@ const FILM_ROWS: usize = 15;
 
 /// Where the energy goes.
 fn energies(runs: &[JudgedRun]) -> Study {
-    let caption = "Energy of the column of Martin & Moyce over its potential energy at the start, M g H/2. \
+    let caption = "Energy of the column of Martin & Moyce, a/dx = 20, over M g H/2, the potential energy of \
+                   a column that stands on the floor. That of `seed` starts at 1.03: particles that stand on \
+                   the floor raise its water by half a spacing, which is 0.025, and it starts compressed. \
                    Lines: what the water has; dashed: what each term has taken so far, summed from its \
                    power, where it is more than 1e-4. The black line is the sum of all, which must \
                    stay at its first value.";
