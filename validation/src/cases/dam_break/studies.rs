@@ -320,7 +320,7 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let caption = "Impulse on the same sensors since the wave arrives at P1, the integral of the pressure. \
                    Black: the experiment; band: ± the difference of two sensors at the height of P2, side \
                    by side in one event, at each time, in every panel. Impulses are judged at 1, where that \
-                   is 6.0 % of P2, within three times as many per cent. `ghosts` diverges before.";
+                   is 6.0 % of P2, within three times as many per cent. A run that diverged has no curve.";
     let mut figure = Figure::new("dam-break-impulses", caption).columns(2);
     let so_far = |curve: &Curve, arrival: f64| -> Curve {
         let later = since(curve, arrival).into_iter().filter(|(t, _)| *t >= 0.0);
@@ -439,9 +439,9 @@ fn impact_table(records: &[&Record]) -> Table {
     let caption = "Impulses on the far wall: relative error against Lobovsky et al. from the arrival at P1 \
                    on, for 1 and for 2.5 √(H/g); two sensors of the experiment at the height of P2 differ by \
                    6.0 % and 13.5 % in them. Only those to 1, when the jet has risen, are judged. The wave \
-                   arrives at P1 at 2.44 on the clock of the measured \
-                   pressures, and would at about 2.6 by the measured front. Noise of P2 in the experiment: \
-                   0.020. A negative pressure is tension, and an error below −100 % a negative impulse.";
+                   arrives at P1 at 2.44 on the clock of the measured pressures, and would at about 2.6 by \
+                   the measured front. Noise of P2 in the experiment: 0.020. A negative pressure is \
+                   tension, and an error below −100 % a negative impulse.";
     let mut table = Table::new(caption, columns);
     for record in records {
         let number = |name: &str| number(record, name);
@@ -469,8 +469,8 @@ fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
     };
     let caption = format!(
         "{scene} at six times, {}, coloured by pressure, which is cut at 0 and 1 ρ g H: tension and impact \
-         have the end colours. Dots have the size of a spacing. The spike at x = 0 is particles that lag \
-         at the back wall; the measured depth is not read there.",
+         have the end colours. Dots have the size of a spacing. A spike at x = 0 is particles that lag at \
+         the back wall; the measured depth is not read there.",
         name_of(record, side)
     );
     let mut figure = Figure::new(id, caption).columns(2);
