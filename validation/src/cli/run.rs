@@ -299,7 +299,9 @@ fn metrics(record: &Record) -> String {
             std::iter::once(time.to_string()).chain(values).collect()
         })
         .collect();
-    let heads: Vec<&str> = std::iter::once("at νt/L²").chain(names.iter().copied()).collect();
+    // Times of channels are νt/L²; those of other cases are in the units that their formulas name.
+    let at = if curves(record).is_empty() { "at" } else { "at νt/L²" };
+    let heads: Vec<&str> = std::iter::once(at).chain(names.iter().copied()).collect();
     let mut text = String::new();
     if !rows.is_empty() {
         text += &output::table(&heads, &rows);

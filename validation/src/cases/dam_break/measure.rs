@@ -15,14 +15,23 @@ const DIAMETER: f64 = 0.0042;
 /// Places of the level probes, from the back wall \[m\].
 pub const PROBES: [f64; 4] = [0.300, 0.865, 1.114, 1.3625];
 
+/// Where the residual height is read, and half of the width that it is read over, from the back wall
+/// \[width of the column\]; at least ± 2 dx, the least width over which a lattice has an exact depth.
+///
+/// Not at the wall itself: the particles next to it slide down it more slowly than the water does, in a
+/// layer of a few spacings, so a probe within so many spacings of it would read the layer, at a place
+/// that moves with the spacing.
+const HEIGHT_AT: f64 = 0.2;
+const HEIGHT_OVER: f64 = 0.05;
+
 /// A particle this far behind the surface of a wall is lost \[dx\]. A splash may dent a wall of
 /// particles, whose surface lies half a spacing before the first of them.
 const LOST: f64 = 0.5;
 
-/// Depth of water at x: Σ V hat((x_i − x)/w)/w with the hat function 1 − |ξ| of half-width w = 2 dx.
+/// Depth of water at x: Σ V hat((x_i − x)/w)/w with the hat function 1 − |ξ| of half-width w.
 ///
 /// A gauge that adds up what is wet, not one that finds the topmost drop. Exact for columns of a
-/// lattice, wherever they stand.
+/// lattice, wherever they stand, if w is a whole number of spacings.
 fn depth<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, x: f64, w: f64) -> f64 {
     particles.fold(0.0, |sum, (mass, p)| {
         let hat = (1.0 - ((p.position.x - x) / w).abs()).max(0.0);
@@ -39,7 +48,7 @@ fn foremost<'a>(
     water.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// One sample: t \[s\]; front, height at the back wall, levels \[m\]; particles outside; kinetic Mach
+/// One sample: t \[s\]; front, residual height, levels \[m\]; particles outside; kinetic Mach
 /// number; excursion of the density.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
@@ -90,6 +99,7 @@ impl<'a, F: Term<()>> Seen<'a, F> {
             self.start = foremost;
         }
         let (width, w) = (self.dam.tank.width(), 2.0 * dx);
+        let over = (HEIGHT_OVER * s.width / dx).round().max(2.0) * dx;
         let depth_of = |p: &Evolved<()>| {
             (-p.position.x).max(p.position.x - width).max(-p.position.y).max(0.0) / dx
         };
@@ -103,7 +113,7 @@ impl<'a, F: Term<()>> Seen<'a, F> {
             time: simulation.time(),
             // Water reaches a fixed distance beyond its foremost particle, by which it begins at a.
             front: s.width + foremost - self.start,
-            height: depth(simulation.fluid(), w, w),
+            height: depth(simulation.fluid(), HEIGHT_AT * s.width, over),
             levels: PROBES.map(|x| depth(simulation.fluid(), x, w)),
             outside,
             deepest,
@@ -138,7 +148,7 @@ impl<'a, F: Term<()>> Seen<'a, F> {
         self.samples.iter().map(|s| (s.time, s.front)).collect()
     }
 
-    /// (t, height at the back wall) \[s, m\].
+    /// (t, residual height) \[s, m\].
     pub fn height(&self) -> Vec<(f64, f64)> {
         self.samples.iter().map(|s| (s.time, s.height)).collect()
     }

@@ -106,11 +106,17 @@ fn variants() -> Vec<Composition<DamSettings>> {
              stress, predictor-corrector",
             seed,
         ),
-        variant::<Seed<Ghosts>>("ghosts", "the seed with ghosts, also in the corners", seed),
+        variant::<Seed<Ghosts>>(
+            "ghosts",
+            "the seed with ghosts; in a corner a particle has a third one, turned by half a turn about \
+             it, with its own velocity",
+            seed,
+        ),
         variant::<Modern>(
             "modern",
             "Wendland C2, density diffusion that keeps a column at rest, leapfrog, walls that \
-             extrapolate the pressure, little artificial viscosity",
+             extrapolate the pressure, not below 0, so that they cannot suck, little artificial \
+             viscosity",
             modern,
         ),
     ];

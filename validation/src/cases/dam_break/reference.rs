@@ -99,6 +99,21 @@ impl Lobovsky {
     }
 }
 
+/// t \[(H/g)^(1/2)\] between which the speed of the front is found: the gate is out of its way, and no
+/// front has reached the far wall.
+const RUNNING: [f64; 2] = [1.0, 2.3];
+
+/// Slope of the least squares line of a curve, taken at the times of `measured` within [`RUNNING`].
+fn front_speed(curve: &[(f64, f64)], measured: &[(f64, f64)]) -> f64 {
+    let times = measured.iter().map(|(t, _)| *t).filter(|t| (RUNNING[0]..=RUNNING[1]).contains(t));
+    let points: Curve = times.map(|t| (t, value(curve, t))).collect();
+    let mean =
+        |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
+    let (t, x) = (mean(|p| p.0), mean(|p| p.1));
+    let both: f64 = points.iter().map(|p| (p.0 - t) * (p.1 - x)).sum();
+    both / points.iter().map(|p| (p.0 - t).powi(2)).sum::<f64>()
+}
+
 /// When a pressure first exceeds this share of ρ g H: the arrival of the wave at P1.
 const ARRIVAL: f64 = 0.1;
 /// Impulses are counted for this long after the arrival \[(H/g)^(1/2)\]: the jet has risen, and the
@@ -208,7 +223,9 @@ fn with_martin_moyce<F: Term<()>>(
     let pairs = [(front, within(measured_front, front_end))];
     put.compare("front", &pairs, 1.0, "Z at equal T");
     let pairs = [(height, within(measured_height, height_end))];
-    put.compare("height", &pairs, 1.0, "the height at the back wall over 2a, at equal tau");
+    let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
+                from what was read there, at equal tau";
+    put.compare("height", &pairs, 1.0, what);
     Ok(())
 }
 
@@ -224,6 +241,11 @@ fn with_lobovsky<F: Term<()>, K: Kernel>(
     let mut put = Put(record);
     let front = scaled(&seen.front(), unit, h, dam.settings.width);
     let measured: Curve = lobovsky.front.iter().filter(|(t, _)| *t <= end).copied().collect();
+    let both = [&front, &measured].map(|curve| front_speed(curve, &measured));
+    let formula = "slope of the least squares line of x/H over t (g/H)^(1/2) from 1 to 2.3, at the times \
+                   of the experiment";
+    put.metric("front_speed", both[0], formula);
+    put.metric("front_speed_measured", both[1], "the same of the experiment");
     put.compare("front", &[(front, measured)], 0.6, "x of the tip from the gate/H");
     let pairs: Vec<(Curve, Curve)> = (0..PROBES.len())
         .map(|k| (scaled(&seen.level(k), unit, h, 0.0), lobovsky.level(k, end)))
@@ -285,6 +307,7 @@ fn pressures<K: Kernel>(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge<K>, put: &
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cases::dam_break::plan::IMPULSE_SPREAD;
 
     #[test]
     fn a_curve_that_starts_late_is_found_shifted() {
@@ -302,7 +325,7 @@ mod tests {
         let ramp: Curve = (0..=1000).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
         assert!((impulse(&ramp, 1.0, 2.0) - 4.0).abs() < 1e-9);
         assert!((arrival(&ramp) - 0.11).abs() < 1e-9);
-        // The caveats of the package: arrival at 2.44, P2 against its neighbour 7 % to 15 %.
+        // The package: arrival at 2.44; its neighbour differs from P2 more in the longer window.
         let lobovsky = Lobovsky::load().unwrap();
         let at = arrival(&lobovsky.pressure[0]);
         assert!((at - 2.443).abs() < 2e-3, "{at}");
@@ -311,9 +334,21 @@ mod tests {
         };
         let [short, long] = WINDOWS.map(spread);
         assert!(
-            (-0.08..-0.03).contains(&short) && (-0.16..-0.10).contains(&long),
+            (short + IMPULSE_SPREAD).abs() < 5e-4 && (long + 0.135).abs() < 1e-3,
             "{short} {long}"
         );
+    }
+
+    #[test]
+    fn a_front_has_the_speed_of_its_straight_part_wherever_its_clock_begins() {
+        let front = |late: f64| -> Curve {
+            let x = |t: f64| if t < 0.8 { 0.0 } else { 1.7 * (t - 0.8) };
+            (0..300).map(|k| 0.01 * f64::from(k)).map(|t| (t, x(t - late))).collect()
+        };
+        for late in [0.0, 0.1] {
+            let speed = front_speed(&front(late), &front(0.0));
+            assert!((speed - 1.7).abs() < 1e-9, "{speed}");
+        }
     }
 
     #[test]

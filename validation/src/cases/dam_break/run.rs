@@ -1,6 +1,6 @@
 //! One run of the collapse: scene, stepping, record.
 
-use solver::{EquationOfState, Integrator, Kernel, Particle, Scene, Scheme, Simulation};
+use solver::{EquationOfState, Integrator, Kernel, Particle, Role, Scene, Scheme, Simulation};
 
 use super::{
     Dam, DamSettings, NAME, Vessel,
@@ -15,7 +15,7 @@ use crate::{
     },
     metrics::budget::Itemised,
     number,
-    record::{self, Profile, Record, Status},
+    record::{self, Metric, Profile, Record, Status},
     runner::{self, Context, Frames},
 };
 
@@ -70,6 +70,7 @@ pub fn run_scene<S: Watched>(
     let mut seen = Seen::new(dam, &scene.forces);
     let mut gauge = Gauge::<S::Kernel>::new(dam);
     let frames = Frames::of(context)?;
+    let filled = water_mass(&scene.particles);
     let mut simulation = scene.build()?;
     let stops = stops(dam, context);
     let times: Vec<f64> = stops.iter().map(|s| s.time).collect();
@@ -88,8 +89,13 @@ pub fn run_scene<S: Watched>(
     if let Some(error) = failed {
         return Err(error.into());
     }
-    let mass = simulation.fluid().map(|(mass, _)| mass).sum::<f64>();
+    let particles = simulation.particles();
+    let mass = water_mass(&particles);
     seen.measure(mass, &mut record);
+    let formula =
+        "|mass of the water at the end/that at the start - 1|, of all particles, lost ones too";
+    let error = Metric::new((mass / filled - 1.0).abs(), "-", formula);
+    record.metrics.insert("mass_error".into(), error);
     let fall = 0.5 * mass * dam.settings.gravity * dam.settings.height;
     ledger.measure(fall, "M g H/2, the potential energy of the column", &mut record);
     if status == Status::Completed
@@ -98,9 +104,15 @@ pub fn run_scene<S: Watched>(
         // Packages are embedded and checked by a test.
         record.numerics.insert("reference".into(), error.to_string().into());
     }
-    record.state = Some(record::digest(&state(&simulation.particles())));
+    record.state = Some(record::digest(&state(&particles)));
     (record.status, record.cost) = (status, cost);
     Ok(record)
+}
+
+/// Mass of the water \[kg/m\], added in the order of the scene: in that of storage, which changes, its
+/// last bits would.
+fn water_mass(particles: &[Particle]) -> f64 {
+    particles.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum()
 }
 
 /// A record with what the run chose.

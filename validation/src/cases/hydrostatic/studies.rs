@@ -38,7 +38,9 @@ fn is_plain(record: &Record) -> bool {
 fn pressures(runs: &[JudgedRun]) -> Figure {
     let caption = "Pressure of every particle over its height after 20 acoustic periods, g H/c0^2 = 0.01, 20 \
                    rows by 10 columns, on the exact line (left), and its distance from the exact pressure \
-                   at the particle's place (right). `seed` and `ghosts` are the paper's two walls, `modern` \
+                   at the particle's place (right). The lines differ by the place of the surface, half a \
+                   spacing lower where the particles stand on the bottom's surface: each has the colour of \
+                   its variant. `seed` and `ghosts` are the paper's two walls, `modern` \
                    has walls that extrapolate pressure.";
     let mut over = Plot::new("", Axis::linear("p/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
     let mut error =
@@ -52,10 +54,8 @@ fn pressures(runs: &[JudgedRun]) -> Figure {
             continue;
         };
         let [y, p, exact] = ["y", "p", "p_exact"].map(|name| profile.column(name));
-        if k == 0 {
-            let line = exact.iter().zip(y).map(|(p, y)| (*p, *y)).collect();
-            over = over.layer(Series::line("exact", line).colour(Colour::BLACK));
-        }
+        let line = exact.iter().zip(y).map(|(p, y)| (*p, *y)).collect();
+        over = over.layer(Series::line(format!("exact, {variant}"), line).colour(Colour::cycle(k)));
         let series = |points: Vec<(f64, f64)>| {
             let markers = Series::markers(variant, points).colour(Colour::cycle(k));
             markers.shape(Shape::cycle(k)).open().size(5.0)
@@ -86,9 +86,12 @@ fn table<'a>(caption: &str, records: impl Iterator<Item = &'a Record>) -> Table 
     ];
     let mut table = Table::new(caption, columns);
     for record in records {
-        let metric = |name: &str| record.measured(name);
+        let shown = |name: &str, cell: fn(f64, usize) -> Cell| match record.measured(name) {
+            value if value.is_finite() => cell(value, 2),
+            _ => Cell::text("–"),
+        };
         let outside = match &record.status {
-            Status::Completed => Cell::num(metric("outside"), 3),
+            Status::Completed => Cell::num(record.measured("outside"), 3),
             _ => Cell::text("did not finish"),
         };
         table = table.row(vec![
@@ -96,10 +99,10 @@ fn table<'a>(caption: &str, records: impl Iterator<Item = &'a Record>) -> Table 
             Cell::num(record.setting("compressibility"), 2),
             Cell::num(record.setting("rows"), 3),
             Cell::text(others(record)),
-            Cell::percent(metric("p_l2"), 2),
-            Cell::percent(metric("level_drift"), 2),
-            Cell::num(metric("gap"), 2),
-            Cell::sci(metric("kinetic"), 2),
+            shown("p_l2", Cell::percent),
+            shown("level_drift", Cell::percent),
+            shown("gap", Cell::num),
+            shown("kinetic", Cell::sci),
             outside,
             Cell::seconds(record.cost.cpu_s),
         ]);
