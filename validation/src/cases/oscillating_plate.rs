@@ -256,7 +256,7 @@ fn swing(variant: &'static str, n: usize) -> Planned {
 fn plan(tier: Tier) -> Vec<Planned> {
     let mut plan = vec![swing("bare", 5), swing("plain", 5), swing("seed", 5)];
     if tier == Tier::Full {
-        plan.extend([swing("bare", 10), swing("plain", 10), swing("seed", 10)]);
+        plan.extend([swing("bare", 10), swing("plain", 10)]);
         plan.push(swing("plain", 20).taking(50.0));
     }
     if tier == Tier::Quick {

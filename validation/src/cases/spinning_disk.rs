@@ -301,7 +301,7 @@ fn plan(tier: Tier) -> Vec<Planned> {
     let mut plan = vec![spin("bare", 8), spin("bare", 16), spin("plain", 8), spin("seed", 8)];
     plan.extend(COURANT.map(steps));
     if tier == Tier::Full {
-        plan.extend([spin("plain", 16), spin("seed", 16), spin("bare", 32), spin("plain", 32)]);
+        plan.extend([spin("plain", 16), spin("seed", 16), spin("plain", 32)]);
     }
     plan
 }
