@@ -514,7 +514,7 @@ fn film(case: &'static dyn Case) -> Result<Film, String> {
 }
 
 /// Pictures of the film, and spacings along the height of its column.
-const FRAMES: usize = 25;
+const FRAMES: usize = 21;
 const FILM_ROWS: usize = 15;
 
 /// Where the energy goes.

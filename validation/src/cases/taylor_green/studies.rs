@@ -143,7 +143,7 @@ fn pictures(tier: Tier, runs: &[JudgedRun]) -> Study {
             figure = figure.panel(map.values(0.0, most).diameter(1.0 / n as f64));
         }
     }
-    Study::new("taylor-green-pictures", "Pictures").block(figure.panel_size(330.0, 330.0))
+    Study::new("taylor-green-pictures", "Pictures").block(figure.panel_size(260.0, 260.0))
 }
 
 /// Order of the best variant.
