@@ -147,7 +147,7 @@ fn a_step_has_the_bits_of_the_portable_row_loop() {
     let mut simulation = periodic::<Euler>().build().unwrap();
     let dt = 0.1 * DX;
     assert_eq!(simulation.advance(2.0 * dt, dt, &mut ()), Outcome::Reached);
-    let forces = simulation.forces_mut().clone();
+    let forces = *simulation.forces_mut();
     let rates = simulation.rates(&forces);
     let drift = simulation.rates(&Continuity);
     let before: Vec<_> = simulation.fluid().map(|(_, p)| *p).collect();
