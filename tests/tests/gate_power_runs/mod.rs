@@ -19,7 +19,7 @@ use validation::{
     exact::{couette::Couette, poiseuille::Poiseuille},
     gate::Gate,
     metrics::norms::{Scale, l2},
-    record::{Record, Status},
+    record::Record,
     runner::Context,
     studies::stability::{self, NoisyBox, Point},
 };
