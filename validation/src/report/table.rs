@@ -72,6 +72,11 @@ impl Cell {
         Self { text: text.into(), value: None, status: None }
     }
 
+    /// The value as `show` has it; a dash where there is none.
+    pub fn or_dash(value: f64, show: impl Fn(f64) -> Self) -> Self {
+        if value.is_finite() { show(value) } else { Self::text("–") }
+    }
+
     /// A number with this many significant digits.
     pub fn num(value: f64, digits: usize) -> Self {
         Self::formatted(value, number::sig(value, digits))

@@ -172,7 +172,7 @@ fn sorted(
 
 /// Slope of the least-squares line through (x, y) and its standard error,
 /// (Σ residual²/(n-2) / Σ (x - x̄)²)^(1/2).
-fn slope(x: &[f64], y: &[f64]) -> (f64, f64) {
+pub fn slope(x: &[f64], y: &[f64]) -> (f64, f64) {
     let n = x.len() as f64;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
     let (mean_x, mean_y) = (mean(x), mean(y));

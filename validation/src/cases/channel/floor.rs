@@ -7,6 +7,7 @@ use solver::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 use super::Flow;
 use crate::{
     exact::{couette::Couette, poiseuille::Poiseuille},
+    metrics::norms::{Scale, l2},
     record::Record,
     report::percent,
     theory::lattice::SquareLattice,
@@ -39,13 +40,9 @@ fn error(flow: Flow, factor: f64, tau: f64) -> f64 {
         Flow::Poiseuille => Poiseuille { v: 1.0 / nu, l: 1.0, nu }.velocity(y, tau),
     };
     let stations = (1..100).map(|k| f64::from(k) / 100.0);
-    let [mut apart, mut whole] = [0.0; 2];
-    for y in stations {
-        let exact = velocity(1.0, y);
-        apart += (velocity(factor, y) - exact).powi(2);
-        whole += exact * exact;
-    }
-    (apart / whole).sqrt()
+    let (found, exact): (Vec<f64>, Vec<f64>) =
+        stations.map(|y| (velocity(factor, y), velocity(1.0, y))).unzip();
+    Scale::rms(&exact).and_then(|scale| l2(&found, &exact, scale)).unwrap_or(f64::NAN)
 }
 
 impl LatticeFloor {

@@ -7,6 +7,7 @@ use super::{
 use crate::{
     record::{Metric, Profile, Record},
     reference::{Reference as Package, ReferenceError, Table},
+    studies::convergence,
 };
 use solver::{Kernel, Term};
 
@@ -106,12 +107,8 @@ const RUNNING: [f64; 2] = [1.0, 2.3];
 /// Slope of the least squares line of a curve, taken at the times of `measured` within [`RUNNING`].
 fn front_speed(curve: &[(f64, f64)], measured: &[(f64, f64)]) -> f64 {
     let times = measured.iter().map(|(t, _)| *t).filter(|t| (RUNNING[0]..=RUNNING[1]).contains(t));
-    let points: Curve = times.map(|t| (t, value(curve, t))).collect();
-    let mean =
-        |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
-    let (t, x) = (mean(|p| p.0), mean(|p| p.1));
-    let both: f64 = points.iter().map(|p| (p.0 - t) * (p.1 - x)).sum();
-    both / points.iter().map(|p| (p.0 - t).powi(2)).sum::<f64>()
+    let (t, x): (Vec<f64>, Vec<f64>) = times.map(|t| (t, value(curve, t))).unzip();
+    convergence::slope(&t, &x).0
 }
 
 /// When a pressure first exceeds this share of ρ g H: the arrival of the wave at P1.

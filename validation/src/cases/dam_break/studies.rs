@@ -61,15 +61,12 @@ fn power() -> Study {
 
 /// A number, or a dash where there is none because the run ended early.
 pub(super) fn number(record: &Record, name: &str) -> Cell {
-    match record.measured(name) {
-        value if value.is_finite() => Cell::num(value, 3),
-        _ => Cell::text("–"),
-    }
+    Cell::or_dash(record.measured(name), |value| Cell::num(value, 3))
 }
 
 /// The same as a percentage.
 pub(super) fn share(value: f64) -> Cell {
-    if value.is_finite() { Cell::percent(value, 2) } else { Cell::text("–") }
+    Cell::or_dash(value, |value| Cell::percent(value, 2))
 }
 
 /// A column of a profile over its time, each in a unit.

@@ -86,9 +86,8 @@ fn table<'a>(caption: &str, records: impl Iterator<Item = &'a Record>) -> Table 
     ];
     let mut table = Table::new(caption, columns);
     for record in records {
-        let shown = |name: &str, cell: fn(f64, usize) -> Cell| match record.measured(name) {
-            value if value.is_finite() => cell(value, 2),
-            _ => Cell::text("–"),
+        let shown = |name: &str, cell: fn(f64, usize) -> Cell| {
+            Cell::or_dash(record.measured(name), |value| cell(value, 2))
         };
         let outside = match &record.status {
             Status::Completed => Cell::num(record.measured("outside"), 3),

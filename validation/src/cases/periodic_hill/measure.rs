@@ -12,6 +12,8 @@ pub const POINTS: usize = 200;
 pub const STATIONS: [f64; 10] = [0.05, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
 /// Points along a wall, 0.025 H apart.
 pub const WALL: usize = 361;
+/// What the drag is made of, named as in the reference.
+pub const DRAGS: [&str; 3] = ["hill_shear_drag", "lid_shear_drag", "hill_pressure_drag"];
 
 /// Velocity and pressure where it is asked for: a linear field fitted to the particles in reach, walls
 /// included, with the weights V W (moving least squares).
@@ -200,10 +202,16 @@ pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, re
     // Trapezoidal rule over the period: the ends are the same point.
     let cell = along(1);
     let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * cell;
-    let shear = over(&|k| wall[k][0] + wall[k][1]);
-    let pressure = over(&|k| wall[k][2] * setup.slope(along(k)));
+    let drags = [
+        over(&|k| wall[k][0]),
+        over(&|k| wall[k][1]),
+        over(&|k| wall[k][2] * setup.slope(along(k))),
+    ];
+    for (name, drag) in DRAGS.into_iter().zip(drags) {
+        put(name, drag, "rho U_b^2 H", "integral over a period of the wall");
+    }
     let formula = "(shear on both walls + pressure on the hill)/(force times area) - 1";
-    put("drag_balance", (shear + pressure) / (force * area) - 1.0, "-", formula);
+    put("drag_balance", drags.iter().sum::<f64>() / (force * area) - 1.0, "-", formula);
     for (name, sign) in [("separation", -1.0), ("reattachment", 1.0)] {
         if let Some(x) = turning(&wall, sign) {
             put(name, x, "H", "where the wall shear on the hill changes its sign");

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::{
     HillSettings,
-    measure::POINTS,
+    measure::{DRAGS, POINTS},
     plan::{self, BEST, FINEST, LADDER, SIDES, Start},
     reference::Reference,
     stability,
@@ -156,7 +156,7 @@ fn table(runs: &[JudgedRun]) -> Table {
 
 /// A metric as `show` has it; a dash where there is none.
 pub fn shown(record: &Record, name: &str, show: impl Fn(f64) -> Cell) -> Cell {
-    record.metric(name).map_or_else(|| Cell::text("–"), show)
+    Cell::or_dash(record.measured(name), show)
 }
 
 /// What finite elements have in the columns of the table of runs.
@@ -277,38 +277,22 @@ fn drags(runs: &[JudgedRun]) -> Table {
     let mut table = Table::new(caption, columns);
     if let Some(reference) = reference(50.0) {
         let number = |name: &str| reference.number(name);
-        let parts = ["hill_shear_drag", "lid_shear_drag", "hill_pressure_drag"].map(number);
+        let parts = DRAGS.map(number);
         let cells = parts.map(|part| part.map_or(Cell::text("–"), |v| Cell::num(v, 3)));
         let row = [Cell::text("finite elements")].into_iter().chain(cells);
         table = table.row(row.chain([Cell::text("–")]).collect());
     }
     for (variant, _) in LADDER {
         let Some(record) = find(runs, variant, 50.0, 10, Start::Rest) else { continue };
-        let Some(parts) = drag(record) else { continue };
+        if record.status != Status::Completed {
+            continue;
+        }
         let row = [Cell::text(format!("`{variant}`"))].into_iter();
-        let row = row.chain(parts.map(|part| Cell::num(part, 3)));
+        let row = row.chain(DRAGS.map(|part| shown(record, part, |v| Cell::num(v, 3))));
         let balance = shown(record, "drag_balance", |v| Cell::percent(v, 2));
         table = table.row(row.chain([balance]).collect());
     }
     table
-}
-
-/// Shear on hill and lid, pressure on the hill, integrated over the period \[ρ U_b² H\]; none where the run
-/// did not get to its end.
-fn drag(record: &Record) -> Option<[f64; 3]> {
-    let hill = Hill::new(1.0).ok()?;
-    let x = record.column("wall", "x");
-    let slope = |x: f64| (hill.wall(x + 1e-5) - hill.wall(x - 1e-5)) / 2e-5;
-    // Trapezoidal rule over the period: the ends are the same point.
-    let over = |name: &str, weight: &dyn Fn(f64) -> f64| {
-        let values = record.column("wall", name).iter().zip(x).skip(1);
-        values.map(|(v, x)| v * weight(*x)).sum::<f64>() * (x[1] - x[0])
-    };
-    if x.len() < 2 {
-        return None;
-    }
-    let shear = ["hill shear", "lid shear"].map(|name| over(name, &|_| 1.0));
-    Some([shear[0], shear[1], over("pressure", &slope)])
 }
 
 /// Order of the best variant.

@@ -94,7 +94,7 @@ const DEFAULTS: &[(&str, [f64; 2])] = &[
     ("modern-mirror", [1.3734, 1.0555]),
     ("cure-background", [2.8596, 1.0148]),
     ("cure-stress", [2.8455, 1.0098]),
-    ("cure-viscosity", [2.8156, 1.0100]),
+    ("cure-viscosity", [2.8173, 1.0100]),
     ("cure-xsph", [2.8455, 1.0098]),
     ("cure-diffusion", [2.8455, 1.0098]),
     ("cure-shifting", [2.8455, 1.0098]),

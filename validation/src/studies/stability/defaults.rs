@@ -56,18 +56,13 @@ fn run(case: &dyn Case, variant: &str, set: &[String]) -> Option<Record> {
     case.run(variant, set, &context).ok()
 }
 
-/// A number that a run chose.
-fn chose(record: &Record, key: &str) -> f64 {
-    record.chose(key)
-}
-
 /// Bisects the longest stable step of a variant of Couette flow.
 pub fn measure_default(variant: &'static str) -> DefaultStep {
     let mut step = DefaultStep { variant, dt: f64::NAN, measured: f64::NAN, theory: f64::NAN };
     let Ok(case) = cases::find("couette") else { return step };
     let Some(record) = run(case, variant, &["end=1e-6".into()]) else { return step };
-    step.dt = chose(&record, "dt [s]");
-    step.theory = step.dt / chose(&record, "dt/limit");
+    step.dt = record.chose("dt [s]");
+    step.theory = step.dt / record.chose("dt/limit");
     // Of the default settings: L = 1 mm, ν = 1e-6 m²/s, so L²/ν = 1 s.
     let unit = record.setting("width").powi(2) / record.setting("nu");
     let found = largest_stable(step.theory, RESOLUTION, |dt| {
