@@ -49,7 +49,7 @@ TABLES = {
     "checks": [
         ("check", "string", "-", "what is checked"),
         ("re", "number", "-", "Reynolds number, empty where there is no flow"),
-        ("mesh", "integer", "-", "level: 64 x 12 elements times 2^level each way, empty for none"),
+        ("mesh", "integer", "-", "level: 66 x 12 elements times 2^level each way, empty for none"),
         ("value", "number", "see column check", "as computed"),
         ("expected", "number", "see column check", "exact, empty for a mere statement"),
     ],
