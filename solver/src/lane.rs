@@ -28,6 +28,8 @@ pub trait Lane:
     fn all(x: f64) -> Self;
     /// Reads one number a neighbour.
     fn gather(read: impl Fn(usize) -> f64) -> Self;
+    /// Reads two numbers a neighbour that stand side by side.
+    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2];
     /// The square root.
     fn sqrt(self) -> Self;
     /// The magnitude.
@@ -44,10 +46,27 @@ pub trait Lane:
     }
 }
 
+/// A loop that is written once for lanes of any type.
+pub(crate) trait OnLanes {
+    /// Does it.
+    fn run<V: Lane>(self);
+}
+
+/// Does it on the widest lanes that the processor has. Never inlined, so that a profile shows it.
+#[inline(never)]
+pub(crate) fn on_widest(work: impl OnLanes) {
+    #[cfg(target_arch = "x86_64")]
+    if crate::ymm::Ymm::is_there() {
+        return crate::ymm::Ymm::run(work);
+    }
+    work.run::<WideF64x4>();
+}
+
 /// Implements [`Lane`] by what each operation is for the type.
 macro_rules! lane {
     (
         $Type:ty: all($x:ident) = $all:expr, gather($read:ident) = $gather:expr,
+        gather_pair = $gather_pair:expr,
         sqrt($a:ident) = $sqrt:expr, abs = $abs:expr, at_least($floor:ident) = $at_least:expr,
         total = $total:expr
     ) => {
@@ -59,6 +78,10 @@ macro_rules! lane {
             #[inline(always)]
             fn gather($read: impl Fn(usize) -> f64) -> Self {
                 $gather
+            }
+            #[inline(always)]
+            fn gather_pair($read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] {
+                $gather_pair
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -86,13 +109,14 @@ macro_rules! lane {
 pub(crate) use lane;
 
 lane! {
-    f64: all(x) = x, gather(read) = read(0),
+    f64: all(x) = x, gather(read) = read(0), gather_pair = read(0),
     sqrt(a) = a.sqrt(), abs = a.abs(), at_least(floor) = a.max(floor), total = a
 }
 
 lane! {
     WideF64x4: all(x) = Self(wide::f64x4::splat(x)),
     gather(read) = Self(wide::f64x4::from([read(0), read(1), read(2), read(3)])),
+    gather_pair = [0, 1].map(|i| Self::gather(|k| read(k)[i])),
     sqrt(a) = Self(a.0.sqrt()), abs = Self(a.0.abs()), at_least(floor) = Self(a.0.fast_max(floor.0)),
     total = { let [a, b, c, d] = a.0.to_array(); (a + c) + (b + d) }
 }
@@ -100,5 +124,5 @@ lane! {
 /// A vector per neighbour.
 #[inline(always)]
 pub(crate) fn gather_vector<V: Lane>(read: impl Fn(usize) -> Vector2<f64>) -> Vector2<V> {
-    Vector2::new(V::gather(|k| read(k).x), V::gather(|k| read(k).y))
+    Vector2::from(V::gather_pair(|k| read(k).into()))
 }

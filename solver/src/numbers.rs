@@ -50,30 +50,37 @@ impl Numbers for f64 {
     }
 }
 
-impl Numbers for Vector2<f64> {
-    type In<V: Lane> = Vector2<V>;
+/// Implements [`Numbers`] for a struct of numbers, field by field.
+macro_rules! fields_of_numbers {
+    ($Struct:ident ($($field:ident),+), gather($read:ident) = $gather:expr) => {
+        impl Numbers for $Struct<f64> {
+            type In<V: Lane> = $Struct<V>;
 
-    #[inline(always)]
-    fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Vector2<V> {
-        gather_vector(read)
-    }
-    #[inline(always)]
-    fn spread<V: Lane>(self) -> Vector2<V> {
-        Vector2::new(V::all(self.x), V::all(self.y))
-    }
-    #[inline(always)]
-    fn total<V: Lane>(lanes: Vector2<V>) -> Self {
-        Vector2::new(lanes.x.total(), lanes.y.total())
-    }
-    #[inline(always)]
-    fn advanced(self, dt: f64, rate: Self) -> Self {
-        self + rate * dt
-    }
-    #[inline(always)]
-    fn is_finite(&self) -> bool {
-        self.x.is_finite() && self.y.is_finite()
-    }
+            #[inline(always)]
+            fn gather<V: Lane>($read: impl Fn(usize) -> Self) -> $Struct<V> {
+                $gather
+            }
+            #[inline(always)]
+            fn spread<V: Lane>(self) -> $Struct<V> {
+                $Struct::new($(V::all(self.$field)),+)
+            }
+            #[inline(always)]
+            fn total<V: Lane>(lanes: $Struct<V>) -> Self {
+                $Struct::new($(lanes.$field.total()),+)
+            }
+            #[inline(always)]
+            fn advanced(self, dt: f64, rate: Self) -> Self {
+                self + rate * dt
+            }
+            #[inline(always)]
+            fn is_finite(&self) -> bool {
+                true $(&& self.$field.is_finite())+
+            }
+        }
+    };
 }
+
+fields_of_numbers! { Vector2 (x, y), gather(read) = gather_vector(read) }
 
 /// A symmetric tensor of the plane: three numbers, not four.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -87,6 +94,12 @@ pub struct Symmetric<V = f64> {
 }
 
 impl<V: Lane> Symmetric<V> {
+    /// The three numbers.
+    #[inline(always)]
+    pub fn new(xx: V, yy: V, xy: V) -> Self {
+        Self { xx, yy, xy }
+    }
+
     /// The product with a vector.
     #[inline(always)]
     pub fn times(self, r: Vector2<V>) -> Vector2<V> {
@@ -112,32 +125,10 @@ impl<V: Lane> std::ops::Mul<V> for Symmetric<V> {
     }
 }
 
-impl Numbers for Symmetric {
-    type In<V: Lane> = Symmetric<V>;
-
-    #[inline(always)]
-    fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Symmetric<V> {
-        Symmetric {
-            xx: V::gather(|k| read(k).xx),
-            yy: V::gather(|k| read(k).yy),
-            xy: V::gather(|k| read(k).xy),
-        }
-    }
-    #[inline(always)]
-    fn spread<V: Lane>(self) -> Symmetric<V> {
-        Symmetric { xx: V::all(self.xx), yy: V::all(self.yy), xy: V::all(self.xy) }
-    }
-    #[inline(always)]
-    fn total<V: Lane>(lanes: Symmetric<V>) -> Self {
-        Self { xx: lanes.xx.total(), yy: lanes.yy.total(), xy: lanes.xy.total() }
-    }
-    #[inline(always)]
-    fn advanced(self, dt: f64, rate: Self) -> Self {
-        self + rate * dt
-    }
-    #[inline(always)]
-    fn is_finite(&self) -> bool {
-        self.xx.is_finite() && self.yy.is_finite() && self.xy.is_finite()
+fields_of_numbers! {
+    Symmetric (xx, yy, xy), gather(read) = {
+        let [xx, yy] = V::gather_pair(|k| [read(k).xx, read(k).yy]);
+        Symmetric { xx, yy, xy: V::gather(|k| read(k).xy) }
     }
 }
 

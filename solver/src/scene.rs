@@ -149,9 +149,6 @@ pub struct Scene<S: Scheme> {
     pub parallel_from: usize,
 }
 
-/// Below this a fork-join is taken to cost more than it saves; a default, to be measured.
-pub const PARALLEL_FROM: usize = 10_000;
-
 impl<S: Scheme> Scene<S> {
     /// A scene with the usual skin, limits and threading.
     pub fn new(
@@ -162,8 +159,9 @@ impl<S: Scheme> Scene<S> {
         drift: S::Drift,
         walls: S::Walls,
     ) -> Self {
-        let (skin, skin_share) = (0.12 * h, 0.5);
-        let (limits, parallel_from) = (Limits::default(), PARALLEL_FROM);
+        let (skin, skin_share, limits) = (0.12 * h, 0.5, Limits::default());
+        // Below this a fork-join is taken to cost more than it saves; a default, to be measured.
+        let parallel_from = 10_000;
         Self { h, domain, particles, forces, drift, walls, skin, skin_share, limits, parallel_from }
     }
 

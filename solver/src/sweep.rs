@@ -3,43 +3,17 @@
 //! for any number of threads.
 
 use nalgebra::Vector2;
-use simba::simd::WideF64x4 as Wide;
+use simba::simd::WideF64x4;
 
 use crate::{
     kernel::{Kernel, Smoothing},
-    lane::{Lane, gather_vector},
+    lane::{Lane, OnLanes, gather_vector, on_widest},
     neighbours::{BLOCK, Block, LANES},
     numbers::Numbers,
     parallel,
     particles::{Column, Common, Evolved, Rate},
     terms::{Pair, Term},
 };
-
-#[cfg(target_arch = "x86_64")]
-use crate::ymm::Ymm;
-
-/// A block of rows in lanes of one type.
-macro_rules! block {
-    ($(#[$attribute:meta])+ $block:ident, $V:ty) => {
-        $(#[$attribute])+
-        #[inline(never)]
-        fn $block<X: Numbers>(
-            &self,
-            block: &Block,
-            first: usize,
-            targets: &mut [Evolved<X>],
-            update: &impl Update<X>,
-        ) where
-            T: Term<X>,
-            P: Fn(&S) -> T::Shows,
-        {
-            for (k, target) in targets.iter_mut().enumerate() {
-                let rate = self.row::<$V, X>(&self.columns[first + k], block.row(k));
-                update(first + k, target, &rate);
-            }
-        }
-    };
-}
 
 /// What becomes of a row: the index of its particle, the particle, and its rates.
 pub trait Update<X>: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {}
@@ -70,26 +44,9 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         P: Fn(&S) -> T::Shows + Sync,
     {
         parallel::for_each_block(targets, parallel, &|b, targets| {
-            let (block, first) = (&blocks[b], first + b * BLOCK);
-            #[cfg(target_arch = "x86_64")]
-            if Ymm::is_there() {
-                // SAFETY: the processor has AVX2.
-                #[allow(unsafe_code)]
-                return unsafe { self.block_of_fours(block, first, targets, &update) };
-            }
-            self.block(block, first, targets, &update);
+            let (block, first, update) = (&blocks[b], first + b * BLOCK, &update);
+            on_widest(Rows { sweep: self, block, first, targets, update });
         });
-    }
-
-    block! {
-        /// One block of rows. Not inlined: its share of a profile is the share of the row loop.
-        block, Wide
-    }
-    #[cfg(target_arch = "x86_64")]
-    block! {
-        /// The same, compiled for processors with registers for four numbers.
-        #[target_feature(enable = "avx2")]
-        block_of_fours, Ymm
     }
 
     /// The rates of the particles from column `first` on, one after another.
@@ -99,7 +56,7 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         P: Fn(&S) -> T::Shows,
     {
         let row = |k: usize| {
-            self.row::<Wide, X>(&self.columns[first + k], blocks[k / BLOCK].row(k % BLOCK))
+            self.row::<WideF64x4, X>(&self.columns[first + k], blocks[k / BLOCK].row(k % BLOCK))
         };
         (0..count).map(row).collect()
     }
@@ -119,11 +76,9 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         let mut sum = T::Sum::default().spread::<V>();
         for chunk in neighbours {
             let others = chunk.map(|c| &self.columns[c as usize]);
-            let other = Common {
-                mass: V::gather(|k| others[k].common.mass),
-                density: V::gather(|k| others[k].common.density),
-                volume: V::gather(|k| others[k].common.volume),
-            };
+            let [mass, density] =
+                V::gather_pair(|k| [others[k].common.mass, others[k].common.density]);
+            let other = Common { mass, density, volume: V::gather(|k| others[k].common.volume) };
             let r = position - gather_vector::<V>(|k| others[k].position);
             let v = velocity - gather_vector::<V>(|k| others[k].velocity);
             let shows = T::Shows::gather::<V>(|k| (self.project)(&others[k].shows));
@@ -136,5 +91,30 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         let mut rate = Rate { position, ..Rate::default() };
         self.terms.finish(&own.common, shown, T::Sum::total::<V>(sum), &mut rate);
         rate
+    }
+}
+
+/// One block of rows. The share of its sums in a profile is the share of the row loop.
+struct Rows<'a, W, X, U> {
+    sweep: &'a W,
+    block: &'a Block,
+    first: usize,
+    targets: &'a mut [Evolved<X>],
+    update: &'a U,
+}
+
+impl<K: Kernel, T, S: Numbers, P, X: Numbers, U: Update<X>> OnLanes
+    for Rows<'_, Sweep<'_, K, T, S, P>, X, U>
+where
+    T: Term<X>,
+    P: Fn(&S) -> T::Shows,
+{
+    #[inline(always)]
+    fn run<V: Lane>(self) {
+        let Self { sweep, block, first, targets, update } = self;
+        for (k, target) in targets.iter_mut().enumerate() {
+            let rate = sweep.row::<V, X>(&sweep.columns[first + k], block.row(k));
+            update(first + k, target, &rate);
+        }
     }
 }

@@ -9,15 +9,15 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::lane::lane;
+use crate::lane::{OnLanes, lane};
 
 /// Four numbers in one register.
 ///
 /// # Safety
 ///
 /// Values of this type are made where the processor is known to have AVX2, and nowhere else: that is
-/// what every `unsafe` of this file relies on. The type is not visible outside of the crate; the row
-/// loop asks [`Ymm::is_there`] first.
+/// what every `unsafe` of this file relies on: in [`Ymm::run`] alone. The type is not visible outside
+/// of the crate.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(crate) struct Ymm(__m256d);
@@ -26,6 +26,17 @@ impl Ymm {
     /// Whether the processor has such registers. The answer is kept by the standard library.
     pub fn is_there() -> bool {
         std::is_x86_feature_detected!("avx2")
+    }
+
+    /// A loop compiled for such registers, where [`Ymm::is_there`] says so.
+    pub fn run(work: impl OnLanes) {
+        #[target_feature(enable = "avx2")]
+        fn compiled_for_them(work: impl OnLanes) {
+            work.run::<Ymm>();
+        }
+        assert!(Self::is_there());
+        // SAFETY: they are there.
+        unsafe { compiled_for_them(work) }
     }
 
     /// The four numbers.
@@ -82,6 +93,14 @@ impl PartialEq for Ymm {
 lane! {
     Ymm: all(x) = Self(unsafe { _mm256_set1_pd(x) }),
     gather(read) = Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) }),
+    gather_pair = {
+        // Neighbours 0 and 2, and 1 and 3, each with its two numbers as they stand in memory.
+        let [even, odd] = [0, 1].map(|k| {
+            let ([a, b], [c, d]) = (read(k), read(k + 2));
+            unsafe { _mm256_setr_pd(a, b, c, d) }
+        });
+        unsafe { [Self(_mm256_unpacklo_pd(even, odd)), Self(_mm256_unpackhi_pd(even, odd))] }
+    },
     sqrt(a) = Self(unsafe { _mm256_sqrt_pd(a.0) }),
     abs = Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.0) }),
     at_least(floor) = Self(unsafe { _mm256_max_pd(a.0, floor.0) }),
@@ -116,6 +135,7 @@ mod tests {
             [a.at_least(b), b.at_least(a), a.positive(), b.positive()],
             [a.abs().sqrt(), b.abs().sqrt(), V::all(0.1), V::all(0.0)],
         ];
+        assert_eq!(V::gather_pair(|k| [A[k], B[k]]), [a, b]);
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
         let lanes = all.into_iter().flatten().flat_map(array).map(bits);
         lanes.chain([a.total(), b.total(), (a * b).total()].map(bits)).collect()

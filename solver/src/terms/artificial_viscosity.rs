@@ -70,9 +70,6 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-
-    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
         let h = V::all(pair.kernel.h());
         let mu = h * S::admit(pair.parting()) / (pair.r2 + V::all(self.eta2));

@@ -89,9 +89,6 @@ impl<X> Term<X> for ConsistentViscosity {
     type Sum = (Vector2<f64>, Vector2<f64>, Vector2<f64>, Vector2<f64>, Symmetric);
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-
-    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
@@ -129,9 +126,6 @@ impl<X> Term<X> for ConsistentContinuity {
     type Shows = ();
     /// Σ V F v x, Σ V F v y, M.
     type Sum = (Vector2<f64>, Vector2<f64>, Symmetric);
-
-    #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(

@@ -16,9 +16,6 @@ impl<X> Term<X> for Continuity {
     type Sum = f64;
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-
-    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut V) {
         *sum += pair.other.mass * pair.f * pair.parting();
     }

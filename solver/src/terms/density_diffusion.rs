@@ -76,9 +76,6 @@ impl<X, R: Rest> Term<X> for DensityDiffusion<R> {
     type Sum = f64;
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-
-    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut V) {
         *sum += pair.other.volume * pair.f * self.rest.excess(pair);
     }

@@ -88,8 +88,11 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
 
     /// Told the largest speed of the scene \[m/s\] before each step, if it wants it.
     fn prepare(&mut self, _max_speed: f64) {}
-    /// What a particle shows.
-    fn shows(&self, own: &Common<f64>, extra: &X) -> Self::Shows;
+    /// What a particle shows: zeros, or nothing, unless a term has more to show.
+    #[inline(always)]
+    fn shows(&self, _own: &Common<f64>, _extra: &X) -> Self::Shows {
+        Self::Shows::default()
+    }
     /// Adds the neighbours of one pair to the sum.
     fn pair<V: Lane, K: Kernel>(
         &self,

@@ -33,9 +33,6 @@ impl<X> Term<X> for ShiftAdvection {
     }
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-
-    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,

@@ -53,9 +53,6 @@ impl<X> Term<X> for Shifting {
     }
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-
-    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
         *sum += self.push(pair);
     }

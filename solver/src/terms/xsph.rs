@@ -21,9 +21,6 @@ impl<X> Term<X> for Xsph {
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-
-    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
         *sum += pair.v * (pair.other.mass * pair.w() / (pair.own.density + pair.other.density));
     }

@@ -110,9 +110,6 @@ impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U>
     type Sum = (f64, f64, U::Sum);
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, _: &X) {}
-
-    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
