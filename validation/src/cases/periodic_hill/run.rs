@@ -53,8 +53,27 @@ where
 
 /// Steps between looks of the controller.
 const STRETCH: f64 = 10.0;
-/// Time between samples of the field \[H/U_b\].
-const SAMPLE: f64 = 0.5;
+/// Time between entries of the history \[H/U_b\].
+const ENTRY: f64 = 0.5;
+/// Samples of the field in a window. Disorder, not the decay, is what moves a mean of few: particles pass
+/// a spacing, and sound the gap, several times while a window of this many is open.
+const SAMPLES: f64 = 40.0;
+
+/// Something due once in a while.
+struct Due {
+    next: f64,
+    every: f64,
+}
+
+impl Due {
+    fn at(&mut self, time: f64) -> bool {
+        let due = time >= self.next - 1e-9;
+        if due {
+            self.next += self.every;
+        }
+        due
+    }
+}
 
 /// What is seen through time.
 struct Seen<'a> {
@@ -62,7 +81,8 @@ struct Seen<'a> {
     area: f64,
     controller: Controller,
     windows: [Window; 3],
-    next_sample: f64,
+    entry: Due,
+    sample: Due,
     /// t, force, flux, kinetic energy.
     series: Vec<[f64; 4]>,
 }
@@ -92,11 +112,12 @@ impl Seen<'_> {
         }
         self.controller.look(mean, stretch);
         simulation.forces_mut().drive(self.controller.force);
-        if time >= self.next_sample - 1e-9 {
-            self.next_sample += SAMPLE;
+        if self.entry.at(time) {
             let energy: f64 =
                 simulation.fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum();
             self.series.push([time, force, flux, energy]);
+        }
+        if self.sample.at(time) {
             let setup = self.setup;
             if let Some(window) = self.window(time) {
                 window.sample(setup, simulation);
@@ -136,7 +157,9 @@ where
     let last = measure::mean_velocity(&simulation, area);
     let controller = Controller { wanted, response: s.response, force: s.force, last };
     let (windows, series) = (Default::default(), Vec::new());
-    let mut seen = Seen { setup, area, controller, windows, next_sample: 0.0, series };
+    let entry = Due { next: 0.0, every: ENTRY };
+    let sample = Due { next: 0.0, every: s.average * s.end / SAMPLES };
+    let mut seen = Seen { setup, area, controller, windows, entry, sample, series };
     let mut failed = None;
     let (status, cost) =
         runner::drive(&mut simulation, setup.dt, &times, context, &mut (), &mut |sim, k| {

@@ -141,8 +141,8 @@ fn table(runs: &[JudgedRun]) -> Table {
         Column::num("time", "s"),
         Column::text("ended"),
     ];
-    let caption = "All runs, after what finite elements have. H/dx = 40 runs at Re 50 only, in the \
-                   full tier: 10 H/U_b of it take 160 s. Errors are rms over the points of ten stations \
+    let caption = "All runs, after what finite elements have. H/dx = 40 runs in the full tier only, \
+                   for 4 and 10 H/U_b: 10 H/U_b of it take 160 s. Errors are rms over the points of ten stations \
                    against finite elements; force and ripple (rms) over the last fifth of the run; error of \
                    shear is rms over the hill, of the largest shear there; flux of sections is the largest \
                    error of ten; drag balance is the stress at the walls over the force, less 1; unsteady \
@@ -224,8 +224,8 @@ fn pictures(runs: &[JudgedRun]) -> Study {
 /// Shear stress along hill and lid.
 fn walls(runs: &[JudgedRun]) -> Study {
     let caption = "Shear stress along the hill (left) and the lid (right), variant `carried`, over finite \
-                   elements (black). H/dx = 5 and 40 run at Re 50 only. Where it is negative on the hill \
-                   the flow goes backwards. The crest is at x = 0 and 9 H.";
+                   elements (black). H/dx = 5 runs at Re 50 only. Where it is negative on the hill the flow \
+                   goes backwards. The crest is at x = 0 and 9 H.";
     let mut figure = Figure::new("periodic-hill-shear", caption).columns(2);
     for re in REYNOLDS {
         let Some(reference) = reference(re) else { continue };
