@@ -48,16 +48,15 @@ pub trait Lane:
 
 /// A loop that is written once for lanes of any type.
 pub(crate) trait OnLanes {
-    /// Does it.
+    /// Does it. To be inlined always, or else it is not compiled for the registers that it is run on.
     fn run<V: Lane>(self);
 }
 
-/// Does it on the widest lanes that the processor has. Never inlined, so that a profile shows it.
-#[inline(never)]
+/// Does it on the widest lanes that the processor has.
 pub(crate) fn on_widest(work: impl OnLanes) {
     #[cfg(target_arch = "x86_64")]
-    if crate::ymm::Ymm::is_there() {
-        return crate::ymm::Ymm::run(work);
+    if crate::ymm::is_there() {
+        return crate::ymm::run(work);
     }
     work.run::<WideF64x4>();
 }

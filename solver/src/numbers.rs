@@ -84,6 +84,7 @@ fields_of_numbers! { Vector2 (x, y), gather(read) = gather_vector(read) }
 
 /// A symmetric tensor of the plane: three numbers, not four.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)] // xx and yy side by side
 pub struct Symmetric<V = f64> {
     /// Along x.
     pub xx: V,

@@ -125,6 +125,7 @@ impl<X: Numbers> Evolved<X> {
 
 /// What every term may ask of a particle, `V` per neighbour or `f64` for one.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)] // mass and density side by side
 pub struct Common<V> {
     /// Mass per unit depth \[kg/m\].
     pub mass: V,

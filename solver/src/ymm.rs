@@ -11,36 +11,35 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use crate::lane::{OnLanes, lane};
 
+/// Whether the processor has such registers. The answer is kept by the standard library.
+pub(crate) fn is_there() -> bool {
+    std::is_x86_feature_detected!("avx2")
+}
+
+/// A loop compiled for such registers, where [`is_there`] says so.
+pub(crate) fn run(work: impl OnLanes) {
+    #[target_feature(enable = "avx2")]
+    fn with_registers_for_four(work: impl OnLanes) {
+        work.run::<Ymm>();
+    }
+    assert!(is_there());
+    // SAFETY: they are there.
+    unsafe { with_registers_for_four(work) }
+}
+
 /// Four numbers in one register.
 ///
 /// # Safety
 ///
-/// Values of this type are made where the processor is known to have AVX2, and nowhere else: that is
-/// what every `unsafe` of this file relies on: in [`Ymm::run`] alone. The type is not visible outside
-/// of the crate.
+/// Private: no value of this type is made but under [`run`], where the processor has AVX2. That is what
+/// every `unsafe` of this file relies on.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub(crate) struct Ymm(__m256d);
+struct Ymm(__m256d);
 
 impl Ymm {
-    /// Whether the processor has such registers. The answer is kept by the standard library.
-    pub fn is_there() -> bool {
-        std::is_x86_feature_detected!("avx2")
-    }
-
-    /// A loop compiled for such registers, where [`Ymm::is_there`] says so.
-    pub fn run(work: impl OnLanes) {
-        #[target_feature(enable = "avx2")]
-        fn compiled_for_them(work: impl OnLanes) {
-            work.run::<Ymm>();
-        }
-        assert!(Self::is_there());
-        // SAFETY: they are there.
-        unsafe { compiled_for_them(work) }
-    }
-
     /// The four numbers.
-    pub fn to_array(self) -> [f64; 4] {
+    fn to_array(self) -> [f64; 4] {
         // SAFETY: both are four f64 in the same order.
         unsafe { std::mem::transmute(self.0) }
     }
@@ -135,18 +134,32 @@ mod tests {
             [a.at_least(b), b.at_least(a), a.positive(), b.positive()],
             [a.abs().sqrt(), b.abs().sqrt(), V::all(0.1), V::all(0.0)],
         ];
-        assert_eq!(V::gather_pair(|k| [A[k], B[k]]), [a, b]);
+        let pair = V::gather_pair(|k| [A[k], B[k]]);
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
-        let lanes = all.into_iter().flatten().flat_map(array).map(bits);
+        let lanes = all.into_iter().flatten().chain(pair).flat_map(array).map(bits);
         lanes.chain([a.total(), b.total(), (a * b).total()].map(bits)).collect()
+    }
+
+    /// The results in the lanes that `run` takes, which are `Ymm`.
+    struct Results<'a>(&'a mut Vec<u64>);
+
+    impl OnLanes for Results<'_> {
+        fn run<V: Lane>(self) {
+            *self.0 = results::<V>(|lanes| {
+                let any: &dyn std::any::Any = &lanes;
+                any.downcast_ref::<Ymm>().expect("the lanes of this file").to_array()
+            });
+        }
     }
 
     #[test]
     fn every_operation_has_the_bits_of_the_portable_one() {
-        if Ymm::is_there() {
+        if is_there() {
             let portable = results::<WideF64x4>(|lanes| lanes.0.to_array());
-            assert_eq!(results::<Ymm>(Ymm::to_array), portable);
             assert!(portable.iter().any(|bits| *bits == (-0.0f64).to_bits()));
+            let mut found = Vec::new();
+            run(Results(&mut found));
+            assert_eq!(found, portable);
         }
     }
 }

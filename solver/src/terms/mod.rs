@@ -88,9 +88,10 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
 
     /// Told the largest speed of the scene \[m/s\] before each step, if it wants it.
     fn prepare(&mut self, _max_speed: f64) {}
-    /// What a particle shows: zeros, or nothing, unless a term has more to show.
+    /// What a particle shows. Only a term that shows nothing may leave this out.
     #[inline(always)]
     fn shows(&self, _own: &Common<f64>, _extra: &X) -> Self::Shows {
+        const { assert!(size_of::<Self::Shows>() == 0, "a term that shows something says what") };
         Self::Shows::default()
     }
     /// Adds the neighbours of one pair to the sum.
@@ -150,28 +151,13 @@ tuple_of_terms!(A 0, B 1, C 2, D 3, E 4, F 5);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lane::{OnLanes, on_widest};
     use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2};
     use simba::simd::WideF64x4;
 
-    #[cfg(target_arch = "x86_64")]
-    use crate::ymm::Ymm;
-
-    /// Lanes of four.
-    trait Four: Lane {
-        fn array(self) -> [f64; 4];
-    }
-
-    impl Four for WideF64x4 {
-        fn array(self) -> [f64; 4] {
-            self.0.to_array()
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    impl Four for Ymm {
-        fn array(self) -> [f64; 4] {
-            self.to_array()
-        }
+    /// The k-th of four finite numbers.
+    fn lane<V: Lane>(lanes: V, k: usize) -> f64 {
+        (lanes * V::gather(|j| if j == k { 1.0 } else { 0.0 })).total()
     }
 
     /// Four neighbours, number k of field f; the last one is at the same place as the particle.
@@ -210,7 +196,7 @@ mod tests {
     }
 
     /// Each lane of four neighbours at once has the bits of that neighbour alone.
-    fn check<V: Four, K: Kernel, T: Term<()>, const N: usize>(
+    fn check<V: Lane, K: Kernel, T: Term<()>, const N: usize>(
         term: T,
         read_wide: impl Fn(<T::Sum as Numbers>::In<V>) -> [V; N],
         read: impl Fn(<T::Sum as Numbers>::In<f64>) -> [f64; N],
@@ -223,8 +209,7 @@ mod tests {
         };
         let wide = pair(&kernel, |field| V::gather(|k| number(field, k)));
         let four = read_wide(sum(&term, &wide, |c| {
-            let [mass, density] = [c.mass.array(), c.density.array()];
-            T::Shows::gather::<V>(|k| at(k, mass[k], density[k]))
+            T::Shows::gather::<V>(|k| at(k, lane(c.mass, k), lane(c.density, k)))
         }));
         let mut nonzero = 0;
         for k in 0..4 {
@@ -232,7 +217,7 @@ mod tests {
             let alone =
                 read(sum(&term, &one, |c| T::Shows::gather::<f64>(|_| at(k, c.mass, c.density))));
             for (four, alone) in four.iter().zip(alone) {
-                let lane = four.array()[k];
+                let lane = lane(*four, k);
                 let term = std::any::type_name::<T>();
                 assert!(lane == alone && alone.is_finite(), "{term}: {lane:e} {alone:e}");
                 nonzero += u32::from(alone != 0.0);
@@ -241,15 +226,15 @@ mod tests {
         assert!(nonzero > 0, "zeros show nothing");
     }
 
-    fn check_vector<V: Four, K: Kernel>(term: impl Term<(), Sum = Vector2<f64>>) {
+    fn check_vector<V: Lane, K: Kernel>(term: impl Term<(), Sum = Vector2<f64>>) {
         check::<V, K, _, 2>(term, |s| [s.x, s.y], |s| [s.x, s.y]);
     }
 
-    fn check_number<V: Four, K: Kernel>(term: impl Term<(), Sum = f64>) {
+    fn check_number<V: Lane, K: Kernel>(term: impl Term<(), Sum = f64>) {
         check::<V, K, _, 1>(term, |s| [s], |s| [s]);
     }
 
-    fn check_every_term<V: Four, K: Kernel>() {
+    fn check_every_term<V: Lane, K: Kernel>() {
         let eos = Tait { background: 0.2, ..Tait::new(1.0, 3.0) };
         let (eta2, w) = (1e-4, 2.0);
         check_vector::<V, K>(Pressure::new(eos));
@@ -264,18 +249,23 @@ mod tests {
         check_number::<V, K>(DensityDiffusion::hydrostatic(0.1, eos, Vector2::new(0.3, -0.2)));
     }
 
-    fn check_every_kernel<V: Four>() {
+    fn check_every_kernel<V: Lane>() {
         check_every_term::<V, CubicSpline>();
         check_every_term::<V, QuinticSpline>();
         check_every_term::<V, WendlandC2>();
     }
 
+    struct EveryKernel;
+
+    impl OnLanes for EveryKernel {
+        fn run<V: Lane>(self) {
+            check_every_kernel::<V>();
+        }
+    }
+
     #[test]
     fn four_lanes_have_the_bits_of_four_scalars() {
         check_every_kernel::<WideF64x4>();
-        #[cfg(target_arch = "x86_64")]
-        if Ymm::is_there() {
-            check_every_kernel::<Ymm>();
-        }
+        on_widest(EveryKernel);
     }
 }

@@ -207,8 +207,9 @@ pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, re
         over(&|k| wall[k][1]),
         over(&|k| wall[k][2] * setup.slope(along(k))),
     ];
-    for (name, drag) in DRAGS.into_iter().zip(drags) {
-        put(name, drag, "rho U_b^2 H", "integral over a period of the wall");
+    let formulas = ["shear on the hill", "shear on the lid", "pressure times slope of the hill"];
+    for ((name, drag), what) in DRAGS.into_iter().zip(drags).zip(formulas) {
+        put(name, drag, "rho U_b^2 H", &format!("integral over a period of the {what}"));
     }
     let formula = "(shear on both walls + pressure on the hill)/(force times area) - 1";
     put("drag_balance", drags.iter().sum::<f64>() / (force * area) - 1.0, "-", formula);

@@ -55,8 +55,8 @@ where
 const STRETCH: f64 = 10.0;
 /// Time between entries of the history \[H/U_b\].
 const ENTRY: f64 = 0.5;
-/// Samples of the field in a window. Disorder, not the decay, is what moves a mean of few: particles pass
-/// a spacing, and sound the gap, several times while a window of this many is open.
+/// Samples of the field in a window, as far as the controller looks that often: disorder, and not the
+/// decay, is what moves a mean of few.
 const SAMPLES: f64 = 40.0;
 
 /// Something due once in a while.
@@ -69,7 +69,7 @@ impl Due {
     fn at(&mut self, time: f64) -> bool {
         let due = time >= self.next - 1e-9;
         if due {
-            self.next += self.every;
+            self.next = self.every * ((time + 1e-9) / self.every + 1.0).floor();
         }
         due
     }
