@@ -34,7 +34,7 @@ def flat(level):
     error = np.abs(flow.at(flow.u, x, s) - parabola).max() / parabola.max()
     yield "error of u without hill over the largest u", re, level, error, 0.0
     yield "largest v without hill", re, level, np.abs(flow.at(flow.v, x, s)).max(), 0.0
-    yield "force without hill over that of Poiseuille flow", re, level, flow.force / force, 1.0
+    yield "force without hill over that of Poiseuille flow, less 1", re, level, flow.force / force - 1, 0.0
 
 
 def creeping(level):

@@ -13,6 +13,10 @@ REYNOLDS = (10.0, 50.0, 100.0)
 LEVELS = (0, 1, 2)
 STATIONS = (0.05, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0)
 POINTS = 200
+# Of a field to start from, on the middle mesh: closer together where the walls turn.
+STARTS = (0.0, 0.125, 0.25, 0.375, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 4.0, 5.0, 6.0,
+          6.5, 6.75, 7.0, 7.25, 7.5, 7.75, 8.0, 8.25, 8.5, 8.625, 8.75, 8.875)
+START_POINTS, START_LEVEL, START_DIGITS = 100, 1, 6
 WALL = np.arange(361) * 0.025
 LINE = 81
 DIGITS = 8  # decimals of the tables
@@ -34,12 +38,20 @@ def solve():
     return found, rows
 
 
+def heights(points):
+    """The middles of equal parts of a section."""
+    return (np.arange(points) + 0.5) / points
+
+
+def across(flow, x, points):
+    """u and v at those heights of the section at x."""
+    s = heights(points)
+    return tuple(flow.at(f, np.full_like(s, x), s) for f in (flow.u, flow.v))
+
+
 def quantities(flow, re):
-    s = (np.arange(POINTS) + 0.5) / POINTS
-    profiles = {}
-    for x in STATIONS:
-        at = np.full_like(s, x), s
-        profiles[x] = flow.at(flow.u, *at), flow.at(flow.v, *at)
+    profiles = {x: across(flow, x, POINTS) for x in STATIONS}
+    starts = {x: across(flow, x, START_POINTS) for x in STARTS}
     pressure, shear, lid = flow.drag(re)
     numbers = {"force": flow.force, "hill_pressure_drag": pressure, "hill_shear_drag": shear,
                "lid_shear_drag": lid}
@@ -54,7 +66,8 @@ def quantities(flow, re):
         xs = np.linspace(turns[0][0], turns[1][0], LINE)
         line = xs, np.concatenate([flow.hill(xs[:1])[0], hill.separation_line(flow, xs[1:-1]),
                                    flow.hill(xs[-1:])[0]])
-    return dict(profiles=profiles, wall=(hill_shear, lid_shear), numbers=numbers, line=line, turns=turns)
+    return dict(profiles=profiles, starts=starts, wall=(hill_shear, lid_shear), numbers=numbers, line=line,
+                turns=turns)
 
 
 UNITS = {"force": "U_b^2/H", "separation": "H", "reattachment": "H"}
@@ -73,17 +86,19 @@ def order(coarse, middle, fine):
 
 
 def extrapolated(of):
-    """Value, uncertainty, order of a field or a number on three meshes: Richardson's extrapolation, and 1.25
-    times what it adds to the finest mesh (Roache 1994), not below the root mean square of that over the
-    field. Where the meshes show no order, the finest mesh and its distance from the middle one."""
+    """Value, uncertainty, order of a field or a number on three meshes. The value is Richardson's
+    extrapolation. The uncertainty is Roache's index with an order of at most 2, which derivatives at the
+    wall have: 1.25 times what that order would add to the finest mesh, not below the root mean square of
+    that over the field. Where the meshes show no order, the finest mesh and 3 times its distance from the
+    middle one (Roache 1994)."""
     (_, middle, fine), p = of, order(*of)
-    added = np.subtract(fine, middle)
+    distance = np.subtract(fine, middle)
     if 1.0 <= p <= 6.0:
-        added, safety = added / (2**p - 1), 1.25
+        added, bound = distance / (2**p - 1), 1.25 * distance / (2 ** min(p, 2.0) - 1)
     else:
-        added, safety, p = added, 1.0, np.nan
-    least = max(np.sqrt(np.mean(added**2)), 0.5 * 10.0**-DIGITS)
-    return fine + (0.0 if np.isnan(p) else added), safety * np.maximum(np.abs(added), least), p
+        added, bound, p = 0.0 * distance, 3.0 * distance, np.nan
+    least = max(np.sqrt(np.mean(bound**2)), 0.5 * 10.0**-DIGITS)
+    return fine + added, np.maximum(np.abs(bound), least), p
 
 
 def fixed(x):
@@ -95,7 +110,7 @@ def doubt(x):
 
 
 def profile_rows(found):
-    s = (np.arange(POINTS) + 0.5) / POINTS
+    s = heights(POINTS)
     for re in REYNOLDS:
         for x in STATIONS:
             h = float(hill.Hill()(np.array(x))[0])
@@ -105,6 +120,14 @@ def profile_rows(found):
             for k, y in enumerate(h + s * (hill.LID - h)):
                 u, u_doubt, v, v_doubt = (one[k] for one in both)
                 yield [f"{re:g}", x, fixed(y), fixed(u), doubt(u_doubt), fixed(v), doubt(v_doubt)]
+
+
+def start_rows(found):
+    s = heights(START_POINTS)
+    for re in REYNOLDS:
+        for x, both in found[re, START_LEVEL]["starts"].items():
+            for share, u, v in zip(s, *both):
+                yield [f"{re:g}", x, f"{share:g}", f"{u:.{START_DIGITS}f}", f"{v:.{START_DIGITS}f}"]
 
 
 def wall_rows(found):
@@ -146,6 +169,6 @@ if __name__ == "__main__":
     for mesh in LEVELS[:2]:
         known += [*checks.flat(mesh), *checks.creeping(mesh)]
     package.write(Path(__file__).parent, {
-        "profiles": profile_rows(every), "wall": wall_rows(every), "line": line_rows(every),
+        "profiles": profile_rows(every), "starts": start_rows(every), "wall": wall_rows(every), "line": line_rows(every),
         "summary": summary_rows(every), "checks": check_rows(known + balance),
     })

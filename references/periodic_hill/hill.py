@@ -9,7 +9,7 @@ G = 3.035 - h, and the element edges stand where h has its breaks.
 
 Velocity of second order, pressure linear in each rectangle and discontinuous between them: tested with a
 constant and with the place along x, continuity says that the same flux passes every edge between columns
-and, on average, every column. Edges stand at the stations of the tables, so that these are exact.
+and, on average, every column. Edges stand at the stations of the tables, whose flux is therefore exact.
 """
 
 from dataclasses import dataclass
@@ -197,7 +197,8 @@ class Flow:
             residual = np.concatenate([
                 (plain @ self.u - dx.T @ self.p - self.force * self.volume)[free],
                 (plain @ self.v - dy.T @ self.p)[free],
-                -(dx @ self.u + dy @ self.v)[1:],  # the first is minus the sum of the others
+                # The first, of a constant, is minus the sum of those of the other rectangles.
+                -(dx @ self.u + dy @ self.v)[1:],
             ])
             bx, by = dx[1:, free], dy[1:, free]
             matrix = scipy.sparse.bmat([

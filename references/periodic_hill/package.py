@@ -23,6 +23,13 @@ TABLES = {
         *value("u", SPEED, "velocity along x"),
         *value("v", SPEED, "velocity along y"),
     ],
+    "starts": [
+        RE,
+        ("x", "number", "H", "station, from the crest along the flow"),
+        ("s", "number", "-", "share of the section below, from hill to lid"),
+        ("u", "number", SPEED, "velocity along x, on the middle mesh: to start from, not to compare with"),
+        ("v", "number", SPEED, "velocity along y, likewise"),
+    ],
     "wall": [
         RE,
         ("x", "number", "H", "place, from the crest along the flow"),

@@ -45,7 +45,8 @@ const EMBEDDED: &[Embedded] = embedded! {
     "dambreak_martin_moyce": ["front.csv", "height.csv"],
     "peers_channel": ["errors.csv"],
     "peers_taylor_green": ["errors.csv"],
-    "periodic_hill": ["profiles.csv", "wall.csv", "line.csv", "summary.csv", "checks.csv"],
+    "periodic_hill":
+        ["profiles.csv", "starts.csv", "wall.csv", "line.csv", "summary.csv", "checks.csv"],
     "periodic_hill_geometry": ["segments.csv"],
     "published_sph_errors": ["errors.csv"],
     "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "checks.csv"],
