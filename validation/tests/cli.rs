@@ -294,7 +294,7 @@ fn assignment(case: usize) -> impl Strategy<Value = String> {
 
 /// Settings that make a scene small, of those that the case has.
 fn small(case: &dyn Case, variant: &str) -> Vec<String> {
-    let all = ["rows=5", "columns=0", "n=6", "spacing=0.5"].map(String::from);
+    let all = ["rows=5", "columns=0", "layers=6", "n=6", "spacing=0.5"].map(String::from);
     let is_known = |set: &String| case.settings(variant, std::slice::from_ref(set)).is_ok();
     all.into_iter().filter(is_known).collect()
 }

@@ -11,16 +11,25 @@ use validation::{record, suite};
 
 use super::output;
 
-/// Judgements as a table: what fails comes last, next to the prompt.
+/// Judgements as a table: what fails comes last, next to the prompt. Reasons of limitations are notes.
 pub fn table<'a>(all: impl IntoIterator<Item = &'a suite::Judged>) -> String {
     let mut judged: Vec<&suite::Judged> = all.into_iter().collect();
     judged.sort_by_key(|j| j.judgement.verdict.is_failure());
+    let mut reasons: Vec<&str> = Vec::new();
+    let mut word = |verdict: &'a Verdict| {
+        let Verdict::Limitation(reason) = verdict else { return verdict.to_string() };
+        let known = reasons.iter().position(|known| known == reason).unwrap_or_else(|| {
+            reasons.push(reason);
+            reasons.len() - 1
+        });
+        format!("known limitation [{}]", known + 1)
+    };
     let rows: Vec<Vec<String>> = judged
         .into_iter()
         .map(|suite::Judged { gate, judgement }| {
             let number = |number: Option<f64>| number.map(|number| report::sig(number, 4));
             vec![
-                judgement.verdict.to_string(),
+                word(&judgement.verdict),
                 gate.id.clone(),
                 number(judgement.value).unwrap_or("-".into()),
                 gate.bound.to_string(),
@@ -28,7 +37,12 @@ pub fn table<'a>(all: impl IntoIterator<Item = &'a suite::Judged>) -> String {
             ]
         })
         .collect();
-    output::table(&["verdict", "gate", "value", "bound", "margin"], &rows)
+    let mut text = output::table(&["verdict", "gate", "value", "bound", "margin"], &rows);
+    for (k, reason) in reasons.iter().enumerate() {
+        let head = format!("[{}]", k + 1);
+        text += &format!("{head:<5}{}", output::wrap(reason, 100, "     ").trim_start());
+    }
+    text
 }
 
 /// Everything that a suite decided: `verify --json` and `verdicts.json` of a report.

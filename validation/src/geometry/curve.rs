@@ -104,15 +104,21 @@ impl Curve {
             let along = self.point(k + 1) - self.point(k - 1);
             self.point(k) + Vector2::new(along.y, -along.x).normalize() * depth
         };
+        let moved: Vec<Point> = (0..count).map(moved).collect();
+        // A fold runs back; where none does nothing is too near, and the search below, which costs
+        // samples times reach, is spared.
+        let runs_back = |(along, offset): (Vector2<f64>, Vector2<f64>)| along.dot(&offset) <= 0.0;
+        if !self.chords(&self.points).zip(self.chords(&moved)).any(runs_back) {
+            return moved;
+        }
         // A fold comes from within half a turn of radius `depth`.
         let reach = (SAMPLES * 4.0 * depth.abs() / dx) as isize;
         let reach = reach.min(count / 2);
         let nearest2 = (NEARER * depth) * (NEARER * depth);
-        let is_kept = |k: &isize| {
-            let here = moved(*k);
+        let is_kept = |(k, here): &(isize, Point)| {
             (-reach..=reach).all(|j| (self.point(k + j) - here).norm_squared() >= nearest2)
         };
-        (0..count).filter(is_kept).map(moved).collect()
+        (0..count).zip(moved).filter(is_kept).map(|(_, here)| here).collect()
     }
 
     /// Sample k, of any period.
