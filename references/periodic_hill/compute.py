@@ -169,6 +169,6 @@ if __name__ == "__main__":
     for mesh in LEVELS[:2]:
         known += [*checks.flat(mesh), *checks.creeping(mesh)]
     package.write(Path(__file__).parent, {
-        "profiles": profile_rows(every), "starts": start_rows(every), "wall": wall_rows(every), "line": line_rows(every),
-        "summary": summary_rows(every), "checks": check_rows(known + balance),
+        "profiles": profile_rows(every), "starts": start_rows(every),
+        "wall": wall_rows(every), "line": line_rows(every), "summary": summary_rows(every), "checks": check_rows(known + balance),
     })

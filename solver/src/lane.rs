@@ -48,7 +48,7 @@ pub trait Lane:
 
 /// A loop that is written once for lanes of any type.
 pub(crate) trait OnLanes {
-    /// Does it. To be inlined always, or else it is not compiled for the registers that it is run on.
+    /// Does it. To be inlined always: what is not is right, but slow, compiled for every processor.
     fn run<V: Lane>(self);
 }
 

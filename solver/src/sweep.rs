@@ -94,7 +94,8 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
     }
 }
 
-/// One block of rows. The share of its sums in a profile is the share of the row loop.
+/// One block of rows. In a profile it is `with_registers_for_four`; the portable form is inlined into its
+/// caller.
 struct Rows<'a, W, X, U> {
     sweep: &'a W,
     block: &'a Block,

@@ -381,7 +381,6 @@ struct Carousel {
 impl<X: Numbers> Term<X> for Carousel {
     type Shows = ();
     type Sum = ();
-    fn shows(&self, _: &Common<f64>, _: &X) {}
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: (), _: &mut ()) {}
     fn finish(&self, _: &Common<f64>, _: (), _: (), rate: &mut Rate<X>) {
         rate.velocity += Vector2::new(-rate.position.y, rate.position.x) * self.omega;

@@ -14,6 +14,7 @@ pub struct BodyForce(pub Vector2<f64>);
 impl<X> Term<X> for BodyForce {
     type Shows = ();
     type Sum = ();
+
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: (), _: &mut ()) {}
 

@@ -11,7 +11,7 @@ use validation::record::{Metric, Record, Status};
 use validation::report::check_page;
 use validation::runner::Context;
 use validation::settings::Field;
-use validation::suite::{JudgedRun, Study};
+use validation::suite::{Judged, JudgedRun, Study};
 
 use super::{Exit, World, arguments::Arguments, conclude, dispatch, judged::Verdicts};
 
@@ -154,6 +154,34 @@ fn a_report_is_whole_and_explain_reads_it() {
         let line = format!("touchstone explain {gate} --reports OUT");
         assert_eq!(in_folder(&line), expected, "{gate}");
     }
+}
+
+/// The runs took minutes: whoever wants them has them.
+#[test]
+fn a_page_that_may_not_open_is_told_and_kept() {
+    static TWICE: [&dyn Case; 2] = [&RIGHT, &RIGHT]; // so are their anchors
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("a plain path");
+    let arguments = Arguments::try_parse_from(["touchstone", "report", "--out", out]);
+    let world = World { cases: &TWICE, interrupt: &NEVER };
+    assert_eq!(conclude(|| dispatch(&arguments.expect("sound").command, &world)), Exit::Bug);
+    let html = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
+    assert!(check_page(&html).is_err_and(|reason| reason.contains("used twice")));
+}
+
+#[test]
+fn notes_tell_each_reason_once() {
+    let limited = |id: &str, reason: &str| {
+        let gate = Gate::new(id, "error", Bound::Below(2.0), Evidence::Theory, "staged");
+        Judged::new(gate.with_limitation(reason), Some(3.0))
+    };
+    let all = [limited("a", "one"), limited("b", "two"), limited("c", "one")];
+    let text = super::judged::table(&all);
+    let lines: Vec<&str> = text.lines().skip(1).collect();
+    assert!(lines[0].starts_with("known limitation [1]  a"), "{text}");
+    assert!(lines[1].starts_with("known limitation [2]  b"), "{text}");
+    assert!(lines[2].starts_with("known limitation [1]  c"), "{text}");
+    assert_eq!(lines[3..], ["[1]  one", "[2]  two"], "{text}");
 }
 
 #[test]

@@ -199,14 +199,7 @@ pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, re
         "-",
         "largest |flux through a station/flux wanted - 1|, interpolated",
     );
-    // Trapezoidal rule over the period: the ends are the same point.
-    let cell = along(1);
-    let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * cell;
-    let drags = [
-        over(&|k| wall[k][0]),
-        over(&|k| wall[k][1]),
-        over(&|k| wall[k][2] * setup.slope(along(k))),
-    ];
+    let drags = drags(setup, &wall);
     let formulas = ["shear on the hill", "shear on the lid", "pressure times slope of the hill"];
     for ((name, drag), what) in DRAGS.into_iter().zip(drags).zip(formulas) {
         put(name, drag, "rho U_b^2 H", &format!("integral over a period of the {what}"));
@@ -220,6 +213,12 @@ pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, re
     }
     compare(setup, &sections[2], &wall, record);
     profiles(setup, &sections[2], &wall, record);
+}
+
+/// [`DRAGS`], by the trapezoidal rule over the period: the ends are the same point.
+fn drags(setup: &Setup, wall: &[[f64; 3]]) -> [f64; 3] {
+    let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * along(1);
+    [over(&|k| wall[k][0]), over(&|k| wall[k][1]), over(&|k| wall[k][2] * setup.slope(along(k)))]
 }
 
 /// Where the shear on the hill turns negative (sign −1) or positive (sign 1): the start and the end of the
