@@ -306,14 +306,8 @@ fn order_row(
 const TIMED_AGAIN_BELOW: f64 = 0.8;
 /// The same in the quick tier, which has to be quick: short runs are the noisiest.
 const QUICK_TIMED_AGAIN_BELOW: f64 = 0.03;
-/// Timings of a run that is timed again.
-const REPETITIONS: usize = 5;
-/// The same in the quick tier.
-const QUICK_REPETITIONS: usize = 3;
-
-fn repetitions(tier: Tier) -> usize {
-    if tier == Tier::Quick { QUICK_REPETITIONS } else { REPETITIONS }
-}
+/// Timings of a run that is timed again: the fewest that have a median.
+const REPETITIONS: usize = 3;
 
 fn cost(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRun]) -> Study {
     let (metric, label) = error_metric(flow);
@@ -330,7 +324,7 @@ fn cost(case: &'static dyn Case, flow: Flow, tier: Tier, runs: &[JudgedRun]) -> 
          stepping loop on one thread, which are its wall time on a core of its own, median of up to {} \
          interleaved runs, bars from fastest to slowest; other codes were timed on another machine, \
          {others}. Right: pair interactions, which no noise touches. Rows: {}.",
-        repetitions(tier),
+        REPETITIONS,
         rows.join(", ")
     );
     let figure = work_precision::figure(&id, &caption, label, &points, &peers(flow));
@@ -376,7 +370,7 @@ fn timed_points(
     for &k in &again {
         points[k].seconds.clear();
     }
-    for _ in 0..repetitions(tier) {
+    for _ in 0..REPETITIONS {
         for &k in &again {
             let planned = &runs[k].planned;
             if let Ok(record) = case.run(planned.variant, &planned.set, &Context::default()) {

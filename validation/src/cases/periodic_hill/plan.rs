@@ -24,7 +24,7 @@ const FINEST_RUNS: [(f64, f64, Option<&str>); 3] = [
     (10.0, 5.0, None),
     (
         50.0,
-        8.0,
+        6.0,
         Some(
             "to 30, in nine minutes: 0.04 % is left, the error of u is 0.08 %, of the force 0.03 %, \
              reattachment is 0.003 H off",
@@ -32,7 +32,7 @@ const FINEST_RUNS: [(f64, f64, Option<&str>); 3] = [
     ),
     (
         100.0,
-        8.0,
+        6.0,
         Some(
             "to 40, in twelve minutes: 0.12 % is left, the error of u is 0.07 %, of the force 0.04 %, \
              reattachment is 0.005 H off",
@@ -71,7 +71,8 @@ pub const BUDGET: [(&str, &str); 5] = [
 /// The runs of a tier: first the ladder at Re 50, variant by variant.
 pub fn plan(tier: Tier) -> Vec<Planned> {
     if tier == Tier::Quick {
-        return vec![run(BEST, 50.0, 10, END, Start::Rest)];
+        // Three quarters of the time, which the goal at ten spacings allows and finer ones do not.
+        return vec![run(BEST, 50.0, 10, 30.0, Start::Rest)];
     }
     let mut runs = Vec::new();
     for (variant, resolutions) in LADDER {
@@ -94,9 +95,9 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
     runs
 }
 
-/// End of a run from rest \[H/U_b\]: at constant flux transients decay within 20 H/U_b at Re 50, and what is
-/// left is gated. Ten more change no number by more than its error bar.
-pub const END: f64 = 30.0;
+/// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50: at 30 the error of u at 20
+/// spacings is 0.8 % instead of 0.3 %, and the gate on what is left of the decay fails.
+pub const END: f64 = 40.0;
 
 /// Roughly what a run takes \[s\].
 fn seconds(n: usize, end: f64) -> f64 {

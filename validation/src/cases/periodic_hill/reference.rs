@@ -1,5 +1,7 @@
 //! The finite-element flow of this Reynolds number, and its field between the stations.
 
+use std::sync::OnceLock;
+
 use nalgebra::Vector2;
 
 use super::HillSettings;
@@ -7,6 +9,9 @@ use crate::{
     geometry::Hill,
     reference::{Reference as Package, ReferenceError, Table},
 };
+
+/// Read and checked once: 25 000 rows, which every run and every figure asks for.
+static PACKAGE: OnceLock<Package> = OnceLock::new();
 
 /// A profile across one section.
 #[derive(Clone, Debug, Default)]
@@ -40,7 +45,13 @@ impl Reference {
         if settings.crest == 0.0 {
             return Ok(None);
         }
-        let package = Package::load("periodic_hill")?;
+        let package = match PACKAGE.get() {
+            Some(package) => package,
+            None => {
+                let package = Package::load("periodic_hill")?;
+                PACKAGE.get_or_init(|| package)
+            }
+        };
         let rows = |table: &Table| -> Result<Vec<usize>, ReferenceError> {
             let re = table.numbers("re")?;
             Ok((0..re.len()).filter(|&k| re[k] == settings.re).collect())
