@@ -2,8 +2,9 @@
 //! rates of its particle to the integrator. Gather only: no locks, no atomics, and the same bits
 //! for any number of threads.
 
+use std::marker::PhantomData;
+
 use nalgebra::Vector2;
-use simba::simd::WideF64x4;
 
 use crate::{
     kernel::{Kernel, Smoothing},
@@ -44,8 +45,9 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         P: Fn(&S) -> T::Shows + Sync,
     {
         parallel::for_each_block(targets, parallel, &|b, targets| {
-            let (block, first, update) = (&blocks[b], first + b * BLOCK, &update);
-            on_widest(Rows { sweep: self, block, first, targets, update });
+            let (first, count) = (first + b * BLOCK, targets.len());
+            let take = |k: usize, rate| update(first + k, &mut targets[k], &rate);
+            on_widest(Rows::new(self, &blocks[b], [first, count], take));
         });
     }
 
@@ -55,10 +57,12 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         T: Term<X>,
         P: Fn(&S) -> T::Shows,
     {
-        let row = |k: usize| {
-            self.row::<WideF64x4, X>(&self.columns[first + k], blocks[k / BLOCK].row(k % BLOCK))
-        };
-        (0..count).map(row).collect()
+        let mut rates = Vec::with_capacity(count);
+        for (block, start) in blocks.iter().zip((0..count).step_by(BLOCK)) {
+            let count = BLOCK.min(count - start);
+            on_widest(Rows::new(self, block, [first + start, count], |_, rate| rates.push(rate)));
+        }
+        rates
     }
 
     /// The rates of one particle.
@@ -96,26 +100,87 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
 
 /// One block of rows. In a profile it is `with_registers_for_four`; the portable form is inlined into its
 /// caller.
-struct Rows<'a, W, X, U> {
+struct Rows<'a, W, X, F> {
     sweep: &'a W,
     block: &'a Block,
-    first: usize,
-    targets: &'a mut [Evolved<X>],
-    update: &'a U,
+    /// Column of the first row, number of rows.
+    rows: [usize; 2],
+    /// Takes the rates of the k-th row.
+    take: F,
+    extra: PhantomData<X>,
 }
 
-impl<K: Kernel, T, S: Numbers, P, X: Numbers, U: Update<X>> OnLanes
-    for Rows<'_, Sweep<'_, K, T, S, P>, X, U>
+impl<'a, W, X, F: FnMut(usize, Rate<X>)> Rows<'a, W, X, F> {
+    fn new(sweep: &'a W, block: &'a Block, rows: [usize; 2], take: F) -> Self {
+        Self { sweep, block, rows, take, extra: PhantomData }
+    }
+}
+
+impl<K: Kernel, T, S: Numbers, P, X: Numbers, F: FnMut(usize, Rate<X>)> OnLanes
+    for Rows<'_, Sweep<'_, K, T, S, P>, X, F>
 where
     T: Term<X>,
     P: Fn(&S) -> T::Shows,
 {
     #[inline(always)]
-    fn run<V: Lane>(self) {
-        let Self { sweep, block, first, targets, update } = self;
-        for (k, target) in targets.iter_mut().enumerate() {
-            let rate = sweep.row::<V, X>(&sweep.columns[first + k], block.row(k));
-            update(first + k, target, &rate);
+    fn run<V: Lane>(mut self) {
+        let [first, count] = self.rows;
+        for k in 0..count {
+            let own = &self.sweep.columns[first + k];
+            (self.take)(k, self.sweep.row::<V, X>(own, self.block.row(k)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Domain, Pressure, QuinticSpline, Tait, Viscosity, neighbours::Neighbours};
+    use simba::simd::WideF64x4;
+
+    const DX: f64 = 0.1;
+
+    /// Particles of a lattice that is out of order, with velocities and densities to match: all different.
+    fn columns<T: Term<()>>(term: &T, side: usize) -> Vec<Column<T::Shows>> {
+        let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let column = |k: usize| {
+            let place = Vector2::new((k % side) as f64, (k / side) as f64);
+            let position = (place + Vector2::new(number(3 * k), number(7 * k)) * 0.4) * DX;
+            let (density, mass) = (1.0 + 0.1 * number(k), DX * DX);
+            let common = Common { mass, density, volume: mass / density };
+            let velocity = Vector2::new(number(2 * k), number(5 * k));
+            Column { position, velocity, common, shows: term.shows(&common, &()) }
+        };
+        (0..side * side).map(column).chain([Column::sentinel()]).collect()
+    }
+
+    /// On a processor with registers for four these are not the same program.
+    #[test]
+    fn rates_have_the_bits_of_the_portable_row_loop() {
+        let terms = (Pressure::new(Tait::new(1.0, 10.0)), Viscosity { mu: 0.1, eta2: 1e-6 });
+        let columns = columns(&terms, 30);
+        let count = columns.len() - 1;
+        let mut neighbours = Neighbours::new(3.0 * DX, &Domain::open(), &[]);
+        neighbours.place(columns[..count].iter().map(|column| column.position));
+        neighbours.build::<false>(&Domain::open(), &[], [count, 0], false);
+        let kernel = Smoothing::<QuinticSpline>::new(DX);
+        let project = |shows: &<(Pressure<Tait>, Viscosity) as Term<()>>::Shows| *shows;
+        let (terms, columns) = (&terms, &columns[..]);
+        let sweep = Sweep { kernel: &kernel, terms, columns, project, moving: true };
+        let widest: Vec<Rate<()>> = sweep.rates(&neighbours.rows, 0, count);
+        let mut portable = Vec::new();
+        for (b, block) in neighbours.rows.iter().enumerate() {
+            let rows = [b * BLOCK, BLOCK.min(count - b * BLOCK)];
+            Rows::new(&sweep, block, rows, |_, rate: Rate<()>| portable.push(rate))
+                .run::<WideF64x4>();
+        }
+        assert!(neighbours.rows.len() > 1 && portable.len() == count);
+        let bits =
+            |r: &Rate<()>| [r.velocity.x, r.velocity.y, r.density, r.position.x].map(f64::to_bits);
+        for (k, (a, b)) in widest.iter().zip(&portable).enumerate() {
+            assert_eq!(bits(a), bits(b), "row {k}");
+        }
+        let moved = widest.iter().filter(|rate| rate.velocity.norm() > 0.0).count();
+        assert_eq!(moved, count);
     }
 }

@@ -140,10 +140,9 @@ fn walls_stand_still_and_interfaces_keep_their_density() {
     assert!(walls_changed > 80, "the density of {walls_changed} wall particles followed the fluid");
 }
 
-/// Rates by name are summed by the form of the row loop that every machine has, a step by the one for
-/// the registers that this machine has: on a processor with AVX2, not the same program.
+/// What an observer is told is what the step does.
 #[test]
-fn a_step_has_the_bits_of_the_portable_row_loop() {
+fn a_step_goes_by_the_rates_of_its_terms() {
     let mut simulation = periodic::<Euler>().build().unwrap();
     let dt = 0.1 * DX;
     assert_eq!(simulation.advance(2.0 * dt, dt, &mut ()), Outcome::Reached);
