@@ -135,7 +135,9 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Domain, Pressure, QuinticSpline, Tait, Viscosity, neighbours::Neighbours};
+    use crate::{
+        Continuity, Domain, Pressure, QuinticSpline, Tait, Viscosity, neighbours::Neighbours,
+    };
     use simba::simd::WideF64x4;
 
     const DX: f64 = 0.1;
@@ -157,14 +159,16 @@ mod tests {
     /// On a processor with registers for four these are not the same program.
     #[test]
     fn rates_have_the_bits_of_the_portable_row_loop() {
-        let terms = (Pressure::new(Tait::new(1.0, 10.0)), Viscosity { mu: 0.1, eta2: 1e-6 });
+        type Terms = (Pressure<Tait>, Viscosity, Continuity);
+        let viscosity = Viscosity { mu: 0.1, eta2: 1e-6 };
+        let terms: Terms = (Pressure::new(Tait::new(1.0, 10.0)), viscosity, Continuity);
         let columns = columns(&terms, 30);
         let count = columns.len() - 1;
         let mut neighbours = Neighbours::new(3.0 * DX, &Domain::open(), &[]);
         neighbours.place(columns[..count].iter().map(|column| column.position));
         neighbours.build::<false>(&Domain::open(), &[], [count, 0], false);
         let kernel = Smoothing::<QuinticSpline>::new(DX);
-        let project = |shows: &<(Pressure<Tait>, Viscosity) as Term<()>>::Shows| *shows;
+        let project = |shows: &<Terms as Term<()>>::Shows| *shows;
         let (terms, columns) = (&terms, &columns[..]);
         let sweep = Sweep { kernel: &kernel, terms, columns, project, moving: true };
         let widest: Vec<Rate<()>> = sweep.rates(&neighbours.rows, 0, count);
@@ -180,7 +184,6 @@ mod tests {
         for (k, (a, b)) in widest.iter().zip(&portable).enumerate() {
             assert_eq!(bits(a), bits(b), "row {k}");
         }
-        let moved = widest.iter().filter(|rate| rate.velocity.norm() > 0.0).count();
-        assert_eq!(moved, count);
+        assert!(widest.iter().all(|rate| rate.velocity.norm() > 0.0 && rate.density != 0.0));
     }
 }
