@@ -12,6 +12,8 @@ use nalgebra::{
 };
 use simba::simd::WideF64x4;
 
+use crate::neighbours::LANES;
+
 /// A real number per neighbour.
 pub trait Lane:
     Copy
@@ -38,6 +40,20 @@ pub trait Lane:
     fn at_least(self, floor: Self) -> Self;
     /// The sum over the neighbours, always in the same order.
     fn total(self) -> f64;
+    /// Bit k says whether the k-th number is below the bound.
+    fn below(self, bound: f64) -> usize;
+
+    /// Writes those of four `columns` whose bit is set, but not `own`, to the first of at least four places,
+    /// in their order; the rest of these four is anything. How many they are.
+    #[inline(always)]
+    fn pack(columns: &[u32; LANES], bits: usize, own: u32, places: &mut [u32]) -> usize {
+        let mut count = 0;
+        for k in 0..LANES {
+            places[count] = columns[k];
+            count += bits >> k & usize::from(columns[k] != own);
+        }
+        count
+    }
 
     /// The positive part, max(self, 0).
     #[inline(always)]
@@ -67,7 +83,7 @@ macro_rules! lane {
         $Type:ty: all($x:ident) = $all:expr, gather($read:ident) = $gather:expr,
         gather_pair = $gather_pair:expr,
         sqrt($a:ident) = $sqrt:expr, abs = $abs:expr, at_least($floor:ident) = $at_least:expr,
-        total = $total:expr
+        total = $total:expr, below($bound:ident) = $below:expr $(, $pack:item)?
     ) => {
         impl $crate::lane::Lane for $Type {
             #[inline(always)]
@@ -102,6 +118,12 @@ macro_rules! lane {
                 let $a = self;
                 $total
             }
+            #[inline(always)]
+            fn below(self, $bound: f64) -> usize {
+                let $a = self;
+                $below
+            }
+            $($pack)?
         }
     };
 }
@@ -109,7 +131,8 @@ pub(crate) use lane;
 
 lane! {
     f64: all(x) = x, gather(read) = read(0), gather_pair = read(0),
-    sqrt(a) = a.sqrt(), abs = a.abs(), at_least(floor) = a.max(floor), total = a
+    sqrt(a) = a.sqrt(), abs = a.abs(), at_least(floor) = a.max(floor), total = a,
+    below(bound) = usize::from(a < bound)
 }
 
 lane! {
@@ -117,7 +140,8 @@ lane! {
     gather(read) = Self(wide::f64x4::from([read(0), read(1), read(2), read(3)])),
     gather_pair = [0, 1].map(|i| Self::gather(|k| read(k)[i])),
     sqrt(a) = Self(a.0.sqrt()), abs = Self(a.0.abs()), at_least(floor) = Self(a.0.fast_max(floor.0)),
-    total = { let [a, b, c, d] = a.0.to_array(); (a + c) + (b + d) }
+    total = { let [a, b, c, d] = a.0.to_array(); (a + c) + (b + d) },
+    below(bound) = a.0.simd_lt(wide::f64x4::splat(bound)).to_bitmask() as usize
 }
 
 /// A vector per neighbour.

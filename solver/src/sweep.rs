@@ -79,7 +79,9 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
         let own_shows = shown.spread::<V>();
         let mut sum = T::Sum::default().spread::<V>();
         for chunk in neighbours {
-            let others = chunk.map(|c| &self.columns[c as usize]);
+            let [a, b, c, d] = *chunk;
+            let at = |c: u32| &self.columns[c as usize];
+            let others = [at(a), at(b), at(c), at(d)];
             let [mass, density] =
                 V::gather_pair(|k| [others[k].common.mass, others[k].common.density]);
             let other = Common { mass, density, volume: V::gather(|k| others[k].common.volume) };
@@ -98,8 +100,8 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
     }
 }
 
-/// One block of rows. In a profile it is `with_registers_for_four`; the portable form is inlined into its
-/// caller.
+/// One block of rows. In a profile it is `with_many_registers` or `with_registers_for_four`; the portable
+/// form is inlined into its caller.
 struct Rows<'a, W, X, F> {
     sweep: &'a W,
     block: &'a Block,

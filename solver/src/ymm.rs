@@ -2,7 +2,8 @@
 //!
 //! The default build may use nothing but what every x86-64 processor has, registers for two numbers.
 //! Asked at run time, nearly all of them have registers for four, and the row loop is compiled a
-//! second time for these. Measured: see `CHANGELOG.md`.
+//! second time for these, and a third time for processors that have 32 of them (AVX-512). Measured: see
+//! `CHANGELOG.md`.
 
 #![allow(unsafe_code)]
 
@@ -16,15 +17,26 @@ pub(crate) fn is_there() -> bool {
     std::is_x86_feature_detected!("avx2")
 }
 
+/// Whether it has 32 of them instead of 16, which is enough for all that a term of many sums holds.
+fn are_many() -> bool {
+    is_there() && std::is_x86_feature_detected!("avx512vl")
+}
+
 /// A loop compiled for such registers, where [`is_there`] says so.
 pub(crate) fn run(work: impl OnLanes) {
-    #[target_feature(enable = "avx2")]
-    fn with_registers_for_four(work: impl OnLanes) {
-        work.run::<Ymm>();
-    }
     assert!(is_there());
-    // SAFETY: they are there.
-    unsafe { with_registers_for_four(work) }
+    // SAFETY: they are there, and as many as that.
+    unsafe { if are_many() { with_many_registers(work) } else { with_registers_for_four(work) } }
+}
+
+#[target_feature(enable = "avx2")]
+fn with_registers_for_four(work: impl OnLanes) {
+    work.run::<Ymm>();
+}
+
+#[target_feature(enable = "avx2,avx512f,avx512vl")]
+fn with_many_registers(work: impl OnLanes) {
+    work.run::<Ymm>();
 }
 
 /// Four numbers in one register.
@@ -94,10 +106,9 @@ lane! {
     gather(read) = Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) }),
     gather_pair = {
         // Neighbours 0 and 2, and 1 and 3, each with its two numbers as they stand in memory.
-        let [even, odd] = [0, 1].map(|k| {
-            let ([a, b], [c, d]) = (read(k), read(k + 2));
-            unsafe { _mm256_setr_pd(a, b, c, d) }
-        });
+        let ([a, b], [c, d]) = (read(0), read(2));
+        let ([e, f], [g, h]) = (read(1), read(3));
+        let (even, odd) = unsafe { (_mm256_setr_pd(a, b, c, d), _mm256_setr_pd(e, f, g, h)) };
         unsafe { [Self(_mm256_unpacklo_pd(even, odd)), Self(_mm256_unpackhi_pd(even, odd))] }
     },
     sqrt(a) = Self(unsafe { _mm256_sqrt_pd(a.0) }),
@@ -106,8 +117,46 @@ lane! {
     total = unsafe {
         let pairs = _mm_add_pd(_mm256_castpd256_pd128(a.0), _mm256_extractf128_pd::<1>(a.0));
         _mm_cvtsd_f64(_mm_add_pd(pairs, _mm_unpackhi_pd(pairs, pairs)))
+    },
+    below(bound) =
+        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a.0, _mm256_set1_pd(bound))) as usize },
+    #[inline(always)]
+    fn pack(columns: &[u32; 4], bits: usize, own: u32, places: &mut [u32]) -> usize {
+        let places = places.first_chunk_mut::<4>().expect("four places");
+        // SAFETY: see `Ymm`; four columns are read and four places written.
+        unsafe {
+            let columns = _mm_loadu_si128(columns.as_ptr().cast());
+            let own = _mm_cmpeq_epi32(columns, _mm_set1_epi32(own as i32));
+            let bits = bits & !_mm_movemask_ps(_mm_castsi128_ps(own)) as usize;
+            let (order, count) = &PACKED[bits & 15];
+            let order = _mm_loadu_si128(order.as_ptr().cast());
+            _mm_storeu_si128(places.as_mut_ptr().cast(), _mm_shuffle_epi8(columns, order));
+            *count
+        }
     }
 }
+
+/// For each set of bits the bytes of its columns in their order, and how many these are.
+const PACKED: [([u8; 16], usize); 16] = {
+    let mut packed = [([0; 16], 0); 16];
+    let mut bits = 0;
+    while bits < 16 {
+        let mut column = 0;
+        while column < 4 {
+            if bits >> column & 1 == 1 {
+                let mut byte = 0;
+                while byte < 4 {
+                    packed[bits].0[4 * packed[bits].1 + byte] = (4 * column + byte) as u8;
+                    byte += 1;
+                }
+                packed[bits].1 += 1;
+            }
+            column += 1;
+        }
+        bits += 1;
+    }
+    packed
+};
 
 #[cfg(test)]
 mod tests {
@@ -137,7 +186,18 @@ mod tests {
         let pair = V::gather_pair(|k| [A[k], B[k]]);
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
         let lanes = all.into_iter().flatten().chain(pair).flat_map(array).map(bits);
-        lanes.chain([a.total(), b.total(), (a * b).total()].map(bits)).collect()
+        let totals = [a.total(), b.total(), (a * b).total()].map(bits);
+        let below = [-1.0, -0.0, 0.0, 1.0, f64::NAN].map(|bound| [a.below(bound), b.below(bound)]);
+        let sieved = (0..16).flat_map(|bits| [9, 8].map(|own| packed::<V>(bits, own))).flatten();
+        let whole = below.into_iter().flatten().map(|bits| bits as u64).chain(sieved);
+        lanes.chain(totals).chain(whole).collect()
+    }
+
+    /// How many of four columns are packed, and which.
+    fn packed<V: Lane>(bits: usize, own: u32) -> Vec<u64> {
+        let mut places = [0; 4];
+        let count = V::pack(&[9, 7, 5, 3], bits, own, &mut places);
+        [count as u64].into_iter().chain(places[..count].iter().map(|&c| c.into())).collect()
     }
 
     /// The results in the lanes that `run` takes, which are `Ymm`.
@@ -154,12 +214,18 @@ mod tests {
 
     #[test]
     fn every_operation_has_the_bits_of_the_portable_one() {
-        if is_there() {
-            let portable = results::<WideF64x4>(|lanes| lanes.0.to_array());
-            assert!(portable.iter().any(|bits| *bits == (-0.0f64).to_bits()));
-            let mut found = Vec::new();
-            run(Results(&mut found));
-            assert_eq!(found, portable);
+        let portable = results::<WideF64x4>(|lanes| lanes.0.to_array());
+        assert!(portable.iter().any(|bits| *bits == (-0.0f64).to_bits()));
+        let [mut few, mut many] = [portable.clone(), portable.clone()];
+        // SAFETY: each where its registers are there.
+        unsafe {
+            if is_there() {
+                with_registers_for_four(Results(&mut few));
+            }
+            if are_many() {
+                with_many_registers(Results(&mut many));
+            }
         }
+        assert_eq!([&few, &many], [&portable; 2]);
     }
 }

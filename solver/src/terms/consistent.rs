@@ -6,7 +6,7 @@
 //! conservation: the forces of a pair are not opposite any more, and nothing pushes crowded particles
 //! apart. They need [`super::Shifting`].
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
 use super::{Pair, Term};
 use crate::{
@@ -30,10 +30,11 @@ pub(super) fn weights<V: Lane, K: Kernel>(pair: &Pair<V, K>) -> (Vector2<V>, Sym
 
 /// M⁻¹, `None` where there are too few neighbours for a gradient.
 #[inline(always)]
-pub(super) fn inverse(moments: Symmetric) -> Option<Matrix2<f64>> {
+pub(super) fn inverse(moments: Symmetric) -> Option<Symmetric> {
     let Symmetric { xx, yy, xy } = moments;
     let determinant = xx * yy - xy * xy;
-    (determinant > SINGULAR).then(|| Matrix2::new(yy, -xy, -xy, xx) / determinant)
+    let inverse = || Symmetric::new(yy / determinant, xx / determinant, -xy / determinant);
+    (determinant > SINGULAR).then(inverse)
 }
 
 /// dvᵢ/dt += −∇p/ρᵢ \[m/s²\], in place of [`super::Pressure`]. Where neighbours lie on a line, 0.
@@ -69,7 +70,7 @@ impl<X, E: EquationOfState> Term<X> for ConsistentPressure<E> {
     #[inline(always)]
     fn finish(&self, own: &Common<f64>, _: f64, sum: Self::Sum, rate: &mut Rate<X>) {
         if let Some(inverse) = inverse(sum.1) {
-            rate.velocity -= inverse * sum.0 / own.density;
+            rate.velocity -= inverse.times(sum.0) / own.density;
         }
     }
 }
@@ -108,10 +109,13 @@ impl<X> Term<X> for ConsistentViscosity {
     fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
         let (apart, weight, along_x, along_y, moments) = sum;
         let trace = moments.xx + moments.yy;
-        let linear = inverse(moments).map_or_else(Vector2::zeros, |inverse| {
-            let place = inverse * weight;
-            along_x * place.x + along_y * place.y
-        });
+        let linear = match inverse(moments) {
+            Some(inverse) => {
+                let place = inverse.times(weight);
+                along_x * place.x + along_y * place.y
+            }
+            None => Vector2::zeros(),
+        };
         if trace > SINGULAR {
             rate.velocity -= (apart - linear) * (4.0 * self.nu / trace);
         }
@@ -144,8 +148,10 @@ impl<X> Term<X> for ConsistentContinuity {
     #[inline(always)]
     fn finish(&self, own: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
         if let Some(inverse) = inverse(sum.2) {
-            let gradient = Matrix2::from_columns(&[sum.0, sum.1]) * inverse;
-            rate.density -= own.density * gradient.trace();
+            // The diagonal of the gradient, whose columns before correction are the sums.
+            let xx = sum.0.x * inverse.xx + sum.1.x * inverse.xy;
+            let yy = sum.0.y * inverse.xy + sum.1.y * inverse.yy;
+            rate.density -= own.density * (xx + yy);
         }
     }
 }

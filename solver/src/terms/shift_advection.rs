@@ -51,7 +51,7 @@ impl<X> Term<X> for ShiftAdvection {
     fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
         let (push, along_x, along_y, moments) = sum;
         if let Some(inverse) = inverse(moments) {
-            let moved = inverse * self.0.velocity(push);
+            let moved = inverse.times(self.0.velocity(push));
             rate.velocity += along_x * moved.x + along_y * moved.y;
         }
     }
