@@ -19,8 +19,8 @@ pub const DRAGS: [&str; 3] = ["hill_shear_drag", "lid_shear_drag", "hill_pressur
 /// included, with the weights V W (moving least squares).
 struct Field<'a, K> {
     kernel: &'a Smoothing<K>,
-    /// x, y, V, u, v, p in the order of x.
-    points: Vec<[f64; 6]>,
+    /// x, y, V, u, v, p in the order of x, in bands as high as the kernel reaches.
+    bands: Vec<Vec<[f64; 6]>>,
 }
 
 impl<'a, K: Kernel> Field<'a, K> {
@@ -32,20 +32,41 @@ impl<'a, K: Kernel> Field<'a, K> {
         };
         let mut points: Vec<[f64; 6]> = s.columns().iter().map(point).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Self { kernel: s.kernel(), points }
+        let mut field = Self { kernel: s.kernel(), bands: Vec::new() };
+        // One more than holds the lid: what is farther out is in the first and the last.
+        field.bands.resize(field.band(setup.hill.lid()) + 2, Vec::new());
+        for point in points {
+            let band = field.band(point[1]).min(field.bands.len() - 1);
+            field.bands[band].push(point);
+        }
+        field
+    }
+
+    /// The band of a height; the second begins at 0. A float below 0 becomes 0.
+    fn band(&self, y: f64) -> usize {
+        (y / self.kernel.support() + 1.0) as usize
+    }
+
+    /// Particles that may be in reach of a place.
+    fn near(&self, x: f64, y: f64) -> impl Iterator<Item = &[f64; 6]> {
+        let (reach, band, last) = (self.kernel.support(), self.band(y), self.bands.len() - 1);
+        let bands = &self.bands[band.saturating_sub(1).min(last)..=(band + 1).min(last)];
+        bands.iter().flat_map(move |band| {
+            let first = band.partition_point(|p| p[0] < x - reach);
+            band[first..].iter().take_while(move |p| p[0] <= x + reach)
+        })
     }
 
     /// u, v, p at a place.
     fn at(&self, x: f64, y: f64) -> [f64; 3] {
         let reach = self.kernel.support();
-        let first = self.points.partition_point(|p| p[0] < x - reach);
         let (mut moments, mut sums) = (Matrix3::zeros(), [Vector3::zeros(); 3]);
-        for p in self.points[first..].iter().take_while(|p| p[0] <= x + reach) {
+        for p in self.near(x, y) {
             let r = Vector2::new(p[0] - x, p[1] - y);
             let weight = p[2] * self.kernel.w(r.norm_squared());
             if weight > 0.0 {
                 let basis = Vector3::new(1.0, r.x / reach, r.y / reach);
-                moments += basis * basis.transpose() * weight;
+                moments += Matrix3::from_fn(|i, j| basis[i] * basis[j] * weight);
                 for (sum, value) in sums.iter_mut().zip(&p[3..]) {
                     *sum += basis * (weight * value);
                 }
