@@ -26,7 +26,7 @@ pub fn studies(case: &'static dyn Case, tier: Tier) -> Vec<Study> {
     let map = Map::run(case, tier);
     let cures = match tier {
         Tier::Quick => cures_elsewhere(),
-        Tier::Full => cures(case, tier),
+        Tier::Full => cures(case),
     };
     vec![waves(tier), map.study(), cures]
 }
@@ -44,10 +44,8 @@ fn reynolds(tier: Tier) -> &'static [f64] {
     }
 }
 
-/// νt/L² at which the runs of a tier end.
-fn end(tier: Tier) -> f64 {
-    if tier == Tier::Full { 1.5 } else { 1.0 }
-}
+/// νt/L² at which the runs end.
+const END: f64 = 1.0;
 
 /// Above this Reynolds number the full tier takes one start instead of three; the quick tier always.
 const MANY_STARTS: f64 = 20.0;
@@ -93,10 +91,9 @@ struct Map {
 }
 
 /// The settings of a cell: V = Re ν/L with the defaults ν = 1e-6 m²/s, L = 1e-3 m.
-fn map_settings(tier: Tier, step: Step, re: f64, sound: f64) -> Vec<String> {
+fn map_settings(step: Step, re: f64, sound: f64) -> Vec<String> {
     let v = re * 1e-3;
-    let mut set =
-        vec![format!("re={re}"), format!("c0={}", sound * v), format!("end={}", end(tier))];
+    let mut set = vec![format!("re={re}"), format!("c0={}", sound * v), format!("end={END}")];
     if step == Step::Fixed {
         let highest = SOUND.last().copied().unwrap_or(sound);
         let (h, nu) = (1.2 * 1e-3 / 20.0, 1e-6);
@@ -116,7 +113,7 @@ impl Map {
                 let count = if step == Step::Fixed { highest } else { highest + 1 };
                 jobs.extend(SOUND[..count].iter().map(|&sound| Job {
                     variant: "seed",
-                    set: map_settings(tier, step, re, sound),
+                    set: map_settings(step, re, sound),
                     starts: starts(tier, re),
                 }));
             }
@@ -152,12 +149,12 @@ impl Map {
              {} A cell says how many failed, and the median outcome, which is an error in per cent \
              (worst relative L2 from νt/L² = 0.1 on) or, after a t, the νt/L² of the divergence. A \
              run fails when it diverges or its error exceeds 5 %.",
-            end(self.tier),
+            END,
             starts_in_words(self.tier),
         );
         let figure = Figure::new("poiseuille-map", caption).columns(self.cells.len());
         let figure = (0..self.cells.len()).fold(figure, |figure, k| figure.panel(self.panel(k)));
-        let set = map_settings(self.tier, Step::Courant, 20.0, JUDGED_SOUND);
+        let set = map_settings(Step::Courant, 20.0, JUDGED_SOUND);
         let command = format!(
             "One start of the cell Re 20, c0/V = 10 at fixed Courant number again: `touchstone run \
              poiseuille --variant seed --set {} --set jitter=1e-4 --allow-unstable`. Starts that differ in \
@@ -338,14 +335,14 @@ fn cures_elsewhere() -> Study {
     Study::new(CURES_ID, CURES_TITLE).prose(text)
 }
 
-fn cures(case: &'static dyn Case, tier: Tier) -> Study {
-    let list = [5.0, 20.0, 100.0];
+fn cures(case: &'static dyn Case) -> Study {
+    let (tier, list) = (Tier::Full, [5.0, 20.0, 50.0]);
     let jobs: Vec<Job> = CURES
         .iter()
         .flat_map(|(variant, _)| {
             list.iter().map(|re| Job {
                 variant,
-                set: vec![format!("re={re}"), format!("end={}", end(tier))],
+                set: vec![format!("re={re}"), format!("end={END}")],
                 starts: starts(tier, *re),
             })
         })
@@ -358,7 +355,7 @@ fn cures(case: &'static dyn Case, tier: Tier) -> Study {
         "Cures of the instability at 20 rows, c0 by Morris' rule, to νt/L² = {}. {} A cell \
          says how many failed, and the median outcome: worst relative L2 error from νt/L² = 0.1 on, or, \
          after a t, the νt/L² of the divergence. A run fails when it diverges or its error exceeds 5 %.",
-        end(tier),
+        END,
         starts_in_words(tier),
     );
     let mut table = Table::new(caption, columns);

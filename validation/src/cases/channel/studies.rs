@@ -303,7 +303,7 @@ fn order_row(
 }
 
 /// Runs up to this many processor seconds are timed again \[s\].
-const TIMED_AGAIN_BELOW: f64 = 0.8;
+const TIMED_AGAIN_BELOW: f64 = 0.3;
 /// The same in the quick tier, which has to be quick: short runs are the noisiest.
 const QUICK_TIMED_AGAIN_BELOW: f64 = 0.01;
 /// Timings of a run that is timed again: the fewest that have a median.
