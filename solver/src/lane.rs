@@ -1,5 +1,5 @@
-//! Lanes: the number type of the pair loop, one neighbour (`f64`) or four at once (`WideF64x4`, and
-//! `Ymm` where the processor has registers for four).
+//! Lanes: the number type of what loops over neighbours, one (`f64`) or four at once (`WideF64x4`, and `Ymm`
+//! where the processor has registers for four).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
 //! row loop runs it on four neighbours. No form contracts `a * b + c`, and the lanes are added in a
@@ -40,11 +40,11 @@ pub trait Lane:
     fn at_least(self, floor: Self) -> Self;
     /// The sum over the neighbours, always in the same order.
     fn total(self) -> f64;
-    /// Bit k says whether the k-th number is below the bound.
+    /// Bit k says whether the k-th number is below the bound, which NaN is not.
     fn below(self, bound: f64) -> usize;
 
     /// Writes those of four `columns` whose bit is set, but not `own`, to the first of at least four places,
-    /// in their order; the rest of these four is anything. How many they are.
+    /// in their order; the rest of these four is anything. Returns how many.
     #[inline(always)]
     fn pack(columns: &[u32; LANES], bits: usize, own: u32, places: &mut [u32]) -> usize {
         let mut count = 0;
@@ -138,7 +138,7 @@ lane! {
 lane! {
     WideF64x4: all(x) = Self(wide::f64x4::splat(x)),
     gather(read) = Self(wide::f64x4::from([read(0), read(1), read(2), read(3)])),
-    gather_pair = [0, 1].map(|i| Self::gather(|k| read(k)[i])),
+    gather_pair = [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])],
     sqrt(a) = Self(a.0.sqrt()), abs = Self(a.0.abs()), at_least(floor) = Self(a.0.fast_max(floor.0)),
     total = { let [a, b, c, d] = a.0.to_array(); (a + c) + (b + d) },
     below(bound) = a.0.simd_lt(wide::f64x4::splat(bound)).to_bitmask() as usize

@@ -90,7 +90,7 @@ impl Grid {
     }
 }
 
-/// All columns in the order of cells, and what pads the last lanes.
+/// All columns in the order of cells, and after them anything that fills the last lanes.
 #[derive(Debug, Default)]
 struct Candidates {
     x: Vec<f64>,
@@ -189,6 +189,7 @@ impl Neighbours {
         let grid = Grid::new(&self.points, self.radius);
         self.sort_into_cells(&grid);
         for (&start, &end) in self.cell_starts.iter().zip(&self.cell_starts[1..]) {
+            // Their places are left in the order of cells: nothing reads them before the next sort.
             let cell = &mut self.candidates.column[start as usize..end as usize];
             let place = |column: &u32| self.points[*column as usize];
             cell.sort_unstable_by(|a, b| {

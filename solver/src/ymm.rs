@@ -17,15 +17,17 @@ pub(crate) fn is_there() -> bool {
     std::is_x86_feature_detected!("avx2")
 }
 
-/// Whether it has 32 of them instead of 16, which is enough for all that a term of many sums holds.
+/// Whether it has 32 of them instead of 16, so that fewer sums have to be put aside.
 fn are_many() -> bool {
-    is_there() && std::is_x86_feature_detected!("avx512vl")
+    is_there()
+        && std::is_x86_feature_detected!("avx512f")
+        && std::is_x86_feature_detected!("avx512vl")
 }
 
 /// A loop compiled for such registers, where [`is_there`] says so.
 pub(crate) fn run(work: impl OnLanes) {
     assert!(is_there());
-    // SAFETY: they are there, and as many as that.
+    // SAFETY: `is_there` and `are_many` ask for each feature that is enabled.
     unsafe { if are_many() { with_many_registers(work) } else { with_registers_for_four(work) } }
 }
 
@@ -43,8 +45,8 @@ fn with_many_registers(work: impl OnLanes) {
 ///
 /// # Safety
 ///
-/// Private: no value of this type is made but under [`run`], where the processor has AVX2. That is what
-/// every `unsafe` of this file relies on.
+/// Private: no value of this type is made but under the two functions above, where the processor has AVX2.
+/// That is what every `unsafe` of this file relies on.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 struct Ymm(__m256d);
@@ -137,7 +139,7 @@ lane! {
 }
 
 /// For each set of bits the bytes of its columns in their order, and how many these are.
-const PACKED: [([u8; 16], usize); 16] = {
+static PACKED: [([u8; 16], usize); 16] = {
     let mut packed = [([0; 16], 0); 16];
     let mut bits = 0;
     while bits < 16 {

@@ -44,7 +44,7 @@ fn reynolds(tier: Tier) -> &'static [f64] {
     }
 }
 
-/// νt/L² at which the runs end.
+/// νt/L² at which the runs of the map and of the cures end.
 const END: f64 = 1.0;
 
 /// Above this Reynolds number the full tier takes one start instead of three; the quick tier always.
@@ -474,7 +474,10 @@ fn wave_starts(tier: Tier) -> &'static [f64] {
     if tier == Tier::Full { &STARTS } else { &STARTS[1..4] }
 }
 
-/// Watches the end of the seed's Poiseuille flow from a disordered start: divergence or νt/L² = 1.5.
+/// νt/L² to which waves are watched: longer, for they are judged by how they grow at the end.
+const WATCHED: f64 = 1.5;
+
+/// Watches the end of the seed's Poiseuille flow from a disordered start: divergence or [`WATCHED`].
 /// `None` for a run that is over before the window is full.
 fn ringing(re: f64, sound: f64, jitter: f64) -> Option<Ringing> {
     let defaults = ChannelSettings::default();
@@ -487,7 +490,7 @@ fn ringing(re: f64, sound: f64, jitter: f64) -> Option<Ringing> {
     let crossing = setup.settings.width / setup.eos.sound_speed;
     let scale = setup.settings.rho * setup.v * setup.v;
     let mut mode = Mode { eos: setup.eos, width: setup.settings.width, scale, series: Vec::new() };
-    let _diverged_or_not = simulation.advance(setup.time(1.5), setup.dt, &mut mode);
+    let _diverged_or_not = simulation.advance(setup.time(WATCHED), setup.dt, &mut mode);
     let since_end = |t: f64| (t - simulation.time()) / crossing;
     let all = mode.series.iter().map(|(t, p)| (since_end(*t), *p));
     let series: Vec<(f64, f64)> = all.filter(|(t, _)| *t >= -WINDOW).collect();
@@ -580,10 +583,10 @@ fn waves_table(tier: Tier, found: &[Rings]) -> Table {
     ];
     let caption = format!(
         "The lowest pressure mode cos(πy/L) of the seed's Poiseuille flow over the last 60 L/c0 of a run, \
-         which ends by divergence or at νt/L² = 1.5: medians of runs whose initial places are disordered by \
-         {} dx, without those that are over too soon. In the flow the mode is exactly 0. A wave that bounces \
-         between the walls has the period 2L/c0. Growth is the amplitude at the dominant period in the last \
-         30 L/c0 over that in the 30 before.",
+         which ends by divergence or at νt/L² = {WATCHED}: medians of runs whose initial places are \
+         disordered by {} dx, without those that are over too soon. In the flow the mode is exactly 0. A \
+         wave that bounces between the walls has the period 2L/c0. Growth is the amplitude at the dominant \
+         period in the last 30 L/c0 over that in the 30 before.",
         disorder(wave_starts(tier))
     );
     let mut table = Table::new(caption, columns);

@@ -48,7 +48,7 @@ pub fn levels(tier: Tier) -> &'static [usize] {
     }
 }
 
-/// Reynolds numbers of the modern variant and the νt/L² that each must reach.
+/// Reynolds numbers of the modern variant and the νt/L² that each that is run must reach.
 pub const REYNOLDS: [(f64, f64); 9] = [
     (0.0125, 1.5),
     (0.5, 1.5),
@@ -61,8 +61,8 @@ pub const REYNOLDS: [(f64, f64); 9] = [
     (500.0, 1.0),
 ];
 
-/// The largest of them in a tier. Couette flow has no force that disorders rows; and in the quick tier,
-/// what holds Re 50 has held 100, 200 and 500, at seven times the cost of all below.
+/// The largest of them in a tier. Couette flow has no force that disorders rows, so that the lower ones are
+/// enough. Poiseuille flow: what held Re 50 has held 100, 200 and 500, at seven times the cost of all below.
 fn largest(flow: Flow, tier: Tier) -> f64 {
     match (flow, tier) {
         (Flow::Couette, Tier::Quick) => 20.0,

@@ -630,8 +630,7 @@ fn reynolds(flow: Flow, runs: &[JudgedRun]) -> Study {
     let caption = "Variant `modern` at 20 rows over the Reynolds number, all settings by one rule: quintic \
                    spline, h = dx, density diffusion 0.1, shifting 0.5, no background pressure, c0 by \
                    Morris' rule with 1 % density variation and at least 2.2 ν/h, Courant number 1 and \
-                   viscous number 0.4. The quick tier leaves higher Re, where the rule is pushed until it \
-                   breaks, to the full tier.";
+                   viscous number 0.4. The quick tier leaves higher Re to the full tier.";
     let mut table = Table::new(caption, columns);
     let is_20_rows = |run: &&JudgedRun| {
         run.record.settings.get("rows").and_then(serde_json::Value::as_u64) == Some(20)

@@ -30,11 +30,14 @@ impl<'a, K: Kernel> Field<'a, K> {
             let p = eos.pressure(c.common.density) - eos.background;
             [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
         };
-        let mut points: Vec<[f64; 6]> = s.columns().iter().map(point).collect();
+        Self::new(s.kernel(), s.columns().iter().map(point).collect(), setup.hill.lid())
+    }
+
+    fn new(kernel: &'a Smoothing<K>, mut points: Vec<[f64; 6]>, lid: f64) -> Self {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut field = Self { kernel: s.kernel(), bands: Vec::new() };
+        let mut field = Self { kernel, bands: Vec::new() };
         // One more than holds the lid: what is farther out is in the first and the last.
-        field.bands.resize(field.band(setup.hill.lid()) + 2, Vec::new());
+        field.bands.resize(field.band(lid) + 2, Vec::new());
         for point in points {
             let band = field.band(point[1]).min(field.bands.len() - 1);
             field.bands[band].push(point);
@@ -376,4 +379,32 @@ pub fn particles<S: Scheme<Extra = ()>>(setup: &Setup, s: &Simulation<S>) -> (Pr
         .with("u", "U_b", column(&|k| fluid[k].velocity.x))
         .with("speed", "U_b", column(&|k| fluid[k].velocity.norm()));
     (profile, outside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use solver::QuinticSpline;
+
+    #[test]
+    fn a_field_misses_no_particle_in_reach() {
+        let (kernel, lid, mut random) = (Smoothing::<QuinticSpline>::new(0.1), 3.0, Random::new(7));
+        let mut number = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let points: Vec<[f64; 6]> = (0..6000)
+            .map(|_| {
+                let [x, y] = [number(0.0, 2.0), number(-0.4, lid + 0.4)];
+                [x, y, 0.01, number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)]
+            })
+            .collect();
+        let field = Field::new(&kernel, points.clone(), lid);
+        assert!(field.bands.len() > 10);
+        let mut all = Field { kernel: &kernel, bands: vec![points] };
+        all.bands[0].sort_by(|a, b| a[0].total_cmp(&b[0]));
+        for y in [-0.05, 0.0, 1e-9, 0.299, 0.3, 0.301, 1.5, lid - 0.1, lid, lid + 0.05] {
+            for (some, every) in field.at(1.0, y).into_iter().zip(all.at(1.0, y)) {
+                assert!((some - every).abs() < 1e-10, "{some} {every} at {y}");
+            }
+        }
+    }
 }
