@@ -1,5 +1,5 @@
-//! Lanes: the number type of what loops over neighbours, one (`f64`) or four at once (`WideF64x4`, and `Ymm`
-//! where the processor has registers for four).
+//! Lanes: the number type of the pair loop, one neighbour (`f64`) or four at once (`WideF64x4`, and
+//! `Ymm` where the processor has registers for four).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
 //! row loop runs it on four neighbours. No form contracts `a * b + c`, and the lanes are added in a
@@ -11,8 +11,6 @@ use nalgebra::{
     ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar, Vector2,
 };
 use simba::simd::WideF64x4;
-
-use crate::neighbours::LANES;
 
 /// A real number per neighbour.
 pub trait Lane:
@@ -40,20 +38,6 @@ pub trait Lane:
     fn at_least(self, floor: Self) -> Self;
     /// The sum over the neighbours, always in the same order.
     fn total(self) -> f64;
-    /// Bit k says whether the k-th number is below the bound, which NaN is not.
-    fn below(self, bound: f64) -> usize;
-
-    /// Writes those of four `columns` whose bit is set, but not `own`, to the first of at least four places,
-    /// in their order; the rest of these four is anything. Returns how many.
-    #[inline(always)]
-    fn pack(columns: &[u32; LANES], bits: usize, own: u32, places: &mut [u32]) -> usize {
-        let mut count = 0;
-        for k in 0..LANES {
-            places[count] = columns[k];
-            count += bits >> k & usize::from(columns[k] != own);
-        }
-        count
-    }
 
     /// The positive part, max(self, 0).
     #[inline(always)]
@@ -71,9 +55,7 @@ pub(crate) trait OnLanes {
 /// Does it on the widest lanes that the processor has.
 pub(crate) fn on_widest(work: impl OnLanes) {
     #[cfg(target_arch = "x86_64")]
-    if crate::ymm::is_there() {
-        return crate::ymm::run(work);
-    }
+    let Some(work) = crate::ymm::run(work) else { return };
     work.run::<WideF64x4>();
 }
 
@@ -83,7 +65,7 @@ macro_rules! lane {
         $Type:ty: all($x:ident) = $all:expr, gather($read:ident) = $gather:expr,
         gather_pair = $gather_pair:expr,
         sqrt($a:ident) = $sqrt:expr, abs = $abs:expr, at_least($floor:ident) = $at_least:expr,
-        total = $total:expr, below($bound:ident) = $below:expr $(, $pack:item)?
+        total = $total:expr
     ) => {
         impl $crate::lane::Lane for $Type {
             #[inline(always)]
@@ -118,12 +100,6 @@ macro_rules! lane {
                 let $a = self;
                 $total
             }
-            #[inline(always)]
-            fn below(self, $bound: f64) -> usize {
-                let $a = self;
-                $below
-            }
-            $($pack)?
         }
     };
 }
@@ -131,8 +107,7 @@ pub(crate) use lane;
 
 lane! {
     f64: all(x) = x, gather(read) = read(0), gather_pair = read(0),
-    sqrt(a) = a.sqrt(), abs = a.abs(), at_least(floor) = a.max(floor), total = a,
-    below(bound) = usize::from(a < bound)
+    sqrt(a) = a.sqrt(), abs = a.abs(), at_least(floor) = a.max(floor), total = a
 }
 
 lane! {
@@ -140,8 +115,7 @@ lane! {
     gather(read) = Self(wide::f64x4::from([read(0), read(1), read(2), read(3)])),
     gather_pair = [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])],
     sqrt(a) = Self(a.0.sqrt()), abs = Self(a.0.abs()), at_least(floor) = Self(a.0.fast_max(floor.0)),
-    total = { let [a, b, c, d] = a.0.to_array(); (a + c) + (b + d) },
-    below(bound) = a.0.simd_lt(wide::f64x4::splat(bound)).to_bitmask() as usize
+    total = { let [a, b, c, d] = a.0.to_array(); (a + c) + (b + d) }
 }
 
 /// A vector per neighbour.

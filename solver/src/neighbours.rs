@@ -11,7 +11,6 @@ use rayon::prelude::*;
 
 use crate::{
     domain::Domain,
-    lane::{Lane, OnLanes, on_widest},
     walls::{Map, PlaneWall, corners},
 };
 
@@ -90,33 +89,11 @@ impl Grid {
     }
 }
 
-/// All columns in the order of cells, and after them anything that fills the last lanes.
-#[derive(Debug, Default)]
-struct Candidates {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    column: Vec<u32>,
-}
-
-impl Candidates {
-    fn resize(&mut self, count: usize) {
-        self.x.resize(count + LANES, 0.0);
-        self.y.resize(count + LANES, 0.0);
-        self.column.resize(count + LANES, 0);
-    }
-
-    /// Those from `start` to `end`, and in the last chunk what comes after them.
-    #[inline(always)]
-    fn chunks(&self, start: usize, end: usize) -> ([&[[f64; LANES]]; 2], &[[u32; LANES]]) {
-        let run = start..start + (end - start).next_multiple_of(LANES);
-        let [x, y] = [&self.x[run.clone()], &self.y[run.clone()]];
-        ([x.as_chunks().0, y.as_chunks().0], self.column[run].as_chunks().0)
-    }
-
-    fn bytes(&self) -> usize {
-        (self.x.capacity() + self.y.capacity()) * size_of::<f64>()
-            + self.column.capacity() * size_of::<u32>()
-    }
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    x: f64,
+    y: f64,
+    column: u32,
 }
 
 /// The neighbour rows of a scene and what is needed to rebuild them without allocating.
@@ -131,7 +108,7 @@ pub(crate) struct Neighbours {
     pub built_at: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
     cell_starts: Vec<u32>,
-    candidates: Candidates,
+    candidates: Vec<Candidate>,
 }
 
 impl Neighbours {
@@ -154,7 +131,7 @@ impl Neighbours {
             built_at: Vec::new(),
             points: Vec::new(),
             cell_starts: Vec::new(),
-            candidates: Candidates::default(),
+            candidates: Vec::new(),
         }
     }
 
@@ -174,7 +151,7 @@ impl Neighbours {
             + self.images.capacity() * size_of::<Image>()
             + (self.built_at.capacity() + self.points.capacity()) * size_of::<Vector2<f64>>()
             + self.cell_starts.capacity() * size_of::<u32>()
-            + self.candidates.bytes()
+            + self.candidates.capacity() * size_of::<Candidate>()
     }
 
     /// Takes note of where the particles are, for [`Neighbours::order`] or [`Neighbours::build`].
@@ -189,16 +166,11 @@ impl Neighbours {
         let grid = Grid::new(&self.points, self.radius);
         self.sort_into_cells(&grid);
         for (&start, &end) in self.cell_starts.iter().zip(&self.cell_starts[1..]) {
-            // Their places are left in the order of cells: nothing reads them before the next sort.
-            let cell = &mut self.candidates.column[start as usize..end as usize];
-            let place = |column: &u32| self.points[*column as usize];
-            cell.sort_unstable_by(|a, b| {
-                let (a, b) = (place(a), place(b));
-                a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x))
-            });
+            let cell = &mut self.candidates[start as usize..end as usize];
+            cell.sort_unstable_by(|a, b| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
         }
         order.clear();
-        order.extend_from_slice(&self.candidates.column[..self.points.len()]);
+        order.extend(self.candidates.iter().map(|candidate| candidate.column));
     }
 
     /// Builds the rows of the first `fluid` placed particles and of the `wall` ones after them. With
@@ -219,8 +191,8 @@ impl Neighbours {
         let search = Search { grid, points, cell_starts, candidates, radius2: *radius * *radius };
         let real = self.built_at.len();
         let is_fluid = |column: u32| particle(images, real, column as usize) < fluid;
-        search.fill_blocks::<false>(rows, 0, fluid, parallel, &is_fluid);
-        search.fill_blocks::<FLUID_ONLY>(wall_rows, fluid, wall, parallel, &is_fluid);
+        search.fill_blocks(rows, 0, fluid, parallel, &|_| true);
+        search.fill_blocks(wall_rows, fluid, wall, parallel, &|c| !FLUID_ONLY || is_fluid(c));
     }
 
     /// Appends the images within reach: ghosts of particles near a wall or a corner, then along each
@@ -263,7 +235,6 @@ impl Neighbours {
 
     /// Counting sort of all columns by cell, stable.
     fn sort_into_cells(&mut self, grid: &Grid) {
-        self.candidates.resize(self.points.len());
         let starts = &mut self.cell_starts;
         starts.clear();
         starts.resize(grid.cells[0] * grid.cells[1] + 1, 0);
@@ -273,11 +244,11 @@ impl Neighbours {
         for cell in 1..starts.len() {
             starts[cell] += starts[cell - 1];
         }
-        let Candidates { x, y, column } = &mut self.candidates;
-        for (c, &p) in self.points.iter().enumerate() {
+        self.candidates.clear();
+        self.candidates.resize(self.points.len(), Candidate { x: 0.0, y: 0.0, column: 0 });
+        for (column, &p) in self.points.iter().enumerate() {
             let slot = &mut starts[grid.index(p)];
-            let k = *slot as usize;
-            (x[k], y[k], column[k]) = (p.x, p.y, c as u32);
+            self.candidates[*slot as usize] = Candidate { x: p.x, y: p.y, column: column as u32 };
             *slot += 1;
         }
         // Each entry now holds the end of its cell, the start of the next one.
@@ -297,26 +268,24 @@ struct Search<'a> {
     grid: Grid,
     points: &'a [Vector2<f64>],
     cell_starts: &'a [u32],
-    candidates: &'a Candidates,
+    candidates: &'a [Candidate],
     radius2: f64,
 }
 
 impl Search<'_> {
-    /// The rows of `count` particles from `first` on; with `FLUID_ONLY` of the columns that `is_fluid`
-    /// admits.
-    fn fill_blocks<const FLUID_ONLY: bool>(
+    /// The rows of `count` particles from `first` on, of the columns that `lists` admits.
+    fn fill_blocks(
         &self,
         blocks: &mut Vec<Block>,
         first: usize,
         count: usize,
         parallel: bool,
-        is_fluid: &(impl Fn(u32) -> bool + Sync),
+        lists: &(impl Fn(u32) -> bool + Sync),
     ) {
         blocks.resize_with(count.div_ceil(BLOCK), Block::default);
         let fill = |(b, block): (usize, &mut Block)| {
             let start = first + b * BLOCK;
-            let rows = start..(start + BLOCK).min(first + count);
-            on_widest(Fill::<_, FLUID_ONLY> { search: self, block, rows, is_fluid });
+            self.fill_block(block, start..(start + BLOCK).min(first + count), lists);
         };
         if parallel {
             blocks.par_iter_mut().enumerate().for_each(fill);
@@ -325,59 +294,21 @@ impl Search<'_> {
         }
     }
 
-    /// Columns nearer to particle i than the radius, in the order of cells, then of columns; never i itself.
-    #[inline(always)]
-    fn find<V: Lane>(&self, found: &mut Vec<u32>, i: usize) -> usize {
-        let own = [V::all(self.points[i].x), V::all(self.points[i].y)];
-        let [cx, cy] = self.grid.cell(self.points[i]);
-        let mut count = 0;
-        let cells = cx.saturating_sub(1)..(cx + 2).min(self.grid.cells[0]);
-        for y in cy.saturating_sub(1)..(cy + 2).min(self.grid.cells[1]) {
-            let start = self.cell_starts[y * self.grid.cells[0] + cells.start] as usize;
-            let end = self.cell_starts[y * self.grid.cells[0] + cells.end] as usize;
-            let ([xs, ys], columns) = self.candidates.chunks(start, end);
-            found.resize(found.len().max(count + end - start + LANES), 0);
-            let places = &mut found[..];
-            for (k, columns) in columns.iter().enumerate() {
-                let (dx, dy) = (V::gather(|l| xs[k][l]) - own[0], V::gather(|l| ys[k][l]) - own[1]);
-                let among = (1 << (end - start - k * LANES).min(LANES)) - 1;
-                let near = (dx * dx + dy * dy).below(self.radius2) & among;
-                count += V::pack(columns, near, i as u32, &mut places[count..]);
-            }
-        }
-        count
-    }
-}
-
-/// Builds the rows of one block.
-struct Fill<'a, F, const FLUID_ONLY: bool> {
-    search: &'a Search<'a>,
-    block: &'a mut Block,
-    rows: std::ops::Range<usize>,
-    is_fluid: &'a F,
-}
-
-impl<F: Fn(u32) -> bool, const FLUID_ONLY: bool> OnLanes for Fill<'_, F, FLUID_ONLY> {
-    #[inline(always)]
-    fn run<V: Lane>(self) {
-        let Self { search, block, rows, is_fluid } = self;
+    fn fill_block(
+        &self,
+        block: &mut Block,
+        rows: std::ops::Range<usize>,
+        lists: &impl Fn(u32) -> bool,
+    ) {
         block.starts.clear();
         block.starts.push(0);
         block.chunks.clear();
         block.pairs = 0;
-        let sentinel = search.points.len() as u32;
         let mut found = std::mem::take(&mut block.found);
         for i in rows {
-            let mut count = search.find::<V>(&mut found, i);
-            if FLUID_ONLY {
-                let near = count;
-                count = 0;
-                for k in 0..near {
-                    let column = found[k];
-                    found[count] = column;
-                    count += usize::from(is_fluid(column));
-                }
-            }
+            let count = self.find(&mut found, i, lists);
+            let sentinel = self.points.len() as u32;
+            found.resize(found.len().max(count + LANES), sentinel);
             found[count..count + LANES].fill(sentinel);
             let (chunks, _) = found[..count.next_multiple_of(LANES)].as_chunks();
             block.chunks.extend_from_slice(chunks);
@@ -386,12 +317,35 @@ impl<F: Fn(u32) -> bool, const FLUID_ONLY: bool> OnLanes for Fill<'_, F, FLUID_O
         }
         block.found = found;
     }
+
+    /// Neighbours of particle i in the order of cells, then of columns; never itself.
+    #[inline(always)]
+    fn find(&self, found: &mut Vec<u32>, i: usize, lists: &impl Fn(u32) -> bool) -> usize {
+        let own = self.points[i];
+        let [cx, cy] = self.grid.cell(own);
+        let mut count = 0;
+        let xs = cx.saturating_sub(1)..(cx + 2).min(self.grid.cells[0]);
+        for y in cy.saturating_sub(1)..(cy + 2).min(self.grid.cells[1]) {
+            let run = self.cell_starts[y * self.grid.cells[0] + xs.start] as usize
+                ..self.cell_starts[y * self.grid.cells[0] + xs.end] as usize;
+            found.resize(found.len().max(count + run.len()), 0);
+            for candidate in &self.candidates[run] {
+                let (dx, dy) = (candidate.x - own.x, candidate.y - own.y);
+                let near = (dx * dx + dy * dy < self.radius2)
+                    & (candidate.column as usize != i)
+                    & lists(candidate.column);
+                // Always written, kept if near: no branch to mispredict.
+                found[count] = candidate.column;
+                count += usize::from(near);
+            }
+        }
+        count
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use simba::simd::WideF64x4;
 
     /// Splitmix64: the same points on every machine.
     struct Random(u64);
@@ -506,38 +460,6 @@ mod tests {
             assert_eq!((&a.starts, &a.chunks), (&b.starts, &b.chunks));
         }
         pairs
-    }
-
-    /// On a processor with registers for four these are not the same program.
-    #[test]
-    fn rows_are_the_same_in_portable_lanes() {
-        let (mut random, domain) = (Random(3), Domain::torus(4.0, 3.0));
-        let points: Vec<_> = (0..500).map(|_| random.point([4.0, 3.0])).collect();
-        let mut neighbours = Neighbours::new(0.6, &domain, &[]);
-        neighbours.place(points.iter().copied());
-        neighbours.build::<true>(&domain, &[], [250, 250], false);
-        let Neighbours { points, cell_starts, candidates, radius, images, .. } = &neighbours;
-        let grid = Grid::new(points, *radius);
-        let search = Search { grid, points, cell_starts, candidates, radius2: radius * radius };
-        let is_fluid = |column: u32| particle(images, 500, column as usize) < 250;
-        let [mut rows, mut wall_rows] = [Block::default(), Block::default()];
-        Fill::<_, false> { search: &search, block: &mut rows, rows: 0..250, is_fluid: &is_fluid }
-            .run::<WideF64x4>();
-        Fill::<_, true> {
-            search: &search,
-            block: &mut wall_rows,
-            rows: 250..500,
-            is_fluid: &is_fluid,
-        }
-        .run::<WideF64x4>();
-        for (portable, widest) in [(rows, &neighbours.rows), (wall_rows, &neighbours.wall_rows)] {
-            assert_eq!(widest.len(), 1);
-            assert_eq!(portable.chunks, widest[0].chunks);
-            assert_eq!(
-                (portable.starts, portable.pairs),
-                (widest[0].starts.clone(), widest[0].pairs)
-            );
-        }
     }
 
     #[test]

@@ -12,23 +12,17 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 use crate::lane::{OnLanes, lane};
 
-/// Whether the processor has such registers. The answer is kept by the standard library.
-pub(crate) fn is_there() -> bool {
-    std::is_x86_feature_detected!("avx2")
-}
-
-/// Whether it has 32 of them instead of 16, so that fewer sums have to be put aside.
-fn are_many() -> bool {
-    is_there()
-        && std::is_x86_feature_detected!("avx512f")
-        && std::is_x86_feature_detected!("avx512vl")
-}
-
-/// A loop compiled for such registers, where [`is_there`] says so.
-pub(crate) fn run(work: impl OnLanes) {
-    assert!(is_there());
-    // SAFETY: `is_there` and `are_many` ask for each feature that is enabled.
-    unsafe { if are_many() { with_many_registers(work) } else { with_registers_for_four(work) } }
+/// Runs a loop compiled for such registers, 32 of them if there are as many, so that fewer sums have to
+/// be put aside; gives it back where there are none. The standard library keeps the processor's answer.
+pub(crate) fn run<W: OnLanes>(work: W) -> Option<W> {
+    let are_many = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
+    match (is_x86_feature_detected!("avx2"), are_many) {
+        // SAFETY: each where the features that it enables are there.
+        (true, true) => unsafe { with_many_registers(work) },
+        (true, false) => unsafe { with_registers_for_four(work) },
+        (false, _) => return Some(work),
+    }
+    None
 }
 
 #[target_feature(enable = "avx2")]
@@ -119,46 +113,8 @@ lane! {
     total = unsafe {
         let pairs = _mm_add_pd(_mm256_castpd256_pd128(a.0), _mm256_extractf128_pd::<1>(a.0));
         _mm_cvtsd_f64(_mm_add_pd(pairs, _mm_unpackhi_pd(pairs, pairs)))
-    },
-    below(bound) =
-        unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a.0, _mm256_set1_pd(bound))) as usize },
-    #[inline(always)]
-    fn pack(columns: &[u32; 4], bits: usize, own: u32, places: &mut [u32]) -> usize {
-        let places = places.first_chunk_mut::<4>().expect("four places");
-        // SAFETY: see `Ymm`; four columns are read and four places written.
-        unsafe {
-            let columns = _mm_loadu_si128(columns.as_ptr().cast());
-            let own = _mm_cmpeq_epi32(columns, _mm_set1_epi32(own as i32));
-            let bits = bits & !_mm_movemask_ps(_mm_castsi128_ps(own)) as usize;
-            let (order, count) = &PACKED[bits & 15];
-            let order = _mm_loadu_si128(order.as_ptr().cast());
-            _mm_storeu_si128(places.as_mut_ptr().cast(), _mm_shuffle_epi8(columns, order));
-            *count
-        }
     }
 }
-
-/// For each set of bits the bytes of its columns in their order, and how many these are.
-static PACKED: [([u8; 16], usize); 16] = {
-    let mut packed = [([0; 16], 0); 16];
-    let mut bits = 0;
-    while bits < 16 {
-        let mut column = 0;
-        while column < 4 {
-            if bits >> column & 1 == 1 {
-                let mut byte = 0;
-                while byte < 4 {
-                    packed[bits].0[4 * packed[bits].1 + byte] = (4 * column + byte) as u8;
-                    byte += 1;
-                }
-                packed[bits].1 += 1;
-            }
-            column += 1;
-        }
-        bits += 1;
-    }
-    packed
-};
 
 #[cfg(test)]
 mod tests {
@@ -188,18 +144,7 @@ mod tests {
         let pair = V::gather_pair(|k| [A[k], B[k]]);
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
         let lanes = all.into_iter().flatten().chain(pair).flat_map(array).map(bits);
-        let totals = [a.total(), b.total(), (a * b).total()].map(bits);
-        let below = [-1.0, -0.0, 0.0, 1.0, f64::NAN].map(|bound| [a.below(bound), b.below(bound)]);
-        let sieved = (0..16).flat_map(|bits| [9, 8].map(|own| packed::<V>(bits, own))).flatten();
-        let whole = below.into_iter().flatten().map(|bits| bits as u64).chain(sieved);
-        lanes.chain(totals).chain(whole).collect()
-    }
-
-    /// How many of four columns are packed, and which.
-    fn packed<V: Lane>(bits: usize, own: u32) -> Vec<u64> {
-        let mut places = [0; 4];
-        let count = V::pack(&[9, 7, 5, 3], bits, own, &mut places);
-        [count as u64].into_iter().chain(places[..count].iter().map(|&c| c.into())).collect()
+        lanes.chain([a.total(), b.total(), (a * b).total()].map(bits)).collect()
     }
 
     /// The results in the lanes that `run` takes, which are `Ymm`.
@@ -221,10 +166,10 @@ mod tests {
         let [mut few, mut many] = [portable.clone(), portable.clone()];
         // SAFETY: each where its registers are there.
         unsafe {
-            if is_there() {
+            if is_x86_feature_detected!("avx2") {
                 with_registers_for_four(Results(&mut few));
             }
-            if are_many() {
+            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl") {
                 with_many_registers(Results(&mut many));
             }
         }

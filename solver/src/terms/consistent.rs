@@ -109,13 +109,8 @@ impl<X> Term<X> for ConsistentViscosity {
     fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
         let (apart, weight, along_x, along_y, moments) = sum;
         let trace = moments.xx + moments.yy;
-        let linear = match inverse(moments) {
-            Some(inverse) => {
-                let place = inverse.times(weight);
-                along_x * place.x + along_y * place.y
-            }
-            None => Vector2::zeros(),
-        };
+        let place = inverse(moments).map_or(Vector2::zeros(), |inverse| inverse.times(weight));
+        let linear = along_x * place.x + along_y * place.y;
         if trace > SINGULAR {
             rate.velocity -= (apart - linear) * (4.0 * self.nu / trace);
         }
