@@ -151,7 +151,7 @@ impl<X> Term<X> for Sided {
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, own: V, other: V, sum: &mut Vector2<V>) {
-        let [i, j] = self.weights.map(V::all);
+        let (i, j) = (V::all(self.weights[0]), V::all(self.weights[1]));
         *sum += pair.r * (pair.other.mass * pair.f * (own * i + other * j));
     }
 
