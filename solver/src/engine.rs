@@ -108,26 +108,22 @@ impl Extent {
 }
 
 /// What turns particles into columns.
-struct Fill<'a, F, D> {
-    forces: &'a F,
-    drift: &'a D,
+struct Fill<'a, S: Scheme> {
+    forces: &'a S::Forces,
+    drift: &'a S::Drift,
     limits: &'a Limits,
     reach2: f64,
 }
 
-impl<F, D> Fill<'_, F, D> {
+impl<S: Scheme> Fill<'_, S> {
     /// The columns of a block, from the states that begin with it.
-    fn chunk<S: Scheme<Forces = F, Drift = D>>(
+    fn chunk(
         &self,
         columns: &mut [Column<Shows<S>>],
         state: &State<S>,
         fixed: &[Fixed],
         built_at: &[Vector2<f64>],
-    ) -> Extent
-    where
-        F: Term<S::Extra>,
-        D: Term<S::Extra>,
-    {
+    ) -> Extent {
         let [least, most] = self.limits.density;
         let speed_limit2 = self.limits.speed * self.limits.speed;
         let mut extent = Extent::NIL;
@@ -287,12 +283,12 @@ impl<S: Scheme> Engine<S> {
     /// built.
     fn fill(&mut self, state: &State<S>) -> Result<Extent, Fault> {
         let Self { forces, drift, limits, fixed, columns, neighbours, reach2, extents, .. } = self;
-        let fill = Fill { forces, drift, limits, reach2: *reach2 };
+        let fill = Fill::<S> { forces, drift, limits, reach2: *reach2 };
         let (columns, built_at) = (&mut columns[..state.len()], &*neighbours.built_at);
         extents.resize(state.len().div_ceil(BLOCK), Extent::NIL);
         parallel::map_blocks(columns, extents, self.parallel, &|b, columns| {
             let from = b * BLOCK;
-            fill.chunk::<S>(columns, &state[from..], &fixed[from..], &built_at[from..])
+            fill.chunk(columns, &state[from..], &fixed[from..], &built_at[from..])
         });
         let extent = extents.iter().copied().fold(Extent::NIL, Extent::and);
         if extent.sound { Ok(extent) } else { Err(self.find_fault(state)) }
@@ -327,13 +323,11 @@ impl<S: Scheme> Engine<S> {
             target.velocity += rate.velocity;
             target.density = rate.density;
         });
-        for (column, Evolved { velocity, density, extra, .. }) in
-            self.columns[fluid..].iter_mut().zip(&set)
-        {
-            let (mass, density) = (column.common.mass, *density);
+        for (column, implied) in self.columns[fluid..].iter_mut().zip(&set) {
+            let (mass, density, extra) = (column.common.mass, implied.density, &implied.extra);
             let common = Common { mass, density, volume: mass / density };
             let shows = (self.forces.shows(&common, extra), self.drift.shows(&common, extra));
-            *column = Column { position: column.position, velocity: *velocity, common, shows };
+            *column = Column { velocity: implied.velocity, common, shows, ..*column };
         }
         self.extrapolated = set;
         self.fill_images(fluid);
@@ -354,12 +348,8 @@ impl<S: Scheme> Engine<S> {
     pub(crate) fn build(&mut self, state: &State<S>) {
         self.neighbours.place(state.iter().map(|e| e.position));
         let mirrors = self.walls.mirrors();
-        let (neighbours, counts) = (&mut self.neighbours, self.counts);
-        if S::Walls::EXTRAPOLATES {
-            neighbours.build::<true>(&self.domain, mirrors, counts, self.parallel);
-        } else {
-            neighbours.build::<false>(&self.domain, mirrors, counts, self.parallel);
-        }
+        let fluid_only = S::Walls::EXTRAPOLATES;
+        self.neighbours.build(&self.domain, mirrors, self.counts, fluid_only, self.parallel);
         let columns = state.len() + self.neighbours.images.len();
         self.columns.resize(columns + 1, Column::sentinel());
         self.columns[columns] = Column::sentinel();

@@ -11,6 +11,9 @@ use nalgebra::{
     ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar, Vector2,
 };
 use simba::simd::WideF64x4;
+use wide::f64x4;
+
+use crate::neighbours::LANES;
 
 /// A real number per neighbour.
 pub trait Lane:
@@ -38,6 +41,21 @@ pub trait Lane:
     fn at_least(self, floor: Self) -> Self;
     /// The sum over the neighbours, always in the same order.
     fn total(self) -> f64;
+    /// Bit k says whether the k-th number is below the bound.
+    fn below(self, bound: f64) -> usize;
+
+    /// Writes those of four `columns` whose bit is set, but not `own`, in their order to the first of at
+    /// least four places, of which it may change all four. Returns how many they are.
+    #[inline(always)]
+    fn pack(columns: &[u32; LANES], bits: usize, own: u32, places: &mut [u32]) -> usize {
+        let mut count = 0;
+        for (k, &column) in columns.iter().enumerate() {
+            // Always written, kept if it is to be: no branch to mispredict.
+            places[count] = column;
+            count += bits >> k & usize::from(column != own);
+        }
+        count
+    }
 
     /// The positive part, max(self, 0).
     #[inline(always)]
@@ -59,63 +77,42 @@ pub(crate) fn on_widest(work: impl OnLanes) {
     work.run::<WideF64x4>();
 }
 
-/// Implements [`Lane`] by what each operation is for the type.
+/// Implements [`Lane`], inlined always: what each operation is for the type.
 macro_rules! lane {
-    (
-        $Type:ty: all($x:ident) = $all:expr, gather($read:ident) = $gather:expr,
-        gather_pair = $gather_pair:expr,
-        sqrt($a:ident) = $sqrt:expr, abs = $abs:expr, at_least($floor:ident) = $at_least:expr,
-        total = $total:expr
-    ) => {
-        impl $crate::lane::Lane for $Type {
+    (for $Type:ty: $(fn $name:ident($($takes:tt)*) -> $Gives:ty = $is:expr;)+) => {
+        impl $crate::lane::Lane for $Type {$(
             #[inline(always)]
-            fn all($x: f64) -> Self {
-                $all
+            fn $name($($takes)*) -> $Gives {
+                $is
             }
-            #[inline(always)]
-            fn gather($read: impl Fn(usize) -> f64) -> Self {
-                $gather
-            }
-            #[inline(always)]
-            fn gather_pair($read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] {
-                $gather_pair
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                let $a = self;
-                $sqrt
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                let $a = self;
-                $abs
-            }
-            #[inline(always)]
-            fn at_least(self, $floor: Self) -> Self {
-                let $a = self;
-                $at_least
-            }
-            #[inline(always)]
-            fn total(self) -> f64 {
-                let $a = self;
-                $total
-            }
-        }
+        )+}
     };
 }
 pub(crate) use lane;
 
 lane! {
-    f64: all(x) = x, gather(read) = read(0), gather_pair = read(0),
-    sqrt(a) = a.sqrt(), abs = a.abs(), at_least(floor) = a.max(floor), total = a
+    for f64:
+    fn all(x: f64) -> Self = x;
+    fn gather(read: impl Fn(usize) -> f64) -> Self = read(0);
+    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] = read(0);
+    fn sqrt(self) -> Self = f64::sqrt(self);
+    fn abs(self) -> Self = f64::abs(self);
+    fn at_least(self, floor: Self) -> Self = self.max(floor);
+    fn total(self) -> f64 = self;
+    fn below(self, bound: f64) -> usize = usize::from(self < bound);
 }
 
 lane! {
-    WideF64x4: all(x) = Self(wide::f64x4::splat(x)),
-    gather(read) = Self(wide::f64x4::from([read(0), read(1), read(2), read(3)])),
-    gather_pair = [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])],
-    sqrt(a) = Self(a.0.sqrt()), abs = Self(a.0.abs()), at_least(floor) = Self(a.0.fast_max(floor.0)),
-    total = { let [a, b, c, d] = a.0.to_array(); (a + c) + (b + d) }
+    for WideF64x4:
+    fn all(x: f64) -> Self = Self(f64x4::splat(x));
+    fn gather(read: impl Fn(usize) -> f64) -> Self = Self(f64x4::from([read(0), read(1), read(2), read(3)]));
+    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
+        [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])];
+    fn sqrt(self) -> Self = Self(self.0.sqrt());
+    fn abs(self) -> Self = Self(self.0.abs());
+    fn at_least(self, floor: Self) -> Self = Self(self.0.fast_max(floor.0));
+    fn total(self) -> f64 = { let [a, b, c, d] = self.0.to_array(); (a + c) + (b + d) };
+    fn below(self, bound: f64) -> usize = self.0.simd_lt(f64x4::splat(bound)).to_bitmask() as usize;
 }
 
 /// A vector per neighbour.

@@ -6,11 +6,15 @@
 //! having moved by at most skin/2 since, are still outside each other's support: the criterion is
 //! exact, for images too, since a shift or a mirror moves an image as far as its source.
 
+use std::{mem::take, ops::Range};
+
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use crate::{
     domain::Domain,
+    lane::{Lane, OnLanes, gather_vector, on_widest},
+    numbers::Numbers,
     walls::{Map, PlaneWall, corners},
 };
 
@@ -52,7 +56,7 @@ impl Block {
 }
 
 /// A grid of cells no smaller than the list radius.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Grid {
     low: Vector2<f64>,
     inverse: Vector2<f64>,
@@ -89,15 +93,8 @@ impl Grid {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Candidate {
-    x: f64,
-    y: f64,
-    column: u32,
-}
-
 /// The neighbour rows of a scene and what is needed to rebuild them without allocating.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Neighbours {
     radius: f64,
     pub maps: Vec<Map>,
@@ -107,8 +104,11 @@ pub(crate) struct Neighbours {
     /// Where the particles were when the rows were built.
     pub built_at: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
+    grid: Grid,
     cell_starts: Vec<u32>,
-    candidates: Vec<Candidate>,
+    /// Columns in the order of cells, and where they are; then something that pads the last lanes.
+    cell_columns: Vec<u32>,
+    cell_points: Vec<Vector2<f64>>,
 }
 
 impl Neighbours {
@@ -122,17 +122,7 @@ impl Neighbours {
                 maps.extend([Map::Shift(shift), Map::Shift(-shift)]);
             }
         }
-        Self {
-            radius,
-            maps,
-            images: Vec::new(),
-            rows: Vec::new(),
-            wall_rows: Vec::new(),
-            built_at: Vec::new(),
-            points: Vec::new(),
-            cell_starts: Vec::new(),
-            candidates: Vec::new(),
-        }
+        Self { radius, maps, ..Self::default() }
     }
 
     /// Neighbours of all rows, without padding.
@@ -147,11 +137,12 @@ impl Neighbours {
 
     /// Memory held \[bytes\].
     pub fn bytes(&self) -> usize {
+        let points = [&self.built_at, &self.points, &self.cell_points].map(Vec::capacity);
+        let numbers = [&self.cell_starts, &self.cell_columns].map(Vec::capacity);
         self.rows.iter().chain(&self.wall_rows).map(Block::bytes).sum::<usize>()
             + self.images.capacity() * size_of::<Image>()
-            + (self.built_at.capacity() + self.points.capacity()) * size_of::<Vector2<f64>>()
-            + self.cell_starts.capacity() * size_of::<u32>()
-            + self.candidates.capacity() * size_of::<Candidate>()
+            + points.into_iter().sum::<usize>() * size_of::<Vector2<f64>>()
+            + numbers.into_iter().sum::<usize>() * size_of::<u32>()
     }
 
     /// Takes note of where the particles are, for [`Neighbours::order`] or [`Neighbours::build`].
@@ -163,36 +154,41 @@ impl Neighbours {
     /// The order that sorts the placed particles by cell, and inside a cell by place: the same for
     /// any order that they came in.
     pub fn order(&mut self, order: &mut Vec<u32>) {
-        let grid = Grid::new(&self.points, self.radius);
-        self.sort_into_cells(&grid);
+        self.sort_into_cells();
         for (&start, &end) in self.cell_starts.iter().zip(&self.cell_starts[1..]) {
-            let cell = &mut self.candidates[start as usize..end as usize];
-            cell.sort_unstable_by(|a, b| a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x)));
+            let cell = &mut self.cell_columns[start as usize..end as usize];
+            cell.sort_unstable_by(|&a, &b| {
+                let [a, b] = [a, b].map(|column| self.points[column as usize]);
+                a.y.total_cmp(&b.y).then(a.x.total_cmp(&b.x))
+            });
         }
         order.clear();
-        order.extend(self.candidates.iter().map(|candidate| candidate.column));
+        order.extend_from_slice(&self.cell_columns[..self.points.len()]);
     }
 
     /// Builds the rows of the first `fluid` placed particles and of the `wall` ones after them. With
-    /// `FLUID_ONLY` the rows of the latter list fluid particles and their images alone.
-    pub fn build<const FLUID_ONLY: bool>(
+    /// `fluid_only` the rows of the latter list fluid particles and their images alone.
+    pub fn build(
         &mut self,
         domain: &Domain,
         mirrors: &[PlaneWall],
         [fluid, wall]: [usize; 2],
+        fluid_only: bool,
         parallel: bool,
     ) {
         self.built_at.clear();
         self.built_at.extend_from_slice(&self.points);
         self.make_images(domain, mirrors);
-        let grid = Grid::new(&self.points, self.radius);
-        self.sort_into_cells(&grid);
-        let Self { rows, wall_rows, points, cell_starts, candidates, radius, images, .. } = self;
-        let search = Search { grid, points, cell_starts, candidates, radius2: *radius * *radius };
-        let real = self.built_at.len();
-        let is_fluid = |column: u32| particle(images, real, column as usize) < fluid;
-        search.fill_blocks(rows, 0, fluid, parallel, &|_| true);
-        search.fill_blocks(wall_rows, fluid, wall, parallel, &|c| !FLUID_ONLY || is_fluid(c));
+        self.sort_into_cells();
+        let (mut rows, mut wall_rows) = (take(&mut self.rows), take(&mut self.wall_rows));
+        self.fill_blocks(&mut rows, 0..fluid, None, parallel);
+        self.fill_blocks(
+            &mut wall_rows,
+            fluid..fluid + wall,
+            fluid_only.then_some(fluid),
+            parallel,
+        );
+        (self.rows, self.wall_rows) = (rows, wall_rows);
     }
 
     /// Appends the images within reach: ghosts of particles near a wall or a corner, then along each
@@ -234,8 +230,9 @@ impl Neighbours {
     }
 
     /// Counting sort of all columns by cell, stable.
-    fn sort_into_cells(&mut self, grid: &Grid) {
-        let starts = &mut self.cell_starts;
+    fn sort_into_cells(&mut self) {
+        self.grid = Grid::new(&self.points, self.radius);
+        let (grid, starts) = (&self.grid, &mut self.cell_starts);
         starts.clear();
         starts.resize(grid.cells[0] * grid.cells[1] + 1, 0);
         for &p in &self.points {
@@ -244,16 +241,63 @@ impl Neighbours {
         for cell in 1..starts.len() {
             starts[cell] += starts[cell - 1];
         }
-        self.candidates.clear();
-        self.candidates.resize(self.points.len(), Candidate { x: 0.0, y: 0.0, column: 0 });
+        self.cell_columns.resize(self.points.len() + LANES, 0);
+        self.cell_points.resize(self.points.len() + LANES, Vector2::zeros());
         for (column, &p) in self.points.iter().enumerate() {
             let slot = &mut starts[grid.index(p)];
-            self.candidates[*slot as usize] = Candidate { x: p.x, y: p.y, column: column as u32 };
+            self.cell_columns[*slot as usize] = column as u32;
+            self.cell_points[*slot as usize] = p;
             *slot += 1;
         }
         // Each entry now holds the end of its cell, the start of the next one.
         starts.rotate_right(1);
         starts[0] = 0;
+    }
+
+    /// The rows of particles `of`; with `only` of the columns of the first particles alone.
+    fn fill_blocks(
+        &self,
+        blocks: &mut Vec<Block>,
+        of: Range<usize>,
+        only: Option<usize>,
+        parallel: bool,
+    ) {
+        blocks.resize_with(of.len().div_ceil(BLOCK), Block::default);
+        let fill = |(b, block): (usize, &mut Block)| {
+            let start = of.start + b * BLOCK;
+            let rows = start..(start + BLOCK).min(of.end);
+            on_widest(Fill { neighbours: self, block, rows, only });
+        };
+        if parallel {
+            blocks.par_iter_mut().enumerate().for_each(fill);
+        } else {
+            blocks.iter_mut().enumerate().for_each(fill);
+        }
+    }
+
+    /// Finds the columns nearer to particle i than the radius, in the order of cells, then of columns;
+    /// never i itself. Returns how many they are.
+    #[inline(always)]
+    fn find<V: Lane>(&self, found: &mut Vec<u32>, i: usize) -> usize {
+        let (own, radius2) = (self.points[i].spread::<V>(), self.radius * self.radius);
+        let ([cx, cy], [width, height]) = (self.grid.cell(self.points[i]), self.grid.cells);
+        let mut count = 0;
+        for y in cy.saturating_sub(1)..(cy + 2).min(height) {
+            let start = self.cell_starts[y * width + cx.saturating_sub(1)] as usize;
+            let end = self.cell_starts[y * width + (cx + 2).min(width)] as usize;
+            found.resize(found.len().max(count + end - start + LANES), 0);
+            let run = start..start + (end - start).next_multiple_of(LANES);
+            let (points, _) = self.cell_points[run.clone()].as_chunks::<LANES>();
+            let (columns, _) = self.cell_columns[run].as_chunks();
+            for (k, (points, columns)) in points.iter().zip(columns).enumerate() {
+                let r = own - gather_vector::<V>(|lane| points[lane]);
+                // The last lanes may be of the next cells.
+                let of_the_run = !(!0 << (end - start - k * LANES).min(LANES));
+                let near = (r.x * r.x + r.y * r.y).below(radius2) & of_the_run;
+                count += V::pack(columns, near, i as u32, &mut found[count..]);
+            }
+        }
+        count
     }
 }
 
@@ -263,52 +307,33 @@ fn particle(images: &[Image], real: usize, column: usize) -> usize {
     image.map_or(column, |image| particle(images, real, image.source as usize))
 }
 
-/// What building rows reads.
-struct Search<'a> {
-    grid: Grid,
-    points: &'a [Vector2<f64>],
-    cell_starts: &'a [u32],
-    candidates: &'a [Candidate],
-    radius2: f64,
+/// Builds the rows of one block.
+struct Fill<'a> {
+    neighbours: &'a Neighbours,
+    block: &'a mut Block,
+    rows: Range<usize>,
+    only: Option<usize>,
 }
 
-impl Search<'_> {
-    /// The rows of `count` particles from `first` on, of the columns that `lists` admits.
-    fn fill_blocks(
-        &self,
-        blocks: &mut Vec<Block>,
-        first: usize,
-        count: usize,
-        parallel: bool,
-        lists: &(impl Fn(u32) -> bool + Sync),
-    ) {
-        blocks.resize_with(count.div_ceil(BLOCK), Block::default);
-        let fill = |(b, block): (usize, &mut Block)| {
-            let start = first + b * BLOCK;
-            self.fill_block(block, start..(start + BLOCK).min(first + count), lists);
-        };
-        if parallel {
-            blocks.par_iter_mut().enumerate().for_each(fill);
-        } else {
-            blocks.iter_mut().enumerate().for_each(fill);
-        }
-    }
-
-    fn fill_block(
-        &self,
-        block: &mut Block,
-        rows: std::ops::Range<usize>,
-        lists: &impl Fn(u32) -> bool,
-    ) {
+impl OnLanes for Fill<'_> {
+    #[inline(always)]
+    fn run<V: Lane>(self) {
+        let Self { neighbours, block, rows, only } = self;
         block.starts.clear();
         block.starts.push(0);
         block.chunks.clear();
         block.pairs = 0;
-        let mut found = std::mem::take(&mut block.found);
+        let sentinel = neighbours.points.len() as u32;
+        let mut found = take(&mut block.found);
         for i in rows {
-            let count = self.find(&mut found, i, lists);
-            let sentinel = self.points.len() as u32;
-            found.resize(found.len().max(count + LANES), sentinel);
+            let mut count = neighbours.find::<V>(&mut found, i);
+            if let Some(fluid) = only {
+                let near = take(&mut count);
+                for k in 0..near {
+                    found[count] = found[k];
+                    count += usize::from(neighbours.particle(found[k] as usize) < fluid);
+                }
+            }
             found[count..count + LANES].fill(sentinel);
             let (chunks, _) = found[..count.next_multiple_of(LANES)].as_chunks();
             block.chunks.extend_from_slice(chunks);
@@ -317,35 +342,12 @@ impl Search<'_> {
         }
         block.found = found;
     }
-
-    /// Neighbours of particle i in the order of cells, then of columns; never itself.
-    #[inline(always)]
-    fn find(&self, found: &mut Vec<u32>, i: usize, lists: &impl Fn(u32) -> bool) -> usize {
-        let own = self.points[i];
-        let [cx, cy] = self.grid.cell(own);
-        let mut count = 0;
-        let xs = cx.saturating_sub(1)..(cx + 2).min(self.grid.cells[0]);
-        for y in cy.saturating_sub(1)..(cy + 2).min(self.grid.cells[1]) {
-            let run = self.cell_starts[y * self.grid.cells[0] + xs.start] as usize
-                ..self.cell_starts[y * self.grid.cells[0] + xs.end] as usize;
-            found.resize(found.len().max(count + run.len()), 0);
-            for candidate in &self.candidates[run] {
-                let (dx, dy) = (candidate.x - own.x, candidate.y - own.y);
-                let near = (dx * dx + dy * dy < self.radius2)
-                    & (candidate.column as usize != i)
-                    & lists(candidate.column);
-                // Always written, kept if near: no branch to mispredict.
-                found[count] = candidate.column;
-                count += usize::from(near);
-            }
-        }
-        count
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use simba::simd::WideF64x4;
 
     /// Splitmix64: the same points on every machine.
     struct Random(u64);
@@ -442,7 +444,7 @@ mod tests {
         let mut neighbours = Neighbours::new(radius, domain, mirrors);
         let n = points.len();
         neighbours.place(points.iter().copied());
-        neighbours.build::<false>(domain, mirrors, [n, 0], false);
+        neighbours.build(domain, mirrors, [n, 0], false, false);
         let mut pairs = 0;
         for i in 0..n {
             let expected = brute_force(points, i, radius, domain, mirrors);
@@ -455,11 +457,30 @@ mod tests {
         // The parallel path builds the same rows in the same order.
         let mut parallel = Neighbours::new(radius, domain, mirrors);
         parallel.place(points.iter().copied());
-        parallel.build::<false>(domain, mirrors, [n, 0], true);
+        parallel.build(domain, mirrors, [n, 0], false, true);
         for (a, b) in neighbours.rows.iter().zip(&parallel.rows) {
             assert_eq!((&a.starts, &a.chunks), (&b.starts, &b.chunks));
         }
         pairs
+    }
+
+    /// On a processor with registers for four these are not the same program.
+    #[test]
+    fn rows_are_the_same_in_portable_lanes() {
+        let (mut random, domain) = (Random(3), Domain::torus(4.0, 3.0));
+        let points: Vec<_> = (0..500).map(|_| random.point([4.0, 3.0])).collect();
+        let mut neighbours = Neighbours::new(0.6, &domain, &[]);
+        neighbours.place(points.into_iter());
+        neighbours.build(&domain, &[], [250, 250], true, false);
+        let [fluid, wall] = [&neighbours.rows[..], &neighbours.wall_rows];
+        for (widest, rows, only) in [(fluid, 0..250, None), (wall, 250..500, Some(250))] {
+            let mut portable = Block::default();
+            Fill { neighbours: &neighbours, block: &mut portable, rows, only }.run::<WideF64x4>();
+            let [widest] = widest else { panic!("one block") };
+            assert_eq!(portable.chunks, widest.chunks);
+            assert_eq!((portable.starts, portable.pairs), (widest.starts.clone(), widest.pairs));
+        }
+        assert!(wall[0].pairs > 1000 && fluid[0].pairs > wall[0].pairs);
     }
 
     #[test]
@@ -538,7 +559,7 @@ mod tests {
         let mut lost = 0;
         let n = points.len();
         neighbours.place(points.iter().copied());
-        neighbours.build::<false>(&domain, &mirrors, [n, 0], false);
+        neighbours.build(&domain, &mirrors, [n, 0], false, false);
         for _ in 0..60 {
             for point in &mut points {
                 *point += (random.point([1.0, 1.0]) - Vector2::repeat(0.5)) * 0.03;
@@ -547,7 +568,7 @@ mod tests {
             let moved = points.iter().zip(&neighbours.built_at).map(|(p, b)| (p - b).norm());
             if moved.fold(0.0, f64::max) > share * skin {
                 neighbours.place(points.iter().copied());
-                neighbours.build::<false>(&domain, &mirrors, [n, 0], false);
+                neighbours.build(&domain, &mirrors, [n, 0], false, false);
                 *builds += 1;
             }
             for i in 0..n {

@@ -7,20 +7,7 @@ use rayon::prelude::*;
 use crate::neighbours::BLOCK;
 
 /// Does `work(b, items of block b)` for all blocks of [`BLOCK`] items, on several threads or in
-/// order.
-pub(crate) fn for_each_block<T: Send>(
-    items: &mut [T],
-    parallel: bool,
-    work: &(dyn Fn(usize, &mut [T]) + Sync),
-) {
-    if parallel {
-        items.par_chunks_mut(BLOCK).enumerate().for_each(|(b, items)| work(b, items));
-    } else {
-        items.chunks_mut(BLOCK).enumerate().for_each(|(b, items)| work(b, items));
-    }
-}
-
-/// The same where each block has a result.
+/// order; each block has a result.
 pub(crate) fn map_blocks<T: Send, R: Send>(
     items: &mut [T],
     results: &mut [R],
@@ -33,4 +20,15 @@ pub(crate) fn map_blocks<T: Send, R: Send>(
     } else {
         items.chunks_mut(BLOCK).zip(results).enumerate().for_each(work);
     }
+}
+
+/// The same where a block has none.
+pub(crate) fn for_each_block<T: Send>(
+    items: &mut [T],
+    parallel: bool,
+    work: &(dyn Fn(usize, &mut [T]) + Sync),
+) {
+    // Of no size: nothing is allocated.
+    let mut nothing = vec![(); items.len().div_ceil(BLOCK)];
+    map_blocks(items, &mut nothing, parallel, work);
 }

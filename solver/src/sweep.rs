@@ -168,7 +168,7 @@ mod tests {
         let count = columns.len() - 1;
         let mut neighbours = Neighbours::new(3.0 * DX, &Domain::open(), &[]);
         neighbours.place(columns[..count].iter().map(|column| column.position));
-        neighbours.build::<false>(&Domain::open(), &[], [count, 0], false);
+        neighbours.build(&Domain::open(), &[], [count, 0], false, false);
         let kernel = Smoothing::<QuinticSpline>::new(DX);
         let project = |shows: &<Terms as Term<()>>::Shows| *shows;
         let (terms, columns) = (&terms, &columns[..]);

@@ -8,6 +8,7 @@
 #![allow(unsafe_code)]
 
 use std::arch::x86_64::*;
+use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use crate::lane::{OnLanes, lane};
@@ -49,7 +50,7 @@ impl Ymm {
     /// The four numbers.
     fn to_array(self) -> [f64; 4] {
         // SAFETY: both are four f64 in the same order.
-        unsafe { std::mem::transmute(self.0) }
+        unsafe { transmute(self.0) }
     }
 }
 
@@ -98,23 +99,47 @@ impl PartialEq for Ymm {
 
 // SAFETY: see `Ymm`. Roots are correctly rounded, as for f64; lanes are added as (a + c) + (b + d).
 lane! {
-    Ymm: all(x) = Self(unsafe { _mm256_set1_pd(x) }),
-    gather(read) = Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) }),
-    gather_pair = {
+    for Ymm:
+    fn all(x: f64) -> Self = Self(unsafe { _mm256_set1_pd(x) });
+    fn gather(read: impl Fn(usize) -> f64) -> Self =
+        Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) });
+    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] = {
         // Neighbours 0 and 2, and 1 and 3, each with its two numbers as they stand in memory.
         let ([a, b], [c, d]) = (read(0), read(2));
         let ([e, f], [g, h]) = (read(1), read(3));
         let (even, odd) = unsafe { (_mm256_setr_pd(a, b, c, d), _mm256_setr_pd(e, f, g, h)) };
         unsafe { [Self(_mm256_unpacklo_pd(even, odd)), Self(_mm256_unpackhi_pd(even, odd))] }
-    },
-    sqrt(a) = Self(unsafe { _mm256_sqrt_pd(a.0) }),
-    abs = Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.0) }),
-    at_least(floor) = Self(unsafe { _mm256_max_pd(a.0, floor.0) }),
-    total = unsafe {
-        let pairs = _mm_add_pd(_mm256_castpd256_pd128(a.0), _mm256_extractf128_pd::<1>(a.0));
+    };
+    fn sqrt(self) -> Self = Self(unsafe { _mm256_sqrt_pd(self.0) });
+    fn abs(self) -> Self = Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) });
+    fn at_least(self, floor: Self) -> Self = Self(unsafe { _mm256_max_pd(self.0, floor.0) });
+    fn total(self) -> f64 = unsafe {
+        let pairs = _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
         _mm_cvtsd_f64(_mm_add_pd(pairs, _mm_unpackhi_pd(pairs, pairs)))
-    }
+    };
+    fn below(self, bound: f64) -> usize = unsafe {
+        _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, _mm256_set1_pd(bound))) as usize
+    };
+    fn pack(columns: &[u32; 4], bits: usize, own: u32, places: &mut [u32]) -> usize = {
+        let places: &mut [u32; 4] = places.first_chunk_mut().expect("four places");
+        unsafe {
+            let columns: __m128i = transmute(*columns);
+            let own = _mm_cmpeq_epi32(columns, _mm_set1_epi32(own as i32));
+            let kept = PACKED[bits & !_mm_movemask_ps(_mm_castsi128_ps(own)) as usize];
+            let from = _mm_srlv_epi32(_mm_set1_epi32(kept), _mm_setr_epi32(0, 4, 8, 12));
+            let packed = _mm_permutevar_ps(_mm_castsi128_ps(columns), from);
+            *places = transmute::<__m128, [u32; 4]>(packed);
+            (kept >> 16) as usize
+        }
+    };
 }
+
+/// For each set of bits how many there are, and in the four digits after that, from the last one on,
+/// which.
+const PACKED: [i32; 16] = [
+    0x0_0000, 0x1_0000, 0x1_0001, 0x2_0010, 0x1_0002, 0x2_0020, 0x2_0021, 0x3_0210, 0x1_0003,
+    0x2_0030, 0x2_0031, 0x3_0310, 0x2_0032, 0x3_0320, 0x3_0321, 0x4_3210,
+];
 
 #[cfg(test)]
 mod tests {
@@ -144,7 +169,18 @@ mod tests {
         let pair = V::gather_pair(|k| [A[k], B[k]]);
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
         let lanes = all.into_iter().flatten().chain(pair).flat_map(array).map(bits);
-        lanes.chain([a.total(), b.total(), (a * b).total()].map(bits)).collect()
+        let totals = [a.total(), b.total(), (a * b).total()].map(bits);
+        let below = [-1.0, -0.0, 0.0, 1.0, f64::NAN].map(|bound| [a.below(bound), b.below(bound)]);
+        let packed = (0..16).flat_map(|bits| [9, 8].map(|own| packed::<V>(bits, own))).flatten();
+        let whole = below.into_iter().flatten().map(|bits| bits as u64).chain(packed);
+        lanes.chain(totals).chain(whole).collect()
+    }
+
+    /// How many of four columns are packed, and which.
+    fn packed<V: Lane>(bits: usize, own: u32) -> Vec<u64> {
+        let mut places = [0; 4];
+        let count = V::pack(&[9, 7, 5, 3], bits, own, &mut places);
+        [count as u64].into_iter().chain(places[..count].iter().map(|&c| c.into())).collect()
     }
 
     /// The results in the lanes that `run` takes, which are `Ymm`.
