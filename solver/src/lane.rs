@@ -1,5 +1,5 @@
-//! Lanes: the number type of the pair loop, one neighbour (`f64`) or four at once (`WideF64x4`, and
-//! `Ymm` where the processor has registers for four).
+//! Lanes: the number type of the pair loop and of the search for pairs, one neighbour (`f64`) or four at
+//! once (`WideF64x4`, and `Ymm` where the processor has registers for four).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
 //! row loop runs it on four neighbours. No form contracts `a * b + c`, and the lanes are added in a
@@ -13,7 +13,8 @@ use nalgebra::{
 use simba::simd::WideF64x4;
 use wide::f64x4;
 
-use crate::neighbours::LANES;
+/// Neighbours handled at once.
+pub(crate) const LANES: usize = 4;
 
 /// A real number per neighbour.
 pub trait Lane:
@@ -41,11 +42,11 @@ pub trait Lane:
     fn at_least(self, floor: Self) -> Self;
     /// The sum over the neighbours, always in the same order.
     fn total(self) -> f64;
-    /// Bit k says whether the k-th number is below the bound.
-    fn below(self, bound: f64) -> usize;
+    /// Bit k says whether the k-th number is below the bound. For the search of rows; no term needs it.
+    fn bits_below(self, bound: f64) -> usize;
 
-    /// Writes those of four `columns` whose bit is set, but not `own`, in their order to the first of at
-    /// least four places, of which it may change all four. Returns how many they are.
+    /// Writes those of four `columns` whose bit is set, except `own`, in order to the front of `places`, of
+    /// which it may overwrite the first four. Returns how many. For the search of rows, too.
     #[inline(always)]
     fn pack(columns: &[u32; LANES], bits: usize, own: u32, places: &mut [u32]) -> usize {
         let mut count = 0;
@@ -99,7 +100,7 @@ lane! {
     fn abs(self) -> Self = f64::abs(self);
     fn at_least(self, floor: Self) -> Self = self.max(floor);
     fn total(self) -> f64 = self;
-    fn below(self, bound: f64) -> usize = usize::from(self < bound);
+    fn bits_below(self, bound: f64) -> usize = usize::from(self < bound);
 }
 
 lane! {
@@ -112,7 +113,7 @@ lane! {
     fn abs(self) -> Self = Self(self.0.abs());
     fn at_least(self, floor: Self) -> Self = Self(self.0.fast_max(floor.0));
     fn total(self) -> f64 = { let [a, b, c, d] = self.0.to_array(); (a + c) + (b + d) };
-    fn below(self, bound: f64) -> usize = self.0.simd_lt(f64x4::splat(bound)).to_bitmask() as usize;
+    fn bits_below(self, bound: f64) -> usize = self.0.simd_lt(f64x4::splat(bound)).to_bitmask() as usize;
 }
 
 /// A vector per neighbour.

@@ -13,13 +13,11 @@ use rayon::prelude::*;
 
 use crate::{
     domain::Domain,
-    lane::{Lane, OnLanes, gather_vector, on_widest},
+    lane::{LANES, Lane, OnLanes, gather_vector, on_widest},
     numbers::Numbers,
     walls::{Map, PlaneWall, corners},
 };
 
-/// Neighbours handled at once.
-pub(crate) const LANES: usize = 4;
 /// Rows a unit of parallel work; fixed, so that nothing depends on the number of threads.
 pub(crate) const BLOCK: usize = 512;
 
@@ -106,7 +104,8 @@ pub(crate) struct Neighbours {
     points: Vec<Vector2<f64>>,
     grid: Grid,
     cell_starts: Vec<u32>,
-    /// Columns in the order of cells, and where they are; then something that pads the last lanes.
+    /// Columns in the order of cells, and (while rows are built) where they are; then something that pads
+    /// the last lanes.
     cell_columns: Vec<u32>,
     cell_points: Vec<Vector2<f64>>,
 }
@@ -181,13 +180,9 @@ impl Neighbours {
         self.make_images(domain, mirrors);
         self.sort_into_cells();
         let (mut rows, mut wall_rows) = (take(&mut self.rows), take(&mut self.wall_rows));
-        self.fill_blocks(&mut rows, 0..fluid, None, parallel);
-        self.fill_blocks(
-            &mut wall_rows,
-            fluid..fluid + wall,
-            fluid_only.then_some(fluid),
-            parallel,
-        );
+        let up_to = if fluid_only { fluid } else { usize::MAX };
+        self.fill_blocks(&mut rows, 0..fluid, usize::MAX, parallel);
+        self.fill_blocks(&mut wall_rows, fluid..fluid + wall, up_to, parallel);
         (self.rows, self.wall_rows) = (rows, wall_rows);
     }
 
@@ -254,19 +249,13 @@ impl Neighbours {
         starts[0] = 0;
     }
 
-    /// The rows of particles `of`; with `only` of the columns of the first particles alone.
-    fn fill_blocks(
-        &self,
-        blocks: &mut Vec<Block>,
-        of: Range<usize>,
-        only: Option<usize>,
-        parallel: bool,
-    ) {
+    /// The rows of particles `of`, which list columns of the particles before `up_to` alone.
+    fn fill_blocks(&self, blocks: &mut Vec<Block>, of: Range<usize>, up_to: usize, parallel: bool) {
         blocks.resize_with(of.len().div_ceil(BLOCK), Block::default);
         let fill = |(b, block): (usize, &mut Block)| {
             let start = of.start + b * BLOCK;
             let rows = start..(start + BLOCK).min(of.end);
-            on_widest(Fill { neighbours: self, block, rows, only });
+            on_widest(FillRows { neighbours: self, block, rows, up_to });
         };
         if parallel {
             blocks.par_iter_mut().enumerate().for_each(fill);
@@ -276,9 +265,10 @@ impl Neighbours {
     }
 
     /// Finds the columns nearer to particle i than the radius, in the order of cells, then of columns;
-    /// never i itself. Returns how many they are.
+    /// never i itself. Returns how many they are, and leaves room for a chunk more.
     #[inline(always)]
     fn find<V: Lane>(&self, found: &mut Vec<u32>, i: usize) -> usize {
+        const { assert!(size_of::<V>() == LANES * size_of::<f64>()) };
         let (own, radius2) = (self.points[i].spread::<V>(), self.radius * self.radius);
         let ([cx, cy], [width, height]) = (self.grid.cell(self.points[i]), self.grid.cells);
         let mut count = 0;
@@ -293,7 +283,7 @@ impl Neighbours {
                 let r = own - gather_vector::<V>(|lane| points[lane]);
                 // The last lanes may be of the next cells.
                 let of_the_run = !(!0 << (end - start - k * LANES).min(LANES));
-                let near = (r.x * r.x + r.y * r.y).below(radius2) & of_the_run;
+                let near = (r.x * r.x + r.y * r.y).bits_below(radius2) & of_the_run;
                 count += V::pack(columns, near, i as u32, &mut found[count..]);
             }
         }
@@ -308,17 +298,17 @@ fn particle(images: &[Image], real: usize, column: usize) -> usize {
 }
 
 /// Builds the rows of one block.
-struct Fill<'a> {
+struct FillRows<'a> {
     neighbours: &'a Neighbours,
     block: &'a mut Block,
     rows: Range<usize>,
-    only: Option<usize>,
+    up_to: usize,
 }
 
-impl OnLanes for Fill<'_> {
+impl OnLanes for FillRows<'_> {
     #[inline(always)]
     fn run<V: Lane>(self) {
-        let Self { neighbours, block, rows, only } = self;
+        let Self { neighbours, block, rows, up_to } = self;
         block.starts.clear();
         block.starts.push(0);
         block.chunks.clear();
@@ -327,11 +317,12 @@ impl OnLanes for Fill<'_> {
         let mut found = take(&mut block.found);
         for i in rows {
             let mut count = neighbours.find::<V>(&mut found, i);
-            if let Some(fluid) = only {
-                let near = take(&mut count);
-                for k in 0..near {
+            if up_to < usize::MAX {
+                let all = count;
+                count = 0;
+                for k in 0..all {
                     found[count] = found[k];
-                    count += usize::from(neighbours.particle(found[k] as usize) < fluid);
+                    count += usize::from(neighbours.particle(found[k] as usize) < up_to);
                 }
             }
             found[count..count + LANES].fill(sentinel);
@@ -410,10 +401,16 @@ mod tests {
         seen
     }
 
-    fn listed(neighbours: &Neighbours, points: &[Vector2<f64>], i: usize) -> Vec<Seen> {
+    /// The neighbours in row k of these blocks.
+    fn listed(
+        neighbours: &Neighbours,
+        blocks: &[Block],
+        k: usize,
+        points: &[Vector2<f64>],
+    ) -> Vec<Seen> {
         let (n, images) = (points.len() as u32, &neighbours.images);
         let sentinel = n + images.len() as u32;
-        let row = neighbours.rows[i / BLOCK].row(i % BLOCK).iter().flatten();
+        let row = blocks[k / BLOCK].row(k % BLOCK).iter().flatten();
         row.filter(|&&c| c != sentinel).map(|&c| seen(neighbours, points, c)).collect()
     }
 
@@ -443,17 +440,30 @@ mod tests {
     fn check(points: &[Vector2<f64>], radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> u64 {
         let mut neighbours = Neighbours::new(radius, domain, mirrors);
         let n = points.len();
-        neighbours.place(points.iter().copied());
-        neighbours.build(domain, mirrors, [n, 0], false, false);
+        let all: Vec<_> = (0..n).map(|i| brute_force(points, i, radius, domain, mirrors)).collect();
         let mut pairs = 0;
-        for i in 0..n {
-            let expected = brute_force(points, i, radius, domain, mirrors);
-            pairs += expected.len() as u64;
-            let found = listed(&neighbours, points, i);
-            let wanted = expected.len();
-            assert!(same(found, expected, 1e-9), "row {i} of {n}: {wanted} neighbours expected");
+        // The last ones are walls that see all, walls that see no walls, or not there.
+        for (fluid, fluid_only) in [(n / 2, false), (n / 2, true), (n, false)] {
+            neighbours.place(points.iter().copied());
+            neighbours.build(domain, mirrors, [fluid, n - fluid], fluid_only, false);
+            pairs = 0;
+            for (i, expected) in all.iter().enumerate() {
+                let (blocks, k) = match i.checked_sub(fluid) {
+                    None => (&neighbours.rows, i),
+                    Some(k) => (&neighbours.wall_rows, k),
+                };
+                let mut expected = expected.clone();
+                expected.retain(|(j, _)| !fluid_only || i < fluid || (*j as usize) < fluid);
+                let wanted = expected.len();
+                pairs += wanted as u64;
+                let found = listed(&neighbours, blocks, k, points);
+                assert!(
+                    same(found, expected, 1e-9),
+                    "row {i} of {n}: {wanted} neighbours expected"
+                );
+            }
+            assert_eq!(neighbours.pairs(), pairs, "padding is not counted");
         }
-        assert_eq!(neighbours.pairs(), pairs, "padding is not counted");
         // The parallel path builds the same rows in the same order.
         let mut parallel = Neighbours::new(radius, domain, mirrors);
         parallel.place(points.iter().copied());
@@ -473,9 +483,10 @@ mod tests {
         neighbours.place(points.into_iter());
         neighbours.build(&domain, &[], [250, 250], true, false);
         let [fluid, wall] = [&neighbours.rows[..], &neighbours.wall_rows];
-        for (widest, rows, only) in [(fluid, 0..250, None), (wall, 250..500, Some(250))] {
+        for (widest, rows, up_to) in [(fluid, 0..250, usize::MAX), (wall, 250..500, 250)] {
             let mut portable = Block::default();
-            Fill { neighbours: &neighbours, block: &mut portable, rows, only }.run::<WideF64x4>();
+            FillRows { neighbours: &neighbours, block: &mut portable, rows, up_to }
+                .run::<WideF64x4>();
             let [widest] = widest else { panic!("one block") };
             assert_eq!(portable.chunks, widest.chunks);
             assert_eq!((portable.starts, portable.pairs), (widest.starts.clone(), widest.pairs));
@@ -572,7 +583,7 @@ mod tests {
                 *builds += 1;
             }
             for i in 0..n {
-                let found = listed(&neighbours, &points, i);
+                let found = listed(&neighbours, &neighbours.rows, i, &points);
                 lost += brute_force(&points, i, support, &domain, &mirrors)
                     .iter()
                     .filter(|e| !found.iter().any(|f| f.0 == e.0 && (f.1 - e.1).amax() < 1e-9))

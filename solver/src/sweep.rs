@@ -8,8 +8,8 @@ use nalgebra::Vector2;
 
 use crate::{
     kernel::{Kernel, Smoothing},
-    lane::{Lane, OnLanes, gather_vector, on_widest},
-    neighbours::{BLOCK, Block, LANES},
+    lane::{LANES, Lane, OnLanes, gather_vector, on_widest},
+    neighbours::{BLOCK, Block},
     numbers::Numbers,
     parallel,
     particles::{Column, Common, Evolved, Rate},
@@ -100,8 +100,8 @@ impl<K: Kernel, T, S: Numbers, P> Sweep<'_, K, T, S, P> {
     }
 }
 
-/// One block of rows. In a profile it is `with_many_registers` or `with_registers_for_four`; the portable
-/// form is inlined into its caller.
+/// One block of rows. In a profile it is `with_many_registers` or `with_registers_for_four` with this type
+/// (the search for rows is the same with its own); the portable form is inlined into its caller.
 struct Rows<'a, W, X, F> {
     sweep: &'a W,
     block: &'a Block,

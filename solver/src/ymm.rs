@@ -1,9 +1,9 @@
 //! Four numbers in one register of a processor that has AVX2: the only unsafe code of the crate.
 //!
 //! The default build may use nothing but what every x86-64 processor has, registers for two numbers.
-//! Asked at run time, nearly all of them have registers for four, and the row loop is compiled a
-//! second time for these, and a third time for processors that have 32 of them (AVX-512). Measured: see
-//! `CHANGELOG.md`.
+//! Asked at run time, nearly all of them have registers for four, and the row loop and the search for its
+//! rows are compiled a second time for these, and a third time for processors that have 32 of them
+//! (AVX-512). Measured: see `CHANGELOG.md`.
 
 #![allow(unsafe_code)]
 
@@ -11,7 +11,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::lane::{OnLanes, lane};
+use crate::lane::{LANES, OnLanes, lane};
 
 /// Runs a loop compiled for such registers, 32 of them if there are as many, so that fewer sums have to
 /// be put aside; gives it back where there are none. The standard library keeps the processor's answer.
@@ -40,8 +40,8 @@ fn with_many_registers(work: impl OnLanes) {
 ///
 /// # Safety
 ///
-/// Private: no value of this type is made but under the two functions above, where the processor has AVX2.
-/// That is what every `unsafe` of this file relies on.
+/// Private: no value of this type is made, and nothing of it called, but under the two functions above, where
+/// the processor has AVX2. That is what every `unsafe` of this file relies on.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 struct Ymm(__m256d);
@@ -97,7 +97,8 @@ impl PartialEq for Ymm {
     }
 }
 
-// SAFETY: see `Ymm`. Roots are correctly rounded, as for f64; lanes are added as (a + c) + (b + d).
+// SAFETY: see `Ymm`; what is transmuted is four `u32` in the same order. Roots are correctly rounded, as for
+// f64; lanes are added as (a + c) + (b + d).
 lane! {
     for Ymm:
     fn all(x: f64) -> Self = Self(unsafe { _mm256_set1_pd(x) });
@@ -117,25 +118,24 @@ lane! {
         let pairs = _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
         _mm_cvtsd_f64(_mm_add_pd(pairs, _mm_unpackhi_pd(pairs, pairs)))
     };
-    fn below(self, bound: f64) -> usize = unsafe {
+    fn bits_below(self, bound: f64) -> usize = unsafe {
         _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, _mm256_set1_pd(bound))) as usize
     };
-    fn pack(columns: &[u32; 4], bits: usize, own: u32, places: &mut [u32]) -> usize = {
-        let places: &mut [u32; 4] = places.first_chunk_mut().expect("four places");
+    fn pack(columns: &[u32; LANES], bits: usize, own: u32, places: &mut [u32]) -> usize = {
+        let places: &mut [u32; LANES] = places.first_chunk_mut().expect("four places");
         unsafe {
             let columns: __m128i = transmute(*columns);
             let own = _mm_cmpeq_epi32(columns, _mm_set1_epi32(own as i32));
-            let kept = PACKED[bits & !_mm_movemask_ps(_mm_castsi128_ps(own)) as usize];
+            let kept = PACKED[bits & !_mm_movemask_ps(_mm_castsi128_ps(own)) as usize & 15];
             let from = _mm_srlv_epi32(_mm_set1_epi32(kept), _mm_setr_epi32(0, 4, 8, 12));
             let packed = _mm_permutevar_ps(_mm_castsi128_ps(columns), from);
-            *places = transmute::<__m128, [u32; 4]>(packed);
+            *places = transmute::<__m128, [u32; LANES]>(packed);
             (kept >> 16) as usize
         }
     };
 }
 
-/// For each set of bits how many there are, and in the four digits after that, from the last one on,
-/// which.
+/// For each set of bits how many there are, and in the four digits after that which, the last digit first.
 const PACKED: [i32; 16] = [
     0x0_0000, 0x1_0000, 0x1_0001, 0x2_0010, 0x1_0002, 0x2_0020, 0x2_0021, 0x3_0210, 0x1_0003,
     0x2_0030, 0x2_0031, 0x3_0310, 0x2_0032, 0x3_0320, 0x3_0321, 0x4_3210,
@@ -170,7 +170,8 @@ mod tests {
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
         let lanes = all.into_iter().flatten().chain(pair).flat_map(array).map(bits);
         let totals = [a.total(), b.total(), (a * b).total()].map(bits);
-        let below = [-1.0, -0.0, 0.0, 1.0, f64::NAN].map(|bound| [a.below(bound), b.below(bound)]);
+        let below = [-1.0, -0.0, 0.0, 1.0, f64::NAN]
+            .map(|bound| [a.bits_below(bound), b.bits_below(bound)]);
         let packed = (0..16).flat_map(|bits| [9, 8].map(|own| packed::<V>(bits, own))).flatten();
         let whole = below.into_iter().flatten().map(|bits| bits as u64).chain(packed);
         lanes.chain(totals).chain(whole).collect()

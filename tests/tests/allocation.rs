@@ -1,6 +1,6 @@
 //! A step allocates nothing, once the buffers have found their size.
 //!
-//! The one place outside of the row loop that needs `unsafe`: a global allocator cannot be written
+//! The one place outside of the solver's lanes that needs `unsafe`: a global allocator cannot be written
 //! without.
 #![allow(unsafe_code)]
 
