@@ -57,7 +57,7 @@ pub fn rest(tier: Tier) -> Vec<Entry> {
     let pressed = if tier == Tier::Full { 1_000_000 } else { 10_000 };
     let mut entries = rest_of::<CubicSpline>("rest", 1.2, [5, 100_000], 0.0);
     // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
-    entries.extend(rest_of::<WendlandC2>("pressed", 2.0, [9, pressed], 0.05));
+    entries.extend(rest_of::<WendlandC2>("pressed", 1.5, [7, pressed], 0.05));
     entries
 }
 
