@@ -119,7 +119,7 @@ pub fn plan(flow: Flow, tier: Tier) -> Vec<Planned> {
     if flow == Flow::Poiseuille && tier == Tier::Full {
         runs.extend(BEYOND.map(|(re, end)| {
             let set = [format!("re={re}"), format!("end={end}")];
-            Planned::new("modern", &set).taking(re / 50.0)
+            Planned::new("modern", &set).taking(re / 100.0)
         }));
     }
     // Like for like with the peers' table: Poiseuille flow at Re 0.0125.

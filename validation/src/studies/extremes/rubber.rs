@@ -98,13 +98,12 @@ pub fn fast(_: Tier) -> Vec<Entry> {
 
 /// Rings that nothing acts on: at rest, and in flight far from each other.
 pub fn alone(tier: Tier) -> Vec<Entry> {
-    let rest = if tier == Tier::Full { 100_000 } else { 5_000 };
-    // What grows from round-off does so from rest; flight adds only that of larger places.
-    let flight = rest.min(20_000);
+    // In flight, far out, every step rounds: if that grew, it would show before long. At rest nothing rounds.
+    let [rest, flight] = if tier == Tier::Full { [100_000, 20_000] } else { [5_000; 2] };
     let one = |name: &str, what: &str, steps: u32, speed: f64, because: &str| {
-        // Two layers; a Courant step of 0.4 h/(c_p + V) is at most 0.264 L/c0 long.
+        // Two layers; a Courant step of 0.6 h/(c_p + V) is at most 0.397 L/c0 long.
         let set = ["spacing=0.5".into(), "centre=9000".into(), format!("speed={speed}")];
-        let end = format!("end={}", f64::from(steps) * 0.265);
+        let end = format!("end={}", f64::from(steps) * 0.397);
         let set: Vec<&str> = set.iter().map(String::as_str).chain([end.as_str()]).collect();
         let setting = format!("at least {steps} steps at {speed} c0, 2 layers, spacing 0.5 L");
         let entry = Entry::new(name, [what.to_string(), setting], "change of extents [L]", {

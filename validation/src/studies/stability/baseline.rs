@@ -38,6 +38,7 @@ const LIMITS: &[(&str, f64)] = &[
     ("stability.quintic.h1.leapfrog.stiffness30", 2.247),
     ("stability.quintic.h1.predictor-corrector.stiffness30", 0.7134),
     ("stability.quintic.h1.leapfrog.stiffness100", 2.295),
+    ("stability.quintic.h1.predictor-corrector.stiffness100", 0.4674),
     ("stability.quintic.h1.leapfrog.stiffnessinf", 2.31),
     ("stability.quintic.h1.leapfrog.stiffnessinf.alpha1.delta0", 1.477),
     ("stability.quintic.h1.leapfrog.stiffnessinf.alpha0.delta1", 0.5276),
