@@ -25,11 +25,12 @@ fn run(case: &'static dyn Case, variant: &str, set: &[String]) -> Result<Record,
     case.run(variant, set, &context)
 }
 
-/// The theoretical limit of the time step of these settings \[s\].
-fn limit(case: &'static dyn Case, variant: &str, set: &[String]) -> f64 {
+/// The theoretical limit of the time step of these settings \[s\], and the step of the case over it.
+fn limit(case: &'static dyn Case, variant: &str, set: &[String]) -> [f64; 2] {
     let mut short = set.to_vec();
     short.push("end=0.01".into());
-    run(case, variant, &short).map_or(f64::NAN, |r| r.chose("dt [s]") / r.chose("dt/limit"))
+    let of = |r: Record| [r.chose("dt [s]") / r.chose("dt/limit"), r.chose("dt/limit")];
+    run(case, variant, &short).map_or([f64::NAN; 2], of)
 }
 
 /// A run that ended, with the energy that it began with.
@@ -65,15 +66,14 @@ pub fn limits(case: &'static dyn Case) -> Study {
     let measured: Vec<[f64; 3]> = cases
         .par_iter()
         .map(|(variant, _, set)| {
-            let theory = limit(case, variant, set);
+            let [theory, default] = limit(case, variant, set);
             let stable = |share: f64| {
                 let mut set = (*set).clone();
                 set.push(format!("dt={}", share * theory));
                 run(case, variant, &set).is_ok_and(|record| is_stable(&record))
             };
             let found = largest_stable(1.0, RESOLUTION, stable).map_or(f64::NAN, |b| b.stable);
-            let default = run(case, variant, set);
-            [theory, found, default.map_or(f64::NAN, |r| r.chose("dt/limit"))]
+            [theory, found, default]
         })
         .collect();
     let mut study = Study::new("dam-break-time-step", "Largest stable time step");
@@ -174,7 +174,8 @@ pub fn extremes(case: &'static dyn Case) -> Study {
     for (name, set, holds) in rows {
         let mut set = texts(set);
         if !holds {
-            set.push(format!("dt={}", 2.0 * limit(case, "modern", &set)));
+            let [limit, _] = limit(case, "modern", &set);
+            set.push(format!("dt={}", 2.0 * limit));
         }
         let ran = if name == TOUCHING { touching(&set) } else { run(case, "modern", &set) };
         let record = match ran {
