@@ -170,8 +170,9 @@ fn shares() -> Result<(), Failure> {
     output::print(&format!(
         "\nWhere the time of a run goes, {ROWS} rows, one thread. Method: whole steps of the running \
          flow are\ntimed, then as many bare row loops (sweeps of the same scene over columns and \
-         rows that are ready,\nwith updates over no time); the rest of a step is filling columns, \
-         images and building rows.\n\n{}",
+         rows that are ready,\nwith updates over no time), {} times in turn: the pair with the median \
+         share. The rest of a step\nis filling columns, images and building rows.\n\n{}",
+        bench::PAIRS,
         output::table(&["run", "step", "its row loops", "share"], &rows)
     ))
 }
