@@ -103,7 +103,9 @@ pub fn set(re: f64, n: usize, start: Start) -> Vec<String> {
 
 /// A run of the error budget.
 pub fn changed(what: &str) -> Vec<String> {
-    vec!["re=50".into(), "n=10".into(), format!("end={END}"), what.into()]
+    let mut changed = set(50.0, 10, Start::Rest);
+    changed.extend([format!("end={END}"), what.into()]);
+    changed
 }
 
 fn run(variant: &'static str, re: f64, n: usize, end: f64, start: Start) -> Planned {
