@@ -1,6 +1,5 @@
-//! Tells the program what it was built from. Never fails: what cannot be known is `unknown`.
+//! Tells the command which commit it was built from. Never fails: what cannot be known is `unknown`.
 
-use std::env;
 use std::process::Command;
 
 fn main() {
@@ -10,15 +9,6 @@ fn main() {
     let is_dirty = changes.map(|changes| if changes.is_empty() { "no" } else { "yes" });
     set("COMMIT", commit);
     set("DIRTY", is_dirty.map(String::from));
-    set("RUSTC", env::var("RUSTC").ok().and_then(|rustc| output(&rustc, &["--version"])));
-    for (name, variable) in [
-        ("PROFILE", "PROFILE"),
-        ("OPT_LEVEL", "OPT_LEVEL"),
-        ("TARGET", "TARGET"),
-        ("FEATURES", "CARGO_CFG_TARGET_FEATURE"),
-    ] {
-        set(name, env::var(variable).ok());
-    }
     for watched in ["HEAD", "refs", "packed-refs", "index"] {
         if let Some(path) = git(&["rev-parse", "--git-path", watched])
             && std::path::Path::new(&path).exists()
@@ -26,8 +16,7 @@ fn main() {
             println!("cargo:rerun-if-changed={path}");
         }
     }
-    for watched in ["build.rs", "src", "Cargo.toml", "../solver", "../references", "../Cargo.toml"]
-    {
+    for watched in ["build.rs", "src", "Cargo.toml"] {
         println!("cargo:rerun-if-changed={watched}");
     }
 }

@@ -12,8 +12,8 @@ use solver::{
     engine::State, lane::Lane, particles::Common, terms::Pair, walls::Walls,
 };
 use validation::{
-    cases::channel::{Arrangement, Setup, Stepping},
-    theory::time_step,
+    cases::channel::{Arrangement, Setup},
+    theory::{Stepping, time_step},
 };
 
 /// What is wrong, and by how much: factors, where not said otherwise.

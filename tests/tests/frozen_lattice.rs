@@ -15,13 +15,14 @@ use solver::{
 use validation::{
     cases::{
         channel::{
-            Arrangement, ChannelSettings, Flow, Ingredient, Setup, Stepping, TIMES, scene, variants,
+            Arrangement, ChannelSettings, Flow, Ingredient, Setup, TIMES, scene, variants,
         },
         composed::Composition,
     },
     record::{Record, Status},
     runner::Context,
     theory::{
+        Stepping,
         channel::{Alignment, Channel, RowModel, WallRule},
         time_step::Integrator,
     },

@@ -14,13 +14,9 @@ use solver::{
     Scene, SceneError, Scheme, Shifting, Simulation, Tait, Viscosity, lattice,
 };
 
-use crate::{
-    case::RunError,
-    cases::{
-        channel::{self, ChannelSettings, Drive, Flow, Ingredient, Setup, Stepping},
-        composed::Composition,
-    },
-};
+use fluids::channel::{self, ChannelSettings, Drive, Flow, Ingredient, Setup};
+use harness::{case::RunError, composed::Composition};
+use maths::theory::Stepping;
 
 /// The scheme whose right-hand side is measured.
 pub type Fluid<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;

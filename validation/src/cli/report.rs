@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use validation::files::{FileError, OutputFolder};
+use validation::page;
 use validation::report::{self, check_page};
-use validation::studies::page;
 use validation::suite::Suite;
 
 use super::{

@@ -5,7 +5,8 @@ use std::time::Instant;
 use validation::case::{Case, Tier};
 use validation::record::Status;
 use validation::report;
-use validation::suite::{self, Suite, Watch};
+use validation::studies;
+use validation::suite::{self, Study, Suite, Watch};
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
@@ -43,10 +44,11 @@ pub fn run(
     threads: Option<u16>,
     world: &World,
 ) -> Result<Suite, Failure> {
+    let of_the_method = with_method.then_some(studies::of_the_method as fn(Tier) -> Vec<Study>);
     let bar = Bar::new(1);
     let show = |done: usize, all: usize, name: &str| bar.show_runs(done, all, name);
     let watch = Watch { progress: Some(&show), interrupt: Some(world.interrupt) };
-    let suite = on_threads(threads, || Ok(suite::run(cases, tier, with_method, &watch)?));
+    let suite = on_threads(threads, || Ok(suite::run(cases, tier, of_the_method, &watch)?));
     bar.clear();
     let suite = suite?;
     if world.is_interrupted() {

@@ -1,0 +1,11 @@
+//! What every other part stands on: settings, numbers, files, gates, records, references.
+
+pub mod files;
+pub mod gate;
+pub mod manifest;
+pub mod number;
+pub mod random;
+pub mod record;
+pub mod reference;
+pub mod settings;
+pub mod vtk;

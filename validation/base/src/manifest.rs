@@ -1,0 +1,162 @@
+//! What a result was computed by: program, compiler, machine. What is not known is `unknown`.
+//!
+//! Nothing here names a person, a host or a folder, so that a record can be published as it is.
+
+use std::fs;
+use std::sync::OnceLock;
+use std::thread;
+
+use serde::{Deserialize, Serialize};
+
+/// Program, compiler and machine of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// version of touchstone
+    pub touchstone: String,
+    /// git commit of the sources, or `unknown`
+    pub commit: String,
+    /// did tracked files differ from the commit?
+    pub dirty: Known,
+    /// the compiler's own version line
+    pub rustc: String,
+    /// `debug` or `release`
+    pub profile: String,
+    /// optimisation level, which in this project is high in both profiles
+    pub opt_level: String,
+    /// the triple that the program was compiled for
+    pub target: String,
+    /// instruction sets that the compiler was allowed to use, for they decide on the speed
+    pub features: Vec<String>,
+    /// operating system
+    pub os: String,
+    /// processor, as it calls itself
+    pub cpu: String,
+    /// threads that the machine can run at once
+    pub cores: usize,
+    /// threads that the run was given
+    pub threads: usize,
+}
+
+/// The sources of the program, which it tells at its start with [`tell_source`]: the commit belongs to the
+/// binary alone, so that one that changes no source rebuilds no library.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Source {
+    /// git commit
+    pub commit: &'static str,
+    /// did tracked files differ from it?
+    pub dirty: Known,
+}
+
+impl Source {
+    const UNKNOWN: Self = Self { commit: "unknown", dirty: Known::Unknown };
+}
+
+static SOURCE: OnceLock<Source> = OnceLock::new();
+
+/// States what the process was built from; the first answer stays.
+pub fn tell_source(source: Source) {
+    let _ = SOURCE.set(source);
+}
+
+/// An answer that may be missing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Known {
+    /// yes
+    Yes,
+    /// no
+    No,
+    /// there was no git, or no repository
+    Unknown,
+}
+
+impl Manifest {
+    /// The manifest of this process, for a run on so many threads.
+    pub fn of_this_process(threads: usize) -> Self {
+        let source = SOURCE.get().copied().unwrap_or(Source::UNKNOWN);
+        let features = env!("TOUCHSTONE_FEATURES").split(',').map(String::from).collect();
+        Manifest {
+            touchstone: env!("CARGO_PKG_VERSION").into(),
+            commit: source.commit.into(),
+            dirty: source.dirty,
+            rustc: env!("TOUCHSTONE_RUSTC").into(),
+            profile: env!("TOUCHSTONE_PROFILE").into(),
+            opt_level: env!("TOUCHSTONE_OPT_LEVEL").into(),
+            target: env!("TOUCHSTONE_TARGET").into(),
+            features,
+            os: std::env::consts::OS.into(),
+            cpu: cpu().unwrap_or_else(|| "unknown".into()),
+            cores: thread::available_parallelism().map_or(1, usize::from),
+            threads,
+        }
+    }
+
+    /// Can the times of two runs be compared? Same processor, threads, compiler and optimisation.
+    pub fn is_same_machine(&self, other: &Self) -> bool {
+        let machine = |of: &Self| {
+            let Manifest { cpu, target, rustc, profile, opt_level, features, .. } = of.clone();
+            (cpu, of.cores, of.threads, target, rustc, profile, opt_level, features)
+        };
+        self.cpu != "unknown" && machine(self) == machine(other)
+    }
+}
+
+/// The largest memory that this process ever held, where the system tells.
+pub fn peak_rss_bytes() -> Option<u64> {
+    peak_rss_of(&fs::read_to_string("/proc/self/status").ok()?)
+}
+
+fn peak_rss_of(status: &str) -> Option<u64> {
+    let kibibytes = field(status, "VmHWM")?.strip_suffix("kB")?.trim();
+    kibibytes.parse::<u64>().ok()?.checked_mul(1024)
+}
+
+fn cpu() -> Option<String> {
+    field(&fs::read_to_string("/proc/cpuinfo").ok()?, "model name").map(String::from)
+}
+
+/// The first value of `key : value` lines.
+fn field<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    let value = |line: &'a str| {
+        let (name, value) = line.split_once(':')?;
+        (name.trim() == key).then_some(value.trim())
+    };
+    text.lines().find_map(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_manifest_round_trips_and_says_something_everywhere() {
+        let manifest = Manifest::of_this_process(2);
+        let text = serde_json::to_string(&manifest).unwrap();
+        assert_eq!(serde_json::from_str::<Manifest>(&text).unwrap(), manifest);
+        assert!(!text.contains("null") && !text.contains("\"\""), "{text}");
+        assert!(manifest.cores >= 1 && manifest.threads == 2);
+        let is_hash = manifest.commit.len() >= 40;
+        assert!(is_hash || manifest.commit == "unknown", "{}", manifest.commit);
+    }
+
+    #[test]
+    fn times_compare_on_the_same_machine_only() {
+        let two = Manifest { cpu: "a".into(), ..Manifest::of_this_process(2) };
+        assert!(two.is_same_machine(&two.clone()));
+        assert!(two.is_same_machine(&Manifest { commit: "other".into(), ..two.clone() }));
+        assert!(!two.is_same_machine(&Manifest { threads: 1, ..two.clone() }));
+        let unknown = Manifest { cpu: "unknown".into(), ..two };
+        assert!(!unknown.is_same_machine(&unknown.clone()));
+    }
+
+    #[test]
+    fn system_texts_are_read_or_left() {
+        assert_eq!(peak_rss_of("Name:\tx\nVmHWM:\t    2048 kB\nVmRSS:\t1 kB\n"), Some(2097152));
+        for text in ["", "VmHWM:", "VmHWM: many kB", "VmHWM: 99999999999999999999 kB"] {
+            assert_eq!(peak_rss_of(text), None);
+        }
+        let info = "processor\t: 0\nmodel name\t: A: CPU\nmodel name\t: B\n";
+        assert_eq!(field(info, "model name"), Some("A: CPU"));
+    }
+}

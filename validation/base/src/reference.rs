@@ -1,0 +1,760 @@
+//! References: published or independently computed numbers, with provenance.
+//!
+//! The packages of `references/` (CSV tables beside a Frictionless `datapackage.json`; the format
+//! is described in its README) are embedded at compile time, so the program needs no folder.
+//! A package without provenance or with a table that is not the one it describes is refused.
+//!
+//! ```
+//! use validation::reference::Reference;
+//! let peers = Reference::load("peers_channel")?;
+//! let table = peers.table("errors")?;
+//! let (codes, seconds) = (table.texts("code")?, table.optional("seconds")?);
+//! assert_eq!((codes[0], seconds[0]), ("JAX-SPH", Some(3.4)));
+//! assert_eq!(table.unit("seconds")?, "s");
+//! # Ok::<(), validation::reference::ReferenceError>(())
+//! ```
+
+use std::fmt::Write;
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use thiserror::Error;
+
+/// A package as it was embedded: texts by path.
+struct Embedded {
+    name: &'static str,
+    package: &'static str,
+    files: &'static [(&'static str, &'static str)],
+}
+
+macro_rules! embedded {
+    ($($name:literal: [$($file:literal),+]),+ $(,)?) => {
+        &[$(Embedded {
+            name: $name,
+            package: include_str!(concat!("../../../references/", $name, "/datapackage.json")),
+            files: &[$(
+                ($file, include_str!(concat!("../../../references/", $name, "/", $file)))
+            ),+],
+        }),+]
+    };
+}
+
+/// Every package of `references/` with its tables.
+const EMBEDDED: &[Embedded] = embedded! {
+    "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
+    "dambreak_martin_moyce": ["front.csv", "height.csv"],
+    "peers_channel": ["errors.csv"],
+    "peers_taylor_green": ["errors.csv"],
+    "periodic_hill":
+        ["profiles.csv", "starts.csv", "wall.csv", "line.csv", "summary.csv", "checks.csv"],
+    "periodic_hill_geometry": ["segments.csv"],
+    "published_sph_errors": ["errors.csv"],
+    "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "checks.csv"],
+};
+
+/// Why a reference was refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ReferenceError {
+    /// No package has that name.
+    #[error("no reference is called {name:?}; there are {}", .known.join(", "))]
+    Unknown {
+        /// as asked
+        name: String,
+        /// all names
+        known: Vec<&'static str>,
+    },
+    /// The description is not a package.
+    #[error("the datapackage.json of reference {name} cannot be read: {reason}")]
+    Package {
+        /// the package
+        name: String,
+        /// with line and column
+        reason: String,
+    },
+    /// Something that must be stated is not.
+    #[error("reference {name} does not state {missing}")]
+    Provenance {
+        /// the package
+        name: String,
+        /// what is missing
+        missing: String,
+    },
+    /// The package describes a table that is not there.
+    #[error("there is no file {file} of a reference")]
+    NoFile {
+        /// package and table
+        file: String,
+    },
+    /// The table is not the one that was described.
+    #[error("the hash of reference {file} is {found}, stated is {stated}")]
+    Hash {
+        /// package and table
+        file: String,
+        /// in the package
+        stated: String,
+        /// of the bytes
+        found: String,
+    },
+    /// The header differs from the description, or a row from the header.
+    #[error("reference {file} has the columns {found}, stated are {stated}")]
+    Columns {
+        /// package and table
+        file: String,
+        /// in the package
+        stated: String,
+        /// in the table
+        found: String,
+    },
+    /// A cell that is not what its field says.
+    #[error("row {row}, column {column} of reference {file} is {text:?}, not of type {kind:?}")]
+    Cell {
+        /// package and table
+        file: String,
+        /// counted from 0 below the header
+        row: usize,
+        /// name of the field
+        column: String,
+        /// the cell
+        text: String,
+        /// stated type of the field
+        kind: FieldKind,
+    },
+    /// A correction that does not fit the table.
+    #[error("the erratum for row {row}, column {column} of reference {table}: {reason}")]
+    Erratum {
+        /// package and table
+        table: String,
+        /// counted from 0 below the header
+        row: usize,
+        /// name of the field
+        column: String,
+        /// what is wrong with it
+        reason: String,
+    },
+    /// No table has that name.
+    #[error("reference {name} has no table {table:?}; there are {}", .known.join(", "))]
+    NoTable {
+        /// the package
+        name: String,
+        /// as asked
+        table: String,
+        /// all tables
+        known: Vec<String>,
+    },
+    /// No column has that name.
+    #[error("table {table} has no column {column:?}; there are {}", .known.join(", "))]
+    NoColumn {
+        /// the table
+        table: String,
+        /// as asked
+        column: String,
+        /// all columns
+        known: Vec<String>,
+    },
+    /// Numbers were asked for where there are texts or gaps.
+    #[error("row {row}, column {column} of table {table} is {text:?}, which is not a number")]
+    NotANumber {
+        /// the table
+        table: String,
+        /// counted from 0 below the header
+        row: usize,
+        /// as asked
+        column: String,
+        /// the cell, empty if not measured
+        text: String,
+    },
+}
+
+/// The description of a package: `datapackage.json`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Package {
+    /// Frictionless profile
+    pub profile: Option<String>,
+    /// name of the folder
+    pub name: String,
+    /// what the numbers are, short
+    #[serde(default)]
+    pub title: String,
+    /// what the numbers are
+    #[serde(default)]
+    pub description: String,
+    /// under what terms
+    #[serde(default)]
+    pub licenses: Vec<License>,
+    /// where they come from
+    #[serde(default)]
+    pub sources: Vec<Source>,
+    /// the tables
+    #[serde(default)]
+    pub resources: Vec<Resource>,
+    /// how they were obtained
+    #[serde(default)]
+    pub method: String,
+    /// how far they can be trusted
+    #[serde(default)]
+    pub uncertainty: String,
+    /// what a reader would get wrong
+    #[serde(default)]
+    pub caveats: Vec<String>,
+    /// corrections, applied on loading
+    #[serde(default)]
+    pub errata: Vec<Erratum>,
+}
+
+/// Terms of use.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct License {
+    /// SPDX expression or `LicenseRef-…`
+    pub name: String,
+    /// in words
+    pub title: Option<String>,
+}
+
+/// Where numbers come from.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Source {
+    /// the citation
+    pub title: String,
+    /// digital object identifier
+    pub doi: Option<String>,
+    /// table, figure, section or file in it
+    pub place: Option<String>,
+    /// its own terms
+    pub licence: Option<String>,
+}
+
+/// The description of one table.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Resource {
+    /// name of the table
+    pub name: String,
+    /// file in the folder
+    pub path: String,
+    /// `sha256:` and the digest of the file
+    #[serde(default)]
+    pub hash: String,
+    /// the columns
+    pub schema: Schema,
+}
+
+/// The columns of a table.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "camelCase")]
+pub struct Schema {
+    /// in the order of the header
+    pub fields: Vec<Field>,
+    /// what a gap looks like: only the empty cell
+    #[serde(default)]
+    pub missing_values: Vec<String>,
+}
+
+/// One column.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Field {
+    /// as in the header
+    pub name: String,
+    /// number, integer or string
+    #[serde(rename = "type")]
+    pub kind: FieldKind,
+    /// SI or as the source has it, `-` for none
+    #[serde(default)]
+    pub unit: String,
+    /// what it is
+    #[serde(default)]
+    pub description: String,
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FieldKind {
+    /// finite numbers
+    Number,
+    /// whole numbers
+    Integer,
+    /// texts
+    String,
+}
+
+/// A correction of one cell.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Erratum {
+    /// name of the table
+    pub resource: String,
+    /// counted from 0 below the header
+    pub row: usize,
+    /// name of the field
+    pub column: String,
+    /// the cell as the source has it
+    pub was: String,
+    /// the cell as it should be
+    pub now: String,
+    /// why
+    pub because: String,
+}
+
+/// A package that passed every check, with its errata applied.
+#[derive(Debug, Clone)]
+pub struct Reference {
+    /// provenance
+    pub package: Package,
+    tables: Vec<Table>,
+}
+
+/// One table of a reference.
+#[derive(Debug, Clone)]
+pub struct Table {
+    name: String,
+    fields: Vec<Field>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Reference {
+    /// The names of all references.
+    pub fn names() -> Vec<&'static str> {
+        EMBEDDED.iter().map(|embedded| embedded.name).collect()
+    }
+
+    /// Checks and reads an embedded reference.
+    pub fn load(name: &str) -> Result<Self, ReferenceError> {
+        let unknown = || ReferenceError::Unknown { name: name.into(), known: Self::names() };
+        let embedded = EMBEDDED.iter().find(|known| known.name == name).ok_or_else(unknown)?;
+        Self::from_texts(embedded.name, embedded.package, embedded.files)
+    }
+
+    /// Checks and reads a reference from the text of its description and of its tables by path.
+    pub fn from_texts(
+        name: &str,
+        package: &str,
+        files: &[(&str, &str)],
+    ) -> Result<Self, ReferenceError> {
+        let unreadable = |error: serde_json::Error| ReferenceError::Package {
+            name: name.into(),
+            reason: error.to_string(),
+        };
+        let package: Package = serde_json::from_str(package).map_err(unreadable)?;
+        check_provenance(name, &package)?;
+        let table = |resource| read_table(name, resource, files);
+        let mut tables = package.resources.iter().map(table).collect::<Result<Vec<_>, _>>()?;
+        for erratum in &package.errata {
+            correct(name, &mut tables, erratum)?;
+        }
+        for (table, resource) in tables.iter().zip(&package.resources) {
+            check_cells(name, &resource.path, table)?;
+        }
+        Ok(Reference { package, tables })
+    }
+
+    /// A table by name.
+    pub fn table(&self, name: &str) -> Result<&Table, ReferenceError> {
+        let no_table = || ReferenceError::NoTable {
+            name: self.package.name.clone(),
+            table: name.into(),
+            known: self.tables.iter().map(|table| table.name.clone()).collect(),
+        };
+        self.tables.iter().find(|table| table.name == name).ok_or_else(no_table)
+    }
+
+    /// All tables.
+    pub fn tables(&self) -> &[Table] {
+        &self.tables
+    }
+}
+
+impl Table {
+    /// Name of the table.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The columns in order.
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Has it no rows?
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The unit of a column.
+    pub fn unit(&self, column: &str) -> Result<&str, ReferenceError> {
+        Ok(&self.fields[self.position(column)?].unit)
+    }
+
+    /// A column as texts.
+    pub fn texts(&self, column: &str) -> Result<Vec<&str>, ReferenceError> {
+        let position = self.position(column)?;
+        Ok(self.rows.iter().map(|row| row[position].as_str()).collect())
+    }
+
+    /// A column of numbers without gaps.
+    pub fn numbers(&self, column: &str) -> Result<Vec<f64>, ReferenceError> {
+        let texts = self.texts(column)?.into_iter().enumerate();
+        texts.map(|(row, text)| self.number(row, column, text)).collect()
+    }
+
+    /// A column of numbers, `None` where nothing was measured.
+    pub fn optional(&self, column: &str) -> Result<Vec<Option<f64>>, ReferenceError> {
+        let texts = self.texts(column)?.into_iter().enumerate();
+        let number = |(row, text): (usize, &str)| match text {
+            "" => Ok(None),
+            text => self.number(row, column, text).map(Some),
+        };
+        texts.map(number).collect()
+    }
+
+    fn number(&self, row: usize, column: &str, text: &str) -> Result<f64, ReferenceError> {
+        let (table, column) = (self.name.clone(), column.into());
+        let not_a_number = || ReferenceError::NotANumber { table, row, column, text: text.into() };
+        finite(text).ok_or_else(not_a_number)
+    }
+
+    fn position(&self, column: &str) -> Result<usize, ReferenceError> {
+        let no_column = || ReferenceError::NoColumn {
+            table: self.name.clone(),
+            column: column.into(),
+            known: self.fields.iter().map(|field| field.name.clone()).collect(),
+        };
+        self.fields.iter().position(|field| field.name == column).ok_or_else(no_column)
+    }
+}
+
+fn finite(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|value: &f64| value.is_finite())
+}
+
+/// Refuses a package that does not say what, whence, how, how well and on what terms.
+fn check_provenance(name: &str, package: &Package) -> Result<(), ReferenceError> {
+    let stated = |what: &str, is_stated: bool| match is_stated {
+        true => Ok(()),
+        false => Err(ReferenceError::Provenance { name: name.into(), missing: what.into() }),
+    };
+    let says = |text: &str| !text.trim().is_empty();
+    stated("the name of its folder", package.name == name)?;
+    stated("a title", says(&package.title))?;
+    stated("a description", says(&package.description))?;
+    stated("a method", says(&package.method))?;
+    stated("an uncertainty", says(&package.uncertainty))?;
+    stated("a licence", package.licenses.iter().any(|license| says(&license.name)))?;
+    stated("a source", !package.sources.is_empty())?;
+    for source in &package.sources {
+        stated("the title of a source", says(&source.title))?;
+        let is_located = [&source.doi, &source.place].into_iter().flatten().any(|text| says(text));
+        stated(&format!("a DOI or a place in the source {:?}", source.title), is_located)?;
+    }
+    stated("a table", !package.resources.is_empty())?;
+    for resource in &package.resources {
+        for field in &resource.schema.fields {
+            let (column, path) = (&field.name, &resource.path);
+            stated(&format!("the unit of column {column} of {path}"), says(&field.unit))?;
+            stated(&format!("what column {column} of {path} is"), says(&field.description))?;
+        }
+    }
+    for erratum in &package.errata {
+        stated("why an erratum corrects", says(&erratum.because))?;
+    }
+    Ok(())
+}
+
+/// Reads a table after checking its hash and its header.
+fn read_table(
+    name: &str,
+    resource: &Resource,
+    files: &[(&str, &str)],
+) -> Result<Table, ReferenceError> {
+    let file = format!("{name}/{}", resource.path);
+    let Some((_, text)) = files.iter().find(|(known, _)| *known == resource.path) else {
+        return Err(ReferenceError::NoFile { file });
+    };
+    let (stated, found) = (resource.hash.clone(), format!("sha256:{}", sha256(text.as_bytes())));
+    if stated != found {
+        return Err(ReferenceError::Hash { file, stated, found });
+    }
+    let fields: Vec<&str> = resource.schema.fields.iter().map(|field| &*field.name).collect();
+    let stated = fields.join(",");
+    let differs = |found: String| {
+        let (file, stated) = (file.clone(), stated.clone());
+        ReferenceError::Columns { file, stated, found }
+    };
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| differs(error.to_string()))?;
+    if *header != *fields {
+        return Err(differs(header.iter().collect::<Vec<_>>().join(",")));
+    }
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| differs(error.to_string()))?;
+        rows.push(record.iter().map(String::from).collect());
+    }
+    Ok(Table { name: resource.name.clone(), fields: resource.schema.fields.clone(), rows })
+}
+
+/// Applies one correction, if the cell reads as the correction says.
+fn correct(name: &str, tables: &mut [Table], erratum: &Erratum) -> Result<(), ReferenceError> {
+    let wrong = |reason: String| ReferenceError::Erratum {
+        table: format!("{name}/{}", erratum.resource),
+        row: erratum.row,
+        column: erratum.column.clone(),
+        reason,
+    };
+    let table = tables.iter_mut().find(|table| table.name == erratum.resource);
+    let table = table.ok_or_else(|| wrong("there is no such table".into()))?;
+    let position = table.position(&erratum.column).map_err(|error| wrong(error.to_string()))?;
+    let rows = table.rows.len();
+    let row = table.rows.get_mut(erratum.row);
+    let cell = &mut row.ok_or_else(|| wrong(format!("there are {rows} rows")))?[position];
+    if *cell != erratum.was {
+        return Err(wrong(format!("the cell is {cell:?}, not {:?}", erratum.was)));
+    }
+    *cell = erratum.now.clone();
+    Ok(())
+}
+
+/// Refuses cells that are neither empty nor what their field says.
+fn check_cells(name: &str, path: &str, table: &Table) -> Result<(), ReferenceError> {
+    for (row, cells) in table.rows.iter().enumerate() {
+        for (field, text) in table.fields.iter().zip(cells) {
+            let is_valid = match field.kind {
+                FieldKind::String => true,
+                FieldKind::Number => text.is_empty() || finite(text).is_some(),
+                FieldKind::Integer => text.is_empty() || text.parse::<i64>().is_ok(),
+            };
+            if !is_valid {
+                return Err(ReferenceError::Cell {
+                    file: format!("{name}/{path}"),
+                    row,
+                    column: field.name.clone(),
+                    text: text.clone(),
+                    kind: field.kind,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The SHA-256 digest in lowercase hexadecimal.
+pub(crate) fn sha256(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(64);
+    for byte in Sha256::digest(bytes) {
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    const TABLE: &str = "y,u,who\n0.1,0.5,a\n0.2,-0.86636,b\n0.3,,c\n";
+
+    fn package() -> Value {
+        json!({
+            "name": "sample", "title": "t", "description": "d", "method": "m", "uncertainty": "1 %",
+            "licenses": [{"name": "CC0-1.0"}],
+            "sources": [{"title": "someone 1999", "doi": "10.1/2"}],
+            "resources": [{
+                "name": "profile", "path": "profile.csv",
+                "hash": format!("sha256:{}", sha256(TABLE.as_bytes())),
+                "schema": {"fields": [
+                    {"name": "y", "type": "number", "unit": "m", "description": "height"},
+                    {"name": "u", "type": "number", "unit": "m/s", "description": "velocity"},
+                    {"name": "who", "type": "string", "unit": "-", "description": "by whom"},
+                ]},
+            }],
+        })
+    }
+
+    fn load(package: &Value, table: &str) -> Result<Reference, ReferenceError> {
+        Reference::from_texts("sample", &package.to_string(), &[("profile.csv", table)])
+    }
+
+    #[test]
+    fn columns_come_by_name_with_their_units() {
+        let reference = load(&package(), TABLE).unwrap();
+        let table = reference.table("profile").unwrap();
+        assert_eq!((table.len(), table.unit("u")), (3, Ok("m/s")));
+        assert_eq!(table.numbers("y").unwrap(), [0.1, 0.2, 0.3]);
+        assert_eq!(table.optional("u").unwrap(), [Some(0.5), Some(-0.86636), None]);
+        assert_eq!(table.texts("who").unwrap(), ["a", "b", "c"]);
+        let says = |error: ReferenceError| error.to_string();
+        let gap = "row 2, column u of table profile is \"\", which is not a number";
+        assert_eq!(says(table.numbers("u").unwrap_err()), gap);
+        let unknown = "table profile has no column \"v\"; there are y, u, who";
+        assert_eq!(says(table.texts("v").unwrap_err()), unknown);
+        let unknown = "reference sample has no table \"p\"; there are profile";
+        assert_eq!(says(reference.table("p").unwrap_err()), unknown);
+    }
+
+    #[test]
+    fn a_changed_table_is_refused() {
+        let error = load(&package(), &TABLE.replace("0.5", "0.6")).unwrap_err();
+        assert!(matches!(error, ReferenceError::Hash { .. }), "{error}");
+        let elsewhere = Reference::from_texts("sample", &package().to_string(), &[]);
+        assert!(matches!(elsewhere, Err(ReferenceError::NoFile { .. })));
+    }
+
+    #[test]
+    fn missing_provenance_is_refused_by_name() {
+        for (pointer, missing) in [
+            ("/title", "a title"),
+            ("/method", "a method"),
+            ("/uncertainty", "an uncertainty"),
+            ("/resources/0/schema/fields/1/unit", "the unit of column u of profile.csv"),
+            ("/sources/0/doi", "a DOI or a place in the source \"someone 1999\""),
+            ("/licenses/0/name", "a licence"),
+        ] {
+            let mut package = package();
+            *package.pointer_mut(pointer).unwrap() = json!(" ");
+            let error = load(&package, TABLE).unwrap_err().to_string();
+            assert_eq!(error, format!("reference sample does not state {missing}"));
+        }
+        for key in ["licenses", "sources", "resources"] {
+            let mut package = package();
+            package[key] = json!([]);
+            let error = load(&package, TABLE).unwrap_err();
+            assert!(matches!(error, ReferenceError::Provenance { .. }), "{error}");
+        }
+        let mut package = package();
+        package["licence"] = json!("a misspelt key is not passed over");
+        assert!(matches!(load(&package, TABLE), Err(ReferenceError::Package { .. })));
+    }
+
+    #[test]
+    fn a_header_or_a_cell_that_differs_is_refused() {
+        let rehashed = |table: &str| {
+            let mut package = package();
+            package["resources"][0]["hash"] = json!(format!("sha256:{}", sha256(table.as_bytes())));
+            load(&package, table)
+        };
+        for table in ["", "y,v,who\n", "y,u\n", "y,u,who\n1,2\n"] {
+            let error = rehashed(table).unwrap_err();
+            assert!(matches!(error, ReferenceError::Columns { .. }), "{table}: {error}");
+        }
+        let error = rehashed("y,u,who\n1,NaN,c\n").unwrap_err().to_string();
+        let expected =
+            "row 0, column u of reference sample/profile.csv is \"NaN\", not of type Number";
+        assert_eq!(error, expected);
+    }
+
+    #[test]
+    fn errata_are_applied_and_must_fit() {
+        let erratum = |was: &str, row: usize, column: &str| {
+            let mut package = package();
+            package["errata"] = json!([{
+                "resource": "profile", "row": row, "column": column, "was": was, "now": "-0.08664",
+                "because": "misprint",
+            }]);
+            load(&package, TABLE)
+        };
+        let corrected = erratum("-0.86636", 1, "u").unwrap();
+        assert_eq!(corrected.table("profile").unwrap().optional("u").unwrap()[1], Some(-0.08664));
+        for wrong in [erratum("-0.8", 1, "u"), erratum("-0.86636", 9, "u"), erratum("b", 1, "v")] {
+            assert!(matches!(wrong, Err(ReferenceError::Erratum { .. })));
+        }
+    }
+
+    #[test]
+    fn every_folder_is_embedded_and_every_package_is_sound() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../references");
+        let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+        let folders: BTreeSet<String> = entries
+            .filter(|entry| entry.path().is_dir())
+            .map(|entry| entry.file_name().into_string().unwrap())
+            .collect();
+        let names: BTreeSet<String> = Reference::names().into_iter().map(String::from).collect();
+        assert_eq!(folders, names);
+        for name in Reference::names() {
+            let reference = Reference::load(name).unwrap();
+            assert!(reference.tables().iter().all(|table| !table.is_empty()), "{name}");
+        }
+        let error = Reference::load("peers").unwrap_err().to_string();
+        assert!(error.starts_with("no reference is called \"peers\"; there are"), "{error}");
+    }
+
+    #[test]
+    fn the_peers_have_no_outliers() {
+        let reference = Reference::load("peers_channel").unwrap();
+        let table = reference.table("errors").unwrap();
+        assert_eq!(table.len(), 38);
+        assert!(
+            table.numbers("rows").unwrap().iter().all(|rows| [20.0, 40.0, 80.0].contains(rows))
+        );
+        for case in table.texts("case").unwrap() {
+            assert!(["couette", "poiseuille"].contains(&case));
+        }
+        for (column, largest) in [
+            ("error_0.0225s", 16.0),
+            ("error_0.1125s", 11.0),
+            ("error_1s", 18.0),
+            ("seconds", 600.0),
+        ] {
+            let low = table.optional(column).unwrap();
+            let high = table.optional(&format!("{column}_high")).unwrap();
+            for (low, high) in low.into_iter().zip(high) {
+                assert!(low.is_none_or(|low| low > 0.0 && low <= largest), "{column} {low:?}");
+                assert!(high.is_none_or(|high| Some(high) > low && high <= largest));
+            }
+        }
+    }
+
+    #[test]
+    fn every_published_number_stands_in_the_text_of_its_source() {
+        let reference = Reference::load("published_sph_errors").unwrap();
+        let table = reference.table("errors").unwrap();
+        let (values, stated) =
+            (table.texts("value").unwrap(), table.texts("value_as_stated").unwrap());
+        for (value, stated) in values.iter().zip(stated) {
+            assert!(stated.contains(value), "{value} is not in {stated}");
+        }
+        let units = table.texts("unit").unwrap();
+        for (value, unit) in table.numbers("value").unwrap().into_iter().zip(units) {
+            let largest = if unit == "%" { 50.0 } else { 4.0 };
+            assert!(value.abs() <= largest && (unit == "%" || value > 0.0), "{value} {unit}");
+        }
+        let relations = table.texts("relation").unwrap();
+        assert!(relations.iter().all(|relation| ["equal", "at most"].contains(relation)));
+    }
+
+    #[test]
+    fn the_columns_of_water_fall_and_their_fronts_advance() {
+        let numbers = |name: &str, table: &str, column: &str| -> Vec<f64> {
+            Reference::load(name).unwrap().table(table).unwrap().numbers(column).unwrap()
+        };
+        let rises = |values: &[f64]| values.windows(2).all(|w| w[0] < w[1]);
+        let (mm, tank) = ("dambreak_martin_moyce", "dambreak_lobovsky");
+        for (name, table, time) in [
+            (mm, "front", "T"),
+            (mm, "height", "tau"),
+            (tank, "front", "t"),
+            (tank, "levels", "t"),
+            (tank, "pressure", "t"),
+        ] {
+            assert!(rises(&numbers(name, table, time)), "{name} {table}");
+        }
+        assert!(rises(&numbers(mm, "front", "Z")) && rises(&numbers(tank, "front", "x")));
+        assert!(numbers(mm, "height", "H").windows(2).all(|w| w[1] < w[0]));
+        assert_eq!(numbers(tank, "levels", "H1_1")[0], 1.0);
+        // P1 rises at 2.43: the caveat on the origins of time.
+        let (t, p) = (numbers(tank, "pressure", "t"), numbers(tank, "pressure", "P1"));
+        let rise = t.iter().zip(&p).find(|(_, p)| **p > 0.1).map(|(t, _)| *t);
+        assert!(rise.is_some_and(|t| (t - 2.44).abs() < 0.02), "{rise:?}");
+    }
+}

@@ -1,0 +1,305 @@
+//! What is measured in a channel flow, each norm with its formula.
+
+use nalgebra::Vector2;
+use solver::{EquationOfState, Flow as Going, Observer, Particle, Role, Scheme, Simulation};
+
+use super::Setup;
+use base::record::{Metric, Profile, Record};
+use maths::metrics::{
+    norms::{Scale, l2, linf},
+    profile::{Field, interpolate},
+};
+
+/// Stations of the interpolated profile across the channel.
+const STATIONS: usize = 41;
+
+/// Times from which the "worst" norm counts, νt/L²: before, a start-up boundary layer is thinner
+/// than a few spacings.
+const WORST_FROM: f64 = 0.1;
+
+/// What is measured of a simulation: nothing here knows its scheme, so that it is compiled once.
+pub struct Seen {
+    /// All particles in the order of the scene.
+    all: Vec<Particle>,
+    /// The fluid ones.
+    fluid: Vec<Particle>,
+    /// The interpolated velocity along the channel at the stations, if it can be had \[m/s\].
+    field: Option<Vec<f64>>,
+}
+
+impl Seen {
+    /// Looks at a simulation.
+    pub fn of<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Self {
+        let all = simulation.particles();
+        let fluid = all.iter().filter(|p| p.role == Role::Fluid).copied().collect();
+        let columns = simulation.columns();
+        let positions: Vec<_> = columns.iter().map(|c| c.position).collect();
+        let volumes: Vec<_> = columns.iter().map(|c| c.common.volume).collect();
+        let values: Vec<_> = columns.iter().map(|c| c.velocity.x).collect();
+        let field = Field { positions: &positions, volumes: &volumes, values: &values };
+        let field = interpolate(simulation.kernel(), field, &stations(setup)).ok();
+        Self { all, fluid, field }
+    }
+}
+
+/// Compares with the exact flow at νt/L² = `tau` and adds metrics `name@tau` and a profile.
+pub fn compare(setup: &Setup, seen: &Seen, tau: f64, record: &mut Record) {
+    let t = setup.time(tau);
+    let fluid = &seen.fluid;
+    let u: Vec<f64> = fluid.iter().map(|p| p.velocity.x).collect();
+    let exact: Vec<f64> = fluid.iter().map(|p| setup.exact(p.position.y, t)).collect();
+    let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
+        record.metrics.insert(format!("{name}@{tau}"), Metric::new(value, unit, formula));
+    };
+    let rms = Scale::rms(&exact);
+    let particle_l2 = rms.and_then(|rms| l2(&u, &exact, rms)).unwrap_or(f64::NAN);
+    put("l2", particle_l2, "-", "rms(u - u_exact)/rms(u_exact) over particles");
+    let max = Scale::new(setup.v).and_then(|v| linf(&u, &exact, v)).unwrap_or(f64::NAN);
+    put("linf", max, "-", "max|u - u_exact|/V over particles");
+    let field = interpolated_l2(setup, seen, t);
+    put("field_l2", field, "-", "rms(<u> - u_exact)/rms(u_exact), SPH field (1) at 41 stations");
+    for (name, error) in [("shear_lower", 0), ("shear_upper", 1)]
+        .map(|(name, wall)| (name, shear_error(setup, fluid, wall, t)))
+    {
+        put(
+            name,
+            error,
+            "-",
+            "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall",
+        );
+    }
+    if depends_on_viscosity(setup, fluid, t) {
+        let nu = fitted_viscosity(setup, fluid, t);
+        put("nu_eff", nu, "-", "nu_eff/nu of the exact flow nearest in l2");
+    }
+    let profile = row_profile(setup, fluid, t);
+    record.profiles.insert(format!("u@{tau}"), profile);
+    if tau >= WORST_FROM {
+        let so_far = record.metric("l2_worst").unwrap_or(0.0);
+        // NaN must stay: max() would drop it.
+        let worst = if particle_l2 > so_far || particle_l2.is_nan() { particle_l2 } else { so_far };
+        let formula = "largest l2 over the times of comparison with nu t/L^2 >= 0.1";
+        record.metrics.insert("l2_worst".into(), Metric::new(worst, "-", formula));
+    }
+}
+
+/// Measures that need the end of the run only.
+pub fn at_the_end(setup: &Setup, seen: &Seen, record: &mut Record) {
+    let fluid = &seen.fluid;
+    let count = fluid.len() as f64;
+    let mean = |f: &dyn Fn(&Particle) -> f64| fluid.iter().map(f).sum::<f64>() / count;
+    let rms = |f: &dyn Fn(&Particle) -> f64| mean(&|p| f(p) * f(p)).sqrt();
+    let mut put = |name: &str, value: f64, formula: &str| {
+        record.metrics.insert(name.into(), Metric::new(value, "-", formula));
+    };
+    let (s, v) = (&setup.settings, setup.v);
+    put("v_rms", rms(&|p| p.velocity.y) / v, "rms(v)/V at the end, exactly 0 in the flow");
+    let pressure = |p: &Particle| setup.eos.pressure(p.density) - setup.eos.background;
+    let mean_pressure = mean(&pressure);
+    let p_rms = rms(&|p| pressure(p) - mean_pressure) / (s.rho * v * v);
+    put("p_rms", p_rms, "rms(p - mean)/(rho V^2) at the end, exactly 0 in the flow");
+    let volume: f64 = fluid.iter().map(|p| p.mass / p.density).sum();
+    let initial: f64 = fluid.iter().map(|p| p.mass / s.rho).sum();
+    put("volume_drift", volume / initial - 1.0, "sum(m/rho)/sum(m/rho0) - 1 at the end");
+    let momentum: f64 = fluid.iter().map(|p| p.mass * p.velocity.y).sum();
+    let drift = momentum / (initial * s.rho * v);
+    put("momentum_y", drift, "sum(m v)/(sum(m) V) at the end");
+    let outside = fluid.iter().filter(|p| !(0.0..=s.width).contains(&p.position.y)).count();
+    put("outside", outside as f64, "particles beyond the plates at the end");
+}
+
+/// All of the state, in the order of the scene.
+pub fn state(particles: &[Particle]) -> Vec<f64> {
+    let numbers =
+        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
+    particles.iter().flat_map(numbers).collect()
+}
+
+/// The particles themselves: x, y, u, v, p.
+pub fn particles(setup: &Setup, seen: &Seen) -> Profile {
+    let all = &seen.all;
+    let column = |f: &dyn Fn(&Particle) -> f64| all.iter().map(f).collect::<Vec<f64>>();
+    Profile::default()
+        .with("x", "m", column(&|p| p.position.x))
+        .with("y", "m", column(&|p| p.position.y))
+        .with("u", "m/s", column(&|p| p.velocity.x))
+        .with("v", "m/s", column(&|p| p.velocity.y))
+        .with("p", "Pa", column(&|p| setup.eos.pressure(p.density)))
+}
+
+/// Means over the rows of the initial lattice: y, u, the exact u there, v, p.
+fn row_profile(setup: &Setup, fluid: &[Particle], t: f64) -> Profile {
+    let rows = fluid.chunks(setup.columns);
+    let mean = |f: &dyn Fn(&Particle) -> f64| -> Vec<f64> {
+        rows.clone().map(|row| row.iter().map(f).sum::<f64>() / row.len() as f64).collect()
+    };
+    Profile::default()
+        .with("y", "m", mean(&|p| p.position.y))
+        .with("u", "m/s", mean(&|p| p.velocity.x))
+        .with("u_exact", "m/s", mean(&|p| setup.exact(p.position.y, t)))
+        .with("v", "m/s", mean(&|p| p.velocity.y))
+        .with("p", "Pa", mean(&|p| setup.eos.pressure(p.density)))
+}
+
+/// Stations across the middle of the section.
+fn stations(setup: &Setup) -> Vec<Vector2<f64>> {
+    let y = |k: usize| setup.settings.width * (k as f64 + 0.5) / STATIONS as f64;
+    (0..STATIONS).map(|k| Vector2::new(0.5 * setup.length(), y(k))).collect()
+}
+
+/// Relative L2 error of the SPH interpolation (1) at the stations.
+fn interpolated_l2(setup: &Setup, seen: &Seen, t: f64) -> f64 {
+    let Some(u) = &seen.field else { return f64::NAN };
+    let exact: Vec<f64> = stations(setup).iter().map(|s| setup.exact(s.y, t)).collect();
+    Scale::rms(&exact).and_then(|rms| l2(u, &exact, rms)).unwrap_or(f64::NAN)
+}
+
+/// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within
+/// 3 dx of the wall, and to the exact flow at the same places, so that the fit itself cancels.
+fn shear_error(setup: &Setup, fluid: &[Particle], wall: usize, t: f64) -> f64 {
+    let s = &setup.settings;
+    let speed = if wall == 1 { setup.plate_speed() } else { 0.0 };
+    let depth = |p: &Particle| if wall == 1 { s.width - p.position.y } else { p.position.y };
+    let near: Vec<&Particle> = fluid.iter().filter(|p| depth(p) < 3.0 * setup.dx).collect();
+    let slope = |velocity: &dyn Fn(&Particle) -> f64| {
+        let (mut d2, mut d3, mut d4, mut du, mut d2u) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for p in &near {
+            let (d, u) = (depth(p), velocity(p) - speed);
+            d2 += d * d;
+            d3 += d * d * d;
+            d4 += d * d * d * d;
+            du += d * u;
+            d2u += d * d * u;
+        }
+        (du * d4 - d2u * d3) / (d2 * d4 - d3 * d3)
+    };
+    let error = slope(&|p| p.velocity.x) - slope(&|p| setup.exact(p.position.y, t));
+    error * s.width / setup.v
+}
+
+/// Does the exact flow still show its viscosity? A change of ν by 2 % must move it by 0.1 %
+/// (relative L2): steady Couette flow has the same profile whatever ν, and a fit to it would only
+/// amplify other errors.
+fn depends_on_viscosity(setup: &Setup, fluid: &[Particle], t: f64) -> bool {
+    let nu = setup.settings.nu;
+    let (mut moved, mut all) = (0.0, 0.0);
+    for p in fluid {
+        let u = [0.99, 1.0, 1.01]
+            .map(|ratio| setup.exact_with_viscosity(p.position.y, t, ratio * nu) / setup.v);
+        moved += (u[2] - u[0]).powi(2);
+        all += u[1].powi(2);
+    }
+    moved >= 1e-6 * all
+}
+
+/// ν_eff/ν within a factor of 2 by golden section on the squared distance to the exact flow.
+fn fitted_viscosity(setup: &Setup, fluid: &[Particle], t: f64) -> f64 {
+    let distance = |ratio: f64| -> f64 {
+        let nu = ratio * setup.settings.nu;
+        let error = |p: &Particle| p.velocity.x - setup.exact_with_viscosity(p.position.y, t, nu);
+        fluid.iter().map(|p| error(p).powi(2)).sum()
+    };
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut low, mut high) = (0.5, 2.0);
+    for _ in 0..40 {
+        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
+        if distance(a) < distance(b) {
+            high = b;
+        } else {
+            low = a;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Points of a time series, at most.
+const POINTS: f64 = 300.0;
+
+/// Watches what should be exactly 0: cross-flow and pressure, the waves of hypothesis H3.
+pub struct Series {
+    every: f64,
+    next: f64,
+    speed: f64,
+    pressure: f64,
+    eos: solver::Tait,
+    rows: Vec<[f64; 4]>,
+    count: f64,
+}
+
+impl Series {
+    /// A series over the whole run.
+    pub fn new(setup: &Setup, particles: usize) -> Self {
+        let every = setup.time(setup.settings.end) / POINTS;
+        let pressure = setup.settings.rho * setup.v * setup.v;
+        Self {
+            every,
+            next: every,
+            speed: setup.v,
+            pressure,
+            eos: setup.eos,
+            rows: Vec::new(),
+            count: particles as f64,
+        }
+    }
+
+    /// The series as columns.
+    pub fn into_profile(self) -> Profile {
+        let column = |k: usize| self.rows.iter().map(|row| row[k]).collect::<Vec<f64>>();
+        Profile::default()
+            .with("t", "s", column(0))
+            .with("u_mean", "V", column(1))
+            .with("v_rms", "V", column(2))
+            .with("p_rms", "rho V^2", column(3))
+    }
+}
+
+impl<S: Scheme<Extra = ()>> Observer<S> for Series {
+    #[inline]
+    fn after_step(&mut self, simulation: &Simulation<S>) -> Going {
+        if simulation.time() >= self.next {
+            self.next += self.every;
+            let (mut u, mut v2, mut p1, mut p2) = (0.0, 0.0, 0.0, 0.0);
+            for (_, e) in simulation.fluid() {
+                let p = self.eos.pressure(e.density);
+                u += e.velocity.x;
+                v2 += e.velocity.y * e.velocity.y;
+                p1 += p;
+                p2 += p * p;
+            }
+            let n = self.count;
+            let p = (p2 / n - (p1 / n).powi(2)).max(0.0).sqrt();
+            let v = (v2 / n).sqrt();
+            self.rows.push([
+                simulation.time(),
+                u / n / self.speed,
+                v / self.speed,
+                p / self.pressure,
+            ]);
+        }
+        Going::Continue
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use solver::{CubicSpline, PredictorCorrector};
+
+    use super::{Setup, depends_on_viscosity};
+    use crate::channel::{ChannelSettings, Flow};
+
+    #[test]
+    fn steady_couette_flow_does_not_show_its_viscosity() {
+        let shows = |flow, tau| {
+            let settings = ChannelSettings::default();
+            let setup = Setup::new::<CubicSpline, PredictorCorrector>(flow, &settings, &[], true);
+            let setup = setup.expect("the defaults are valid");
+            let fluid = setup.rows(0.5 * setup.dx, 20);
+            depends_on_viscosity(&setup, &fluid, setup.time(tau))
+        };
+        assert_eq!(
+            [0.02, 0.2, 0.5, 1.0].map(|tau| shows(Flow::Couette, tau)),
+            [true, true, false, false]
+        );
+        assert!([0.02, 0.2, 1.0].into_iter().all(|tau| shows(Flow::Poiseuille, tau)));
+    }
+}

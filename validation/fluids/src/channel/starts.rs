@@ -1,0 +1,205 @@
+//! One setting from several starts. An instability grows from the disorder of the start, or from
+//! round-off if there is none, so that a single run of a chaotic flow says little.
+
+use rayon::prelude::*;
+
+use base::record::{Record, Status};
+use harness::{case::Case, runner::Context};
+use report::{percent, sig};
+
+/// Disorder of the starts \[dx\].
+pub const DISORDER: [f64; 3] = [1e-6, 1e-4, 1e-2];
+
+/// The starts up to Reynolds number `most`; above, where runs are dear, the middle one alone.
+pub fn starts_up_to(most: f64, re: f64) -> &'static [f64] {
+    if re <= most { &DISORDER } else { &DISORDER[1..2] }
+}
+
+/// A run fails if it diverges or if its worst relative L2 error is larger than this.
+pub const TOLERATED: f64 = 0.05;
+
+/// How one run ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// νt/L² of the divergence.
+    Diverged(f64),
+    /// Worst relative L2 error of a run that reached its end.
+    Reached(f64),
+}
+
+impl Outcome {
+    fn of(record: &Record) -> Self {
+        match record.status {
+            // L²/ν is 1 s in these channels.
+            Status::Diverged { time, .. } => Self::Diverged(time),
+            _ => Self::Reached(record.measured("l2_worst")),
+        }
+    }
+
+    /// Diverged, or wrong at the end.
+    pub fn fails(self) -> bool {
+        !matches!(self, Self::Reached(error) if error <= TOLERATED)
+    }
+
+    /// Larger is better: first by the time of divergence, then by the error.
+    fn rank(self) -> f64 {
+        match self {
+            Self::Diverged(time) => time,
+            Self::Reached(error) if error.is_nan() => 1e3,
+            Self::Reached(error) => 1e6 - error.min(1e3),
+        }
+    }
+
+    /// How long a run was right, on a scale for comparisons only: a run that reached its end with a
+    /// wrong answer lives longer than any that diverged, one with a right answer longer still.
+    fn life(self) -> f64 {
+        match self {
+            Self::Diverged(time) => time,
+            Self::Reached(_) if self.fails() => 1e3,
+            Self::Reached(_) => 1e6,
+        }
+    }
+
+    /// `0.54 %`, or `t 0.55` for νt/L² of the divergence.
+    fn text(self) -> String {
+        match self {
+            Self::Diverged(time) => format!("t {}", sig(time, 2)),
+            Self::Reached(error) => percent(error, 2),
+        }
+    }
+}
+
+/// The outcomes of one setting, worst first.
+#[derive(Clone, Debug, Default)]
+pub struct Starts(Vec<Outcome>);
+
+/// Which of two settings lives longer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Longer {
+    /// No start of either fails.
+    NothingFails,
+    /// Every start of the first lives longer than every start of the second.
+    First,
+    /// The other way round.
+    Second,
+    /// The ranges overlap.
+    Overlap,
+}
+
+impl Starts {
+    /// From outcomes in any order.
+    pub fn new(mut outcomes: Vec<Outcome>) -> Self {
+        outcomes.sort_by(|a, b| a.rank().total_cmp(&b.rank()));
+        Self(outcomes)
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// How many failed.
+    pub fn failed(&self) -> usize {
+        self.0.iter().filter(|outcome| outcome.fails()).count()
+    }
+
+    /// Did more than half fail? A setting that is refused from every start fails too.
+    pub fn mostly_fails(&self) -> bool {
+        self.count() == 0 || 2 * self.failed() > self.count()
+    }
+
+    /// The middle outcome.
+    pub fn median(&self) -> Option<Outcome> {
+        self.0.get(self.count().saturating_sub(1) / 2).copied()
+    }
+
+    /// `2/3: t 0.55`: how many failed, and the median outcome.
+    pub fn text(&self) -> String {
+        match self.median() {
+            Some(median) => format!("{}/{}: {}", self.failed(), self.count(), median.text()),
+            None => "refused".into(),
+        }
+    }
+
+    /// Compares the ranges of life.
+    pub fn longer(&self, other: &Self) -> Longer {
+        let range = |starts: &Self| {
+            let lives = starts.0.iter().map(|outcome| outcome.life());
+            let fold = |f: fn(f64, f64) -> f64, from| lives.clone().fold(from, f);
+            (fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY))
+        };
+        let ((low, high), (other_low, other_high)) = (range(self), range(other));
+        if self.failed() + other.failed() == 0 {
+            Longer::NothingFails
+        } else if low > other_high {
+            Longer::First
+        } else if other_low > high {
+            Longer::Second
+        } else {
+            Longer::Overlap
+        }
+    }
+}
+
+/// A setting to be run from several starts.
+pub struct Job {
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// Settings without the disorder.
+    pub set: Vec<String>,
+    /// Disorder of each start \[dx\].
+    pub starts: &'static [f64],
+}
+
+/// Runs all starts of all settings side by side.
+pub fn run_all(case: &dyn Case, jobs: &[Job]) -> Vec<Starts> {
+    let single: Vec<(usize, f64)> = jobs
+        .iter()
+        .enumerate()
+        .flat_map(|(k, job)| job.starts.iter().map(move |start| (k, *start)))
+        .collect();
+    let context = Context { allow_unstable: true, ..Context::default() };
+    let outcomes: Vec<(usize, Option<Outcome>)> = single
+        .par_iter()
+        .with_max_len(1)
+        .map(|&(k, start)| {
+            let mut set = jobs[k].set.clone();
+            set.push(format!("jitter={start:e}"));
+            let record = case.run(jobs[k].variant, &set, &context).ok();
+            (k, record.as_ref().map(Outcome::of))
+        })
+        .collect();
+    let of_job = |k: usize| outcomes.iter().filter(move |o| o.0 == k).filter_map(|o| o.1);
+    (0..jobs.len()).map(|k| Starts::new(of_job(k).collect())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Outcome::{Diverged, Reached};
+
+    #[test]
+    fn the_median_and_the_count_of_failures_use_one_criterion() {
+        let starts = Starts::new(vec![Reached(0.004), Diverged(0.7), Reached(0.08)]);
+        assert_eq!((starts.failed(), starts.median()), (2, Some(Reached(0.08))));
+        assert!(starts.mostly_fails());
+        assert_eq!(starts.text(), "2/3: 8.0\u{a0}%");
+        let starts = Starts::new(vec![Reached(0.004), Diverged(0.7), Diverged(0.5)]);
+        assert_eq!(starts.text(), "2/3: t 0.70");
+        assert!(!Starts::new(vec![Reached(0.01), Reached(0.01), Diverged(0.5)]).mostly_fails());
+        assert!(Reached(f64::NAN).fails() && Starts::default().mostly_fails());
+    }
+
+    #[test]
+    fn only_ranges_that_do_not_touch_say_which_lives_longer() {
+        let early = Starts::new(vec![Diverged(0.2), Diverged(0.4)]);
+        let late = Starts::new(vec![Diverged(0.5), Reached(0.2)]);
+        let right = Starts::new(vec![Reached(0.01), Reached(0.02)]);
+        let mixed = Starts::new(vec![Diverged(0.3), Reached(0.01)]);
+        assert_eq!(early.longer(&late), Longer::Second);
+        assert_eq!(right.longer(&early), Longer::First);
+        assert_eq!(mixed.longer(&early), Longer::Overlap);
+        assert_eq!(mixed.longer(&right), Longer::Overlap);
+        assert_eq!(right.longer(&right), Longer::NothingFails);
+    }
+}

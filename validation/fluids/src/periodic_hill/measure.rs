@@ -1,0 +1,410 @@
+//! What is measured: the field at stations and along the walls, averaged over the end of the run.
+
+use nalgebra::{Matrix3, Vector2, Vector3};
+use solver::{EquationOfState, Kernel, Role, Scheme, Simulation, Smoothing};
+
+use super::{Setup, setup::FLUX};
+use base::record::{Metric, Profile, Record};
+
+/// Points across a section.
+pub const POINTS: usize = 200;
+/// Stations \[H\].
+pub const STATIONS: [f64; 10] = [0.05, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+/// Points along a wall, 0.025 H apart.
+pub const WALL: usize = 361;
+/// What the drag is made of, named as in the reference.
+pub const DRAGS: [&str; 3] = ["hill_shear_drag", "lid_shear_drag", "hill_pressure_drag"];
+
+/// Velocity and pressure where it is asked for: a linear field fitted to the particles in reach, walls
+/// included, with the weights V W (moving least squares).
+struct Field<'a, K> {
+    kernel: &'a Smoothing<K>,
+    /// x, y, V, u, v, p in the order of x, in bands as high as the kernel reaches.
+    bands: Vec<Vec<[f64; 6]>>,
+}
+
+impl<'a, K: Kernel> Field<'a, K> {
+    fn of<S: Scheme<Extra = (), Kernel = K>>(setup: &Setup, s: &'a Simulation<S>) -> Self {
+        let eos = setup.fluid.eos;
+        let point = |c: &solver::particles::Column<_>| {
+            let p = eos.pressure(c.common.density) - eos.background;
+            [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
+        };
+        Self::new(s.kernel(), s.columns().iter().map(point).collect(), setup.hill.lid())
+    }
+
+    fn new(kernel: &'a Smoothing<K>, mut points: Vec<[f64; 6]>, lid: f64) -> Self {
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut field = Self { kernel, bands: Vec::new() };
+        // One more than holds the lid: what is farther out is in the first and the last.
+        field.bands.resize(field.band(lid) + 2, Vec::new());
+        for point in points {
+            let band = field.band(point[1]).min(field.bands.len() - 1);
+            field.bands[band].push(point);
+        }
+        field
+    }
+
+    /// The band of a height; the second begins at 0. A float below 0 becomes 0.
+    fn band(&self, y: f64) -> usize {
+        (y / self.kernel.support() + 1.0) as usize
+    }
+
+    /// Particles that may be in reach of a place.
+    fn near(&self, x: f64, y: f64) -> impl Iterator<Item = &[f64; 6]> {
+        let (reach, band, last) = (self.kernel.support(), self.band(y), self.bands.len() - 1);
+        let bands = &self.bands[band.saturating_sub(1).min(last)..=(band + 1).min(last)];
+        bands.iter().flat_map(move |band| {
+            let first = band.partition_point(|p| p[0] < x - reach);
+            band[first..].iter().take_while(move |p| p[0] <= x + reach)
+        })
+    }
+
+    /// u, v, p at a place.
+    fn at(&self, x: f64, y: f64) -> [f64; 3] {
+        let reach = self.kernel.support();
+        let (mut moments, mut sums) = (Matrix3::zeros(), [Vector3::zeros(); 3]);
+        for p in self.near(x, y) {
+            let r = Vector2::new(p[0] - x, p[1] - y);
+            let weight = p[2] * self.kernel.w(r.norm_squared());
+            if weight > 0.0 {
+                let basis = Vector3::new(1.0, r.x / reach, r.y / reach);
+                moments += Matrix3::from_fn(|i, j| basis[i] * basis[j] * weight);
+                for (sum, value) in sums.iter_mut().zip(&p[3..]) {
+                    *sum += basis * (weight * value);
+                }
+            }
+        }
+        match moments.try_inverse() {
+            Some(inverse) => sums.map(|sum| inverse.row(0).transpose().dot(&sum)),
+            None => [f64::NAN; 3],
+        }
+    }
+}
+
+/// Sums over samples of one part of the run.
+#[derive(Clone, Default)]
+pub struct Window {
+    count: f64,
+    /// u and v at the points of the stations.
+    sections: Vec<[f64; 2]>,
+    /// Shear stress on the hill and on the lid, pressure on the hill.
+    wall: Vec<[f64; 3]>,
+    /// Force and flux.
+    forces: Vec<[f64; 2]>,
+}
+
+/// The places of the stations: x, y, weight of the section's height.
+fn places(setup: &Setup) -> Vec<[f64; 2]> {
+    let lid = setup.hill.lid();
+    let at = |x: f64| {
+        let floor = setup.floor(x);
+        let y = move |k: usize| floor + (lid - floor) * (k as f64 + 0.5) / POINTS as f64;
+        (0..POINTS).map(move |k| [x, y(k)])
+    };
+    STATIONS.into_iter().flat_map(at).collect()
+}
+
+/// Place along the wall.
+fn along(k: usize) -> f64 {
+    9.0 * k as f64 / (WALL - 1) as f64
+}
+
+fn add<const N: usize>(sums: &mut Vec<[f64; N]>, values: impl Iterator<Item = [f64; N]>) {
+    for (k, value) in values.enumerate() {
+        match sums.get_mut(k) {
+            Some(sum) => sum.iter_mut().zip(value).for_each(|(s, v)| *s += v),
+            None => sums.push(value),
+        }
+    }
+}
+
+impl Window {
+    /// Adds a sample.
+    pub fn sample<S: Scheme<Extra = ()>>(&mut self, setup: &Setup, s: &Simulation<S>) {
+        let field = Field::of(setup, s);
+        add(
+            &mut self.sections,
+            places(setup).iter().map(|p| field.at(p[0], p[1])).map(|[u, v, _]| [u, v]),
+        );
+        add(&mut self.wall, (0..WALL).map(|k| wall(setup, &field, along(k))));
+        self.count += 1.0;
+    }
+
+    /// Adds force and flux, of every stretch.
+    pub fn force(&mut self, force: f64, flux: f64) {
+        self.forces.push([force, flux]);
+    }
+
+    fn mean<const N: usize>(&self, sums: &[[f64; N]]) -> Vec<[f64; N]> {
+        sums.iter().map(|s| s.map(|x| x / self.count)).collect()
+    }
+}
+
+/// Shear stress on the hill (along its tangent) and on the lid, pressure on the hill, at x. The slope of
+/// the velocity is that of the parabola through 0 at the wall and the field one and two spacings away.
+fn wall<K: Kernel>(setup: &Setup, field: &Field<K>, x: f64) -> [f64; 3] {
+    let (d, nu, lid) = (setup.fluid.dx, setup.fluid.nu, setup.hill.lid());
+    let slope = setup.slope(x);
+    let tangent = Vector2::new(1.0, slope) / (1.0 + slope * slope).sqrt();
+    let normal = Vector2::new(-tangent.y, tangent.x);
+    let foot = Vector2::new(x, setup.floor(x));
+    let period = setup.hill.period();
+    let at = |place: Vector2<f64>| {
+        let [u, v, _] = field.at(place.x.rem_euclid(period), place.y);
+        Vector2::new(u, v).dot(&tangent)
+    };
+    let hill = (4.0 * at(foot + normal * d) - at(foot + normal * (2.0 * d))) / (2.0 * d);
+    let u = |y: f64| field.at(x.rem_euclid(period), y)[0];
+    let top = (4.0 * u(lid - d) - u(lid - 2.0 * d)) / (2.0 * d);
+    [nu * hill, nu * top, field.at(x.rem_euclid(period), foot.y)[2]]
+}
+
+/// Mean velocity along x over the fluid's area \[m/s\].
+pub fn mean_velocity<S: Scheme<Extra = ()>>(s: &Simulation<S>, area: f64) -> f64 {
+    s.fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
+}
+
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(s, n), x| (s + x * x, n + 1.0));
+    (sum / count).sqrt()
+}
+
+/// Metrics and profiles from the last three windows, in time.
+pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, record: &mut Record) {
+    let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
+        record.metrics.insert(name.into(), Metric::new(value, unit, formula));
+    };
+    let sections = [first, second, last].map(|w| w.mean(&w.sections));
+    let moved = |a: &[[f64; 2]], b: &[[f64; 2]]| rms(a.iter().zip(b).map(|(a, b)| a[0] - b[0]));
+    let (early, late) = (moved(&sections[0], &sections[1]), moved(&sections[1], &sections[2]));
+    let ratio = (late / early).min(0.9);
+    put(
+        "drift",
+        late,
+        "U_b",
+        "rms over stations of the change of mean u from one window to the next",
+    );
+    let formula =
+        "drift r/(1 - r), r the ratio of the last two drifts, not above 0.9: what a decay leaves";
+    put("unsteady", late * ratio / (1.0 - ratio), "U_b", formula);
+    let wall = last.mean(&last.wall);
+    let count = last.forces.len() as f64;
+    let [force, flux] = [0, 1].map(|k| last.forces.iter().map(|f| f[k]).sum::<f64>() / count);
+    put("force", force, "U_b^2/H", "mean body force of the last window");
+    put(
+        "force_ripple",
+        rms(last.forces.iter().map(|f| f[0] / force - 1.0)),
+        "-",
+        "rms(force/mean - 1)",
+    );
+    put(
+        "flux",
+        flux / FLUX - 1.0,
+        "-",
+        "mean flux over 2.035 U_b H, less 1, from the particles' volumes",
+    );
+    put(
+        "flux_ripple",
+        rms(last.forces.iter().map(|f| f[1] / flux - 1.0)),
+        "-",
+        "rms(flux/mean - 1)",
+    );
+    let lid = setup.hill.lid();
+    let through = |k: usize| {
+        let u = &sections[2][k * POINTS..(k + 1) * POINTS];
+        u.iter().map(|u| u[0]).sum::<f64>() / POINTS as f64 * (lid - setup.floor(STATIONS[k]))
+    };
+    let worst =
+        (0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()).fold(0.0, f64::max);
+    put(
+        "section_flux",
+        worst,
+        "-",
+        "largest |flux through a station/flux wanted - 1|, interpolated",
+    );
+    let drags = drags(setup, &wall);
+    let formulas = ["shear on the hill", "shear on the lid", "pressure times slope of the hill"];
+    for ((name, drag), what) in DRAGS.into_iter().zip(drags).zip(formulas) {
+        put(name, drag, "rho U_b^2 H", &format!("integral over a period of the {what}"));
+    }
+    let formula = "(shear on both walls + pressure on the hill)/(force times area) - 1";
+    put("drag_balance", drags.iter().sum::<f64>() / (force * area) - 1.0, "-", formula);
+    for (name, sign) in [("separation", -1.0), ("reattachment", 1.0)] {
+        if let Some(x) = turning(&wall, sign) {
+            put(name, x, "H", "where the wall shear on the hill changes its sign");
+        }
+    }
+    compare(setup, &sections[2], &wall, record);
+    profiles(setup, &sections[2], &wall, record);
+}
+
+/// [`DRAGS`], by the trapezoidal rule over the period: the ends are the same point.
+fn drags(setup: &Setup, wall: &[[f64; 3]]) -> [f64; 3] {
+    let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * along(1);
+    [over(&|k| wall[k][0]), over(&|k| wall[k][1]), over(&|k| wall[k][2] * setup.slope(along(k)))]
+}
+
+/// Where the shear on the hill turns negative (sign −1) or positive (sign 1): the start and the end of the
+/// longest stretch of backward flow.
+fn turning(wall: &[[f64; 3]], sign: f64) -> Option<f64> {
+    let (mut best, mut start) = ((0, 0), None);
+    for (k, stress) in wall.iter().enumerate() {
+        match (stress[0] < 0.0, start) {
+            (true, None) => start = Some(k),
+            (false, Some(from)) => {
+                if k - from > best.1 - best.0 {
+                    best = (from, k);
+                }
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    let after = if sign < 0.0 { best.0 } else { best.1 };
+    if best.1 - best.0 < 3 || after == 0 {
+        return None;
+    }
+    let (a, b) = (wall[after - 1][0], wall[after][0]);
+    Some(along(after - 1) + (along(1)) * a / (a - b))
+}
+
+/// Distances from the reference.
+fn compare(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mut Record) {
+    let Some(reference) = &setup.reference else { return };
+    let exact: Vec<Vector2<f64>> =
+        reference.stations.iter().flat_map(|s| s.v.iter().copied()).collect();
+    let found = |name: &str| record.metric(name);
+    let number = |name: &str| reference.number(name);
+    let gap = |name: &str| Some(found(name)? - number(name)?);
+    let force = gap("force").zip(number("force")).map(|(gap, exact)| gap / exact);
+    let (apart, back) = (gap("separation"), gap("reattachment"));
+    let stress = reference.wall.iter().map(|w| w[1].abs()).fold(0.0, f64::max);
+    let metrics = [
+        (
+            "l2_u",
+            Some(rms(sections.iter().zip(&exact).map(|(f, e)| f[0] - e.x))),
+            "U_b",
+            "rms over 10 stations of 200 points of u - finite elements",
+        ),
+        (
+            "l2_v",
+            Some(rms(sections.iter().zip(&exact).map(|(f, e)| f[1] - e.y))),
+            "U_b",
+            "the same of v",
+        ),
+        ("force_error", force, "-", "force/finite elements - 1"),
+        ("separation_error", apart, "H", "separation - finite elements"),
+        ("reattachment_error", back, "H", "reattachment - finite elements"),
+        (
+            "shear_error",
+            Some(rms(wall.iter().zip(&reference.wall).map(|(f, e)| f[0] - e[1])) / stress),
+            "-",
+            "rms over the hill of shear stress - finite elements over the largest of these",
+        ),
+    ];
+    for (name, value, unit, formula) in metrics {
+        if let Some(value) = value {
+            record.metrics.insert(name.into(), Metric::new(value, unit, formula));
+        }
+    }
+}
+
+fn profiles(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mut Record) {
+    let places = places(setup);
+    let column = |f: &dyn Fn(usize) -> f64| (0..places.len()).map(f).collect();
+    let stations = Profile::default()
+        .with("x", "H", column(&|k| places[k][0]))
+        .with("y", "H", column(&|k| places[k][1]))
+        .with("u", "U_b", column(&|k| sections[k][0]))
+        .with("v", "U_b", column(&|k| sections[k][1]));
+    record.profiles.insert("stations".into(), stations);
+    let column = |f: &dyn Fn(usize) -> f64| (0..WALL).map(f).collect();
+    let walls = Profile::default()
+        .with("x", "H", column(&along))
+        .with("hill shear", "rho U_b^2", column(&|k| wall[k][0]))
+        .with("lid shear", "rho U_b^2", column(&|k| wall[k][1]))
+        .with("pressure", "rho U_b^2", column(&|k| wall[k][2]));
+    record.profiles.insert("wall".into(), walls);
+}
+
+/// How far wall particles are from where they belong \[dx\]: over the places along floor and lid, the
+/// largest difference between the depth of the nearest one and that of their first row.
+pub fn wall_offset<S: Scheme<Extra = ()>>(setup: &Setup, s: &Simulation<S>, first: f64) -> f64 {
+    let (dx, lid, period) = (setup.fluid.dx, setup.hill.lid(), setup.hill.period());
+    let all = s.particles();
+    let walls = || all.iter().filter(|p| p.role != Role::Fluid).map(|p| p.position);
+    let distance = |from: Vector2<f64>, to: &Vector2<f64>| {
+        let across = (to.x - from.x).abs().rem_euclid(period);
+        across.min(period - across).hypot(to.y - from.y)
+    };
+    let off = |place: Vector2<f64>, depth: &dyn Fn(Vector2<f64>) -> f64| {
+        let nearest =
+            walls().min_by(|a, b| distance(place, a).total_cmp(&distance(place, b))).map(depth);
+        (nearest.unwrap_or(f64::INFINITY) / dx - first).abs()
+    };
+    let floor = |p: Vector2<f64>| behind_floor(setup, p);
+    let ceiling = |p: Vector2<f64>| p.y - lid;
+    (0..WALL)
+        .map(along)
+        .map(|x| {
+            let (below, above) = (Vector2::new(x, setup.floor(x)), Vector2::new(x, lid));
+            off(below, &floor).max(off(above, &ceiling))
+        })
+        .fold(0.0, f64::max)
+}
+
+/// Distance from the floor \[m\], positive behind it, by Gauss and Newton's iteration for its foot.
+fn behind_floor(setup: &Setup, place: Vector2<f64>) -> f64 {
+    let mut x = place.x;
+    for _ in 0..20 {
+        let slope = setup.slope(x);
+        x += (place.x - x + (place.y - setup.floor(x)) * slope) / (1.0 + slope * slope);
+    }
+    let (slope, foot) = (setup.slope(x), Vector2::new(x, setup.floor(x)));
+    Vector2::new(slope, -1.0).normalize().dot(&(place - foot))
+}
+
+/// The fluid particles: x, y, speed, and how many are beyond the walls.
+pub fn particles<S: Scheme<Extra = ()>>(setup: &Setup, s: &Simulation<S>) -> (Profile, usize) {
+    let all = s.particles();
+    let fluid: Vec<_> = all.iter().filter(|p| p.role == Role::Fluid).collect();
+    let x = |k: usize| fluid[k].position.x.rem_euclid(setup.hill.period());
+    let inside = |y: f64, x: f64| (setup.floor(x)..=setup.hill.lid()).contains(&y);
+    let outside = (0..fluid.len()).filter(|&k| !inside(fluid[k].position.y, x(k))).count();
+    let column = |f: &dyn Fn(usize) -> f64| (0..fluid.len()).map(f).collect();
+    let profile = Profile::default()
+        .with("x", "H", column(&x))
+        .with("y", "H", column(&|k| fluid[k].position.y))
+        .with("u", "U_b", column(&|k| fluid[k].velocity.x))
+        .with("speed", "U_b", column(&|k| fluid[k].velocity.norm()));
+    (profile, outside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::random::Random;
+    use solver::QuinticSpline;
+
+    #[test]
+    fn a_field_misses_no_particle_in_reach() {
+        let (kernel, lid, mut random) = (Smoothing::<QuinticSpline>::new(0.1), 3.0, Random::new(7));
+        let mut number = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let points: Vec<[f64; 6]> = (0..6000)
+            .map(|_| {
+                let [x, y] = [number(0.0, 2.0), number(-0.4, lid + 0.4)];
+                [x, y, 0.01, number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)]
+            })
+            .collect();
+        let field = Field::new(&kernel, points.clone(), lid);
+        assert!(field.bands.len() > 10);
+        let mut all = Field { kernel: &kernel, bands: vec![points] };
+        all.bands[0].sort_by(|a, b| a[0].total_cmp(&b[0]));
+        for y in [-0.05, 0.0, 1e-9, 0.299, 0.3, 0.301, 1.5, lid - 0.1, lid, lid + 0.05] {
+            for (some, every) in field.at(1.0, y).into_iter().zip(all.at(1.0, y)) {
+                assert!((some - every).abs() < 1e-10, "{some} {every} at {y}");
+            }
+        }
+    }
+}

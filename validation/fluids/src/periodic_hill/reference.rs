@@ -1,0 +1,189 @@
+//! The finite-element flow of this Reynolds number, and its field between the stations.
+
+use std::sync::OnceLock;
+
+use nalgebra::Vector2;
+
+use super::HillSettings;
+use base::reference::{Reference as Package, ReferenceError, Table};
+use maths::geometry::Hill;
+
+/// Read and checked once: 25 000 rows, which every run and every figure asks for.
+static PACKAGE: OnceLock<Package> = OnceLock::new();
+
+/// A profile across one section.
+#[derive(Clone, Debug, Default)]
+pub struct Station {
+    /// Place \[H\].
+    pub x: f64,
+    /// Heights \[H\], ascending.
+    pub y: Vec<f64>,
+    /// Velocity \[U_b\] at each.
+    pub v: Vec<Vector2<f64>>,
+}
+
+/// What finite elements say of one Reynolds number.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Profiles, in the order of x.
+    pub stations: Vec<Station>,
+    /// More of them, to start from: not to compare with.
+    starts: Vec<Station>,
+    /// x \[H\], shear stress on the hill, on the lid \[ρ U_b²\].
+    pub wall: Vec<[f64; 3]>,
+    /// The line between bubble and stream \[H\]; empty where the flow does not separate.
+    pub line: Vec<(f64, f64)>,
+    /// (name, value, uncertainty).
+    numbers: Vec<(String, f64, f64)>,
+}
+
+impl Reference {
+    /// The reference of these settings; `None` where nothing was computed for them.
+    pub fn of(settings: &HillSettings) -> Result<Option<Self>, ReferenceError> {
+        if settings.crest == 0.0 {
+            return Ok(None);
+        }
+        let package = match PACKAGE.get() {
+            Some(package) => package,
+            None => {
+                let package = Package::load("periodic_hill")?;
+                PACKAGE.get_or_init(|| package)
+            }
+        };
+        let rows = |table: &Table| -> Result<Vec<usize>, ReferenceError> {
+            let re = table.numbers("re")?;
+            Ok((0..re.len()).filter(|&k| re[k] == settings.re).collect())
+        };
+        let summary = package.table("summary")?;
+        let kept = rows(summary)?;
+        if kept.is_empty() {
+            return Ok(None);
+        }
+        let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
+        let doubt = summary.numbers("uncertainty")?;
+        let numbers = kept.iter().map(|&k| (names[k].to_string(), values[k], doubt[k])).collect();
+        let wall = package.table("wall")?;
+        let columns = ["x", "hill_shear", "lid_shear"].map(|name| wall.numbers(name));
+        let [x, hill, lid] = columns;
+        let (x, hill, lid) = (x?, hill?, lid?);
+        let wall = rows(wall)?.into_iter().map(|k| [x[k], hill[k], lid[k]]).collect();
+        let line = package.table("line")?;
+        let (x, y) = (line.numbers("x")?, line.numbers("y")?);
+        let line = rows(line)?.into_iter().map(|k| (x[k], y[k])).collect();
+        let profiles = package.table("profiles")?;
+        let stations = Self::stations(profiles, &profiles.numbers("y")?, &rows(profiles)?)?;
+        let starts = package.table("starts")?;
+        let hill = Hill::new(1.0)?;
+        let places = starts.numbers("x")?.into_iter().zip(starts.numbers("s")?);
+        let height = |(x, s): (f64, f64)| hill.wall(x) * (1.0 - s) + hill.lid() * s;
+        let heights: Vec<f64> = places.map(height).collect();
+        let starts = Self::stations(starts, &heights, &rows(starts)?)?;
+        Ok(Some(Self { stations, starts, wall, line, numbers }))
+    }
+
+    /// Rows of a table as stations, the heights being `y`.
+    fn stations(table: &Table, y: &[f64], rows: &[usize]) -> Result<Vec<Station>, ReferenceError> {
+        let x = table.numbers("x")?;
+        let (u, v) = (table.numbers("u")?, table.numbers("v")?);
+        let mut stations: Vec<Station> = Vec::new();
+        for &k in rows {
+            if stations.last().is_none_or(|s| s.x != x[k]) {
+                stations.push(Station { x: x[k], ..Station::default() });
+            }
+            if let Some(station) = stations.last_mut() {
+                station.y.push(y[k]);
+                station.v.push(Vector2::new(u[k], v[k]));
+            }
+        }
+        Ok(stations)
+    }
+
+    /// A number of the summary.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.numbers.iter().find(|(n, ..)| n == name).map(|(_, value, _)| *value)
+    }
+
+    /// The velocity at x, at the share s of a section `gap` \[H\] high: a start that is near the flow, within
+    /// 0.04 % of U_b rms, and not the flow. u·gap, whose mean over s is the flux, and v are cubic in x
+    /// through the two nearest profiles on each side, linear in s between points, and 0 on the walls.
+    pub fn velocity(&self, x: f64, s: f64, gap: f64) -> Vector2<f64> {
+        let (count, period) = (self.starts.len(), 9.0);
+        let next = self.starts.iter().position(|station| station.x > x).unwrap_or(0);
+        let near = [count - 2, count - 1, 0, 1].map(|k| &self.starts[(next + k) % count]);
+        let ahead = near.map(|station| {
+            let distance = station.x - x;
+            distance - period * (distance / period).round()
+        });
+        let weight = |k: usize| -> f64 {
+            (0..4).filter(|&j| j != k).map(|j| ahead[j] / (ahead[j] - ahead[k])).product()
+        };
+        let at = |station: &Station| {
+            let points = station.v.len();
+            let k = s * points as f64 - 0.5;
+            let low = (k.max(0.0) as usize).min(points - 2);
+            let t = (k - low as f64).clamp(0.0, 1.0);
+            let from_wall = (2.0 * points as f64 * s.min(1.0 - s)).clamp(0.0, 1.0);
+            let v = (station.v[low] * (1.0 - t) + station.v[low + 1] * t) * from_wall;
+            Vector2::new(v.x * station.gap() / gap, v.y)
+        };
+        near.iter().enumerate().map(|(k, station)| at(station) * weight(k)).sum()
+    }
+}
+
+impl Station {
+    /// Height of the section \[H\]: the points are the middles of equal parts.
+    fn gap(&self) -> f64 {
+        let last = self.y.len() - 1;
+        (self.y[last] - self.y[0]) * (1.0 + 1.0 / last as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// rms distance of the start from what these stations hold \[U_b\].
+    fn apart(reference: &Reference, stations: &[Station]) -> f64 {
+        let squares: Vec<f64> = stations
+            .iter()
+            .flat_map(|station| {
+                let count = station.v.len() as f64;
+                let start = move |k: usize| {
+                    reference.velocity(station.x, (k as f64 + 0.5) / count, station.gap())
+                };
+                station.v.iter().enumerate().map(move |(k, v)| (start(k) - v).norm_squared())
+            })
+            .collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn three_reynolds_numbers_have_a_reference_and_others_have_none() {
+        let at = |re| Reference::of(&HillSettings { re, ..HillSettings::default() });
+        for re in [10.0, 50.0, 100.0] {
+            let reference = at(re).expect("sound").expect("computed");
+            assert_eq!((reference.stations.len(), reference.wall.len()), (10, 361));
+            assert!(reference.stations.iter().all(|s| s.y.len() == 200));
+            assert_eq!(reference.number("separation").is_some(), re > 10.0);
+            // The start: its own stations as they stand, and the finer profiles as far as it holds them.
+            assert_eq!(reference.starts.len(), 29);
+            assert!(reference.starts.iter().all(|s| s.y.len() == 100));
+            let on_them = apart(&reference, &reference.starts);
+            assert!(on_them < 1e-15, "{on_them:e} at Re {re}");
+            let off = apart(&reference, &reference.stations);
+            assert!(off < 5e-4, "{off:e} at Re {re}");
+            // The flux does not depend on the place, whatever the gap there.
+            for x in [0.0, 0.3, 1.7, 5.5, 8.7] {
+                let u = (0..200).map(|k| reference.velocity(x, (k as f64 + 0.5) / 200.0, 2.6).x);
+                let flux = u.sum::<f64>() / 200.0 * 2.6;
+                assert!((flux / 2.035 - 1.0).abs() < 4e-4, "{flux} at {x}");
+            }
+            for station in &reference.stations {
+                let dy = station.y[1] - station.y[0];
+                let flux = station.v.iter().map(|v| v.x * dy).sum::<f64>();
+                assert!((flux / 2.035 - 1.0).abs() < 2e-4, "{flux} at {}", station.x);
+            }
+        }
+        assert!(at(30.0).expect("sound").is_none());
+    }
+}

@@ -1,0 +1,299 @@
+//! One run of the vortices: scene, stepping, record.
+
+use nalgebra::Vector2;
+use solver::{
+    Domain, EquationOfState, Integrator, Kernel, Limits, Open, Particle, Scene, Scheme, Simulation,
+    Tait,
+};
+
+use super::VortexSettings;
+use crate::{
+    channel,
+    fluid::{Fluid, Ingredient},
+};
+use base::{
+    number,
+    random::Random,
+    record::{self, Metric, Profile, Record, Status},
+};
+use harness::{
+    case::RunError,
+    runner::{self, Context, Frames},
+};
+use maths::{exact::TaylorGreen, theory::Stepping};
+
+/// The numbers of one run, L = U = ρ = 1.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The settings they follow from.
+    pub settings: VortexSettings,
+    /// The flow.
+    pub exact: TaylorGreen,
+    /// What terms are made from.
+    pub fluid: Fluid,
+    /// Time step \[s\].
+    pub dt: f64,
+    /// Its theoretical limit on a lattice at rest \[s\].
+    pub dt_limit: f64,
+}
+
+/// More steps than this are refused.
+const MOST_STEPS: f64 = 1e8;
+
+impl Setup {
+    /// Follows the rules for the scheme `S`.
+    pub fn new<S>(settings: &VortexSettings, allow_unstable: bool) -> Result<Self, RunError>
+    where
+        S: Scheme<Extra = ()>,
+        S::Drift: Ingredient,
+        S::Integrator: Stepping,
+    {
+        let s = settings;
+        let (dx, nu) = (1.0 / s.n as f64, 1.0 / s.re);
+        let h = s.h_over_dx * dx;
+        let eos = Tait {
+            gamma: s.gamma as i32,
+            background: s.background * s.c0 * s.c0,
+            ..Tait::new(1.0, s.c0)
+        };
+        let w_at_spacing = Fluid::w_at_spacing::<S::Kernel>(h, dx);
+        let fluid = Fluid {
+            nu,
+            eos,
+            dx,
+            h,
+            eta2_over_h2: s.eta2_over_h2,
+            diffusion: s.diffusion,
+            shift: s.shift,
+            force: 0.0,
+            w_at_spacing,
+        };
+        let dt = s.dt.unwrap_or((s.courant * h / (s.c0 + 1.0)).min(s.viscous * h * h / nu));
+        let is_diffused = S::Drift::uses().contains(&"diffusion");
+        let dt_limit = fluid.time_step_limit::<S::Kernel, S::Integrator>(is_diffused);
+        if dt > dt_limit && !allow_unstable {
+            let (limit, integrator) = (dt_limit, S::Integrator::NAME);
+            return Err(RunError::TimeStep { dt, limit, integrator });
+        }
+        if s.end / dt > MOST_STEPS {
+            let (what, setting) = ("the number of time steps", "end, dt, c0 or n");
+            let (value, most) = (s.end / dt, MOST_STEPS);
+            return Err(RunError::TooMuch { what, value, most, setting });
+        }
+        let exact = TaylorGreen { speed: 1.0, length: 1.0, nu, rho: 1.0 };
+        Ok(Self { settings: s.clone(), exact, fluid, dt, dt_limit })
+    }
+
+    /// Particles of equal volume with the velocity and the pressure of the flow at their places.
+    fn particles(&self) -> Vec<Particle> {
+        let (s, dx) = (&self.settings, self.fluid.dx);
+        let mut random = Random::new(s.seed as u64);
+        let mut shake = || s.perturb * dx * (2.0 * random.uniform() - 1.0);
+        solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n)
+            .map(|x| x + Vector2::new(shake(), shake()))
+            .map(|x| {
+                let pressure = self.exact.pressure(x, 0.0) + self.fluid.eos.background;
+                let density = self.fluid.eos.density(pressure);
+                Particle::fluid(x, self.exact.velocity(x, 0.0), density, dx * dx)
+            })
+            .collect()
+    }
+}
+
+/// The scene of a setup, in the scheme `S`.
+pub fn scene<S>(setup: &Setup) -> Scene<S>
+where
+    S: Scheme<Extra = (), Walls = Open>,
+    S::Forces: Ingredient,
+    S::Drift: Ingredient,
+{
+    let fluid = &setup.fluid;
+    let (forces, drift) = (S::Forces::new(fluid), S::Drift::new(fluid));
+    let domain = Domain::torus(1.0, 1.0);
+    let mut scene = Scene::new(fluid.h, domain, setup.particles(), forces, drift, Open);
+    scene.skin = setup.settings.skin * fluid.h;
+    // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
+    scene.limits = Limits { density: [0.7, 1.3], speed: 2.0 * (1.0 + fluid.eos.sound_speed) };
+    scene
+}
+
+/// Runs the scheme `S` and measures.
+pub fn run<S>(
+    variant: &str,
+    settings: &VortexSettings,
+    context: &Context,
+) -> Result<Record, RunError>
+where
+    S: Scheme<Extra = (), Walls = Open>,
+    S::Forces: Ingredient,
+    S::Drift: Ingredient,
+    S::Integrator: Stepping,
+{
+    let setup = Setup::new::<S>(settings, context.allow_unstable)?;
+    run_scene(&setup, variant, scene::<S>(&setup), context)
+}
+
+/// Samples of the series.
+const SAMPLES: usize = 40;
+
+/// Runs a scene and measures it against the setup: the same measuring for a scene that is not what
+/// its settings say.
+pub fn run_scene<S: Scheme<Extra = ()>>(
+    setup: &Setup,
+    variant: &str,
+    mut scene: Scene<S>,
+    context: &Context,
+) -> Result<Record, RunError> {
+    if context.threads <= 1 {
+        scene.parallel_from = usize::MAX;
+    }
+    let mut simulation = scene.build()?;
+    let json = serde_json::to_value(&setup.settings).unwrap_or_default();
+    let mut record = Record::new(super::NAME, variant, json, context.threads.max(1));
+    describe(setup, [S::Kernel::NAME, S::Integrator::NAME], &mut record);
+    let frames = Frames::of(context)?;
+    let end = setup.settings.end;
+    let times: Vec<f64> = (1..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
+    let mut series = vec![Sample::of(setup, &simulation)];
+    let mut failed_frame = None;
+    let (status, cost) =
+        runner::drive(&mut simulation, setup.dt, &times, context, &mut (), &mut |s, _| {
+            series.push(Sample::of(setup, s));
+            if let Some(frames) = &frames {
+                failed_frame = failed_frame.take().or(frames.write(s, &setup.fluid.eos).err());
+            }
+        });
+    if let Some(error) = failed_frame {
+        return Err(error.into());
+    }
+    if status == Status::Completed {
+        measure(setup, &simulation, &series, &mut record);
+        if context.keep_particles {
+            record.profiles.insert("particles".into(), particles(setup, &simulation));
+        }
+    }
+    record.profiles.insert("series".into(), profile(&series));
+    let state = channel::state(&simulation.particles());
+    record.state = Some(record::digest(&state));
+    (record.status, record.cost) = (status, cost);
+    Ok(record)
+}
+
+/// What the run chose.
+fn describe(setup: &Setup, [kernel, integrator]: [&str; 2], record: &mut Record) {
+    let Fluid { dx, h, eos, .. } = setup.fluid;
+    let numbers = [
+        ("h/dx", h / dx),
+        ("dx [m]", dx),
+        ("c0 [m/s]", eos.sound_speed),
+        ("dt [s]", setup.dt),
+        ("dt/limit", setup.dt / setup.dt_limit),
+    ];
+    let numerics = &mut record.numerics;
+    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
+    numerics.insert("kernel".into(), kernel.into());
+    numerics.insert("integrator".into(), integrator.into());
+}
+
+/// What is seen at one time.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    time: f64,
+    /// Relative L2 error of the velocity vector.
+    error: f64,
+    /// Kinetic energy over the exact one.
+    energy: f64,
+    /// Total momentum over total mass \[U\].
+    momentum: Vector2<f64>,
+}
+
+impl Sample {
+    fn of<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Self {
+        let time = simulation.time();
+        let (mut difference, mut scale, mut energy, mut mass) = (0.0, 0.0, 0.0, 0.0);
+        for p in simulation.particles() {
+            let exact = setup.exact.velocity(p.position, time);
+            difference += (p.velocity - exact).norm_squared();
+            scale += exact.norm_squared();
+            energy += 0.5 * p.mass * p.velocity.norm_squared();
+            mass += p.mass;
+        }
+        let error = (difference / scale).sqrt();
+        let energy = energy / setup.exact.kinetic_energy(time);
+        Self { time, error, energy, momentum: simulation.momentum() / mass }
+    }
+}
+
+fn profile(series: &[Sample]) -> Profile {
+    let column = |f: fn(&Sample) -> f64| series.iter().map(f).collect();
+    Profile::default()
+        .with("t", "L/U", column(|s| s.time))
+        .with("error", "-", column(|s| s.error))
+        .with("energy", "of the exact", column(|s| s.energy))
+        .with("momentum", "U", column(|s| s.momentum.norm()))
+}
+
+fn measure<S: Scheme<Extra = ()>>(
+    setup: &Setup,
+    simulation: &Simulation<S>,
+    series: &[Sample],
+    record: &mut Record,
+) {
+    let mut put = |name: &str, value: f64, formula: &str| {
+        record.metrics.insert(name.into(), Metric::new(value, "-", formula));
+    };
+    let (first, last) = (series[0], series[series.len() - 1]);
+    put("l2", last.error, "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end");
+    let worst = series.iter().map(|s| s.error).fold(0.0, f64::max);
+    put("l2_worst", worst, "largest l2 over 40 times");
+    put("energy", last.energy - 1.0, "kinetic energy over the exact one at the end, less 1");
+    let exact = (setup.exact.kinetic_energy(0.0) / setup.exact.kinetic_energy(last.time)).ln();
+    let found = exact - (last.energy / first.energy).ln();
+    put("nu_eff", found / exact, "log of the fall of kinetic energy over that of the exact one");
+    let formula =
+        "|sum m v|/(sum m U) at the end: that of a disturbed start, and what the run added";
+    put("momentum", last.momentum.norm(), formula);
+    let formula = "|sum m v at the end - sum m v at the start|/(sum m U), exactly 0";
+    put("momentum_added", (last.momentum - first.momentum).norm(), formula);
+    let particles = simulation.particles();
+    let fluid = setup.fluid;
+    let pressure = |p: &Particle| fluid.eos.pressure(p.density) - fluid.eos.background;
+    let mean = particles.iter().map(pressure).sum::<f64>() / particles.len() as f64;
+    let (mut difference, mut scale) = (0.0, 0.0);
+    for p in &particles {
+        let exact = setup.exact.pressure(p.position, last.time);
+        difference += (pressure(p) - mean - exact).powi(2);
+        scale += exact.powi(2);
+    }
+    let formula = "(sum (p - mean - p_exact)^2/sum p_exact^2)^(1/2) at the end";
+    put("pressure_l2", (difference / scale).sqrt(), formula);
+    let volume: f64 = particles.iter().map(|p| p.mass / p.density).sum();
+    put("volume_drift", volume - 1.0, "sum(m/rho)/L^2 - 1 at the end");
+    put("nearest", nearest(&particles) / fluid.dx, "least distance of two particles over dx");
+}
+
+/// The least distance of two particles, those across an edge left out \[m\].
+fn nearest(particles: &[Particle]) -> f64 {
+    let mut places: Vec<Vector2<f64>> = particles.iter().map(|p| p.position).collect();
+    places.sort_by(|a, b| a.x.total_cmp(&b.x));
+    let mut least = f64::INFINITY;
+    for (k, a) in places.iter().enumerate() {
+        let ahead = places[k + 1..].iter().take_while(|b| b.x - a.x < least);
+        least = ahead.map(|b| (b - a).norm()).fold(least, f64::min);
+    }
+    least
+}
+
+/// The particles themselves: x, y, speed, error.
+fn particles<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Profile {
+    let (all, t) = (simulation.particles(), simulation.time());
+    let column = |f: &dyn Fn(&Particle) -> f64| all.iter().map(f).collect();
+    let wrapped = |x: f64| x.rem_euclid(1.0);
+    let scale = setup.exact.decay(t);
+    let error = |p: &Particle| (p.velocity - setup.exact.velocity(p.position, t)).norm() / scale;
+    Profile::default()
+        .with("x", "m", column(&|p| wrapped(p.position.x)))
+        .with("y", "m", column(&|p| wrapped(p.position.y)))
+        .with("speed", "U exp(bt)", column(&|p| p.velocity.norm() / scale))
+        .with("error", "U exp(bt)", column(&error))
+}

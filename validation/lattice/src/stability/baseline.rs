@@ -1,0 +1,124 @@
+//! Limits and margins that this study measured before: not the truth, but nothing may get worse
+//! unnoticed. The numbers depend on no clock and no machine, only on the program and, in their last
+//! digits, on its libm; so they stand here, to four digits.
+//!
+//! Obtained with `studies::stability::study(Tier::Full)`: the limits with boxes of 12 × 12 particles, the
+//! margins at the commit that introduced this file. A change that moves one on purpose changes it here, and
+//! says why.
+
+use base::gate::{Bound, Evidence, Gate};
+
+/// A limit may be this much below its baseline: the resolution of the bisections.
+const SLACK: f64 = 0.99;
+
+/// Longest stable c₀ dt/h of a point (the middle of its bracket), by the name of its gate.
+#[rustfmt::skip] // one line a point: a table
+const LIMITS: &[(&str, f64)] = &[
+    ("stability.cubic.h1.3.leapfrog.stiffness1", 0.356),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness1", 0.3543),
+    ("stability.cubic.h1.3.leapfrog.stiffness3", 1.068),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness3", 1.063),
+    ("stability.cubic.h1.3.leapfrog.stiffness10", 1.662),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness10", 0.9517),
+    ("stability.cubic.h1.3.leapfrog.stiffness30", 1.813),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness30", 0.6264),
+    ("stability.cubic.h1.3.leapfrog.stiffness100", 1.87),
+    ("stability.cubic.h1.3.predictor-corrector.stiffness100", 0.4071),
+    ("stability.cubic.h1.3.leapfrog.stiffnessinf", 1.89),
+    ("stability.cubic.h1.3.leapfrog.stiffnessinf.alpha1.delta0", 1.024),
+    ("stability.cubic.h1.3.leapfrog.stiffnessinf.alpha0.delta1", 0.353),
+    ("stability.cubic.h1.3.predictor-corrector.stiffnessinf.alpha1.delta0", 1.016),
+    ("stability.cubic.h1.3.leapfrog.stiffness30.alpha0.1.delta0.1", 1.55),
+    ("stability.cubic.h1.3.leapfrog.stiffnessinf.alpha0.1.delta0", 1.812),
+    ("stability.quintic.h1.leapfrog.stiffness1", 0.5315),
+    ("stability.quintic.h1.predictor-corrector.stiffness1", 0.5275),
+    ("stability.quintic.h1.leapfrog.stiffness3", 1.583),
+    ("stability.quintic.h1.predictor-corrector.stiffness3", 1.583),
+    ("stability.quintic.h1.leapfrog.stiffness10", 2.104),
+    ("stability.quintic.h1.predictor-corrector.stiffness10", 1.08),
+    ("stability.quintic.h1.leapfrog.stiffness30", 2.245),
+    ("stability.quintic.h1.predictor-corrector.stiffness30", 0.7143),
+    ("stability.quintic.h1.leapfrog.stiffness100", 2.291),
+    ("stability.quintic.h1.predictor-corrector.stiffness100", 0.4675),
+    ("stability.quintic.h1.leapfrog.stiffnessinf", 2.313),
+    ("stability.quintic.h1.leapfrog.stiffnessinf.alpha1.delta0", 1.475),
+    ("stability.quintic.h1.leapfrog.stiffnessinf.alpha0.delta1", 0.5302),
+    ("stability.quintic.h1.predictor-corrector.stiffnessinf.alpha1.delta0", 1.544),
+    ("stability.quintic.h1.leapfrog.stiffness30.alpha0.1.delta0.1", 1.982),
+    ("stability.quintic.h1.leapfrog.stiffnessinf.alpha0.1.delta0", 2.244),
+    ("stability.cubic.h1.2.leapfrog.stiffness1", 0.3561),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness1", 0.3535),
+    ("stability.cubic.h1.2.leapfrog.stiffness3", 1.068),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness3", 1.06),
+    ("stability.cubic.h1.2.leapfrog.stiffness10", 1.668),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness10", 0.9508),
+    ("stability.cubic.h1.2.leapfrog.stiffness30", 1.799),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness30", 0.6261),
+    ("stability.cubic.h1.2.leapfrog.stiffness100", 1.848),
+    ("stability.cubic.h1.2.predictor-corrector.stiffness100", 0.4069),
+    ("stability.cubic.h1.2.leapfrog.stiffnessinf", 1.865),
+    ("stability.cubic.h1.2.leapfrog.stiffnessinf.alpha1.delta0", 1.032),
+    ("stability.cubic.h1.2.leapfrog.stiffnessinf.alpha0.delta1", 0.3537),
+    ("stability.cubic.h1.2.predictor-corrector.stiffnessinf.alpha1.delta0", 1.03),
+    ("stability.cubic.h1.2.leapfrog.stiffness30.alpha0.1.delta0.1", 1.551),
+    ("stability.cubic.h1.2.leapfrog.stiffnessinf.alpha0.1.delta0", 1.799),
+    ("stability.wendland-c2.h2.leapfrog.stiffness1", 0.3052),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness1", 0.3037),
+    ("stability.wendland-c2.h2.leapfrog.stiffness3", 0.9157),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness3", 0.9112),
+    ("stability.wendland-c2.h2.leapfrog.stiffness10", 1.556),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness10", 0.9164),
+    ("stability.wendland-c2.h2.leapfrog.stiffness30", 1.712),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness30", 0.6018),
+    ("stability.wendland-c2.h2.leapfrog.stiffness100", 1.77),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffness100", 0.3895),
+    ("stability.wendland-c2.h2.leapfrog.stiffnessinf", 1.791),
+    ("stability.wendland-c2.h2.leapfrog.stiffnessinf.alpha1.delta0", 0.9549),
+    ("stability.wendland-c2.h2.leapfrog.stiffnessinf.alpha0.delta1", 0.2986),
+    ("stability.wendland-c2.h2.predictor-corrector.stiffnessinf.alpha1.delta0", 0.9631),
+    ("stability.wendland-c2.h2.leapfrog.stiffness30.alpha0.1.delta0.1", 1.439),
+    ("stability.wendland-c2.h2.leapfrog.stiffnessinf.alpha0.1.delta0", 1.703),
+];
+
+/// Variant of Couette flow at 20 rows: longest stable dt over the default dt, and over the theory of
+/// the periodic lattice.
+const DEFAULTS: &[(&str, [f64; 2])] = &[
+    ("seed", [2.8455, 1.0098]),
+    ("interface-wall", [2.8596, 1.0148]),
+    ("seed-small-eta", [2.8194, 1.0149]),
+    ("cubic-leapfrog", [1.3203, 1.0149]),
+    ("wendland-leapfrog", [1.2903, 1.0101]),
+    ("quintic-pc", [1.3206, 1.0151]),
+    ("plain", [1.3401, 1.0299]),
+    ("curved", [1.3401, 1.0299]),
+    ("modern", [1.3734, 1.0555]),
+    ("modern-mirror", [1.3734, 1.0555]),
+    ("cure-background", [2.8596, 1.0148]),
+    ("cure-stress", [2.8455, 1.0098]),
+    ("cure-viscosity", [2.8173, 1.0100]),
+    ("cure-xsph", [2.8455, 1.0098]),
+    ("cure-diffusion", [2.8455, 1.0098]),
+    ("cure-shifting", [2.8455, 1.0098]),
+    ("cure-both", [2.8455, 1.0098]),
+    ("cure-leapfrog", [2.8877, 1.0248]),
+    ("extrapolating-wall", [1.3401, 1.0299]),
+];
+
+const BECAUSE: &str = "what this study measured when its baseline was set, less 1 % for the \
+                       resolution of the bisection";
+
+/// The gate that a limit must not shrink; `None` if it was never measured.
+pub fn limit_gate(id: &str) -> Option<Gate> {
+    let (_, limit) = LIMITS.iter().find(|(name, _)| *name == id)?;
+    let bound = Bound::Above(SLACK * limit);
+    Some(Gate::new(format!("{id}.limit"), "c0 dt/h", bound, Evidence::Regression, BECAUSE))
+}
+
+/// The gate that the margin (or the ratio to theory) of a default step must not shrink.
+pub fn default_gate(id: &str, variant: &str, what: &str) -> Option<Gate> {
+    let (_, [margin, ratio]) = DEFAULTS.iter().find(|(name, _)| *name == variant)?;
+    let baseline = if what == "margin" { margin } else { ratio };
+    let bound = Bound::Above(SLACK * baseline);
+    let metric = if what == "margin" { "longest stable dt/default dt" } else { "measured/theory" };
+    Some(Gate::new(format!("{id}.{what}"), metric, bound, Evidence::Regression, BECAUSE))
+}

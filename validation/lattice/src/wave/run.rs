@@ -1,0 +1,412 @@
+//! One run of a mode: scene, stepping, projection, record.
+
+use nalgebra::Vector2;
+use solver::{
+    Continuity, DensityDiffusion, Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle,
+    Pressure, Scene, Simulation, Tait, Term, Viscosity,
+};
+
+use super::{Polarisation, Scheme, SchemeWith, WaveCase, WaveSettings, fit};
+use base::{
+    number,
+    random::Random,
+    record::{self, Cost, Metric, Profile, Record, Status},
+};
+use harness::{
+    case::RunError,
+    runner::{self, Context, Frames},
+};
+use maths::{
+    exact::damped_mode::DampedMode,
+    theory::{
+        Stepping,
+        lattice::SquareLattice,
+        time_step::{self, Medium, Mode},
+    },
+};
+
+/// The numbers of one run, SI units.
+#[derive(Clone, Debug)]
+pub struct Wave {
+    settings: WaveSettings,
+    /// Which wave.
+    pub polarisation: Polarisation,
+    /// Phase from one particle to the next.
+    theta: Vector2<f64>,
+    /// Unit vector along the gradient symbol.
+    along: Vector2<f64>,
+    /// Density at rest \[kg/m³\].
+    density: f64,
+    /// Sound speed at that density \[m/s\].
+    sound_speed: f64,
+    /// Smoothing length \[m\].
+    pub h: f64,
+    eos: Tait,
+    /// Frequency and damping that theory gives to sound.
+    pub sound: DampedMode,
+    /// Damping that theory gives to shear \[1/s\].
+    pub shear: f64,
+    /// Decay that theory gives to density by itself \[1/s\].
+    diffusion: f64,
+    /// Time step \[s\].
+    pub dt: f64,
+    /// End of the run \[s\].
+    end: f64,
+}
+
+/// What density follows where it diffuses.
+pub type Diffusive = (Continuity, DensityDiffusion);
+
+/// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
+struct Projection<'a> {
+    wave: &'a Wave,
+    /// cos and sin of the phase of each label, over the sum of their squares.
+    basis: Vec<[f64; 2]>,
+    series: Vec<[f64; 3]>,
+    /// Σ m v after the first step and the last \[kg m/s\].
+    momentum: Option<[Vector2<f64>; 2]>,
+}
+
+/// What was measured.
+pub struct Measured {
+    /// Amplitudes after each step.
+    pub series: Vec<[f64; 3]>,
+    /// Change of Σ m v after the first step \[kg m/s\].
+    momentum_change: f64,
+    /// How the run ended.
+    pub status: Status,
+    /// What it took.
+    pub cost: Cost,
+}
+
+impl Wave {
+    /// A wave of these settings seen through the kernel `K`, stepped by `I`.
+    pub fn new<K: Kernel>(
+        polarisation: Polarisation,
+        settings: &WaveSettings,
+        allow_unstable: bool,
+    ) -> Result<Self, RunError> {
+        let s = settings;
+        for (what, k) in [("the wave number kx", s.kx), ("the wave number ky", s.ky)] {
+            let (value, most) = (k as f64, ((s.n - 1) / 2) as f64);
+            if value > most {
+                return Err(RunError::TooMuch { what, value, most, setting: "n, kx or ky" });
+            }
+        }
+        let h = s.h_over_dx * s.length / s.n as f64;
+        let turn = std::f64::consts::TAU / s.n as f64;
+        let theta = Vector2::new(s.kx as f64, s.ky as f64) * turn;
+        let lattice = SquareLattice::<K>::new(s.h_over_dx, s.eta2_over_h2);
+        let density = s.rho * (1.0 + s.compression);
+        let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
+        let medium = Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
+        let mode = Mode::new(&lattice, theta, &medium);
+        let sound = DampedMode { omega: mode.omega, gamma: mode.longitudinal };
+        let viscous = if s.nu > 0.0 { s.viscous * h * h / s.nu } else { f64::INFINITY };
+        let dt = s.dt.unwrap_or((s.courant * h / sound_speed).min(viscous));
+        let modes = time_step::modes(&lattice, s.n, &medium);
+        // The predictor-corrector amplifies sound at every dt, which is part of what is compared.
+        let theory = time_step::Integrator::Leapfrog;
+        let limit = time_step::time_step_limit(&modes, theory);
+        if dt > limit && !allow_unstable {
+            return Err(RunError::TimeStep { dt, limit, integrator: "leapfrog" });
+        }
+        let period = std::f64::consts::TAU / sound.omega;
+        let time = match polarisation {
+            Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,
+            _ => period,
+        };
+        Ok(Self {
+            settings: s.clone(),
+            polarisation,
+            theta,
+            along: lattice.gradient(theta).normalize(),
+            density,
+            sound_speed,
+            h,
+            eos: without_pressure_at(density, Tait::new(s.rho, s.c0)),
+            sound,
+            shear: mode.transverse,
+            diffusion: mode.density,
+            dt,
+            end: s.span * time,
+        })
+    }
+
+    /// Phase of each label, in the order of the scene.
+    fn phases(&self) -> impl Iterator<Item = f64> {
+        let (n, theta) = (self.settings.n, self.theta);
+        solver::lattice(Vector2::zeros(), 1.0, n, n).map(move |label| theta.dot(&label))
+    }
+
+    fn across(&self) -> Vector2<f64> {
+        Vector2::new(-self.along.y, self.along.x)
+    }
+
+    /// The scene: a cosine of velocity at uniform density.
+    pub fn scene<K: Kernel, I: Stepping>(&self) -> Scene<Scheme<K, I>> {
+        self.scene_with(Continuity)
+    }
+
+    /// The same with density diffusion.
+    pub fn diffusive_scene<K: Kernel, I: Stepping>(&self) -> Scene<SchemeWith<K, Diffusive, I>> {
+        let diffusivity = self.settings.diffusion * self.h * self.sound_speed;
+        self.scene_with((Continuity, DensityDiffusion::new(diffusivity)))
+    }
+
+    fn scene_with<K: Kernel, D: Term<()>, I: Stepping>(
+        &self,
+        drift: D,
+    ) -> Scene<SchemeWith<K, D, I>> {
+        let s = &self.settings;
+        let dx = s.length / s.n as f64;
+        let direction = match self.polarisation {
+            Polarisation::Sound => self.along,
+            Polarisation::Shear => self.across(),
+        };
+        let places = solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n);
+        let mut random = Random::new(1);
+        let mut offset = || Vector2::new(random.normal(), random.normal()) * (s.jitter * dx);
+        let particles = places.zip(self.phases()).map(|(place, phase)| {
+            let velocity = direction * (s.amplitude * self.sound_speed * phase.cos());
+            let place = if s.jitter > 0.0 { place + offset() } else { place };
+            Particle::fluid(place, velocity, self.density, dx * dx)
+        });
+        let viscosity =
+            Viscosity { mu: self.density * s.nu, eta2: s.eta2_over_h2 * self.h * self.h };
+        let forces = (Pressure::new(self.eos), viscosity);
+        let domain = Domain::torus(s.length, s.length);
+        Scene::new(self.h, domain, particles.collect(), forces, drift, Open)
+    }
+
+    /// What theory gives for the amplitudes after each of `steps` steps, exactly.
+    fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<[f64; 3]> {
+        let (a, dt) = (self.settings.amplitude, self.dt);
+        let m = fit::step_with_diffusion(&self.sound, self.diffusion, integrator, dt);
+        let factor = fit::shear_step(self.shear, integrator, dt);
+        let (mut y, mut shear) = match self.polarisation {
+            Polarisation::Sound => (Vector2::new(0.0, a), 0.0),
+            Polarisation::Shear => (Vector2::zeros(), a),
+        };
+        if integrator == time_step::Integrator::Leapfrog {
+            // The first kick is half a one: back to where a whole one would start.
+            let DampedMode { omega, gamma } = self.sound;
+            y.y = (y.y * (1.0 - 0.5 * gamma * dt) - omega * dt * y.x) / (1.0 - gamma * dt);
+            shear *= (1.0 - 0.5 * self.shear * dt) / (1.0 - self.shear * dt);
+        }
+        let advance = |_| {
+            (y, shear) = (m * y, factor * shear);
+            [y.x, y.y, shear]
+        };
+        (0..steps).map(advance).collect()
+    }
+}
+
+impl<'a> Projection<'a> {
+    fn new(wave: &'a Wave) -> Self {
+        let mut basis: Vec<[f64; 2]> = wave.phases().map(|a| [a.cos(), a.sin()]).collect();
+        let squares = [0, 1].map(|k| basis.iter().map(|b| b[k] * b[k]).sum::<f64>());
+        basis.iter_mut().for_each(|b| *b = [b[0] / squares[0], b[1] / squares[1]]);
+        Self { wave, basis, series: Vec::new(), momentum: None }
+    }
+}
+
+impl<S: solver::Scheme<Extra = ()>> Observer<S> for Projection<'_> {
+    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+        let Wave { density, sound_speed, along, .. } = self.wave;
+        let across = self.wave.across();
+        let mut sums = [0.0; 3];
+        for (particle, [cos, sin]) in simulation.particles().iter().zip(&self.basis) {
+            sums[0] -= (particle.density / density - 1.0) * sin;
+            sums[1] += particle.velocity.dot(along) / sound_speed * cos;
+            sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
+        }
+        self.series.push(sums);
+        let momentum = simulation.momentum();
+        self.momentum = Some([self.momentum.map_or(momentum, |[first, _]| first), momentum]);
+        Flow::Continue
+    }
+}
+
+/// The exponent of [`Tait::new`].
+const GAMMA: i32 = 7;
+
+/// The same water with a background pressure that takes p to 0 at this density: a displacement then
+/// meets a pressure of its own order, as the theory of the lattice has it.
+fn without_pressure_at(density: f64, eos: Tait) -> Tait {
+    Tait { background: -eos.pressure(density), ..eos }
+}
+
+/// Runs a wave; the step is adjusted so that a whole number of steps ends the run.
+pub fn measure<K: Kernel, I: Stepping>(
+    wave: &mut Wave,
+    context: &Context,
+) -> Result<Measured, RunError> {
+    measure_scene(wave, context, Wave::scene::<K, I>)
+}
+
+/// Runs the scene that `scene` makes of a wave and projects it on the wave.
+pub fn measure_scene<S: solver::Scheme<Extra = ()>>(
+    wave: &mut Wave,
+    context: &Context,
+    scene: impl FnOnce(&Wave) -> Scene<S>,
+) -> Result<Measured, RunError> {
+    let steps = (wave.end / wave.dt).ceil().max(4.0);
+    wave.dt = wave.end / steps;
+    let mut scene = scene(wave);
+    if context.threads <= 1 {
+        scene.parallel_from = usize::MAX;
+    }
+    let mut simulation = scene.build()?;
+    let mut projection = Projection::new(wave);
+    // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
+    let frames = Frames::of(context)?;
+    let mut failed = None;
+    let (status, cost) = runner::drive(
+        &mut simulation,
+        wave.dt,
+        &[wave.end],
+        context,
+        &mut projection,
+        &mut |simulation, _| {
+            failed = frames.as_ref().and_then(|f| f.write(simulation, &wave.eos).err());
+        },
+    );
+    match failed {
+        Some(error) => Err(error.into()),
+        None => Ok(Measured {
+            momentum_change: projection.momentum.map_or(f64::NAN, |[a, b]| (b - a).norm()),
+            series: projection.series,
+            status,
+            cost,
+        }),
+    }
+}
+
+/// Runs a wave and compares it with theory.
+pub(super) fn run<K: Kernel, I: Stepping>(
+    case: &WaveCase,
+    variant: &str,
+    settings: &WaveSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    run_scene(case, variant, settings, context, Wave::scene::<K, I>)
+}
+
+/// The same with density diffusion.
+pub(super) fn run_diffusive<K: Kernel, I: Stepping>(
+    case: &WaveCase,
+    variant: &str,
+    settings: &WaveSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    run_scene(case, variant, settings, context, Wave::diffusive_scene::<K, I>)
+}
+
+/// Runs the scene that `scene` makes of a wave and compares it with the theory of the wave: the same
+/// measuring for a scene that is not what its settings say.
+pub fn run_scene<S>(
+    case: &WaveCase,
+    variant: &str,
+    settings: &WaveSettings,
+    context: &Context,
+    scene: impl FnOnce(&Wave) -> Scene<S>,
+) -> Result<Record, RunError>
+where
+    S: solver::Scheme<Extra = ()>,
+    S::Integrator: Stepping,
+{
+    let mut wave = Wave::new::<S::Kernel>(case.polarisation, settings, context.allow_unstable)?;
+    let measured = measure_scene(&mut wave, context, scene)?;
+    let json = serde_json::to_value(settings).unwrap_or_default();
+    let mut record = Record::new(case.name, variant, json, context.threads.max(1));
+    describe::<S::Kernel, S::Integrator>(&wave, &mut record);
+    compare(&wave, S::Integrator::THEORY, &measured.series, &mut record);
+    let s = settings;
+    let mass = wave.density * s.length * s.length;
+    let scale = mass * s.amplitude * wave.sound_speed;
+    let formula = "|change of sum m v after the first step|/(sum m times the velocity amplitude)";
+    let change = Metric::new(measured.momentum_change / scale, "-", formula);
+    record.metrics.insert("momentum_error".into(), change);
+    let column = |k: usize| measured.series.iter().map(|a| a[k]).collect();
+    let times = (1..=measured.series.len()).map(|k| k as f64 * wave.dt).collect();
+    let profile = Profile::default()
+        .with("t", "s", times)
+        .with("p", "rho c0^2", column(0))
+        .with("v_along", "c0", column(1))
+        .with("v_across", "c0", column(2));
+    record.profiles.insert("amplitudes".into(), profile);
+    record.state = Some(record::digest(measured.series.as_flattened()));
+    (record.status, record.cost) = (measured.status, measured.cost);
+    Ok(record)
+}
+
+/// Frequency and damping against the symbols, and every amplitude against exact steps.
+fn compare(
+    wave: &Wave,
+    integrator: time_step::Integrator,
+    series: &[[f64; 3]],
+    record: &mut Record,
+) {
+    let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
+        record.metrics.insert(name.into(), Metric::new(value, unit, formula));
+    };
+    let relative = |found: f64, expected: f64, scale: f64| (found - expected).abs() / scale;
+    if wave.polarisation == Polarisation::Sound {
+        let states: Vec<Vector2<f64>> = series.iter().map(|a| Vector2::new(a[0], a[1])).collect();
+        let nothing = DampedMode { omega: f64::NAN, gamma: f64::NAN };
+        let found = fit::matrix_between(&states)
+            .map_or(nothing, |m| fit::mode_of_step(&m, integrator, wave.dt));
+        let expected = wave.sound;
+        let scale = if expected.gamma > 0.0 { expected.gamma } else { expected.omega };
+        let formula = "|omega - c0 |g(k)||/(c0 |g(k)|), time error divided out";
+        put("frequency_error", relative(found.omega, expected.omega, expected.omega), "-", formula);
+        let formula = "|gamma - nu lambda(k)|/(nu lambda(k)), of omega if nu = 0";
+        put("decay_error", relative(found.gamma, expected.gamma, scale), "-", formula);
+        put(
+            "frequency",
+            found.frequency(),
+            "1/s",
+            "(omega^2 - gamma^2/4)^(1/2) of continuous time",
+        );
+        put("decay", 0.5 * found.gamma, "1/s", "gamma/2 of continuous time");
+        let sound =
+            wave.sound_speed * wave.theta.norm() * wave.settings.n as f64 / wave.settings.length;
+        put("sound_factor", found.omega / sound, "-", "omega/(c0 k), 1 in the continuum");
+    } else {
+        let values: Vec<f64> = series.iter().map(|a| a[2]).collect();
+        let found = fit::factor_between(&values)
+            .map_or(f64::NAN, |f| fit::shear_of_step(f, integrator, wave.dt));
+        let scale = if wave.shear > 0.0 { wave.shear } else { wave.sound.omega };
+        let formula = "|gamma - nu lambda(k)|/(nu lambda(k)), time error divided out";
+        put("decay_error", relative(found, wave.shear, scale), "-", formula);
+        put("decay", found, "1/s", "gamma of continuous time");
+        let k = wave.theta.norm() * wave.settings.n as f64 / wave.settings.length;
+        put("viscous_factor", found / (wave.settings.nu * k * k), "-", "gamma/(nu k^2)");
+    }
+    let predicted = wave.predicted(integrator, series.len());
+    let largest = |f: &dyn Fn(usize, usize) -> f64| {
+        let all = (0..series.len()).flat_map(|n| (0..3).map(move |k| (n, k)));
+        // NaN must stay: max() would drop it.
+        all.map(|(n, k)| f(n, k)).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+    };
+    let error = largest(&|n, k| (series[n][k] - predicted[n][k]).abs());
+    let formula = "max|amplitudes - exact steps|/amplitude over p, v along, v across and all steps";
+    put("trajectory_error", error / wave.settings.amplitude, "-", formula);
+}
+
+/// What the run chose.
+fn describe<K: Kernel, I: Stepping>(wave: &Wave, record: &mut Record) {
+    let s = &wave.settings;
+    let numbers = [
+        ("h/dx", s.h_over_dx),
+        ("c0 [m/s]", wave.sound_speed),
+        ("c0 h/nu", wave.sound_speed * wave.h / s.nu),
+        ("dt [s]", wave.dt),
+        ("omega dt", wave.sound.omega * wave.dt),
+    ];
+    let numerics = &mut record.numerics;
+    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
+    numerics.insert("kernel".into(), K::NAME.into());
+    numerics.insert("integrator".into(), I::NAME.into());
+}

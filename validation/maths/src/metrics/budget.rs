@@ -1,0 +1,275 @@
+//! The energy budget by term: what each term of a scene does to the total energy, at one time and
+//! summed over a run.
+//!
+//! With the slope ∂E/∂y of the energy of a particle, the power of a term is Σ ∂E/∂y · ẏ over the rates
+//! ẏ that this term gives by itself ([`Simulation::rates`]). Terms that exchange energy with each other
+//! share an item: pressure (5) and continuity (3) cancel in every pair of particles that both have, so
+//! what is left of them is the work of the walls. A body force is the slope of the potential energy and
+//! has no item.
+
+use solver::{
+    ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion,
+    EquationOfState, Evolved, Pressure, Rate, Scheme, Simulation, Term, Viscosity, Xsph,
+    terms::{Rest, Switch},
+};
+
+/// ∂E/∂y · ẏ of a particle with this mass \[kg/m\], state and rate \[W/m\]; dx/dt is without v.
+pub type Slope<'a, X> = &'a dyn Fn(f64, &Evolved<X>, &Rate<X>) -> f64;
+
+/// Work of pressure against walls that are not particles of the energy budget.
+pub const WALLS: &str = "walls";
+/// (16), (17).
+pub const VISCOSITY: &str = "artificial viscosity";
+/// (18), (19).
+pub const STRESS: &str = "artificial stress";
+/// (22).
+pub const XSPH: &str = "XSPH";
+/// Of density.
+pub const DIFFUSION: &str = "density diffusion";
+
+/// Powers of single terms, in the present state of a simulation.
+pub struct Meter<'a, S: Scheme> {
+    simulation: &'a Simulation<S>,
+    slope: Slope<'a, S::Extra>,
+}
+
+impl<'a, S: Scheme> Meter<'a, S> {
+    /// A meter for a simulation that [`Simulation::advance`] has brought to a time.
+    pub fn new(simulation: &'a Simulation<S>, slope: Slope<'a, S::Extra>) -> Self {
+        Self { simulation, slope }
+    }
+
+    /// The power of these terms together \[W/m\].
+    pub fn power<T: Term<S::Extra>>(&self, terms: &T) -> f64 {
+        let rates = self.simulation.rates(terms);
+        let each = self.simulation.fluid().zip(&rates);
+        each.fold(0.0, |sum, ((mass, particle), rate)| sum + (self.slope)(mass, particle, rate))
+    }
+
+    /// The power of the walls' own terms on wall particles \[W/m\].
+    pub fn wall_power(&self) -> f64 {
+        let rates = self.simulation.wall_rates();
+        let each = self.simulation.walls().zip(&rates);
+        each.fold(0.0, |sum, ((mass, particle), rate)| sum + (self.slope)(mass, particle, rate))
+    }
+}
+
+/// Items of a budget and their powers \[W/m\] or works \[J/m\]; a name may come twice.
+pub type Items = Vec<(&'static str, f64)>;
+
+/// Terms that can say what they do to the energy.
+pub trait Itemised<X>: Term<X> {
+    /// The power of each.
+    fn powers<S: Scheme<Extra = X>>(&self, meter: &Meter<S>) -> Items;
+}
+
+impl<X> Itemised<X> for () {
+    fn powers<S: Scheme<Extra = X>>(&self, _: &Meter<S>) -> Items {
+        Vec::new()
+    }
+}
+
+impl<X> Itemised<X> for BodyForce {
+    fn powers<S: Scheme<Extra = X>>(&self, _: &Meter<S>) -> Items {
+        Vec::new()
+    }
+}
+
+impl<X, E: EquationOfState> Itemised<X> for Pressure<E> {
+    fn powers<S: Scheme<Extra = X>>(&self, meter: &Meter<S>) -> Items {
+        vec![(WALLS, meter.power(self))]
+    }
+}
+
+impl<X, E: EquationOfState> Itemised<X> for Pressure<E, ArtificialStress> {
+    fn powers<S: Scheme<Extra = X>>(&self, meter: &Meter<S>) -> Items {
+        let bare = meter.power(&Pressure::new(self.eos));
+        vec![(WALLS, bare), (STRESS, meter.power(self) - bare)]
+    }
+}
+
+macro_rules! itemised {
+    ($($term:ty { $($generics:tt)* } = $name:expr),+ $(,)?) => {$(
+        impl<X, $($generics)*> Itemised<X> for $term {
+            fn powers<S: Scheme<Extra = X>>(&self, meter: &Meter<S>) -> Items {
+                vec![($name, meter.power(self))]
+            }
+        }
+    )+};
+}
+
+itemised! {
+    Continuity {} = WALLS,
+    ArtificialViscosity<E, W> { E: EquationOfState, W: Switch } = VISCOSITY,
+    Viscosity {} = "viscosity",
+    Xsph {} = XSPH,
+    DensityDiffusion<R> { R: Rest } = DIFFUSION,
+}
+
+macro_rules! tuple_of_items {
+    ($($member:ident $index:tt),+) => {
+        impl<X, $($member: Itemised<X>),+> Itemised<X> for ($($member,)+) {
+            fn powers<S: Scheme<Extra = X>>(&self, meter: &Meter<S>) -> Items {
+                [$(self.$index.powers(meter)),+].concat()
+            }
+        }
+    };
+}
+
+tuple_of_items!(A 0, B 1);
+tuple_of_items!(A 0, B 1, C 2);
+tuple_of_items!(A 0, B 1, C 2, D 3);
+
+/// Works since the first sample, by the trapezoidal rule over the powers of each sample.
+#[derive(Clone, Debug, Default)]
+pub struct Account {
+    last: Option<(f64, Items)>,
+    works: Items,
+}
+
+impl Account {
+    /// Adds the powers at this time \[s\].
+    pub fn add(&mut self, time: f64, powers: &[(&'static str, f64)]) {
+        let powers = merged(powers);
+        if let Some((before, old)) = self.last.take() {
+            for (name, power) in &powers {
+                let was = of(&old, name);
+                self.works.push((name, 0.5 * (time - before) * (power + was)));
+            }
+            self.works = merged(&self.works);
+        }
+        self.last = Some((time, powers));
+    }
+
+    /// The work of an item so far \[J/m\]: below 0 what it took from the particles.
+    pub fn work(&self, name: &str) -> f64 {
+        of(&self.works, name)
+    }
+
+    /// Of all items.
+    pub fn total(&self) -> f64 {
+        self.works.iter().fold(0.0, |sum, (_, work)| sum + work)
+    }
+}
+
+fn of(items: &[(&str, f64)], name: &str) -> f64 {
+    items.iter().find(|(known, _)| *known == name).map_or(0.0, |(_, value)| *value)
+}
+
+/// Items of the same name added, in the order in which they first appear.
+fn merged(items: &[(&'static str, f64)]) -> Items {
+    let mut sums: Items = Vec::new();
+    for (name, value) in items {
+        match sums.iter_mut().find(|(known, _)| known == name) {
+            Some((_, sum)) => *sum += value,
+            None => sums.push((name, *value)),
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+    use solver::{
+        Compose, CubicSpline, Domain, InterfaceWall, Particle, PredictorCorrector, Role, Scene,
+        Smoothing, Tait,
+    };
+
+    use super::*;
+    use crate::metrics::energy::{Water, water_slope};
+    use base::random::Random;
+
+    type Forces = (Pressure<Tait, ArtificialStress>, ArtificialViscosity<Tait>, BodyForce);
+    type Drift = (Continuity, DensityDiffusion, Xsph);
+    type Method = Compose<CubicSpline, Forces, Drift, InterfaceWall, PredictorCorrector>;
+
+    const DX: f64 = 0.1;
+    const WATER: Water = Water {
+        eos: Tait { density: 2.0, sound_speed: 9.0, gamma: 7, background: 0.0 },
+        gravity: Vector2::new(0.7, -3.0),
+    };
+
+    /// Water in disorder over wall particles, some of it under tension.
+    fn scene() -> Scene<Method> {
+        let (mut random, eos, h) = (Random::new(7), WATER.eos, 1.3 * DX);
+        let mut number = move || random.uniform() - 0.5;
+        let mut particles: Vec<Particle> = solver::lattice(Vector2::zeros(), DX, 12, 9)
+            .map(|x| {
+                let x = x + Vector2::new(number(), number()) * (0.3 * DX);
+                let v = Vector2::new(number(), number());
+                Particle::fluid(x, v, 2.0 * (1.0 + 0.02 * number()), DX * DX)
+            })
+            .collect();
+        particles.extend(solver::lattice(Vector2::new(-0.3, -3.0 * DX), DX, 18, 3).map(|x| {
+            let wall = Particle::fluid(x, Vector2::zeros(), 2.0 * (1.0 + 0.02 * number()), DX * DX);
+            wall.with_role(Role::Wall)
+        }));
+        let stress = ArtificialStress::new(0.3, 4, Smoothing::<CubicSpline>::new(h).w(DX * DX));
+        let forces = (
+            Pressure::with_stress(eos, stress),
+            ArtificialViscosity::new(0.4, 0.8, h, eos),
+            BodyForce(WATER.gravity),
+        );
+        let diffusion = DensityDiffusion::new(0.1 * h * eos.sound_speed);
+        let drift = (Continuity, diffusion, Xsph { epsilon: 0.4 });
+        Scene::new(h, Domain::open(), particles, forces, drift, InterfaceWall)
+    }
+
+    /// Total energy a time dt after the start \[J/m\].
+    fn energy(dt: f64) -> f64 {
+        let mut simulation = scene().build().expect("a scene");
+        simulation.advance(dt, 1.0, &mut ());
+        WATER.energy(&simulation).total()
+    }
+
+    #[test]
+    fn pressure_and_continuity_only_exchange_energy() {
+        let scene = scene();
+        let (forces, drift) = (scene.forces, scene.drift);
+        let mut simulation = scene.build().expect("a scene");
+        simulation.advance(0.0, 1.0, &mut ());
+        let slope = water_slope(&WATER);
+        let meter = Meter::new(&simulation, &slope);
+        let parts = [meter.power(&forces.0), meter.power(&drift.0), meter.wall_power()];
+        let stress = of(&forces.0.powers(&meter), STRESS);
+        let sum = parts.iter().sum::<f64>() - stress;
+        let scale: f64 = parts.iter().map(|p| p.abs()).sum();
+        assert!(parts.iter().all(|p| p.abs() > 1e-3 * scale), "{parts:?} show something");
+        assert!(sum.abs() < 1e-13 * scale, "{sum:e} of {scale:e}");
+    }
+
+    /// dE/dt of the discrete equations by differences of the energy, against the items.
+    #[test]
+    fn the_items_are_the_slope_of_the_energy_in_time() {
+        let scene = scene();
+        let (forces, drift) = (scene.forces, scene.drift);
+        let mut simulation = scene.build().expect("a scene");
+        simulation.advance(0.0, 1.0, &mut ());
+        let slope = water_slope(&WATER);
+        let meter = Meter::new(&simulation, &slope);
+        let mut items = [forces.powers(&meter), drift.powers(&meter)].concat();
+        items.push((WALLS, meter.wall_power()));
+        let items = merged(&items);
+        assert_eq!(items.len(), 5);
+        assert!(of(&items, VISCOSITY) < 0.0, "viscosity heats");
+        let total: f64 = items.iter().map(|(_, power)| power).sum();
+        let (dt, start) = (1e-6, energy(0.0));
+        let (whole, half) = (energy(dt) - start, energy(0.5 * dt) - start);
+        let slope = (4.0 * half - whole) / dt;
+        // Differences over 1 µs leave some 1e-8 of truncation, and of round-off in E.
+        assert!((slope / total - 1.0).abs() < 1e-5, "{slope:e} {total:e} {items:?}");
+    }
+
+    #[test]
+    fn works_are_integrals_of_powers() {
+        let mut account = Account::default();
+        for k in 0..=10 {
+            let t = f64::from(k) * 0.2;
+            account.add(t, &[("a", 3.0 * t), ("b", 1.0), ("a", -t)]);
+        }
+        assert!((account.work("a") - 4.0).abs() < 1e-12);
+        assert!((account.total() - 6.0).abs() < 1e-12);
+        assert_eq!(account.work("c"), 0.0);
+    }
+}

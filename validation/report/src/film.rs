@@ -1,0 +1,121 @@
+//! Figures one after the other: an animated PNG, which browsers and image viewers play.
+
+use rayon::prelude::*;
+
+use super::{figure::Figure, render};
+
+/// Pixels of a film per CSS pixel: half of what a figure has, for the size of the page.
+const DENSITY: u32 = 1;
+/// Bits of a colour channel that are kept: edges stay smooth, and the file is a third smaller.
+const BITS: u8 = 4;
+
+/// Frames of one size, shown in order and again from the start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Film {
+    /// Unique on its page; also the name of its PNG file.
+    pub id: String,
+    /// What is seen; inline markup as in [`super::Block::Prose`].
+    pub caption: String,
+    /// The animated PNG; the first frame is the picture where animation is not understood.
+    pub(super) png: Vec<u8>,
+}
+
+impl Film {
+    /// Draws the frames, whose own captions are not shown, for so many milliseconds each.
+    ///
+    /// An error if there is none, or if one has another size than the first.
+    pub fn new(
+        id: impl Into<String>,
+        caption: impl Into<String>,
+        frames: &[Figure],
+        milliseconds: u16,
+    ) -> Result<Self, String> {
+        let drawn: Result<Vec<_>, String> =
+            frames.par_iter().map(|frame| render::pixels(frame, DENSITY)).collect();
+        let drawn = drawn?;
+        let &(_, width, height) = drawn.first().ok_or("a film without a frame")?;
+        if drawn.iter().any(|frame| (frame.1, frame.2) != (width, height)) {
+            return Err("frames of different sizes".into());
+        }
+        let mut png = Vec::new();
+        let frames = drawn.into_iter().map(|(pixels, ..)| pixels);
+        encode(&mut png, frames.collect(), (width, height), milliseconds)
+            .map_err(|error| error.to_string())?;
+        Ok(Self { id: id.into(), caption: caption.into(), png })
+    }
+}
+
+/// One figure as a small PNG: for thousands of dots, each of which an SVG would name.
+pub(super) fn still(figure: &Figure) -> Result<Vec<u8>, String> {
+    let (pixels, width, height) = render::pixels(figure, DENSITY)?;
+    let mut png = Vec::new();
+    encode(&mut png, vec![pixels], (width, height), 1).map_err(|error| error.to_string())?;
+    Ok(png)
+}
+
+/// Writes frames of three bytes a pixel.
+fn encode(
+    bytes: &mut Vec<u8>,
+    frames: Vec<Vec<u8>>,
+    (width, height): (u32, u32),
+    milliseconds: u16,
+) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Best);
+    encoder.set_filter(png::FilterType::NoFilter); // flat colours: every filter makes it larger
+    if frames.len() > 1 {
+        encoder.set_animated(frames.len() as u32, 0)?;
+        encoder.set_frame_delay(milliseconds, 1000)?;
+    }
+    let mut writer = encoder.write_header()?;
+    for pixels in frames {
+        let coarse: Vec<u8> = pixels.into_iter().map(coarse).collect();
+        writer.write_image_data(&coarse)?;
+    }
+    writer.finish()
+}
+
+/// The channel value with [`BITS`] bits, black and white as they are.
+fn coarse(value: u8) -> u8 {
+    let steps = (1_u32 << BITS) - 1;
+    ((u32::from(value) * steps + 127) / 255 * 255 / steps) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Legend, Plot, Series};
+
+    fn frame(y: f64) -> Figure {
+        let line = Series::line("line", vec![(0.0, 0.0), (1.0, y)]);
+        let plot = Plot::new("", Axis::linear("x [m]").range(0.0, 1.0), {
+            Axis::linear("y [m]").range(0.0, 3.0)
+        });
+        let plot = plot.layer(line).legend(Legend::Hidden);
+        Figure::new("frame", "").panel(plot).panel_size(80.0, 60.0)
+    }
+
+    #[test]
+    fn a_film_is_read_back_frame_by_frame() {
+        let film = Film::new("film", "", &[frame(1.0), frame(2.0), frame(3.0)], 80).unwrap();
+        let mut reader = png::Decoder::new(film.png.as_slice()).read_info().unwrap();
+        assert_eq!(reader.info().animation_control().unwrap().num_frames, 3);
+        let mut seen = Vec::new();
+        for _ in 0..3 {
+            let mut pixels = vec![0; reader.output_buffer_size()];
+            reader.next_frame(&mut pixels).unwrap();
+            seen.push(pixels);
+        }
+        assert!(seen[0] != seen[1] && seen[1] != seen[2]);
+        assert_eq!((coarse(0), coarse(255)), (0, 255));
+    }
+
+    #[test]
+    fn frames_of_two_sizes_and_no_frames_are_refused() {
+        assert!(Film::new("film", "", &[], 80).is_err());
+        let other = frame(1.0).panel_size(90.0, 60.0);
+        assert!(Film::new("film", "", &[frame(1.0), other], 80).is_err());
+    }
+}

@@ -1,0 +1,70 @@
+//! The one font of the figures: a subset of DejaVu Sans, embedded in the program.
+
+use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
+use std::sync::OnceLock;
+
+/// The font file (licence beside it).
+pub(super) static BYTES: &[u8] = include_bytes!("../assets/DejaVuSans-subset.ttf");
+
+/// Family list of the SVG; the first is what a page embeds, Verdana has nearly the same widths.
+pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
+
+/// Ascent minus descent over the em: the rasteriser sizes text by this height.
+pub(super) const HEIGHT_PER_EM: f64 = (1901.0 + 483.0) / 2048.0;
+
+/// Height of the small letter x over the em.
+pub(super) const X_HEIGHT: f64 = 1120.0 / 2048.0;
+
+/// Height of a digit over the em.
+pub(super) const DIGIT_HEIGHT: f64 = 1493.0 / 2048.0;
+
+/// A font description of the given size, in the rasteriser's sense of size.
+pub(super) fn desc(size: f64) -> FontDesc<'static> {
+    static REGISTERED: OnceLock<bool> = OnceLock::new();
+    let registered =
+        REGISTERED.get_or_init(|| register_font(FAMILY, FontStyle::Normal, BYTES).is_ok());
+    assert!(registered, "the embedded font is a valid TrueType file");
+    FontDesc::new(FontFamily::Name(FAMILY), size, FontStyle::Normal)
+}
+
+/// Width of a text whose em is `em`.
+pub(super) fn width(text: &str, em: f64) -> f64 {
+    const FINE: f64 = 1000.0;
+    let ((left, _), (right, _)) =
+        desc(FINE * HEIGHT_PER_EM).layout_box(text).expect("the font is registered");
+    f64::from(right - left) / FINE * em
+}
+
+/// Standard base64, for the font inside a page.
+pub(super) fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let at = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
+        let word = at(0) << 16 | at(1) << 8 | at(2);
+        for k in 0..4 {
+            let digit = DIGITS[(word >> (18 - 6 * k) & 63) as usize];
+            out.push(if k <= chunk.len() { char::from(digit) } else { '=' });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_pads() {
+        assert_eq!(base64(b"Man"), "TWFu");
+        assert_eq!(base64(b"Ma"), "TWE=");
+        assert_eq!(base64(b"M"), "TQ==");
+    }
+
+    #[test]
+    fn widths_are_plausible() {
+        // Digits of DejaVu Sans are 1303/2048 em wide.
+        assert!((width("00", 10.0) - 12.72).abs() < 0.05);
+        assert!(width("10⁻³ρ₀", 10.0) > 30.0);
+    }
+}

@@ -1,0 +1,399 @@
+//! One self-contained page: opens from disk, loads nothing, prints.
+
+use super::figure::Figure;
+use super::film::{self, Film};
+use super::font;
+use super::inline::{escape, inline};
+use super::render;
+use super::table::{Status, Table};
+use base::files;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use rayon::prelude::*;
+use std::io;
+use std::path::Path;
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// A report of sections, with a verdict on top.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Page {
+    /// Title of the document.
+    pub title: String,
+    /// Paragraphs under the title; inline markup.
+    pub lead: Vec<String>,
+    /// The verdict banner; `None` for none.
+    pub counts: Option<Counts>,
+    /// Sections in order.
+    pub sections: Vec<Section>,
+    /// Last line: commit, machine, command; inline markup.
+    pub footer: String,
+    /// Folder of the figures' PNG files beside the page; empty writes and links none.
+    pub png_folder: String,
+}
+
+/// How many gates ended how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Judged and inside.
+    pub pass: usize,
+    /// Judged and outside.
+    pub fail: usize,
+    /// Shown without judgement.
+    pub reported: usize,
+    /// Known limits.
+    pub limitation: usize,
+    /// Outside, as it should be.
+    pub expected_failure: usize,
+}
+
+impl Counts {
+    /// The counts of the given outcomes.
+    pub fn of(outcomes: impl IntoIterator<Item = Status>) -> Self {
+        let mut counts = Self::default();
+        for outcome in outcomes {
+            *counts.slot(outcome) += 1;
+        }
+        counts
+    }
+
+    fn slot(&mut self, status: Status) -> &mut usize {
+        match status {
+            Status::Pass => &mut self.pass,
+            Status::Fail => &mut self.fail,
+            Status::Reported => &mut self.reported,
+            Status::Limitation => &mut self.limitation,
+            Status::ExpectedFailure => &mut self.expected_failure,
+        }
+    }
+
+    fn html(mut self) -> Markup {
+        let verdict = match (self.fail, self.pass) {
+            (0, 0) => (Status::Reported, "Nothing was judged".to_string()),
+            (0, n) => (Status::Pass, format!("All {n} gates pass")),
+            (1, _) => (Status::Fail, "1 gate fails".to_string()),
+            (n, _) => (Status::Fail, format!("{n} gates fail")),
+        };
+        html! {
+            div class=(format!("banner {}", verdict.0.class())) {
+                p.verdict { span.mark { (verdict.0.mark()) } " " (verdict.1) }
+                p.counts {
+                    @for status in Status::ALL {
+                        button type="button" class=(status.class()) data-filter=(status.class()) {
+                            (status.mark()) " " (self.slot(status)) " " (status.name())
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A heading with blocks, and sections below it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// Unique on the page: the anchor.
+    pub id: String,
+    /// Heading; inline markup.
+    pub title: String,
+    /// Marks the entry in the table of contents.
+    pub status: Option<Status>,
+    /// Content in order.
+    pub blocks: Vec<Block>,
+    /// Sections one level down.
+    pub children: Vec<Section>,
+}
+
+impl Section {
+    /// An empty section.
+    pub fn new(id: impl Into<String>, title: impl Into<String>) -> Self {
+        Self { id: id.into(), title: title.into(), ..Self::default() }
+    }
+
+    /// Sets the mark.
+    pub fn status(self, status: Status) -> Self {
+        Self { status: Some(status), ..self }
+    }
+
+    /// Adds a block.
+    pub fn block(mut self, block: impl Into<Block>) -> Self {
+        self.blocks.push(block.into());
+        self
+    }
+
+    /// Adds a paragraph.
+    pub fn prose(self, paragraph: impl Into<String>) -> Self {
+        self.block(Block::Prose(vec![paragraph.into()]))
+    }
+
+    /// Adds a section one level down.
+    pub fn child(mut self, section: Section) -> Self {
+        self.children.push(section);
+        self
+    }
+}
+
+/// One piece of a section.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// Paragraphs. Inline: `*emphasis*`, `**strong**`, `` `code` ``, `[label](#anchor)`, and
+    /// `<math>…</math>` copied as it stands.
+    Prose(Vec<String>),
+    /// Bullets; inline markup.
+    List(Vec<String>),
+    /// A drawing with its caption and number; its id is its anchor.
+    Figure(Figure),
+    /// A figure that moves.
+    Film(Film),
+    /// A table with its number.
+    Table(Table),
+    /// Blocks behind a click.
+    Details {
+        /// What is behind; inline markup.
+        summary: String,
+        /// The blocks.
+        blocks: Vec<Block>,
+    },
+    /// Data for other programs, in a script element that no browser runs.
+    DataJson {
+        /// Unique on the page.
+        id: String,
+        /// The data.
+        data: serde_json::Value,
+    },
+}
+
+impl From<Figure> for Block {
+    fn from(figure: Figure) -> Self {
+        Self::Figure(figure)
+    }
+}
+
+impl From<Film> for Block {
+    fn from(film: Film) -> Self {
+        Self::Film(film)
+    }
+}
+
+impl From<Table> for Block {
+    fn from(table: Table) -> Self {
+        Self::Table(table)
+    }
+}
+
+/// Numbers given out while a page is written.
+struct Writer<'a> {
+    png_folder: &'a str,
+    figures: usize,
+    tables: usize,
+}
+
+impl Page {
+    /// The page as HTML that is well-formed XML too.
+    pub fn html(&self) -> String {
+        let mut writer = Writer { png_folder: &self.png_folder, figures: 0, tables: 0 };
+        let face = format!(
+            "@font-face{{font-family:\"DejaVu Sans\";src:url(data:font/ttf;base64,{})}}\n",
+            font::base64(font::BYTES)
+        );
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" xmlns="http://www.w3.org/1999/xhtml" {
+                head {
+                    (PreEscaped("<meta charset=\"utf-8\"/>"))
+                    (PreEscaped(VIEWPORT))
+                    title { (self.title) }
+                    style { (PreEscaped(face)) (PreEscaped(STYLE)) }
+                }
+                body {
+                    header {
+                        h1 { (self.title) }
+                        @for paragraph in &self.lead { p.lead { (inline(paragraph)) } }
+                        @if let Some(counts) = self.counts { (counts.html()) }
+                    }
+                    @if self.sections.len() > 1 {
+                        nav { h2 { "Contents" } (contents(&self.sections)) }
+                    }
+                    main { @for section in &self.sections { (writer.section(section, 2)) } }
+                    @if !self.footer.is_empty() { footer { p { (inline(&self.footer)) } } }
+                    script { (PreEscaped(SCRIPT)) }
+                }
+            }
+        };
+        page.into_string()
+    }
+
+    /// Writes the page, and its figures' PNG files into their folder beside it. Every file appears
+    /// whole or not at all.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        self.write_html(path, &self.html())
+    }
+
+    /// The same with what [`Page::html`] has said, which need not be said again.
+    pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
+        let folder = path.parent().unwrap_or(Path::new("."));
+        if !self.png_folder.is_empty() {
+            let images = folder.join(&self.png_folder);
+            std::fs::create_dir_all(&images)?;
+            let drawings: Vec<Drawing> = self.sections.iter().flat_map(drawings).collect();
+            drawings.par_iter().try_for_each(|drawing| drawing.write(&images))?;
+        }
+        files::write_atomically(path, html.as_bytes()).map_err(io::Error::other)
+    }
+}
+
+const VIEWPORT: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
+
+/// What has a PNG file.
+enum Drawing<'a> {
+    Figure(&'a Figure),
+    Film(&'a Film),
+}
+
+impl Drawing<'_> {
+    fn write(&self, folder: &Path) -> io::Result<()> {
+        let path = |id: &str| folder.join(format!("{id}.png"));
+        match self {
+            Self::Figure(figure) => render::png(figure, &path(&figure.id)),
+            Self::Film(film) => {
+                files::write_atomically(&path(&film.id), &film.png).map_err(io::Error::other)
+            }
+        }
+    }
+}
+
+/// Every drawing of a section.
+fn drawings(section: &Section) -> Vec<Drawing<'_>> {
+    fn of(block: &Block) -> Vec<Drawing<'_>> {
+        match block {
+            Block::Figure(figure) => vec![Drawing::Figure(figure)],
+            Block::Film(film) => vec![Drawing::Film(film)],
+            Block::Details { blocks, .. } => blocks.iter().flat_map(of).collect(),
+            _ => Vec::new(),
+        }
+    }
+    section.blocks.iter().flat_map(of).chain(section.children.iter().flat_map(drawings)).collect()
+}
+
+fn contents(sections: &[Section]) -> Markup {
+    html! {
+        ul {
+            @for section in sections {
+                li {
+                    @if let Some(s) = section.status {
+                        span class=(format!("mark {}", s.class())) title=(s.name()) { (s.mark()) }
+                        " "
+                    }
+                    a href=(format!("#{}", section.id)) { (inline(&section.title)) }
+                    @if !section.children.is_empty() { (contents(&section.children)) }
+                }
+            }
+        }
+    }
+}
+
+impl Writer<'_> {
+    fn section(&mut self, section: &Section, level: usize) -> Markup {
+        let title = inline(&section.title);
+        html! {
+            section id=(section.id) {
+                @match level {
+                    2 => h2 { (title) },
+                    3 => h3 { (title) },
+                    _ => h4 { (title) },
+                }
+                @for block in &section.blocks { (self.block(block)) }
+                @for child in &section.children { (self.section(child, level + 1)) }
+            }
+        }
+    }
+
+    fn block(&mut self, block: &Block) -> Markup {
+        match block {
+            Block::Prose(paragraphs) => html! { @for p in paragraphs { p { (inline(p)) } } },
+            Block::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
+            Block::Figure(figure) => self.figure(&figure.id, &figure.caption, drawing(figure)),
+            Block::Film(film) => {
+                self.figure(&film.id, &film.caption, image(&film.caption, &film.png))
+            }
+            Block::Table(table) => {
+                self.tables += 1;
+                table.markup(&format!("Table {}. ", self.tables))
+            }
+            Block::Details { summary, blocks } => html! {
+                details {
+                    summary { (inline(summary)) }
+                    @for block in blocks { (self.block(block)) }
+                }
+            },
+            Block::DataJson { id, data } => html! {
+                script id=(id) type="application/json" { (PreEscaped(json(data))) }
+            },
+        }
+    }
+
+    fn figure(&mut self, id: &str, caption: &str, drawing: Markup) -> Markup {
+        self.figures += 1;
+        let link = format!("{}/{id}.png", self.png_folder);
+        html! {
+            figure id=(id) {
+                div.card { (drawing) }
+                figcaption {
+                    b { "Figure " (self.figures) ". " }
+                    (inline(caption))
+                    @if !self.png_folder.is_empty() { " " a.png href=(link) { "PNG" } }
+                }
+            }
+        }
+    }
+}
+
+/// Bytes of an SVG beyond which a page has the figure in pixels: some thousand dots.
+const LARGEST_SVG: usize = 150_000;
+
+/// The figure as SVG, or as pixels where that would be too large.
+fn drawing(figure: &Figure) -> Markup {
+    let svg = render::svg(figure);
+    match (svg.len() > LARGEST_SVG).then(|| film::still(figure)) {
+        Some(Ok(png)) => image(&figure.caption, &png),
+        _ => PreEscaped(svg),
+    }
+}
+
+/// An image inside the page. The page is XML too: every element is closed.
+fn image(caption: &str, png: &[u8]) -> Markup {
+    let (caption, data) = (escape(caption), font::base64(png));
+    PreEscaped(format!("<img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"/>"))
+}
+
+/// JSON without characters that mean something to HTML or XML.
+fn json(data: &serde_json::Value) -> String {
+    let text = data.to_string();
+    text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_cannot_close_its_script() {
+        let data = serde_json::json!({"a": "</script><b>&"});
+        let text = json(&data);
+        assert!(!text.contains('<') && !text.contains('&'));
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), data);
+    }
+
+    #[test]
+    fn the_script_is_plain_xml_text() {
+        assert!(!SCRIPT.contains(['<', '&']) && !STYLE.contains(['<', '&']));
+        assert!(SCRIPT.lines().count() < 100);
+    }
+
+    #[test]
+    fn counts_add_up() {
+        let counts = Counts::of([Status::Pass, Status::Pass, Status::ExpectedFailure]);
+        assert_eq!((counts.pass, counts.fail, counts.expected_failure), (2, 0, 1));
+        assert!(counts.html().into_string().contains("All 2 gates pass"));
+    }
+}

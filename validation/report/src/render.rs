@@ -1,0 +1,339 @@
+//! From a figure to an SVG text or a PNG file.
+
+use super::canvas::{Canvas, Kind, Rect, Type};
+use super::colour::Colour;
+use super::figure::{Align, Figure, Panel};
+use super::font;
+use super::frame::{Margins, fit};
+use super::maps::{Categories, Particles};
+use super::plot;
+use base::files;
+use plotters::prelude::{BitMapBackend, DrawingBackend, SVGBackend};
+use std::io;
+use std::path::Path;
+
+/// Whole pixels of the SVG's drawing per CSS pixel: coordinates are thirds of a pixel.
+const FINE: f64 = 3.0;
+/// Drawn pixels per pixel of a PNG.
+const SUPERSAMPLE: u32 = 3;
+/// Pixels of a PNG per CSS pixel.
+const DENSITY: u32 = 2;
+const TITLE_EM: f64 = 14.0;
+const TITLE_HEIGHT: f64 = 26.0;
+const EDGE: f64 = 5.0;
+
+/// A panel with everything decided but its place.
+enum Prepared<'a> {
+    Plot(plot::Prepared<'a>),
+    Particles(Particles<'a>),
+    Categories(Categories<'a>),
+}
+
+impl<'a> Prepared<'a> {
+    fn new(panel: &'a Panel, size: (f64, f64)) -> Self {
+        match panel {
+            Panel::Plot(plot) => Self::Plot(plot::Prepared::new(plot, size)),
+            Panel::Particles(map) => Self::Particles(Particles::new(map, size)),
+            Panel::Categories(map) => Self::Categories(Categories::new(map, size)),
+        }
+    }
+
+    fn size(&self) -> (f64, f64) {
+        match self {
+            Self::Plot(p) => p.size(),
+            Self::Particles(p) => p.size(),
+            Self::Categories(p) => p.size(),
+        }
+    }
+
+    fn margins(&self) -> Margins {
+        match self {
+            Self::Plot(p) => p.margins(),
+            Self::Particles(p) => p.margins(),
+            Self::Categories(p) => p.margins(),
+        }
+    }
+
+    fn draw<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+        match self {
+            Self::Plot(p) => p.draw(canvas, area),
+            Self::Particles(p) => p.draw(canvas, area),
+            Self::Categories(p) => p.draw(canvas, area),
+        }
+    }
+}
+
+/// Panels with their places, and the size of the whole.
+struct Layout<'a> {
+    panels: Vec<(Prepared<'a>, Rect)>,
+    size: (f64, f64),
+}
+
+/// Aligns the axes of all panels in a row and in a column.
+fn layout(figure: &Figure) -> Layout<'_> {
+    let columns = figure.columns.clamp(1, figure.panels.len().max(1));
+    let room = (figure.panel_size.0.max(80.0), figure.panel_size.1.max(60.0));
+    let panels: Vec<_> = figure.panels.iter().map(|p| Prepared::new(p, room)).collect();
+    let margins: Vec<_> = panels.iter().map(Prepared::margins).collect();
+    let sizes: Vec<_> = panels.iter().map(Prepared::size).collect();
+    let rows = panels.len().div_ceil(columns);
+    let most = |of: &dyn Fn(usize) -> f64, pick: &dyn Fn(usize) -> bool| {
+        (0..panels.len()).filter(|&i| pick(i)).map(of).fold(0.0, f64::max)
+    };
+    // Left margin, inner width and right margin of each column; the same downwards for each row.
+    let across = (0..columns).map(|c| {
+        let here = |i: usize| i % columns == c;
+        [
+            most(&|i| margins[i].left, &here),
+            most(&|i| sizes[i].0, &here),
+            most(&|i| margins[i].right, &here),
+        ]
+    });
+    let down = (0..rows).map(|r| {
+        let here = |i: usize| i / columns == r;
+        [
+            most(&|i| margins[i].top, &here),
+            most(&|i| sizes[i].1, &here),
+            most(&|i| margins[i].bottom, &here),
+        ]
+    });
+    let title = if figure.title.is_empty() { 0.0 } else { TITLE_HEIGHT };
+    let (lefts, right) = starts(across, EDGE);
+    let (tops, bottom) = starts(down, EDGE + title);
+    let rects: Vec<_> = (0..panels.len())
+        .map(|i| Rect {
+            left: lefts[i % columns],
+            top: tops[i / columns],
+            width: sizes[i].0,
+            height: sizes[i].1,
+        })
+        .collect();
+    let size = (right.max(120.0).ceil(), bottom.max(60.0).ceil());
+    Layout { panels: panels.into_iter().zip(rects).collect(), size }
+}
+
+/// Where the inner part of each slot starts, and where all end.
+fn starts(slots: impl Iterator<Item = [f64; 3]>, first: f64) -> (Vec<f64>, f64) {
+    let mut at = first;
+    let starts = slots.map(|[before, inner, after]| {
+        let start = at + before;
+        at = start + inner + after;
+        start
+    });
+    let starts = starts.collect();
+    (starts, at + EDGE)
+}
+
+fn draw<B: DrawingBackend>(canvas: &mut Canvas<B>, figure: &Figure, layout: &Layout) {
+    let (width, height) = layout.size;
+    canvas.fill(Rect { left: 0.0, top: 0.0, width, height }, Colour::WHITE);
+    let em = fit(&figure.title, TITLE_EM, width - 4.0 * EDGE);
+    canvas.text(&figure.title, (2.0 * EDGE, EDGE + 12.0), Type::new(em, Align::Start));
+    for (panel, area) in &layout.panels {
+        panel.draw(canvas, *area);
+    }
+}
+
+/// The figure as an SVG element of its natural size that shrinks with its container.
+///
+/// # Panics
+/// Never for any data; only if plotters cannot write into a string.
+pub fn svg(figure: &Figure) -> String {
+    let layout = layout(figure);
+    let (width, height) = layout.size;
+    let fine = ((FINE * width) as u32, (FINE * height) as u32);
+    let mut text = String::new();
+    let mut canvas = Canvas::new(SVGBackend::with_string(&mut text, fine), FINE, Kind::Vector);
+    draw(&mut canvas, figure, &layout);
+    canvas.finish().expect("drawing into a string does not fail");
+    let name = if figure.title.is_empty() { &figure.id } else { &figure.title };
+    let head = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" \
+         width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {} {}\" \
+         font-family=\"{}\" stroke-linejoin=\"round\">\n",
+        super::inline::escape(name),
+        fine.0,
+        fine.1,
+        font::FAMILY
+    );
+    head + &compact(&text)
+}
+
+/// The elements of the SVG without what says nothing; the opening tag is left out.
+fn compact(text: &str) -> String {
+    let family = format!(" font-family=\"{}\"", font::FAMILY);
+    let body = text.split_once('\n').map_or("", |(_, body)| body);
+    body.replace(&family, "")
+        .replace(" opacity=\"1\"", "")
+        .replace(" stroke=\"none\" stroke-width=\"1\"", "")
+        .replace(" stroke=\"none\"", "")
+        .replace(" \"/>", "\"/>")
+        .replace(">\n</text>", "></text>")
+        .replace("\n</text>", "</text>")
+        .lines()
+        .fold(String::new(), |mut out, line| {
+            out.push_str(line);
+            // A text's content starts on a line of its own: join them.
+            if !(line.starts_with("<text") && line.ends_with('>') && !line.contains("</text>")) {
+                out.push('\n');
+            }
+            out
+        })
+}
+
+/// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
+/// pixel.
+pub(super) fn pixels(figure: &Figure, density: u32) -> Result<(Vec<u8>, u32, u32), String> {
+    let layout = layout(figure);
+    let scale = SUPERSAMPLE * density;
+    let (width, height) = (layout.size.0 as u32 * density, layout.size.1 as u32 * density);
+    let (fine_width, fine_height) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
+    let mut fine = vec![255; (fine_width * fine_height * 3) as usize];
+    let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
+    let mut canvas = Canvas::new(backend, f64::from(scale), Kind::Raster);
+    draw(&mut canvas, figure, &layout);
+    canvas.finish()?;
+    Ok((downsample(&fine, width as usize, height as usize), width, height))
+}
+
+/// Means of squares of `SUPERSAMPLE` by `SUPERSAMPLE` pixels.
+fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
+    let n = SUPERSAMPLE as usize;
+    let mut out = Vec::with_capacity(width * height * 3);
+    for y in 0..height {
+        for x in 0..width {
+            for channel in 0..3 {
+                let mut sum = 0;
+                for dy in 0..n {
+                    let row = ((y * n + dy) * width * n + x * n) * 3 + channel;
+                    sum += (0..n).map(|dx| usize::from(fine[row + 3 * dx])).sum::<usize>();
+                }
+                out.push((sum / (n * n)) as u8);
+            }
+        }
+    }
+    out
+}
+
+/// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
+pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
+    let (pixels, width, height) = pixels(figure, DENSITY).map_err(io::Error::other)?;
+    let draw = |temporary: &Path| -> io::Result<()> {
+        let mut backend = BitMapBackend::new(temporary, (width, height));
+        backend.blit_bitmap((0, 0), (width, height), &pixels).map_err(io::Error::other)?;
+        backend.present().map_err(io::Error::other)
+    };
+    files::write_atomically_by(path, draw).map_err(io::Error::other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, CategoryMap, ColourMap, Layer, Legend, ParticleMap, Plot, Series, Shape};
+
+    fn figure(panel: impl Into<Panel>) -> Figure {
+        Figure::new("f", "A caption.").panel(panel).panel_size(120.0, 90.0)
+    }
+
+    fn dark_pixels(figure: &Figure) -> usize {
+        let (pixels, ..) = pixels(figure, DENSITY).unwrap();
+        pixels.chunks(3).filter(|p| p.iter().all(|&c| c < 100)).count()
+    }
+
+    #[test]
+    fn labels_have_ink() {
+        let axis = || Axis::linear("").range(0.0, 1.0);
+        let bare = figure(Plot::new("", axis(), axis()));
+        let with = figure(Plot::new("", Axis { label: "ρ₀ [10⁻³]".into(), ..axis() }, axis()));
+        assert!(dark_pixels(&with) > dark_pixels(&bare) + 100);
+        assert!(svg(&with).contains(">ρ₀ [10⁻³]</text>"));
+    }
+
+    /// Every kind of layer, from the same values.
+    fn all_layers(values: &[f64], x: Axis, y: Axis) -> Plot {
+        let pairs: Vec<_> =
+            values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b))).collect();
+        let triples: Vec<_> = pairs.iter().map(|p| (p.0, p.1, p.0)).collect();
+        let any = values.first().copied().unwrap_or(f64::NAN);
+        Plot::new("Title", x, y)
+            .layer(Series::line_markers("a", pairs.clone()).y_bars(pairs.clone()))
+            .layer(Series::markers("b", pairs.clone()).shape(Shape::Plus).x_bars(pairs.clone()))
+            .layer(Layer::band("c", triples, Colour::SKY))
+            .layer(Layer::span("d", any, f64::INFINITY, Colour::GREEN))
+            .layer(Layer::slope_at(any, (any, any)))
+            .layer(Layer::slope(any))
+            .layer(Layer::horizontal(any, "e"))
+            .layer(Layer::vertical(any, "f"))
+            .layer(Layer::text((any, any), "g"))
+            .layer(Layer::Failed(values.iter().map(|&v| (v, "NaN".into())).collect()))
+    }
+
+    #[test]
+    fn no_data_makes_the_drawing_panic() {
+        let awkward = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0, 1e-320, 1e308, 1.0];
+        let mut cases: Vec<Vec<f64>> = awkward.iter().map(|&v| vec![v]).collect();
+        cases.extend([vec![], awkward.to_vec(), vec![f64::NAN, 1.0, 2.0]]);
+        let axes =
+            [Axis::linear("x [m]"), Axis::log("x [m]"), Axis::log("x").range(-1.0, f64::NAN)];
+        for values in cases {
+            for (x, y) in axes.iter().flat_map(|x| axes.iter().map(move |y| (x, y))) {
+                let text = svg(&figure(all_layers(&values, x.clone(), y.clone())));
+                let stray = text.lines().find(|l| l.contains("inf") || l.contains("NaN,"));
+                assert_eq!(stray, None, "{values:?}");
+            }
+            let points = values.iter().map(|&v| (v, v, v)).collect();
+            let axes = (Axis::linear("x"), Axis::log("y"));
+            let map = ParticleMap::new("", axes, "p [Pa]", ColourMap::Diverging, points);
+            svg(&figure(map.clone()));
+            svg(&figure(map.values(1.0, values.first().copied().unwrap_or(1.0))));
+        }
+        pixels(&figure(all_layers(&awkward, axes[0].clone(), axes[1].clone())), DENSITY).unwrap();
+    }
+
+    #[test]
+    fn ragged_and_empty_category_maps_are_drawn() {
+        let mut map = CategoryMap {
+            title: "t".into(),
+            x_label: "x".into(),
+            y_label: "y".into(),
+            x: vec!["1".into(), "a rather long name".into()],
+            y: vec!["2".into(), "3".into()],
+            categories: vec![("pass".into(), Colour::GREEN)],
+            cells: vec![vec![Some((0, "ok".into())), Some((9, "?".into()))]],
+        };
+        assert!(svg(&figure(map.clone())).contains(">ok</text>"));
+        (map.x, map.y) = (vec![], vec![]);
+        svg(&figure(map));
+        svg(&Figure::new("none", "").columns(0));
+    }
+
+    #[test]
+    fn two_thousand_dots_stay_small() {
+        let points = (0..2000).map(|i| (f64::from(i % 50), f64::from(i / 50), f64::from(i)));
+        let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
+        let map = ParticleMap::new("", axes, "p [Pa]", ColourMap::Sequential, points.collect());
+        assert!(svg(&figure(map)).len() < 150_000);
+    }
+
+    #[test]
+    fn a_crowded_plot_moves_its_legend_outside() {
+        let cloud = (0..900).map(|i| (f64::from(i % 30), f64::from(i / 30))).collect();
+        let plot = Plot::new("", Axis::linear("x"), Axis::linear("y"))
+            .layer(Series::markers("a name", cloud));
+        let wide = layout(&figure(plot.clone())).size.0;
+        assert!(wide > layout(&figure(plot.legend(Legend::TopLeft))).size.0 + 50.0);
+    }
+
+    #[test]
+    fn a_png_appears_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("f.png");
+        png(&figure(all_layers(&[1.0, 2.0], Axis::log("x"), Axis::log("y"))), &path).unwrap();
+        assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        assert!(
+            png(&figure(all_layers(&[], Axis::log("x"), Axis::log("y"))), Path::new("/no/f.png"))
+                .is_err()
+        );
+    }
+}

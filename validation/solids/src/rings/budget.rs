@@ -1,0 +1,91 @@
+//! Where the energy of the rings goes: kinetic and elastic energy through time, and the work of each
+//! term that is not elastic.
+
+use solver::{
+    ArtificialViscosity, CauchyStress, Continuity, JaumannRate, Scheme, Simulation, Symmetric,
+};
+
+use super::{Rings, Tensile};
+use crate::solid::{Energy, solid_slope};
+use base::record::{Metric, Profile, Record};
+use maths::metrics::budget::{Account, Items, Meter, STRESS, VISCOSITY};
+
+/// (9) to (12) with (3), which only exchange energy up to the third order in the strain: the stored
+/// energy S:S/(4μρ) is that of small strains.
+const ELASTIC: &str = "elastic law";
+
+/// The items, as metrics name them.
+const ITEMS: [(&str, &str); 3] =
+    [(VISCOSITY, "work_viscosity"), (STRESS, "work_stress"), (ELASTIC, "work_elastic")];
+
+/// Samples of a run.
+pub const SAMPLES: usize = 200;
+
+/// The powers of the terms of a scene with the artificial stress `R` \[W/m\]. XSPH moves particles and
+/// changes neither velocity, density nor stress: it has no power of its own.
+pub fn powers<R: Tensile, S: Scheme<Extra = Symmetric>>(
+    rings: &Rings,
+    simulation: &Simulation<S>,
+) -> Items {
+    let slope = solid_slope(&rings.material());
+    let meter = Meter::new(simulation, &slope);
+    let (eos, s) = (rings.eos, &rings.settings);
+    let elastic = meter.power(&CauchyStress { eos, tensile: () });
+    let stressed = meter.power(&CauchyStress { eos, tensile: R::of(rings) });
+    let strained = meter.power(&(Continuity, JaumannRate { shear_modulus: rings.mu }));
+    let viscosity: ArtificialViscosity<_> = ArtificialViscosity::new(s.alpha, s.beta, rings.h, eos);
+    vec![
+        (ELASTIC, elastic + strained),
+        (STRESS, stressed - elastic),
+        (VISCOSITY, meter.power(&viscosity)),
+    ]
+}
+
+/// The budget of a run.
+#[derive(Default)]
+pub struct Budget {
+    account: Account,
+    /// t \[s\], kinetic, compression and shear energy, then the works of [`ITEMS`] \[J/m\].
+    rows: Vec<[f64; 7]>,
+}
+
+impl Budget {
+    /// Takes a sample of a simulation that has been brought to a time.
+    pub fn sample<S: Scheme<Extra = Symmetric>>(
+        &mut self,
+        rings: &Rings,
+        simulation: &Simulation<S>,
+        powers: &Items,
+    ) {
+        self.account.add(simulation.time(), powers);
+        let Energy { kinetic, compression, shear } = Energy::of(simulation, &rings.material());
+        let [a, b, c] = ITEMS.map(|(name, _)| self.account.work(name));
+        self.rows.push([simulation.time(), kinetic, compression, shear, a, b, c]);
+    }
+
+    /// Works and the gap of the budget over the energy at the start, and the series.
+    pub fn measure(&self, rings: &Rings, record: &mut Record) {
+        let total = |row: &[f64; 7]| row[1] + row[2] + row[3];
+        let Some(start) = self.rows.first().map(total).filter(|energy| *energy > 0.0) else {
+            return;
+        };
+        let mut put = |name: &str, value: f64, formula: String| {
+            record.metrics.insert(name.into(), Metric::new(value, "-", &formula));
+        };
+        let gap = |row: &[f64; 7]| (total(row) - start - row[4] - row[5] - row[6]).abs();
+        let gap = self.rows.iter().map(gap).fold(0.0, f64::max) / start;
+        put("energy_gap", gap, "max over samples of |E(t) - E(0) - work of all terms|/E(0)".into());
+        for (name, key) in ITEMS {
+            let formula = format!("energy that the {name} has added until the end/E(0)");
+            put(key, self.account.work(name) / start, formula);
+        }
+        let column = |k: usize, unit: f64| self.rows.iter().map(|row| row[k] / unit).collect();
+        let names =
+            ["kinetic", "compression", "shear"].into_iter().chain(ITEMS.map(|(_, key)| key));
+        let times = Profile::default().with("t", "L/c0", column(0, 1.0 / rings.c0));
+        let profile = names
+            .zip(1..)
+            .fold(times, |profile, (name, k)| profile.with(name, "E(0)", column(k, start)));
+        record.profiles.insert("budget".into(), profile);
+    }
+}

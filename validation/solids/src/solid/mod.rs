@@ -1,0 +1,69 @@
+//! What cases of the elastic solid have in common: material, methods, settings, energies, and the
+//! case itself around a problem.
+
+mod energy;
+mod material;
+mod method;
+mod problem;
+
+pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
+pub use material::{Material, Solid};
+pub use method::{Bare, Clamp, Method, Plain, Scheme, Seed};
+pub use problem::{Problem, Ran, SolidCase, describe, digest, run_to};
+
+/// Declares the settings of a solid case: its own, then those that every solid case has, and turns
+/// the latter into a [`Solid`] by a method `solid`.
+#[macro_export]
+macro_rules! solid_settings {
+    (
+        $(#[doc = $doc:literal])+
+        pub struct $Struct:ident { $($own:tt)* }
+    ) => {
+        base::settings! {
+            $(#[doc = $doc])+
+            pub struct $Struct {
+                $($own)*
+                /// Young's modulus
+                young: f64 ["Pa"] in 1e-6..=1e15 = 2e6,
+                /// Poisson's ratio
+                poisson: f64 ["-"] in 0.0..=0.4999 = 0.3975,
+                /// density without stress
+                rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
+                /// smoothing length over spacing; published runs of rubber rings have 1.5
+                h_over_dx: f64 ["-"] in 0.8..=3.0 = 1.5,
+                /// artificial viscosity α
+                alpha: f64 ["-"] in 0.0..=10.0 = 1.0,
+                /// artificial viscosity β
+                beta: f64 ["-"] in 0.0..=20.0 = 2.0,
+                /// artificial stress: strength ξ
+                xi: f64 ["-"] in 0.0..=1.0 = 0.3,
+                /// artificial stress: exponent n
+                exponent: usize ["-"] in 1..=12 = 4,
+                /// XSPH: ε
+                xsph: f64 ["-"] in 0.0..=0.99 = 0.5,
+                /// Courant number dt (c_p + V)/h; auto: 0.4 with the leapfrog, 0.25 with the
+                /// predictor-corrector
+                courant: Option<f64> ["-"] in 1e-6..=10.0 = None,
+                /// time step; auto: by the Courant number
+                dt: Option<f64> ["s"] in 1e-15..=1e6 = None,
+            }
+        }
+
+        impl $Struct {
+            /// What all solid cases share.
+            pub fn solid(&self) -> $crate::solid::Solid {
+                let Self { rho, young, poisson, h_over_dx, xi, xsph, dt, courant, .. } = *self;
+                $crate::solid::Solid {
+                    material: $crate::solid::Material::from_young(rho, young, poisson),
+                    h_over_dx,
+                    viscosity: [self.alpha, self.beta],
+                    xi,
+                    exponent: self.exponent as u32,
+                    xsph,
+                    dt,
+                    courant,
+                }
+            }
+        }
+    };
+}

@@ -1,0 +1,369 @@
+//! The two experiments, and the distance from them.
+
+use super::{
+    Dam,
+    measure::{Gauge, PROBES, SENSORS, Seen},
+};
+use base::{
+    record::{Metric, Profile, Record},
+    reference::{Reference as Package, ReferenceError, Table},
+};
+use harness::convergence;
+use solver::{Kernel, Term};
+
+/// A curve: points in ascending order of the first number.
+pub type Curve = Vec<(f64, f64)>;
+
+/// The value of a curve, linear between its points and constant beyond its ends.
+pub fn value(curve: &[(f64, f64)], t: f64) -> f64 {
+    let next = curve.partition_point(|(time, _)| *time < t);
+    match (next.checked_sub(1).map(|k| curve[k]), curve.get(next)) {
+        (Some((t0, y0)), Some(&(t1, y1))) => y0 + (t - t0) / (t1 - t0) * (y1 - y0),
+        (None, Some(&(_, y))) | (Some((_, y)), None) => y,
+        (None, None) => f64::NAN,
+    }
+}
+
+/// rms over the points of `measured` of the distance to `computed`, whose clock is put forward by
+/// `shift`.
+pub fn rms(computed: &[(f64, f64)], measured: &[(f64, f64)], shift: f64) -> f64 {
+    let square = |(t, y): &(f64, f64)| (value(computed, t - shift) - y).powi(2);
+    (measured.iter().map(square).sum::<f64>() / measured.len() as f64).sqrt()
+}
+
+/// The shift of the clock within ± `range` with the least sum of squares over pairs of curves.
+pub fn best_shift(pairs: &[(Curve, Curve)], range: f64) -> f64 {
+    let cost = |shift: f64| {
+        pairs.iter().map(|(c, m)| rms(c, m, shift).powi(2) * m.len() as f64).sum::<f64>()
+    };
+    let (mut best, mut step) = (0.0, range / 20.0);
+    for _ in 0..4 {
+        let trials = (-20..=20).map(|k| best + f64::from(k) * step);
+        let inside = trials.filter(|shift| shift.abs() <= range);
+        best = inside.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(best);
+        step /= 10.0;
+    }
+    best
+}
+
+fn curve(table: &Table, t: &str, y: &str) -> Result<Curve, ReferenceError> {
+    Ok(table.numbers(t)?.into_iter().zip(table.numbers(y)?).collect())
+}
+
+/// Front (T, Z) and residual height (τ, η) of Martin & Moyce.
+pub fn martin_moyce() -> Result<[Curve; 2], ReferenceError> {
+    let package = Package::load("dambreak_martin_moyce")?;
+    Ok([curve(package.table("front")?, "T", "Z")?, curve(package.table("height")?, "tau", "H")?])
+}
+
+/// The experiment of Lobovsky et al., in units of H, (H/g)^(1/2) and ρ g H.
+pub struct Lobovsky {
+    /// x of the tip from the gate.
+    pub front: Curve,
+    /// Levels at H1 to H4: each series there is.
+    pub levels: [Vec<Curve>; 4],
+    /// P1 to P4.
+    pub pressure: [Curve; 4],
+    /// The second sensor at the height of P2.
+    pub aside: Curve,
+}
+
+impl Lobovsky {
+    /// Loads it.
+    pub fn load() -> Result<Self, ReferenceError> {
+        let package = Package::load("dambreak_lobovsky")?;
+        let (levels, pressure) = (package.table("levels")?, package.table("pressure")?);
+        let level = |names: &[&str]| -> Result<Vec<Curve>, ReferenceError> {
+            names.iter().map(|name| curve(levels, "t", name)).collect()
+        };
+        let at = |name: &str| curve(pressure, "t", name);
+        Ok(Self {
+            front: curve(package.table("front")?, "t", "x")?,
+            levels: [
+                level(&["H1_1"])?,
+                level(&["H2_1", "H2_2"])?,
+                level(&["H3_1", "H3_2"])?,
+                level(&["H4_1", "H4_2"])?,
+            ],
+            pressure: [at("P1")?, at("P2")?, at("P3")?, at("P4")?],
+            aside: at("P2L")?,
+        })
+    }
+
+    /// The mean of the series at a probe, until t.
+    fn level(&self, k: usize, until: f64) -> Curve {
+        let series = &self.levels[k];
+        let mean = |(n, (t, _)): (usize, &(f64, f64))| {
+            (*t, series.iter().map(|s| s[n].1).sum::<f64>() / series.len() as f64)
+        };
+        series[0].iter().enumerate().map(mean).filter(|(t, _)| *t <= until).collect()
+    }
+}
+
+/// t \[(H/g)^(1/2)\] between which the speed of the front is found: the gate is out of its way, and no
+/// front has reached the far wall.
+const RUNNING: [f64; 2] = [1.0, 2.3];
+
+/// Slope of the least squares line of a curve, taken at the times of `measured` within [`RUNNING`].
+fn front_speed(curve: &[(f64, f64)], measured: &[(f64, f64)]) -> f64 {
+    let times = measured.iter().map(|(t, _)| *t).filter(|t| (RUNNING[0]..=RUNNING[1]).contains(t));
+    let (t, x): (Vec<f64>, Vec<f64>) = times.map(|t| (t, value(curve, t))).unzip();
+    convergence::slope(&t, &x).0
+}
+
+/// When a pressure first exceeds this share of ρ g H: the arrival of the wave at P1.
+const ARRIVAL: f64 = 0.1;
+/// Impulses are counted for this long after the arrival \[(H/g)^(1/2)\]: the jet has risen, and the
+/// wave that it falls back into has not yet closed over air.
+pub const WINDOWS: [f64; 2] = [1.0, 2.5];
+/// Blocks over which computed pressures are averaged \[(H/g)^(1/2)\], for the record.
+const BLOCK: f64 = 0.01;
+/// Width of the running mean that noise is the distance from \[(H/g)^(1/2)\].
+const SMOOTH: f64 = 0.1;
+
+/// When a pressure curve \[ρ g H\] first exceeds [`ARRIVAL`].
+pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
+    pressure.iter().find(|(_, p)| *p > ARRIVAL).map_or(f64::NAN, |(t, _)| *t)
+}
+
+/// ∫ p dt from `from` for `window`, by the trapezoidal rule over the points in between.
+pub fn impulse(pressure: &[(f64, f64)], from: f64, window: f64) -> f64 {
+    let inside: Vec<(f64, f64)> =
+        pressure.iter().filter(|(t, _)| *t >= from && *t <= from + window).copied().collect();
+    inside.windows(2).map(|w| 0.5 * (w[1].0 - w[0].0) * (w[0].1 + w[1].1)).sum()
+}
+
+/// Mean of a level \[H\] for one (H/g)^(1/2) from when it first exceeds 0.02: the thickness of what comes.
+fn tongue(level: &[(f64, f64)]) -> f64 {
+    let arrival = level.iter().find(|(_, y)| *y > 0.02).map_or(f64::NAN, |(t, _)| *t);
+    let next = level.iter().filter(|(t, _)| (arrival..=arrival + 1.0).contains(t));
+    let (sum, count) = next.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
+    sum / count
+}
+
+/// rms distance of a curve from its running mean, from t = `from` on.
+fn noise(pressure: &[(f64, f64)], from: f64) -> f64 {
+    let later: Vec<(f64, f64)> = pressure.iter().filter(|(t, _)| *t >= from).copied().collect();
+    let square = |(t, p): &(f64, f64)| {
+        let near = later.iter().filter(|(other, _)| (other - t).abs() <= 0.5 * SMOOTH);
+        let (sum, count) = near.fold((0.0, 0.0), |(s, n), (_, p)| (s + p, n + 1.0));
+        (p - sum / count).powi(2)
+    };
+    (later.iter().map(square).sum::<f64>() / later.len() as f64).sqrt()
+}
+
+/// Puts metrics into a record.
+struct Put<'a>(&'a mut Record);
+
+impl Put<'_> {
+    fn metric(&mut self, name: &str, value: f64, formula: &str) {
+        self.0.metrics.insert(name.into(), Metric::new(value, "-", formula));
+    }
+
+    /// rms of curves as they are and after their best common shift.
+    fn compare(&mut self, name: &str, pairs: &[(Curve, Curve)], range: f64, what: &str) {
+        let all = |shift: f64| {
+            let count: f64 = pairs.iter().map(|(_, m)| m.len() as f64).sum();
+            let squares: f64 =
+                pairs.iter().map(|(c, m)| rms(c, m, shift).powi(2) * m.len() as f64).sum();
+            (squares / count).sqrt()
+        };
+        let shift = best_shift(pairs, range);
+        let formula = format!("rms distance of {what} over the points of the experiment");
+        self.metric(&format!("{name}_rms"), all(0.0), &formula);
+        let formula =
+            format!("the same with the clock of the computation put forward by {name}_shift");
+        self.metric(&format!("{name}_rms_shifted"), all(shift), &formula);
+        let formula = "that shift, of the least rms, in the experiment's unit of time";
+        self.metric(&format!("{name}_shift"), shift, formula);
+    }
+}
+
+fn scaled(curve: &[(f64, f64)], t: f64, y: f64, zero: f64) -> Curve {
+    curve.iter().map(|(time, value)| (time / t, (value - zero) / y)).collect()
+}
+
+/// Adds the distance from the experiment that the settings are those of, if they are.
+pub fn compare<F: Term<()>, K: Kernel>(
+    dam: &Dam,
+    seen: &Seen<F>,
+    gauge: &Gauge<K>,
+    record: &mut Record,
+) -> Result<(), ReferenceError> {
+    if dam.is_martin_moyce() {
+        with_martin_moyce(dam, seen, record)?;
+    }
+    if dam.is_lobovsky() {
+        with_lobovsky(dam, seen, gauge, record)?;
+    }
+    Ok(())
+}
+
+fn with_martin_moyce<F: Term<()>>(
+    dam: &Dam,
+    seen: &Seen<F>,
+    record: &mut Record,
+) -> Result<(), ReferenceError> {
+    let (a, g) = (dam.settings.width, dam.settings.gravity);
+    let [measured_front, measured_height] = martin_moyce()?;
+    let front = scaled(&seen.front(), (0.5 * a / g).sqrt(), a, 0.0);
+    let height = scaled(&seen.height(), (a / g).sqrt(), dam.settings.height, 0.0);
+    let ends = |curve: &Curve| curve.last().map_or(0.0, |(t, _)| *t);
+    let within = |measured: Curve, end: f64| -> Curve {
+        measured.into_iter().filter(|(t, _)| *t <= end).collect()
+    };
+    let (front_end, height_end) = (ends(&front), ends(&height));
+    let mut put = Put(record);
+    for (t, name) in [(2.0, "z@2"), (3.0, "z@3")] {
+        put.metric(name, value(&front, t), "Z = front from the back wall/a at T = t (2g/a)^(1/2)");
+    }
+    let pairs = [(front, within(measured_front, front_end))];
+    put.compare("front", &pairs, 1.0, "Z at equal T");
+    let pairs = [(height, within(measured_height, height_end))];
+    let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
+                from what was read there, at equal tau";
+    put.compare("height", &pairs, 1.0, what);
+    Ok(())
+}
+
+fn with_lobovsky<F: Term<()>, K: Kernel>(
+    dam: &Dam,
+    seen: &Seen<F>,
+    gauge: &Gauge<K>,
+    record: &mut Record,
+) -> Result<(), ReferenceError> {
+    let lobovsky = Lobovsky::load()?;
+    let (unit, h) = (dam.unit_time(), dam.settings.height);
+    let end = dam.settings.end;
+    let mut put = Put(record);
+    let front = scaled(&seen.front(), unit, h, dam.settings.width);
+    let measured: Curve = lobovsky.front.iter().filter(|(t, _)| *t <= end).copied().collect();
+    let both = [&front, &measured].map(|curve| front_speed(curve, &measured));
+    let formula = "slope of the least squares line of x/H over t (g/H)^(1/2) from 1 to 2.3, at the times \
+                   of the experiment";
+    put.metric("front_speed", both[0], formula);
+    put.metric("front_speed_measured", both[1], "the same of the experiment");
+    put.compare("front", &[(front, measured)], 0.6, "x of the tip from the gate/H");
+    let pairs: Vec<(Curve, Curve)> = (0..PROBES.len())
+        .map(|k| (scaled(&seen.level(k), unit, h, 0.0), lobovsky.level(k, end)))
+        .collect();
+    for (k, pair) in pairs.iter().enumerate() {
+        let formula = "rms distance of the level/H from the mean of the series, as released";
+        put.metric(&format!("H{}_rms", k + 1), rms(&pair.0, &pair.1, 0.0), formula);
+    }
+    put.compare("levels", &pairs, 0.6, "all four levels/H");
+    let [ours, theirs] = [tongue(&pairs[3].0), tongue(&pairs[3].1)];
+    let formula = "mean level at H4 for one (H/g)^(1/2) from when it first exceeds 0.02 H, over that of the \
+                   experiment, less 1";
+    put.metric("tongue", ours / theirs - 1.0, formula);
+    pressures(dam, &lobovsky, gauge, &mut put);
+    Ok(())
+}
+
+fn pressures<K: Kernel>(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge<K>, put: &mut Put) {
+    let (unit, scale) = (dam.unit_time(), dam.unit_pressure());
+    let curves: Vec<Curve> = (0..SENSORS.len())
+        .map(|k| scaled(&gauge.pressure(k, BLOCK * unit), unit, scale, 0.0))
+        .collect();
+    let (ours, theirs) = (arrival(&curves[0]), arrival(&lobovsky.pressure[0]));
+    let formula =
+        "t (g/H)^(1/2) at which P1 first exceeds 0.1 rho g H; pressures are aligned by it";
+    put.metric("arrival", ours, formula);
+    put.metric(
+        "arrival_measured",
+        theirs,
+        "the same of the experiment, on the clock of its pressures",
+    );
+    for (k, computed) in curves.iter().enumerate() {
+        let name = format!("P{}", k + 1);
+        let measured = &lobovsky.pressure[k];
+        for window in WINDOWS {
+            let (a, b) = (impulse(computed, ours, window), impulse(measured, theirs, window));
+            let formula = "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured \
+                           one, less 1";
+            put.metric(&format!("impulse_{name}@{window}"), a / b - 1.0, formula);
+        }
+        let peak = computed.iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
+        put.metric(&format!("peak_{name}"), peak, "largest pressure/(rho g H), means over 0.01");
+    }
+    let level = noise(&curves[1], ours + WINDOWS[0]);
+    let formula = "rms distance of P2/(rho g H) from its running mean over 0.1 (H/g)^(1/2)";
+    put.metric("pressure_noise", level, formula);
+    let theirs = noise(&lobovsky.pressure[1], theirs + WINDOWS[0]);
+    put.metric("pressure_noise_measured", theirs, "the same of the experiment, sampled at 2 kHz");
+    let mut profile = Profile::default();
+    let times = curves[0].iter().map(|(t, _)| *t).collect();
+    profile = profile.with("t", "(H/g)^(1/2)", times);
+    for (k, curve) in curves.iter().enumerate() {
+        let values = curve.iter().map(|(_, p)| *p).collect();
+        profile = profile.with(&format!("P{}", k + 1), "rho g H", values);
+    }
+    put.0.profiles.insert("pressure".into(), profile);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dam_break::plan::IMPULSE_SPREAD;
+
+    #[test]
+    fn a_curve_that_starts_late_is_found_shifted() {
+        let early: Curve = (0..100).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t)).collect();
+        let late: Curve =
+            (8..60).map(|k| 0.07 * f64::from(k)).map(|t| (t, (t - 0.21).powi(2))).collect();
+        let shift = best_shift(&[(early.clone(), late.clone())], 1.0);
+        assert!((shift - 0.21).abs() < 2e-3, "{shift}");
+        assert!(rms(&early, &late, shift) < 1e-3 && rms(&early, &late, 0.0) > 0.5);
+        assert_eq!((value(&early, -1.0), value(&late, 99.0)), (0.0, late[51].1));
+    }
+
+    #[test]
+    fn an_impulse_is_an_integral_and_the_experiment_repeats_itself() {
+        let ramp: Curve = (0..=1000).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
+        assert!((impulse(&ramp, 1.0, 2.0) - 4.0).abs() < 1e-9);
+        assert!((arrival(&ramp) - 0.11).abs() < 1e-9);
+        // The package: arrival at 2.44; its neighbour differs from P2 more in the longer window.
+        let lobovsky = Lobovsky::load().unwrap();
+        let at = arrival(&lobovsky.pressure[0]);
+        assert!((at - 2.443).abs() < 2e-3, "{at}");
+        let spread = |window: f64| {
+            impulse(&lobovsky.aside, at, window) / impulse(&lobovsky.pressure[1], at, window) - 1.0
+        };
+        let [short, long] = WINDOWS.map(spread);
+        assert!(
+            (short + IMPULSE_SPREAD).abs() < 5e-4 && (long + 0.135).abs() < 1e-3,
+            "{short} {long}"
+        );
+    }
+
+    #[test]
+    fn a_front_has_the_speed_of_its_straight_part_wherever_its_clock_begins() {
+        let front = |late: f64| -> Curve {
+            let x = |t: f64| if t < 0.8 { 0.0 } else { 1.7 * (t - 0.8) };
+            (0..300).map(|k| 0.01 * f64::from(k)).map(|t| (t, x(t - late))).collect()
+        };
+        for late in [0.0, 0.1] {
+            let speed = front_speed(&front(late), &front(0.0));
+            assert!((speed - 1.7).abs() < 1e-9, "{speed}");
+        }
+    }
+
+    #[test]
+    fn a_tongue_is_as_thick_as_its_mean_after_its_arrival() {
+        let step = |t: f64| if t < 1.995 { 0.0 } else { 0.1 + 0.02 * (t - 2.0) };
+        let level: Curve = (0..500).map(|k| 0.01 * f64::from(k)).map(|t| (t, step(t))).collect();
+        assert!((tongue(&level) - 0.11).abs() < 1e-3, "{}", tongue(&level));
+        assert!(tongue(&[(0.0, 0.0), (1.0, 0.0)]).is_nan(), "nothing has come");
+    }
+
+    #[test]
+    fn noise_is_what_a_running_mean_leaves() {
+        let curve = |amplitude: f64| -> Curve {
+            (0..1000)
+                .map(|k| (0.01 * f64::from(k), if k % 2 == 0 { amplitude } else { -amplitude }))
+                .collect()
+        };
+        assert!(noise(&curve(0.0), 0.0) < 1e-12);
+        assert!((noise(&curve(0.5), 0.0) - 0.5).abs() < 0.06);
+    }
+}
