@@ -141,7 +141,7 @@ impl Verdicts {
         let of_method = suite.studies.iter().map(|study| of_study("method", study));
         Verdicts {
             tier: tier_name(suite.tier).into(),
-            commit: env!("TOUCHSTONE_COMMIT").into(),
+            commit: super::SOURCE.commit.into(),
             counts: counts(suite),
             runs: suite.cases.iter().flat_map(|results| results.runs.iter().map(of_run)).collect(),
             studies: of_cases.chain(of_method).collect(),

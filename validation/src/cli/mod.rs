@@ -34,6 +34,7 @@ use clap::Parser;
 use validation::case::{Case, RunError};
 use validation::cases;
 use validation::files::FileError;
+use validation::manifest::{Known, Source, tell_source};
 use validation::record::RecordError;
 
 use arguments::{Arguments, Command};
@@ -136,9 +137,20 @@ impl World {
     }
 }
 
+/// What this binary was built from.
+const SOURCE: Source = Source {
+    commit: env!("TOUCHSTONE_COMMIT"),
+    dirty: match env!("TOUCHSTONE_DIRTY").as_bytes() {
+        b"yes" => Known::Yes,
+        b"no" => Known::No,
+        _ => Known::Unknown,
+    },
+};
+
 /// Reads the arguments of the process and does what they ask.
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(output::report_bug));
+    tell_source(SOURCE);
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {

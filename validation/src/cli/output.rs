@@ -28,7 +28,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
 /// The hook of a panic.
 pub fn report_bug(info: &PanicHookInfo) {
     let message = info.payload_as_str().unwrap_or("no message");
-    let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("TOUCHSTONE_COMMIT"));
+    let (version, commit) = (env!("CARGO_PKG_VERSION"), super::SOURCE.commit);
     let place = info.location().map(ToString::to_string).unwrap_or_default();
     say(&format!("{BUG}\n{message}\nat {place}, touchstone {version}, commit {commit}"));
 }
