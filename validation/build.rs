@@ -1,6 +1,17 @@
-//! Tells the command which commit it was built from. Never fails: what cannot be known is `unknown`.
+//! Tells the command which commit it was built from, and digests of the sources that decide what each family
+//! of cases computes. Never fails: what cannot be known is `unknown`.
 
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use sha2::{Digest, Sha256};
+
+/// What every result depends on.
+const SHARED: [&str; 6] =
+    ["../solver", "base", "maths", "harness", "../references", "../Cargo.lock"];
+/// Crates with cases; a result depends on that of its case beside what is shared.
+const FAMILIES: [&str; 4] = ["fluids", "waters", "solids", "lattice"];
 
 fn main() {
     let commit = git(&["rev-parse", "HEAD"]).filter(|commit| !commit.is_empty());
@@ -9,16 +20,45 @@ fn main() {
     let is_dirty = changes.map(|changes| if changes.is_empty() { "no" } else { "yes" });
     set("COMMIT", commit);
     set("DIRTY", is_dirty.map(String::from));
+    for family in FAMILIES {
+        set(&format!("SOURCES_{}", family.to_uppercase()), Some(digest(family)));
+    }
     for watched in ["HEAD", "refs", "packed-refs", "index"] {
         if let Some(path) = git(&["rev-parse", "--git-path", watched])
-            && std::path::Path::new(&path).exists()
+            && Path::new(&path).exists()
         {
             println!("cargo:rerun-if-changed={path}");
         }
     }
-    for watched in ["build.rs", "src", "Cargo.toml"] {
+    for watched in ["build.rs", "src", "Cargo.toml"].iter().chain(&SHARED).chain(&FAMILIES) {
         println!("cargo:rerun-if-changed={watched}");
     }
+}
+
+/// SHA-256 of compiler, profile and sources, 16 hexadecimal digits.
+fn digest(family: &str) -> String {
+    let mut hash = Sha256::new();
+    for variable in ["PROFILE", "OPT_LEVEL", "TARGET", "CARGO_CFG_TARGET_FEATURE"] {
+        hash.update(std::env::var(variable).unwrap_or_default());
+    }
+    let rustc = std::env::var("RUSTC").unwrap_or_default();
+    hash.update(output(&rustc, &["--version"]).unwrap_or_default());
+    for place in SHARED.iter().chain([&family]) {
+        for path in files(Path::new(place)) {
+            hash.update(path.to_string_lossy().as_bytes());
+            hash.update(fs::read(&path).unwrap_or_default());
+        }
+    }
+    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The files below a place that are compiled or read, sorted.
+fn files(place: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(place) else { return vec![place.to_path_buf()] };
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    let is_test = |path: &Path| path.ends_with("tests") || path.ends_with("examples");
+    paths.into_iter().filter(|path| !is_test(path)).flat_map(|path| files(&path)).collect()
 }
 
 fn set(name: &str, value: Option<String>) {

@@ -10,7 +10,7 @@ use std::error::Error;
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, Domain, Ghosts, Leapfrog, Outcome, Particle, PlaneWall, Pressure,
-    QuinticSpline, Scene, Tait, Viscosity, lattice,
+    QuinticSpline, Scene, Stepper, Tait, Viscosity, lattice,
 };
 
 /// Kernel, forces, what else changes in time, walls, integrator.

@@ -10,7 +10,8 @@ use std::{error::Error, f64::consts::TAU};
 use nalgebra::Vector2;
 use solver::{
     ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, Domain, JaumannRate,
-    Leapfrog, Linear, Open, Outcome, Particle, PrincipalStress, Scene, Smoothing, Symmetric, Xsph,
+    Leapfrog, Linear, Open, Outcome, Particle, PrincipalStress, Scene, Smoothing, Stepper,
+    Symmetric, Xsph,
 };
 
 /// Kernel, forces, what else changes in time, walls, integrator, what a particle carries besides.

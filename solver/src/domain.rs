@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 /// Where particles may be and which axes close on themselves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Domain {
     /// Lower corner of the period \[m\]; of no meaning on open axes.
     pub low: Vector2<f64>,

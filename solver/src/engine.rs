@@ -1,422 +1,262 @@
-//! The right-hand side of a scene, as integrators see it: look at a state, then sweep.
+//! The right-hand side of a scene, as integrators see it: refresh what is derived from a state, then sweep
+//! over its pairs.
 
 use nalgebra::Vector2;
 
 use crate::{
-    domain::Domain,
     kernel::Smoothing,
     neighbours::{BLOCK, Neighbours},
-    numbers::Numbers,
     parallel,
+    particle_data::{Extent, Fault, ParticleData},
     particles::{Column, Common, Evolved, Fixed, Rate},
-    scene::Scheme,
-    simulation::Work,
-    sweep::{Sweep, Update},
+    physics::{Derived, Physics, State},
+    sweep::{self, BlockUpdate, PairSweep, Sweep, first, nothing, second, whole},
     terms::Term,
     walls::Walls,
 };
 
-/// What a particle shows in the scheme `S`: to the forces, and to the drift.
-pub type Shows<S> = (
-    <<S as Scheme>::Forces as Term<<S as Scheme>::Extra>>::Shows,
-    <<S as Scheme>::Drift as Term<<S as Scheme>::Extra>>::Shows,
-);
+/// What becomes of a particle: its number in the order of storage, the particle, and its rates.
+pub trait Update<X>: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {}
+impl<X, F: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync> Update<X> for F {}
 
-/// What the integrator advances, particle by particle.
-pub type State<S> = [Evolved<<S as Scheme>::Extra>];
-
-/// A sweep over the columns of the scheme `S`.
-type Rows<'a, S, T, P> = Sweep<'a, <S as Scheme>::Kernel, T, Shows<S>, P>;
-
-/// A state that no simulation may reach, and where.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fault {
-    /// Number of the particle, in the order of the scene.
-    pub particle: u32,
-    /// The quantity.
-    pub field: &'static str,
-    /// Its value, of a vector the length.
-    pub value: f64,
-}
-
-/// Bounds that a run must not leave; a run that does has diverged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// Least and largest density \[kg/m³\].
-    pub density: [f64; 2],
-    /// Largest speed \[m/s\].
-    pub speed: f64,
-}
-
-impl Default for Limits {
-    /// Any positive density, any finite speed.
-    fn default() -> Self {
-        Self { density: [0.0, f64::MAX], speed: f64::MAX }
-    }
-}
-
-/// Terms, particles and neighbours of a scene.
-pub struct Engine<S: Scheme> {
-    pub(crate) kernel: Smoothing<S::Kernel>,
-    pub(crate) domain: Domain,
-    pub(crate) forces: S::Forces,
-    pub(crate) drift: S::Drift,
-    pub(crate) walls: S::Walls,
-    pub(crate) limits: Limits,
-    /// Fluid and wall particles; interface particles follow them.
-    pub(crate) counts: [usize; 2],
-    pub(crate) fixed: Vec<Fixed>,
-    pub(crate) columns: Vec<Column<Shows<S>>>,
-    pub(crate) neighbours: Neighbours,
-    /// Largest displacement at the start of the last step \[m\].
-    pub(crate) last_displacement: f64,
-    /// Whether rows were built for a state that was neither sorted nor wrapped.
-    pub(crate) built_inside_a_step: bool,
-    /// (largest displacement that keeps the rows exact)² \[m²\].
-    pub(crate) slack2: f64,
-    /// (displacement beyond which the step, not the flow, moved a particle)² \[m²\]: half a period,
-    /// since images stand one period away, on either side.
-    pub(crate) reach2: f64,
-    pub(crate) parallel: bool,
-    pub(crate) work: Work,
-    pub(crate) order: Vec<u32>,
+/// Terms and particles of a scene.
+pub struct Engine<P: Physics> {
+    pub(crate) kernel: Smoothing<P::Kernel>,
+    /// Of the forces, and of the drift.
+    pub(crate) terms: (P::Forces, P::Drift),
+    wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
+    pub(crate) data: ParticleData<P::Extra>,
+    columns: Vec<Column<Derived<P>>>,
     /// What was found in each block while filling columns.
-    pub(crate) extents: Vec<Extent>,
+    extents: Vec<Extent>,
     /// What wall particles extrapolate: empty where they do not.
-    pub(crate) extrapolated: Vec<Evolved<S::Extra>>,
+    extrapolated: Vec<Evolved<P::Extra>>,
 }
 
-/// Largest squares found while filling columns.
-#[derive(Clone, Copy)]
-pub(crate) struct Extent {
-    displacement2: f64,
-    speed2: f64,
-    sound: bool,
-}
-
-impl Extent {
-    const NIL: Self = Self { displacement2: 0.0, speed2: 0.0, sound: true };
-
-    /// Exact, so it does not matter in which order.
-    fn and(self, other: Self) -> Self {
-        Self {
-            displacement2: self.displacement2.max(other.displacement2),
-            speed2: self.speed2.max(other.speed2),
-            sound: self.sound && other.sound,
-        }
+impl<P: Physics> Engine<P> {
+    /// An engine without columns.
+    pub(crate) fn new(
+        kernel: Smoothing<P::Kernel>,
+        terms: (P::Forces, P::Drift),
+        walls: &P::Walls,
+        data: ParticleData<P::Extra>,
+    ) -> Self {
+        let (columns, extents, extrapolated) = (Vec::new(), Vec::new(), Vec::new());
+        let wall_terms = walls.terms();
+        Self { kernel, terms, wall_terms, data, columns, extents, extrapolated }
     }
-}
 
-/// What turns particles into columns.
-struct Fill<'a, S: Scheme> {
-    forces: &'a S::Forces,
-    drift: &'a S::Drift,
-    limits: &'a Limits,
-    reach2: f64,
-}
-
-impl<S: Scheme> Fill<'_, S> {
-    /// The columns of a block, from the states that begin with it.
-    fn chunk(
-        &self,
-        columns: &mut [Column<Shows<S>>],
-        state: &State<S>,
-        fixed: &[Fixed],
-        built_at: &[Vector2<f64>],
-    ) -> Extent {
-        let [least, most] = self.limits.density;
-        let speed_limit2 = self.limits.speed * self.limits.speed;
-        let mut extent = Extent::NIL;
-        for (((column, evolved), fixed), built_at) in
-            columns.iter_mut().zip(state).zip(fixed).zip(built_at)
-        {
-            let Evolved { position, velocity, density, extra } = evolved;
-            let (mass, density) = (fixed.mass, *density);
-            let common = Common { mass, density, volume: mass / density };
-            let shows = (self.forces.shows(&common, extra), self.drift.shows(&common, extra));
-            *column = Column { position: *position, velocity: *velocity, common, shows };
-            let moved2 = (position - built_at).norm_squared();
-            let speed2 = velocity.norm_squared();
-            // A NaN fails every comparison. The limit of the square may be infinite.
-            let sound = density > least
-                && density < most
-                && moved2 <= self.reach2
-                && speed2 <= speed_limit2
-                && speed2.is_finite()
-                && extra.is_finite();
-            extent = extent.and(Extent { displacement2: moved2, speed2, sound });
-        }
-        extent
-    }
-}
-
-impl<S: Scheme> Engine<S> {
-    /// Starts a step at this state: particles may be put in another order, wrapped into the period,
-    /// and the terms are told the largest speed.
-    pub fn begin(&mut self, state: &mut State<S>) -> Result<(), Fault> {
+    /// Starts a step at this state: particles may be put in another order and wrapped into the period,
+    /// and terms take over the largest speed. Refreshes everything that is derived from the state.
+    pub fn begin(&mut self, state: &mut State<P>) -> Result<(), Fault> {
         let mut extent = self.fill(state)?;
-        if self.built_inside_a_step || self.stale_before_long(extent) {
-            self.sort(state);
-            self.build(state);
-            self.built_inside_a_step = false;
+        if self.data.progress.built_inside_a_step || self.data.is_stale_soon(extent) {
+            self.data.sort(state);
+            self.build_lists(state.iter().map(|e| e.position));
+            self.data.progress.built_inside_a_step = false;
             extent = self.fill(state)?;
         }
-        if S::Forces::NEEDS_SPEED || S::Drift::NEEDS_SPEED {
-            let speed = extent.speed2.sqrt();
-            self.forces.prepare(speed);
-            self.drift.prepare(speed);
-        }
-        self.fill_images(0);
-        self.extrapolate(state);
+        self.terms.prepare(extent.speed2.sqrt());
+        self.refresh_walls(state);
         Ok(())
     }
 
-    /// Looks at a state inside a step.
-    pub fn look(&mut self, state: &State<S>) -> Result<(), Fault> {
+    /// Refreshes everything that is derived from a state inside a step.
+    pub fn refresh(&mut self, state: &State<P>) -> Result<(), Fault> {
         let extent = self.fill(state)?;
-        if self.stale(extent.displacement2) {
-            self.build(state);
+        if self.data.is_stale(extent.displacement2) {
+            self.build_lists(state.iter().map(|e| e.position));
             // Particles may have left the period by more than images make up for: wrap soon.
-            self.built_inside_a_step = true;
+            self.data.progress.built_inside_a_step = true;
             self.fill(state)?;
         }
-        self.fill_images(0);
-        self.extrapolate(state);
+        self.refresh_walls(state);
         Ok(())
     }
 
     /// Sums the forces: `update(i, target, rate)` with dv/dt, for fluid particles.
-    pub fn sweep_forces(&mut self, targets: &mut State<S>, update: impl Update<S::Extra>) {
-        self.count(false);
-        let sweep = self.sweep(&self.forces, |s: &Shows<S>| s.0, true);
-        let fluid = &mut targets[..self.counts[0]];
-        sweep.run(&self.neighbours.rows, 0, fluid, self.parallel, update);
+    pub fn sweep_forces(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
+        self.data.count(false);
+        let sweep = self.sweep(&self.terms.0, first(), true);
+        sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
     }
 
     /// Sums the drift: `update(i, target, rate)` with dx/dt, dρ/dt and the terms' own rates.
-    pub fn sweep_drift(&mut self, targets: &mut State<S>, update: impl Update<S::Extra>) {
-        self.count(true);
-        let sweep = self.sweep(&self.drift, |s: &Shows<S>| s.1, true);
-        let fluid = &mut targets[..self.counts[0]];
-        sweep.run(&self.neighbours.rows, 0, fluid, self.parallel, &update);
-        self.sweep_walls(targets, update);
+    pub fn sweep_drift(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
+        self.data.count(true);
+        self.sweep_both(&self.sweep(&self.terms.1, second(), true), targets, &by_blocks(update));
     }
 
-    /// Sums forces and drift in one traversal: `update(i, target, rate)` with the whole rate.
-    pub fn sweep_all(&mut self, targets: &mut State<S>, update: impl Update<S::Extra>) {
-        self.count(true);
-        let terms = (self.forces.clone(), self.drift.clone());
-        let sweep = self.sweep(&terms, |s: &Shows<S>| *s, true);
-        let fluid = &mut targets[..self.counts[0]];
-        sweep.run(&self.neighbours.rows, 0, fluid, self.parallel, &update);
-        self.sweep_walls(targets, update);
-    }
-
-    fn sweep_walls(&self, targets: &mut State<S>, update: impl Update<S::Extra>) {
-        let [fluid, wall] = self.counts;
-        if wall > 0 && !S::Walls::EXTRAPOLATES {
-            let terms = self.walls.rows();
-            let unseen = |_: &Shows<S>| Default::default();
-            let sweep = self.sweep(&terms, unseen, false);
-            let targets = &mut targets[fluid..fluid + wall];
-            sweep.run(&self.neighbours.wall_rows, fluid, targets, self.parallel, update);
-        }
+    /// Sums forces and drift in one pair sweep: `update(i, target, rate)` with the whole rate.
+    pub fn sweep_all(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
+        self.data.count(true);
+        self.sweep_both(&self.sweep(&self.terms, whole(), true), targets, &by_blocks(update));
     }
 
     /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
-    /// the state that was looked at last. dx/dt is without v.
-    pub fn rates<T: Term<S::Extra>>(&self, state: &State<S>, terms: &T) -> Vec<Rate<S::Extra>> {
-        let column = |(k, c): (usize, &Column<Shows<S>>)| {
+    /// the state that the columns were refreshed for last. dx/dt is without v.
+    pub(crate) fn rates<T: Term<P::Extra>>(&self, terms: &T) -> Vec<Rate<P::Extra>> {
+        let (state, neighbours) = (&self.data.state, &self.data.neighbours);
+        let column = |(k, c): (usize, &Column<Derived<P>>)| {
             let Column { position, velocity, common, .. } = *c;
-            let of =
-                state.get(self.neighbours.particle(k)).map_or(S::Extra::default(), |e| e.extra);
-            Column { position, velocity, common, shows: terms.shows(&common, &of) }
+            let extra = state.get(neighbours.particle(k)).map_or(P::Extra::default(), |e| e.extra);
+            Column { position, velocity, common, derived: terms.derived(&common, &extra) }
         };
         let columns: Vec<_> = self.columns.iter().enumerate().map(column).collect();
-        let (kernel, columns, project) = (&self.kernel, &columns, |shows: &T::Shows| *shows);
-        Sweep { kernel, terms, columns, project, moving: false }.rates(
-            &self.neighbours.rows,
-            0,
-            self.counts[0],
-        )
+        let (kernel, columns) = (&self.kernel, &columns[..]);
+        let sweep = Sweep { kernel, terms, columns, select: whole(), moving: false };
+        sweep::rates(&sweep, &neighbours.lists)
     }
 
-    /// The rates of wall particles by the terms of the walls, for the state that was looked at last;
-    /// none where these do not give rates but extrapolate.
-    pub fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
-        if S::Walls::EXTRAPOLATES {
+    /// The rates of fluid particles by all terms, likewise, from the sweep of [`Engine::sweep_all`].
+    pub fn rates_in_one_sweep(&self) -> Vec<Rate<P::Extra>> {
+        sweep::rates(&self.sweep(&self.terms, whole(), false), &self.data.neighbours.lists)
+    }
+
+    /// The same with dv/dt from the sweep of [`Engine::sweep_forces`], and the rest from that of
+    /// [`Engine::sweep_drift`].
+    pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
+        let lists = &self.data.neighbours.lists;
+        let forces = sweep::rates(&self.sweep(&self.terms.0, first(), false), lists);
+        let mut rates = sweep::rates(&self.sweep(&self.terms.1, second(), false), lists);
+        for (rate, forces) in rates.iter_mut().zip(forces) {
+            rate.velocity = forces.velocity;
+        }
+        rates
+    }
+
+    /// The rates of wall particles by the terms of the walls, for the state that the columns were
+    /// refreshed for last; none where these do not give rates but extrapolate.
+    pub(crate) fn wall_rates(&self) -> Vec<Rate<P::Extra>> {
+        if P::Walls::EXTRAPOLATES {
             return Vec::new();
         }
-        let ([fluid, wall], terms) = (self.counts, self.walls.rows());
-        let unseen = |_: &Shows<S>| Default::default();
-        self.sweep(&terms, unseen, false).rates(&self.neighbours.wall_rows, fluid, wall)
+        let sweep = self.sweep(&self.wall_terms, nothing(), false);
+        sweep::rates(&sweep, &self.data.neighbours.wall_lists)
     }
 
-    fn sweep<'a, T, P>(&'a self, terms: &'a T, project: P, moving: bool) -> Rows<'a, S, T, P> {
-        Sweep { kernel: &self.kernel, terms, columns: &self.columns, project, moving }
+    /// Particles and their images as pair sweeps read them, without the sentinel.
+    pub(crate) fn columns(&self) -> &[Column<Derived<P>>] {
+        &self.columns[..self.columns.len() - 1]
     }
 
-    fn count(&mut self, completes_a_right_hand_side: bool) {
-        self.work.pair_interactions += self.neighbours.pairs();
-        if completes_a_right_hand_side {
-            self.work.right_hand_sides += self.counts[0] as u64;
+    /// Memory held \[bytes\].
+    pub(crate) fn bytes(&self) -> usize {
+        self.data.bytes()
+            + self.columns.capacity() * size_of::<Column<Derived<P>>>()
+            + self.extents.capacity() * size_of::<Extent>()
+            + self.extrapolated.capacity() * size_of::<Evolved<P::Extra>>()
+    }
+
+    fn sweep<'a, T: Term<P::Extra>>(
+        &'a self,
+        terms: &'a T,
+        select: impl Fn(&Derived<P>) -> T::Derived + Sync,
+        moving: bool,
+    ) -> impl PairSweep<P::Extra> {
+        Sweep { kernel: &self.kernel, terms, columns: &self.columns, select, moving }
+    }
+
+    /// Updates fluid particles by this sweep, and wall particles by that of the walls' own terms, if these
+    /// give rates.
+    fn sweep_both(
+        &self,
+        sweep: &dyn PairSweep<P::Extra>,
+        targets: &mut State<P>,
+        update: &BlockUpdate<P::Extra>,
+    ) {
+        let Neighbours { lists, wall_lists, .. } = &self.data.neighbours;
+        sweep::run(sweep, lists, targets, update);
+        if !(wall_lists.of.is_empty() || P::Walls::EXTRAPOLATES) {
+            self.sweep_walls(&mut targets[wall_lists.of.start..], update);
         }
     }
 
-    #[expect(clippy::neg_cmp_op_on_partial_ord)]
-    fn stale(&self, displacement2: f64) -> bool {
-        // Negated, so that a slack that is not a number means "always".
-        !(displacement2 <= self.slack2)
+    fn sweep_walls(&self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+        let sweep = self.sweep(&self.wall_terms, nothing(), false);
+        sweep::run(&sweep, &self.data.neighbours.wall_lists, targets, update);
     }
 
-    /// Whether rows will be stale within a step like the last one: better built now, in order, than
-    /// inside the step and again after it.
-    fn stale_before_long(&mut self, extent: Extent) -> bool {
-        let displacement = extent.displacement2.sqrt();
-        let ahead = displacement + (displacement - self.last_displacement).max(0.0);
-        let stale = self.stale(ahead * ahead);
-        self.last_displacement = if stale { 0.0 } else { displacement };
-        stale
+    /// Builds neighbour lists and images for particles at these places, and makes room for their columns.
+    pub(crate) fn build_lists(&mut self, positions: impl Iterator<Item = Vector2<f64>>) {
+        self.data.neighbours.place(positions);
+        self.data.build_lists(P::Walls::EXTRAPOLATES);
+        let columns = self.data.fixed.len() + self.data.neighbours.images.len();
+        self.columns.resize(columns + 1, Column::sentinel());
+        self.columns[columns] = Column::sentinel();
     }
 
-    /// Derives the columns of the particles, and finds out how far they moved since the rows were
-    /// built.
-    fn fill(&mut self, state: &State<S>) -> Result<Extent, Fault> {
-        let Self { forces, drift, limits, fixed, columns, neighbours, reach2, extents, .. } = self;
-        let fill = Fill::<S> { forces, drift, limits, reach2: *reach2 };
-        let (columns, built_at) = (&mut columns[..state.len()], &*neighbours.built_at);
+    /// Derives the columns of the particles, and finds out how far they moved since the neighbour lists
+    /// were built.
+    fn fill(&mut self, state: &State<P>) -> Result<Extent, Fault> {
+        let Self { terms, data, columns, extents, .. } = self;
         extents.resize(state.len().div_ceil(BLOCK), Extent::NIL);
-        parallel::map_blocks(columns, extents, self.parallel, &|b, columns| {
-            let from = b * BLOCK;
-            fill.chunk(columns, &state[from..], &fixed[from..], &built_at[from..])
+        let blocks = columns[..state.len()].chunks_mut(BLOCK).zip(&mut *extents).enumerate();
+        parallel::for_each(blocks, data.parallel, &|(b, (columns, extent))| {
+            let particles = b * BLOCK..b * BLOCK + columns.len();
+            let (state, fixed) = (&state[particles.clone()], &data.fixed[particles.clone()]);
+            for ((column, evolved), Fixed { mass, .. }) in columns.iter_mut().zip(state).zip(fixed)
+            {
+                *column = derive(terms, *mass, evolved);
+            }
+            *extent = data.extent(state, &data.neighbours.built_at[particles]);
         });
-        let extent = extents.iter().copied().fold(Extent::NIL, Extent::and);
-        if extent.sound { Ok(extent) } else { Err(self.find_fault(state)) }
+        data.check(state, extents)
+    }
+
+    /// Refreshes images, and what wall particles extrapolate.
+    fn refresh_walls(&mut self, state: &State<P>) {
+        self.fill_images(0);
+        if P::Walls::EXTRAPOLATES && self.data.counts[1] > 0 {
+            self.extrapolate(state);
+        }
     }
 
     /// Refills the images of the particles from `first` on; an image of an image belongs to both.
     fn fill_images(&mut self, first: usize) {
-        let (real, maps) = (self.fixed.len(), &self.neighbours.maps);
-        for (k, image) in self.neighbours.images.iter().enumerate() {
+        let (real, neighbours) = (self.data.fixed.len(), &self.data.neighbours);
+        for (k, image) in neighbours.images.iter().enumerate() {
             let source = image.source as usize;
             if source >= first {
-                let map = &maps[image.map as usize];
-                self.columns[real + k] = map.apply(&self.columns[source], S::Walls::SLIPS);
+                let map = &neighbours.maps[image.map as usize];
+                self.columns[real + k] = map.apply(&self.columns[source], P::Walls::SLIPS);
             }
         }
     }
 
-    /// Has wall particles that extrapolate show what the fluid before them implies, and their images
-    /// too.
-    fn extrapolate(&mut self, state: &State<S>) {
-        let [fluid, wall] = self.counts;
-        if !S::Walls::EXTRAPOLATES || wall == 0 {
-            return;
-        }
-        let mut set = std::mem::take(&mut self.extrapolated);
-        set.clear();
-        set.extend_from_slice(&state[fluid..fluid + wall]);
-        let terms = self.walls.rows();
-        let sweep = self.sweep(&terms, |_: &Shows<S>| Default::default(), false);
-        let rows = &self.neighbours.wall_rows;
-        sweep.run(rows, fluid, &mut set, self.parallel, |_, target, rate| {
+    /// Gives the columns of wall particles that extrapolate what the fluid before them implies, and
+    /// their images too.
+    fn extrapolate(&mut self, state: &State<P>) {
+        let (walls, fluid) = (self.data.neighbours.wall_lists.of.clone(), self.data.counts[0]);
+        let mut implied = std::mem::take(&mut self.extrapolated);
+        implied.clear();
+        implied.extend_from_slice(&state[walls]);
+        let update = |_, target: &mut Evolved<P::Extra>, rate: &Rate<P::Extra>| {
             target.velocity += rate.velocity;
             target.density = rate.density;
-        });
-        for (column, implied) in self.columns[fluid..].iter_mut().zip(&set) {
-            let (mass, density, extra) = (column.common.mass, implied.density, &implied.extra);
-            let common = Common { mass, density, volume: mass / density };
-            let shows = (self.forces.shows(&common, extra), self.drift.shows(&common, extra));
-            *column = Column { velocity: implied.velocity, common, shows, ..*column };
+        };
+        self.sweep_walls(&mut implied, &by_blocks(update));
+        for (column, implied) in self.columns[fluid..].iter_mut().zip(&implied) {
+            *column = derive(&self.terms, column.common.mass, implied);
         }
-        self.extrapolated = set;
+        self.extrapolated = implied;
         self.fill_images(fluid);
     }
-
-    /// Puts fluid particles in the order of their cells, and all inside the period.
-    pub(crate) fn sort(&mut self, state: &mut State<S>) {
-        for evolved in &mut *state {
-            evolved.position = self.domain.wrap(evolved.position);
-        }
-        let fluid = self.counts[0];
-        self.neighbours.place(state[..fluid].iter().map(|e| e.position));
-        self.neighbours.order(&mut self.order);
-        apply_order(&mut self.order, &mut state[..fluid], &mut self.fixed[..fluid]);
-    }
-
-    /// Builds rows and images for this state, and makes room for their columns.
-    pub(crate) fn build(&mut self, state: &State<S>) {
-        self.neighbours.place(state.iter().map(|e| e.position));
-        let mirrors = self.walls.mirrors();
-        let fluid_only = S::Walls::EXTRAPOLATES;
-        self.neighbours.build(&self.domain, mirrors, self.counts, fluid_only, self.parallel);
-        let columns = state.len() + self.neighbours.images.len();
-        self.columns.resize(columns + 1, Column::sentinel());
-        self.columns[columns] = Column::sentinel();
-        self.work.list_builds += 1;
-    }
-
-    /// The first particle, in the order of the scene, that is out of bounds.
-    fn find_fault(&self, state: &State<S>) -> Fault {
-        let fault =
-            |((evolved, fixed), built_at): ((&Evolved<S::Extra>, &Fixed), &Vector2<f64>)| {
-                let moved2 = (evolved.position - built_at).norm_squared();
-                let field = evolved.fault().or_else(|| self.excess(evolved, moved2))?;
-                let value = match field {
-                    "position" => evolved.position.norm(),
-                    "velocity" => evolved.velocity.norm(),
-                    "density" => evolved.density,
-                    _ => f64::NAN,
-                };
-                Some(Fault { particle: fixed.id, field, value })
-            };
-        let particles = state.iter().zip(&self.fixed).zip(&self.neighbours.built_at);
-        let first = particles.filter_map(fault).min_by_key(|f| f.particle);
-        first.expect("a state that is not sound has a particle that is not")
-    }
-
-    /// The first field of a finite state that is beyond its limit. The same conditions as in
-    /// [`Fill::chunk`].
-    fn excess(&self, evolved: &Evolved<S::Extra>, moved2: f64) -> Option<&'static str> {
-        let ([least, most], speed2) = (self.limits.density, evolved.velocity.norm_squared());
-        let speed = self.limits.speed;
-        match evolved.density {
-            _ if !(moved2 <= self.reach2) => Some("position"),
-            _ if !(speed2 <= speed * speed && speed2.is_finite()) => Some("velocity"),
-            density if !(density > least && density < most) => Some("density"),
-            _ => None,
-        }
-    }
 }
 
-/// Permutes two arrays in place: entry i becomes what was at `order[i]`.
-fn apply_order<A, B>(order: &mut [u32], a: &mut [A], b: &mut [B]) {
-    for i in 0..order.len() {
-        // Where order[i] is now: entries before i were swapped away along the chain.
-        let mut from = order[i] as usize;
-        while from < i {
-            from = order[from] as usize;
-        }
-        order[i] = from as u32;
-        a.swap(i, from);
-        b.swap(i, from);
-    }
+/// The column of a particle.
+#[inline(always)]
+fn derive<X, T: Term<X>>(terms: &T, mass: f64, evolved: &Evolved<X>) -> Column<T::Derived> {
+    let Evolved { position, velocity, density, ref extra } = *evolved;
+    let common = Common { mass, density, volume: mass / density };
+    Column { position, velocity, common, derived: terms.derived(&common, extra) }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::apply_order;
-
-    #[test]
-    fn permuting_in_place_is_gathering_by_the_order() {
-        for seed in 1_u64..50 {
-            let n = (seed % 17 + 1) as usize;
-            let mut order: Vec<u32> = (0..n as u32).collect();
-            order.sort_by_key(|&k| (u64::from(k) + 1).wrapping_mul(0x9E37_79B9 * seed) % 1009);
-            let expected = order.clone();
-            let (mut a, mut b): (Vec<u32>, Vec<u32>) = ((0..n as u32).collect(), vec![7; n]);
-            apply_order(&mut order, &mut a, &mut b);
-            assert_eq!(a, expected);
+/// An update of one particle as that of a block: called once for so many, it costs no time to call.
+fn by_blocks<X>(update: impl Update<X>) -> impl Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync {
+    move |first, targets, rates| {
+        for (k, (target, rate)) in (first..).zip(targets.iter_mut().zip(rates)) {
+            update(k, target, rate);
         }
     }
 }

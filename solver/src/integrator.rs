@@ -1,10 +1,11 @@
-//! Time integration: who looks at which state when.
+//! Time integration, and what it makes of a physics: a scheme.
 
 use crate::{
-    engine::{Engine, Fault, State},
+    engine::Engine,
     numbers::Numbers,
-    particles::Evolved,
-    scene::Scheme,
+    particle_data::Fault,
+    particles::{Evolved, Rate},
+    physics::{Compose, Physics},
 };
 
 /// An explicit scheme for d(x, v, ρ)/dt. Its value is what it must remember from step to step.
@@ -15,20 +16,26 @@ pub trait Integrator<X: Numbers>: Default + Send + Sync + 'static {
     const ORDER: [u32; 2];
 
     /// Advances the state by dt \[s\].
-    fn step<S: Scheme<Extra = X>>(
+    fn step<P: Physics<Extra = X>>(
         &mut self,
-        engine: &mut Engine<S>,
-        state: &mut State<S>,
+        engine: &mut Engine<P>,
+        state: &mut [Evolved<X>],
         dt: f64,
     ) -> Result<(), Fault>;
 
     /// Brings every quantity to the same time.
-    fn synchronise<S: Scheme<Extra = X>>(
+    fn synchronise<P: Physics<Extra = X>>(
         &mut self,
-        _engine: &mut Engine<S>,
+        _engine: &mut Engine<P>,
         _state: &mut [Evolved<X>],
     ) -> Result<(), Fault> {
         Ok(())
+    }
+
+    /// d/dt of each fluid particle in the state that was synchronised last, dx/dt without v, from the pair
+    /// sweeps that a step has anyway.
+    fn rates<P: Physics<Extra = X>>(engine: &Engine<P>) -> Vec<Rate<X>> {
+        engine.rates_in_one_sweep()
     }
 
     /// How far the velocities are behind the rest \[s\]: all that is remembered between steps.
@@ -47,6 +54,29 @@ pub trait Integrator<X: Numbers>: Default + Send + Sync + 'static {
     }
 }
 
+/// A physics and how it is integrated in time: the whole method. [`Compose`] writes one in a line.
+pub trait Scheme: Physics {
+    /// Time integration.
+    type Integrator: Integrator<Self::Extra>;
+}
+
+impl<K, F, D, W, I: Integrator<X>, X: Numbers> Scheme for Compose<K, F, D, W, I, X>
+where
+    Self: Physics<Extra = X>,
+{
+    type Integrator = I;
+}
+
+/// The physics of the scheme `S` by itself: one type for all schemes that differ in their integrator.
+pub type PhysicsOf<S> = Compose<
+    <S as Physics>::Kernel,
+    <S as Physics>::Forces,
+    <S as Physics>::Drift,
+    <S as Physics>::Walls,
+    (),
+    <S as Physics>::Extra,
+>;
+
 /// The seed's predictor-corrector, read as the explicit midpoint rule (the paper does not specify
 /// it): y' = yⁿ + dt/2 f(yⁿ), yⁿ⁺¹ = yⁿ + dt f(y').
 ///
@@ -61,10 +91,10 @@ impl<X: Numbers> Integrator<X> for PredictorCorrector<X> {
     const NAME: &'static str = "predictor-corrector";
     const ORDER: [u32; 2] = [2, 2];
 
-    fn step<S: Scheme<Extra = X>>(
+    fn step<P: Physics<Extra = X>>(
         &mut self,
-        engine: &mut Engine<S>,
-        state: &mut State<S>,
+        engine: &mut Engine<P>,
+        state: &mut [Evolved<X>],
         dt: f64,
     ) -> Result<(), Fault> {
         engine.begin(state)?;
@@ -73,7 +103,7 @@ impl<X: Numbers> Integrator<X> for PredictorCorrector<X> {
         engine.sweep_all(&mut self.midpoint, |_, half, rate| {
             *half = half.advanced(0.5 * dt, rate);
         });
-        engine.look(&self.midpoint)?;
+        engine.refresh(&self.midpoint)?;
         engine.sweep_all(state, |_, evolved, rate| *evolved = evolved.advanced(dt, rate));
         Ok(())
     }
@@ -87,8 +117,8 @@ impl<X: Numbers> Integrator<X> for PredictorCorrector<X> {
 /// xⁿ⁺¹ = xⁿ + dt vⁿ⁺½, ρⁿ⁺¹ = ρⁿ + dt D(xⁿ + dt/2 vⁿ⁺½, vⁿ⁺½).
 ///
 /// The drift is summed half-way: with D(xⁿ, vⁿ⁺½) the density would be of first order in dt and not
-/// reversible, because D depends on where the particles are. Two traversals, each with its own terms
-/// only, of one right-hand side. Sound is neither damped nor amplified up to ω dt = 2. With both sums
+/// reversible, because D depends on where the particles are. Two pair sweeps, each with its own terms
+/// only, make one right-hand side. Sound is neither damped nor amplified up to ω dt = 2. With both sums
 /// at the old velocity it would be forward Euler on sound, and unstable at every dt. Forces that
 /// depend on the velocity see it half a step late: first order in dt.
 #[derive(Debug, Default)]
@@ -101,10 +131,10 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
     const NAME: &'static str = "leapfrog";
     const ORDER: [u32; 2] = [2, 1];
 
-    fn step<S: Scheme<Extra = X>>(
+    fn step<P: Physics<Extra = X>>(
         &mut self,
-        engine: &mut Engine<S>,
-        state: &mut State<S>,
+        engine: &mut Engine<P>,
+        state: &mut [Evolved<X>],
         dt: f64,
     ) -> Result<(), Fault> {
         engine.begin(state)?;
@@ -113,9 +143,9 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
             evolved.kick(kick, rate);
             evolved.position += evolved.velocity * half;
         });
-        engine.look(state)?;
+        engine.refresh(state)?;
         // Wall particles have a velocity too, but stay where they are.
-        let fluid = engine.counts[0];
+        let fluid = engine.data.fluid_count();
         engine.sweep_drift(state, |i, evolved, rate| {
             evolved.drift(dt, rate);
             if i < fluid {
@@ -126,9 +156,9 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
         Ok(())
     }
 
-    fn synchronise<S: Scheme<Extra = X>>(
+    fn synchronise<P: Physics<Extra = X>>(
         &mut self,
-        engine: &mut Engine<S>,
+        engine: &mut Engine<P>,
         state: &mut [Evolved<X>],
     ) -> Result<(), Fault> {
         if self.lag != 0.0 {
@@ -138,6 +168,10 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
             self.lag = 0.0;
         }
         Ok(())
+    }
+
+    fn rates<P: Physics<Extra = X>>(engine: &Engine<P>) -> Vec<Rate<X>> {
+        engine.rates_in_two_sweeps()
     }
 
     fn lag(&self) -> f64 {
@@ -157,10 +191,10 @@ impl<X: Numbers> Integrator<X> for Euler {
     const NAME: &'static str = "euler";
     const ORDER: [u32; 2] = [1, 1];
 
-    fn step<S: Scheme<Extra = X>>(
+    fn step<P: Physics<Extra = X>>(
         &mut self,
-        engine: &mut Engine<S>,
-        state: &mut State<S>,
+        engine: &mut Engine<P>,
+        state: &mut [Evolved<X>],
         dt: f64,
     ) -> Result<(), Fault> {
         engine.begin(state)?;

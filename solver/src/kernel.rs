@@ -4,7 +4,7 @@
 //!
 //! W(r) = N w(q) / h²  \[1/m²\],  F(r) = -W'(r)/r = N s(q) / h⁴  \[1/m⁴\],  s(q) = -w'(q)/q.
 //!
-//! All pair terms need ∇ᵢWᵢⱼ = -F rᵢⱼ only, so no term sees W' or a division by r.
+//! All pair terms need ∇ᵢWᵢⱼ = -F rᵢⱼ only, so no term uses W' or a division by r.
 
 use std::marker::PhantomData;
 
@@ -37,7 +37,7 @@ pub struct QuinticSpline;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WendlandC2;
 
-/// Keeps q away from 0 in s(q) = -w'(q)/q. Coincident particles then see a finite F and, because
+/// Keeps q away from 0 in s(q) = -w'(q)/q. Coincident particles then have a finite F and, because
 /// rᵢⱼ = 0, no force.
 const TINY: f64 = 1e-9;
 

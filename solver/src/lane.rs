@@ -2,7 +2,7 @@
 //! once (`WideF64x4`, and `Ymm` where the processor has registers for four).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
-//! row loop runs it on four neighbours. No form contracts `a * b + c`, and the lanes are added in a
+//! pair sweep runs it on four neighbours. No form contracts `a * b + c`, and the lanes are added in a
 //! fixed order, so the bits do not depend on the machine.
 
 use std::ops::Neg;
@@ -42,11 +42,11 @@ pub trait Lane:
     fn at_least(self, floor: Self) -> Self;
     /// The sum over the neighbours, always in the same order.
     fn total(self) -> f64;
-    /// Bit k says whether the k-th number is below the bound. For the search of rows; no term needs it.
+    /// Bit k says whether the k-th number is below the bound. For the search of neighbours; no term needs it.
     fn bits_below(self, bound: f64) -> usize;
 
     /// Writes those of four `columns` whose bit is set, except `own`, in order to the front of `places`, of
-    /// which it may overwrite the first four. Returns how many. For the search of rows, too.
+    /// which it may overwrite the first four. Returns how many. For the search of neighbours, too.
     #[inline(always)]
     fn pack(columns: &[u32; LANES], bits: usize, own: u32, places: &mut [u32]) -> usize {
         let mut count = 0;
@@ -71,13 +71,6 @@ pub(crate) trait OnLanes {
     fn run<V: Lane>(self);
 }
 
-/// Does it on the widest lanes that the processor has.
-pub(crate) fn on_widest(work: impl OnLanes) {
-    #[cfg(target_arch = "x86_64")]
-    let Some(work) = crate::ymm::run(work) else { return };
-    work.run::<WideF64x4>();
-}
-
 /// Implements [`Lane`], inlined always: what each operation is for the type.
 macro_rules! lane {
     (for $Type:ty: $(fn $name:ident($($takes:tt)*) -> $Gives:ty = $is:expr;)+) => {
@@ -89,8 +82,6 @@ macro_rules! lane {
         )+}
     };
 }
-pub(crate) use lane;
-
 lane! {
     for f64:
     fn all(x: f64) -> Self = x;

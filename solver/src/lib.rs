@@ -12,40 +12,52 @@
 //! | m, ρ, V = m/ρ, p, c | mass, density, volume, pressure, sound speed |
 //! | σ = −p δ + S, μ | stress and its deviator \[Pa\], shear modulus \[Pa\] |
 //!
-//! Reading order: [`kernel`] and [`lane`] (numbers of the pair loop), [`terms`] (the equations),
-//! [`scene`] (what a simulation starts from), [`integrator`], then [`simulation`]. The row loop is in
-//! `sweep.rs`; `engine.rs` is the right-hand side that integrators see.
+//! Reading order: [`kernel`] and [`lane`] (numbers of the pair sweep), [`terms`] (the equations),
+//! [`physics`] (terms, kernel and walls as one type), [`scene`] (what a simulation starts from),
+//! [`integrator`], then [`simulation`]. The pair sweep is in `sweep.rs`; `engine.rs` is the right-hand
+//! side that integrators use. Modules import each other in one direction:
+//!
+//! ```text
+//! lane, numbers, kernel, eos, domain <- particles <- terms <- walls <- neighbours
+//!     <- physics, sweep, particle_data <- engine <- integrator <- simulation <- scene
+//! ```
 //!
 //! The crate does no I/O, knows no reference and cannot fail after [`Scene::build`], except by
 //! divergence, which is a value: [`Outcome::Diverged`].
 
+mod dispatch;
 pub mod domain;
 pub mod engine;
 pub mod eos;
 pub mod integrator;
 pub mod kernel;
+#[macro_use]
 pub mod lane;
 mod neighbours;
 pub mod numbers;
 mod parallel;
+pub mod particle_data;
 pub mod particles;
+pub mod physics;
 pub mod scene;
 pub mod simulation;
-pub mod sweep;
+mod sweep;
 pub mod terms;
 pub mod walls;
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))] // see `dispatch.rs`
 mod ymm;
 
 pub use domain::Domain;
-pub use engine::{Engine, Fault, Limits};
+pub use engine::Engine;
 pub use eos::{EquationOfState, Linear, Tait};
-pub use integrator::{Euler, Integrator, Leapfrog, PredictorCorrector};
+pub use integrator::{Euler, Integrator, Leapfrog, PredictorCorrector, Scheme};
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
 pub use numbers::{Numbers, Symmetric};
+pub use particle_data::{Checkpoint, Fault, Limits, ParticleData, Progress, Work};
 pub use particles::{Evolved, Particle, Rate, Role};
-pub use scene::{Compose, Scene, SceneError, Scheme, lattice};
-pub use simulation::{Checkpoint, Divergence, Flow, Observer, Outcome, Simulation, Work};
+pub use physics::{Compose, Physics};
+pub use scene::{Scene, SceneError, lattice};
+pub use simulation::{Divergence, Flow, Observer, Outcome, Simulation, Stepper};
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
     ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion,

@@ -1,24 +1,25 @@
-//! Neighbour rows: particles sorted by cell, rows of column indices padded to whole lanes, kept for
-//! as long as no particle has moved by half the skin.
+//! Neighbour lists (Verlet lists): particles sorted by cell, lists of column indices padded to whole lanes,
+//! kept for as long as no particle has moved by half the skin.
 //!
-//! Column c < n is particle c; then come images (periodic copies, ghosts), and last the sentinel
-//! that pads rows. Two particles farther apart than support + skin when the rows were built, each
+//! Column c < n is particle c; then come images (periodic copies, mirror particles), and last the sentinel
+//! that pads lists. Two particles farther apart than support + skin when the lists were built, each
 //! having moved by at most skin/2 since, are still outside each other's support: the criterion is
 //! exact, for images too, since a shift or a mirror moves an image as far as its source.
 
 use std::{mem::take, ops::Range};
 
 use nalgebra::Vector2;
-use rayon::prelude::*;
 
 use crate::{
+    dispatch::on_widest,
     domain::Domain,
-    lane::{LANES, Lane, OnLanes, gather_vector, on_widest},
+    lane::{LANES, Lane, OnLanes, gather_vector},
     numbers::Numbers,
+    parallel,
     walls::{Map, PlaneWall, corners},
 };
 
-/// Rows a unit of parallel work; fixed, so that nothing depends on the number of threads.
+/// Lists a unit of parallel work; fixed, so that nothing depends on the number of threads.
 pub(crate) const BLOCK: usize = 512;
 
 /// An extra column: which earlier column it copies, a particle or an image, and by which map.
@@ -28,22 +29,22 @@ pub(crate) struct Image {
     pub map: u32,
 }
 
-/// The rows of up to [`BLOCK`] particles.
+/// The lists of up to [`BLOCK`] particles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Block {
     /// Row k is `chunks[starts[k]..starts[k + 1]]`.
     starts: Vec<u32>,
     chunks: Vec<[u32; LANES]>,
-    /// Scratch: the neighbours of one row.
+    /// Scratch: the neighbours of one list.
     found: Vec<u32>,
     /// Neighbours without padding.
     pub pairs: u64,
 }
 
 impl Block {
-    /// The neighbours of the k-th row of the block.
+    /// The neighbours of the k-th list of the block.
     #[inline(always)]
-    pub fn row(&self, k: usize) -> &[[u32; LANES]] {
+    pub fn list(&self, k: usize) -> &[[u32; LANES]] {
         &self.chunks[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
@@ -51,6 +52,15 @@ impl Block {
         (self.starts.capacity() + self.found.capacity()) * size_of::<u32>()
             + self.chunks.capacity() * size_of::<[u32; LANES]>()
     }
+}
+
+/// The neighbour lists of particles that are stored one after another.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Lists {
+    pub of: Range<usize>,
+    /// Whether blocks are worth spreading over threads.
+    pub parallel: bool,
+    pub blocks: Vec<Block>,
 }
 
 /// A grid of cells no smaller than the list radius.
@@ -91,28 +101,32 @@ impl Grid {
     }
 }
 
-/// The neighbour rows of a scene and what is needed to rebuild them without allocating.
+/// The neighbour lists of a scene and what is needed to rebuild them without allocating.
 #[derive(Debug, Default)]
 pub(crate) struct Neighbours {
     radius: f64,
+    pub domain: Domain,
+    mirrors: Vec<PlaneWall>,
     pub maps: Vec<Map>,
     pub images: Vec<Image>,
-    pub rows: Vec<Block>,
-    pub wall_rows: Vec<Block>,
-    /// Where the particles were when the rows were built.
+    /// Those of the fluid particles.
+    pub lists: Lists,
+    /// Those of the wall particles.
+    pub wall_lists: Lists,
+    /// Where the particles were when the lists were built.
     pub built_at: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
     grid: Grid,
     cell_starts: Vec<u32>,
-    /// Columns in the order of cells, and (while rows are built) where they are; then something that pads
+    /// Columns in the order of cells, and (while lists are built) where they are; then something that pads
     /// the last lanes.
     cell_columns: Vec<u32>,
     cell_points: Vec<Vector2<f64>>,
 }
 
 impl Neighbours {
-    /// Rows that reach `radius` = support + skin \[m\], empty until built.
-    pub fn new(radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> Self {
+    /// Lists that reach `radius` = support + skin \[m\], empty until built.
+    pub fn new(radius: f64, domain: Domain, mirrors: &[PlaneWall]) -> Self {
         let mut maps: Vec<_> = mirrors.iter().copied().map(Map::Mirror).collect();
         maps.extend(corners(mirrors).map(Map::corner));
         for axis in 0..2 {
@@ -121,24 +135,29 @@ impl Neighbours {
                 maps.extend([Map::Shift(shift), Map::Shift(-shift)]);
             }
         }
-        Self { radius, maps, ..Self::default() }
+        Self { radius, domain, mirrors: mirrors.to_vec(), maps, ..Self::default() }
     }
 
-    /// Neighbours of all rows, without padding.
+    /// Neighbours of all lists, without padding.
     pub fn pairs(&self) -> u64 {
-        self.rows.iter().chain(&self.wall_rows).map(|b| b.pairs).sum()
+        self.blocks().map(|b| b.pairs).sum()
+    }
+
+    fn blocks(&self) -> impl Iterator<Item = &Block> {
+        self.lists.blocks.iter().chain(&self.wall_lists.blocks)
     }
 
     /// The particle that a column copies, however often; of the sentinel itself.
     pub fn particle(&self, column: usize) -> usize {
-        particle(&self.images, self.built_at.len(), column)
+        let image = column.checked_sub(self.built_at.len()).and_then(|k| self.images.get(k));
+        image.map_or(column, |image| self.particle(image.source as usize))
     }
 
     /// Memory held \[bytes\].
     pub fn bytes(&self) -> usize {
         let points = [&self.built_at, &self.points, &self.cell_points].map(Vec::capacity);
         let numbers = [&self.cell_starts, &self.cell_columns].map(Vec::capacity);
-        self.rows.iter().chain(&self.wall_rows).map(Block::bytes).sum::<usize>()
+        self.blocks().map(Block::bytes).sum::<usize>()
             + self.images.capacity() * size_of::<Image>()
             + points.into_iter().sum::<usize>() * size_of::<Vector2<f64>>()
             + numbers.into_iter().sum::<usize>() * size_of::<u32>()
@@ -165,44 +184,38 @@ impl Neighbours {
         order.extend_from_slice(&self.cell_columns[..self.points.len()]);
     }
 
-    /// Builds the rows of the first `fluid` placed particles and of the `wall` ones after them. With
-    /// `fluid_only` the rows of the latter list fluid particles and their images alone.
-    pub fn build(
-        &mut self,
-        domain: &Domain,
-        mirrors: &[PlaneWall],
-        [fluid, wall]: [usize; 2],
-        fluid_only: bool,
-        parallel: bool,
-    ) {
+    /// Builds the lists of the first `fluid` placed particles and of the `wall` ones after them. With
+    /// `fluid_only` the lists of the latter list fluid particles and their images alone.
+    pub fn build(&mut self, [fluid, wall]: [usize; 2], fluid_only: bool, parallel: bool) {
         self.built_at.clear();
         self.built_at.extend_from_slice(&self.points);
-        self.make_images(domain, mirrors);
+        self.make_images();
         self.sort_into_cells();
-        let (mut rows, mut wall_rows) = (take(&mut self.rows), take(&mut self.wall_rows));
+        let [lists, wall_lists] = [take(&mut self.lists), take(&mut self.wall_lists)];
         let up_to = if fluid_only { fluid } else { usize::MAX };
-        self.fill_blocks(&mut rows, 0..fluid, usize::MAX, parallel);
-        self.fill_blocks(&mut wall_rows, fluid..fluid + wall, up_to, parallel);
-        (self.rows, self.wall_rows) = (rows, wall_rows);
+        self.lists = self.fill(lists, 0..fluid, usize::MAX, parallel);
+        self.wall_lists = self.fill(wall_lists, fluid..fluid + wall, up_to, parallel);
     }
 
     /// Appends the images within reach: ghosts of particles near a wall or a corner, then along each
     /// axis the periodic copies of all of these. Maps are used in the order of [`Neighbours::new`].
-    fn make_images(&mut self, domain: &Domain, mirrors: &[PlaneWall]) {
+    fn make_images(&mut self) {
         self.images.clear();
+        let mirrors = take(&mut self.mirrors);
         let real = self.points.len();
         for source in 0..real {
             let (point, radius) = (self.points[source], self.radius);
             let near = |wall: &PlaneWall| wall.depth(point).abs() < radius;
             let at_walls = mirrors.iter().map(near);
-            let in_corners = corners(mirrors).map(|walls| walls.into_iter().all(near));
+            let in_corners = corners(&mirrors).map(|walls| walls.into_iter().all(near));
             for (map, _) in (0..).zip(at_walls.chain(in_corners)).filter(|(_, near)| *near) {
                 self.add_image(source, map);
             }
         }
-        let mut shift = mirrors.len() + corners(mirrors).count();
+        let mut shift = mirrors.len() + corners(&mirrors).count();
+        self.mirrors = mirrors;
         for axis in 0..2 {
-            let Some(period) = domain.period[axis] else { continue };
+            let Some(period) = self.domain.period[axis] else { continue };
             let along = || self.points[..real].iter().map(|p| p[axis]);
             let (low, high) = (along().fold(f64::MAX, f64::min), along().fold(f64::MIN, f64::max));
             for source in 0..self.points.len() {
@@ -249,19 +262,15 @@ impl Neighbours {
         starts[0] = 0;
     }
 
-    /// The rows of particles `of`, which list columns of the particles before `up_to` alone.
-    fn fill_blocks(&self, blocks: &mut Vec<Block>, of: Range<usize>, up_to: usize, parallel: bool) {
-        blocks.resize_with(of.len().div_ceil(BLOCK), Block::default);
-        let fill = |(b, block): (usize, &mut Block)| {
+    /// The lists of particles `of`, which list columns of the particles before `up_to` alone.
+    fn fill(&self, mut lists: Lists, of: Range<usize>, up_to: usize, parallel: bool) -> Lists {
+        lists.blocks.resize_with(of.len().div_ceil(BLOCK), Block::default);
+        parallel::for_each(lists.blocks.iter_mut().enumerate(), parallel, &|(b, block)| {
             let start = of.start + b * BLOCK;
-            let rows = start..(start + BLOCK).min(of.end);
-            on_widest(FillRows { neighbours: self, block, rows, up_to });
-        };
-        if parallel {
-            blocks.par_iter_mut().enumerate().for_each(fill);
-        } else {
-            blocks.iter_mut().enumerate().for_each(fill);
-        }
+            let of = start..(start + BLOCK).min(of.end);
+            on_widest(FillLists { neighbours: self, block, of, up_to });
+        });
+        Lists { of, parallel, ..lists }
     }
 
     /// Finds the columns nearer to particle i than the radius, in the order of cells, then of columns;
@@ -291,31 +300,25 @@ impl Neighbours {
     }
 }
 
-/// The particle at the end of the chain of images that begins with a column.
-fn particle(images: &[Image], real: usize, column: usize) -> usize {
-    let image = column.checked_sub(real).and_then(|k| images.get(k));
-    image.map_or(column, |image| particle(images, real, image.source as usize))
-}
-
-/// Builds the rows of one block.
-struct FillRows<'a> {
+/// Builds the lists of one block.
+struct FillLists<'a> {
     neighbours: &'a Neighbours,
     block: &'a mut Block,
-    rows: Range<usize>,
+    of: Range<usize>,
     up_to: usize,
 }
 
-impl OnLanes for FillRows<'_> {
+impl OnLanes for FillLists<'_> {
     #[inline(always)]
     fn run<V: Lane>(self) {
-        let Self { neighbours, block, rows, up_to } = self;
+        let Self { neighbours, block, of, up_to } = self;
         block.starts.clear();
         block.starts.push(0);
         block.chunks.clear();
         block.pairs = 0;
         let sentinel = neighbours.points.len() as u32;
         let mut found = take(&mut block.found);
-        for i in rows {
+        for i in of {
             let mut count = neighbours.find::<V>(&mut found, i);
             if up_to < usize::MAX {
                 let all = count;
@@ -356,8 +359,8 @@ mod tests {
         }
     }
 
-    /// What a row lists: which particle, and where it or its image is.
-    type Seen = (u32, Vector2<f64>);
+    /// What a list lists: which particle, and where it or its image is.
+    type Listed = (u32, Vector2<f64>);
 
     fn horizontal(y: f64, up: f64) -> PlaneWall {
         PlaneWall::new(Vector2::new(0.0, y), Vector2::new(0.0, up), Vector2::zeros())
@@ -371,7 +374,7 @@ mod tests {
         radius: f64,
         domain: &Domain,
         mirrors: &[PlaneWall],
-    ) -> Vec<Seen> {
+    ) -> Vec<Listed> {
         let shifts = |axis: usize| match domain.period[axis] {
             Some(period) => (-2..=2).map(|k| f64::from(k) * period).collect(),
             None => vec![0.0],
@@ -401,21 +404,21 @@ mod tests {
         seen
     }
 
-    /// The neighbours in row k of these blocks.
+    /// The neighbours in list k of these blocks.
     fn listed(
         neighbours: &Neighbours,
         blocks: &[Block],
         k: usize,
         points: &[Vector2<f64>],
-    ) -> Vec<Seen> {
+    ) -> Vec<Listed> {
         let (n, images) = (points.len() as u32, &neighbours.images);
         let sentinel = n + images.len() as u32;
-        let row = blocks[k / BLOCK].row(k % BLOCK).iter().flatten();
-        row.filter(|&&c| c != sentinel).map(|&c| seen(neighbours, points, c)).collect()
+        let list = blocks[k / BLOCK].list(k % BLOCK).iter().flatten();
+        list.filter(|&&c| c != sentinel).map(|&c| seen(neighbours, points, c)).collect()
     }
 
     /// The particle that a column copies, however often, and where the column is.
-    fn seen(neighbours: &Neighbours, points: &[Vector2<f64>], column: u32) -> Seen {
+    fn seen(neighbours: &Neighbours, points: &[Vector2<f64>], column: u32) -> Listed {
         let Some(k) = (column as usize).checked_sub(points.len()) else {
             return (column, points[column as usize]);
         };
@@ -425,32 +428,32 @@ mod tests {
     }
 
     /// Whether each entry of one list is in the other, as often.
-    fn same(mut a: Vec<Seen>, mut b: Vec<Seen>, tolerance: f64) -> bool {
-        let by_source_then_place = |p: &Seen, q: &Seen| {
-            let key = |s: &Seen| (s.0, (s.1 / (1e3 * tolerance)).map(|x| x.round() as i64));
+    fn same(mut a: Vec<Listed>, mut b: Vec<Listed>, tolerance: f64) -> bool {
+        let by_source_then_place = |p: &Listed, q: &Listed| {
+            let key = |s: &Listed| (s.0, (s.1 / (1e3 * tolerance)).map(|x| x.round() as i64));
             let (p, q) = (key(p), key(q));
             (p.0, p.1.x, p.1.y).cmp(&(q.0, q.1.x, q.1.y))
         };
         a.sort_by(by_source_then_place);
         b.sort_by(by_source_then_place);
-        let close = |(p, q): (&Seen, &Seen)| p.0 == q.0 && (p.1 - q.1).amax() < tolerance;
+        let close = |(p, q): (&Listed, &Listed)| p.0 == q.0 && (p.1 - q.1).amax() < tolerance;
         a.len() == b.len() && a.iter().zip(&b).all(close)
     }
 
     fn check(points: &[Vector2<f64>], radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> u64 {
-        let mut neighbours = Neighbours::new(radius, domain, mirrors);
+        let mut neighbours = Neighbours::new(radius, *domain, mirrors);
         let n = points.len();
         let all: Vec<_> = (0..n).map(|i| brute_force(points, i, radius, domain, mirrors)).collect();
         let mut pairs = 0;
         // The last ones are walls that see all, walls that see no walls, or not there.
         for (fluid, fluid_only) in [(n / 2, false), (n / 2, true), (n, false)] {
             neighbours.place(points.iter().copied());
-            neighbours.build(domain, mirrors, [fluid, n - fluid], fluid_only, false);
+            neighbours.build([fluid, n - fluid], fluid_only, false);
             pairs = 0;
             for (i, expected) in all.iter().enumerate() {
                 let (blocks, k) = match i.checked_sub(fluid) {
-                    None => (&neighbours.rows, i),
-                    Some(k) => (&neighbours.wall_rows, k),
+                    None => (&neighbours.lists.blocks, i),
+                    Some(k) => (&neighbours.wall_lists.blocks, k),
                 };
                 let mut expected = expected.clone();
                 expected.retain(|(j, _)| !fluid_only || i < fluid || (*j as usize) < fluid);
@@ -459,16 +462,16 @@ mod tests {
                 let found = listed(&neighbours, blocks, k, points);
                 assert!(
                     same(found, expected, 1e-9),
-                    "row {i} of {n}: {wanted} neighbours expected"
+                    "list {i} of {n}: {wanted} neighbours expected"
                 );
             }
             assert_eq!(neighbours.pairs(), pairs, "padding is not counted");
         }
-        // The parallel path builds the same rows in the same order.
-        let mut parallel = Neighbours::new(radius, domain, mirrors);
+        // The parallel path builds the same lists in the same order.
+        let mut parallel = Neighbours::new(radius, *domain, mirrors);
         parallel.place(points.iter().copied());
-        parallel.build(domain, mirrors, [n, 0], false, true);
-        for (a, b) in neighbours.rows.iter().zip(&parallel.rows) {
+        parallel.build([n, 0], false, true);
+        for (a, b) in neighbours.lists.blocks.iter().zip(&parallel.lists.blocks) {
             assert_eq!((&a.starts, &a.chunks), (&b.starts, &b.chunks));
         }
         pairs
@@ -476,16 +479,17 @@ mod tests {
 
     /// On a processor with registers for four these are not the same program.
     #[test]
-    fn rows_are_the_same_in_portable_lanes() {
+    fn lists_are_the_same_in_portable_lanes() {
         let (mut random, domain) = (Random(3), Domain::torus(4.0, 3.0));
         let points: Vec<_> = (0..500).map(|_| random.point([4.0, 3.0])).collect();
-        let mut neighbours = Neighbours::new(0.6, &domain, &[]);
+        let mut neighbours = Neighbours::new(0.6, domain, &[]);
         neighbours.place(points.into_iter());
-        neighbours.build(&domain, &[], [250, 250], true, false);
-        let [fluid, wall] = [&neighbours.rows[..], &neighbours.wall_rows];
-        for (widest, rows, up_to) in [(fluid, 0..250, usize::MAX), (wall, 250..500, 250)] {
+        neighbours.build([250, 250], true, false);
+        let [fluid, wall] =
+            [&neighbours.lists, &neighbours.wall_lists].map(|lists| &lists.blocks[..]);
+        for (widest, of, up_to) in [(fluid, 0..250, usize::MAX), (wall, 250..500, 250)] {
             let mut portable = Block::default();
-            FillRows { neighbours: &neighbours, block: &mut portable, rows, up_to }
+            FillLists { neighbours: &neighbours, block: &mut portable, of, up_to }
                 .run::<WideF64x4>();
             let [widest] = widest else { panic!("one block") };
             assert_eq!(portable.chunks, widest.chunks);
@@ -495,7 +499,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_random_points_are_those_of_brute_force_in_every_kind_of_domain() {
+    fn lists_of_random_points_are_those_of_brute_force_in_every_kind_of_domain() {
         let walls = [horizontal(0.0, 1.0), horizontal(3.0, -1.0)];
         let slanted = PlaneWall::new(Vector2::zeros(), Vector2::new(0.6, 0.8), Vector2::zeros());
         let corner = PlaneWall::new(Vector2::zeros(), Vector2::new(1.0, 0.0), Vector2::zeros());
@@ -520,7 +524,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_see_across_a_period_of_just_two_radii_and_past_its_edges() {
+    fn lists_reach_across_a_period_of_just_two_radii_and_past_its_edges() {
         let mut random = Random(9);
         let domain = Domain::torus(2.0, 2.0);
         // Between two wraps particles may stand outside of the period by a few displacements.
@@ -530,7 +534,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_awkward_sets_are_those_of_brute_force() {
+    fn lists_of_awkward_sets_are_those_of_brute_force() {
         let mut random = Random(3);
         let open = Domain::open();
         let mut clustered: Vec<_> = (0..400).map(|_| random.point([1e-3, 1e-3])).collect();
@@ -558,7 +562,7 @@ mod tests {
         assert_eq!(check(&coincident, 0.1, &Domain::torus(1.0, 1.0), &[]), 72);
     }
 
-    /// True pairs, within `support`, that rows kept over random moves do not list. Rows are rebuilt
+    /// True pairs, within `support`, that lists kept over random moves do not list. Lists are rebuilt
     /// when a particle has moved by more than `share` of the skin.
     fn lost(share: f64, builds: &mut u32) -> usize {
         let (support, skin) = (0.4, 0.08);
@@ -566,11 +570,11 @@ mod tests {
         let mirrors = [horizontal(0.0, 1.0), horizontal(2.0, -1.0)];
         let mut random = Random(77);
         let mut points: Vec<_> = (0..200).map(|_| random.point([3.0, 2.0])).collect();
-        let mut neighbours = Neighbours::new(support + skin, &domain, &mirrors);
+        let mut neighbours = Neighbours::new(support + skin, domain, &mirrors);
         let mut lost = 0;
         let n = points.len();
         neighbours.place(points.iter().copied());
-        neighbours.build(&domain, &mirrors, [n, 0], false, false);
+        neighbours.build([n, 0], false, false);
         for _ in 0..60 {
             for point in &mut points {
                 *point += (random.point([1.0, 1.0]) - Vector2::repeat(0.5)) * 0.03;
@@ -579,11 +583,11 @@ mod tests {
             let moved = points.iter().zip(&neighbours.built_at).map(|(p, b)| (p - b).norm());
             if moved.fold(0.0, f64::max) > share * skin {
                 neighbours.place(points.iter().copied());
-                neighbours.build(&domain, &mirrors, [n, 0], false, false);
+                neighbours.build([n, 0], false, false);
                 *builds += 1;
             }
             for i in 0..n {
-                let found = listed(&neighbours, &neighbours.rows, i, &points);
+                let found = listed(&neighbours, &neighbours.lists.blocks, i, &points);
                 lost += brute_force(&points, i, support, &domain, &mirrors)
                     .iter()
                     .filter(|e| !found.iter().any(|f| f.0 == e.0 && (f.1 - e.1).amax() < 1e-9))
@@ -594,17 +598,17 @@ mod tests {
     }
 
     #[test]
-    fn rows_kept_while_nothing_moved_by_half_the_skin_lose_no_pair() {
+    fn lists_kept_while_nothing_moved_by_half_the_skin_lose_no_pair() {
         let mut builds = 0;
         assert_eq!(lost(0.5, &mut builds), 0);
         assert!(
             (5..40).contains(&builds),
-            "rows are kept and rebuilt: {builds} builds in 60 moves"
+            "lists are kept and rebuilt: {builds} builds in 60 moves"
         );
     }
 
     #[test]
-    fn rows_kept_for_ten_times_too_long_lose_pairs() {
+    fn lists_kept_for_ten_times_too_long_lose_pairs() {
         assert!(lost(5.0, &mut 0) > 0);
     }
 
@@ -614,7 +618,7 @@ mod tests {
         let mut points: Vec<_> = (0..300).map(|_| random.point([2.0, 5.0])).collect();
         let sorted = |points: &[Vector2<f64>]| {
             let mut order = Vec::new();
-            let mut neighbours = Neighbours::new(0.3, &Domain::open(), &[]);
+            let mut neighbours = Neighbours::new(0.3, Domain::open(), &[]);
             neighbours.place(points.iter().copied());
             neighbours.order(&mut order);
             order.iter().map(|&k| points[k as usize]).collect::<Vec<_>>()

@@ -1,8 +1,8 @@
 //! [`Numbers`]: a fixed set of numbers that a term keeps a particle, liftable to lanes.
 //!
-//! What a particle shows its neighbours, what a row sums and what a term integrates are all such
-//! sets: `()`, one number, a vector, a symmetric tensor, or tuples of these. `()` takes no memory and
-//! no time, which is how a scene leaves out what it does not need.
+//! What a term derives for a particle's neighbours to read, what a particle sums over them and what a
+//! term integrates are all such sets: `()`, one number, a vector, a symmetric tensor, or tuples of these.
+//! `()` takes no memory and no time, which is how a scene leaves out what it does not need.
 
 use nalgebra::Vector2;
 

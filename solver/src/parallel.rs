@@ -1,34 +1,33 @@
-//! Work shared out in blocks. What is done to a block is a `dyn` call, so that the machinery of
-//! threads is compiled once for each type of item and not for each scheme; a call for [`BLOCK`]
-//! rows costs nothing.
+//! Work shared out to threads. What threads take is handed out one by one under a lock, so that the
+//! machinery of threads is compiled once and not for each type of item. An item is a block of particles:
+//! taking one costs nothing beside the work on it.
 
-use rayon::prelude::*;
+use std::sync::Mutex;
 
-use crate::neighbours::BLOCK;
-
-/// Does `work(b, items of block b)` for all blocks of [`BLOCK`] items, on several threads or in
-/// order; each block has a result.
-pub(crate) fn map_blocks<T: Send, R: Send>(
-    items: &mut [T],
-    results: &mut [R],
+/// Does `work(item)` for all items, on several threads or in order.
+pub(crate) fn for_each<T>(
+    items: impl Iterator<Item = T> + Send,
     parallel: bool,
-    work: &(dyn Fn(usize, &mut [T]) -> R + Sync),
+    work: &(dyn Fn(T) + Sync),
 ) {
-    let work = |(b, (items, result)): (usize, (&mut [T], &mut R))| *result = work(b, items);
-    if parallel {
-        items.par_chunks_mut(BLOCK).zip(results).enumerate().for_each(work);
-    } else {
-        items.chunks_mut(BLOCK).zip(results).enumerate().for_each(work);
+    if !parallel {
+        return items.for_each(work);
     }
+    let items = Mutex::new(items);
+    on_threads(rayon::current_num_threads(), &|| {
+        loop {
+            let next = items.lock().expect("taking an item does not panic").next();
+            let Some(item) = next else { break };
+            work(item);
+        }
+    });
 }
 
-/// The same where a block has none.
-pub(crate) fn for_each_block<T: Send>(
-    items: &mut [T],
-    parallel: bool,
-    work: &(dyn Fn(usize, &mut [T]) + Sync),
-) {
-    // Of no size: nothing is allocated.
-    let mut nothing = vec![(); items.len().div_ceil(BLOCK)];
-    map_blocks(items, &mut nothing, parallel, work);
+/// Calls `work` so many times, on as many threads as have time.
+fn on_threads(count: usize, work: &(dyn Fn() + Sync)) {
+    if count > 1 {
+        rayon::join(|| on_threads(count / 2, work), || on_threads(count - count / 2, work));
+    } else {
+        work();
+    }
 }

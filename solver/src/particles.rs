@@ -1,7 +1,7 @@
-//! Particle data in three kinds: fixed, evolved, and the column that a row reads.
+//! Particle data in three kinds: fixed, evolved, and the column that a pair sweep reads.
 //!
-//! The integrator sees [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
-//! laid out for the row loop: for a fluid it is one cache line.
+//! The integrator has [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
+//! laid out for the pair sweep: for a fluid it is one cache line.
 
 use nalgebra::Vector2;
 
@@ -58,6 +58,7 @@ impl<X: Numbers> Particle<X> {
 pub(crate) struct Fixed {
     pub mass: f64,
     pub id: u32,
+    pub role: Role,
 }
 
 /// What the integrator advances: `X` is what terms integrate of their own, `()` for a fluid.
@@ -147,10 +148,10 @@ impl Common<f64> {
     }
 }
 
-/// A particle as rows see it; `S` is what the terms have it show.
+/// A particle as pair sweeps read it; `S` is what the terms derive for its neighbours.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub struct Column<S> {
+pub struct Column<S = ()> {
     /// Position \[m\].
     pub position: Vector2<f64>,
     /// Velocity \[m/s\].
@@ -158,16 +159,22 @@ pub struct Column<S> {
     /// Mass, density, volume.
     pub common: Common<f64>,
     /// Derived numbers that terms ask for.
-    pub shows: S,
+    pub derived: S,
 }
 
 const _: () = assert!(size_of::<Column<f64>>() == 64, "a fluid column is one cache line");
 
 impl<S: Numbers> Column<S> {
-    /// Pads rows to whole lanes: so far away that every kernel is 0, and without mass or volume.
+    /// Pads neighbour lists to whole lanes: so far away that every kernel is 0, and without mass or volume.
     pub(crate) fn sentinel() -> Self {
         let common = Common { mass: 0.0, density: 1.0, volume: 0.0 };
         let far = Vector2::new(1e100, 1e100);
-        Self { position: far, velocity: Vector2::zeros(), common, shows: S::default() }
+        Self { position: far, velocity: Vector2::zeros(), common, derived: S::default() }
+    }
+
+    /// The same without derived numbers.
+    pub(crate) fn plain(&self) -> Column {
+        let Self { position, velocity, common, .. } = *self;
+        Column { position, velocity, common, derived: () }
     }
 }

@@ -1,59 +1,20 @@
 //! A scene: everything that a simulation starts from, checked before the first step.
 
-use std::marker::PhantomData;
-
 use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::{
     domain::Domain,
-    engine::{Engine, Limits},
-    integrator::Integrator,
+    engine::Engine,
+    integrator::{Integrator, PhysicsOf, Scheme},
     kernel::{Kernel, Smoothing},
     neighbours::Neighbours,
     numbers::Numbers,
-    particles::{Evolved, Fixed, Particle, Role},
-    simulation::{Checkpoint, Simulation, Work},
-    terms::Term,
+    particle_data::{Checkpoint, Limits, ParticleData},
+    particles::{Particle, Role},
+    simulation::Simulation,
     walls::{PlaneWall, RIGHT_ANGLE, Walls},
 };
-
-/// A composition of types: the whole method. What is not named here is not in the program.
-pub trait Scheme: Sized + 'static {
-    /// What a particle integrates beyond x, v and ρ; `()` for a fluid.
-    type Extra: Numbers;
-    /// Smoothing kernel.
-    type Kernel: Kernel;
-    /// Terms of dv/dt.
-    type Forces: Term<Self::Extra>;
-    /// Terms of dx/dt (beyond v), dρ/dt and the extra fields.
-    type Drift: Term<Self::Extra>;
-    /// Wall representation.
-    type Walls: Walls<Self::Extra>;
-    /// Time integration.
-    type Integrator: Integrator<Self::Extra>;
-}
-
-/// A [`Scheme`] written as one line: `Compose<Kernel, Forces, Drift, Walls, Integrator>`.
-#[derive(Debug)]
-pub struct Compose<K, F, D, W, I, X = ()>(PhantomData<(K, F, D, W, I, X)>);
-
-impl<K, F, D, W, I, X> Scheme for Compose<K, F, D, W, I, X>
-where
-    X: Numbers,
-    K: Kernel,
-    F: Term<X>,
-    D: Term<X>,
-    W: Walls<X>,
-    I: Integrator<X>,
-{
-    type Extra = X;
-    type Kernel = K;
-    type Forces = F;
-    type Drift = D;
-    type Walls = W;
-    type Integrator = I;
-}
 
 /// Why a scene cannot be simulated.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -61,7 +22,7 @@ pub enum SceneError {
     /// No particle that moves.
     #[error("the scene has no fluid particle")]
     Empty,
-    /// More particles than a row can number.
+    /// More particles than a neighbour list can number.
     #[error("{count} particles are more than the {most} that fit")]
     TooMany {
         /// Particles given.
@@ -109,7 +70,7 @@ pub enum SceneError {
         /// What is wrong with it.
         reason: &'static str,
     },
-    /// A period in which particles would see each other twice.
+    /// A period in which two particles would be neighbours twice.
     #[error(
         "the period along {axis} is {period} m, but must be at least {least} m, \
          two supports or a support and the skin"
@@ -138,10 +99,11 @@ pub struct Scene<S: Scheme> {
     pub drift: S::Drift,
     /// Walls.
     pub walls: S::Walls,
-    /// Reach of neighbour rows beyond the support \[m\]: longer rows, built less often.
+    /// Verlet skin: how far neighbour lists reach beyond the support radius \[m\]. With a larger one they are
+    /// longer and built less often.
     pub skin: f64,
-    /// A particle may move by this share of the skin before rows are rebuilt. 0.5 is exact; more is
-    /// wrong, and there to show that tests notice.
+    /// A particle may move by this share of the skin before neighbour lists are rebuilt. 0.5 is exact; more
+    /// is wrong, and serves to show that tests notice.
     pub skin_share: f64,
     /// Bounds beyond which the run counts as diverged.
     pub limits: Limits,
@@ -166,17 +128,15 @@ impl<S: Scheme> Scene<S> {
     }
 
     /// Checks the scene and makes it ready to step.
-    pub fn build(mut self) -> Result<Simulation<S>, SceneError> {
+    pub fn build(self) -> Result<Simulation<S>, SceneError> {
         self.check()?;
-        let all = std::mem::take(&mut self.particles);
-        let mut particles = Vec::with_capacity(all.len());
-        for role in [Role::Fluid, Role::Wall, Role::Interface] {
-            particles.extend((0..).zip(all.iter().copied()).filter(|(_, p)| p.role == role));
-        }
-        let (mut engine, mut state) = self.engine(&particles);
-        engine.sort(&mut state);
-        engine.build(&state);
-        Ok(Simulation::new(engine, state))
+        let particles = by_role(&self.particles);
+        let mut engine = self.engine(&particles);
+        let mut state = std::mem::take(&mut engine.data.state);
+        engine.data.sort(&mut state);
+        engine.build_lists(state.iter().map(|e| e.position));
+        engine.data.state = state;
+        Ok(Simulation { engine, integrator: S::Integrator::default() })
     }
 
     /// Goes on from a checkpoint of a simulation of this scene: its particles take the place of
@@ -184,158 +144,144 @@ impl<S: Scheme> Scene<S> {
     pub fn resume(mut self, from: &Checkpoint<S::Extra>) -> Result<Simulation<S>, SceneError> {
         self.particles = from.particles.iter().map(|(_, p)| *p).collect();
         self.check()?;
-        self.check_order(from)?;
-        let (mut engine, state) = self.engine(&from.particles);
-        let mut built = state.clone();
-        for (evolved, at) in built.iter_mut().zip(&from.built_at) {
-            evolved.position = *at;
-        }
-        engine.build(&built);
-        Ok(Simulation::new(engine, state).at(from))
+        check_order(from)?;
+        let mut engine = self.engine(&from.particles);
+        engine.build_lists(from.built_at.iter().copied());
+        engine.data.progress = from.progress;
+        Ok(Simulation { engine, integrator: S::Integrator::with_lag(from.lag) })
     }
 
-    /// Whether particles of a checkpoint are stored as a simulation stores them.
-    fn check_order(&self, checkpoint: &Checkpoint<S::Extra>) -> Result<(), SceneError> {
-        let Checkpoint { particles, built_at, .. } = checkpoint;
-        let mut ids: Vec<u32> = particles.iter().map(|(id, _)| *id).collect();
-        ids.sort_unstable();
-        let reason = if !(checkpoint.time.is_finite() && checkpoint.lag.is_finite()) {
-            "a time or a lag that is not finite"
-        } else if built_at.len() != particles.len() {
-            "another number of places than of particles"
-        } else if !built_at.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
-            "a place that is not finite"
-        } else if !self.particles.is_sorted_by_key(|p| p.role) {
-            "roles out of order"
-        } else if !ids.into_iter().eq(0..particles.len() as u32) {
-            "numbers that are not those of a scene"
-        } else {
-            return Ok(());
-        };
-        Err(SceneError::Checkpoint { reason })
-    }
-
-    /// The engine for particles in this order, without rows, and their state.
-    fn engine(
-        self,
-        particles: &[(u32, Particle<S::Extra>)],
-    ) -> (Engine<S>, Vec<Evolved<S::Extra>>) {
+    /// The engine for particles in this order, without neighbour lists.
+    fn engine(self, particles: &[(u32, Particle<S::Extra>)]) -> Engine<PhysicsOf<S>> {
         let kernel = Smoothing::new(self.h);
-        let count = |role| particles.iter().filter(|(_, p)| p.role == role).count();
-        let evolved = |(_, p): &(u32, Particle<S::Extra>)| {
-            let Particle { position, velocity, density, extra, .. } = *p;
-            Evolved { position, velocity, density, extra }
-        };
         let radius = kernel.support() + self.skin;
         let slack = self.skin_share * self.skin;
         let periods = self.domain.period.iter().flatten();
         // The root of the largest number: its square is finite.
         let half_period = 0.5 * periods.fold(f64::MAX.sqrt(), |a, b| a.min(*b));
-        let engine = Engine {
-            kernel,
-            domain: self.domain,
-            neighbours: Neighbours::new(radius, &self.domain, self.walls.mirrors()),
-            forces: self.forces,
-            drift: self.drift,
-            walls: self.walls,
-            limits: self.limits,
-            counts: [count(Role::Fluid), count(Role::Wall)],
-            parallel: particles.len() >= self.parallel_from,
-            fixed: particles.iter().map(|(id, p)| Fixed { mass: p.mass, id: *id }).collect(),
-            columns: Vec::new(),
-            last_displacement: 0.0,
-            built_inside_a_step: false,
-            slack2: slack * slack,
-            reach2: half_period * half_period,
-            work: Work::default(),
-            order: Vec::new(),
-            extents: Vec::new(),
-            extrapolated: Vec::new(),
-        };
-        (engine, particles.iter().map(evolved).collect())
+        let neighbours = Neighbours::new(radius, self.domain, self.walls.mirrors());
+        let mut data = ParticleData::new(particles, neighbours);
+        data.limits = self.limits;
+        [data.slack2, data.reach2] = [slack * slack, half_period * half_period];
+        data.parallel = particles.len() >= self.parallel_from;
+        Engine::new(kernel, (self.forces, self.drift), &self.walls, data)
     }
 
     fn check(&self) -> Result<(), SceneError> {
-        let length = |name, value: f64, valid: bool, range| {
-            let error = SceneError::Length { name, value, range };
-            if valid && value.is_finite() { Ok(()) } else { Err(error) }
+        check_length("smoothing length", self.h, self.h > 0.0, "above 0")?;
+        check_length("skin", self.skin, self.skin >= 0.0, "of at least 0")?;
+        check_particles(&self.particles)?;
+        check_walls(self.walls.mirrors())?;
+        check_domain(&self.domain, S::Kernel::SUPPORT * self.h, self.skin)
+    }
+}
+
+/// Particles as they are stored at first, with their numbers.
+fn by_role<X: Copy>(all: &[Particle<X>]) -> Vec<(u32, Particle<X>)> {
+    let of = |role| (0..).zip(all.iter().copied()).filter(move |(_, p)| p.role == role);
+    [Role::Fluid, Role::Wall, Role::Interface].into_iter().flat_map(of).collect()
+}
+
+type Checked = Result<(), SceneError>;
+
+fn check_length(name: &'static str, value: f64, valid: bool, range: &'static str) -> Checked {
+    let error = SceneError::Length { name, value, range };
+    if valid && value.is_finite() { Ok(()) } else { Err(error) }
+}
+
+/// A period has to leave room for one copy on either side.
+fn check_domain(domain: &Domain, support: f64, skin: f64) -> Checked {
+    for (axis, name) in [(0, 'x'), (1, 'y')] {
+        let Some(period) = domain.period[axis] else { continue };
+        // Neighbour lists reach a skin farther, and one copy on either side must be enough.
+        let least = (2.0 * support).max(support + skin);
+        if !(period >= least && period.is_finite()) {
+            return Err(SceneError::PeriodTooShort { axis: name, period, least });
+        }
+        check_length("lower corner of the period", domain.low[axis], true, "anywhere")?;
+    }
+    Ok(())
+}
+
+/// |cos| of the angle between the last of these mirrors and one before it, if it is neither 0, for which
+/// there are images across the corner, nor 1.
+fn oblique_cosine(mirrors: &[PlaneWall]) -> Option<f64> {
+    let (last, before) = mirrors.split_last()?;
+    let mut cosines = before.iter().map(|m| m.normal.dot(&last.normal).abs());
+    cosines.find(|c| *c > RIGHT_ANGLE && (c - 1.0).abs() > 1e-12)
+}
+
+/// A mirror with another normal would stretch its image, and one that moves along its normal
+/// would have to take its plane with it.
+fn check_walls(mirrors: &[PlaneWall]) -> Checked {
+    for (wall, mirror) in mirrors.iter().enumerate() {
+        let PlaneWall { point, normal, velocity, curvature } = mirror;
+        let (length, across) = (normal.norm(), velocity.dot(normal));
+        let sum = point.sum() + velocity.sum() + curvature.sum();
+        let (field, value, range) = if !((length - 1.0).abs() < 1e-12) {
+            ("a normal of length", length, "1")
+        } else if !(across.abs() <= 1e-12 * velocity.norm()) {
+            ("a velocity along its normal of", across, "0")
+        } else if !sum.is_finite() {
+            ("a sum of its numbers of", sum, "a finite one")
+        } else if let Some(cosine) = oblique_cosine(&mirrors[..=wall]) {
+            ("a cosine with another wall of", cosine, "0, a corner, or 1, beside it")
+        } else {
+            continue;
         };
-        length("smoothing length", self.h, self.h > 0.0, "above 0")?;
-        length("skin", self.skin, self.skin >= 0.0, "of at least 0")?;
-        self.check_particles()?;
-        self.check_walls()?;
-        let support = S::Kernel::SUPPORT * self.h;
-        for (axis, name) in [(0, 'x'), (1, 'y')] {
-            let Some(period) = self.domain.period[axis] else { continue };
-            // Rows reach a skin farther, and one copy on either side must be enough.
-            let least = (2.0 * support).max(support + self.skin);
-            if !(period >= least && period.is_finite()) {
-                return Err(SceneError::PeriodTooShort { axis: name, period, least });
-            }
-            length("lower corner of the period", self.domain.low[axis], true, "anywhere")?;
-        }
-        Ok(())
+        return Err(SceneError::Wall { wall, field, value, range });
     }
+    Ok(())
+}
 
-    /// |cos| of the angle between this mirror and one before it, if it is neither 0, for which there are
-    /// images across the corner, nor 1.
-    fn askew(&self, wall: usize) -> Option<f64> {
-        let mirrors = self.walls.mirrors();
-        let cosines = mirrors[..wall].iter().map(|m| m.normal.dot(&mirrors[wall].normal).abs());
-        cosines.into_iter().find(|c| *c > RIGHT_ANGLE && (c - 1.0).abs() > 1e-12)
+fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
+    // Images and the sentinel are numbered too: at most eight a particle.
+    let (count, most) = (particles.len(), (u32::MAX / 16) as usize);
+    if count > most {
+        return Err(SceneError::TooMany { count, most });
     }
+    if !particles.iter().any(|p| p.role == Role::Fluid) {
+        return Err(SceneError::Empty);
+    }
+    for (particle, p) in particles.iter().enumerate() {
+        let finite = |v: &Vector2<f64>| v.x.is_finite() && v.y.is_finite();
+        let (field, value, range) = if !finite(&p.position) {
+            ("position", p.position.x + p.position.y, "a finite one")
+        } else if !finite(&p.velocity) {
+            ("velocity", p.velocity.x + p.velocity.y, "a finite one")
+        } else if !(p.density > 0.0 && p.density.is_finite()) {
+            ("density", p.density, "a finite one above 0")
+        } else if !(p.mass > 0.0 && p.mass.is_finite()) {
+            ("mass", p.mass, "a finite one above 0")
+        } else if !p.extra.is_finite() {
+            ("extra field", f64::NAN, "a finite one")
+        } else {
+            continue;
+        };
+        return Err(SceneError::Particle { particle, field, value, range });
+    }
+    Ok(())
+}
 
-    /// A mirror with another normal would stretch its image, and one that moves along its normal
-    /// would have to take its plane with it.
-    fn check_walls(&self) -> Result<(), SceneError> {
-        for (wall, mirror) in self.walls.mirrors().iter().enumerate() {
-            let PlaneWall { point, normal, velocity, curvature } = mirror;
-            let (length, across) = (normal.norm(), velocity.dot(normal));
-            let sum = point.sum() + velocity.sum() + curvature.sum();
-            let (field, value, range) = if !((length - 1.0).abs() < 1e-12) {
-                ("a normal of length", length, "1")
-            } else if !(across.abs() <= 1e-12 * velocity.norm()) {
-                ("a velocity along its normal of", across, "0")
-            } else if !sum.is_finite() {
-                ("a sum of its numbers of", sum, "a finite one")
-            } else if let Some(cosine) = self.askew(wall) {
-                ("a cosine with another wall of", cosine, "0, a corner, or 1, beside it")
-            } else {
-                continue;
-            };
-            return Err(SceneError::Wall { wall, field, value, range });
-        }
-        Ok(())
-    }
-
-    fn check_particles(&self) -> Result<(), SceneError> {
-        // Images and the sentinel are numbered too: at most eight a particle.
-        let (count, most) = (self.particles.len(), (u32::MAX / 16) as usize);
-        if count > most {
-            return Err(SceneError::TooMany { count, most });
-        }
-        if !self.particles.iter().any(|p| p.role == Role::Fluid) {
-            return Err(SceneError::Empty);
-        }
-        for (particle, p) in self.particles.iter().enumerate() {
-            let finite = |v: &Vector2<f64>| v.x.is_finite() && v.y.is_finite();
-            let (field, value, range) = if !finite(&p.position) {
-                ("position", p.position.x + p.position.y, "a finite one")
-            } else if !finite(&p.velocity) {
-                ("velocity", p.velocity.x + p.velocity.y, "a finite one")
-            } else if !(p.density > 0.0 && p.density.is_finite()) {
-                ("density", p.density, "a finite one above 0")
-            } else if !(p.mass > 0.0 && p.mass.is_finite()) {
-                ("mass", p.mass, "a finite one above 0")
-            } else if !p.extra.is_finite() {
-                ("extra field", f64::NAN, "a finite one")
-            } else {
-                continue;
-            };
-            return Err(SceneError::Particle { particle, field, value, range });
-        }
-        Ok(())
-    }
+/// Whether particles of a checkpoint are stored as a simulation stores them.
+fn check_order<X>(checkpoint: &Checkpoint<X>) -> Checked {
+    let Checkpoint { particles, built_at, .. } = checkpoint;
+    let mut ids: Vec<u32> = particles.iter().map(|(id, _)| *id).collect();
+    ids.sort_unstable();
+    let reason = if !(checkpoint.progress.time.is_finite() && checkpoint.lag.is_finite()) {
+        "a time or a lag that is not finite"
+    } else if built_at.len() != particles.len() {
+        "another number of places than of particles"
+    } else if !built_at.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
+        "a place that is not finite"
+    } else if !particles.is_sorted_by_key(|(_, p)| p.role) {
+        "roles out of order"
+    } else if !ids.into_iter().eq(0..particles.len() as u32) {
+        "numbers that are not those of a scene"
+    } else {
+        return Ok(());
+    };
+    Err(SceneError::Checkpoint { reason })
 }
 
 /// A square lattice of `columns` × `rows` points with spacing `dx`, the first at `first`.

@@ -1,28 +1,16 @@
-//! A running simulation: stepping to a time, and what a run can end with.
+//! A running simulation: stepping to a time, observers, and what a run can end with.
 
-use nalgebra::Vector2;
+use std::{mem::take, ops::Deref};
 
 use crate::{
-    engine::{Engine, Extent, Fault, Shows},
-    integrator::Integrator,
+    engine::Engine,
+    integrator::{Integrator, PhysicsOf, Scheme},
     kernel::Smoothing,
-    particles::{Column, Evolved, Fixed, Particle, Rate, Role},
-    scene::Scheme,
+    particle_data::{Checkpoint, Fault, ParticleData},
+    particles::{Column, Rate},
+    physics::Derived,
     terms::Term,
 };
-
-/// What was done, counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Time steps.
-    pub steps: u64,
-    /// Neighbours visited, each traversal counted, padding not.
-    pub pair_interactions: u64,
-    /// Right-hand sides of moving particles.
-    pub right_hand_sides: u64,
-    /// Times that neighbour rows were built.
-    pub list_builds: u64,
-}
 
 /// How stepping ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,97 +54,104 @@ pub enum Flow {
     Stop,
 }
 
-/// Watches a run. `()` watches nothing.
-pub trait Observer<S: Scheme> {
+/// Watches a run. `()` watches nothing, and a pair of observers is one.
+pub trait Observer<X> {
     /// Called after every step.
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow;
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow;
 }
 
-impl<S: Scheme> Observer<S> for () {
-    #[inline(always)]
-    fn after_step(&mut self, _: &Simulation<S>) -> Flow {
+impl<X> Observer<X> for () {
+    fn after_step(&mut self, _: &dyn Stepper<X>) -> Flow {
         Flow::Continue
     }
 }
 
-impl<S: Scheme, A: Observer<S>, B: Observer<S>> Observer<S> for (A, B) {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
-        match (self.0.after_step(simulation), self.1.after_step(simulation)) {
-            (Flow::Continue, Flow::Continue) => Flow::Continue,
-            _ => Flow::Stop,
-        }
+impl<X, A: Observer<X>, B: Observer<X>> Observer<X> for (A, B) {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
+        let flows = [self.0.after_step(simulation), self.1.after_step(simulation)];
+        if flows.contains(&Flow::Stop) { Flow::Stop } else { Flow::Continue }
     }
 }
 
-impl<S: Scheme, O: Observer<S>> Observer<S> for &mut O {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+impl<X, O: Observer<X> + ?Sized> Observer<X> for &mut O {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         (**self).after_step(simulation)
     }
 }
 
-/// All that decides how a run goes on, as plain data: [`crate::Scene::resume`] continues it with the
-/// same bits as if it had not been interrupted.
-///
-/// Sums are added in the order of the rows, so the order of storage belongs to it, and the places
-/// that the rows were built at.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Checkpoint<X = ()> {
-    /// Simulated time \[s\].
-    pub time: f64,
-    /// Length of the last step \[s\].
-    pub dt: f64,
-    /// How far the velocities are behind the rest \[s\]; 0 after [`Simulation::advance`] reached a
-    /// time.
-    pub lag: f64,
-    /// What was done so far.
-    pub work: Work,
-    /// Particles as they are stored, with their numbers in the scene.
-    pub particles: Vec<(u32, Particle<X>)>,
-    /// Where each was when the rows were built \[m\].
-    pub built_at: Vec<Vector2<f64>>,
-    /// Largest displacement since then, at the start of the last step \[m\].
-    pub last_displacement: f64,
-    /// Whether the rows were built inside a step, for particles neither sorted nor wrapped.
-    pub built_inside_a_step: bool,
+/// A simulation as a harness knows it, without its scheme: `&dyn Stepper<X>` is any simulation whose
+/// particles integrate the extra fields `X`. Time, work and particles are those of [`ParticleData`], to
+/// which it dereferences.
+pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
+    /// Steps to a time \[s\], see [`Simulation::advance`].
+    fn advance(&mut self, until: f64, dt_max: f64, observer: &mut dyn Observer<X>) -> Outcome;
+    /// What it takes to go on from here with the same bits.
+    fn checkpoint(&self) -> Checkpoint<X>;
+    /// The kernel W(r) \[1/m²\] from r² \[m²\].
+    fn weight(&self, r2: f64) -> f64;
+    /// Particles and their images as pair sweeps read them, after [`Stepper::advance`] reached a time: with
+    /// [`Stepper::weight`] what it takes to interpolate a field.
+    fn plain_columns(&self) -> Vec<Column>;
+    /// d/dt of each particle of [`ParticleData::fluid`] by all terms of the scene, after
+    /// [`Stepper::advance`] reached a time: dv/dt by the forces, the rest by the drift; dx/dt is
+    /// without v.
+    fn total_rates(&self) -> Vec<Rate<X>>;
+    /// d/dt of each particle of [`ParticleData::walls`] by the walls' own terms, likewise; empty where
+    /// walls extrapolate.
+    fn wall_rates(&self) -> Vec<Rate<X>>;
+    /// Memory that the simulation holds \[bytes\].
+    fn bytes(&self) -> usize;
 }
 
-/// A scene in time.
+impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
+    fn advance(&mut self, until: f64, dt: f64, observer: &mut dyn Observer<S::Extra>) -> Outcome {
+        self.advance(until, dt, observer)
+    }
+    fn checkpoint(&self) -> Checkpoint<S::Extra> {
+        self.engine.data.checkpoint(self.integrator.lag())
+    }
+    fn weight(&self, r2: f64) -> f64 {
+        self.engine.kernel.w(r2)
+    }
+    fn plain_columns(&self) -> Vec<Column> {
+        self.columns().iter().map(Column::plain).collect()
+    }
+    fn total_rates(&self) -> Vec<Rate<S::Extra>> {
+        S::Integrator::rates(&self.engine)
+    }
+    fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
+        self.engine.wall_rates()
+    }
+    fn bytes(&self) -> usize {
+        self.engine.bytes() + self.integrator.bytes()
+    }
+}
+
+/// A scene in time. Time, work and particles are those of [`ParticleData`], to which it dereferences.
 pub struct Simulation<S: Scheme> {
-    engine: Engine<S>,
-    state: Vec<Evolved<S::Extra>>,
-    integrator: S::Integrator,
-    time: f64,
-    dt: f64,
+    pub(crate) engine: Engine<PhysicsOf<S>>,
+    pub(crate) integrator: S::Integrator,
+}
+
+impl<S: Scheme> Deref for Simulation<S> {
+    type Target = ParticleData<S::Extra>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.engine.data
+    }
+}
+
+/// The number of equal steps of at most `dt_max` from one time to another \[s\].
+fn count_steps(start: f64, until: f64, dt_max: f64) -> u64 {
+    let span = until - start;
+    // A step more for the last bit of a quotient would be a step of another length.
+    let steps = (span / dt_max * (1.0 - 1e-12)).ceil();
+    assert!(span >= 0.0 && span.is_finite(), "from {start} s a run cannot reach {until} s");
+    assert!(dt_max > 0.0 && steps < 1e15, "steps of {dt_max} s never reach {until} s");
+    steps as u64
 }
 
 impl<S: Scheme> Simulation<S> {
-    pub(crate) fn new(engine: Engine<S>, state: Vec<Evolved<S::Extra>>) -> Self {
-        Self { engine, state, integrator: S::Integrator::default(), time: 0.0, dt: 0.0 }
-    }
-
-    /// Goes on from the time, the lag and the work of a checkpoint.
-    pub(crate) fn at(mut self, checkpoint: &Checkpoint<S::Extra>) -> Self {
-        let Checkpoint { time, dt, lag, work, .. } = *checkpoint;
-        self.engine.work = work;
-        self.engine.last_displacement = checkpoint.last_displacement;
-        self.engine.built_inside_a_step = checkpoint.built_inside_a_step;
-        Self { integrator: S::Integrator::with_lag(lag), time, dt, ..self }
-    }
-
-    /// What it takes to go on from here with the same bits.
-    pub fn checkpoint(&self) -> Checkpoint<S::Extra> {
-        Checkpoint {
-            time: self.time,
-            dt: self.dt,
-            lag: self.integrator.lag(),
-            work: self.engine.work,
-            particles: self.stored().collect(),
-            built_at: self.engine.neighbours.built_at.to_vec(),
-            last_displacement: self.engine.last_displacement,
-            built_inside_a_step: self.engine.built_inside_a_step,
-        }
-    }
-
     /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then brings every
     /// quantity to that time.
     ///
@@ -165,22 +160,26 @@ impl<S: Scheme> Simulation<S> {
     /// # Panics
     /// If `until` is not a time from now on, or `dt_max` is not above 0, or so small that steps
     /// cannot be counted: nothing sensible could be returned, and a loop would never end.
-    pub fn advance(&mut self, until: f64, dt_max: f64, observer: &mut impl Observer<S>) -> Outcome {
-        let (start, span) = (self.time, until - self.time);
-        // A step more for the last bit of a quotient would be a step of another length.
-        let steps = (span / dt_max * (1.0 - 1e-12)).ceil();
-        assert!(span >= 0.0 && span.is_finite(), "from {start} s a run cannot reach {until} s");
-        assert!(dt_max > 0.0 && steps < 1e15, "steps of {dt_max} s never reach {until} s");
-        let steps = steps as u64;
-        if steps > 0 {
-            self.dt = span / steps as f64;
-        }
+    pub fn advance(
+        &mut self,
+        until: f64,
+        dt_max: f64,
+        observer: &mut dyn Observer<S::Extra>,
+    ) -> Outcome {
+        let (start, span) = (self.time(), until - self.time());
+        let steps = count_steps(start, until, dt_max);
+        let dt = if steps > 0 { span / steps as f64 } else { self.dt() };
+        self.engine.data.progress.dt = dt;
         for k in 1..=steps {
-            if let Err(fault) = self.integrator.step(&mut self.engine, &mut self.state, self.dt) {
+            let mut state = take(&mut self.engine.data.state);
+            let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
+            self.engine.data.state = state;
+            if let Err(fault) = stepped {
                 return self.diverged(fault);
             }
-            self.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
-            self.engine.work.steps += 1;
+            let now = &mut self.engine.data.progress;
+            now.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
+            now.work.steps += 1;
             if observer.after_step(self) == Flow::Stop {
                 return Outcome::Stopped;
             }
@@ -190,30 +189,16 @@ impl<S: Scheme> Simulation<S> {
 
     /// Brings every quantity to the same time, and the columns up to date.
     fn synchronise(&mut self) -> Outcome {
-        let synchronised = self.integrator.synchronise(&mut self.engine, &mut self.state);
-        match synchronised.and_then(|()| self.engine.begin(&mut self.state)) {
-            Ok(()) => Outcome::Reached,
-            Err(fault) => self.diverged(fault),
-        }
+        let Self { engine, integrator } = self;
+        let mut state = take(&mut engine.data.state);
+        let synchronised =
+            integrator.synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
+        engine.data.state = state;
+        synchronised.map_or_else(|fault| self.diverged(fault), |()| Outcome::Reached)
     }
 
     fn diverged(&self, fault: Fault) -> Outcome {
-        Outcome::Diverged(Divergence { step: self.engine.work.steps, time: self.time, fault })
-    }
-
-    /// Simulated time \[s\].
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-
-    /// Length of the last step \[s\].
-    pub fn dt(&self) -> f64 {
-        self.dt
-    }
-
-    /// What was done so far.
-    pub fn work(&self) -> Work {
-        self.engine.work
+        Outcome::Diverged(Divergence { step: self.work().steps, time: self.time(), fault })
     }
 
     /// The kernel with its smoothing length.
@@ -224,88 +209,20 @@ impl<S: Scheme> Simulation<S> {
     /// The terms of dv/dt, to be changed between stretches: a force that drives the flow, say. They are no
     /// part of a checkpoint.
     pub fn forces_mut(&mut self) -> &mut S::Forces {
-        &mut self.engine.forces
+        &mut self.engine.terms.0
     }
 
-    /// Number of fluid particles.
-    pub fn fluid_count(&self) -> usize {
-        self.engine.counts[0]
-    }
-
-    /// Fluid particles as they are stored, without order; for observers that sum.
-    pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<S::Extra>)> {
-        let fluid = self.engine.counts[0];
-        self.engine.fixed[..fluid].iter().map(|f| f.mass).zip(&self.state[..fluid])
-    }
-
-    /// Wall particles with an evolving density, likewise.
-    pub fn walls(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<S::Extra>)> {
-        let [fluid, wall] = self.engine.counts;
-        let range = fluid..fluid + wall;
-        self.engine.fixed[range.clone()].iter().map(|f| f.mass).zip(&self.state[range])
-    }
-
-    /// What these terms by themselves do to each particle of [`Simulation::fluid`] now, after
+    /// What these terms by themselves do to each particle of [`ParticleData::fluid`] now, after
     /// [`Simulation::advance`] reached a time: one term of the scene, or one that it does not have.
     /// dx/dt is without v. A scene that never asks has none of this in its program.
     ///
-    /// Terms that depend on the largest speed take it as they were told last.
+    /// Terms that depend on the largest speed take it as it was given to them last.
     pub fn rates<T: Term<S::Extra>>(&self, terms: &T) -> Vec<Rate<S::Extra>> {
-        self.engine.rates(&self.state, terms)
+        self.engine.rates(terms)
     }
 
-    /// What the walls' own terms do to each particle of [`Simulation::walls`] now, likewise; empty
-    /// where walls extrapolate.
-    pub fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
-        self.engine.wall_rates()
-    }
-
-    /// All particles as they are stored, with their numbers in the scene.
-    fn stored(&self) -> impl Iterator<Item = (u32, Particle<S::Extra>)> {
-        let [fluid, wall] = self.engine.counts;
-        let role = move |k| match k {
-            k if k < fluid => Role::Fluid,
-            k if k < fluid + wall => Role::Wall,
-            _ => Role::Interface,
-        };
-        let particles = self.engine.fixed.iter().zip(&self.state).enumerate();
-        particles.map(move |(k, (&Fixed { mass, id }, e))| {
-            let Evolved { position, velocity, density, extra } = *e;
-            (id, Particle { role: role(k), position, velocity, density, mass, extra })
-        })
-    }
-
-    /// All particles in the order of the scene.
-    pub fn particles(&self) -> Vec<Particle<S::Extra>> {
-        let nothing = Particle::fluid(Vector2::zeros(), Vector2::zeros(), 0.0, 0.0);
-        let mut particles = vec![nothing; self.state.len()];
-        for (id, particle) in self.stored() {
-            particles[id as usize] = particle;
-        }
-        particles
-    }
-
-    /// Particles and their images as rows see them, after [`Simulation::advance`].
-    pub fn columns(&self) -> &[Column<Shows<S>>] {
-        let sentinel = self.engine.columns.len() - 1;
-        &self.engine.columns[..sentinel]
-    }
-
-    /// Total momentum of the fluid per unit depth \[kg/s\], summed in the order of the scene.
-    pub fn momentum(&self) -> Vector2<f64> {
-        let fluid = self.particles().into_iter().filter(|p| p.role == Role::Fluid);
-        fluid.fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass)
-    }
-
-    /// Memory that the simulation holds \[bytes\].
-    pub fn bytes(&self) -> usize {
-        self.state.capacity() * size_of::<Evolved<S::Extra>>()
-            + self.engine.fixed.capacity() * size_of::<Fixed>()
-            + self.engine.columns.capacity() * size_of::<Column<Shows<S>>>()
-            + self.engine.order.capacity() * size_of::<u32>()
-            + self.engine.extents.capacity() * size_of::<Extent>()
-            + self.engine.extrapolated.capacity() * size_of::<Evolved<S::Extra>>()
-            + self.engine.neighbours.bytes()
-            + self.integrator.bytes()
+    /// Particles and their images as pair sweeps read them, after [`Simulation::advance`].
+    pub fn columns(&self) -> &[Column<Derived<S>>] {
+        self.engine.columns()
     }
 }

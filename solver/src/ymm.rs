@@ -1,8 +1,8 @@
 //! Four numbers in one register of a processor that has AVX2: the only unsafe code of the crate.
 //!
 //! The default build may use nothing but what every x86-64 processor has, registers for two numbers.
-//! Asked at run time, nearly all of them have registers for four, and the row loop and the search for its
-//! rows are compiled a second time for these, and a third time for processors that have 32 of them
+//! Asked at run time, nearly all of them have registers for four, and the pair sweep and the search of
+//! neighbours are compiled a second time for these, and a third time for processors that have 32 of them
 //! (AVX-512). Measured: see `CHANGELOG.md`.
 
 #![allow(unsafe_code)]
@@ -11,7 +11,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::lane::{LANES, OnLanes, lane};
+use crate::lane::{LANES, OnLanes};
 
 /// Runs a loop compiled for such registers, 32 of them if there are as many, so that fewer sums have to
 /// be put aside; gives it back where there are none. The standard library keeps the processor's answer.

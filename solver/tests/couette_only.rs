@@ -18,6 +18,8 @@ fn a_program_has_no_symbol_of_what_its_scheme_does_not_name() {
     for named in ["QuinticSpline", "Viscosity", "Continuity", "Ghosts", "Leapfrog"] {
         assert!(held(named) > 0, "{named} is not seen, so nothing would be");
     }
+    // The search of neighbours, the forces and the drift: mirror particles need no wall sweep.
+    assert_eq!(held("on_widest"), 3, "hot loops");
     for absent in [
         "Shifting",
         "Xsph",

@@ -1,12 +1,13 @@
 //! What the cross-crate tests share: random numbers, patches of particles, and the rates of one
 //! right-hand side.
 
+pub mod new_case;
 pub mod spoil;
 
 use nalgebra::Vector2;
 use solver::{
     Compose, Domain, Engine, Evolved, Fault, Flow, Integrator, Kernel, Observer, Open, Outcome,
-    Particle, Rate, Role, Scene, Scheme, Simulation, Term, lattice, numbers::Numbers, walls::Walls,
+    Particle, Physics, Rate, Role, Scene, Stepper, Term, lattice, numbers::Numbers, walls::Walls,
 };
 
 /// A plane vector.
@@ -52,9 +53,9 @@ impl<X: Numbers> Integrator<X> for RateInstead {
     const NAME: &'static str = "rate";
     const ORDER: [u32; 2] = [0, 0];
 
-    fn step<S: Scheme<Extra = X>>(
+    fn step<P: Physics<Extra = X>>(
         &mut self,
-        engine: &mut Engine<S>,
+        engine: &mut Engine<P>,
         state: &mut [Evolved<X>],
         _: f64,
     ) -> Result<(), Fault> {
@@ -70,8 +71,8 @@ impl<X: Numbers> Integrator<X> for RateInstead {
 /// Keeps the particles of the first step and stops, before anyone takes the rates for a state.
 struct First<X>(Vec<Particle<X>>);
 
-impl<S: Scheme> Observer<S> for First<S::Extra> {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+impl<X: Numbers> Observer<X> for First<X> {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         self.0 = simulation.particles();
         Flow::Stop
     }

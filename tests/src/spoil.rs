@@ -4,16 +4,14 @@
 //! that fault: the same particles and numbers, its types wrapped. With the neutral fault the wrapped
 //! scene has the bits of the healthy one, which is checked.
 
+use fluids::channel::{Arrangement, Setup};
+use maths::theory::{Stepping, time_step};
 use nalgebra::Vector2;
 use solver::{
     BodyForce, Compose, Continuity, DensityDiffusion, Engine, EquationOfState, Evolved,
     Fault as Lost, Ghosts, Integrator, InterfaceWall, Kernel, Leapfrog, Numbers, Open, Particle,
-    PredictorCorrector, Pressure, Rate, Scene, Scheme, Shifting, Tait, Term, Viscosity,
-    engine::State, lane::Lane, particles::Common, terms::Pair, walls::Walls,
-};
-use validation::{
-    cases::channel::{Arrangement, Setup},
-    theory::{Stepping, time_step},
+    Physics, PredictorCorrector, Pressure, Rate, Scene, Shifting, Tait, Term, Viscosity,
+    lane::Lane, particles::Common, physics::State, terms::Pair, walls::Walls,
 };
 
 /// What is wrong, and by how much: factors, where not said otherwise.
@@ -94,25 +92,24 @@ pub struct Spoiled<T> {
 }
 
 impl<X: Numbers, T: Term<X>> Term<X> for Spoiled<T> {
-    type Shows = T::Shows;
+    type Derived = T::Derived;
     type Sum = T::Sum;
-    const NEEDS_SPEED: bool = T::NEEDS_SPEED;
 
     fn prepare(&mut self, max_speed: f64) {
         self.term.prepare(max_speed);
     }
 
     #[inline(always)]
-    fn shows(&self, own: &Common<f64>, extra: &X) -> Self::Shows {
-        self.term.shows(own, extra)
+    fn derived(&self, own: &Common<f64>, extra: &X) -> Self::Derived {
+        self.term.derived(own, extra)
     }
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Shows as Numbers>::In<V>,
-        other: <Self::Shows as Numbers>::In<V>,
+        own: <Self::Derived as Numbers>::In<V>,
+        other: <Self::Derived as Numbers>::In<V>,
         sum: &mut <Self::Sum as Numbers>::In<V>,
     ) {
         let &Pair { r, r2, v, f, own: common, other: others, kernel } = pair;
@@ -124,9 +121,15 @@ impl<X: Numbers, T: Term<X>> Term<X> for Spoiled<T> {
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, shows: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(
+        &self,
+        own: &Common<f64>,
+        derived: Self::Derived,
+        sum: Self::Sum,
+        rate: &mut Rate<X>,
+    ) {
         let mut part = Rate::default();
-        self.term.finish(own, shows, sum, &mut part);
+        self.term.finish(own, derived, sum, &mut part);
         rate.position += part.position * self.factor;
         rate.velocity += part.velocity * self.factor;
         rate.density += part.density * self.factor;
@@ -141,11 +144,11 @@ pub struct Sided {
 }
 
 impl<X> Term<X> for Sided {
-    type Shows = f64;
+    type Derived = f64;
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn shows(&self, own: &Common<f64>, _: &X) -> f64 {
+    fn derived(&self, own: &Common<f64>, _: &X) -> f64 {
         self.eos.pressure(own.density) / (own.density * own.density)
     }
 
@@ -156,7 +159,7 @@ impl<X> Term<X> for Sided {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.velocity += sum;
     }
 }
@@ -166,8 +169,8 @@ impl<X> Term<X> for Sided {
 pub struct SpoiledRows(Spoiled<Continuity>);
 
 impl Walls<()> for SpoiledRows {
-    type Rows = Spoiled<Continuity>;
-    fn rows(&self) -> Self::Rows {
+    type Terms = Spoiled<Continuity>;
+    fn terms(&self) -> Self::Terms {
         self.0.clone()
     }
 }
@@ -338,10 +341,10 @@ impl Integrator<()> for OldVelocities {
     const NAME: &'static str = "leapfrog, drift at old velocities";
     const ORDER: [u32; 2] = [1, 1];
 
-    fn step<S: Scheme<Extra = ()>>(
+    fn step<P: Physics<Extra = ()>>(
         &mut self,
-        engine: &mut Engine<S>,
-        state: &mut State<S>,
+        engine: &mut Engine<P>,
+        state: &mut State<P>,
         dt: f64,
     ) -> Result<(), Lost> {
         engine.begin(state)?;
@@ -356,10 +359,10 @@ impl Integrator<()> for OldVelocities {
         Ok(())
     }
 
-    fn synchronise<S: Scheme<Extra = ()>>(
+    fn synchronise<P: Physics<Extra = ()>>(
         &mut self,
-        engine: &mut Engine<S>,
-        state: &mut State<S>,
+        engine: &mut Engine<P>,
+        state: &mut State<P>,
     ) -> Result<(), Lost> {
         let kick = std::mem::take(&mut self.lag);
         if kick != 0.0 {
@@ -382,16 +385,16 @@ impl Integrator<()> for LatePredictor {
     const NAME: &'static str = "predictor-corrector, whole predictor";
     const ORDER: [u32; 2] = [1, 1];
 
-    fn step<S: Scheme<Extra = ()>>(
+    fn step<P: Physics<Extra = ()>>(
         &mut self,
-        engine: &mut Engine<S>,
-        state: &mut State<S>,
+        engine: &mut Engine<P>,
+        state: &mut State<P>,
         dt: f64,
     ) -> Result<(), Lost> {
         engine.begin(state)?;
         let mut end = state.to_vec();
         engine.sweep_all(&mut end, |_, late, rate| *late = late.advanced(dt, rate));
-        engine.look(&end)?;
+        engine.refresh(&end)?;
         engine.sweep_all(state, |_, evolved, rate| *evolved = evolved.advanced(dt, rate));
         Ok(())
     }

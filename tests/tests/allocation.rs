@@ -12,8 +12,8 @@ use std::{
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, Flow, Ghosts, Integrator, Leapfrog,
-    Observer, Open, Outcome, PlaneWall, PredictorCorrector, Pressure, Scene, Scheme, Shifting,
-    Simulation, Smoothing, Tait, Viscosity,
+    Numbers, Observer, Open, Outcome, PlaneWall, PredictorCorrector, Pressure, Scene, Scheme,
+    Shifting, Smoothing, Stepper, Tait, Viscosity,
 };
 use touchstone_tests::patch;
 
@@ -46,8 +46,8 @@ type Channel = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Stabilised, Gho
 /// Stops when rows have been built this often.
 struct Builds(u64);
 
-impl<S: Scheme> Observer<S> for Builds {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+impl<X: Numbers> Observer<X> for Builds {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         if simulation.work().list_builds < self.0 { Flow::Continue } else { Flow::Stop }
     }
 }

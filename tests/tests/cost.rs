@@ -5,8 +5,8 @@ use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
     Evolved, ExtrapolatingWall, Hydrostatic, Integrator, Leapfrog, NoSlip, Open, Outcome, Particle,
-    PredictorCorrector, Pressure, QuinticSpline, Scene, ShiftAdvection, Shifting, Simulation, Tait,
-    Term, Viscosity, Xsph, engine::Shows, particles::Column,
+    PredictorCorrector, Pressure, QuinticSpline, Scene, ShiftAdvection, Shifting, Simulation,
+    Stepper, Tait, Term, Viscosity, Xsph, particles::Column, physics::Derived,
 };
 use touchstone_tests::{difference, patch};
 
@@ -14,14 +14,14 @@ type Fluid = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open,
 
 /// Memory of what a term has a particle show, and of what it sums.
 fn sizes<T: Term<()>>() -> [usize; 2] {
-    [size_of::<T::Shows>(), size_of::<T::Sum>()]
+    [size_of::<T::Derived>(), size_of::<T::Sum>()]
 }
 
 #[test]
 fn a_fluid_evolves_40_bytes_and_shows_one_cache_line() {
     assert_eq!(size_of::<Evolved<()>>(), 40);
-    assert_eq!(size_of::<Column<Shows<Fluid>>>(), 64);
-    assert_eq!(align_of::<Column<Shows<Fluid>>>(), 64);
+    assert_eq!(size_of::<Column<Derived<Fluid>>>(), 64);
+    assert_eq!(align_of::<Column<Derived<Fluid>>>(), 64);
 }
 
 #[test]

@@ -2,6 +2,11 @@
 //! at a/dx = 20. Each must fail a gate; which ones stands in `dam_power.csv`, written anew with
 //! `INSTA_UPDATE=always`.
 
+use base::{gate::Gate, record::Record};
+use harness::{
+    case::{Case, Planned, Tier},
+    runner::Context,
+};
 use nalgebra::Vector2;
 use rayon::prelude::*;
 use solver::{
@@ -9,21 +14,15 @@ use solver::{
     Scene, WendlandC2, Xsph, walls::Walls,
 };
 use std::path::Path;
-use validation::{
-    case::{Planned, Tier},
-    cases::dam_break::{self, Dam, Diffusion, Modern, NAME, Seed, Water},
-    gate::Gate,
-    record::Record,
-    runner::Context,
-};
+use waters::dam_break::{self, DAM_BREAK, Dam, DamSettings, Diffusion, Modern, Seed, Water};
 
 /// Walls whose particles keep the density, and so the pressure 0, that they were given.
 #[derive(Clone, Copy, Debug)]
 struct Frozen;
 
 impl Walls<()> for Frozen {
-    type Rows = ();
-    fn rows(&self) {}
+    type Terms = ();
+    fn terms(&self) {}
 }
 
 type ModernFrozen = Compose<WendlandC2, Water, (Continuity, Diffusion), Frozen, Leapfrog>;
@@ -56,23 +55,25 @@ where
 }
 
 fn planned(variant: &str) -> Planned {
-    let case = validation::cases::find(NAME).expect("a case");
-    let is_it = |p: &Planned| p.variant == variant && p.set == ["n=20"];
-    case.plan(Tier::Quick).into_iter().find(is_it).expect("a planned run")
+    let spec = DAM_BREAK.spec(variant, |s| s.n = 20);
+    let is_it = |planned: &Planned| planned.spec == spec;
+    DAM_BREAK.plan(Tier::Quick).into_iter().find(is_it).expect("a planned run")
+}
+
+fn settings(planned: &Planned) -> DamSettings {
+    serde_json::from_value(planned.spec.settings.clone()).expect("planned settings")
 }
 
 fn modern() -> (Planned, Dam) {
     let planned = planned("modern");
-    let settings = dam_break::settings("modern", &planned.set).expect("planned settings");
-    let dam = Dam::new::<Modern>(&settings, false).expect("sound settings");
+    let dam = Dam::new::<Modern>(&settings(&planned), false).expect("sound settings");
     (planned, dam)
 }
 
-fn seed(more: &[&str]) -> (Planned, Dam) {
+fn seed(spoil: fn(&mut DamSettings)) -> (Planned, Dam) {
     let planned = planned("seed");
-    let mut set = planned.set.clone();
-    set.extend(more.iter().map(|text| text.to_string()));
-    let settings = dam_break::settings("seed", &set).expect("planned settings");
+    let mut settings = settings(&planned);
+    spoil(&mut settings);
     let dam = Dam::new::<Seed<InterfaceWall>>(&settings, false).expect("sound settings");
     (planned, dam)
 }
@@ -94,7 +95,7 @@ const MUTANTS: [Mutant; 5] = [
         (planned, record)
     }),
     ("XSPH with the wrong sign", || {
-        let (planned, dam) = seed(&["xsph=-0.5"]);
+        let (planned, dam) = seed(|s| s.xsph = -0.5);
         let record = run(&dam, "seed", dam.scene::<Seed<InterfaceWall>>());
         (planned, record)
     }),
@@ -104,7 +105,7 @@ const MUTANTS: [Mutant; 5] = [
         (planned, record)
     }),
     ("wall density not evolved", || {
-        let (planned, dam) = seed(&[]);
+        let (planned, dam) = seed(|_| {});
         let scene = frozen::<_, SeedFrozen>(dam.scene::<Seed<InterfaceWall>>());
         let record = run(&dam, "seed", scene);
         (planned, record)
@@ -124,9 +125,8 @@ fn failed(planned: &Planned, record: &Record) -> Vec<String> {
 
 #[test]
 fn no_fault_has_the_bits_of_the_case() {
-    let case = validation::cases::find(NAME).expect("a case");
     let (planned, dam) = modern();
-    let own = case.run("modern", &planned.set, &Context::default()).expect("a run");
+    let own = DAM_BREAK.run(&planned.spec, &Context::default()).expect("a run");
     let same = run(&dam, "modern", dam.scene::<Modern>());
     assert!(own.state.is_some() && own.state == same.state);
     assert_eq!(failed(&planned, &same), Vec::<String>::new());

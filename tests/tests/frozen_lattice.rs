@@ -1,31 +1,26 @@
 //! Channel flow on a lattice that does not move, against the same sums reduced to one unknown a row
-//! (`validation::theory::channel`): independent code for the same equations, so no error of the
+//! (`maths::theory::channel`): independent code for the same equations, so no error of the
 //! method stands between them, and a weight or a wall that is off in the sixth digit is seen. Stepped
 //! alike they agree to 1e-13 of the speed of the plate, and without the error of dt to 1e-8.
 //!
 //! At Re = 1e-9 the plate moves by 2e-8 spacings in the time L²/ν: the rows stay where they are, and
 //! the density keeps its bits.
 
+use base::record::{Record, Status};
+use fluids::channel::{
+    Arrangement, ChannelSettings, Flow, Ingredient, Setup, TIMES, scene, variants,
+};
+use harness::{composed::Composition, runner::Context};
+use maths::theory::{
+    Stepping,
+    channel::{Alignment, Channel, RowModel, WallRule},
+    time_step::Integrator,
+};
 use nalgebra::DVector;
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, InterfaceWall,
     Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, Pressure, QuinticSpline, Scheme,
     Simulation, Tait, Viscosity, WendlandC2,
-};
-use validation::{
-    cases::{
-        channel::{
-            Arrangement, ChannelSettings, Flow, Ingredient, Setup, TIMES, scene, variants,
-        },
-        composed::Composition,
-    },
-    record::{Record, Status},
-    runner::Context,
-    theory::{
-        Stepping,
-        channel::{Alignment, Channel, RowModel, WallRule},
-        time_step::Integrator,
-    },
 };
 
 /// A channel flow in the kernel K, the walls W and the integrator I, and no stabiliser.

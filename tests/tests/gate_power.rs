@@ -5,16 +5,14 @@
 //! What each mutant fails stands in `gate_power.csv`, what each gate is worth in
 //! `gate_power_gates.csv`; both are compared exactly, and written anew with `INSTA_UPDATE=always`.
 
-mod gate_power_runs;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use base::gate::Gate;
 use rayon::prelude::*;
 use touchstone_tests::spoil::Fault;
-use validation::gate::Gate;
 
-use gate_power_runs::{GROUPS, Job, Measured, jobs};
+use crate::gate_power_runs::{self, GROUPS, Job, Measured, jobs};
 
 /// What is spoiled: the solver, by a fault; or the reference.
 #[derive(Clone, Copy)]

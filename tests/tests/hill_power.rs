@@ -2,6 +2,12 @@
 //! thing spoiled. Each must fail a gate; which ones stands in `hill_power.csv`, written anew with
 //! `INSTA_UPDATE=always`.
 
+use base::record::Record;
+use fluids::periodic_hill::{self, HillSettings, HillWall, PERIODIC_HILL, Setup};
+use harness::{
+    case::{Planned, Tier},
+    runner::Context,
+};
 use nalgebra::Vector2;
 use rayon::prelude::*;
 use solver::{
@@ -12,12 +18,6 @@ use solver::{
     walls::{WallVelocity, Walls},
 };
 use std::path::Path;
-use validation::{
-    case::{Case, Planned, Tier},
-    cases::periodic_hill::{self, HillWall, Setup},
-    record::Record,
-    runner::Context,
-};
 
 type Forces = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Drift = (Continuity, DensityDiffusion, Shifting);
@@ -44,9 +44,9 @@ impl WallVelocity for Slip {
 struct Wall<U>(ExtrapolatingWall<Tait, U>);
 
 impl<U: WallVelocity> Walls<()> for Wall<U> {
-    type Rows = ExtrapolatingWall<Tait, U>;
+    type Terms = ExtrapolatingWall<Tait, U>;
     const EXTRAPOLATES: bool = true;
-    fn rows(&self) -> Self::Rows {
+    fn terms(&self) -> Self::Terms {
         self.0
     }
 }
@@ -63,23 +63,29 @@ impl<U: WallVelocity> HillWall for Wall<U> {
 struct Fault {
     name: &'static str,
     /// Settings of the scene alone: the record is judged by those of the plan.
-    scene: &'static [&'static str],
+    scene: fn(&mut HillSettings),
     /// Settings of the run.
-    run: &'static [&'static str],
+    run: fn(&mut HillSettings),
     viscosity: f64,
     shifting: f64,
     slips: bool,
 }
 
-const NONE: Fault =
-    Fault { name: "nothing", scene: &[], run: &[], viscosity: 1.0, shifting: 1.0, slips: false };
+const NONE: Fault = Fault {
+    name: "nothing",
+    scene: |_| {},
+    run: |_| {},
+    viscosity: 1.0,
+    shifting: 1.0,
+    slips: false,
+};
 
 const FAULTS: [Fault; 5] = [
-    Fault { name: "hill 2 % higher", scene: &["crest=1.02"], ..NONE },
+    Fault { name: "hill 2 % higher", scene: |s| s.crest = 1.02, ..NONE },
     Fault { name: "walls slip", slips: true, ..NONE },
     Fault {
         name: "controller off and force 10 % low",
-        run: &["response=0", "force=0.0322"],
+        run: |s| (s.response, s.force) = (0.0, 0.0322),
         ..NONE
     },
     Fault { name: "viscosity x 1.05", viscosity: 1.05, ..NONE },
@@ -87,8 +93,7 @@ const FAULTS: [Fault; 5] = [
 ];
 
 fn planned() -> Planned {
-    let case = validation::cases::find("periodic_hill").expect("a case");
-    case.plan(Tier::Quick).into_iter().next().expect("a planned run")
+    PERIODIC_HILL.plan(Tier::Quick).into_iter().next().expect("a planned run")
 }
 
 /// The scene of the settings with its walls replaced.
@@ -109,10 +114,10 @@ fn with_walls<W: Walls<()>>(healthy: Scene<Method<Sticking>>, walls: W) -> Scene
 
 fn run(fault: &Fault) -> Record {
     let planned = planned();
-    let setup = |more: &[&str]| {
-        let mut set = planned.set.clone();
-        set.extend(more.iter().map(ToString::to_string));
-        let settings = periodic_hill::settings(planned.variant, &set).expect("sound settings");
+    let setup = |spoil: fn(&mut HillSettings)| {
+        let settings = planned.spec.settings.clone();
+        let mut settings = serde_json::from_value(settings).expect("planned settings");
+        spoil(&mut settings);
         Setup::new::<Method<Sticking>>(&settings, false).expect("sound settings")
     };
     let mut scene = periodic_hill::scene::<Method<Sticking>>(&setup(fault.scene));
@@ -123,7 +128,7 @@ fn run(fault: &Fault) -> Record {
         (scene.forces.3, scene.drift.2) = (ShiftAdvection(none), none);
     }
     let context = Context::default();
-    let (eos, variant) = (setup.fluid.eos, planned.variant);
+    let (eos, variant) = (setup.fluid.eos, planned.spec.variant.as_str());
     let none = Vector2::zeros();
     let record = if fault.slips {
         let velocity = Slip;
@@ -145,7 +150,7 @@ fn run_scene<S>(
     variant: &str,
     scene: Scene<S>,
     context: &Context,
-) -> Result<Record, validation::case::RunError>
+) -> Result<Record, harness::case::RunError>
 where
     S: Scheme<Extra = (), Forces = Forces>,
     S::Walls: HillWall,
@@ -155,8 +160,7 @@ where
 
 /// Gates that this record fails.
 fn failed(planned: &Planned, record: &Record) -> Vec<String> {
-    let fails =
-        |gate: &&validation::gate::Gate| gate.judge(gate.value(record)).verdict.is_failure();
+    let fails = |gate: &&base::gate::Gate| gate.judge(gate.value(record)).verdict.is_failure();
     planned.gates.iter().filter(fails).map(|gate| gate.id.clone()).collect()
 }
 
@@ -164,8 +168,7 @@ fn failed(planned: &Planned, record: &Record) -> Vec<String> {
 #[ignore = "two runs of 15 s each on an idle core; cargo test --test hill_power -- --ignored"]
 fn no_fault_has_the_bits_of_the_case() {
     let planned = planned();
-    let case: &dyn Case = validation::cases::find("periodic_hill").expect("a case");
-    let own = case.run(planned.variant, &planned.set, &Context::default()).expect("a run");
+    let own = PERIODIC_HILL.run(&planned.spec, &Context::default()).expect("a run");
     let same = run(&NONE);
     assert!(own.state.is_some() && own.state == same.state);
     assert_eq!(failed(&planned, &same), Vec::<String>::new());

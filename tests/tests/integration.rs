@@ -2,7 +2,8 @@
 
 use solver::{
     Compose, Continuity, Domain, Euler, Flow, Integrator, Leapfrog, Observer, Open, Outcome,
-    Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, Tait, Viscosity,
+    Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, Stepper, Tait,
+    Viscosity,
 };
 use touchstone_tests::{bits, difference, patch};
 
@@ -96,8 +97,8 @@ struct Clock {
     dts: Vec<f64>,
 }
 
-impl<I: Integrator<()>> Observer<Scheme<I>> for Clock {
-    fn after_step(&mut self, simulation: &Simulation<Scheme<I>>) -> Flow {
+impl Observer<()> for Clock {
+    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
         self.times.push(simulation.time());
         self.dts.push(simulation.dt());
         Flow::Continue

@@ -3,8 +3,9 @@
 use nalgebra::Vector2;
 use solver::{
     Checkpoint, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Integrator,
-    Leapfrog, NoSlip, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure, Role, Scene,
-    SceneError, Scheme, Shifting, Simulation, Smoothing, Tait, Viscosity, lattice, walls::Walls,
+    Leapfrog, NoSlip, Numbers, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure,
+    Role, Scene, SceneError, Scheme, Shifting, Simulation, Smoothing, Stepper, Tait, Viscosity,
+    lattice, walls::Walls,
 };
 use touchstone_tests::{bits, patch};
 
@@ -47,8 +48,8 @@ fn scene_of<I: Integrator<()>, W: Walls<()>>(
 /// Stops after so many steps of the run.
 struct After(u64);
 
-impl<S: Scheme> Observer<S> for After {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+impl<X: Numbers> Observer<X> for After {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         if simulation.work().steps == self.0 { Flow::Stop } else { Flow::Continue }
     }
 }
@@ -119,7 +120,7 @@ fn checkpoints_that_no_run_can_have_made_are_refused() {
         scene::<Leapfrog>().resume(&changed).err().expect("refused")
     };
     for (change, part) in [
-        (&(|c: &mut Checkpoint| c.time = f64::NAN) as &dyn Fn(&mut Checkpoint), "time"),
+        (&(|c: &mut Checkpoint| c.progress.time = f64::NAN) as &dyn Fn(&mut Checkpoint), "time"),
         (&|c| c.lag = f64::INFINITY, "lag"),
         (&|c| c.built_at.truncate(5), "places"),
         (&|c| c.built_at[3].x = f64::NAN, "place that is not finite"),

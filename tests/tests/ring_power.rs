@@ -2,22 +2,23 @@
 //! run of the rings at spacing 0.2 L and through elastic waves. Each must fail a gate; which ones
 //! stands in `ring_power.csv`, written anew with `INSTA_UPDATE=always`.
 
+use base::{gate::Gate, record::Record};
+use harness::{
+    case::{Case, Planned, Tier},
+    runner::Context,
+};
 use nalgebra::Vector2;
 use rayon::prelude::*;
+use solids::{
+    elastic_wave::{self, ElasticWave, Turning},
+    rings::{self, RUBBER_RINGS, RingSettings, Rings, Rubber},
+};
 use solver::{
     ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, JaumannRate, Kernel,
     Leapfrog, Linear, Open, PrincipalStress, Rate, Scene, Symmetric, Term, Xsph, lane::Lane,
     numbers::Numbers, particles::Common, terms::Pair,
 };
 use std::path::Path;
-use validation::{
-    case::{Planned, Tier},
-    cases::rings::{self, Rings, Rubber},
-    gate::Gate,
-    record::Record,
-    runner::Context,
-    studies::elastic_waves::{self, ElasticWave, Turning},
-};
 
 /// What is wrong; all neutral by default.
 #[derive(Clone, Copy, Debug)]
@@ -58,23 +59,23 @@ struct SidedStress<R>(CauchyStress<Linear, R>, f64);
 impl<R> Term<Symmetric> for SidedStress<R>
 where
     CauchyStress<Linear, R>:
-        Term<Symmetric, Sum = Vector2<f64>, Shows = (Symmetric, <Self as Shown>::Tensile)>,
+        Term<Symmetric, Sum = Vector2<f64>, Derived = (Symmetric, <Self as Shown>::Tensile)>,
     Self: Shown,
     R: Clone + Send + Sync + 'static,
 {
-    type Shows = (Symmetric, <Self as Shown>::Tensile);
+    type Derived = (Symmetric, <Self as Shown>::Tensile);
     type Sum = Vector2<f64>;
 
-    fn shows(&self, own: &Common<f64>, extra: &Symmetric) -> Self::Shows {
-        self.0.shows(own, extra)
+    fn derived(&self, own: &Common<f64>, extra: &Symmetric) -> Self::Derived {
+        self.0.derived(own, extra)
     }
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Shows as Numbers>::In<V>,
-        other: <Self::Shows as Numbers>::In<V>,
+        own: <Self::Derived as Numbers>::In<V>,
+        other: <Self::Derived as Numbers>::In<V>,
         sum: &mut Vector2<V>,
     ) {
         self.0.pair(pair, (own.0 * V::all(self.1), own.1), other, sum);
@@ -83,11 +84,11 @@ where
     fn finish(
         &self,
         own: &Common<f64>,
-        shows: Self::Shows,
+        derived: Self::Derived,
         sum: Vector2<f64>,
         rate: &mut Rate<Symmetric>,
     ) {
-        self.0.finish(own, shows, sum, rate);
+        self.0.finish(own, derived, sum, rate);
     }
 }
 
@@ -109,11 +110,11 @@ impl Shown for SidedStress<()> {
 struct PerhapsRotating(JaumannRate, bool);
 
 impl Term<Symmetric> for PerhapsRotating {
-    type Shows = Symmetric;
+    type Derived = Symmetric;
     type Sum = <JaumannRate as Term<Symmetric>>::Sum;
 
-    fn shows(&self, own: &Common<f64>, extra: &Symmetric) -> Symmetric {
-        self.0.shows(own, extra)
+    fn derived(&self, own: &Common<f64>, extra: &Symmetric) -> Symmetric {
+        self.0.derived(own, extra)
     }
 
     #[inline(always)]
@@ -147,13 +148,14 @@ fn rate(healthy: JaumannRate, fault: &Fault) -> PerhapsRotating {
 }
 
 fn planned() -> Planned {
-    let case = validation::cases::find("rubber_rings").expect("a case");
-    let is_it = |p: &Planned| p.variant == "leapfrog" && p.set == ["spacing=0.2"];
-    case.plan(Tier::Quick).into_iter().find(is_it).expect("a planned run")
+    let spec = RUBBER_RINGS.spec("leapfrog", |s| s.spacing = 0.2);
+    let is_it = |planned: &Planned| planned.spec == spec;
+    RUBBER_RINGS.plan(Tier::Quick).into_iter().find(is_it).expect("a planned run")
 }
 
 fn collide(planned: &Planned, fault: &Fault) -> Record {
-    let settings = rings::settings(planned.variant, &planned.set).expect("planned settings");
+    let settings = planned.spec.settings.clone();
+    let settings: RingSettings = serde_json::from_value(settings).expect("planned settings");
     let mut rings = Rings::new::<Leapfrog>(&settings, false).expect("sound settings");
     rings.dt *= (fault.time_step)(&rings);
     let healthy: Scene<Rubber<PrincipalStress, Leapfrog>> = rings.scene();
@@ -178,7 +180,7 @@ fn collide(planned: &Planned, fault: &Fault) -> Record {
     let context = Context::default();
     rings::run_scene(
         &rings,
-        planned.variant,
+        &planned.spec.variant,
         "leapfrog",
         scene,
         &rings::powers::<PrincipalStress, _>,
@@ -225,7 +227,7 @@ fn failed(fault: &Fault) -> (Vec<String>, usize) {
         .collect();
     for is_transverse in [false, true] {
         let wave = ElasticWave { is_transverse, h_over_dx: 1.5 };
-        let gate = elastic_waves::gate(CubicSpline::NAME, &wave);
+        let gate = elastic_wave::gate(CubicSpline::NAME, &wave);
         if fails(&gate, Some(ripple(&wave, fault))) {
             failed.push(gate.id);
         }
@@ -240,8 +242,7 @@ fn failed(fault: &Fault) -> (Vec<String>, usize) {
 #[test]
 fn no_fault_has_the_bits_of_the_case() {
     let planned = planned();
-    let case = validation::cases::find("rubber_rings").expect("a case");
-    let own = case.run(planned.variant, &planned.set, &Context::default()).expect("a run");
+    let own = RUBBER_RINGS.run(&planned.spec, &Context::default()).expect("a run");
     let wrapped = collide(&planned, &NONE);
     assert!(own.state.is_some() && own.state == wrapped.state);
     assert_eq!(failed(&NONE).0, Vec::<String>::new());

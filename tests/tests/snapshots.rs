@@ -9,20 +9,22 @@ use std::{
     f64::consts::TAU,
 };
 
+use base::{
+    gate::{Bound, Evidence, Gate, check_all},
+    record::{Record, Status},
+    settings::Value as Default,
+    spec::{RunSpec, Task},
+};
+use fluids::channel::{Flow, ladder};
+use harness::{
+    case::{self, Case, Tier},
+    plan,
+    runner::Context,
+};
 use insta::{Comparator, Settings, Snapshot};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
-use validation::{
-    case::{Case, Planned, Tier},
-    cases::{
-        self,
-        channel::{Flow, plan::ladder},
-    },
-    gate::{Bound, Evidence, Gate, check_all},
-    record::{Record, Status},
-    runner::Context,
-    settings::Value as Default,
-};
+use validation::cases;
 
 /// Metrics may differ by this much of themselves.
 const RELATIVE: f64 = 1e-6;
@@ -82,63 +84,132 @@ fn assert_close(name: &str, value: &Value) {
     settings.bind(|| insta::assert_snapshot!(name, format!("{value:#}")));
 }
 
-/// Runs of the plan that are kept: the ladders up to 20 rows, `modern` where it creeps, and every wave.
-fn is_kept(case: &dyn Case, planned: &Planned) -> bool {
-    let small = ["rows=8", "rows=10", "rows=14", "rows=20"];
-    let flow = match case.name() {
-        "couette" => Some(Flow::Couette),
-        "poiseuille" => Some(Flow::Poiseuille),
-        _ => None,
-    };
-    let is_ladder = flow.is_some_and(|flow| ladder(flow).contains(&planned.variant))
-        && planned.set.len() == 1
-        && small.contains(&planned.set[0].as_str());
-    // Theory is that of the lattice: on a disordered one only its gate means something.
-    let is_ordered = !planned.set.iter().any(|set| set.starts_with("jitter"));
-    let is_modern = flow.is_some() && planned.variant == "modern" && is_slow(planned);
-    is_ladder
-        || is_modern
-        || (case.name().ends_with("_wave") && is_ordered)
-        || is_kept_solid(case, planned)
-        || is_kept_water(case, planned)
-        || is_kept_vortex(case, planned)
-}
+/// Variants, and settings of theirs.
+type Kept = (Vec<&'static str>, Vec<&'static str>);
 
-/// Curved walls at eight spacings, and vortices from the lattice.
-fn is_kept_vortex(case: &dyn Case, planned: &Planned) -> bool {
-    let set = |text: &str| planned.set.iter().any(|set| set == text);
-    match case.name() {
-        "taylor_couette" => set("layers=8"),
-        "taylor_green" => set("n=32") && set("perturb=0"),
-        _ => false,
+/// Runs of the plan that are kept, variants and settings: the ladders up to 20 rows, `modern` where it
+/// creeps, every wave on an ordered lattice, for theory is that of the lattice.
+fn kept(case: &str) -> Vec<Kept> {
+    let kernels = |names: [&'static str; 2], sets: &[&'static str]| (names.to_vec(), sets.to_vec());
+    let [cubic, quintic, wendland] = [
+        ["cubic-leapfrog", "cubic-pc"],
+        ["quintic-leapfrog", "quintic-pc"],
+        ["wendland-leapfrog", "wendland-pc"],
+    ];
+    match case {
+        "couette" => kept_channel(Flow::Couette),
+        "poiseuille" => kept_channel(Flow::Poiseuille),
+        "acoustic_wave" => vec![
+            kernels(
+                cubic,
+                &[
+                    "h_over_dx=1.2 kx=1 ky=0",
+                    "h_over_dx=1.3 kx=1 ky=0",
+                    "h_over_dx=1.2 compression=0.05",
+                ],
+            ),
+            kernels(
+                quintic,
+                &[
+                    "h_over_dx=1 kx=1 ky=0",
+                    "h_over_dx=1.3 kx=1 ky=0",
+                    "h_over_dx=1 compression=0.05",
+                ],
+            ),
+            kernels(
+                wendland,
+                &[
+                    "h_over_dx=1.5 kx=1 ky=0",
+                    "h_over_dx=2 kx=1 ky=0",
+                    "h_over_dx=1.5 compression=0.05",
+                ],
+            ),
+            (vec!["cubic-leapfrog-diffusion"], vec!["h_over_dx=1.2 kx=1 ky=0"]),
+        ],
+        "shear_wave" => vec![
+            kernels(cubic, &["h_over_dx=1.2 kx=1 ky=0 nu=0.01", "h_over_dx=1.3 kx=1 ky=0 nu=0.01"]),
+            kernels(quintic, &["h_over_dx=1 kx=1 ky=0 nu=0.01", "h_over_dx=1.3 kx=1 ky=0 nu=0.01"]),
+            kernels(
+                wendland,
+                &["h_over_dx=1.5 kx=1 ky=0 nu=0.01", "h_over_dx=2 kx=1 ky=0 nu=0.01"],
+            ),
+        ],
+        "taylor_couette" => vec![(vec!["extrapolating-wall", "interface-wall"], vec!["layers=8"])],
+        "taylor_green" => vec![(vec!["consistent"], vec!["n=32 perturb=0"])],
+        _ => [kept_solid(case), kept_water(case)].concat(),
     }
 }
 
-/// Re 0.0125, 0.5 and 1: where disorder has not made much of a rounding.
-fn is_slow(planned: &Planned) -> bool {
-    ["re=0.0125", "re=0.5", "re=1"].iter().any(|re| planned.set.iter().any(|set| set == re))
+/// Of channels: `modern` at Re 0.0125, 0.5 and 1, where disorder has not made much of a rounding.
+fn kept_channel(flow: Flow) -> Vec<Kept> {
+    let slow = vec!["re=0.0125 end=1.5", "re=0.5 end=1.5", "re=1 end=1.5"];
+    let rows = vec!["rows=8", "rows=10", "rows=14", "rows=20"];
+    vec![(ladder(flow).to_vec(), rows), (vec!["modern"], slow)]
 }
 
 /// Of cases of water: what is at rest or flows smoothly, and is coarse.
-fn is_kept_water(case: &dyn Case, planned: &Planned) -> bool {
-    let is_coarse = planned.set == ["n=20"];
-    match case.name() {
-        "hydrostatic" => planned.set.len() == 1,
-        "elliptic_drop" => is_coarse,
-        "dam_break" => is_coarse && planned.variant != "ghosts",
-        _ => false,
+fn kept_water(case: &str) -> Vec<Kept> {
+    match case {
+        "hydrostatic" => vec![
+            (vec!["modern", "ghosts", "seed"], vec!["compressibility=0.01"]),
+            (vec!["modern"], vec!["compressibility=0.1", "compressibility=1e-4"]),
+        ],
+        "elliptic_drop" => vec![(vec!["seed", "plain", "modern"], vec!["n=20"])],
+        "dam_break" => vec![(vec!["seed", "modern"], vec!["n=20"])],
+        _ => Vec::new(),
     }
 }
 
 /// Of solid cases: short runs, before a start without stress has made much of a rounding.
-fn is_kept_solid(case: &dyn Case, planned: &Planned) -> bool {
-    let set = |text: &str| planned.set.iter().any(|set| set == text);
-    match case.name() {
-        "elastic_bar" => set("n=40") || planned.set.len() == 2,
-        "spinning_disk" => set("end=0.1"),
-        "oscillating_plate" => planned.variant == "bare" && set("n=5"),
-        _ => false,
+fn kept_solid(case: &str) -> Vec<Kept> {
+    match case {
+        "elastic_bar" => vec![(
+            vec!["bare", "plain", "seed"],
+            vec![
+                "n=40",
+                "collide=true speed=0.1",
+                "collide=true speed=1e-2",
+                "collide=true speed=1e-3",
+                "collide=true speed=1e-4",
+            ],
+        )],
+        "spinning_disk" => {
+            let steps =
+                ["n=8 end=0.1 courant=0.1", "n=8 end=0.1 courant=0.4", "n=8 end=0.1 courant=0.8"];
+            vec![(vec!["bare"], steps.to_vec())]
+        }
+        "oscillating_plate" => vec![(vec!["bare"], vec!["n=5"])],
+        _ => Vec::new(),
     }
+}
+
+/// A run that is kept and the name of its numbers in the snapshot of its variant.
+struct Run {
+    name: &'static str,
+    spec: RunSpec,
+}
+
+/// The runs of a case that are kept; each is in the plan of the quick tier.
+fn runs(case: &dyn Case) -> Vec<Run> {
+    let planned = plan::of_case(case, Tier::Quick);
+    let is_planned = |spec: &RunSpec| {
+        planned.iter().map(|planned| &planned.spec).any(|other| {
+            (&other.variant, &other.settings) == (&spec.variant, &spec.settings)
+                && other.task == Task::Simulate
+        })
+    };
+    let mut runs = Vec::new();
+    for (variants, names) in kept(case.name()) {
+        for (variant, name) in
+            variants.iter().flat_map(|v| names.iter().map(move |name| (v, *name)))
+        {
+            let set: Vec<String> = name.split(' ').map(String::from).collect();
+            let spec = case::spec(case, variant, &set).expect("sound settings");
+            assert!(is_planned(&spec), "{} {variant} {name} is not planned", case.name());
+            runs.push(Run { name, spec });
+        }
+    }
+    runs
 }
 
 /// Metrics and counts of one run.
@@ -158,7 +229,7 @@ fn numbers(record: &Record) -> Value {
 fn layout(record: &Record) -> Value {
     let metrics: Map<String, Value> =
         record.metrics.iter().map(|(name, m)| (name.clone(), json!(m.unit))).collect();
-    let columns = |profile: &validation::record::Profile| -> Value {
+    let columns = |profile: &base::record::Profile| -> Value {
         profile.columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
     };
     let profiles: Map<String, Value> =
@@ -302,17 +373,17 @@ fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     }
 }
 
-fn outside_bounds(case: &str, planned: &Planned, record: &Record) -> Vec<String> {
-    let mut outside = Vec::new();
+fn outside_bounds(case: &str, Run { name: set, spec }: &Run, record: &Record) -> Vec<String> {
+    let (variant, mut outside) = (&spec.variant, Vec::new());
     if record.status != Status::Completed {
-        outside.push(format!("{} {:?}: {:?}", planned.variant, planned.set, record.status));
+        outside.push(format!("{variant} {set}: {:?}", record.status));
     }
     for (name, bound, because) in bounds_beside(case) {
         for (metric, found) in &record.metrics {
             let time = metric.split('@').nth(1).and_then(|tau| tau.parse::<f64>().ok());
             let is_judged = group(metric) == name && time.is_none_or(|tau| tau >= 0.1);
             if is_judged && !bound.contains(found.value) {
-                let run = format!("{case} {} {:?}", planned.variant, planned.set);
+                let run = format!("{case} {variant} {set}");
                 outside.push(format!("{run}: {metric} = {:e}, {bound}: {because}", found.value));
             }
         }
@@ -323,18 +394,16 @@ fn outside_bounds(case: &str, planned: &Planned, record: &Record) -> Vec<String>
 /// Runs what is kept and compares, one snapshot for each case and variant.
 fn check(name: &str) {
     let case = cases::find(name).expect("a case");
-    let plan: Vec<Planned> =
-        case.plan(Tier::Quick).into_iter().filter(|p| is_kept(case, p)).collect();
-    let run =
-        |p: &Planned| case.run(p.variant, &p.set, &Context::default()).expect("a planned run");
-    let records: Vec<Record> = plan.par_iter().map(run).collect();
+    let runs = runs(case);
+    let record = |run: &Run| case.run(&run.spec, &Context::default()).expect("a planned run");
+    let records: Vec<Record> = runs.par_iter().map(record).collect();
     let mut documents: BTreeMap<&str, Map<String, Value>> = BTreeMap::new();
     let mut outside = Vec::new();
-    for (planned, record) in plan.iter().zip(&records) {
-        let document = documents.entry(planned.variant).or_default();
-        document.insert(planned.set.join(" "), numbers(record));
+    for (run, record) in runs.iter().zip(&records) {
+        let document = documents.entry(&run.spec.variant).or_default();
+        document.insert(run.name.into(), numbers(record));
         document.entry("layout").or_insert_with(|| layout(record));
-        outside.extend(outside_bounds(name, planned, record));
+        outside.extend(outside_bounds(name, run, record));
     }
     assert!(outside.is_empty(), "{}", outside.join("\n"));
     for (variant, document) in documents {
@@ -431,7 +500,8 @@ fn settings_are_as_they_were() {
 /// Every group of metrics in a snapshot has a gate that is no regression, or a bound above.
 #[test]
 fn every_snapshot_has_a_physical_bound_beside_it() {
-    let plans = |case: &dyn Case| [Tier::Quick, Tier::Full].map(|tier| case.plan(tier)).concat();
+    let plans =
+        |case: &dyn Case| [Tier::Quick, Tier::Full].map(|tier| plan::of_case(case, tier)).concat();
     let gated = |gates: &[Gate]| -> BTreeSet<String> {
         let physical = gates.iter().filter(|gate| gate.evidence != Evidence::Regression);
         physical.map(|gate| group(&gate.metric).to_string()).collect()
@@ -446,9 +516,8 @@ fn every_snapshot_has_a_physical_bound_beside_it() {
         let is_channel = channels.iter().any(|channel| channel.name() == name);
         let mut bounded = if is_channel { of_channels.clone() } else { gated(&gates_of(case)) };
         bounded.extend(bounds_beside(name).into_iter().map(|(group, _, _)| group.to_string()));
-        let planned = case.plan(Tier::Quick).into_iter().find(|p| is_kept(*case, p));
-        let Some(planned) = planned else { continue };
-        let record = case.run(planned.variant, &planned.set, &Context::default());
+        let Some(run) = runs(*case).into_iter().next() else { continue };
+        let record = case.run(&run.spec, &Context::default());
         let metrics = record.expect("a planned run").metrics;
         let unbounded: BTreeSet<&str> =
             metrics.keys().map(|m| group(m)).filter(|group| !bounded.contains(*group)).collect();
@@ -463,7 +532,7 @@ fn every_snapshot_has_a_physical_bound_beside_it() {
 #[test]
 fn gates_have_names_of_their_own() {
     for tier in [Tier::Quick, Tier::Full] {
-        let plans = cases::CASES.iter().flat_map(|case| case.plan(tier));
+        let plans = cases::CASES.iter().flat_map(|case| plan::of_case(*case, tier));
         let gates: Vec<Gate> = plans.flat_map(|planned| planned.gates).collect();
         assert!(gates.len() > 80, "{}", gates.len());
         check_all(&gates).expect("sound gates with names of their own");

@@ -4,21 +4,21 @@
 
 use std::f64::consts::PI;
 
+use maths::theory::lattice::SquareLattice;
 use nalgebra::{Matrix2, Rotation2, Vector2};
 use solver::{
     ArtificialViscosity, CauchyStress, ComponentStress, Compose, Continuity, CubicSpline, Domain,
     EquationOfState, Euler, Evolved, Flow, Integrator, JaumannRate, Kernel, Leapfrog, Linear,
     Numbers, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure, PrincipalStress,
-    QuinticSpline, Rate, Scene, Scheme, Simulation, Smoothing, Symmetric, Tait, Term, Viscosity,
+    QuinticSpline, Rate, Scene, Simulation, Smoothing, Stepper, Symmetric, Tait, Term, Viscosity,
     WendlandC2, Xsph,
-    engine::Shows,
     lane::Lane,
     lattice,
     particles::{Column, Common},
+    physics::Derived,
     terms::{Pair, TensileStress},
 };
 use touchstone_tests::{Random, V2, open_rates, relative_sum};
-use validation::theory::lattice::SquareLattice;
 
 type Tensor = Matrix2<f64>;
 type Solid = Particle<Symmetric>;
@@ -315,7 +315,7 @@ fn the_artificial_stress_has_the_principal_axes_of_the_stress() {
     stresses.extend((0..1000).map(|_| random_stress(&mut random) * random.between(1e-9, 1.0)));
     let mut kinds = [0; 3];
     for stress in stresses {
-        let (shown, expected) = (matrix(term.shows(stress)), tension(matrix(stress)) * -XI);
+        let (shown, expected) = (matrix(term.derived(stress)), tension(matrix(stress)) * -XI);
         let apart = (shown - expected).amax();
         assert!(apart <= 1e-14 * matrix(stress).amax(), "{stress:?}: {shown} is not {expected}");
         let eigen = matrix(stress).symmetric_eigenvalues();
@@ -379,7 +379,7 @@ struct Carousel {
 }
 
 impl<X: Numbers> Term<X> for Carousel {
-    type Shows = ();
+    type Derived = ();
     type Sum = ();
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: (), _: &mut ()) {}
     fn finish(&self, _: &Common<f64>, _: (), _: (), rate: &mut Rate<X>) {
@@ -505,12 +505,12 @@ fn a_turned_collision_is_the_collision_turned_with_principal_axes_only() {
 #[test]
 fn a_solid_takes_24_bytes_more_and_a_fluid_none() {
     assert_eq!((size_of::<Symmetric>(), size_of::<Evolved<Symmetric>>()), (24, 64));
-    assert_eq!(size_of::<Column<Shows<Rings<PrincipalStress>>>>(), 128);
-    assert_eq!(size_of::<Column<Shows<Rings<()>>>>(), 128);
-    assert_eq!(size_of::<<CauchyStress<Linear> as Term<Symmetric>>::Shows>(), 24);
-    assert_eq!(size_of::<<JaumannRate as Term<Symmetric>>::Shows>(), 24);
+    assert_eq!(size_of::<Column<Derived<Rings<PrincipalStress>>>>(), 128);
+    assert_eq!(size_of::<Column<Derived<Rings<()>>>>(), 128);
+    assert_eq!(size_of::<<CauchyStress<Linear> as Term<Symmetric>>::Derived>(), 24);
+    assert_eq!(size_of::<<JaumannRate as Term<Symmetric>>::Derived>(), 24);
     type Fluid = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
-    assert_eq!((size_of::<Evolved<()>>(), size_of::<Column<Shows<Fluid>>>()), (40, 64));
+    assert_eq!((size_of::<Evolved<()>>(), size_of::<Column<Derived<Fluid>>>()), (40, 64));
 }
 
 // Waves and growth --------------------------------------------------------------------------------
@@ -651,8 +651,8 @@ struct Mode {
     amplitudes: Vec<f64>,
 }
 
-impl<S: Scheme> Observer<S> for Mode {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+impl<X: Numbers> Observer<X> for Mode {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         let particles = simulation.particles();
         let products = particles.iter().zip(&self.weights).map(|(p, w)| p.velocity.dot(w));
         self.amplitudes.push(products.fold(0.0, |sum, x| sum + x));

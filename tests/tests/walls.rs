@@ -47,7 +47,7 @@ fn shown<K: Kernel, U: WallVelocity>(
         velocity: c.velocity,
         density: c.common.density,
         mass_over_volume: c.common.mass / c.common.volume,
-        stress: (c.shows.0).0,
+        stress: (c.derived.0).0,
     });
     shown.collect()
 }

@@ -9,8 +9,8 @@ use criterion::measurement::WallTime;
 use criterion::{
     BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
 };
+use fluids::bench::{Rebuilding, SHORT, SIDES, scene, stale_distance};
 use solver::{Euler, Integrator, Leapfrog, PredictorCorrector};
-use validation::bench::{Rebuilding, SHORT, SIDES, scene, stale_distance};
 
 /// One call of `advance` a sample, so that what `advance` does at its end weighs little.
 fn steps<I: Integrator<()>>(

@@ -1,5 +1,6 @@
 //! The command line as a user has it: exit codes, messages, files, interrupts; and random settings.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -7,12 +8,16 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use base::{
+    record::{Record, Status},
+    spec::RunSpec,
+};
+use harness::case::{Case, spec};
+use harness::runner::Context;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use serde_json::Value;
-use validation::case::Case;
-use validation::record::{Record, Status};
-use validation::{cases, runner::Context};
+use validation::cases;
 
 fn touchstone_in(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
@@ -97,7 +102,7 @@ fn unknown_names_are_refused_with_the_nearest() {
     refused(&["run", "couette", "--variant", "modrn"], &["did you mean modern?", "seed"]);
     refused(&["run", "couette", "--set", "row=8"], &["did you mean rows?"]);
     refused(&["run", "couette", "--set", "rows"], &["key=value"]);
-    refused(&["stability", "acoustic_wave"], &["acoustic_wave cannot be bisected here", "jitter"]);
+    refused(&["stability", "acoustic_wave"], &["acoustic_wave declares no largest stable time"]);
     refused(&["explain", "no.such.gate"], &["no gate is called \"no.such.gate\""]);
 }
 
@@ -193,6 +198,100 @@ fn a_run_writes_its_files_whole() {
     let empty = tempfile::tempdir().unwrap();
     assert_eq!(touchstone_in(empty.path(), &short("couette", &[])).status.code(), Some(0));
     assert_eq!(files(empty.path()), Vec::<String>::new());
+}
+
+/// The record that the command prints.
+#[track_caller]
+fn record_of(folder: &Path, arguments: &[&str]) -> Record {
+    let output = touchstone_in(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
+    Record::from_json(&stdout(&output)).unwrap()
+}
+
+/// Frames are written between steps that are what they were without them.
+#[test]
+fn watching_does_not_change_a_run() {
+    let runs: [&[&str]; 3] = [
+        &["run", "couette", "--variant", "seed", "--rows", "8", "--set", "end=0.1"],
+        &["run", "dam_break", "--variant", "modern", "--set", "n=8", "--set", "end=0.5"],
+        &[
+            "run",
+            "rubber_rings",
+            "--variant",
+            "leapfrog",
+            "--set",
+            "spacing=0.5",
+            "--set",
+            "end=20",
+        ],
+    ];
+    for run in runs {
+        let folder = tempfile::tempdir().unwrap();
+        let unwatched = record_of(folder.path(), &[run, &["--json"]].concat());
+        let watched = record_of(folder.path(), &[run, &["--json", "--vtk", "3"]].concat());
+        let frames = files(folder.path()).iter().filter(|file| file.ends_with(".vtp")).count();
+        assert_eq!(frames, 3, "{run:?}");
+        assert!(watched.state.is_some() && watched.cost.steps > 10, "{run:?}");
+        assert_eq!(watched.state, unwatched.state, "{run:?}");
+        assert_eq!(watched.cost.steps, unwatched.cost.steps, "{run:?}");
+        assert_eq!(watched.metrics, unwatched.metrics, "{run:?}");
+    }
+}
+
+/// Watched or not, a run that diverges says so, and its frames are those before.
+#[test]
+fn a_watched_run_that_diverges_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = ["--set", "jitter=0.01", "--set", "dt=0.05", "--allow-unstable", "--vtk", "3"];
+    let output = touchstone_in(folder.path(), &short("couette", &run));
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    assert!(stderr(&output).contains("diverged after"));
+}
+
+/// State of each run in a store, by file name.
+fn states(store: &Path) -> BTreeMap<String, Option<String>> {
+    let is_whole = |name: &String| name.ends_with(".json") && !name.starts_with('.');
+    let records = files(store).into_iter().filter(is_whole);
+    let read = |name: String| {
+        let record = Record::from_json(&fs::read_to_string(store.join(&name)).unwrap()).unwrap();
+        (name, record.state)
+    };
+    records.map(read).collect()
+}
+
+/// Nothing is lost with a process that is killed but the run that it was at.
+#[cfg(unix)]
+#[test]
+fn a_killed_report_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let (specs, whole, killed) = ("specs.jsonl", "whole", "killed");
+    let sweep = ["plan", "couette", "--variant", "seed", "--set", "rows=20,22,24,26,28,30"];
+    let planned = touchstone_in(folder.path(), &sweep);
+    assert_eq!(planned.status.code(), Some(0), "{}", stderr(&planned));
+    fs::write(folder.path().join(specs), &planned.stdout).unwrap();
+    let make = |store| ["run", "--specs", specs, "--threads", "1", "--store", store];
+    let output = touchstone_in(folder.path(), &make(whole));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let expected = states(&folder.path().join(whole));
+    assert!(expected.len() == 6 && expected.values().all(Option::is_some), "{expected:?}");
+
+    let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
+    command.current_dir(folder.path()).args(make(killed)).stderr(Stdio::null());
+    let mut child = command.spawn().unwrap();
+    let store = folder.path().join(killed);
+    let start = Instant::now();
+    while (!store.exists() || states(&store).is_empty()) && start.elapsed().as_secs() < 20 {
+        sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap(); // SIGKILL
+    child.wait().unwrap();
+    let before = states(&store);
+    assert!((1..6).contains(&before.len()), "{before:?}");
+    let output = touchstone_in(folder.path(), &make(killed));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let reused = format!("{} of them were in the store before", before.len());
+    assert!(stderr(&output).contains(&reused), "{}", stderr(&output));
+    assert_eq!(states(&store), expected);
 }
 
 #[test]
@@ -317,8 +416,9 @@ fn no_settings_make_a_run_panic() {
         let variant = variants[variant.index(variants.len())].name;
         set.extend(small(case, variant)); // whatever came before
         let stop = AtomicBool::new(true);
-        let context = Context { allow_unstable, interrupt: Some(&stop), ..Context::default() };
-        match case.run(variant, &set, &context) {
+        let context = Context { interrupt: Some(&stop), ..Context::default() };
+        let run = |spec: RunSpec| case.run(&RunSpec { allow_unstable, ..spec }, &context);
+        match spec(case, variant, &set).and_then(run) {
             Err(error) => prop_assert!(error.to_string().len() > 10),
             Ok(record) => {
                 begun[index].fetch_add(1, Ordering::Relaxed);

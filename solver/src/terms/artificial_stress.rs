@@ -1,25 +1,24 @@
-use super::Pair;
-use crate::{kernel::Kernel, lane::Lane, numbers::Numbers};
+use super::{Kernel, Lane, Numbers, Pair};
 
 /// What [`super::Pressure`] adds to the pair pressure where p < 0: nothing, or an artificial stress.
 pub trait Tensile: Copy + Send + Sync + 'static {
-    /// What a particle shows.
-    type Shows: Numbers;
+    /// Derived numbers of a particle.
+    type Derived: Numbers;
     /// From p/ρ² of a particle.
-    fn shows(&self, pressure_over_density_squared: f64) -> Self::Shows;
+    fn derived(&self, pressure_over_density_squared: f64) -> Self::Derived;
     /// Rᵢⱼ φᵢⱼⁿ, in the unit of p/ρ².
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Shows as Numbers>::In<V>,
-        other: <Self::Shows as Numbers>::In<V>,
+        own: <Self::Derived as Numbers>::In<V>,
+        other: <Self::Derived as Numbers>::In<V>,
     ) -> V;
 }
 
 impl Tensile for () {
-    type Shows = ();
+    type Derived = ();
     #[inline(always)]
-    fn shows(&self, _: f64) {}
+    fn derived(&self, _: f64) {}
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: ()) -> V {
         V::all(0.0)
@@ -45,10 +44,10 @@ impl ArtificialStress {
 }
 
 impl Tensile for ArtificialStress {
-    type Shows = f64;
+    type Derived = f64;
 
     #[inline(always)]
-    fn shows(&self, p: f64) -> f64 {
+    fn derived(&self, p: f64) -> f64 {
         self.xi * (-p).max(0.0)
     }
 

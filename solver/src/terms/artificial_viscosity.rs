@@ -1,14 +1,6 @@
 use std::marker::PhantomData;
 
-use nalgebra::Vector2;
-
-use super::{Pair, Term};
-use crate::{
-    eos::EquationOfState,
-    kernel::Kernel,
-    lane::Lane,
-    particles::{Common, Rate},
-};
+use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// Which pairs artificial viscosity acts on.
 pub trait Switch: Copy + Send + Sync + 'static {
@@ -66,13 +58,13 @@ impl<E, S> ArtificialViscosity<E, S> {
 }
 
 impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
-    type Shows = ();
+    type Derived = ();
     type Sum = Vector2<f64>;
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
         let h = V::all(pair.kernel.h());
-        let mu = h * S::admit(pair.parting()) / (pair.r2 + V::all(self.eta2));
+        let mu = h * S::admit(pair.v_dot_r()) / (pair.r2 + V::all(self.eta2));
         let c = self.eos.sound_speed(pair.own.density) + self.eos.sound_speed(pair.other.density);
         // |μ|, not μ: for a pair that recedes under `Always`, +β μ² would push it on.
         let quadratic = V::all(-2.0 * self.beta) * mu.abs();
@@ -82,7 +74,7 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.velocity += sum;
     }
 }

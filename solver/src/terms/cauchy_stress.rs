@@ -1,12 +1,6 @@
-use nalgebra::Vector2;
-
-use super::{Pair, TensileStress, Term};
-use crate::{
-    eos::EquationOfState,
-    kernel::Kernel,
-    lane::Lane,
-    numbers::{Numbers, Symmetric},
-    particles::{Common, Rate},
+use super::{
+    Common, EquationOfState, Kernel, Lane, Numbers, Pair, Rate, Symmetric, TensileStress, Term,
+    Vector2,
 };
 
 /// (9) dvᵢᵃ/dt = Σⱼ mⱼ (σᵢᵃᵇ/ρᵢ² + σⱼᵃᵇ/ρⱼ²) ∂Wᵢⱼ/∂xᵢᵇ \[m/s²\], (10) σᵃᵇ = −p δᵃᵇ + Sᵃᵇ, and the stress
@@ -23,24 +17,24 @@ pub struct CauchyStress<E, R = ()> {
 }
 
 impl<E: EquationOfState, R: TensileStress> Term<Symmetric> for CauchyStress<E, R> {
-    /// σ/ρ² \[m⁵/(kg s²)\] and what the artificial stress shows.
-    type Shows = (Symmetric, R::Shows);
+    /// σ/ρ² \[m⁵/(kg s²)\] and what the artificial stress derives.
+    type Derived = (Symmetric, R::Derived);
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn shows(&self, own: &Common<f64>, deviator: &Symmetric) -> Self::Shows {
+    fn derived(&self, own: &Common<f64>, deviator: &Symmetric) -> Self::Derived {
         let p = self.eos.pressure(own.density);
         let Symmetric { xx, yy, xy } = *deviator;
         let stress = Symmetric { xx: xx - p, yy: yy - p, xy } * (1.0 / (own.density * own.density));
-        (stress, self.tensile.shows(stress))
+        (stress, self.tensile.derived(stress))
     }
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Shows as Numbers>::In<V>,
-        other: <Self::Shows as Numbers>::In<V>,
+        own: <Self::Derived as Numbers>::In<V>,
+        other: <Self::Derived as Numbers>::In<V>,
         sum: &mut Vector2<V>,
     ) {
         let stress = own.0 + other.0 + self.tensile.pair(pair, own.1, other.1);
@@ -48,7 +42,13 @@ impl<E: EquationOfState, R: TensileStress> Term<Symmetric> for CauchyStress<E, R
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Self::Sum, rate: &mut Rate<Symmetric>) {
+    fn finish(
+        &self,
+        _: &Common<f64>,
+        _: Self::Derived,
+        sum: Self::Sum,
+        rate: &mut Rate<Symmetric>,
+    ) {
         rate.velocity += sum;
     }
 }

@@ -2,20 +2,11 @@
 //! ∇f = M⁻¹ Σⱼ Vⱼ (fᵢ − fⱼ) F rᵢⱼ with the moments M = Σⱼ Vⱼ rᵢⱼ ⊗ F rᵢⱼ of the particle's own neighbours,
 //! the unit matrix in the continuum (Bonet & Lok 1999; schemes of Negi & Ramachandran 2022).
 //!
-//! M is summed in the same traversal, so nothing is shown or stored for it. What they cost is
+//! M is summed in the same pair sweep, so nothing is derived or stored for it. What they cost is
 //! conservation: the forces of a pair are not opposite any more, and nothing pushes crowded particles
 //! apart. They need [`super::Shifting`].
 
-use nalgebra::Vector2;
-
-use super::{Pair, Term};
-use crate::{
-    eos::EquationOfState,
-    kernel::Kernel,
-    lane::Lane,
-    numbers::{Numbers, Symmetric},
-    particles::{Common, Rate},
-};
+use super::{Common, EquationOfState, Kernel, Lane, Numbers, Pair, Rate, Symmetric, Term, Vector2};
 
 /// Least determinant of the moments: 1 inside a body of particles, 0 on a line.
 const SINGULAR: f64 = 1e-3;
@@ -46,11 +37,11 @@ pub struct ConsistentPressure<E> {
 
 impl<X, E: EquationOfState> Term<X> for ConsistentPressure<E> {
     /// p \[Pa\].
-    type Shows = f64;
+    type Derived = f64;
     type Sum = (Vector2<f64>, Symmetric);
 
     #[inline(always)]
-    fn shows(&self, own: &Common<f64>, _: &X) -> f64 {
+    fn derived(&self, own: &Common<f64>, _: &X) -> f64 {
         self.eos.pressure(own.density)
     }
 
@@ -85,7 +76,7 @@ pub struct ConsistentViscosity {
 }
 
 impl<X> Term<X> for ConsistentViscosity {
-    type Shows = ();
+    type Derived = ();
     /// Σ V F v, Σ V F r, Σ V F v x, Σ V F v y, M.
     type Sum = (Vector2<f64>, Vector2<f64>, Vector2<f64>, Vector2<f64>, Symmetric);
 
@@ -107,12 +98,12 @@ impl<X> Term<X> for ConsistentViscosity {
 
     #[inline(always)]
     fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
-        let (apart, weight, along_x, along_y, moments) = sum;
+        let (laplacian, weight, along_x, along_y, moments) = sum;
         let trace = moments.xx + moments.yy;
         let place = inverse(moments).map_or(Vector2::zeros(), |inverse| inverse.times(weight));
         let linear = along_x * place.x + along_y * place.y;
         if trace > SINGULAR {
-            rate.velocity -= (apart - linear) * (4.0 * self.nu / trace);
+            rate.velocity -= (laplacian - linear) * (4.0 * self.nu / trace);
         }
     }
 }
@@ -122,7 +113,7 @@ impl<X> Term<X> for ConsistentViscosity {
 pub struct ConsistentContinuity;
 
 impl<X> Term<X> for ConsistentContinuity {
-    type Shows = ();
+    type Derived = ();
     /// Σ V F v x, Σ V F v y, M.
     type Sum = (Vector2<f64>, Vector2<f64>, Symmetric);
 

@@ -1,9 +1,4 @@
-use super::{Pair, Term};
-use crate::{
-    kernel::Kernel,
-    lane::Lane,
-    particles::{Common, Rate},
-};
+use super::{Common, Kernel, Lane, Pair, Rate, Term};
 
 /// (3) dρᵢ/dt = Σⱼ mⱼ vᵢⱼ · ∇ᵢWᵢⱼ \[kg/m³/s\].
 ///
@@ -12,16 +7,16 @@ use crate::{
 pub struct Continuity;
 
 impl<X> Term<X> for Continuity {
-    type Shows = ();
+    type Derived = ();
     type Sum = f64;
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut V) {
-        *sum += pair.other.mass * pair.f * pair.parting();
+        *sum += pair.other.mass * pair.f * pair.v_dot_r();
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: f64, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: f64, rate: &mut Rate<X>) {
         rate.density -= sum;
     }
 }

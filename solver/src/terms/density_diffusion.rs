@@ -1,12 +1,5 @@
-use nalgebra::Vector2;
-
-use super::{Pair, Term};
-use crate::{
-    eos::Tait,
-    kernel::Kernel,
-    lane::Lane,
-    particles::{Common, Rate},
-};
+use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
+use crate::eos::Tait;
 
 /// The state that [`DensityDiffusion`] leaves alone: `()`, a uniform density, or [`Hydrostatic`].
 pub trait Rest: Copy + Send + Sync + 'static {
@@ -72,7 +65,7 @@ impl DensityDiffusion<Hydrostatic> {
 }
 
 impl<X, R: Rest> Term<X> for DensityDiffusion<R> {
-    type Shows = ();
+    type Derived = ();
     type Sum = f64;
 
     #[inline(always)]
@@ -81,7 +74,7 @@ impl<X, R: Rest> Term<X> for DensityDiffusion<R> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: f64, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: f64, rate: &mut Rate<X>) {
         rate.density += 2.0 * self.diffusivity * sum;
     }
 }

@@ -1,12 +1,4 @@
-use nalgebra::Vector2;
-
-use super::{Pair, Term};
-use crate::{
-    kernel::Kernel,
-    lane::Lane,
-    numbers::Symmetric,
-    particles::{Common, Rate},
-};
+use super::{Common, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 
 /// (11) dSᵃᵇ/dt = 2μ (εᵃᵇ − δᵃᵇ εᶜᶜ/3) + Sᵃᶜ Ωᵇᶜ + Ωᵃᶜ Sᶜᵇ \[Pa/s\], with ε and Ω the symmetric and the
 /// antisymmetric part of ∂ᵇvᵃ = Σⱼ (mⱼ/ρⱼ)(vⱼᵃ − vᵢᵃ) ∂Wᵢⱼ/∂xᵢᵇ.
@@ -20,12 +12,12 @@ pub struct JaumannRate {
 
 impl Term<Symmetric> for JaumannRate {
     /// S, for the particle's own rotation; neighbours do not read it.
-    type Shows = Symmetric;
+    type Derived = Symmetric;
     /// ∇u and ∇v \[1/s\].
     type Sum = (Vector2<f64>, Vector2<f64>);
 
     #[inline(always)]
-    fn shows(&self, _: &Common<f64>, deviator: &Symmetric) -> Symmetric {
+    fn derived(&self, _: &Common<f64>, deviator: &Symmetric) -> Symmetric {
         *deviator
     }
 

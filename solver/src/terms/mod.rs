@@ -1,7 +1,7 @@
 //! Terms: the pair sums of the equations, one file each.
 //!
 //! A term is written once, generic over the lane. A physics is a tuple of terms: `()` is nothing
-//! and costs nothing, and a term that is not in the tuple is not in the program. The row loop in
+//! and costs nothing, and a term that is not in the tuple is not in the program. The pair sweep in
 //! `sweep.rs` knows nothing but this trait.
 
 mod artificial_stress;
@@ -38,10 +38,12 @@ pub use xsph::Xsph;
 
 use nalgebra::Vector2;
 
+// What terms are written with: each file takes it from here.
 use crate::{
+    eos::EquationOfState,
     kernel::{Kernel, Smoothing},
     lane::Lane,
-    numbers::Numbers,
+    numbers::{Numbers, Symmetric},
     particles::{Common, Rate},
 };
 
@@ -70,9 +72,9 @@ impl<V: Lane, K: Kernel> Pair<'_, V, K> {
         self.kernel.w(self.r2)
     }
 
-    /// vᵢⱼ·rᵢⱼ \[m²/s\], negative where the two approach.
+    /// vᵢⱼ·rᵢⱼ \[m²/s\], negative where the two approach each other.
     #[inline(always)]
-    pub fn parting(&self) -> V {
+    pub fn v_dot_r(&self) -> V {
         self.v.x * self.r.x + self.v.y * self.r.y
     }
 }
@@ -80,30 +82,30 @@ impl<V: Lane, K: Kernel> Pair<'_, V, K> {
 /// One term of the equations. `X` is what a particle integrates beyond x, v and ρ.
 pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Derived numbers of a particle that its neighbours read.
-    type Shows: Numbers;
-    /// What a row sums over its neighbours.
+    type Derived: Numbers;
+    /// What a particle sums over its neighbours.
     type Sum: Numbers;
-    /// Whether [`Term::prepare`] wants the largest speed.
-    const NEEDS_SPEED: bool = false;
+    /// Whether there is no term at all, so that no pair has to be visited.
+    const IS_EMPTY: bool = false;
 
-    /// Told the largest speed of the scene \[m/s\] before each step, if it wants it.
+    /// Takes over the largest speed of the scene \[m/s\], before each step.
     fn prepare(&mut self, _max_speed: f64) {}
-    /// What a particle shows. Only a term that shows nothing may leave this out.
+    /// Those numbers. Only a term that has none may leave this out.
     #[inline(always)]
-    fn shows(&self, _own: &Common<f64>, _extra: &X) -> Self::Shows {
-        const { assert!(size_of::<Self::Shows>() == 0, "a term that shows something says what") };
-        Self::Shows::default()
+    fn derived(&self, _own: &Common<f64>, _extra: &X) -> Self::Derived {
+        const { assert!(size_of::<Self::Derived>() == 0, "a term with derived numbers derives them") };
+        Self::Derived::default()
     }
     /// Adds the neighbours of one pair to the sum.
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Shows as Numbers>::In<V>,
-        other: <Self::Shows as Numbers>::In<V>,
+        own: <Self::Derived as Numbers>::In<V>,
+        other: <Self::Derived as Numbers>::In<V>,
         sum: &mut <Self::Sum as Numbers>::In<V>,
     );
     /// Turns the sum into rates.
-    fn finish(&self, own: &Common<f64>, shows: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>);
+    fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>);
 }
 
 /// Implements [`Term`] for a tuple: each member in turn, in the order of the equation.
@@ -111,30 +113,30 @@ macro_rules! tuple_of_terms {
     ($($member:ident $index:tt),*) => {
         #[allow(unused_variables, clippy::unused_unit)] // of the empty tuple
         impl<X, $($member: Term<X>),*> Term<X> for ($($member,)*) {
-            type Shows = ($($member::Shows,)*);
+            type Derived = ($($member::Derived,)*);
             type Sum = ($($member::Sum,)*);
-            const NEEDS_SPEED: bool = false $(|| $member::NEEDS_SPEED)*;
+            const IS_EMPTY: bool = true $(&& $member::IS_EMPTY)*;
 
             fn prepare(&mut self, max_speed: f64) {
                 $(self.$index.prepare(max_speed);)*
             }
             #[inline(always)]
-            fn shows(&self, own: &Common<f64>, extra: &X) -> Self::Shows {
-                ($(self.$index.shows(own, extra),)*)
+            fn derived(&self, own: &Common<f64>, extra: &X) -> Self::Derived {
+                ($(self.$index.derived(own, extra),)*)
             }
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(
                 &self,
                 pair: &Pair<V, K>,
-                own: <Self::Shows as Numbers>::In<V>,
-                other: <Self::Shows as Numbers>::In<V>,
+                own: <Self::Derived as Numbers>::In<V>,
+                other: <Self::Derived as Numbers>::In<V>,
                 sum: &mut <Self::Sum as Numbers>::In<V>,
             ) {
                 $(self.$index.pair(pair, own.$index, other.$index, &mut sum.$index);)*
             }
             #[inline(always)]
-            fn finish(&self, own: &Common<f64>, shows: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
-                $(self.$index.finish(own, shows.$index, sum.$index, rate);)*
+            fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
+                $(self.$index.finish(own, derived.$index, sum.$index, rate);)*
             }
         }
     };
@@ -151,8 +153,8 @@ tuple_of_terms!(A 0, B 1, C 2, D 3, E 4, F 5);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lane::{OnLanes, on_widest};
     use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2};
+    use crate::{dispatch::on_widest, lane::OnLanes};
     use simba::simd::WideF64x4;
 
     /// The k-th of four finite numbers.
@@ -184,14 +186,14 @@ mod tests {
         Pair { r, r2, v, f: kernel.f(r2), own: common(4), other: common(6), kernel }
     }
 
-    /// The sum of one pair, for a term that shows two numbers or fewer.
+    /// The sum of one pair, for a term that derives two numbers or fewer.
     fn sum<V: Lane, K: Kernel, T: Term<()>>(
         term: &T,
         pair: &Pair<V, K>,
-        shows: impl Fn(&Common<V>) -> <T::Shows as Numbers>::In<V>,
+        derived: impl Fn(&Common<V>) -> <T::Derived as Numbers>::In<V>,
     ) -> <T::Sum as Numbers>::In<V> {
         let mut sum = T::Sum::default().spread::<V>();
-        term.pair(pair, shows(&pair.own), shows(&pair.other), &mut sum);
+        term.pair(pair, derived(&pair.own), derived(&pair.other), &mut sum);
         sum
     }
 
@@ -205,17 +207,17 @@ mod tests {
         let at = |k: usize, mass: f64, density: f64| {
             let common = Common { mass, density, volume: mass / density };
             assert!(k < 4);
-            term.shows(&common, &())
+            term.derived(&common, &())
         };
         let wide = pair(&kernel, |field| V::gather(|k| number(field, k)));
         let four = read_wide(sum(&term, &wide, |c| {
-            T::Shows::gather::<V>(|k| at(k, lane(c.mass, k), lane(c.density, k)))
+            T::Derived::gather::<V>(|k| at(k, lane(c.mass, k), lane(c.density, k)))
         }));
         let mut nonzero = 0;
         for k in 0..4 {
             let one = pair(&kernel, |field| number(field, k));
             let alone =
-                read(sum(&term, &one, |c| T::Shows::gather::<f64>(|_| at(k, c.mass, c.density))));
+                read(sum(&term, &one, |c| T::Derived::gather::<f64>(|_| at(k, c.mass, c.density))));
             for (four, alone) in four.iter().zip(alone) {
                 let lane = lane(*four, k);
                 let term = std::any::type_name::<T>();

@@ -1,12 +1,6 @@
-use nalgebra::Vector2;
-
-use super::{ArtificialStress, Pair, Tensile, Term};
-use crate::{
-    eos::EquationOfState,
-    kernel::Kernel,
-    lane::Lane,
-    numbers::Numbers,
-    particles::{Common, Rate},
+use super::{
+    ArtificialStress, Common, EquationOfState, Kernel, Lane, Numbers, Pair, Rate, Tensile, Term,
+    Vector2,
 };
 
 /// (5) Pᵢ = −Σⱼ mⱼ (pᵢ/ρᵢ² + pⱼ/ρⱼ²) ∇ᵢWᵢⱼ \[m/s²\], and (14) with R ≠ ().
@@ -36,22 +30,22 @@ impl<E> Pressure<E, ArtificialStress> {
 }
 
 impl<X, E: EquationOfState, R: Tensile> Term<X> for Pressure<E, R> {
-    /// p/ρ² \[m⁵/(kg s²)\] and what the artificial stress shows.
-    type Shows = (f64, R::Shows);
+    /// p/ρ² \[m⁵/(kg s²)\] and what the artificial stress derives.
+    type Derived = (f64, R::Derived);
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn shows(&self, own: &Common<f64>, _: &X) -> Self::Shows {
+    fn derived(&self, own: &Common<f64>, _: &X) -> Self::Derived {
         let p = self.eos.pressure(own.density) / (own.density * own.density);
-        (p, self.tensile.shows(p))
+        (p, self.tensile.derived(p))
     }
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Shows as Numbers>::In<V>,
-        other: <Self::Shows as Numbers>::In<V>,
+        own: <Self::Derived as Numbers>::In<V>,
+        other: <Self::Derived as Numbers>::In<V>,
         sum: &mut Vector2<V>,
     ) {
         let stress = own.0 + other.0 + self.tensile.pair(pair, own.1, other.1);
@@ -59,7 +53,7 @@ impl<X, E: EquationOfState, R: Tensile> Term<X> for Pressure<E, R> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.velocity += sum;
     }
 }

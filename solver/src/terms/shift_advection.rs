@@ -1,15 +1,5 @@
-use nalgebra::Vector2;
-
-use super::{
-    Pair, Shifting, Term,
-    consistent::{inverse, weights},
-};
-use crate::{
-    kernel::Kernel,
-    lane::Lane,
-    numbers::{Numbers, Symmetric},
-    particles::{Common, Rate},
-};
+use super::consistent::{inverse, weights};
+use super::{Common, Kernel, Lane, Numbers, Pair, Rate, Shifting, Symmetric, Term, Vector2};
 
 /// What shifting must do to the velocity: dvᵢ/dt += (δuᵢ·∇)v \[m/s²\], δu the velocity of
 /// [`Shifting`].
@@ -23,10 +13,9 @@ use crate::{
 pub struct ShiftAdvection(pub Shifting);
 
 impl<X> Term<X> for ShiftAdvection {
-    type Shows = ();
+    type Derived = ();
     /// Σ of the shift, Σ Vⱼ vᵢⱼ F x, Σ Vⱼ vᵢⱼ F y, Σ Vⱼ rᵢⱼ ⊗ F rᵢⱼ.
     type Sum = (Vector2<f64>, Vector2<f64>, Vector2<f64>, Symmetric);
-    const NEEDS_SPEED: bool = true;
 
     fn prepare(&mut self, max_speed: f64) {
         <Shifting as Term<X>>::prepare(&mut self.0, max_speed);

@@ -1,18 +1,11 @@
-use nalgebra::Vector2;
-
-use super::{Pair, Term};
-use crate::{
-    kernel::Kernel,
-    lane::Lane,
-    particles::{Common, Rate},
-};
+use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// Particle shifting: drᵢ/dt −= A v_max h Σⱼ Vⱼ \[1 + 0.2 (Wᵢⱼ/W(⁰r))⁴\] ∇ᵢWᵢⱼ \[m/s\].
 ///
 /// A correction between steps: it moves particles from where they crowd to where they are missing,
 /// and changes no velocity and no density (Lind et al. 2012; the bracket, Monaghan 2000, keeps pairs
 /// apart). A particle of a perfect lattice feels nothing. It is summed in the drift sweep, so that it
-/// costs no traversal of its own.
+/// costs no pair sweep of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Shifting {
     amplitude: f64,
@@ -44,9 +37,8 @@ impl Shifting {
 }
 
 impl<X> Term<X> for Shifting {
-    type Shows = ();
+    type Derived = ();
     type Sum = Vector2<f64>;
-    const NEEDS_SPEED: bool = true;
 
     fn prepare(&mut self, max_speed: f64) {
         self.max_speed = max_speed;
@@ -58,7 +50,7 @@ impl<X> Term<X> for Shifting {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.position += self.velocity(sum);
     }
 }

@@ -1,32 +1,27 @@
 use std::marker::PhantomData;
 
-use super::Pair;
-use crate::{
-    kernel::Kernel,
-    lane::Lane,
-    numbers::{Numbers, Symmetric},
-};
+use super::{Kernel, Lane, Numbers, Pair, Symmetric};
 
 /// What [`super::CauchyStress`] adds to the pair stress where the solid is in tension: nothing, or an
 /// artificial stress Rᵢⱼᵃᵇ φᵢⱼⁿ, (21) Rᵢⱼ = Rᵢ + Rⱼ.
 pub trait TensileStress: Copy + Send + Sync + 'static {
-    /// What a particle shows.
-    type Shows: Numbers;
+    /// Derived numbers of a particle.
+    type Derived: Numbers;
     /// From σ/ρ² of a particle.
-    fn shows(&self, stress_over_density_squared: Symmetric) -> Self::Shows;
+    fn derived(&self, stress_over_density_squared: Symmetric) -> Self::Derived;
     /// Rᵢⱼ φᵢⱼⁿ, in the unit of σ/ρ².
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Shows as Numbers>::In<V>,
-        other: <Self::Shows as Numbers>::In<V>,
+        own: <Self::Derived as Numbers>::In<V>,
+        other: <Self::Derived as Numbers>::In<V>,
     ) -> Symmetric<V>;
 }
 
 impl TensileStress for () {
-    type Shows = ();
+    type Derived = ();
     #[inline(always)]
-    fn shows(&self, _: Symmetric) {}
+    fn derived(&self, _: Symmetric) {}
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: ()) -> Symmetric<V> {
         Symmetric { xx: V::all(0.0), yy: V::all(0.0), xy: V::all(0.0) }
@@ -90,10 +85,10 @@ impl<A> InTension<A> {
 }
 
 impl<A: Axes> TensileStress for InTension<A> {
-    type Shows = Symmetric;
+    type Derived = Symmetric;
 
     #[inline(always)]
-    fn shows(&self, stress_over_density_squared: Symmetric) -> Symmetric {
+    fn derived(&self, stress_over_density_squared: Symmetric) -> Symmetric {
         A::tension(stress_over_density_squared) * -self.xi
     }
 

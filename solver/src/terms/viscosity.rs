@@ -1,11 +1,4 @@
-use nalgebra::Vector2;
-
-use super::{Pair, Term};
-use crate::{
-    kernel::Kernel,
-    lane::Lane,
-    particles::{Common, Rate},
-};
+use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// (6) Vᵢ = 2μ Σⱼ mⱼ/(ρᵢρⱼ) \[rᵢⱼ·∇ᵢWᵢⱼ/(dᵢⱼ² + η²)\] vᵢⱼ \[m/s²\] (Morris, Fox & Zhu 1997).
 ///
@@ -20,7 +13,7 @@ pub struct Viscosity {
 }
 
 impl<X> Term<X> for Viscosity {
-    type Shows = ();
+    type Derived = ();
     type Sum = Vector2<f64>;
 
     #[inline(always)]
@@ -30,7 +23,7 @@ impl<X> Term<X> for Viscosity {
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common<f64>, _: Self::Derived, sum: Vector2<f64>, rate: &mut Rate<X>) {
         rate.velocity -= sum * (2.0 * self.mu / own.density);
     }
 }

@@ -1,11 +1,4 @@
-use nalgebra::Vector2;
-
-use super::{Pair, Term};
-use crate::{
-    kernel::Kernel,
-    lane::Lane,
-    particles::{Common, Rate},
-};
+use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// (22) drᵢ/dt = vᵢ − ε Σⱼ 2 mⱼ vᵢⱼ/(ρᵢ+ρⱼ) Wᵢⱼ \[m/s\], 0 ≤ ε < 1 (Monaghan 1989).
 ///
@@ -17,7 +10,7 @@ pub struct Xsph {
 }
 
 impl<X> Term<X> for Xsph {
-    type Shows = ();
+    type Derived = ();
     type Sum = Vector2<f64>;
 
     #[inline(always)]
@@ -26,7 +19,7 @@ impl<X> Term<X> for Xsph {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Shows, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.position -= sum * (2.0 * self.epsilon);
     }
 }

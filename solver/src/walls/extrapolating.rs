@@ -1,4 +1,4 @@
-//! Wall particles that take pressure, and with [`NoSlip`] velocity, over from the fluid before them
+//! Boundary particles to which pressure, and with [`NoSlip`] velocity, are extrapolated from the fluid
 //! (Adami, Hu & Adams 2012).
 
 use nalgebra::Vector2;
@@ -13,17 +13,17 @@ use crate::{
     terms::{Pair, Term},
 };
 
-/// Walls represented by rows of [`crate::Role::Wall`] behind the surface, the first half a spacing
-/// behind it. They stand still, evolve nothing, and before each sweep take over from the fluid f that
-/// they see, and from it alone:
+/// Walls represented by layers of boundary particles, [`crate::Role::Wall`], behind the surface, the first
+/// half a spacing behind it. They stand still and evolve nothing. Before each sweep, these are extrapolated
+/// to them from the fluid particles f within their support, and from these alone:
 ///
 /// - p_w = Σ_f \[p_f + ρ_f (g − a_w)·r_wf\] W_wf / Σ_f W_wf, and from it the density, ρ_w = ρ(p_w);
-/// - with `U` = [`NoSlip`] u_w = 2 u_wall − Σ_f u_f W_wf / Σ_f W_wf, which all terms see in place of the
+/// - with `U` = [`NoSlip`] u_w = 2 u_wall − Σ_f u_f W_wf / Σ_f W_wf, which all terms read in place of the
 ///   velocity of the wall particle, u_wall. With `U` = `()` the particle keeps that velocity and nothing
 ///   is summed: enough where no viscosity makes the fluid stick.
 ///
-/// A wall particle that sees no fluid keeps the velocity and the density it was given: the support is
-/// mutual, so no fluid sees it either.
+/// A wall particle without fluid in its support keeps the velocity and the density it was given: neighbours
+/// are mutual, so it is no neighbour of fluid either.
 #[derive(Clone, Copy, Debug)]
 pub struct ExtrapolatingWall<E, U = ()> {
     /// Gives p(ρ) and ρ(p): that of the pressure term.
@@ -95,17 +95,17 @@ impl WallVelocity for NoSlip {
 }
 
 impl<X, E: EquationOfState, U: WallVelocity> Walls<X> for ExtrapolatingWall<E, U> {
-    type Rows = Self;
+    type Terms = Self;
     const EXTRAPOLATES: bool = true;
 
-    fn rows(&self) -> Self {
+    fn terms(&self) -> Self {
         *self
     }
 }
 
 /// The sums over the fluid f, and from them ρ_w and u_w − u_wall in the places of their rates.
 impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U> {
-    type Shows = ();
+    type Derived = ();
     /// Σ W \[1/m²\], Σ \[p + ρ (g − a_w)·r\] W \[Pa/m²\], and what is summed of the velocity.
     type Sum = (f64, f64, U::Sum);
 

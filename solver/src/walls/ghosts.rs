@@ -1,4 +1,4 @@
-//! Ghost particles (section 4.1 of the paper): the fluid mirrored across straight walls.
+//! Mirror (ghost) particles (section 4.1 of the paper): the fluid mirrored across straight walls.
 
 use nalgebra::Vector2;
 
@@ -42,14 +42,15 @@ pub(crate) fn corners(walls: &[PlaneWall]) -> impl Iterator<Item = [&PlaneWall; 
     pairs.filter(|[a, b]| a.normal.dot(&b.normal).abs() <= RIGHT_ANGLE)
 }
 
-/// Walls represented by ghosts: each particle within reach has an image across the wall with the
-/// density and pressure of its original (inferred) and the velocity 2U − v + d² ∂²v/∂n².
+/// Walls represented by mirror (ghost) particles: each particle within the list radius of a wall has an
+/// image across the wall with the density and pressure of its original (inferred) and the velocity 2U − v
+/// + d² ∂²v/∂n².
 ///
-/// Where two walls meet at a right angle, the fluid between them, a particle within reach of both has an
-/// image across both as well: the mirror of its mirror, turned by half a turn about the corner, with
-/// the velocity v. (One wall after the other gives v ± 2(U₁ − U₂), by the order; v is the mean.) Other
-/// angles are refused, because their images of images never end. Walls are of infinite length: a tank
-/// has a bottom and two sides, and is open at the top because there is no wall.
+/// Where two walls meet at a right angle, the fluid between them, a particle within that radius of both
+/// has an image across both as well: the mirror of its mirror, turned by half a turn about the corner,
+/// with the velocity v. (One wall after the other gives v ± 2(U₁ − U₂), by the order; v is the mean.)
+/// Other angles are refused, because their images of images never end. Walls are of infinite length: a
+/// tank has a bottom and two sides, and is open at the top because there is no wall.
 #[derive(Clone, Debug, Default)]
 pub struct Ghosts {
     /// The walls.
@@ -57,16 +58,16 @@ pub struct Ghosts {
 }
 
 impl<X> Walls<X> for Ghosts {
-    type Rows = ();
-    fn rows(&self) {}
+    type Terms = ();
+    fn terms(&self) {}
     fn mirrors(&self) -> &[PlaneWall] {
         &self.walls
     }
 }
 
-/// Walls represented by ghosts along which the fluid slips: as [`Ghosts`], but an image is the mirror of
-/// the whole particle, velocity included, v − 2\[(v − U)·n\]n = v − 2(v·n)n, and across a corner −v. The
-/// motion U of a wall along itself, and its curvature, have no effect.
+/// Walls represented by mirror particles along which the fluid slips: as [`Ghosts`], but an image is the
+/// mirror of the whole particle, velocity included, v − 2\[(v − U)·n\]n = v − 2(v·n)n, and across a
+/// corner −v. The motion U of a wall along itself, and its curvature, have no effect.
 ///
 /// Pressure (5) and continuity (3) then do no work on these walls, in any arrangement: what the image of j
 /// does to i is the mirror of what the image of i does to j. Images of a no-slip wall do work on the
@@ -78,8 +79,8 @@ pub struct SlipGhosts {
 }
 
 impl<X> Walls<X> for SlipGhosts {
-    type Rows = ();
-    fn rows(&self) {}
+    type Terms = ();
+    fn terms(&self) {}
     const SLIPS: bool = true;
     fn mirrors(&self) -> &[PlaneWall] {
         &self.walls
@@ -105,7 +106,7 @@ mod tests {
         vec![wall(0.0, 0.0, y), wall(0.0, 0.0, x), wall(1.0, 0.0, -x)]
     }
 
-    /// Disordered water in the tank, each velocity a number of the row `random`, or all the same.
+    /// Disordered water in the tank, each velocity the next number of `random`, or all the same.
     fn water(uniform: Option<Vector2<f64>>) -> Vec<Particle> {
         let mut state = 1u32;
         let mut random = move || {

@@ -13,7 +13,7 @@ pub enum Map {
     /// in the fluid; where the fluid slips v' = v − 2(v·n)n.
     Mirror(PlaneWall),
     /// The ghost across both walls of a corner there \[m\]: x' = 2c − x, v' = v; where it slips −v.
-    Turn(Vector2<f64>),
+    Corner(Vector2<f64>),
     /// The copy a period away: x' = x + s \[m\].
     Shift(Vector2<f64>),
 }
@@ -21,7 +21,7 @@ pub enum Map {
 impl Map {
     /// The ghost across two walls at a right angle: half a turn about their corner.
     pub fn corner([a, b]: [&PlaneWall; 2]) -> Self {
-        Self::Turn(a.point - b.normal * b.depth(a.point))
+        Self::Corner(a.point - b.normal * b.depth(a.point))
     }
 
     /// Where the image of a point is \[m\].
@@ -29,7 +29,7 @@ impl Map {
     pub fn place(&self, point: Vector2<f64>) -> Vector2<f64> {
         match self {
             Self::Mirror(wall) => point - wall.normal * (2.0 * wall.depth(point)),
-            Self::Turn(corner) => corner * 2.0 - point,
+            Self::Corner(corner) => corner * 2.0 - point,
             Self::Shift(by) => point + by,
         }
     }
@@ -44,14 +44,14 @@ impl Map {
                 let across = wall.normal * source.velocity.dot(&wall.normal);
                 Column { position, velocity: source.velocity - across * 2.0, ..*source }
             }
-            Self::Turn(_) if slip => Column { position, velocity: -source.velocity, ..*source },
+            Self::Corner(_) if slip => Column { position, velocity: -source.velocity, ..*source },
             Self::Mirror(wall) => {
                 let depth = wall.depth(source.position);
                 let velocity =
                     wall.velocity * 2.0 - source.velocity + wall.curvature * (depth * depth);
                 Column { position, velocity, ..*source }
             }
-            Self::Turn(_) | Self::Shift(_) => Column { position, ..*source },
+            Self::Corner(_) | Self::Shift(_) => Column { position, ..*source },
         }
     }
 }
@@ -71,12 +71,12 @@ mod tests {
         let common = Common { mass: 1.0, density: 2.0, volume: 0.5 };
         let along = Vector2::new(0.8, 0.6);
         let position = point + along * 5.0 + normal * 0.25;
-        let source = Column { position, velocity: Vector2::new(1.0, 7.0), common, shows: 9.0 };
+        let source = Column { position, velocity: Vector2::new(1.0, 7.0), common, derived: 9.0 };
         let ghost = map.apply(&source, false);
         assert!((ghost.position - (point + along * 5.0 - normal * 0.25)).norm() < 1e-14);
         let expected = velocity * 2.0 - source.velocity + Vector2::new(0.0, 3.0) * 0.0625;
         assert!((ghost.velocity - expected).norm() < 1e-14);
-        assert_eq!((ghost.common.density, ghost.shows), (2.0, 9.0));
+        assert_eq!((ghost.common.density, ghost.derived), (2.0, 9.0));
         let mirrored = map.apply(&source, true).velocity - source.velocity;
         assert!((mirrored + normal * (2.0 * source.velocity.dot(&normal))).norm() < 1e-14);
         let back = map.place(ghost.position) - position;
@@ -91,7 +91,7 @@ mod tests {
         let [a, b] = walls.map(Map::Mirror);
         let common = Common { mass: 1.0, density: 2.0, volume: 0.5 };
         let velocity = Vector2::new(1.0, 7.0);
-        let source = Column { position: Vector2::new(1.3, 2.9), velocity, common, shows: 9.0 };
+        let source = Column { position: Vector2::new(1.3, 2.9), velocity, common, derived: 9.0 };
         let corner_map = Map::corner([&walls[0], &walls[1]]);
         for slip in [false, true] {
             let ghost = corner_map.apply(&source, slip);

@@ -1,5 +1,5 @@
 //! Walls: the two representations of the paper's section 4, one that extrapolates from the fluid, and
-//! what ghosts have in common with periodic edges: images.
+//! what mirror particles have in common with periodic edges: images.
 
 mod extrapolating;
 mod ghosts;
@@ -16,14 +16,15 @@ use crate::terms::Term;
 
 /// How a scene treats its walls.
 pub trait Walls<X>: Clone + Send + Sync + 'static {
-    /// The terms by which wall particles evolve; `()` where there are none.
-    type Rows: Term<X>;
-    /// Whether [`Walls::Rows`] extrapolate: summed over the fluid alone, before each sweep, they give
-    /// a wall particle the density that it shows, and what it shows beyond its velocity, where others
+    /// The terms by which wall particles evolve; where there are none, `()`, and then no pair sweep over
+    /// wall particles is compiled.
+    type Terms: Term<X>;
+    /// Whether [`Walls::Terms`] extrapolate: summed over the fluid alone, before each sweep, they give
+    /// a wall particle the density of its column, and what it has there beyond its velocity, where others
     /// give rates.
     const EXTRAPOLATES: bool = false;
     /// Those terms.
-    fn rows(&self) -> Self::Rows;
+    fn terms(&self) -> Self::Terms;
     /// Whether images in [`Walls::mirrors`] keep the velocity along the wall.
     const SLIPS: bool = false;
     /// Walls that mirror the fluid.
@@ -37,6 +38,6 @@ pub trait Walls<X>: Clone + Send + Sync + 'static {
 pub struct Open;
 
 impl<X> Walls<X> for Open {
-    type Rows = ();
-    fn rows(&self) {}
+    type Terms = ();
+    fn terms(&self) {}
 }

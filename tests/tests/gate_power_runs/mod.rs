@@ -1,5 +1,23 @@
 //! The planned runs that mutants go through, each with its gates.
 
+use base::{gate::Gate, record::Record, spec::Task};
+use fluids::channel::{self, Arrangement, ChannelSettings, Flow, Ingredient};
+use harness::{
+    case::{Planned, Tier, changed},
+    plan,
+    runner::Context,
+};
+use lattice::{
+    acoustic_wave::Acoustic,
+    shear_wave::Shear,
+    stability::{self, NoisyBox, Point},
+    wave::{self, Kind, Wave, WaveCase, WaveSettings},
+};
+use maths::{
+    exact::{couette::Couette, poiseuille::Poiseuille},
+    metrics::norms::{Scale, l2},
+};
+use serde::de::DeserializeOwned;
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, DensityDiffusion, Ghosts, InterfaceWall, Kernel,
     Leapfrog, PredictorCorrector, Pressure, QuinticSpline, Scene, Scheme, Shifting, Tait, Term,
@@ -7,22 +25,7 @@ use solver::{
 };
 use std::f64::consts::PI;
 use touchstone_tests::spoil::{Fault, Mistaken, Spoilable, spoil};
-use validation::{
-    case::{Case, Planned, Tier},
-    cases::{
-        acoustic_wave::ACOUSTIC_WAVE,
-        channel::{self, Arrangement, ChannelSettings, Flow, Ingredient},
-        find,
-        shear_wave::SHEAR_WAVE,
-        wave::{self, Wave, WaveCase, WaveSettings},
-    },
-    exact::{couette::Couette, poiseuille::Poiseuille},
-    gate::Gate,
-    metrics::norms::{Scale, l2},
-    record::Record,
-    runner::Context,
-    studies::stability::{self, NoisyBox, Point},
-};
+use validation::cases::find;
 
 /// Groups of gates, in the order of the table.
 pub const GROUPS: [&str; 5] = ["couette", "poiseuille", "acoustic_wave", "shear_wave", "stability"];
@@ -100,26 +103,37 @@ fn point(name: &str) -> Point {
     }
 }
 
+/// The settings of a planned run.
+fn settings<T: DeserializeOwned>(planned: &Planned) -> T {
+    serde_json::from_value(planned.spec.settings.clone()).expect("planned settings")
+}
+
+fn is_modern(planned: &Planned) -> bool {
+    planned.spec.variant == "modern"
+}
+
 /// Runs of the quick tier at 10 and 20 rows, and at Re 0.5 and 20, that have gates.
 fn is_considered(planned: &Planned) -> bool {
-    let has = |text: &str| planned.set.iter().any(|set| set == text);
-    let is_modern = planned.variant == "modern" && (has("re=0.5") || has("re=20"));
-    let is_ladder = planned.variant != "modern" && (has("rows=10") || has("rows=20"));
-    !planned.gates.is_empty() && (is_modern || is_ladder)
+    if planned.gates.is_empty() || planned.spec.task != Task::Simulate {
+        return false;
+    }
+    let s: ChannelSettings = settings(planned);
+    if is_modern(planned) { s.re == 0.5 || s.re == 20.0 } else { s.rows == 10 || s.rows == 20 }
 }
 
 pub fn jobs() -> Vec<Job> {
-    let plan = |name: &str| find(name).expect("a case").plan(Tier::Quick);
+    let plan = |name: &str| plan::of_case(find(name).expect("a case"), Tier::Quick);
     let channel = |flow, name| {
-        let plan = plan(name).into_iter().filter(is_considered);
-        plan.map(move |planned| Job::Channel(flow, planned))
+        let considered = plan(name).into_iter().filter(is_considered);
+        let (modern, ladders): (Vec<_>, Vec<_>) = considered.partition(is_modern);
+        ladders.into_iter().chain(modern).map(move |planned| Job::Channel(flow, planned))
     };
     let wave = |case: &'static WaveCase| {
-        case.plan(Tier::Quick).into_iter().map(move |planned| Job::Wave(case, planned))
+        plan(case.name).into_iter().map(move |planned| Job::Wave(case, planned))
     };
     let mut jobs: Vec<Job> = channel(Flow::Couette, "couette").collect();
     jobs.extend(channel(Flow::Poiseuille, "poiseuille"));
-    jobs.extend(wave(&ACOUSTIC_WAVE).chain(wave(&SHEAR_WAVE)));
+    jobs.extend(wave(<Acoustic as Kind>::CASE).chain(wave(<Shear as Kind>::CASE)));
     jobs.extend(LIMITS.map(|name| Job::Limit(name, stability::ratio_gate(&point(name)))));
     jobs.push(Job::WeakGrowth(stability::weak_gate(COURANT)));
     jobs
@@ -145,7 +159,13 @@ impl Job {
     pub fn name(&self) -> String {
         match self {
             Job::Channel(_, planned) | Job::Wave(_, planned) => {
-                format!("{} {} {:?}", self.group(), planned.variant, planned.set)
+                let case = find(self.group()).expect("a case");
+                format!(
+                    "{} {} {:?}",
+                    self.group(),
+                    planned.spec.variant,
+                    changed(case, &planned.spec)
+                )
             }
             Job::Limit(name, _) => format!("limit {name}"),
             Job::WeakGrowth(_) => "weak growth".into(),
@@ -157,7 +177,7 @@ impl Job {
         const N: Fault = Fault::NONE;
         let mut seen = *fault;
         let (variant, flow) = match self {
-            Job::Channel(flow, planned) => (planned.variant, Some(*flow)),
+            Job::Channel(flow, planned) => (planned.spec.variant.as_str(), Some(*flow)),
             _ => ("", None),
         };
         if variant != "modern" {
@@ -186,7 +206,7 @@ impl Job {
 
     /// Whether density diffusion is in a wave.
     fn diffuses(&self) -> bool {
-        matches!(self, Job::Wave(_, planned) if planned.variant.ends_with("diffusion"))
+        matches!(self, Job::Wave(_, planned) if planned.spec.variant.ends_with("diffusion"))
     }
 
     pub fn run(&self, fault: &Fault) -> Measured {
@@ -208,7 +228,7 @@ impl Job {
     pub fn run_unwrapped(&self) -> Option<Measured> {
         let (Job::Channel(_, planned) | Job::Wave(_, planned)) = self else { return None };
         let case = find(self.group()).expect("a case");
-        let record = case.run(planned.variant, &planned.set, &Context::default());
+        let record = case.run(&planned.spec, &Context::default());
         Some(Measured::Record(Box::new(record.expect("a planned run"))))
     }
 
@@ -238,10 +258,8 @@ impl<B: channel::Drive + Spoilable<Spoiled: Term<()>>> SpoilableDrive for B {}
 
 fn channel_run<B: SpoilableDrive>(planned: &Planned, fault: &Fault) -> Record {
     type Stabilised = (Continuity, DensityDiffusion, Shifting);
-    let variants = channel::variants::<B>();
-    let variant = variants.iter().find(|v| v.variant.name == planned.variant).expect("a variant");
-    let settings = variant.settings(&planned.set).expect("planned settings");
-    let run = match planned.variant {
+    let variant = planned.spec.variant.as_str();
+    let run = match variant {
         "plain" | "curved" => one_channel::<QuinticSpline, B, Continuity, Ghosts, Leapfrog>,
         "modern" => one_channel::<QuinticSpline, B, Stabilised, Ghosts, Leapfrog>,
         "seed" => one_channel::<CubicSpline, B, Continuity, Ghosts, PredictorCorrector>,
@@ -250,7 +268,7 @@ fn channel_run<B: SpoilableDrive>(planned: &Planned, fault: &Fault) -> Record {
         }
         other => panic!("{other} is not considered"),
     };
-    run(B::FLOW, planned.variant, &settings, fault)
+    run(B::FLOW, variant, &settings(planned), fault)
 }
 
 fn one_channel<K, B, D, W, I>(
@@ -288,11 +306,9 @@ where
 }
 
 fn wave_run(case: &WaveCase, planned: &Planned, fault: &Fault) -> Record {
-    let settings = wave::settings(planned.variant, &planned.set).expect("planned settings");
-    if planned.variant == "cubic-leapfrog-diffusion" {
-        return diffusive_wave(case, planned.variant, &settings, fault);
-    }
-    let run = match planned.variant {
+    let (variant, settings) = (planned.spec.variant.as_str(), settings(planned));
+    let run = match variant {
+        "cubic-leapfrog-diffusion" => diffusive_wave,
         "cubic-leapfrog" => one_wave::<CubicSpline, Leapfrog>,
         "cubic-pc" => one_wave::<CubicSpline, PredictorCorrector>,
         "quintic-leapfrog" => one_wave::<QuinticSpline, Leapfrog>,
@@ -301,7 +317,7 @@ fn wave_run(case: &WaveCase, planned: &Planned, fault: &Fault) -> Record {
         "wendland-pc" => one_wave::<WendlandC2, PredictorCorrector>,
         other => panic!("{other} is not considered"),
     };
-    run(case, planned.variant, &settings, fault)
+    run(case, variant, &settings, fault)
 }
 
 fn one_wave<K: Kernel, I: Mistaken>(

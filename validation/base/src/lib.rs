@@ -8,4 +8,5 @@ pub mod random;
 pub mod record;
 pub mod reference;
 pub mod settings;
+pub mod spec;
 pub mod vtk;

@@ -18,6 +18,8 @@ pub struct Manifest {
     pub commit: String,
     /// did tracked files differ from the commit?
     pub dirty: Known,
+    /// digest of the sources of solver, harness and case that the result depends on, or `unknown`
+    pub sources: String,
     /// the compiler's own version line
     pub rustc: String,
     /// `debug` or `release`
@@ -48,8 +50,11 @@ pub struct Source {
     pub dirty: Known,
 }
 
+/// What is said of what is not known.
+pub const UNKNOWN: &str = "unknown";
+
 impl Source {
-    const UNKNOWN: Self = Self { commit: "unknown", dirty: Known::Unknown };
+    const UNKNOWN: Self = Self { commit: UNKNOWN, dirty: Known::Unknown };
 }
 
 static SOURCE: OnceLock<Source> = OnceLock::new();
@@ -80,6 +85,7 @@ impl Manifest {
             touchstone: env!("CARGO_PKG_VERSION").into(),
             commit: source.commit.into(),
             dirty: source.dirty,
+            sources: UNKNOWN.into(),
             rustc: env!("TOUCHSTONE_RUSTC").into(),
             profile: env!("TOUCHSTONE_PROFILE").into(),
             opt_level: env!("TOUCHSTONE_OPT_LEVEL").into(),
@@ -100,16 +106,6 @@ impl Manifest {
         };
         self.cpu != "unknown" && machine(self) == machine(other)
     }
-}
-
-/// The largest memory that this process ever held, where the system tells.
-pub fn peak_rss_bytes() -> Option<u64> {
-    peak_rss_of(&fs::read_to_string("/proc/self/status").ok()?)
-}
-
-fn peak_rss_of(status: &str) -> Option<u64> {
-    let kibibytes = field(status, "VmHWM")?.strip_suffix("kB")?.trim();
-    kibibytes.parse::<u64>().ok()?.checked_mul(1024)
 }
 
 fn cpu() -> Option<String> {
@@ -152,10 +148,6 @@ mod tests {
 
     #[test]
     fn system_texts_are_read_or_left() {
-        assert_eq!(peak_rss_of("Name:\tx\nVmHWM:\t    2048 kB\nVmRSS:\t1 kB\n"), Some(2097152));
-        for text in ["", "VmHWM:", "VmHWM: many kB", "VmHWM: 99999999999999999999 kB"] {
-            assert_eq!(peak_rss_of(text), None);
-        }
         let info = "processor\t: 0\nmodel name\t: A: CPU\nmodel name\t: B\n";
         assert_eq!(field(info, "model name"), Some("A: CPU"));
     }

@@ -15,6 +15,7 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -22,9 +23,11 @@ use thiserror::Error;
 
 use crate::manifest::Manifest;
 use crate::reference::sha256;
+use crate::settings::Settings;
+use crate::spec::{Keep, RunKey, RunSpec, Task};
 
 /// Version of the document; raised with every change that an older reader would misread.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// Why a record was not written or not read.
 #[derive(Debug, Error)]
@@ -58,6 +61,15 @@ pub struct Record {
     pub variant: String,
     /// settings of the case, all of them
     pub settings: Value,
+    /// one simulation, or a bisection of many
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub task: Task,
+    /// was a time step beyond the theoretical limit allowed?
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub allow_unstable: bool,
+    /// what the record keeps beside metrics and curves
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub keep: Keep,
     /// how the run ended
     pub status: Status,
     /// measured results by name
@@ -74,6 +86,10 @@ pub struct Record {
     pub state: Option<String>,
     /// program, compiler, machine
     pub manifest: Manifest,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// How a run ended.
@@ -131,6 +147,97 @@ impl Metric {
     }
 }
 
+/// A metric as a case declares it: name, unit and formula are stated once, and every use names the
+/// constant, so that a misspelt name does not compile.
+///
+/// ```
+/// use base::record::{MetricKey, Record};
+/// const L2: MetricKey = MetricKey::new("l2", "-", "rms(u - u_exact)/rms(u_exact)");
+/// let mut record = Record::new("couette", "seed", serde_json::json!({}), 1);
+/// record.put(L2.at(0.1), 1e-3);
+/// assert_eq!(record.value(L2.at(0.1)), Some(1e-3));
+/// assert_eq!(record.value(L2), None);
+/// assert_eq!(record.metrics["l2@0.1"].formula, "rms(u - u_exact)/rms(u_exact)");
+/// const GAP: MetricKey = MetricKey::new("gap", "-", "|E(t) - E(0)|/{}");
+/// record.put(GAP.of("M g H"), 0.0);
+/// assert_eq!(record.metrics["gap"].formula, "|E(t) - E(0)|/M g H");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MetricKey {
+    name: &'static str,
+    unit: &'static str,
+    formula: &'static str,
+}
+
+impl MetricKey {
+    /// A metric with its unit and its formula.
+    pub const fn new(name: &'static str, unit: &'static str, formula: &'static str) -> Self {
+        Self { name, unit, formula }
+    }
+
+    /// The metric at a time, a station or another mark: `name@mark`.
+    pub fn at(self, mark: impl fmt::Display) -> MetricName {
+        MetricName { key: self, name: format!("{}@{mark}", self.name), what: String::new() }
+    }
+
+    /// The metric with what its formula leaves open as `{}`.
+    pub fn of(self, what: impl fmt::Display) -> MetricName {
+        MetricName { what: what.to_string(), ..self.into() }
+    }
+}
+
+/// Declares metrics, a line each: constant, name, unit, formula. The formula is the documentation.
+///
+/// ```
+/// base::metrics! {
+///     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact)";
+///     FORCE = "force" ["U_b^2/H"] "mean body force";
+/// }
+/// assert_eq!(FORCE, base::record::MetricKey::new("force", "U_b^2/H", "mean body force"));
+/// assert_eq!(String::from(L2), "l2");
+/// ```
+#[macro_export]
+macro_rules! metrics {
+    ($($constant:ident = $name:literal [$unit:literal] $formula:literal;)+) => {$(
+        #[doc = $formula]
+        pub const $constant: $crate::record::MetricKey =
+            $crate::record::MetricKey::new($name, $unit, $formula);
+    )+};
+}
+
+/// A metric by its full name in the record.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MetricName {
+    key: MetricKey,
+    name: String,
+    what: String,
+}
+
+impl MetricName {
+    /// The name, as gates state it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl From<MetricKey> for MetricName {
+    fn from(key: MetricKey) -> Self {
+        Self { key, name: key.name.into(), what: String::new() }
+    }
+}
+
+impl From<MetricKey> for String {
+    fn from(key: MetricKey) -> Self {
+        key.name.into()
+    }
+}
+
+impl From<MetricName> for String {
+    fn from(metric: MetricName) -> Self {
+        metric.name
+    }
+}
+
 /// What a run took.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -153,9 +260,14 @@ pub struct Cost {
     pub threads: usize,
     /// memory of the solver's arrays in bytes
     pub solver_bytes: u64,
-    /// the largest memory that the process held in bytes, where the system tells
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak_rss_bytes: Option<u64>,
+    /// time of observers (gauges, energy ledgers, samples, frames) in seconds, which is no part of the
+    /// stepping
+    #[serde(default, with = "crate::number")]
+    pub observing_s: f64,
+    /// processor seconds of the stepping, one a repetition, taken while nothing else of this program was at
+    /// work; empty if the run was only made side by side with others
+    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "crate::number::list")]
+    pub alone_s: Vec<f64>,
 }
 
 /// Columns of one length: a profile at one time, or a series in time.
@@ -193,6 +305,37 @@ impl Profile {
 }
 
 impl Record {
+    /// A record of a run that was refused before its first step, for this reason.
+    pub fn refused(spec: &RunSpec, reason: String) -> Self {
+        let record = Self::new(&spec.case, &spec.variant, spec.settings.clone(), 1);
+        Self { status: Status::Refused { reason }, ..record }.of(spec)
+    }
+
+    /// The same record, which states that it is of this run.
+    pub fn of(self, spec: &RunSpec) -> Self {
+        let RunSpec { task, allow_unstable, keep, .. } = spec.clone();
+        Self { task, allow_unstable, keep, ..self }
+    }
+
+    /// The run that it is of.
+    pub fn spec(&self) -> RunSpec {
+        let Self { case, variant, settings, task, allow_unstable, keep, .. } = self;
+        RunSpec {
+            case: case.clone(),
+            variant: variant.clone(),
+            settings: settings.clone(),
+            task: task.clone(),
+            allow_unstable: *allow_unstable,
+            keep: *keep,
+        }
+    }
+
+    /// Its settings with their types; the defaults of the case if they are of another case, which a caller
+    /// that asked for a run of its own case does not meet.
+    pub fn settings_as<T: Settings>(&self) -> T {
+        serde_json::from_value(self.settings.clone()).unwrap_or_default()
+    }
+
     /// A record of this process that is yet to be filled: completed, nothing measured.
     pub fn new(case: &str, variant: &str, settings: Value, threads: usize) -> Self {
         Record {
@@ -200,6 +343,9 @@ impl Record {
             case: case.into(),
             variant: variant.into(),
             settings,
+            task: Task::Simulate,
+            allow_unstable: false,
+            keep: Keep::default(),
             status: Status::Completed,
             metrics: BTreeMap::new(),
             cost: Cost { threads, ..Cost::default() },
@@ -215,19 +361,16 @@ impl Record {
         self.metrics.get(name).map(|metric| metric.value)
     }
 
-    /// A metric's value, NaN if it was not measured.
-    pub fn measured(&self, name: &str) -> f64 {
-        self.metric(name).unwrap_or(f64::NAN)
+    /// States a metric.
+    pub fn put(&mut self, metric: impl Into<MetricName>, value: f64) {
+        let MetricName { key, name, what } = metric.into();
+        let formula = key.formula.replace("{}", &what);
+        self.metrics.insert(name, Metric::new(value, key.unit, &formula));
     }
 
-    /// A setting as a number, NaN if it is none.
-    pub fn setting(&self, name: &str) -> f64 {
-        self.settings.get(name).and_then(Value::as_f64).unwrap_or(f64::NAN)
-    }
-
-    /// A number that the rules chose, NaN if they chose none.
-    pub fn chose(&self, name: &str) -> f64 {
-        self.numerics.get(name).and_then(Value::as_f64).unwrap_or(f64::NAN)
+    /// A metric's value, `None` if it was not measured.
+    pub fn value(&self, metric: impl Into<MetricName>) -> Option<f64> {
+        self.metric(metric.into().name())
     }
 
     /// The values of a column of a profile, none if there is no such profile or column.
@@ -257,11 +400,9 @@ impl Record {
         Ok(serde_json::from_str(text)?) // from the text again: errors then name line and column
     }
 
-    /// 16 hexadecimal digits that name the run: case, variant, settings and commit.
-    pub fn key(&self) -> String {
-        let Record { case, variant, settings, manifest, .. } = self;
-        let identity = serde_json::json!([case, variant, settings, manifest.commit]);
-        sha256(identity.to_string().as_bytes())[..16].to_string()
+    /// Names the run, see [`RunSpec::key`].
+    pub fn key(&self) -> RunKey {
+        self.spec().key()
     }
 }
 
@@ -303,7 +444,7 @@ mod tests {
         let profile = Profile::default().with("y", "m", vec![1e-300, 0.1]);
         record.profiles.insert("t=0.1".into(), profile.with("u", "m/s", vec![f64::INFINITY, 0.3]));
         record.state = Some(digest(&[1.0]));
-        record.cost.peak_rss_bytes = Some(1 << 40);
+        record.cost.alone_s = vec![0.1, 0.3];
         record
     }
 
@@ -355,8 +496,8 @@ mod tests {
     #[test]
     fn another_schema_and_unknown_keys_are_refused() {
         let text = record().to_json().unwrap();
-        let error = Record::from_json(&text.replace("\"schema\": 1", "\"schema\": 2")).unwrap_err();
-        assert_eq!(error.to_string(), "the record has schema 2, this program reads schema 1");
+        let error = Record::from_json(&text.replace("\"schema\": 2", "\"schema\": 3")).unwrap_err();
+        assert_eq!(error.to_string(), "the record has schema 3, this program reads schema 2");
         assert!(matches!(Record::from_json("{}"), Err(RecordError::Schema { .. })));
         let error = Record::from_json(&text.replace("\"wall_s\"", "\"wall\"")).unwrap_err();
         assert!(error.to_string().contains("wall"), "{error}");

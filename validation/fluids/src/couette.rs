@@ -1,15 +1,18 @@
 //! Case 1, start-up Couette flow (the paper's figure 1).
 
-use super::channel::{self, ChannelSettings, Flow, variants};
-use harness::composed::Composed;
+use super::channel::{self, Channel, ChannelCase, Flow, variants};
 
 /// Start-up Couette flow.
-pub const COUETTE: Composed<ChannelSettings> = Composed {
+pub static COUETTE: ChannelCase = ChannelCase {
     name: "couette",
     about: "Water at rest between two infinite plates L = 1 mm apart. At t = 0 the upper plate \
             starts at constant speed V = Re nu/L, Re = 0.5. The exact velocity is a Fourier series; \
             pressure and cross-flow are exactly zero.",
     variants: variants::<()>,
-    plan: |tier| channel::plan::plan(Flow::Couette, tier),
-    studies: |tier, runs| channel::studies(&COUETTE, Flow::Couette, tier, runs),
+    is_stable: channel::is_stable,
+    declaration: |tier| channel::declaration(CHANNEL, tier),
+    plan: |tier| channel::plan(CHANNEL, tier),
+    studies: |tier, runs| channel::studies(CHANNEL, tier, runs),
 };
+
+const CHANNEL: Channel = Channel { flow: Flow::Couette, case: &COUETTE };

@@ -4,14 +4,72 @@
 use nalgebra::Vector2;
 use solver::{
     BodyForce, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
-    DensityDiffusion, Kernel, Pressure, ShiftAdvection, Shifting, Smoothing, Tait, Term, Viscosity,
+    DensityDiffusion, Kernel, Particle, Pressure, ShiftAdvection, Shifting, Smoothing, Tait, Term,
+    Viscosity,
 };
 
+use base::{
+    number,
+    record::{self, MetricKey, Record},
+};
+use harness::case::RunError;
 use maths::theory::Stepping;
 use maths::theory::{
     lattice::SquareLattice,
     time_step::{self, Medium},
 };
+use report::{Cell, Column};
+
+/// More time steps than this are refused.
+pub const MOST_STEPS: f64 = 1e8;
+
+/// Refuses what is more than anyone waits for.
+///
+/// # Errors
+/// If `value` is above `most`.
+pub fn at_most(
+    what: &'static str,
+    value: f64,
+    most: f64,
+    setting: &'static str,
+) -> Result<(), RunError> {
+    if value > most {
+        return Err(RunError::TooMuch { what, value, most, setting });
+    }
+    Ok(())
+}
+
+/// States in a record what the run chose: numbers, then words.
+pub fn describe(numbers: &[(&str, f64)], words: &[(&str, &str)], record: &mut Record) {
+    let numbers = numbers.iter().map(|(name, value)| (name.to_string(), number::json(*value)));
+    record.numerics.extend(numbers);
+    record.numerics.extend(words.iter().map(|(name, word)| (name.to_string(), (*word).into())));
+}
+
+/// Digest of places, velocities and densities at the end of a run.
+pub fn digest(particles: &[Particle]) -> String {
+    let numbers =
+        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
+    let state: Vec<[f64; 5]> = particles.iter().map(numbers).collect();
+    record::digest(state.as_flattened())
+}
+
+/// Columns of a table of runs that show metrics: head, unit, metric, how its value is shown.
+pub type MetricColumns = [(&'static str, &'static str, MetricKey, fn(f64) -> Cell)];
+
+/// The heads of these columns.
+pub fn heads(columns: &MetricColumns) -> impl Iterator<Item = Column> {
+    columns.iter().map(|(head, unit, ..)| Column::num(*head, *unit))
+}
+
+/// The cells of a row; a dash where there is no value.
+pub fn cells(
+    columns: &MetricColumns,
+    value: impl Fn(MetricKey) -> Option<f64>,
+) -> impl Iterator<Item = Cell> {
+    let dash = || Cell::text("–");
+    columns.iter().map(move |(.., metric, show)| value(*metric).map_or_else(dash, show))
+}
 
 /// The numbers that terms are made from.
 #[derive(Clone, Copy, Debug)]

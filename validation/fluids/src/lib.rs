@@ -1,5 +1,6 @@
 //! Viscous flows.
 
+pub mod bench;
 pub mod channel;
 pub mod couette;
 pub mod fluid;
@@ -7,3 +8,14 @@ pub mod periodic_hill;
 pub mod poiseuille;
 pub mod taylor_couette;
 pub mod taylor_green;
+
+use harness::case::Case;
+
+/// The cases of the family.
+pub const CASES: &[&dyn Case] = &[
+    &couette::COUETTE,
+    &poiseuille::POISEUILLE,
+    periodic_hill::PERIODIC_HILL,
+    taylor_green::TAYLOR_GREEN,
+    taylor_couette::TAYLOR_COUETTE,
+];

@@ -1,18 +1,21 @@
 //! Case 2, start-up Poiseuille flow (the paper's figure 2).
 
-use harness::composed::Composed;
 use solver::BodyForce;
 
-use super::channel::{self, ChannelSettings, Flow, variants};
+use super::channel::{self, Channel, ChannelCase, Flow, variants};
 
 /// Start-up Poiseuille flow.
-pub const POISEUILLE: Composed<ChannelSettings> = Composed {
+pub static POISEUILLE: ChannelCase = ChannelCase {
     name: "poiseuille",
     about: "Water at rest between two infinite plates L = 1 mm apart. At t = 0 a body force \
             F = 8 nu V/L^2 along the plates sets in; V = Re nu/L is the centre-line velocity of the \
             steady parabola. The exact velocity is a Fourier series; pressure and cross-flow are \
             exactly zero.",
     variants: variants::<BodyForce>,
-    plan: |tier| channel::plan::plan(Flow::Poiseuille, tier),
-    studies: |tier, runs| channel::studies(&POISEUILLE, Flow::Poiseuille, tier, runs),
+    is_stable: channel::is_stable,
+    declaration: |tier| channel::declaration(CHANNEL, tier),
+    plan: |tier| channel::plan(CHANNEL, tier),
+    studies: |tier, runs| channel::studies(CHANNEL, tier, runs),
 };
+
+const CHANNEL: Channel = Channel { flow: Flow::Poiseuille, case: &POISEUILLE };

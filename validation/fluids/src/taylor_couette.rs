@@ -2,22 +2,23 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, Domain, ExtrapolatingWall, Integrator, InterfaceWall, Kernel, Leapfrog,
-    NoSlip, Particle, Pressure, QuinticSpline, Role, Scene, Simulation, Tait, Viscosity,
-    walls::Walls,
+    Compose, Continuity, Domain, EquationOfState, ExtrapolatingWall, Integrator, InterfaceWall,
+    Kernel, Leapfrog, NoSlip, Particle, Pressure, QuinticSpline, Role, Scene, Simulation, Tait,
+    Viscosity, walls::Walls,
 };
 
 use base::{
     gate::{Bound, Evidence, Gate},
-    number,
-    record::{self, Metric, Profile, Record, Status},
-    settings::{self, Field, Settings},
+    record::{Profile, Record, Status},
 };
 use harness::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
-    convergence::{Level, convergence},
-    runner::{self, Context, Frames},
-    suite::{JudgedRun, Study},
+    case::{Case, Planned, Rules, RunError, Tier, Variant},
+    composed::{Composed, Composition},
+    declare::{
+        Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Ladder, Level, OrderGate,
+    },
+    runner::{self, Context},
+    study::Study,
 };
 use maths::theory::Stepping;
 use maths::{
@@ -29,7 +30,9 @@ use maths::{
         time_step::{self, Medium},
     },
 };
-use report::{Axis, Cell, Colour, Column, Figure, Layer, Legend, Plot, Series, Shape, Table, sig};
+use report::Axis;
+
+use crate::fluid::{self, MOST_STEPS, at_most};
 
 base::settings! {
     /// Settings of the flow between two cylinders, the inner one turning.
@@ -61,14 +64,18 @@ base::settings! {
     }
 }
 
-type Run = fn(&str, &CylinderSettings, &Context) -> Result<Record, RunError>;
 type Method<W> = Compose<QuinticSpline, (Pressure<Tait>, Viscosity), Continuity, W, Leapfrog>;
 type Extrapolating = ExtrapolatingWall<Tait, NoSlip>;
 
 const NAME: &str = "taylor_couette";
 const LIMIT_BOX: usize = 32;
-const MOST_STEPS: f64 = 1e8;
 const MOST_PARTICLES: f64 = 1e7;
+
+base::metrics! {
+    L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles, u the velocity around the axis";
+    RADIAL_RMS = "radial_rms" ["-"] "rms of the radial velocity over V";
+    OUTSIDE = "outside" ["-"] "particles inside of the inner or outside of the outer cylinder";
+}
 
 /// The numbers of one run, SI units.
 struct Cylinders {
@@ -106,32 +113,16 @@ impl Cylinders {
 
     fn check(&self, allow_unstable: bool) -> Result<(), RunError> {
         let Self { flow, dt, dt_limit: limit, .. } = self;
-        let too_much = |what, value, most, setting| {
-            if value > most {
-                Err(RunError::TooMuch { what, value, most, setting })
-            } else {
-                Ok(())
-            }
-        };
         let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
         let particles = area / (self.dx * self.dx);
-        too_much(
-            "the number of time steps",
-            self.end() / dt,
-            MOST_STEPS,
-            "end, viscous or layers",
-        )?;
-        too_much("the number of particles", particles, MOST_PARTICLES, "layers or ratio")?;
-        let support = QuinticSpline::SUPPORT * self.h;
-        if flow.inner <= support {
-            // Rows out to the support must fit into the inner cylinder.
+        let setting = "end, viscous or layers";
+        at_most("the number of time steps", self.end() / dt, MOST_STEPS, setting)?;
+        at_most("the number of particles", particles, MOST_PARTICLES, "layers or ratio")?;
+        // Rows out to the support must fit into the inner cylinder.
+        let share = QuinticSpline::SUPPORT * self.h / flow.inner;
+        if share >= 1.0 {
             let (what, setting) = ("the support over the inner radius", "ratio or layers");
-            return Err(RunError::TooMuch {
-                what,
-                value: support / flow.inner,
-                most: 1.0,
-                setting,
-            });
+            return Err(RunError::TooMuch { what, value: share, most: 1.0, setting });
         }
         if dt > limit && !allow_unstable {
             let integrator = <Leapfrog as Integrator<()>>::NAME;
@@ -226,27 +217,14 @@ fn run<W: CylinderWall>(
     let json = serde_json::to_value(settings).unwrap_or_default();
     let mut record = Record::new(NAME, variant, json, context.threads.max(1));
     describe::<W>(&cylinders, &mut record);
-    let frames = Frames::of(context)?;
-    let count = context.frames.as_ref().map_or(1, |(_, count)| *count.max(&1));
-    let stops: Vec<f64> =
-        (1..=count).map(|k| cylinders.end() * (k as f64 / count as f64)).collect();
-    let (mut failed, dt) = (None, cylinders.dt);
+    let (end, dt) = ([cylinders.end()], cylinders.dt);
+    let pressure = |density| cylinders.eos.pressure(density);
     let (status, cost) =
-        runner::drive(&mut simulation, dt, &stops, context, &mut (), &mut |simulation, _| {
-            if let Some(frames) = &frames {
-                failed = failed.take().or(frames.write(simulation, &cylinders.eos).err());
-            }
-        });
-    if let Some(error) = failed {
-        return Err(error.into());
-    }
+        runner::drive(&mut simulation, dt, &end, context, &mut (), &pressure, &mut |_, _| {})?;
     if status == Status::Completed {
         measure(&cylinders, &simulation, &mut record);
     }
-    let numbers =
-        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
-    let state: Vec<[f64; 5]> = simulation.particles().iter().map(numbers).collect();
-    record.state = Some(record::digest(state.as_flattened()));
+    record.state = Some(fluid::digest(&simulation.particles()));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }
@@ -262,9 +240,7 @@ fn describe<W: CylinderWall>(cylinders: &Cylinders, record: &mut Record) {
     ];
     let integrator = <Leapfrog as Integrator<()>>::NAME;
     let words = [("kernel", QuinticSpline::NAME), ("integrator", integrator), ("walls", W::NAME)];
-    let numerics = &mut record.numerics;
-    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    numerics.extend(words.map(|(name, word)| (name.to_string(), word.into())));
+    fluid::describe(&numbers, &words, record);
 }
 
 fn measure<W: CylinderWall>(
@@ -288,20 +264,9 @@ fn measure<W: CylinderWall>(
     let error = Scale::rms(&exact).and_then(|scale| l2(&around, &exact, scale));
     let square = fluid.iter().map(|f| f[2] * f[2]).sum::<f64>() / fluid.len() as f64;
     let outside = fluid.iter().filter(|f| !(flow.inner..=flow.outer).contains(&f[0])).count();
-    let mut put = |name: &str, value: f64, formula: &str| {
-        record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-    };
-    put(
-        "l2",
-        error.unwrap_or(f64::NAN),
-        "rms(u - u_exact)/rms(u_exact) over particles, u the velocity around the axis",
-    );
-    put("radial_rms", square.sqrt() / flow.speed, "rms of the radial velocity over V");
-    put(
-        "outside",
-        outside as f64,
-        "particles inside of the inner or outside of the outer cylinder",
-    );
+    record.put(L2, error.unwrap_or(f64::NAN));
+    record.put(RADIAL_RMS, square.sqrt() / flow.speed);
+    record.put(OUTSIDE, outside as f64);
     let column = |of: &dyn Fn(&[f64; 3]) -> f64| fluid.iter().map(of).collect();
     let profile = Profile::default()
         .with("r", "inner radius", column(&|f| f[0] / flow.inner))
@@ -310,72 +275,71 @@ fn measure<W: CylinderWall>(
     record.profiles.insert("velocity".into(), profile);
 }
 
-const VARIANTS: [(Variant, Run); 2] = [
+fn variant<W: CylinderWall>(
+    name: &'static str,
+    about: &'static str,
+) -> Composition<CylinderSettings> {
+    let rules = |settings: &CylinderSettings| {
+        let Cylinders { dt, dt_limit, eos, .. } = Cylinders::new(settings, true)?;
+        Ok(Rules { dt, dt_limit, sound_speed: eos.sound_speed })
+    };
+    let variant = Variant { name, about };
+    Composition { variant, adjust: |_| {}, run: run::<W>, rules, lacks: Vec::new() }
+}
+
+fn variants() -> Vec<Composition<CylinderSettings>> {
+    vec![
+        variant::<InterfaceWall>(
+            InterfaceWall::NAME,
+            "interface and wall particles of the paper, on and behind both cylinders",
+        ),
+        variant::<Extrapolating>(
+            Extrapolating::NAME,
+            "wall particles behind both cylinders that extrapolate velocity and pressure",
+        ),
+    ]
+}
+
+static CASE: Composed<CylinderSettings> = Composed {
+    name: NAME,
+    about: "Viscous flow from rest between two cylinders, the inner one turning, until it is steady: u = A r \
+            + B/r, exact. Both walls are curved, the inner one convex and the outer one concave, and made of \
+            rows of particles that are spaced by their own arc length.",
+    variants,
+    is_stable: |record| record.status == Status::Completed,
+    declaration,
+    plan,
+    studies: |_, _| vec![Study::new("taylor-couette", "Curved walls").prose(FALLING)],
+};
+
+/// Flow between two cylinders.
+pub const TAYLOR_COUETTE: &dyn Case = &CASE;
+
+/// The walls of both variants, the order that they should have, and why.
+const ORDERS: [(&str, f64, &str); 2] = [
     (
-        Variant {
-            name: InterfaceWall::NAME,
-            about: "interface and wall particles of the paper, on and behind both cylinders",
-        },
-        run::<InterfaceWall>,
+        InterfaceWall::NAME,
+        1.0,
+        "interface particles carry the velocity of the wall, and so do the rows behind: first order, as in \
+         the row-reduced matrix of flat walls; 0.3 either way tells it from second order, whatever the \
+         number of levels",
     ),
     (
-        Variant {
-            name: Extrapolating::NAME,
-            about: "wall particles behind both cylinders that extrapolate velocity and pressure",
-        },
-        run::<Extrapolating>,
+        Extrapolating::NAME,
+        2.0,
+        "walls that extrapolate linearly: second order, as in the row-reduced matrix of flat walls; 0.3 \
+         either way tells it from first order, whatever the number of levels, and not from an order that \
+         falls slowly",
     ),
 ];
 
-/// The flow as a [`Case`].
-pub struct Gap;
-
-fn settings(set: &[String]) -> Result<CylinderSettings, RunError> {
-    let mut settings = CylinderSettings::default();
-    settings::apply(&mut settings, set)?;
-    settings.validate()?;
-    Ok(settings)
+fn planned(variant: &str, layers: usize) -> Planned {
+    CASE.planned(variant, |s| s.layers = layers).judged(gates(variant, layers))
 }
 
-impl Case for Gap {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn about(&self) -> &'static str {
-        "Viscous flow from rest between two cylinders, the inner one turning, until it is steady: u = A r + \
-         B/r, exact. Both walls are curved, the inner one convex and the outer one concave, and made of \
-         rows of particles that are spaced by their own arc length."
-    }
-
-    fn variants(&self) -> Vec<Variant> {
-        VARIANTS.iter().map(|(variant, _)| *variant).collect()
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        CylinderSettings::FIELDS
-    }
-
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        case::find(NAME, &VARIANTS, variant, |v| v.0.name)?;
-        Ok(serde_json::to_value(settings(set)?).unwrap_or_default())
-    }
-
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        let (_, run) = case::find(NAME, &VARIANTS, variant, |v| v.0.name)?;
-        run(variant, &settings(set)?, context)
-    }
-
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        let levels = levels(tier);
-        let all = VARIANTS.iter().flat_map(|(v, _)| levels.iter().map(move |n| (v.name, *n)));
-        all.map(|(name, n)| Planned::new(name, &[format!("layers={n}")]).judged(gates(name, n)))
-            .collect()
-    }
-
-    fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        vec![study(tier, runs)]
-    }
+fn plan(tier: Tier) -> Vec<Planned> {
+    let of = |&variant: &&'static str| levels(tier).iter().map(move |&n| planned(variant, n));
+    ORDERS.map(|(variant, ..)| variant).iter().flat_map(of).collect()
 }
 
 fn levels(tier: Tier) -> &'static [usize] {
@@ -413,45 +377,6 @@ fn gates(variant: &str, layers: usize) -> Vec<Gate> {
     ]
 }
 
-/// The runs of a variant with their spacings, coarse to fine.
-fn ladder<'a>(tier: Tier, runs: &'a [JudgedRun], variant: &str) -> Vec<(usize, &'a Record)> {
-    let records = runs.iter().map(|run| &run.record).filter(|r| r.variant == variant);
-    levels(tier).iter().copied().zip(records).collect()
-}
-
-fn error(record: &Record) -> f64 {
-    record.measured("l2")
-}
-
-fn levels_of(ladder: &[(usize, &Record)]) -> Vec<Level> {
-    let level =
-        |(n, record): &(usize, &Record)| Level { spacing: 1.0 / *n as f64, value: error(record) };
-    ladder.iter().map(level).collect()
-}
-
-/// Profiles of the finest level, and error over spacing.
-fn study(tier: Tier, runs: &[JudgedRun]) -> Study {
-    let mut study = Study::new("taylor-couette", "Curved walls: flow between cylinders")
-        .block(figure(tier, runs))
-        .block(table(tier, runs));
-    let of_first = "interface particles carry the velocity of the wall, and so do the rows behind: first \
-                    order, as in the row-reduced matrix of flat walls; 0.3 either way tells it from second \
-                    order, whatever the number of levels";
-    let of_second = "walls that extrapolate linearly: second order, as in the row-reduced matrix of flat \
-                     walls; 0.3 either way tells it from first order, whatever the number of levels, and \
-                     not from an order that falls slowly";
-    for (variant, expected, because) in
-        [(InterfaceWall::NAME, 1.0, of_first), (Extrapolating::NAME, 2.0, of_second)]
-    {
-        let found = convergence(&levels_of(&ladder(tier, runs, variant)));
-        let bound = Bound::Within(expected - 0.3, expected + 0.3);
-        let id = format!("{NAME}.{variant}.order");
-        let gate = Gate::new(id, "order", bound, Evidence::Theory, because);
-        study = study.judge(gate, found.map_or(f64::NAN, |c| c.order));
-    }
-    study.prose(FALLING)
-}
-
 /// What is known of the local orders, measured once outside of the plan.
 const FALLING: &str = "From one spacing to the next the order of walls that extrapolate falls, from \
      1.9 at 8 to 11 spacings to 1.6 at 22 to 32, and the scatter of a fit through all levels does not say \
@@ -463,68 +388,75 @@ const FALLING: &str = "From one spacing to the next the order of walls that extr
      which of these is not known, and 1.2 may be a place where parts cancel. A sound speed twice as high \
      moves the errors at 16 and 22 by 0.1 %, half the time step by 0.3 %.";
 
-fn figure(tier: Tier, runs: &[JudgedRun]) -> Figure {
+fn declaration(tier: Tier) -> Declaration {
+    Declaration {
+        curves: vec![profiles(tier)],
+        accuracy: vec![accuracy(tier)],
+        ..Declaration::default()
+    }
+}
+
+fn accuracy(tier: Tier) -> Accuracy {
+    let level = |variant: &str, n: usize| Level {
+        run: CASE.planned(variant, |s| s.layers = n),
+        spacing: 1.0 / n as f64,
+        label: format!("{n} spacings across"),
+    };
+    let ladder = |(variant, expected, because): (&'static str, f64, &str)| Ladder {
+        variant,
+        note: String::new(),
+        levels: levels(tier).iter().map(|&n| level(variant, n)).collect(),
+        order: Some(OrderGate {
+            id: format!("{NAME}.{variant}.order"),
+            bound: Bound::Within(expected - 0.3, expected + 0.3),
+            evidence: Evidence::Theory,
+            because: because.into(),
+        }),
+    };
+    Accuracy {
+        id: "taylor-couette".into(),
+        error: ErrorOf::Metric(L2.into()),
+        label: "relative L2 error of the velocity around the axis [-]".into(),
+        about: "Steady flow from rest at t = 1 d^2/nu, Re = V d/nu = 0.5, outer radius twice the inner one."
+            .into(),
+        spacing: "dx/d [-]",
+        slope: Some(2.0),
+        ladders: ORDERS.map(ladder).into(),
+        more: Vec::new(),
+        peers: Vec::new(),
+    }
+}
+
+/// Velocity over the radius at the finest level.
+fn profiles(tier: Tier) -> Curves {
     let finest = levels(tier).last().copied().unwrap_or_default();
     let caption = format!(
         "Velocity around the axis over the radius at t = 1 d^2/nu, every seventeenth particle, {finest} \
-         spacings across the gap, on the exact line A r + B/r (left), and the error over the spacing, with \
-         the slopes of first and second order (right). Re = V d/nu = 0.5, outer radius twice the inner one."
+         spacings across the gap, on the exact line A r + B/r. Re = V d/nu = 0.5, outer radius twice the \
+         inner one."
     );
-    let mut over = Plot::new("", Axis::linear("r/inner radius [-]"), Axis::linear("u/V [-]"));
-    let mut fall = Plot::new("", Axis::log("dx/d [-]"), Axis::log("relative L2 error [-]"));
-    for (k, (Variant { name, .. }, _)) in VARIANTS.iter().enumerate() {
-        let ladder = ladder(tier, runs, name);
-        let points = levels_of(&ladder).iter().map(|l| (l.spacing, l.value)).collect();
-        fall = fall.layer(Series::line_markers(*name, points).cycle(k));
-        let last = ladder.last().and_then(|(_, record)| record.profiles.get("velocity"));
-        let Some(profile) = last else { continue };
-        let [r, u, exact] = ["r", "u", "u_exact"].map(|name| profile.column(name));
-        if k == 0 {
-            let line = r.iter().zip(exact).map(|(r, u)| (*r, *u)).collect();
-            over = over.layer(Series::line("exact", line).colour(Colour::BLACK));
-        }
-        let few = r.iter().zip(u).step_by(17).map(|(r, u)| (*r, *u)).collect();
-        let markers = Series::markers(*name, few).colour(Colour::cycle(k));
-        over = over.layer(markers.shape(Shape::cycle(k)).open().size(5.0));
-    }
-    fall = fall.layer(Layer::slope(1.0)).layer(Layer::slope(2.0));
-    Figure::new("taylor-couette", caption)
-        .columns(2)
-        .panel(over.legend(Legend::Auto))
-        .panel(fall.legend(Legend::Hidden))
-        .panel_size(420.0, 300.0)
-}
-
-fn table(tier: Tier, runs: &[JudgedRun]) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("spacings across", "-"),
-        Column::num("error of u", "-"),
-        Column::num("radial velocity", "V"),
-        Column::num("CPU time", "s"),
-        Column::text("observed order"),
-    ];
-    let caption = "Errors at t = 1 d^2/nu. Order: least squares over all levels ± standard error, then that \
-                   from one spacing to the next.";
-    let mut table = Table::new(caption, columns);
-    for (Variant { name, .. }, _) in &VARIANTS {
-        let ladder = ladder(tier, runs, name);
-        let order = convergence(&levels_of(&ladder)).map_or("–".to_string(), |c| {
-            let local: Vec<String> = c.local_orders.iter().map(|p| format!("{p:.2}")).collect();
-            let (order, error) = (sig(c.order, 3), sig(c.standard_error, 2));
-            format!("{order} ± {error}; {}", local.join(", "))
-        });
-        for (k, (layers, record)) in ladder.iter().enumerate() {
-            let is_last = k + 1 == ladder.len();
-            table = table.row(vec![
-                Cell::text(format!("`{name}`")),
-                Cell::count(*layers as u64),
-                Cell::percent(error(record), 3),
-                Cell::sci(record.measured("radial_rms"), 2),
-                Cell::seconds(record.cost.cpu_s),
-                Cell::text(if is_last { order.clone() } else { String::new() }),
-            ]);
-        }
-    }
-    table
+    let points = |record: &Record| {
+        let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));
+        r.iter().zip(u).step_by(17).map(|(r, u)| (*r, *u)).collect()
+    };
+    let line = |(variant, ..): (&str, f64, &str)| CurveOf {
+        name: variant.into(),
+        spec: CASE.spec(variant, |s| s.layers = finest),
+        points: Box::new(points),
+    };
+    let flow = TaylorCouette { inner: 1.0, outer: CylinderSettings::default().ratio, speed: 1.0 };
+    let exact = |k: u32| flow.inner + (flow.outer - flow.inner) * f64::from(k) / 100.0;
+    let panel = CurvePanel {
+        title: String::new(),
+        x: Axis::linear("r/inner radius [-]"),
+        y: Axis::linear("u/V [-]"),
+        lines: ORDERS.map(line).into(),
+        references: vec![(
+            "exact".into(),
+            (0..=100).map(exact).map(|r| (r, flow.velocity(r))).collect(),
+        )],
+        symbols: true,
+    };
+    let (id, title) = ("taylor-couette-profiles".into(), "Velocity between the cylinders".into());
+    Curves { id, title, caption, columns: 1, panels: vec![panel] }
 }

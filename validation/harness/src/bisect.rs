@@ -1,4 +1,96 @@
-//! The largest stable step by bisection, and when a run counts as growing.
+//! The largest stable value of a setting by bisection, and when a run counts as growing.
+
+use base::{
+    record::{Cost, Metric, Record, Status},
+    spec::{Bisect, RunSpec, Task},
+};
+use std::cell::RefCell;
+
+use crate::{
+    case::{Case, RunError},
+    context::Context,
+};
+
+/// Metric of a bisection: the largest x with which the run was stable.
+pub const STABLE: &str = "stable";
+/// The smallest x with which it was not.
+pub const UNSTABLE: &str = "unstable";
+
+/// Bisects a setting of a run. The record has the settings of the run, the cost of all runs together, and
+/// the bracket as its metrics, which are missing if there is no limit within a factor of 16 of the guess.
+///
+/// # Errors
+/// Those of the first run, if no run can be made at all.
+pub fn run(
+    case: &dyn Case,
+    spec: &RunSpec,
+    bisect: &Bisect,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(spec);
+    let cost = RefCell::new(Cost { threads: 1, ..Cost::default() });
+    let interrupted = RefCell::new(None);
+    let failed = RefCell::new(None);
+    let is_stable = |x: f64| {
+        if interrupted.borrow().is_some() || failed.borrow().is_some() {
+            return false;
+        }
+        match case.run(&at(spec, bisect, x), context) {
+            Ok(run) => {
+                add(&mut cost.borrow_mut(), &run.cost);
+                if let Status::Interrupted { .. } = run.status {
+                    *interrupted.borrow_mut() = Some(run.status.clone());
+                }
+                case.is_stable(&run)
+            }
+            Err(error @ (RunError::File(_) | RunError::Frame(_) | RunError::Reference(_))) => {
+                *failed.borrow_mut() = Some(error);
+                false
+            }
+            Err(_) => false,
+        }
+    };
+    let bracket = largest_stable(bisect.guess, bisect.resolution, is_stable);
+    if let Some(error) = failed.into_inner() {
+        return Err(error);
+    }
+    if let Some(status) = interrupted.into_inner() {
+        record.status = status;
+    }
+    if let Some(Bracket { stable, unstable }) = bracket {
+        let ends = [
+            (STABLE, stable, "largest x that was stable"),
+            (UNSTABLE, unstable, "smallest x that was not"),
+        ];
+        for (name, x, formula) in ends {
+            record.metrics.insert(name.into(), Metric::new(x, "-", formula));
+        }
+    }
+    record.cost = cost.into_inner();
+    Ok(record)
+}
+
+/// The simulation of one x.
+fn at(spec: &RunSpec, bisect: &Bisect, x: f64) -> RunSpec {
+    let value = x * bisect.unit;
+    let one = RunSpec { task: Task::Simulate, ..spec.clone() }.with_setting(&bisect.setting, value);
+    match bisect.end {
+        Some(end) => one.with_setting("end", end.steps * value / end.unit),
+        None => one,
+    }
+}
+
+/// Adds what one more run took; sizes are those of the largest.
+pub fn add(sum: &mut Cost, run: &Cost) {
+    sum.wall_s += run.wall_s;
+    sum.cpu_s += run.cpu_s;
+    sum.observing_s += run.observing_s;
+    sum.steps += run.steps;
+    sum.pair_interactions += run.pair_interactions;
+    sum.particle_rhs += run.particle_rhs;
+    sum.particles = sum.particles.max(run.particles);
+    sum.solver_bytes = sum.solver_bytes.max(run.solver_bytes);
+}
 
 /// A step that is stable and a longer one that is not.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,26 +1,18 @@
 //! What a benchmark is: a problem in words, settings, variants to compare, a plan of judged runs.
 
-use thiserror::Error;
-
-use crate::{
-    runner::{Context, FrameError},
-    suite::{JudgedRun, Study},
-};
 use base::{
-    files::FileError,
-    gate::Gate,
-    record::Record,
-    settings::{Field, SettingError, hint, nearest},
+    record::{Record, Status},
+    settings::{Field, nearest},
+    spec::RunSpec,
 };
+use serde_json::Value;
 
-/// How much to run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Tier {
-    /// Under a minute on two cores.
-    Quick,
-    /// Under twenty minutes.
-    Full,
-}
+use crate::{context::Context, declare::Declaration, runs::Runs, study::Study};
+pub use crate::{
+    error::RunError,
+    planned::{Planned, Tier},
+    rules::Rules,
+};
 
 /// One named composition of types with its default settings.
 #[derive(Clone, Copy, Debug)]
@@ -29,116 +21,6 @@ pub struct Variant {
     pub name: &'static str,
     /// What it stands for, one line.
     pub about: &'static str,
-}
-
-/// A run of the plan and how it is judged.
-#[derive(Clone, Debug)]
-pub struct Planned {
-    /// Name of the variant.
-    pub variant: &'static str,
-    /// `key=value` texts.
-    pub set: Vec<String>,
-    /// Judged on the record of this run.
-    pub gates: Vec<Gate>,
-    /// Roughly how long it takes \[s\]; only the order counts: long runs start first, so that no core
-    /// waits for the last one.
-    pub seconds: f64,
-}
-
-impl Planned {
-    /// A run without gates.
-    pub fn new(variant: &'static str, set: &[String]) -> Self {
-        Self { variant, set: set.to_vec(), gates: Vec::new(), seconds: 1.0 }
-    }
-
-    /// The same run, which takes roughly so long \[s\].
-    pub fn taking(self, seconds: f64) -> Self {
-        Self { seconds, ..self }
-    }
-
-    /// The same run, judged.
-    pub fn judged(mut self, gates: Vec<Gate>) -> Self {
-        self.gates.extend(gates);
-        self
-    }
-}
-
-/// Why a run was refused before its first step.
-#[derive(Debug, Error)]
-pub enum RunError {
-    /// No case of that name.
-    #[error("no case is called {name:?}{}; the cases are {}", hint(.nearest), .known.join(", "))]
-    Case {
-        /// As given.
-        name: String,
-        /// The most similar name, if one is similar.
-        nearest: Option<&'static str>,
-        /// All names.
-        known: Vec<&'static str>,
-    },
-    /// No variant of that name.
-    #[error(
-        "case {case} has no variant {name:?}{}; its variants are {}",
-        hint(.nearest), .known.join(", ")
-    )]
-    Variant {
-        /// The case.
-        case: &'static str,
-        /// As given.
-        name: String,
-        /// The most similar name, if one is similar.
-        nearest: Option<&'static str>,
-        /// All names.
-        known: Vec<&'static str>,
-    },
-    /// A setting that does not exist or is out of range.
-    #[error(transparent)]
-    Setting(#[from] SettingError),
-    /// A setting of a term that the variant does not contain.
-    #[error("setting {key:?} has no effect in variant {variant}, which lacks that term")]
-    Unused {
-        /// The setting.
-        key: String,
-        /// The variant.
-        variant: String,
-    },
-    /// A time step beyond the theoretical limit.
-    #[error(
-        "dt is {dt:.4e} s, but must be at most {limit:.4e} s, the theoretical limit of {integrator} \
-         here (--allow-unstable runs it all the same)"
-    )]
-    TimeStep {
-        /// The step \[s\].
-        dt: f64,
-        /// The limit \[s\].
-        limit: f64,
-        /// Name of the integrator.
-        integrator: &'static str,
-    },
-    /// More steps or particles than anyone waits for.
-    #[error("{what} would be {value:.3e}, but must be at most {most:.1e}; change {setting}")]
-    TooMuch {
-        /// Steps or particles.
-        what: &'static str,
-        /// How many.
-        value: f64,
-        /// How many are allowed.
-        most: f64,
-        /// The settings that decide on it.
-        setting: &'static str,
-    },
-    /// The scene is not one.
-    #[error("the settings make an impossible scene: {0}")]
-    Scene(#[from] solver::SceneError),
-    /// The numbers that a case is built on could not be had.
-    #[error("a reference that the case needs: {0}")]
-    Reference(String),
-    /// A folder or file could not be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// Frames could not be written.
-    #[error(transparent)]
-    Frame(#[from] FrameError),
 }
 
 /// A benchmark.
@@ -152,13 +34,47 @@ pub trait Case: Sync {
     /// The settings.
     fn fields(&self) -> &'static [Field];
     /// All settings of a variant with `key=value` texts applied, as the record states them.
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError>;
-    /// Runs a variant with `key=value` settings.
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError>;
-    /// The runs of a tier and their gates.
+    fn settings(&self, variant: &str, set: &[String]) -> Result<Value, RunError>;
+    /// One simulation with resolved settings.
+    fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError>;
+    /// What the rules choose from the settings of a run, without stepping.
+    fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
+        let setting = spec.case.clone();
+        Err(RunError::NoRules { case: setting })
+    }
+    /// Did this run stay as a stable one does? The criterion of bisections.
+    fn is_stable(&self, record: &Record) -> bool {
+        record.status == Status::Completed
+    }
+    /// What the studies that every case has are made of.
+    fn declaration(&self, _tier: Tier) -> Declaration {
+        Declaration::default()
+    }
+    /// The runs of a tier and their gates, beside those of the declaration.
     fn plan(&self, tier: Tier) -> Vec<Planned>;
-    /// What the case has to say beyond single runs, given the runs of its plan in order.
-    fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study>;
+    /// What only this case has to say, a pure function of the records of its plan.
+    fn studies(&self, tier: Tier, runs: &Runs) -> Vec<Study>;
+}
+
+/// The run of a case that `key=value` texts describe.
+pub fn spec(case: &dyn Case, variant: &str, set: &[String]) -> Result<RunSpec, RunError> {
+    Ok(RunSpec::new(case.name(), variant, case.settings(variant, set)?))
+}
+
+/// `key=value` of the settings in which a run differs from the defaults of its variant.
+pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
+    let defaults = case.settings(&spec.variant, &[]).unwrap_or_default();
+    let text = |value: &Value| match value {
+        Value::String(word) => word.clone(),
+        Value::Number(number) if number.is_f64() => number.as_f64().unwrap_or_default().to_string(),
+        value => value.to_string(),
+    };
+    let fields = case.fields().iter().map(|field| field.name);
+    fields
+        .filter_map(|name| Some((name, spec.settings.get(name)?)))
+        .filter(|(name, value)| defaults.get(name) != Some(value))
+        .map(|(name, value)| format!("{name}={}", text(value)))
+        .collect()
 }
 
 /// The variant of that name, or an error that lists the names.

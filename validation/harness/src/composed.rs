@@ -1,13 +1,17 @@
-//! A case that is a table of compositions with a plan and studies.
+//! A case that is a table of compositions with a declaration, a plan and studies of its own.
+
+use base::{
+    record::{Record, Status},
+    settings::{self, Field, Settings},
+    spec::RunSpec,
+};
 
 use crate::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
-    runner::Context,
-    suite::{JudgedRun, Study},
-};
-use base::{
-    record::Record,
-    settings::{self, Field, Settings},
+    case::{self, Case, Planned, Rules, RunError, Tier, Variant},
+    context::Context,
+    declare::Declaration,
+    runs::Runs,
+    study::Study,
 };
 
 /// A variant: its name, its settings before `--set`, and the program that its types make.
@@ -18,6 +22,8 @@ pub struct Composition<T> {
     pub adjust: fn(&mut T),
     /// Runs it: name of the variant, settings.
     pub run: fn(&str, &T, &Context) -> Result<Record, RunError>,
+    /// What the rules choose from the settings.
+    pub rules: fn(&T) -> Result<Rules, RunError>,
     /// Settings that none of its types reads: there they are refused.
     pub lacks: Vec<&'static str>,
 }
@@ -45,6 +51,21 @@ impl<T: Settings> Composition<T> {
     }
 }
 
+/// Stable is what reached its end: the criterion of a case that needs no sharper one.
+pub fn completed(record: &Record) -> bool {
+    record.status == Status::Completed
+}
+
+/// No runs beside those of the declaration.
+pub fn no_plan(_: Tier) -> Vec<Planned> {
+    Vec::new()
+}
+
+/// No studies beside those that every case has.
+pub fn no_studies(_: Tier, _: &Runs) -> Vec<Study> {
+    Vec::new()
+}
+
 /// A table of compositions as a [`Case`].
 pub struct Composed<T> {
     /// Name on the command line.
@@ -53,17 +74,62 @@ pub struct Composed<T> {
     pub about: &'static str,
     /// The variants.
     pub variants: fn() -> Vec<Composition<T>>,
-    /// The judged runs.
+    /// The criterion of bisections.
+    pub is_stable: fn(&Record) -> bool,
+    /// What the studies that every case has are made of.
+    pub declaration: fn(Tier) -> Declaration,
+    /// The judged runs beside those of the declaration.
     pub plan: fn(Tier) -> Vec<Planned>,
-    /// What the runs say together.
-    pub studies: fn(Tier, &[JudgedRun]) -> Vec<Study>,
+    /// What only this case has to say.
+    pub studies: fn(Tier, &Runs) -> Vec<Study>,
 }
 
 impl<T: Settings> Composed<T> {
     /// The settings of a variant with `key=value` texts applied.
+    ///
+    /// # Errors
+    /// If there is no such variant or setting, or a value is out of range.
     pub fn settings_of(&self, variant: &str, set: &[String]) -> Result<T, RunError> {
         let variants = (self.variants)();
         case::find(self.name, &variants, variant, |v| v.variant.name)?.settings(set)
+    }
+
+    /// The run of a variant with its default settings, changed by `set`. A name that no variant has, or a
+    /// value out of range, makes a run that is refused, with the reason in its record.
+    pub fn spec(&self, variant: &str, set: impl FnOnce(&mut T)) -> RunSpec {
+        let mut settings = T::default();
+        if let Some(chosen) = (self.variants)().iter().find(|v| v.variant.name == variant) {
+            (chosen.adjust)(&mut settings);
+        }
+        set(&mut settings);
+        RunSpec::new(self.name, variant, serde_json::to_value(settings).unwrap_or_default())
+    }
+
+    /// [`Composed::spec`] as a run of a plan.
+    pub fn planned(&self, variant: &str, set: impl FnOnce(&mut T)) -> Planned {
+        Planned::new(self.spec(variant, set))
+    }
+
+    /// The composition of a run and its settings.
+    fn resolve(&self, spec: &RunSpec) -> Result<(Composition<T>, T), RunError> {
+        let variants = (self.variants)();
+        let name =
+            case::find(self.name, &variants, &spec.variant, |v| v.variant.name)?.variant.name;
+        let chosen = variants.into_iter().find(|v| v.variant.name == name);
+        let settings: T = serde_json::from_value(spec.settings.clone()).map_err(|reason| {
+            RunError::Settings { case: self.name.into(), reason: reason.to_string() }
+        })?;
+        settings.validate()?;
+        // Found just before.
+        let chosen = chosen.ok_or(RunError::NoRules { case: self.name.into() })?;
+        let mut defaults = T::default();
+        (chosen.adjust)(&mut defaults);
+        let is_changed = |key: &&&str| settings.get(key) != defaults.get(key);
+        if let Some(key) = chosen.lacks.iter().find(is_changed) {
+            let (key, variant) = (key.to_string(), name.to_string());
+            return Err(RunError::Unused { key, variant });
+        }
+        Ok((chosen, settings))
     }
 }
 
@@ -88,17 +154,29 @@ impl<T: Settings> Case for Composed<T> {
         Ok(serde_json::to_value(self.settings_of(variant, set)?).unwrap_or_default())
     }
 
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        let variants = (self.variants)();
-        let chosen = case::find(self.name, &variants, variant, |v| v.variant.name)?;
-        (chosen.run)(variant, &chosen.settings(set)?, context)
+    fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
+        let (chosen, settings) = self.resolve(spec)?;
+        Ok((chosen.run)(&spec.variant, &settings, &context.of(spec))?.of(spec))
+    }
+
+    fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
+        let (chosen, settings) = self.resolve(spec)?;
+        (chosen.rules)(&settings)
+    }
+
+    fn is_stable(&self, record: &Record) -> bool {
+        (self.is_stable)(record)
+    }
+
+    fn declaration(&self, tier: Tier) -> Declaration {
+        (self.declaration)(tier)
     }
 
     fn plan(&self, tier: Tier) -> Vec<Planned> {
         (self.plan)(tier)
     }
 
-    fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
+    fn studies(&self, tier: Tier, runs: &Runs) -> Vec<Study> {
         (self.studies)(tier, runs)
     }
 }

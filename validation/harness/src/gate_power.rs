@@ -1,7 +1,7 @@
 //! What the gates are worth: solvers and references with one thing spoiled, and the gates that they
 //! fail. Measured by `tests/tests/gate_power.rs`, which compares what is shown here exactly.
 
-use crate::suite::Study;
+use crate::study::Study;
 use report::{Block, Cell, Column, Status, Table};
 
 /// A mutant a line: its name, what it spoils, a group of gates a column, the first gate it fails.

@@ -1,65 +1,30 @@
-//! Steps a simulation through the times of interest: the only main loop of the crate. It measures
+//! Steps a simulation through the times of interest: the only main loop of the program. It measures
 //! cost, shows progress, writes frames and obeys an interrupt; cases hold only what differs.
 
-use std::cell::{Cell, RefCell};
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::cell::Cell;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use base::record::{Cost, Status};
 use cpu_time::{ProcessTime, ThreadTime};
-use solver::{EquationOfState, Flow, Observer, Outcome, Scheme, Simulation};
+use solver::{Flow, Numbers, Observer, Outcome, Scheme, Simulation, Stepper};
 
-use crate::case::RunError;
-use base::{
-    files::OutputFolder,
-    record::{Cost, Status},
-    vtk::{Collection, Particles, VtkError},
-};
-
-/// What a progress bar shows.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress {
-    /// Simulated time \[s\].
-    pub time: f64,
-    /// Time of the end \[s\].
-    pub end: f64,
-    /// Time step \[s\].
-    pub dt: f64,
-    /// Particle steps done.
-    pub particle_steps: u64,
-}
-
-/// How a run is to be done, apart from what it computes.
-#[derive(Default)]
-pub struct Context<'a> {
-    /// Run even with a time step beyond the theoretical limit.
-    pub allow_unstable: bool,
-    /// Threads inside the run, 1 for serial; 0 counts as 1.
-    pub threads: usize,
-    /// Frames for ParaView: the folder, and how many.
-    pub frames: Option<(PathBuf, usize)>,
-    /// Keep the particles of the last time in the record.
-    pub keep_particles: bool,
-    /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
-    pub pictures: Option<usize>,
-    /// Told how far the run is.
-    pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
-    /// Set from outside to stop.
-    pub interrupt: Option<&'a AtomicBool>,
-}
+pub use crate::context::{Context, Progress};
+use crate::{error::RunError, frames::Frames};
 
 /// Steps between looks at the interrupt and the progress bar.
 const LOOK_EVERY: u64 = 64;
 
+/// Shows how far a run is and obeys an interrupt.
 struct Watch<'a> {
     context: &'a Context<'a>,
     end: f64,
     until_look: Cell<u64>,
 }
 
-impl<S: Scheme> Observer<S> for Watch<'_> {
+impl<X: Numbers> Observer<X> for Watch<'_> {
     #[inline]
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         let left = self.until_look.get();
         if left > 0 {
             self.until_look.set(left - 1);
@@ -78,110 +43,116 @@ impl<S: Scheme> Observer<S> for Watch<'_> {
     }
 }
 
+/// Sums the time that observers and frames take.
+struct Timed<'a, 'f, X> {
+    observer: &'a mut dyn Observer<X>,
+    frames: &'a mut Option<Frames<'f>>,
+    seconds: f64,
+}
+
+impl<X: Numbers> Observer<X> for Timed<'_, '_, X> {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
+        let start = Instant::now();
+        let mut flow = self.observer.after_step(simulation);
+        if let Some(frames) = self.frames
+            && frames.after_step(simulation) == Flow::Stop
+        {
+            flow = Flow::Stop;
+        }
+        self.seconds += start.elapsed().as_secs_f64();
+        flow
+    }
+}
+
+/// What all schemes with the same extra fields share of [`drive`].
+struct Run<'a, X> {
+    context: &'a Context<'a>,
+    dt: f64,
+    watch: Watch<'a>,
+    observer: &'a mut dyn Observer<X>,
+    frames: Option<Frames<'a>>,
+    cost: Cost,
+}
+
+impl<X: Numbers> Run<'_, X> {
+    /// Steps to a time; how the run ended, if it did not get there.
+    fn step_to(&mut self, simulation: &mut dyn Stepper<X>, until: f64) -> Option<Status> {
+        let Self { dt, watch, observer, frames, cost, .. } = self;
+        let mut timed = Timed { observer: &mut **observer, frames, seconds: 0.0 };
+        let (wall, cpu, process) = (Instant::now(), ThreadTime::now(), ProcessTime::now());
+        let outcome = simulation.advance(until, *dt, &mut (watch, &mut timed));
+        // Runs side by side share a process, so the process's clock is only right for a run that
+        // itself has threads.
+        let elapsed = if cost.threads > 1 { process.elapsed() } else { cpu.elapsed() };
+        cost.wall_s += wall.elapsed().as_secs_f64() - timed.seconds;
+        cost.cpu_s += (elapsed.as_secs_f64() - timed.seconds).max(0.0);
+        cost.observing_s += timed.seconds;
+        match outcome {
+            Outcome::Reached => None,
+            Outcome::Diverged(divergence) => Some(Status::Diverged {
+                step: divergence.step,
+                time: divergence.time,
+                particle: divergence.fault.particle as usize,
+                field: divergence.fault.field.into(),
+                value_text: format!("{:.6e}", divergence.fault.value),
+            }),
+            Outcome::Stopped => {
+                let (step, time) = (simulation.work().steps, simulation.time());
+                Some(Status::Interrupted { step, time })
+            }
+        }
+    }
+
+    /// The last frame of a run that reached its end, and what was counted.
+    fn finish(self, simulation: &dyn Stepper<X>, status: &Status) -> Result<Cost, RunError> {
+        if let Some(frames) = self.frames {
+            let has_ended = *status == Status::Completed;
+            frames.finish(has_ended.then_some(simulation))?;
+        }
+        let work = simulation.work();
+        Ok(Cost {
+            threads: self.context.threads.max(1),
+            steps: work.steps,
+            pair_interactions: work.pair_interactions,
+            particle_rhs: work.right_hand_sides,
+            particles: simulation.fluid_count(),
+            solver_bytes: simulation.bytes() as u64,
+            ..self.cost
+        })
+    }
+}
+
 /// Steps through `times` \[s\], ascending; `at(simulation, k)` is called at the k-th. Returns how the
-/// run ended, and what the stepping alone cost.
+/// run ended, and what it cost: the stepping, and beside it the observers and `at`.
 ///
-/// `observer` watches every step beside the runner's own. What `at` does to the simulation is no part of
-/// the cost.
+/// `observer` sees every step. `pressure` \[Pa\] of a density \[kg/m³\] is what frames show.
+///
+/// # Errors
+/// If a frame cannot be written: the run stops at once.
 pub fn drive<S: Scheme>(
     simulation: &mut Simulation<S>,
     dt: f64,
     times: &[f64],
     context: &Context,
-    observer: &mut impl Observer<S>,
+    observer: &mut dyn Observer<S::Extra>,
+    pressure: &dyn Fn(f64) -> f64,
     at: &mut dyn FnMut(&mut Simulation<S>, usize),
-) -> (Status, Cost) {
-    let mut cost = Cost { threads: context.threads.max(1), ..Cost::default() };
+) -> Result<(Status, Cost), RunError> {
     let end = times.last().copied().unwrap_or_default();
-    let mut watch = Watch { context, end, until_look: Cell::new(LOOK_EVERY) };
+    let watch = Watch { context, end, until_look: Cell::new(LOOK_EVERY) };
+    let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
+    let cost = Cost { threads: context.threads.max(1), ..Cost::default() };
+    let mut run = Run { context, dt, watch, observer, frames: frames.transpose()?, cost };
     let mut status = Status::Completed;
     for (k, &until) in times.iter().enumerate() {
-        let (wall, cpu, process) = (Instant::now(), ThreadTime::now(), ProcessTime::now());
-        let outcome = simulation.advance(until, dt, &mut (&mut watch, &mut *observer));
-        cost.wall_s += wall.elapsed().as_secs_f64();
-        // Runs side by side share a process, so the process's clock is only right for a run that
-        // itself has threads.
-        let elapsed = if cost.threads > 1 { process.elapsed() } else { cpu.elapsed() };
-        cost.cpu_s += elapsed.as_secs_f64();
-        match outcome {
-            Outcome::Reached => at(simulation, k),
-            Outcome::Diverged(divergence) => {
-                status = Status::Diverged {
-                    step: divergence.step,
-                    time: divergence.time,
-                    particle: divergence.fault.particle as usize,
-                    field: divergence.fault.field.into(),
-                    value_text: format!("{:.6e}", divergence.fault.value),
-                };
-                break;
-            }
-            Outcome::Stopped => {
-                let (step, time) = (simulation.work().steps, simulation.time());
-                status = Status::Interrupted { step, time };
-                break;
-            }
+        if let Some(ended) = run.step_to(simulation, until) {
+            status = ended;
+            break;
         }
+        let start = Instant::now();
+        at(simulation, k);
+        run.cost.observing_s += start.elapsed().as_secs_f64();
     }
-    let work = simulation.work();
-    cost.steps = work.steps;
-    cost.pair_interactions = work.pair_interactions;
-    cost.particle_rhs = work.right_hand_sides;
-    cost.particles = simulation.fluid_count();
-    cost.solver_bytes = simulation.bytes() as u64;
-    cost.peak_rss_bytes = base::manifest::peak_rss_bytes();
-    (status, cost)
-}
-
-/// Writes particles for ParaView.
-pub struct Frames {
-    folder: OutputFolder,
-    written: RefCell<(usize, Collection)>,
-}
-
-impl Frames {
-    /// Frames in the folder of the context, if it asks for any.
-    pub fn of(context: &Context) -> Result<Option<Self>, RunError> {
-        let Some((path, _)) = &context.frames else { return Ok(None) };
-        let folder = OutputFolder::create(path)?;
-        Ok(Some(Self { folder, written: RefCell::default() }))
-    }
-
-    /// Writes one frame and the collection that lists all so far.
-    pub fn write<S: Scheme>(
-        &self,
-        simulation: &Simulation<S>,
-        eos: &impl EquationOfState,
-    ) -> Result<(), FrameError> {
-        let particles = simulation.particles();
-        let column = |f: &dyn Fn(&solver::Particle<S::Extra>) -> f64| -> Vec<f64> {
-            particles.iter().map(f).collect()
-        };
-        let xy = |v: nalgebra::Vector2<f64>| [v.x, v.y];
-        let positions: Vec<_> = particles.iter().map(|p| xy(p.position)).collect();
-        let velocities: Vec<_> = particles.iter().map(|p| xy(p.velocity)).collect();
-        let frame = Particles::new(simulation.time(), &positions)?
-            .vector("velocity", &velocities)?
-            .scalar("density", &column(&|p| p.density))?
-            .scalar("pressure", &column(&|p| eos.pressure(p.density)))?
-            .scalar("mass", &column(&|p| p.mass))?
-            .scalar("role", &column(&|p| f64::from(p.role as u8)))?;
-        let (count, collection) = &mut *self.written.borrow_mut();
-        let name = format!("particles_{count:04}.vtp");
-        *count += 1;
-        self.folder.write(&name, frame.to_xml().as_bytes())?;
-        collection.push(simulation.time(), &name);
-        self.folder.write("particles.pvd", collection.to_xml().as_bytes())?;
-        Ok(())
-    }
-}
-
-/// Why a frame was not written.
-#[derive(Debug, thiserror::Error)]
-pub enum FrameError {
-    /// Its numbers.
-    #[error(transparent)]
-    Vtk(#[from] VtkError),
-    /// Its file.
-    #[error(transparent)]
-    File(#[from] base::files::FileError),
+    let cost = run.finish(simulation, &status)?;
+    Ok((status, cost))
 }

@@ -1,92 +1,26 @@
-//! Runs the plans of cases, side by side, and judges them: what `verify` and `report` share.
+//! Plans, makes, judges: what `verify` and `report` share.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-
+use base::{
+    gate::{Bound, Evidence, Gate, Verdict},
+    record::Record,
+};
 use rayon::prelude::*;
 
 use crate::{
-    case::{Case, Planned, RunError, Tier},
-    runner::Context,
+    case::{Case, Planned, Tier},
+    make::{self, Made, MakeError, Making},
+    plan,
+    runs::{Judged, JudgedRun, Runs},
+    studies,
+    study::Study,
 };
-use base::{
-    gate::{Gate, Judgement, Verdict},
-    record::Record,
-};
-use report::Block;
-
-/// A run of a plan with its record and its judgements.
-#[derive(Clone, Debug)]
-pub struct JudgedRun {
-    /// Name of the case.
-    pub case: &'static str,
-    /// What was planned.
-    pub planned: Planned,
-    /// What came out.
-    pub record: Record,
-    /// One judgement a gate.
-    pub judged: Vec<Judged>,
-}
-
-/// A gate and its judgement.
-#[derive(Clone, Debug)]
-pub struct Judged {
-    /// The gate.
-    pub gate: Gate,
-    /// The judgement.
-    pub judgement: Judgement,
-}
-
-impl Judged {
-    /// Judges a value.
-    pub fn new(gate: Gate, value: Option<f64>) -> Self {
-        let judgement = gate.judge(value);
-        Self { gate, judgement }
-    }
-}
-
-/// A statement from many runs: what the report shows, and the gates on it.
-#[derive(Clone, Debug)]
-pub struct Study {
-    /// Anchor in the report: letters, digits, hyphens.
-    pub id: String,
-    /// Title of the section.
-    pub title: String,
-    /// Prose, figures, tables.
-    pub blocks: Vec<Block>,
-    /// Judgements on what was found.
-    pub judged: Vec<Judged>,
-}
-
-impl Study {
-    /// An empty study.
-    pub fn new(id: &str, title: &str) -> Self {
-        Self { id: id.into(), title: title.into(), blocks: Vec::new(), judged: Vec::new() }
-    }
-
-    /// The same with one more block.
-    pub fn block(mut self, block: impl Into<Block>) -> Self {
-        self.blocks.push(block.into());
-        self
-    }
-
-    /// The same with one more paragraph.
-    pub fn prose(self, text: impl Into<String>) -> Self {
-        self.block(Block::Prose(vec![text.into()]))
-    }
-
-    /// The same with a judged value.
-    pub fn judge(mut self, gate: Gate, value: f64) -> Self {
-        self.judged.push(Judged::new(gate, Some(value)));
-        self
-    }
-}
 
 /// Everything of one case.
 pub struct CaseResults {
     /// The case.
     pub case: &'static dyn Case,
     /// Its runs, in the order of the plan.
-    pub runs: Vec<JudgedRun>,
+    pub runs: Runs,
     /// Its studies.
     pub studies: Vec<Study>,
 }
@@ -97,15 +31,21 @@ pub struct Suite {
     pub tier: Tier,
     /// One entry a case.
     pub cases: Vec<CaseResults>,
-    /// Studies of the method itself.
+    /// Studies that belong to no case.
     pub studies: Vec<Study>,
+    /// Runs whose record the store had.
+    pub reused: usize,
+    /// Those of them that other sources made.
+    pub of_other_sources: usize,
+    /// Was it stopped from outside? Then nothing is judged.
+    pub interrupted: bool,
 }
 
 impl Suite {
     /// Every judgement.
     pub fn judged(&self) -> impl Iterator<Item = &Judged> {
         let of_cases = self.cases.iter().flat_map(|case| {
-            let runs = case.runs.iter().flat_map(|run| &run.judged);
+            let runs = case.runs.all().iter().flat_map(|run| &run.judged);
             runs.chain(case.studies.iter().flat_map(|study| &study.judged))
         });
         of_cases.chain(self.studies.iter().flat_map(|study| &study.judged))
@@ -122,108 +62,66 @@ impl Suite {
     }
 }
 
-/// Told after each run and each case's studies: how many are done, how many there are, the name.
-pub type Progress<'a> = dyn Fn(usize, usize, &str) + Sync + 'a;
-
-/// How a suite is watched and stopped.
-#[derive(Default)]
-pub struct Watch<'a> {
-    /// Told after each run.
-    pub progress: Option<&'a Progress<'a>>,
-    /// Set from outside to stop.
-    pub interrupt: Option<&'a AtomicBool>,
+/// The plans of several cases.
+pub fn plans(cases: &[&'static dyn Case], tier: Tier) -> Vec<(&'static dyn Case, Vec<Planned>)> {
+    cases.iter().map(|&case| (case, plan::of_case(case, tier))).collect()
 }
 
-/// Runs the plans of `cases` side by side on the threads of the current pool, each run serial, then
-/// the studies. `of_the_method` adds the studies that belong to no case.
-pub fn run(
-    cases: &[&'static dyn Case],
-    tier: Tier,
-    of_the_method: Option<fn(Tier) -> Vec<Study>>,
-    watch: &Watch,
-) -> Result<Suite, RunError> {
-    let plans: Vec<(&'static dyn Case, Planned)> = cases
-        .iter()
-        .flat_map(|&case| case.plan(tier).into_iter().map(move |planned| (case, planned)))
+/// Plans the cases, makes what the store lacks, judges.
+///
+/// # Errors
+/// If a record cannot be kept or a file of a run cannot be written.
+pub fn run(cases: &[&'static dyn Case], making: &Making) -> Result<Suite, MakeError> {
+    let plans = plans(cases, making.tier);
+    let made = make::make(&make::jobs(plans.clone()), making)?;
+    Ok(judge(plans, making.tier, made))
+}
+
+/// Judges the records of plans: gates run by run, then studies. A pure function of the records.
+pub fn judge(plans: Vec<(&'static dyn Case, Vec<Planned>)>, tier: Tier, mut made: Made) -> Suite {
+    let (reused, of_other_sources) = (made.reused, made.of_other_sources);
+    let interrupted = made.interrupted;
+    let (cases, own) = (Vec::new(), Vec::new());
+    let mut suite = Suite { tier, cases, studies: own, reused, of_other_sources, interrupted };
+    if suite.interrupted {
+        return suite; // nothing can be said of runs that were cut short
+    }
+    let mut record = |planned: &Planned| {
+        let missing =
+            || Record::refused(&planned.spec, "the store has no record of this run".into());
+        made.records.remove(&planned.spec.key()).unwrap_or_else(missing)
+    };
+    let of_plans: Vec<(&'static dyn Case, Runs)> = plans
+        .into_iter()
+        .map(|(case, plan)| {
+            let judged = plan.into_iter().map(|planned| {
+                let record = record(&planned);
+                JudgedRun::new(planned, record)
+            });
+            (case, Runs::new(judged.collect()))
+        })
         .collect();
-    let parts = cases.len() + usize::from(of_the_method.is_some());
-    let told = Told { watch, all: plans.len() + parts, done: AtomicUsize::new(0) };
-    let mut results = run_longest_first(plans, &told)?;
-    let mut suite = Suite { tier, cases: Vec::new(), studies: Vec::new() };
-    if watch.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-        return Ok(suite); // nothing can be said of runs that were cut short
-    }
-    let mut judged = Vec::new();
-    for &case in cases {
-        let rest = results.iter().position(|r| r.case != case.name()).unwrap_or(results.len());
-        judged.push((case, results.drain(..rest).collect::<Vec<JudgedRun>>()));
-    }
-    // Side by side: at the end of a study that is parallel itself a thread would wait for the other.
-    let study = |(case, runs): (&'static dyn Case, Vec<JudgedRun>)| {
-        let studies = case.studies(tier, &runs);
-        told.done(&format!("{} studies", case.name()));
+    let study = |(case, runs): (&'static dyn Case, Runs)| {
+        let mut studies = case.studies(tier, &runs);
+        studies.extend(studies::of(case.name(), &case.declaration(tier), &runs));
+        studies.extend(unplanned(case, &runs));
         CaseResults { case, runs, studies }
     };
-    let method = || {
-        let studies = of_the_method.map_or_else(Vec::new, |studies| studies(tier));
-        told.done("studies of the method");
-        studies
-    };
-    (suite.studies, suite.cases) =
-        rayon::join(method, || judged.into_par_iter().map(study).collect());
-    Ok(suite)
+    suite.cases = of_plans.into_par_iter().map(study).collect();
+    suite
 }
 
-/// Counts what is done, and says so.
-struct Told<'a> {
-    watch: &'a Watch<'a>,
-    all: usize,
-    done: AtomicUsize,
-}
-
-impl Told<'_> {
-    fn done(&self, name: &str) {
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-        if let Some(progress) = self.watch.progress {
-            progress(done.min(self.all), self.all, name);
-        }
+/// A failing gate if a study asked for a run that the case did not plan.
+fn unplanned(case: &dyn Case, runs: &Runs) -> Option<Study> {
+    let asked = runs.unplanned();
+    if asked.is_empty() {
+        return None;
     }
-}
-
-/// Runs the plans side by side, and returns them in the order given. Each thread takes the longest run
-/// that is left.
-fn run_longest_first(
-    plans: Vec<(&'static dyn Case, Planned)>,
-    told: &Told,
-) -> Result<Vec<JudgedRun>, RunError> {
-    let mut order: Vec<usize> = (0..plans.len()).collect();
-    order.sort_by(|&a, &b| plans[b].1.seconds.total_cmp(&plans[a].1.seconds));
-    let next = AtomicUsize::new(0);
-    let work = |_: rayon::BroadcastContext<'_>| {
-        let mut mine = Vec::new();
-        while let Some(&k) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let (case, planned) = &plans[k];
-            mine.push((k, run_planned(*case, planned.clone(), told.watch.interrupt)?));
-            told.done(&format!("{} {}", case.name(), planned.variant));
-        }
-        Ok(mine)
-    };
-    let results: Result<Vec<Vec<(usize, JudgedRun)>>, RunError> =
-        rayon::broadcast(work).into_iter().collect();
-    let mut results: Vec<(usize, JudgedRun)> = results?.into_iter().flatten().collect();
-    results.sort_by_key(|(k, _)| *k);
-    Ok(results.into_iter().map(|(_, run)| run).collect())
-}
-
-/// Runs and judges one planned run. A run that diverges is a result, and its gates fail.
-pub fn run_planned(
-    case: &'static dyn Case,
-    planned: Planned,
-    interrupt: Option<&AtomicBool>,
-) -> Result<JudgedRun, RunError> {
-    let context = Context { threads: 1, interrupt, keep_particles: true, ..Context::default() };
-    let record = case.run(planned.variant, &planned.set, &context)?;
-    let judge = |gate: &Gate| Judged::new(gate.clone(), gate.value(&record));
-    let judged = planned.gates.iter().map(judge).collect();
-    Ok(JudgedRun { case: case.name(), planned, record, judged })
+    let name = case.name();
+    let because = "a study may only speak of runs that its case plans";
+    let id = format!("{name}.unplanned");
+    let gate = Gate::new(id, "runs", Bound::Equals(0.0), Evidence::Invariant, because);
+    let study = Study::new(&format!("{}-unplanned", name.replace('_', "-")), "Runs not planned");
+    let count = asked.len() as f64;
+    Some(study.prose(format!("Asked for, not planned: {}", asked.join("; "))).judge(gate, count))
 }

@@ -1,13 +1,49 @@
 //! Particles on a lattice: waves, stability limits of the time step, extreme settings.
 
 pub mod acoustic_wave;
-mod cases;
 pub mod extremes;
 pub mod shear_wave;
 pub mod stability;
 pub mod wave;
 
+use base::record;
 use harness::case::Case;
+use solver::Particle;
 
 /// The cases of the family.
-pub const CASES: &[&dyn Case] = &[&acoustic_wave::ACOUSTIC_WAVE, &shear_wave::SHEAR_WAVE];
+pub const CASES: &[&dyn Case] = &[
+    &acoustic_wave::ACOUSTIC_WAVE,
+    &shear_wave::SHEAR_WAVE,
+    &stability::RESTING_BOX,
+    &extremes::EXTREMES,
+];
+
+/// Digest of places, velocities and densities.
+fn state(particles: &[Particle]) -> String {
+    let values = |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
+    record::digest(particles.iter().map(values).collect::<Vec<_>>().as_flattened())
+}
+
+#[cfg(test)]
+mod tests {
+    use harness::{
+        case::{Case, Tier},
+        make::Making,
+        runs::Judged,
+        suite,
+    };
+
+    /// The judgements of the quick tier of some cases.
+    pub fn judged(cases: &[&'static dyn Case]) -> Vec<Judged> {
+        let sources = |_: &str| String::new();
+        let making = Making {
+            tier: Tier::Quick,
+            store: None,
+            sources: &sources,
+            reuse_other: false,
+            progress: None,
+            interrupt: None,
+        };
+        suite::run(cases, &making).expect("runs").judged().cloned().collect()
+    }
+}

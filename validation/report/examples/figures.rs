@@ -2,12 +2,12 @@
 //!
 //! `cargo run --example figures -- FOLDER`
 
-use std::error::Error;
-use std::path::PathBuf;
 use report::{
     Axis, Block, CategoryMap, Cell, Colour, ColourMap, Column, Counts, Dash, Figure, Layer, Legend,
     Page, ParticleMap, Plot, Section, Series, Shape, Status, Table, check_page,
 };
+use std::error::Error;
+use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map(PathBuf::from).ok_or("which folder?")?;

@@ -1,15 +1,6 @@
 //! An axis, and the mapping of its values to the unit interval.
 
-use super::ticks::{Ticks, fixed, ticks};
-
-/// How values are spread along an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
-    /// Equal differences are equal lengths.
-    Linear,
-    /// Equal ratios are equal lengths; values at or below zero cannot be drawn.
-    Log,
-}
+use super::ticks::{Scale, Ticks, fixed, ticks};
 
 /// One axis of a plot.
 #[derive(Debug, Clone, PartialEq)]

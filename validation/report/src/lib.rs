@@ -23,7 +23,7 @@ mod render;
 mod table;
 mod ticks;
 
-pub use axis::{Axis, Scale};
+pub use axis::Axis;
 pub use check::{Summary, check_page};
 pub use colour::{Colour, ColourMap};
 pub use figure::{
@@ -35,3 +35,4 @@ pub use number::{exact, percent, sci, seconds, sig};
 pub use page::{Block, Counts, Page, Section};
 pub use render::{png, svg};
 pub use table::{Cell, Column, Status, Table};
+pub use ticks::Scale;

@@ -1,13 +1,13 @@
 //! Particle maps and category maps.
 
-use super::axis::{Axis, Mapping, Scale};
+use super::axis::{Axis, Mapping};
 use super::canvas::{Canvas, Rect, Type};
 use super::colour::{Colour, ColourMap};
 use super::figure::{Align, CategoryMap, ParticleMap, Shape};
 use super::font;
 use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
 use super::legend::{self, Entry, Sample};
-use super::ticks::{Ticks, with_exponent};
+use super::ticks::{Scale, Ticks, with_exponent};
 use plotters::prelude::DrawingBackend;
 
 const BAR_GAP: f64 = 12.0;

@@ -9,8 +9,7 @@ use super::maps::{Categories, Particles};
 use super::plot;
 use base::files;
 use plotters::prelude::{BitMapBackend, DrawingBackend, SVGBackend};
-use std::io;
-use std::path::Path;
+use std::{fs::File, io, path::Path};
 
 /// Whole pixels of the SVG's drawing per CSS pixel: coordinates are thirds of a pixel.
 const FINE: f64 = 3.0;
@@ -218,12 +217,16 @@ fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
 /// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
 pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
     let (pixels, width, height) = pixels(figure, DENSITY).map_err(io::Error::other)?;
-    let draw = |temporary: &Path| -> io::Result<()> {
-        let mut backend = BitMapBackend::new(temporary, (width, height));
-        backend.blit_bitmap((0, 0), (width, height), &pixels).map_err(io::Error::other)?;
-        backend.present().map_err(io::Error::other)
+    let write = |temporary: &Path| -> io::Result<()> {
+        let mut encoder = png::Encoder::new(File::create(temporary)?, width, height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_compression(png::Compression::Fast);
+        encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&pixels)?;
+        Ok(writer.finish()?)
     };
-    files::write_atomically_by(path, draw).map_err(io::Error::other)
+    files::write_atomically_by(path, write).map_err(io::Error::other)
 }
 
 #[cfg(test)]

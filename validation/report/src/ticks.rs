@@ -1,6 +1,13 @@
 //! Where ticks go and what they say.
 
-use super::axis::Scale;
+/// How values are spread along an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal differences are equal lengths.
+    Linear,
+    /// Equal ratios are equal lengths; values at or below zero cannot be drawn.
+    Log,
+}
 
 /// Ticks of one axis over a range.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,19 +1,22 @@
 //! Waves in uniaxial strain: a pulse through a bar, and two equal bars that meet.
 
 use nalgebra::Vector2;
-use solver::{
-    Domain, Flow, Observer, Open, Particle, Scene, Scheme as SolverScheme, Simulation, Symmetric,
-};
+use solver::{Domain, Flow, Observer, Open, Particle, Scene, Stepper, Symmetric};
 
-use super::solid::{Energy, Material, Method, Problem, Ran, Scheme, describe, digest, run_to};
+use super::solid::{
+    self, Energy, Finished, Material, Method, Problem, Scheme, SharedSettings, begin, digest,
+    run_to,
+};
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{Metric, Profile, Record},
+    record::{MetricKey, Profile, Record, Status},
+    spec::RunSpec,
 };
 use harness::{
     case::{Planned, RunError, Tier},
+    composed::Composed,
+    declare::{Accuracy, Declaration, ErrorOf},
     runner::Context,
-    suite::{JudgedRun, Study},
 };
 use maths::{exact::impact::Impact, theory::lattice::SquareLattice};
 
@@ -37,8 +40,38 @@ crate::solid_settings! {
     }
 }
 
-/// The problem.
-pub struct ElasticBar;
+/// Elastic bars.
+pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
+    name: BarSettings::NAME,
+    about: "Elastic bars along x, periodic in y, so that they strain along x only and every wave runs at c_p \
+            = ((K + 4 mu/3)/rho)^(1/2). A pulse runs through one bar; or two equal bars at speeds V and -V \
+            meet: the contact bears rho c_p V (the jump conditions at finite V) for 2 L/c_p, and then both \
+            have exchanged their velocities.",
+    variants: solid::variants,
+    is_stable: |record| record.status == Status::Completed,
+    declaration,
+    plan,
+    studies: |_, _| Vec::new(),
+};
+
+base::metrics! {
+    TRAVEL_ERROR = "travel_error" ["-"]
+        "t c_p/(0.4 L) - 1, t the time of sum m v x/sum m v from 0.3 L to 0.7 L";
+    TRAVEL_LATTICE_ERROR = "travel_lattice_error" ["-"]
+        "the same with the speed G1 c_p of long waves on the lattice, G1 = sum V F x^2";
+    STRESS_ERROR = "stress_error" ["-"]
+        "mean -sigma_xx of the particles within L/2 of the contact, when the left bar has come to rest, \
+         over that of the jump conditions, less 1";
+    STRESS_RATIO = "stress_ratio" ["-"] "the same stress over rho c_p V";
+    CONTACT_TIME_ERROR = "contact_time_error" ["-"]
+        "time from 10 % to 90 % of the exchange of velocity, over 0.8, over 2 L/U of the jump conditions, \
+         less 1";
+    CONTACT_TIME_RATIO = "contact_time_ratio" ["-"] "the same time over 2 L/c_p";
+    EXCHANGE = "exchange" ["-"] "largest speed of the left bar backwards over V";
+    RESTITUTION = "restitution" ["-"] "relative speed of the bars at the end over 2 V";
+    MOMENTUM_ERROR = "momentum_error" ["-"] "|change of sum m v|/sum m |v| at the start";
+    ENERGY_CHANGE = "energy_change" ["-"] "kinetic and strain energy, end over start less 1";
+}
 
 /// Where the pulse starts, and between which places its centre is timed \[L\].
 const START: f64 = 0.25;
@@ -72,8 +105,8 @@ impl Bar {
         Self {
             settings: s.clone(),
             material: solid.material,
-            dx: s.length / s.n as f64,
-            speed: s.speed * wave,
+            dx: s.dx(),
+            speed: s.speed(),
             wave,
             end: s.end.unwrap_or(auto) * 2.0 * s.length / wave,
             rows: solid.rows_of_a_period(),
@@ -115,18 +148,17 @@ impl Bar {
     }
 }
 
-/// What is seen after every step.
-struct Seen<'a> {
+/// The motion of the bars, step by step.
+struct Motion<'a> {
     bar: &'a Bar,
     /// t \[s\], centre of the velocity \[m\], mean velocities left and right of x = 0 \[m/s\].
     series: Vec<[f64; 4]>,
     /// Mean −σˣˣ within L/2 of the contact when the bars have come to rest \[Pa\].
     stress: Option<f64>,
-    energy: [Energy; 2],
 }
 
-impl<S: SolverScheme<Extra = Symmetric>> Observer<S> for Seen<'_> {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+impl Observer<Symmetric> for Motion<'_> {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
         let (mut momentum, mut first) = ([0.0; 2], 0.0);
         let mut mass = [0.0; 2];
         for (m, p) in simulation.fluid() {
@@ -145,11 +177,8 @@ impl<S: SolverScheme<Extra = Symmetric>> Observer<S> for Seen<'_> {
     }
 }
 
-impl Seen<'_> {
-    fn contact_stress<S: SolverScheme<Extra = Symmetric>>(
-        &self,
-        simulation: &Simulation<S>,
-    ) -> f64 {
+impl Motion<'_> {
+    fn contact_stress(&self, simulation: &dyn Stepper<Symmetric>) -> f64 {
         use solver::EquationOfState;
         let (eos, reach) = (self.bar.material.eos(), 0.5 * self.bar.settings.length);
         let near = simulation.fluid().filter(|(_, p)| p.position.x.abs() < reach);
@@ -174,19 +203,8 @@ impl Seen<'_> {
         let span = (STATIONS[1] - STATIONS[0]) * s.length / bar.wave;
         let lattice = SquareLattice::<solver::CubicSpline>::new(s.h_over_dx, 0.01);
         let factor = lattice.gradient_factor();
-        let mut put = |name: &str, value: f64, formula: &str| {
-            record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-        };
-        put(
-            "travel_error",
-            (to - from) / span - 1.0,
-            "t c_p/(0.4 L) - 1, t the time of sum m v x/sum m v from 0.3 L to 0.7 L",
-        );
-        put(
-            "travel_lattice_error",
-            (to - from) / span * factor - 1.0,
-            "the same with the speed G1 c_p of long waves on the lattice, G1 = sum V F x^2",
-        );
+        record.put(TRAVEL_ERROR, (to - from) / span - 1.0);
+        record.put(TRAVEL_LATTICE_ERROR, (to - from) / span * factor - 1.0);
     }
 
     fn impact_metrics(&self, record: &mut Record) {
@@ -198,74 +216,49 @@ impl Seen<'_> {
         let time = (to - from) / (EXCHANGED[1] - EXCHANGED[0]);
         let last = self.series.last().copied().unwrap_or([f64::NAN; 4]);
         let least = self.series.iter().map(|row| row[2]).fold(f64::INFINITY, f64::min);
-        let mut put = |name: &str, value: f64, formula: &str| {
-            record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-        };
         let linear = density * bar.wave * bar.speed;
-        put(
-            "stress_error",
-            stress / exact.stress - 1.0,
-            "mean -sigma_xx of the particles within L/2 of the contact, when the left bar has come to \
-             rest, over that of the jump conditions, less 1",
-        );
-        put("stress_ratio", stress / linear, "the same stress over rho c_p V");
-        put(
-            "contact_time_error",
-            time * exact.speed / (2.0 * s.length) - 1.0,
-            "time from 10 % to 90 % of the exchange of velocity, over 0.8, over 2 L/U of the jump \
-             conditions, less 1",
-        );
-        put("contact_time_ratio", time * bar.wave / (2.0 * s.length), "the same time over 2 L/c_p");
-        put("exchange", -least / bar.speed, "largest speed of the left bar backwards over V");
-        put(
-            "restitution",
-            (last[3] - last[2]) / (2.0 * bar.speed),
-            "relative speed of the bars at the end over 2 V",
-        );
+        record.put(STRESS_ERROR, stress / exact.stress - 1.0);
+        record.put(STRESS_RATIO, stress / linear);
+        record.put(CONTACT_TIME_ERROR, time * exact.speed / (2.0 * s.length) - 1.0);
+        record.put(CONTACT_TIME_RATIO, time * bar.wave / (2.0 * s.length));
+        record.put(EXCHANGE, -least / bar.speed);
+        record.put(RESTITUTION, (last[3] - last[2]) / (2.0 * bar.speed));
     }
 }
 
-impl Problem for ElasticBar {
+impl Problem for BarSettings {
     const NAME: &'static str = "elastic_bar";
-    const ABOUT: &'static str = "Elastic bars along x, periodic in y, so that they strain along x only \
-        and every wave runs at c_p = ((K + 4 mu/3)/rho)^(1/2). A pulse runs through one bar; or two equal \
-        bars at speeds V and -V meet: the contact bears rho c_p V (the jump conditions at finite V) for \
-        2 L/c_p, and then both have exchanged their velocities.";
-    type Settings = BarSettings;
+
+    fn dx(&self) -> f64 {
+        self.length / self.n as f64
+    }
+
+    fn speed(&self) -> f64 {
+        self.speed * self.solid().material.p_wave_speed()
+    }
 
     fn run<M: Method>(
         variant: &str,
-        settings: &BarSettings,
+        settings: &Self,
         context: &Context,
     ) -> Result<Record, RunError> {
-        let (bar, solid) = (Bar::new(settings), settings.solid());
-        let dt = solid.time_step(bar.dx, bar.speed, M::COURANT, context)?;
-        let mut record = describe::<Self, M>(variant, settings, &solid, [bar.dx, dt], context);
-        let mut seen =
-            Seen { bar: &bar, series: Vec::new(), stress: None, energy: [Energy::default(); 2] };
+        let bar = Bar::new(settings);
+        let (mut record, dt) = begin::<Self, M>(variant, settings, context)?;
+        let mut motion = Motion { bar: &bar, series: Vec::new(), stress: None };
         let scene = bar.scene::<M>();
         let start = scene.particles.iter().map(|p| p.velocity * p.mass).sum::<Vector2<f64>>();
         let total = scene.particles.iter().map(|p| p.velocity.norm() * p.mass).sum::<f64>();
-        seen.energy[0] = energy_of(&scene.particles, &bar.material);
-        let Ran { simulation, status, cost } =
-            run_to(scene, [dt, bar.end], bar.material.eos(), context, &mut seen)?;
-        seen.energy[1] = Energy::of(&simulation, &bar.material);
+        let before = energy_of(&scene.particles, &bar.material);
+        let Finished { simulation, status, cost } =
+            run_to(scene, [dt, bar.end], bar.material.eos(), context, &mut motion)?;
+        let after = Energy::of(&simulation, &bar.material);
         match settings.collide {
-            true => seen.impact_metrics(&mut record),
-            false => seen.pulse_metrics(&mut record),
+            true => motion.impact_metrics(&mut record),
+            false => motion.pulse_metrics(&mut record),
         }
-        let mut put = |name: &str, value: f64, formula: &str| {
-            record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-        };
-        let change = (simulation.momentum() - start).norm() / total;
-        put("momentum_error", change, "|change of sum m v|/sum m |v| at the start");
-        let [before, after] = seen.energy.map(|e| e.total());
-        put(
-            "energy_change",
-            after / before - 1.0,
-            "kinetic and strain energy, end over start less 1",
-        );
-        let column = |k: usize| seen.series.iter().map(|row| row[k]).collect();
+        record.put(MOMENTUM_ERROR, (simulation.momentum() - start).norm() / total);
+        record.put(ENERGY_CHANGE, after.total() / before.total() - 1.0);
+        let column = |k: usize| motion.series.iter().map(|row| row[k]).collect();
         let profile = Profile::default()
             .with("t", "s", column(0))
             .with("centre of velocity", "m", column(1))
@@ -275,14 +268,6 @@ impl Problem for ElasticBar {
         record.state = Some(digest(&simulation));
         (record.status, record.cost) = (status, cost);
         Ok(record)
-    }
-
-    fn plan(tier: Tier) -> Vec<Planned> {
-        plan(tier)
-    }
-
-    fn studies(_: Tier, _: &[JudgedRun]) -> Vec<Study> {
-        Vec::new()
     }
 }
 
@@ -297,19 +282,29 @@ fn energy_of(particles: &[Particle<Symmetric>], material: &Material) -> Energy {
 /// What a lattice of long waves and a front of a few spacings leave of linear theory: G1 differs from
 /// 1 by 0.7 % at h/dx = 1.5, by at most 1.7 % from 1.2 to 1.5.
 const LATTICE: f64 = 0.02;
-/// Speeds of the bars \[c_p\].
-const SPEEDS: [&str; 4] = ["1e-4", "1e-3", "1e-2", "0.1"];
+/// Speeds of the bars \[c_p\], as names of gates have them.
+const SPEEDS: [(&str, f64); 4] = [("1e-4", 1e-4), ("1e-3", 1e-3), ("1e-2", 1e-2), ("0.1", 0.1)];
+const VARIANTS: [&str; 3] = ["bare", "plain", "seed"];
 
-fn gate(id: &str, metric: &str, bound: Bound, because: &str) -> Gate {
-    Gate::new(format!("elastic_bar.{id}.{metric}"), metric, bound, Evidence::Analytic, because)
+/// A gate of the run `id`.
+fn judged(id: &str, metric: MetricKey, bound: Bound, evidence: Evidence, because: &str) -> Gate {
+    let metric = String::from(metric);
+    Gate::new(format!("elastic_bar.{id}.{metric}"), metric, bound, evidence, because)
+}
+
+fn gate(id: &str, metric: MetricKey, bound: Bound, because: &str) -> Gate {
+    judged(id, metric, bound, Evidence::Analytic, because)
 }
 
 fn momentum(id: &str) -> Gate {
     let because = "forces of pairs are equal and opposite: what is left is the round-off of some \
                    thousand steps";
-    let metric = "momentum_error";
-    let id = format!("elastic_bar.{id}.{metric}");
-    Gate::new(id, metric, Bound::Below(1e-12), Evidence::Invariant, because)
+    judged(id, MOMENTUM_ERROR, Bound::Below(1e-12), Evidence::Invariant, because)
+}
+
+/// A pulse through a bar of so many spacings.
+fn pulse_spec(variant: &str, n: usize) -> RunSpec {
+    ELASTIC_BAR.spec(variant, |s| s.n = n)
 }
 
 /// The pulse at 40 spacings, and at more where viscosity is to vanish.
@@ -318,7 +313,7 @@ fn pulse(variant: &'static str, n: usize) -> Planned {
     let within = Bound::Within(-0.01, 0.01);
     let travel = gate(
         &id,
-        "travel_error",
+        TRAVEL_ERROR,
         within,
         "the centre of the velocity moves at the group speed of waves of length infinity, whatever the \
          dispersion of shorter ones: c_p times the lattice's G1, 1.0068 at h/dx = 1.5; 1 % at 40 \
@@ -338,38 +333,35 @@ fn pulse(variant: &'static str, n: usize) -> Planned {
     if variant == "bare" {
         let because = "on a lattice nothing is left but the amplitude of 1e-4, (omega dt)^2/24 and the \
                        3e-4 of the pulse that stand outside four standard deviations";
-        let metric = "travel_lattice_error";
-        let id = format!("elastic_bar.{id}.{metric}");
         let bound = Bound::Within(-1e-3, 1e-3);
-        gates.push(Gate::new(id, metric, bound, Evidence::Theory, because));
+        gates.push(judged(&id, TRAVEL_LATTICE_ERROR, bound, Evidence::Theory, because));
     }
     if variant != "bare" && n >= 640 {
         let because = "against the speed of the lattice only what viscosity adds is left, 6 % at 40 \
                        spacings and proportional to dx: 0.4 %, twice that for what is not linear in h/width";
-        let metric = "travel_lattice_error";
         let bound = Bound::Within(-0.01, 0.01);
-        let id = format!("elastic_bar.{id}.{metric}");
-        gates.push(Gate::new(id, metric, bound, Evidence::Theory, because));
+        gates.push(judged(&id, TRAVEL_LATTICE_ERROR, bound, Evidence::Theory, because));
     }
-    Planned::new(variant, &[format!("n={n}")]).judged(gates)
+    Planned::new(pulse_spec(variant, n)).judged(gates)
 }
 
 /// Two bars on one lattice, in touch from the start.
-fn touching(variant: &'static str, speed: &str) -> Planned {
-    let id = format!("{variant}.touching{speed}");
+fn touching(variant: &str, (name, speed): (&str, f64)) -> Planned {
+    let id = format!("{variant}.touching{name}");
     let near = Bound::Within(-LATTICE, LATTICE);
     let welded = "bars on one lattice are one bar: (3) and (11) know no surface, so the contact pulls as \
                   soon as the first expansion returns, and the front that returns is as wide as the \
                   kernel, wider with viscosity: what it has not delivered by then is missing";
     let time = gate(
         &id,
-        "contact_time_error",
+        CONTACT_TIME_ERROR,
         near,
         "between 10 % and 90 % of the exchange the stress is constant, so its time is that of the jump \
          conditions; the lattice's G1 is within 2 % of 1",
     );
     let time = match (variant, speed) {
-        ("bare", _) | (_, "1e-4" | "1e-3" | "1e-2") => time,
+        ("bare", _) => time,
+        (_, ..0.1) => time,
         _ => time.with_limitation(
             "compressed by 10 % along x the lattice has G1 = 0.991, which takes 0.9 %, and viscosity, \
              whose beta matters at this speed, widens the front beyond the first tenth of the exchange",
@@ -378,7 +370,7 @@ fn touching(variant: &'static str, speed: &str) -> Planned {
     let gates = vec![
         gate(
             &id,
-            "stress_error",
+            STRESS_ERROR,
             near,
             "the jump conditions hold whatever dissipates in the front; the lattice's G1 is within 2 % \
              of 1",
@@ -386,20 +378,19 @@ fn touching(variant: &'static str, speed: &str) -> Planned {
         time,
         gate(
             &id,
-            "exchange",
+            EXCHANGE,
             Bound::Within(0.98, 1.02),
             "equal elastic bars exchange their velocities; 2 % for the lattice as for stress and time",
         )
         .with_limitation(welded),
         momentum(&id),
     ];
-    let set = ["collide=true".to_string(), format!("speed={speed}")];
-    Planned::new(variant, &set).judged(gates)
+    ELASTIC_BAR.planned(variant, |s| (s.collide, s.speed) = (true, speed)).judged(gates)
 }
 
 /// Two bars that start out of each other's reach: the contact is what the kernel makes of it.
-fn apart(variant: &'static str, speed: &str, end: &str) -> Planned {
-    let id = format!("{variant}.apart{speed}");
+fn separate(variant: &str, (name, speed): (&str, f64), end: f64) -> Planned {
+    let id = format!("{variant}.apart{name}");
     let soft = "faces meet across 2 h, and their density rises as about 0.14 (d/h)^3.5 with the depth d \
                 of one in the other's support: a contact of strain V/c_p is 0.2, 0.4, 0.7 dx deep at \
                 1e-4, 1e-3, 1e-2 c_p and takes d/V, which is 2 L/c_p = 80 dx/c_p at 1e-2 c_p and far \
@@ -407,39 +398,55 @@ fn apart(variant: &'static str, speed: &str, end: &str) -> Planned {
     let goal = "equal elastic bars exchange their velocities, and the contact bears rho c_p V; 2 % for \
                 the lattice as for bars in touch";
     let gates = vec![
-        gate(&id, "stress_error", Bound::Within(-LATTICE, LATTICE), goal).with_limitation(soft),
-        gate(&id, "restitution", Bound::Within(0.98, 1.02), goal).with_limitation(soft),
+        gate(&id, STRESS_ERROR, Bound::Within(-LATTICE, LATTICE), goal).with_limitation(soft),
+        gate(&id, RESTITUTION, Bound::Within(0.98, 1.02), goal).with_limitation(soft),
         momentum(&id),
     ];
-    let mut set = ["collide=true", "gap=2.05"].map(String::from).to_vec();
-    set.extend([format!("speed={speed}"), format!("end={end}")]);
-    Planned::new(variant, &set).judged(gates)
+    let set = |s: &mut BarSettings| {
+        (s.collide, s.gap, s.speed, s.end) = (true, 2.05, speed, Some(end));
+    };
+    ELASTIC_BAR.planned(variant, set).judged(gates)
 }
 
 fn plan(tier: Tier) -> Vec<Planned> {
-    let mut plan: Vec<Planned> = ["bare", "plain", "seed"].map(|v| pulse(v, 40)).to_vec();
-    for speed in SPEEDS {
-        plan.extend(["bare", "plain", "seed"].map(|variant| touching(variant, speed)));
-    }
-    plan.extend(["bare", "plain", "seed"].map(|variant| apart(variant, "1e-2", "4")));
-    plan.extend(["bare", "plain", "seed"].map(|variant| apart(variant, "0.1", "3")));
+    let mut plan: Vec<Planned> = VARIANTS.map(|variant| pulse(variant, 40)).to_vec();
+    plan.extend(SPEEDS.iter().flat_map(|speed| VARIANTS.map(|v| touching(v, *speed))));
+    let [slowest, slow, middle, fast] = SPEEDS;
+    let mut ends = vec![(middle, 4.0), (fast, 3.0)];
     if tier == Tier::Full {
         plan.extend(["plain", "seed"].map(|variant| pulse(variant, 640)));
-        plan.extend(["bare", "plain", "seed"].map(|variant| apart(variant, "1e-3", "20")));
-        plan.extend(["bare", "plain", "seed"].map(|variant| apart(variant, "1e-4", "200")));
+        ends.extend([(slow, 20.0), (slowest, 200.0)]);
     }
+    plan.extend(ends.iter().flat_map(|(speed, end)| VARIANTS.map(|v| separate(v, *speed, *end))));
     plan
+}
+
+fn declaration(tier: Tier) -> Declaration {
+    let error = ErrorOf::Metric(TRAVEL_LATTICE_ERROR.into());
+    let accuracy = Accuracy {
+        about: "A pulse of a standard deviation of L/16 runs through a bar. Its time from 0.3 L to 0.7 L is \
+                compared with that of long waves on the lattice."
+            .into(),
+        spacing: "dx/L [-]",
+        slope: Some(1.0),
+        ..Accuracy::new("elastic-bar", error, "error of the time of travel [-]")
+    };
+    let level = |variant: &str, n| Planned::new(pulse_spec(variant, n));
+    let accuracy = match tier {
+        Tier::Quick => accuracy.over(&VARIANTS, [20, 40, 80], level),
+        Tier::Full => accuracy.over(&VARIANTS, [20, 40, 80, 160, 320], level),
+    };
+    Declaration { accuracy: vec![accuracy], ..Declaration::default() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::case::Case;
-    use harness::case::find_in;
+    use harness::case::{self, Case};
 
     fn refused(variant: &str, set: &str) -> Option<RunError> {
-        let case = find_in(crate::CASES, "elastic_bar").expect("a case");
-        case.run(variant, &[set.into()], &Context::default()).err()
+        let spec = case::spec(&ELASTIC_BAR, variant, &[set.into()]);
+        spec.and_then(|spec| ELASTIC_BAR.run(&spec, &Context::default())).err()
     }
 
     #[test]
@@ -455,9 +462,8 @@ mod tests {
     /// What is a term's own is 0 in the record of a method without it.
     #[test]
     fn absent_terms_have_no_settings() {
-        let case: &dyn Case = find_in(crate::CASES, "elastic_bar").expect("a case");
-        let settings = case.settings("bare", &[]).expect("defaults");
+        let settings = ELASTIC_BAR.settings("bare", &[]).expect("defaults");
         assert_eq!((&settings["alpha"], &settings["xsph"]), (&0.0.into(), &0.0.into()));
-        assert_eq!(case.settings("seed", &[]).expect("defaults")["xsph"], 0.5);
+        assert_eq!(ELASTIC_BAR.settings("seed", &[]).expect("defaults")["xsph"], 0.5);
     }
 }

@@ -1,7 +1,7 @@
 //! Elastic solids.
 
 pub mod elastic_bar;
-pub mod elastic_waves;
+pub mod elastic_wave;
 pub mod oscillating_plate;
 pub mod rings;
 pub mod solid;
@@ -11,8 +11,9 @@ use harness::case::Case;
 
 /// The cases of the family.
 pub const CASES: &[&dyn Case] = &[
-    &solid::SolidCase::<elastic_bar::ElasticBar>::CASE,
-    &solid::SolidCase::<spinning_disk::SpinningDisk>::CASE,
-    &solid::SolidCase::<oscillating_plate::OscillatingPlate>::CASE,
-    rings::RUBBER_RINGS,
+    &elastic_wave::ELASTIC_WAVE,
+    &elastic_bar::ELASTIC_BAR,
+    &spinning_disk::SPINNING_DISK,
+    &oscillating_plate::OSCILLATING_PLATE,
+    &rings::RUBBER_RINGS,
 ];

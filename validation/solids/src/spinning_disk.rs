@@ -2,20 +2,24 @@
 
 use nalgebra::Vector2;
 use solver::Symmetric;
-use solver::{Domain, Flow, Observer, Open, Particle, Scene, Scheme as SolverScheme, Simulation};
+use solver::{Domain, Flow, Observer, Open, Particle, Scene, Stepper};
 
 use super::solid::{
-    Energy, Material, Method, Problem, Ran, Scheme, angular_momentum, describe, digest,
-    norm_squared, run_to,
+    self, Energy, Finished, Material, Method, Problem, Scheme, SharedSettings, angular_momentum,
+    begin, digest, norm_squared, run_to,
 };
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{Metric, Profile, Record},
+    record::{MetricKey, Profile, Record, Status},
+    spec::RunSpec,
 };
 use harness::{
-    case::{Planned, RunError, Tier},
+    case::{self, Planned, RunError, Tier},
+    composed::Composed,
+    declare::{Accuracy, Declaration, ErrorOf},
     runner::Context,
-    suite::{JudgedRun, Study},
+    runs::Runs,
+    study::Study,
 };
 use report::{Cell, Column, Table};
 
@@ -33,24 +37,48 @@ crate::solid_settings! {
     }
 }
 
-/// The problem.
-pub struct SpinningDisk;
+/// A spinning disk.
+pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
+    name: DiskSettings::NAME,
+    about: "A free elastic disk spins, at the start without stress. Angular momentum stays, and the stress \
+            stays of the order rho U^2 of the speed U of the rim: what else appears is rotation that the \
+            method mistook for strain.",
+    variants: solid::variants,
+    is_stable: |record| record.status == Status::Completed,
+    declaration,
+    plan,
+    studies: |tier, runs| vec![study(tier, runs)],
+};
+
+base::metrics! {
+    INTERIOR_STRAIN = "interior_strain" ["-"]
+        "largest ((S_xx - S_yy)^2/2 + 2 S_xy^2)^(1/2)/(2 mu dt) over the spin after one step, of particles \
+         farther than 4 h + dx from the rim";
+    RIM_STRAIN = "rim_strain" ["-"] "root mean square of the same for the other particles";
+    ANGULAR_MOMENTUM_DRIFT = "angular_momentum_drift" ["-"]
+        "|angular momentum at the end over that at the start less 1|, a revolution";
+    STRESS_DRIFT = "stress_drift" ["-"] "(mean S:S)^(1/2) at the end over rho U^2, a revolution";
+    LARGEST_STRESS = "largest_stress" ["-"] "largest (mean S:S)^(1/2) over rho U^2";
+    ENERGY_DRIFT = "energy_drift" ["-"] "change of energy, a revolution";
+    RADIUS = "radius" ["-"] "(mean r^2)^(1/2) at the end over that at the start";
+    MOMENTUM_ERROR = "momentum_error" ["-"] "|sum m v|/(sum m times the speed of the rim)";
+}
 
 /// Samples of the series.
 const SAMPLES: f64 = 200.0;
 
 /// Particles around the origin that spin without stress.
 fn particles(s: &DiskSettings, material: &Material) -> Vec<Particle<Symmetric>> {
-    let (dx, side) = (s.radius / s.n as f64, 2 * s.n + 1);
-    let spin = s.speed * material.sound_speed() / s.radius;
+    let (dx, side) = (s.dx(), 2 * s.n + 1);
+    let spin = s.speed() / s.radius;
     solver::lattice(Vector2::repeat(-s.radius), dx, side, side)
         .filter(|x| x.norm() <= s.radius * (1.0 + 1e-9))
         .map(|x| Particle::fluid(x, Vector2::new(-x.y, x.x) * spin, material.density, dx * dx))
         .collect()
 }
 
-/// What is seen through time.
-struct Seen {
+/// What happens to the disk through time.
+struct History {
     material: Material,
     until: f64,
     every: f64,
@@ -63,8 +91,8 @@ struct Seen {
     first: Option<([f64; 2], f64)>,
 }
 
-impl Seen {
-    fn look<S: SolverScheme<Extra = Symmetric>>(&mut self, simulation: &Simulation<S>) {
+impl History {
+    fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
         let (mut mass, mut stress, mut radius) = (0.0, 0.0, 0.0);
         for (m, p) in simulation.fluid() {
             mass += m;
@@ -79,10 +107,7 @@ impl Seen {
 
 /// The square of the shear in the plane, the largest inside of this radius and the mean outside
 /// \[Pa²\]. A step along tangents dilates a rotation by (W dt)²/2, which is no shear.
-fn mistaken<S: SolverScheme<Extra = Symmetric>>(
-    simulation: &Simulation<S>,
-    radius: f64,
-) -> [f64; 2] {
+fn mistaken(simulation: &dyn Stepper<Symmetric>, radius: f64) -> [f64; 2] {
     let (mut inside, mut rim, mut count) = (0.0_f64, 0.0, 0.0);
     for (_, p) in simulation.fluid() {
         let Symmetric { xx, yy, xy } = p.extra;
@@ -96,42 +121,39 @@ fn mistaken<S: SolverScheme<Extra = Symmetric>>(
     [inside, rim / count]
 }
 
-impl<S: SolverScheme<Extra = Symmetric>> Observer<S> for Seen {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+impl Observer<Symmetric> for History {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
         if self.first.is_none() {
             self.first = Some((mistaken(simulation, self.interior), simulation.dt()));
         }
         if simulation.time() >= self.until {
             self.until += self.every;
-            self.look(simulation);
+            self.sample(simulation);
         }
         Flow::Continue
     }
 }
 
-impl Problem for SpinningDisk {
+impl Problem for DiskSettings {
     const NAME: &'static str = "spinning_disk";
-    const ABOUT: &'static str = "A free elastic disk spins, at the start without stress. Angular momentum \
-        stays, and the stress stays of the order rho U^2 of the speed U of the rim: what else appears is \
-        rotation that the method mistook for strain.";
-    type Settings = DiskSettings;
 
-    fn run<M: Method>(
-        variant: &str,
-        settings: &DiskSettings,
-        context: &Context,
-    ) -> Result<Record, RunError> {
-        let (s, solid) = (settings, settings.solid());
+    fn dx(&self) -> f64 {
+        self.radius / self.n as f64
+    }
+
+    fn speed(&self) -> f64 {
+        self.speed * self.solid().material.sound_speed()
+    }
+
+    fn run<M: Method>(variant: &str, s: &Self, context: &Context) -> Result<Record, RunError> {
+        let (solid, dx, speed) = (s.solid(), s.dx(), s.speed());
         let material = solid.material;
-        let (dx, speed) = (s.radius / s.n as f64, s.speed * material.sound_speed());
-        let dt = solid.time_step(dx, speed, M::COURANT, context)?;
-        let mut record = describe::<Self, M>(variant, settings, &solid, [dx, dt], context);
+        let (mut record, dt) = begin::<Self, M>(variant, s, context)?;
         let (forces, drift) = (M::forces(&solid, dx), M::drift(&solid));
-        let particles = particles(s, &material);
         let scene = Scene::<Scheme<M, Open>>::new(
             solid.h(dx),
             Domain::open(),
-            particles,
+            particles(s, &material),
             forces,
             drift,
             Open,
@@ -140,30 +162,22 @@ impl Problem for SpinningDisk {
         let every = end / SAMPLES;
         // One support for the gradient, one for the neighbours that XSPH has moved before it.
         let interior = s.radius - 4.0 * solid.h(dx) - dx;
-        let (series, first) = (Vec::new(), None);
-        let mut seen = Seen { material, until: every, every, series, interior, first };
         let (start, mass) = start(&scene.particles);
-        seen.series.push(start);
-        let Ran { simulation, status, cost } =
-            run_to(scene, [dt, end], material.eos(), context, &mut seen)?;
-        seen.look(&simulation);
+        let (series, first) = (vec![start], None);
+        let mut history = History { material, until: every, every, series, interior, first };
+        let Finished { simulation, status, cost } =
+            run_to(scene, [dt, end], material.eos(), context, &mut history)?;
+        history.sample(&simulation);
         let scale = material.density * speed * speed;
-        metrics(&seen.series, s.end, scale, &mut record);
-        first_step(&seen, 2.0 * material.shear * speed / s.radius, &mut record);
-        let change = simulation.momentum().norm() / (mass * speed);
-        let formula = "|sum m v|/(sum m times the speed of the rim)";
-        record.metrics.insert("momentum_error".into(), Metric::new(change, "-", formula));
+        metrics(&history.series, s.end, scale, &mut record);
+        let ([inside, rim], dt) = history.first.unwrap_or(([f64::NAN; 2], 1.0));
+        let scale = 2.0 * material.shear * speed / s.radius;
+        record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
+        record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
+        record.put(MOMENTUM_ERROR, simulation.momentum().norm() / (mass * speed));
         record.state = Some(digest(&simulation));
         (record.status, record.cost) = (status, cost);
         Ok(record)
-    }
-
-    fn plan(tier: Tier) -> Vec<Planned> {
-        plan(tier)
-    }
-
-    fn studies(_: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        vec![study(runs)]
     }
 }
 
@@ -181,45 +195,15 @@ fn start(particles: &[Particle<Symmetric>]) -> ([f64; 5], f64) {
     ([0.0, spin, energy, 0.0, radius / mass], mass)
 }
 
-/// Strain rates that the first step saw in a rotation, from 2 mu times the spin \[Pa/s\].
-fn first_step(seen: &Seen, scale: f64, record: &mut Record) {
-    let ([inside, rim], dt) = seen.first.unwrap_or(([f64::NAN; 2], 1.0));
-    let mut put = |name: &str, value: f64, formula: &str| {
-        let value = value.sqrt() / (scale * dt);
-        record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-    };
-    put(
-        "interior_strain",
-        inside,
-        "largest ((S_xx - S_yy)^2/2 + 2 S_xy^2)^(1/2)/(2 mu dt) over the spin after one step, of \
-         particles farther than 4 h + dx from the rim",
-    );
-    put("rim_strain", rim, "root mean square of the same for the other particles");
-}
-
 fn metrics(series: &[[f64; 5]], revolutions: f64, scale: f64, record: &mut Record) {
     let [first, last] = [series[0], series[series.len() - 1]];
-    let mut put = |name: &str, value: f64, formula: &str| {
-        record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-    };
-    put(
-        "angular_momentum_drift",
-        (last[1] / first[1] - 1.0).abs() / revolutions,
-        "|angular momentum at the end over that at the start less 1|, a revolution",
-    );
-    put(
-        "stress_drift",
-        last[3].sqrt() / scale / revolutions,
-        "(mean S:S)^(1/2) at the end over rho U^2, a revolution",
-    );
+    let drift = (last[1] / first[1] - 1.0).abs() / revolutions;
+    record.put(ANGULAR_MOMENTUM_DRIFT, drift);
+    record.put(STRESS_DRIFT, last[3].sqrt() / scale / revolutions);
     let largest = series.iter().map(|row| row[3]).fold(0.0, f64::max).sqrt();
-    put("largest_stress", largest / scale, "largest (mean S:S)^(1/2) over rho U^2");
-    put("energy_drift", (last[2] / first[2] - 1.0) / revolutions, "change of energy, a revolution");
-    put(
-        "radius",
-        (last[4] / first[4]).sqrt(),
-        "(mean r^2)^(1/2) at the end over that at the start",
-    );
+    record.put(LARGEST_STRESS, largest / scale);
+    record.put(ENERGY_DRIFT, (last[2] / first[2] - 1.0) / revolutions);
+    record.put(RADIUS, (last[4] / first[4]).sqrt());
     let column = |k: usize, of: f64| -> Vec<f64> { series.iter().map(|row| row[k] / of).collect() };
     let stress = series.iter().map(|row| row[3].sqrt() / scale).collect();
     let profile = Profile::default()
@@ -231,7 +215,7 @@ fn metrics(series: &[[f64; 5]], revolutions: f64, scale: f64, record: &mut Recor
     record.profiles.insert("spin".into(), profile);
 }
 
-fn gate(id: &str, metric: &str, bound: Bound, because: &str) -> Gate {
+fn gate(id: String, metric: MetricKey, bound: Bound, because: &str) -> Gate {
     Gate::new(format!("spinning_disk.{id}"), metric, bound, Evidence::Invariant, because)
 }
 
@@ -243,72 +227,97 @@ const RIM: &str = "the velocity gradient in (11) is a sum over neighbours that i
     which are not central, brake the disk. It is of space and not of time; \
     the drift falls with finer spacing, but slower than the share of the rim";
 
-/// One run of a revolution.
-fn spin(variant: &'static str, n: usize) -> Planned {
+/// One revolution of a disk of so many spacings.
+fn spin_spec(variant: &str, n: usize) -> RunSpec {
+    SPINNING_DISK.spec(variant, |s| s.n = n)
+}
+
+/// The same, judged.
+fn spin(variant: &str, n: usize) -> Planned {
     let id = |metric: &str| format!("{variant}.{n}.{metric}");
-    let drift = "angular_momentum_drift";
     let gates = vec![
         gate(
-            &id("momentum_error"),
-            "momentum_error",
+            id("momentum_error"),
+            MOMENTUM_ERROR,
             Bound::Below(1e-12),
             "forces of pairs are equal and opposite, central or not: what is left is round-off of some \
              thousand steps",
         ),
         gate(
-            &id("interior_strain"),
-            "interior_strain",
+            id("interior_strain"),
+            INTERIOR_STRAIN,
             Bound::Below(1e-10),
             "on a lattice whose neighbours are all there M is a number times the unit matrix, so a \
              rotation has no strain: round-off of a sum of 28 neighbours over the phase W dt of 1e-3",
         ),
         gate(
-            &id("angular_momentum_bounded"),
-            drift,
+            id("angular_momentum_bounded"),
+            ANGULAR_MOMENTUM_DRIFT,
             Bound::Below(2.2),
             "L^2 is at most 2 I T, and neither the radius nor the energy can grow by more than some per \
              cent: between -1.1 and 1.1 of the start, a change by 2.1; more is energy from nowhere",
         ),
         gate(
-            &id(drift),
-            drift,
+            id("angular_momentum_drift"),
+            ANGULAR_MOMENTUM_DRIFT,
             Bound::Below(0.01),
             "a free body keeps its angular momentum; 1 % a revolution is what two rings that collide and \
              turn by a fraction of one would not notice",
         )
         .with_limitation(RIM),
         gate(
-            &id("stress_drift"),
-            "stress_drift",
+            id("stress_drift"),
+            STRESS_DRIFT,
             Bound::Below(0.4),
             "a spinning disk of plane strain has (mean S:S)^(1/2) of about 0.1 rho U^2 (nu/(1 - nu) = \
              0.66), twice that while it swings about it, as after a start without stress; twice that again",
         )
         .with_limitation(RIM),
     ];
-    Planned::new(variant, &[format!("n={n}")]).judged(gates)
+    Planned::new(spin_spec(variant, n)).judged(gates)
 }
 
-/// Spacings along the radius, of the runs in which dt varies.
-const COARSE: usize = 8;
 /// Courant numbers of a tenth of a revolution.
-const COURANT: [&str; 3] = ["0.1", "0.4", "0.8"];
+const COURANT: [f64; 3] = [0.1, 0.4, 0.8];
 
-fn steps(courant: &str) -> Planned {
-    let set = [format!("n={COARSE}"), "end=0.1".into(), format!("courant={courant}")];
-    Planned::new("bare", &set)
+/// A tenth of a revolution at a Courant number.
+fn steps(courant: f64) -> RunSpec {
+    SPINNING_DISK.spec("bare", |s| (s.n, s.end, s.courant) = (8, 0.1, Some(courant)))
 }
 
 fn plan(tier: Tier) -> Vec<Planned> {
     let mut plan = vec![spin("bare", 8), spin("bare", 16), spin("plain", 8), spin("seed", 8)];
-    plan.extend(COURANT.map(steps));
+    plan.extend(COURANT.map(|courant| Planned::new(steps(courant))));
     if tier == Tier::Full {
         plan.extend([spin("plain", 16), spin("seed", 16), spin("plain", 32)]);
     }
     plan
 }
 
-fn study(runs: &[JudgedRun]) -> Study {
+fn declaration(tier: Tier) -> Declaration {
+    let error = ErrorOf::Metric(ANGULAR_MOMENTUM_DRIFT.into());
+    let accuracy = Accuracy {
+        about: "A free disk, rim at 0.05 c0, makes one revolution; angular momentum is exactly conserved \
+                in the equations."
+            .into(),
+        spacing: "dx/R [-]",
+        slope: None,
+        ..Accuracy::new("spinning-disk", error, "change of angular momentum a revolution [-]")
+    };
+    let level = |variant: &str, n| Planned::new(spin_spec(variant, n));
+    let accuracy = match tier {
+        Tier::Quick => {
+            accuracy.over(&["bare"], [4, 8, 16], level).over(&["plain", "seed"], [4, 6, 8], level)
+        }
+        Tier::Full => {
+            let accuracy = accuracy.over(&["bare", "seed"], [4, 8, 16], level);
+            accuracy.over(&["plain"], [4, 8, 16, 32], level)
+        }
+    };
+    Declaration { accuracy: vec![accuracy], ..Declaration::default() }
+}
+
+fn study(tier: Tier, runs: &Runs) -> Study {
     let columns = vec![
         Column::text("variant"),
         Column::text("settings"),
@@ -321,27 +330,25 @@ fn study(runs: &[JudgedRun]) -> Study {
     let caption = "A disk without stress that begins to spin, rim at 0.05 c0. What is 0 in a perfect \
                    method: the change of angular momentum, and the strain that one step sees in the rim.";
     let mut table = Table::new(caption, columns);
-    let metric = |run: &JudgedRun, name: &str| run.record.measured(name);
-    for run in runs {
-        let number = |name: &str| Cell::num(metric(run, name), 3);
-        let end = run.record.setting("end");
+    for spec in plan(tier).iter().map(|planned| &planned.spec) {
+        let Some(record) = runs.record(spec) else { continue };
+        let number = |metric| Cell::num(record.value(metric).unwrap_or(f64::NAN), 3);
         table = table.row(vec![
-            Cell::text(run.planned.variant),
-            Cell::text(run.planned.set.join(", ")),
-            Cell::num(end, 2),
-            number("angular_momentum_drift"),
-            number("stress_drift"),
-            number("rim_strain"),
-            number("energy_drift"),
+            Cell::text(&record.variant),
+            Cell::text(case::changed(&SPINNING_DISK, spec).join(", ")),
+            Cell::num(record.settings_as::<DiskSettings>().end, 2),
+            number(ANGULAR_MOMENTUM_DRIFT),
+            number(STRESS_DRIFT),
+            number(RIM_STRAIN),
+            number(ENERGY_DRIFT),
         ]);
     }
-    let drift = |courant: &str| {
-        let set = steps(courant).set;
-        let of = |run: &&JudgedRun| run.planned.set == set;
-        runs.iter().find(of).map_or(f64::NAN, |run| metric(run, "angular_momentum_drift"))
+    let drift = |courant: f64| {
+        let record = runs.record(&steps(courant));
+        record.and_then(|record| record.value(ANGULAR_MOMENTUM_DRIFT)).unwrap_or(f64::NAN)
     };
     let [fine, middle, coarse] = COURANT.map(drift);
-    let apart = (middle - fine).abs().max((coarse - fine).abs()) / fine;
+    let difference = (middle - fine).abs().max((coarse - fine).abs()) / fine;
     let same = Gate::new(
         "spinning_disk.bare.dt",
         "relative difference of angular_momentum_drift",
@@ -357,32 +364,32 @@ fn study(runs: &[JudgedRun]) -> Study {
             "The gate is on the largest difference of the drift at Courant numbers 0.1, 0.4 and 0.8 in a \
              tenth of a revolution, relative to that at 0.1: the error is of space.",
         )
-        .judge(same, apart)
+        .judge(same, difference)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use harness::case::Case;
-    use harness::case::find_in;
 
     #[test]
     fn a_rotation_is_no_strain_where_no_neighbour_is_missing() {
-        let case: &dyn Case = find_in(crate::CASES, "spinning_disk").expect("a case");
         for variant in ["bare", "plain", "seed"] {
-            let set = ["end=0.002".to_string(), "n=10".to_string()];
-            let record = case.run(variant, &set, &Context::default()).expect("a run");
-            let metric = |name| record.metric(name).expect("measured");
-            assert!(metric("interior_strain") < 1e-10, "{}", metric("interior_strain"));
-            assert!(metric("rim_strain") > 1e-3, "{}", metric("rim_strain"));
-            assert!(metric("momentum_error") < 1e-13);
+            let spec = SPINNING_DISK.spec(variant, |s| (s.end, s.n) = (0.002, 10));
+            let record = SPINNING_DISK.run(&spec, &Context::default()).expect("a run");
+            let metric = |name| record.value(name).expect("measured");
+            assert!(metric(INTERIOR_STRAIN) < 1e-10, "{}", metric(INTERIOR_STRAIN));
+            assert!(metric(RIM_STRAIN) > 1e-3, "{}", metric(RIM_STRAIN));
+            assert!(metric(MOMENTUM_ERROR) < 1e-13);
         }
     }
 
     #[test]
     fn a_disk_that_makes_no_sense_is_refused() {
-        let case: &dyn Case = find_in(crate::CASES, "spinning_disk").expect("a case");
-        let refused = |set: &str| case.run("plain", &[set.into()], &Context::default()).err();
+        let refused = |set: &str| {
+            let spec = case::spec(&SPINNING_DISK, "plain", &[set.into()]);
+            spec.and_then(|spec| SPINNING_DISK.run(&spec, &Context::default())).err()
+        };
         assert!(matches!(refused("n=2"), Some(RunError::Setting(_))));
         assert!(matches!(refused("speed=0.9"), Some(RunError::Setting(_))));
         assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use validation::case;
+use harness::case;
 
 /// How wrong a particle method is, what being less wrong costs, and how far it can be pushed.
 #[derive(Debug, Parser)]
@@ -20,18 +20,26 @@ const EXIT_CODES: &str = "Exit codes: 0 pass, 1 a gate failed, 2 usage or invali
 pub enum Command {
     /// List cases; or variants and settings of one
     List(List),
-    /// Run one variant of a case and measure it
+    /// Run one variant of a case and measure it, or the runs of a plan
     Run(Run),
-    /// Run the plans of cases and judge every gate
+    /// Print runs as JSON lines: those of a tier, or of a sweep over settings of one case
+    Plan(Plan),
+    /// Plan, run what the store lacks, and judge every gate
     Verify(Verify),
-    /// Run everything and write the page, its figures and the records
+    /// Judge the records of a store; runs nothing
+    Judge(Judge),
+    /// Plan, run what the store lacks, judge, and write the page; with --store it only renders
     Report(Report),
-    /// Find the largest stable time step of every variant and compare it with theory
+    /// Say what changed between two reports or stores
+    Compare(Compare),
+    /// Find the largest stable time steps and compare them with theory
     Stability(Stability),
     /// Say what a gate checks, where its bound is and why
     Explain(Explain),
     /// Say what this program was built from, and check that it works here
     Doctor(Doctor),
+    /// Print a script that completes commands in a shell
+    Completions(Completions),
 }
 
 #[derive(Debug, Args)]
@@ -48,10 +56,15 @@ fn threads() -> clap::builder::RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=1024)
 }
 
+/// What `run` has for one run, and `run --specs` has not.
+const OF_ONE_RUN: [&str; 8] =
+    ["case", "variant", "set", "rows", "out", "vtk", "json", "allow_unstable"];
+
 #[derive(Debug, Args)]
 pub struct Run {
     /// Name of the case, as `touchstone list` has it
-    pub case: String,
+    #[arg(required_unless_present = "specs")]
+    pub case: Option<String>,
     /// Name of the variant; by default `modern` or else the first one listed
     #[arg(long)]
     pub variant: Option<String>,
@@ -72,20 +85,32 @@ pub struct Run {
     #[arg(long)]
     pub json: bool,
     /// Threads of the run, 1 to 1024; only sums over 10,000 particles and more are spread over them.
-    /// By default one a core
+    /// With --specs: runs side by side. By default one a core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
     /// Run even with a time step beyond the theoretical limit
     #[arg(long)]
     pub allow_unstable: bool,
+    /// Make the runs of this file, JSON lines as `touchstone plan` prints them; `-` is standard input
+    #[arg(long, value_name = "FILE", requires = "store", conflicts_with_all = OF_ONE_RUN)]
+    pub specs: Option<PathBuf>,
+    /// Folder that keeps the records of --specs; runs that it has already are not made again
+    #[arg(long, value_name = "DIR", requires = "specs")]
+    pub store: Option<PathBuf>,
+    /// Of --specs, only the run with this key
+    #[arg(long, value_name = "KEY", requires = "specs", conflicts_with = "index")]
+    pub only: Option<String>,
+    /// Of --specs, only the run of this line, from 0: what an array job passes
+    #[arg(long, value_name = "N", requires = "specs")]
+    pub index: Option<usize>,
 }
 
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Tier {
-    /// Under a minute on two cores
+    /// About a minute on two cores
     Quick,
-    /// Under twenty minutes
+    /// About twenty minutes
     Full,
 }
 
@@ -99,18 +124,83 @@ impl From<Tier> for case::Tier {
 }
 
 #[derive(Debug, Args)]
+pub struct Plan {
+    /// Names of the cases; by default all
+    pub cases: Vec<String>,
+    /// How much to plan
+    #[arg(long, value_enum, default_value = "quick")]
+    pub tier: Tier,
+    /// In place of a tier: every combination of these values (repeatable), as in
+    /// `--set re=0.5,1,2 --set rows=10,20`
+    #[arg(long, value_name = "KEY=VALUE,…")]
+    pub set: Vec<String>,
+    /// Variants of the sweep, separated by commas; by default that of `touchstone run`
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub variant: Vec<String>,
+}
+
+/// Which records are good enough.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct Reuse {
+    /// Reuse records that a build of other sources made, too; the report then says so
+    #[arg(long)]
+    pub any_build: bool,
+    /// Reuse no record: make every run again
+    #[arg(long, conflicts_with = "any_build")]
+    pub fresh: bool,
+}
+
+/// Verdicts for other programs.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Export {
+    /// Write the verdicts as JUnit XML, a test case a gate
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write the verdicts as a Markdown table
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub struct Verify {
     /// Names of the cases; by default all, and the studies that belong to none
     pub cases: Vec<String>,
     /// How much to run
     #[arg(long, value_enum, default_value = "quick")]
     pub tier: Tier,
+    /// Folder that keeps the records; runs that it has already are not made again
+    #[arg(long, value_name = "DIR", default_value = "reports/records")]
+    pub store: PathBuf,
+    #[command(flatten)]
+    pub reuse: Reuse,
+    #[command(flatten)]
+    pub export: Export,
     /// Print the verdicts as JSON on standard output
     #[arg(long)]
     pub json: bool,
     /// Runs side by side, 1 to 1024; by default one a core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
+}
+
+#[derive(Debug, Args)]
+pub struct Judge {
+    /// Names of the cases; by default all, and the studies that belong to none
+    pub cases: Vec<String>,
+    /// The plan to judge
+    #[arg(long, value_enum, default_value = "quick")]
+    pub tier: Tier,
+    /// Folder with the records
+    #[arg(long, value_name = "DIR")]
+    pub store: PathBuf,
+    /// Judge records that a build of other sources made, too
+    #[arg(long)]
+    pub any_build: bool,
+    #[command(flatten)]
+    pub export: Export,
+    /// Print the verdicts as JSON on standard output
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -121,16 +211,35 @@ pub struct Report {
     /// Where to write the page
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub out: PathBuf,
+    /// Render the records of this folder and run nothing; by default runs are made and kept in
+    /// OUT/records
+    #[arg(long, value_name = "DIR", conflicts_with = "fresh")]
+    pub store: Option<PathBuf>,
+    #[command(flatten)]
+    pub reuse: Reuse,
+    #[command(flatten)]
+    pub export: Export,
     /// Runs side by side, 1 to 1024; by default one a core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]
+pub struct Compare {
+    /// A report or a store: what was
+    pub before: PathBuf,
+    /// A report or a store: what is
+    pub after: PathBuf,
+    /// As JSON on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
 pub struct Stability {
-    /// Names of the cases; by default all
+    /// Names of the cases; by default all that declare limits
     pub cases: Vec<String>,
-    /// How closely to look
+    /// How many variants
     #[arg(long, value_enum, default_value = "quick")]
     pub tier: Tier,
     /// Print the limits as JSON on standard output
@@ -158,4 +267,10 @@ pub struct Doctor {
     /// Folder that must be writable
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Completions {
+    /// The shell
+    pub shell: clap_complete::Shell,
 }

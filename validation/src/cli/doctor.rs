@@ -2,14 +2,13 @@
 
 use std::time::Instant;
 
-use solver::BodyForce;
-use validation::bench;
+use ::report;
+use base::files::OutputFolder;
+use base::manifest::{Known, Manifest};
+use base::reference::Reference;
+use fluids::bench;
+use harness::{case, context::Context};
 use validation::cases;
-use validation::files::OutputFolder;
-use validation::manifest::{Known, Manifest};
-use validation::reference::Reference;
-use validation::report;
-use validation::runner::Context;
 
 use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
 
@@ -92,12 +91,13 @@ fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, String> {
     let start = Instant::now();
     let set = ["rows=10".to_string(), "end=0.1".to_string()];
     let case = cases::find("couette").map_err(|error| error.to_string())?;
+    let spec = case::spec(case, "seed", &set).map_err(|error| error.to_string())?;
     let run = || {
         let context = Context { interrupt: Some(world.interrupt), ..Context::default() };
-        case.run("seed", &set, &context).map_err(|error| error.to_string())
+        case.run(&spec, &context).map_err(|error| error.to_string())
     };
     let (first, second) = (run()?, run()?);
-    let error = first.measured("l2@0.1");
+    let error = first.metric("l2@0.1").unwrap_or(f64::NAN);
     let took = report::seconds(start.elapsed().as_secs_f64());
     let words = format!(
         "Couette flow of 10 rows, l2 error {} at most {} after {} steps, in {took}",
@@ -152,8 +152,8 @@ fn bench(world: &World) -> Result<(), Failure> {
 const ROWS: usize = 20;
 
 fn shares() -> Result<(), Failure> {
-    let couette = bench::shares::<()>(ROWS, BUDGET)?;
-    let poiseuille = bench::shares::<BodyForce>(ROWS, BUDGET)?;
+    let couette = bench::shares_of_couette(ROWS, BUDGET)?;
+    let poiseuille = bench::shares_of_poiseuille(ROWS, BUDGET)?;
     let all = [("couette", couette), ("poiseuille", poiseuille)];
     let rows: Vec<Vec<String>> = all
         .iter()

@@ -2,10 +2,12 @@
 
 use std::fs;
 
-use validation::case::Tier;
-use validation::gate::{Evidence, Gate, Purpose};
-use validation::settings::nearest;
-use validation::{record, report};
+use ::report;
+use base::gate::{Evidence, Gate, Purpose};
+use base::record;
+use base::settings::nearest;
+use harness::case::{Tier, changed};
+use harness::plan;
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
@@ -51,10 +53,11 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     let mut gates: Vec<Known> = Vec::new();
     for case in world.cases {
         for tier in [Tier::Quick, Tier::Full] {
-            for planned in case.plan(tier) {
-                let set: String = planned.set.iter().map(|set| format!(" --set {set}")).collect();
-                let on =
-                    format!("touchstone run {} --variant {}{set}", case.name(), planned.variant);
+            for planned in plan::of_case(*case, tier) {
+                let spec = &planned.spec;
+                let set: String =
+                    changed(*case, spec).iter().map(|set| format!(" --set {set}")).collect();
+                let on = format!("touchstone run {} --variant {}{set}", case.name(), spec.variant);
                 for gate in planned.gates {
                     match gates.iter_mut().find(|known| known.gate.id == gate.id) {
                         Some(known) => known.tiers.push(tier_name(tier)),

@@ -3,7 +3,7 @@
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use validation::files;
+use base::files;
 
 use super::{Exit, output};
 

@@ -2,18 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use ::report;
+use base::gate::{Gate, Judgement, Verdict};
+use base::record;
+use harness::case::{self, Case, Tier};
+use harness::runs::{self, JudgedRun};
+use harness::study::Study;
+use harness::suite::Suite;
 use serde::{Deserialize, Serialize};
-use validation::case::Tier;
-use validation::gate::{Gate, Judgement, Verdict};
-use validation::report;
-use validation::suite::{JudgedRun, Study, Suite};
-use validation::{record, suite};
 
 use super::output;
 
 /// Judgements as a table: what fails comes last, next to the prompt. Reasons of limitations are notes.
-pub fn table<'a>(all: impl IntoIterator<Item = &'a suite::Judged>) -> String {
-    let mut judged: Vec<&suite::Judged> = all.into_iter().collect();
+pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
+    let mut judged: Vec<&runs::Judged> = all.into_iter().collect();
     judged.sort_by_key(|j| j.judgement.verdict.is_failure());
     let mut reasons: Vec<&str> = Vec::new();
     let mut word = |verdict: &'a Verdict| {
@@ -26,7 +28,7 @@ pub fn table<'a>(all: impl IntoIterator<Item = &'a suite::Judged>) -> String {
     };
     let rows: Vec<Vec<String>> = judged
         .into_iter()
-        .map(|suite::Judged { gate, judgement }| {
+        .map(|runs::Judged { gate, judgement }| {
             let number = |number: Option<f64>| number.map(|number| report::sig(number, 4));
             vec![
                 word(&judgement.verdict),
@@ -67,14 +69,14 @@ pub struct RunVerdicts {
     pub case: String,
     /// name of the variant
     pub variant: String,
-    /// `key=value` texts of the plan
+    /// `key=value` of settings that differ from the defaults of the variant
     pub set: Vec<String>,
     /// names the record
     pub key: String,
     /// how it ended
     pub status: record::Status,
     /// wall time in seconds
-    #[serde(with = "validation::number")]
+    #[serde(with = "base::number")]
     pub wall_s: f64,
     /// the judgements
     pub judged: Vec<Judged>,
@@ -102,8 +104,8 @@ pub struct Judged {
     pub judgement: Judgement,
 }
 
-impl From<&suite::Judged> for Judged {
-    fn from(judged: &suite::Judged) -> Self {
+impl From<&runs::Judged> for Judged {
+    fn from(judged: &runs::Judged) -> Self {
         Judged { gate: judged.gate.clone(), judgement: judged.judgement.clone() }
     }
 }
@@ -119,12 +121,12 @@ pub fn tier_name(tier: Tier) -> &'static str {
 impl Verdicts {
     /// The verdicts of a suite.
     pub fn of(suite: &Suite) -> Self {
-        let judged = |all: &[suite::Judged]| all.iter().map(Judged::from).collect::<Vec<_>>();
-        let of_run = |run: &JudgedRun| RunVerdicts {
-            case: run.case.into(),
-            variant: run.planned.variant.into(),
-            set: run.planned.set.clone(),
-            key: run.record.key(),
+        let judged = |all: &[runs::Judged]| all.iter().map(Judged::from).collect::<Vec<_>>();
+        let of_run = |case: &dyn Case, run: &JudgedRun| RunVerdicts {
+            case: case.name().into(),
+            variant: run.planned.spec.variant.clone(),
+            set: case::changed(case, &run.planned.spec),
+            key: run.record.key().to_string(),
             status: run.record.status.clone(),
             wall_s: run.record.cost.wall_s,
             judged: judged(&run.judged),
@@ -143,7 +145,11 @@ impl Verdicts {
             tier: tier_name(suite.tier).into(),
             commit: super::SOURCE.commit.into(),
             counts: counts(suite),
-            runs: suite.cases.iter().flat_map(|results| results.runs.iter().map(of_run)).collect(),
+            runs: suite
+                .cases
+                .iter()
+                .flat_map(|of| of.runs.all().iter().map(|run| of_run(of.case, run)))
+                .collect(),
             studies: of_cases.chain(of_method).collect(),
         }
     }

@@ -1,7 +1,7 @@
 //! `list`: cases, variants and settings.
 
+use harness::case::Case;
 use serde_json::{Value, json};
-use validation::case::Case;
 use validation::cases;
 
 use super::{Exit, Outcome, World, arguments, output};

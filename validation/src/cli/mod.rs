@@ -13,15 +13,19 @@
 //! `--json`); what tells a person how it went goes to standard error.
 
 mod arguments;
+mod compare;
 mod doctor;
 mod explain;
+mod export;
 mod interrupt;
 mod judged;
 mod list;
 mod output;
+mod plan;
 mod progress;
 mod report;
 mod run;
+mod specs;
 mod stability;
 #[cfg(test)]
 mod tests;
@@ -30,12 +34,14 @@ mod verify;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use clap::Parser;
-use validation::case::{Case, RunError};
+use base::files::FileError;
+use base::manifest::{Known, Source, UNKNOWN, tell_source};
+use base::record::RecordError;
+use clap::{CommandFactory, Parser};
+use harness::case::{Case, RunError};
+use harness::make::MakeError;
+use harness::store::StoreError;
 use validation::cases;
-use validation::files::FileError;
-use validation::manifest::{Known, Source, tell_source};
-use validation::record::RecordError;
 
 use arguments::{Arguments, Command};
 
@@ -92,6 +98,24 @@ impl From<FileError> for Failure {
     }
 }
 
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        match error {
+            StoreError::File(error) => error.into(),
+            error @ StoreError::Record { .. } => Failure::usage(error),
+        }
+    }
+}
+
+impl From<MakeError> for Failure {
+    fn from(error: MakeError) -> Self {
+        match error {
+            MakeError::Store(error) => error.into(),
+            MakeError::Run(error) => error.into(),
+        }
+    }
+}
+
 impl From<RecordError> for Failure {
     fn from(error: RecordError) -> Self {
         Failure::bug(error)
@@ -112,6 +136,8 @@ type Outcome = Result<Exit, Failure>;
 pub struct World {
     /// The cases to choose from.
     cases: &'static [&'static dyn Case],
+    /// Digest of the sources that decide what a case computes.
+    sources: fn(&str) -> String,
     /// Set to stop.
     interrupt: &'static AtomicBool,
 }
@@ -147,6 +173,18 @@ const SOURCE: Source = Source {
     },
 };
 
+/// The digest of the sources of the family that a case belongs to.
+fn sources(case: &str) -> String {
+    let digest = match cases::family(case) {
+        Some("fluids") => env!("TOUCHSTONE_SOURCES_FLUIDS"),
+        Some("waters") => env!("TOUCHSTONE_SOURCES_WATERS"),
+        Some("solids") => env!("TOUCHSTONE_SOURCES_SOLIDS"),
+        Some("lattice") => env!("TOUCHSTONE_SOURCES_LATTICE"),
+        _ => UNKNOWN,
+    };
+    digest.into()
+}
+
 /// Reads the arguments of the process and does what they ask.
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(output::report_bug));
@@ -158,7 +196,7 @@ pub fn main() -> ExitCode {
             return code(if error.use_stderr() { Exit::Usage } else { Exit::Pass });
         }
     };
-    let world = World { cases: cases::CASES, interrupt: interrupt::flag() };
+    let world = World { cases: cases::CASES, sources, interrupt: interrupt::flag() };
     if let Err(error) = interrupt::listen() {
         output::say(&format!("note: an interrupt will end the program at once ({error})"));
     }
@@ -188,12 +226,24 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
     match command {
         Command::List(arguments) => list::list(arguments, world),
         Command::Run(arguments) => run::run(arguments, world),
+        Command::Plan(arguments) => plan::plan(arguments, world),
         Command::Verify(arguments) => verify::verify(arguments, world),
+        Command::Judge(arguments) => verify::judge(arguments, world),
         Command::Report(arguments) => report::report(arguments, world),
+        Command::Compare(arguments) => compare::compare(arguments),
         Command::Stability(arguments) => stability::stability(arguments, world),
         Command::Explain(arguments) => explain::explain(arguments, world),
         Command::Doctor(arguments) => doctor::doctor(arguments, world),
+        Command::Completions(arguments) => completions(arguments),
     }
+}
+
+/// The script of a shell, on standard output.
+fn completions(arguments: &arguments::Completions) -> Outcome {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), "touchstone", &mut script);
+    output::print(&String::from_utf8_lossy(&script))?;
+    Ok(Exit::Pass)
 }
 
 /// Does the work on a pool of so many threads, by default one a core.

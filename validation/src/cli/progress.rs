@@ -4,9 +4,9 @@ use std::io::{self, IsTerminal};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use ::report;
+use harness::context::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
-use validation::report;
-use validation::runner::Progress;
 
 /// A bar on standard error, or nothing.
 pub struct Bar {

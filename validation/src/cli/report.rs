@@ -1,14 +1,14 @@
-//! `report`: the page, its figures, and the record of every run.
+//! `report`: run what is missing, judge, render.
 
 use std::time::Instant;
 
-use validation::files::{FileError, OutputFolder};
+use ::report::{self, check_page};
+use base::files::{FileError, OutputFolder};
+use harness::store::Store;
 use validation::page;
-use validation::report::{self, check_page};
-use validation::suite::Suite;
 
 use super::{
-    Failure, Outcome, World, arguments,
+    Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
     output, verify,
 };
@@ -16,11 +16,21 @@ use super::{
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
     let folder = OutputFolder::create(&arguments.out)?;
-    let suite = verify::run(world.cases, arguments.tier.into(), true, arguments.threads, world)?;
-    let path = folder.path().join("index.html");
-    let records = write_records(&suite, &folder)?;
+    let tier = arguments.tier.into();
+    let mut suite = match &arguments.store {
+        Some(store) => {
+            verify::of_store(world.cases, tier, store, arguments.reuse.any_build, world)?
+        }
+        None => {
+            let store = Store::open(&folder.path().join("records"))?;
+            verify::run(world.cases, tier, &store, arguments.reuse, arguments.threads, world)?
+        }
+    };
+    verify::add_method(&mut suite, &[]);
+    export::write(&suite, &arguments.export)?;
     let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";
     folder.write("verdicts.json", verdicts.as_bytes())?;
+    let path = folder.path().join("index.html");
     let page = page::assemble(&suite);
     let html = page.html();
     let sound = check_page(&html);
@@ -29,9 +39,11 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     page.write_html(&path, &html)
         .map_err(|reason| FileError::File { path: path.clone(), reason })?;
     let took = report::seconds(start.elapsed().as_secs_f64());
+    let records: usize = suite.cases.iter().map(|results| results.runs.all().len()).sum();
     output::say(&format!(
-        "{}\nreport: {} and {records} records beside it, in {took}",
+        "{}{}\nreport: {} from {records} records, in {took}",
         judged::in_words(&suite),
+        verify::reused(&suite),
         path.display()
     ));
     match sound {
@@ -40,16 +52,4 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             Err(Failure::bug(anyhow::anyhow!("the page is there, but may not open: {reason}")))
         }
     }
-}
-
-/// One file a run: `records/CASE-VARIANT-KEY.json`. Returns how many.
-fn write_records(suite: &Suite, folder: &OutputFolder) -> Result<usize, Failure> {
-    let mut names = std::collections::BTreeSet::new();
-    for run in suite.cases.iter().flat_map(|results| &results.runs) {
-        let record = &run.record;
-        let name = format!("records/{}-{}-{}.json", record.case, record.variant, record.key());
-        folder.write(&name, record.to_json()?.as_bytes())?;
-        names.insert(name);
-    }
-    Ok(names.len())
 }

@@ -3,29 +3,40 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
+use base::{
+    files::{CsvTable, FileError, OutputFolder},
+    gate::Gate,
+    record::{Profile, Record, Status},
+    spec::{RunSpec, Task},
+};
+use harness::{
+    case::{self, Case, Tier},
+    context::{Context, Progress},
+    plan,
+    runs::Judged,
+};
 use serde_json::Value;
-use validation::case::{Case, Planned, Tier};
 use validation::cases;
-use validation::files::{CsvTable, FileError, OutputFolder};
-use validation::record::{Profile, Record, Status};
-use validation::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
-use validation::runner::{Context, Progress};
-use validation::suite::Judged;
 
 use super::{
     Exit, Failure, Outcome, World, arguments, judged, list::default_variant, on_threads, output,
-    progress::Bar,
+    progress::Bar, specs,
 };
 
 pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
-    let case = cases::find_in(world.cases, &arguments.case)?;
+    if let Some(file) = &arguments.specs {
+        return specs::run(file, arguments, world);
+    }
+    let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
     let mut set = arguments.set.clone();
     set.extend(arguments.rows.iter().map(|rows| format!("rows={rows}")));
-    let settings = case.settings(variant, &set)?;
-    let folder = Folder::of(arguments, variant)?;
+    let mut spec = case::spec(case, variant, &set)?;
+    spec.allow_unstable = arguments.allow_unstable;
+    let folder = Folder::of(arguments, case.name(), variant)?;
     let record = match on_threads(arguments.threads, || {
-        compute(case, variant, &set, arguments, folder.as_ref(), world)
+        compute(case, &spec, arguments, folder.as_ref(), world)
     }) {
         Ok(record) => record,
         Err(failure) => {
@@ -40,7 +51,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         return Err(Failure::interrupted(what));
     }
     let written = folder.as_ref().map(|folder| write(&record, folder)).transpose()?;
-    let verdicts: Vec<Judged> = gates_of(case, variant, &settings)
+    let verdicts: Vec<Judged> = gates_of(case, &spec)
         .into_iter()
         .map(|gate| {
             let value = gate.value(&record);
@@ -78,8 +89,7 @@ fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
 
 fn compute(
     case: &dyn Case,
-    variant: &str,
-    set: &[String],
+    spec: &RunSpec,
     arguments: &arguments::Run,
     folder: Option<&Folder>,
     world: &World,
@@ -88,28 +98,27 @@ fn compute(
     let show = |progress: Progress| bar.show_run(progress);
     let frames = folder.zip(arguments.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
     let context = Context {
-        allow_unstable: arguments.allow_unstable,
         threads: rayon::current_num_threads(),
         frames,
-        keep_particles: false,
-        pictures: None,
         progress: Some(&show),
         interrupt: Some(world.interrupt),
+        ..Context::default()
     };
-    let record = case.run(variant, set, &context);
+    let record = case.run(spec, &context);
     bar.clear();
-    Ok(record?)
+    let mut record = record?;
+    record.manifest.sources = (world.sources)(case.name());
+    Ok(record)
 }
 
-/// Gates of the plans that judge just this run.
-fn gates_of(case: &dyn Case, variant: &str, settings: &Value) -> Vec<validation::gate::Gate> {
-    let plans = [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| case.plan(tier));
-    let is_this = |planned: &Planned| {
-        planned.variant == variant
-            && case.settings(planned.variant, &planned.set).is_ok_and(|of| of == *settings)
+/// Gates of the plans that judge just these settings.
+fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
+    let plans = [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| plan::of_case(case, tier));
+    let is_this = |of: &RunSpec| {
+        of.task == Task::Simulate && of.variant == spec.variant && of.settings == spec.settings
     };
-    let mut gates: Vec<validation::gate::Gate> = Vec::new();
-    for gate in plans.filter(is_this).flat_map(|planned| planned.gates) {
+    let mut gates: Vec<Gate> = Vec::new();
+    for gate in plans.filter(|planned| is_this(&planned.spec)).flat_map(|planned| planned.gates) {
         if !gates.iter().any(|known| known.id == gate.id) {
             gates.push(gate);
         }
@@ -125,12 +134,14 @@ struct Folder {
 
 impl Folder {
     /// None unless files were asked for; found writable before anything is computed.
-    fn of(arguments: &arguments::Run, variant: &str) -> Result<Option<Self>, FileError> {
+    fn of(
+        arguments: &arguments::Run,
+        case: &str,
+        variant: &str,
+    ) -> Result<Option<Self>, FileError> {
         let path = match (&arguments.out, arguments.vtk) {
             (Some(path), _) => path.clone(),
-            (None, Some(_)) => {
-                Path::new("reports").join(format!("run-{}-{variant}", arguments.case))
-            }
+            (None, Some(_)) => Path::new("reports").join(format!("run-{case}-{variant}")),
             (None, None) => return Ok(None),
         };
         let is_new = !path.exists();
@@ -151,24 +162,28 @@ impl Folder {
 }
 
 /// Writes the record and what can be drawn from it; returns the names.
-fn write(record: &Record, folder: &Folder) -> Result<Vec<&'static str>, Failure> {
+fn write(record: &Record, folder: &Folder) -> Result<Vec<String>, Failure> {
     let Folder { output, .. } = folder;
     output.write("record.json", record.to_json()?.as_bytes())?;
-    let mut names = vec!["record.json"];
+    let mut names = vec!["record.json".to_string()];
     let curves = curves(record);
     if !curves.is_empty() {
         output.write("profile.csv", &profile_csv(&curves)?)?;
         let path = output.path().join("profile.png");
         let refused = |reason| FileError::File { path: path.clone(), reason };
         report::png(&figure(record, &curves), &path).map_err(refused)?;
-        names.extend(["profile.csv", "profile.png"]);
+        names.extend(["profile.csv".into(), "profile.png".into()]);
     }
-    if let Some(series) = record.profiles.get("series") {
-        output.write("series.csv", &series_csv(series)?)?;
-        names.push("series.csv");
+    for (name, profile) in &record.profiles {
+        // Curves at one time are in profile.csv, particles in the frames.
+        if !name.contains('@') && name != "particles" {
+            let file = format!("{}.csv", name.replace(' ', "-"));
+            output.write(&file, &series_csv(profile)?)?;
+            names.push(file);
+        }
     }
     if folder.vtk().exists() {
-        names.push("vtk/particles.pvd");
+        names.push("vtk/particles.pvd".into());
     }
     Ok(names)
 }

@@ -3,15 +3,21 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use ::report::check_page;
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::{MetricKey, Record, Status},
+    settings::Field,
+    spec::RunSpec,
+};
 use clap::Parser;
+use harness::{
+    case::{self, Case, Planned, RunError, Tier, Variant},
+    context::Context,
+    runs::{Judged, Runs},
+    study::Study,
+};
 use serde_json::{Value, json};
-use validation::case::{Case, Planned, RunError, Tier, Variant};
-use validation::gate::{Bound, Evidence, Gate};
-use validation::record::{Metric, Record, Status};
-use validation::report::check_page;
-use validation::runner::Context;
-use validation::settings::Field;
-use validation::suite::{Judged, JudgedRun, Study};
 
 use super::{Exit, World, arguments::Arguments, conclude, dispatch, judged::Verdicts};
 
@@ -48,16 +54,15 @@ impl Case for Staged {
         Ok(json!({ "set": set }))
     }
 
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        assert!(variant != "panicking", "staged panic");
-        let mut record = Record::new(self.name, variant, self.settings(variant, set)?, 1);
+    fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
+        assert!(spec.variant != "panicking", "staged panic");
+        let mut record = Record::new(self.name, &spec.variant, spec.settings.clone(), 1);
         if context.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             record.status = Status::Interrupted { step: 64, time: 0.1 };
             return Ok(record);
         }
-        let error = if variant == "wrong" { 3.0 } else { 1.0 };
-        record.metrics.insert("error".into(), Metric::new(error, "-", "as staged"));
-        if variant == "diverging" {
+        record.put(ERROR, if spec.variant == "wrong" { 3.0 } else { 1.0 });
+        if spec.variant == "diverging" {
             let (field, value_text) = ("density".into(), "NaN".into());
             record.status = Status::Diverged { step: 7, time: 0.1, particle: 3, field, value_text };
         }
@@ -65,17 +70,25 @@ impl Case for Staged {
     }
 
     fn plan(&self, _: Tier) -> Vec<Planned> {
-        let planned = |variant: &&'static str| {
-            Planned::new(variant, &["re=1".to_string()]).judged(vec![gate("error")])
-        };
+        let set = ["re=1".to_string()];
+        let spec = |variant: &str| case::spec(self, variant, &set).expect("staged settings");
+        let planned = |variant: &&str| Planned::new(spec(variant)).judged(vec![gate("error")]);
         self.planned.iter().map(planned).collect()
     }
 
-    fn studies(&self, _: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        let count = runs.len() as f64;
+    fn studies(&self, _: Tier, runs: &Runs) -> Vec<Study> {
+        let count = runs.all().len() as f64;
         let id = format!("{}-count", self.name);
-        vec![Study::new(&id, "How many").prose("Runs are counted.").judge(gate("count"), count)]
+        let study = Study::new(&id, "How many").prose("Runs are counted.");
+        vec![study.judge(gate("count"), count)]
     }
+}
+
+const ERROR: MetricKey = MetricKey::new("error", "-", "as staged");
+
+/// Records of staged runs may be reused: they are all made by this build.
+fn sources(_: &str) -> String {
+    "staged".into()
 }
 
 static RIGHT: Staged = Staged { name: "right", planned: &["right"] };
@@ -91,12 +104,16 @@ fn exit_with(interrupt: &'static AtomicBool, line: &str, out: &Path) -> Exit {
     let line = line.replace("OUT", out.to_str().expect("a plain path"));
     let words = std::iter::once("touchstone").chain(line.split(' '));
     let arguments = Arguments::try_parse_from(words).expect("a sound command line");
-    let world = World { cases: &ALL, interrupt };
+    let world = World { cases: &ALL, sources, interrupt };
     conclude(|| dispatch(&arguments.command, &world))
 }
 
+/// Commands that keep records keep them in a folder of their own.
 fn exit(line: &str) -> Exit {
-    exit_with(&NEVER, line, Path::new(""))
+    let folder = tempfile::tempdir().expect("a folder");
+    let keeps = line.starts_with("verify");
+    let line = if keeps { format!("{line} --store OUT/records") } else { line.to_string() };
+    exit_with(&NEVER, &line, folder.path())
 }
 
 #[test]
@@ -124,13 +141,15 @@ fn verify_ends_with_the_verdict() {
     // Its error was inside the bound until it diverged.
     assert_eq!(exit("verify diverging"), Exit::GateFailed);
     assert_eq!(exit("verify panicking"), Exit::Bug, "a panic on another thread is one too");
-    assert_eq!(exit_with(&ALREADY, "verify right", Path::new("")), Exit::Interrupted);
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = "verify right --store OUT/records";
+    assert_eq!(exit_with(&ALREADY, line, folder.path()), Exit::Interrupted);
 }
 
 #[test]
 fn a_report_is_whole_and_explain_reads_it() {
     let folder = tempfile::tempdir().expect("a folder");
-    let world = World { cases: &SOUND, interrupt: &NEVER };
+    let world = World { cases: &SOUND, sources, interrupt: &NEVER };
     let in_folder = |line: &str| {
         let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
         let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
@@ -143,7 +162,7 @@ fn a_report_is_whole_and_explain_reads_it() {
     assert_eq!((verdicts.runs.len(), verdicts.counts["fail"]), (3, 1));
     for run in &verdicts.runs {
         let name = format!("records/{}-{}-{}.json", run.case, run.variant, run.key);
-        assert_eq!(Record::from_json(&read(&name)).expect("a record").key(), run.key);
+        assert_eq!(Record::from_json(&read(&name)).expect("a record").key().to_string(), run.key);
     }
     for (gate, expected) in [
         ("staged.error", Exit::Pass),
@@ -163,10 +182,62 @@ fn a_page_that_may_not_open_is_told_and_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("a plain path");
     let arguments = Arguments::try_parse_from(["touchstone", "report", "--out", out]);
-    let world = World { cases: &TWICE, interrupt: &NEVER };
+    let world = World { cases: &TWICE, sources, interrupt: &NEVER };
     assert_eq!(conclude(|| dispatch(&arguments.expect("sound").command, &world)), Exit::Bug);
     let html = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
     assert!(check_page(&html).is_err_and(|reason| reason.contains("used twice")));
+}
+
+/// A second report makes nothing, a store is judged and rendered without a run, and a comparison of two
+/// reports sees a new failure.
+#[test]
+fn records_are_reused_judged_rendered_and_compared() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let on = |cases: &'static [&'static dyn Case], line: &str| {
+        let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
+        let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
+        let world = World { cases, sources, interrupt: &NEVER };
+        conclude(|| dispatch(&arguments.command, &world))
+    };
+    static GOOD: [&dyn Case; 1] = [&RIGHT];
+    let good = |line: &str| on(&GOOD, line);
+    assert_eq!(good("touchstone judge --store OUT/none"), Exit::Usage);
+    assert_eq!(good("touchstone report --out OUT/a"), Exit::Pass);
+    let record = std::fs::read_dir(folder.path().join("a/records")).expect("a store").next();
+    let path = record.expect("a record").expect("a file").path();
+    let time = || std::fs::metadata(&path).and_then(|file| file.modified()).expect("a time");
+    let made = time();
+    assert_eq!(good("touchstone report --out OUT/a"), Exit::Pass);
+    assert_eq!(made, time(), "nothing was made again");
+    let export = "--junit OUT/junit.xml --markdown OUT/verdicts.md";
+    assert_eq!(good(&format!("touchstone judge --store OUT/a/records {export}")), Exit::Pass);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
+    assert!(read("junit.xml").contains("<testcase classname=\"right\" name=\"staged.error\">"));
+    assert!(read("verdicts.md").starts_with("# Verdicts\n\n2 pass"));
+    assert_eq!(good("touchstone report --store OUT/a/records --out OUT/b"), Exit::Pass);
+    assert_eq!(good("touchstone compare OUT/a OUT/b"), Exit::Pass);
+    assert_eq!(on(&SOUND, "touchstone report --out OUT/c"), Exit::GateFailed);
+    assert_eq!(good("touchstone compare OUT/a OUT/c --json"), Exit::GateFailed);
+    // A store that lacks a run fails its gates rather than passing over them.
+    assert_eq!(on(&SOUND, "touchstone judge --store OUT/a/records"), Exit::GateFailed);
+}
+
+#[test]
+fn a_plan_is_run_line_by_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = |variant: &str| RunSpec::new("right", variant, json!({"set": ["re=1"]}));
+    let lines = [spec("right"), spec("diverging")].map(|spec| spec.canonical() + "\n").concat();
+    std::fs::write(folder.path().join("specs.jsonl"), lines).expect("a file");
+    let go = |rest: &str| {
+        let line = format!("run --specs OUT/specs.jsonl --store OUT/store {rest}");
+        exit_with(&NEVER, line.trim_end(), folder.path())
+    };
+    let count = || std::fs::read_dir(folder.path().join("store")).expect("a store").count();
+    assert_eq!(go("--index 2"), Exit::Usage);
+    assert_eq!(go("--index 1"), Exit::Pass);
+    assert_eq!(count(), 1);
+    assert_eq!(go(&format!("--only {}", spec("right").key())), Exit::Pass);
+    assert_eq!((go(""), count()), (Exit::Pass, 2));
 }
 
 #[test]

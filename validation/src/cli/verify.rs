@@ -1,15 +1,19 @@
-//! `verify`: the plans of cases, judged.
+//! `verify` and `judge`: plans of cases, judged.
 
 use std::time::Instant;
 
-use validation::case::{Case, Tier};
-use validation::record::Status;
-use validation::report;
-use validation::studies;
-use validation::suite::{self, Study, Suite, Watch};
+use ::report;
+use base::record::Status;
+use harness::{
+    case::{self, Case, Tier},
+    gate_power,
+    make::{Made, Making},
+    store::{Found, Store},
+    suite::{self, Suite},
+};
 
 use super::{
-    Exit, Failure, Outcome, World, arguments,
+    Exit, Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
     on_threads, output,
     progress::Bar,
@@ -18,17 +22,53 @@ use super::{
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
     let start = Instant::now();
-    let with_method = arguments.cases.is_empty();
-    let suite = run(&cases, arguments.tier.into(), with_method, arguments.threads, world)?;
-    if arguments.json {
-        output::print(&(serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n"))?;
+    let store = Store::open(&arguments.store)?;
+    let (tier, reuse) = (arguments.tier.into(), arguments.reuse);
+    let mut suite = run(&cases, tier, &store, reuse, arguments.threads, world)?;
+    add_method(&mut suite, &arguments.cases);
+    show(&suite, arguments.json, &arguments.export, start)
+}
+
+pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
+    let cases = world.choose(&arguments.cases)?;
+    let start = Instant::now();
+    let mut suite =
+        of_store(&cases, arguments.tier.into(), &arguments.store, arguments.any_build, world)?;
+    add_method(&mut suite, &arguments.cases);
+    show(&suite, arguments.json, &arguments.export, start)
+}
+
+/// What is said of the method itself where no case was named.
+pub fn add_method(suite: &mut Suite, named: &[String]) {
+    if named.is_empty() {
+        suite.studies.push(gate_power::study());
+    }
+}
+
+fn show(suite: &Suite, json: bool, export: &arguments::Export, start: Instant) -> Outcome {
+    export::write(suite, export)?;
+    if json {
+        output::print(&(serde_json::to_string_pretty(&Verdicts::of(suite))? + "\n"))?;
     } else {
         output::say(&judged::table(suite.judged()));
     }
     let took = report::seconds(start.elapsed().as_secs_f64());
-    output::say(&format!("{}, in {took}", judged::in_words(&suite)));
-    output::say(&reasons(&suite));
-    Ok(exit(&suite))
+    output::say(&format!("{}{}, in {took}", judged::in_words(suite), reused(suite)));
+    output::say(&reasons(suite));
+    Ok(exit(suite))
+}
+
+/// `; 12 of 206 runs were in the store`, if any were.
+pub fn reused(suite: &Suite) -> String {
+    let all: usize = suite.cases.iter().map(|results| results.runs.all().len()).sum();
+    let other = match suite.of_other_sources {
+        0 => String::new(),
+        count => format!(", {count} of them made by a build of other sources"),
+    };
+    match suite.reused {
+        0 => String::new(),
+        count => format!("; {count} of {all} runs were in the store{other}"),
+    }
 }
 
 /// 1 if a gate failed.
@@ -36,25 +76,91 @@ pub fn exit(suite: &Suite) -> Exit {
     if suite.failures() > 0 { Exit::GateFailed } else { Exit::Pass }
 }
 
-/// Runs a suite on a pool, with a bar, and refuses to judge what was interrupted.
+/// Makes what the store lacks, on a pool, with a bar, and refuses to judge what was interrupted.
 pub fn run(
     cases: &[&'static dyn Case],
     tier: Tier,
-    with_method: bool,
+    store: &Store,
+    reuse: arguments::Reuse,
     threads: Option<u16>,
     world: &World,
 ) -> Result<Suite, Failure> {
-    let of_the_method = with_method.then_some(studies::of_the_method as fn(Tier) -> Vec<Study>);
     let bar = Bar::new(1);
     let show = |done: usize, all: usize, name: &str| bar.show_runs(done, all, name);
-    let watch = Watch { progress: Some(&show), interrupt: Some(world.interrupt) };
-    let suite = on_threads(threads, || Ok(suite::run(cases, tier, of_the_method, &watch)?));
+    if reuse.fresh {
+        forget(cases, tier, store)?;
+    }
+    let making = Making {
+        tier,
+        store: Some(store),
+        sources: &world.sources,
+        reuse_other: reuse.any_build,
+        progress: Some(&show),
+        interrupt: Some(world.interrupt),
+    };
+    let suite = on_threads(threads, || Ok(suite::run(cases, &making)?));
     bar.clear();
     let suite = suite?;
     if world.is_interrupted() {
-        return Err(Failure::interrupted("nothing is judged and nothing is written"));
+        return Err(Failure::interrupted(
+            "nothing is judged; what was run is kept, and the same command goes on with the rest",
+        ));
     }
     Ok(suite)
+}
+
+/// Removes the records of a plan from a store.
+fn forget(cases: &[&'static dyn Case], tier: Tier, store: &Store) -> Result<(), Failure> {
+    for (_, plan) in suite::plans(cases, tier) {
+        for planned in plan {
+            store.remove(&planned.spec)?;
+        }
+    }
+    Ok(())
+}
+
+/// Judges what a store has, and runs nothing.
+pub fn of_store(
+    cases: &[&'static dyn Case],
+    tier: Tier,
+    path: &std::path::Path,
+    any_build: bool,
+    world: &World,
+) -> Result<Suite, Failure> {
+    if !path.is_dir() {
+        return Err(Failure::usage(anyhow::anyhow!("there is no store {}", path.display())));
+    }
+    let store = Store::open(path)?;
+    let plans = suite::plans(cases, tier);
+    let (mut made, mut missing, mut other) = (Made::default(), 0, 0);
+    for spec in plans.iter().flat_map(|(_, plan)| plan).map(|planned| &planned.spec) {
+        let record = match store.find(spec, &(world.sources)(&spec.case)) {
+            Found::Same(record) => record,
+            Found::Other(record) if any_build => {
+                made.of_other_sources += 1;
+                record
+            }
+            Found::Other(_) => {
+                other += 1;
+                continue;
+            }
+            Found::Nothing => {
+                missing += 1;
+                continue;
+            }
+        };
+        made.reused += 1;
+        made.records.insert(spec.key(), *record);
+    }
+    if missing + other > 0 {
+        let all = made.reused + missing + other;
+        output::say(&format!(
+            "note: of {all} runs of the {} tier the store lacks {missing}, and {other} are of a build of \
+             other sources (--any-build takes them); their gates fail",
+            judged::tier_name(tier)
+        ));
+    }
+    Ok(suite::judge(plans, tier, made))
 }
 
 /// Why each failed gate has its bound, and which runs diverged.
@@ -63,13 +169,15 @@ fn reasons(suite: &Suite) -> String {
     for judged in suite.judged().filter(|j| j.judgement.verdict.is_failure()) {
         text += &format!("{} fails; its bound: {}\n", judged.gate.id, judged.gate.because);
     }
-    for run in suite.cases.iter().flat_map(|results| &results.runs) {
-        if let Status::Diverged { step, time, .. } = run.record.status {
-            let (variant, set) = (run.planned.variant, run.planned.set.join(" "));
-            text += &format!(
-                "{} {variant} {set}: diverged after {step} steps, at t = {time:.3e} s\n",
-                run.case
-            );
+    for results in &suite.cases {
+        for run in results.runs.all().iter().filter(|run| !run.judged.is_empty()) {
+            if let Status::Diverged { step, time, .. } = run.record.status {
+                let (name, variant) = (results.case.name(), &run.planned.spec.variant);
+                let set = case::changed(results.case, &run.planned.spec).join(" ");
+                text += &format!(
+                    "{name} {variant} {set}: diverged after {step} steps, at t = {time:.3e} s\n"
+                );
+            }
         }
     }
     text

@@ -1,25 +1,27 @@
 //! A free drop that a uniform strain pulls into an ellipse (Monaghan 1994): free surface, no walls, and
 //! an exact solution.
 
-use harness::composed::{Composed, Composition, lacking};
-use maths::theory::Stepping;
+use harness::composed::{Composed, Composition, completed};
 use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
     DensityDiffusion, Domain, EquationOfState, Integrator, Kernel, Leapfrog, Open, Particle,
-    PredictorCorrector, Pressure, Scene, Scheme, Simulation, Tait, WendlandC2, Xsph,
+    PredictorCorrector, Pressure, Scene, Stepper, Tait, WendlandC2, Xsph,
 };
 
-use super::water::{Ingredient, Ledger, Medium, OPTIONAL};
+use super::water::{self, Ingredient, Ledger, Medium, WaterScheme, ledger};
 use base::{
     gate::{Bound, Evidence, Gate},
-    number,
-    record::{self, Metric, Profile, Record},
+    record::{MetricKey, Profile, Record},
+    spec::RunSpec,
 };
 use harness::{
-    case::{Case, Planned, RunError, Tier, Variant},
+    case::{Planned, Rules, RunError, Tier, Variant},
+    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level},
     runner::{self, Context},
-    suite::{JudgedRun, Study},
+    runs::{Judged, Runs},
+    simulate::state,
+    study::Study,
 };
 use maths::exact::EllipticDrop as Exact;
 use report::{
@@ -45,6 +47,21 @@ crate::water_settings! {
 }
 
 const NAME: &str = "elliptic_drop";
+
+base::metrics! {
+    A_ERROR = "a_error" ["-"]
+        "max over samples of |a - a_exact|/a_exact, a^2 = 4 sum m (x - x_c)^2/sum m";
+    B_ERROR = "b_error" ["-"] "the same of the semi-axis b along y, which grows";
+    MOMENTUM_ERROR = "momentum_error" ["-"]
+        "max of |v_c - g t|/(A R + g t), v_c the velocity of the centre of mass";
+    CENTRE_ERROR = "centre_error" ["-"]
+        "max of |x_c - g t^2/2|/(R + (A R + g t) t), x_c the centre of mass";
+    B_END = "b_end" ["-"] "b/b_exact at the end";
+    A_END = "a_end" ["-"] "a/a_exact at the end";
+    TIP_END = "tip_end" ["-"]
+        "distance of the outermost particle from the centre along y, plus dx/2, over b_exact";
+}
+
 /// Samples of a run.
 const SAMPLES: usize = 80;
 
@@ -54,19 +71,19 @@ type Seed =
 type Modern = Compose<WendlandC2, Water, (Continuity, DensityDiffusion), Open, Leapfrog>;
 type Plain = Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
 
-fn variant<S>(
+fn variant<S: WaterScheme<Walls = Open>>(
     name: &'static str,
     about: &'static str,
     adjust: fn(&mut DropSettings),
-) -> Composition<DropSettings>
-where
-    S: Scheme<Extra = (), Walls = Open>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Integrator: Stepping,
-{
-    let lacks = lacking(OPTIONAL, &[S::Forces::uses(), S::Drift::uses()].concat());
-    Composition { variant: Variant { name, about }, adjust, run: run::<S>, lacks }
+) -> Composition<DropSettings> {
+    let lacks = S::lacks();
+    Composition {
+        variant: Variant { name, about },
+        adjust,
+        run: run::<S>,
+        rules: rules::<S>,
+        lacks,
+    }
 }
 
 /// The strain moves rows apart to two spacings, and the Wendland kernel needs h/dx of 1.2 at least for
@@ -117,12 +134,13 @@ impl Drop {
                 Particle::fluid(x, velocity, density, dx * dx)
             })
             .collect();
-        let exact = Exact::circle(shape(particles.iter().map(seen)).axes[0], s.strain);
+        let exact = Exact::circle(shape(particles.iter().map(evolved)).axes[0], s.strain);
         Self { medium, exact, particles }
     }
 }
 
-fn seen(p: &Particle) -> (f64, Vector2<f64>, Vector2<f64>) {
+/// Mass, place and velocity.
+fn evolved(p: &Particle) -> (f64, Vector2<f64>, Vector2<f64>) {
     (p.mass, p.position, p.velocity)
 }
 
@@ -154,18 +172,18 @@ fn shape(particles: impl Iterator<Item = (f64, Vector2<f64>, Vector2<f64>)> + Cl
 /// t, semi-axes, the exact ones \[s, m\].
 type Row = [f64; 5];
 
-/// What is seen through time.
-struct Seen {
+/// What is measured through time.
+struct History {
     rows: Vec<Row>,
     /// Largest errors of momentum and of the place of the centre.
     free_fall: [f64; 2],
 }
 
-impl Seen {
-    fn sample<S: Scheme<Extra = ()>>(&mut self, drop: &Drop, simulation: &Simulation<S>) {
+impl History {
+    fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {
         let (t, g) = (simulation.time(), drop.medium.gravity);
         let particles = simulation.particles();
-        let now = shape(particles.iter().map(seen));
+        let now = shape(particles.iter().map(evolved));
         let exact = drop.exact.after(t);
         self.rows.push([t, now.axes[0], now.axes[1], exact.a, exact.b]);
         let scale = drop.exact.strain * drop.exact.a + g.norm() * t;
@@ -179,19 +197,13 @@ impl Seen {
             let error = |row: &Row| (row[k] / row[k + 2] - 1.0).abs();
             self.rows.iter().map(error).fold(0.0, f64::max)
         };
-        let mut put = |name: &str, value: f64, formula: &str| {
-            record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-        };
-        let formula = "max over samples of |a - a_exact|/a_exact, a^2 = 4 sum m (x - x_c)^2/sum m";
-        put("a_error", worst(1), formula);
-        put("b_error", worst(2), "the same of the semi-axis b along y, which grows");
-        let formula = "max of |v_c - g t|/(A R + g t), v_c the velocity of the centre of mass";
-        put("momentum_error", self.free_fall[0], formula);
-        let formula = "max of |x_c - g t^2/2|/(R + (A R + g t) t), x_c the centre of mass";
-        put("centre_error", self.free_fall[1], formula);
+        record.put(A_ERROR, worst(1));
+        record.put(B_ERROR, worst(2));
+        record.put(MOMENTUM_ERROR, self.free_fall[0]);
+        record.put(CENTRE_ERROR, self.free_fall[1]);
         let last = self.rows[self.rows.len() - 1];
-        put("b_end", last[2] / last[4], "b/b_exact at the end");
-        put("a_end", last[1] / last[3], "a/a_exact at the end");
+        record.put(B_END, last[2] / last[4]);
+        record.put(A_END, last[1] / last[3]);
         let names = [("t", "s"), ("a", "m"), ("b", "m"), ("a_exact", "m"), ("b_exact", "m")];
         let add = |profile: Profile, (k, (name, unit)): (usize, &(&str, &str))| {
             profile.with(name, unit, self.rows.iter().map(|row| row[k]).collect())
@@ -201,18 +213,20 @@ impl Seen {
     }
 }
 
-fn run<S>(variant: &str, s: &DropSettings, context: &Context) -> Result<Record, RunError>
-where
-    S: Scheme<Extra = (), Walls = Open>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Integrator: Stepping,
-{
+fn rules<S: WaterScheme>(s: &DropSettings) -> Result<Rules, RunError> {
+    let medium = Drop::new(s).medium;
+    let [dt, dt_limit] = medium.time_step::<S>(true)?;
+    Ok(Rules { dt, dt_limit, sound_speed: medium.eos.sound_speed })
+}
+
+fn run<S: WaterScheme<Walls = Open>>(
+    variant: &str,
+    s: &DropSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
     let drop = Drop::new(s);
     let medium = &drop.medium;
-    let uses = [S::Forces::uses(), S::Drift::uses()].concat();
-    let [dt, limit] =
-        medium.time_step::<S::Kernel, S::Integrator>(&uses, context.allow_unstable)?;
+    let [dt, limit] = medium.time_step::<S>(context.allow_unstable)?;
     let (forces, drift) = (S::Forces::new::<S::Kernel>(medium), S::Drift::new::<S::Kernel>(medium));
     let mut ledger = Ledger::new(medium.water(), &forces, &drift);
     let particles = drop.particles.clone();
@@ -221,28 +235,32 @@ where
         scene.parallel_from = usize::MAX;
     }
     let mut simulation = scene.build()?;
-    let json = serde_json::to_value(s).unwrap_or_default();
-    let mut record = Record::new(NAME, variant, json, context.threads.max(1));
     let numbers = [
         ("dx [m]", medium.dx),
         ("c0 [m/s]", medium.eos.sound_speed),
         ("dt [s]", dt),
         ("dt/limit", dt / limit),
     ];
-    let numbers = numbers.map(|(name, value)| (name.to_string(), number::json(value)));
-    record.numerics.extend(numbers);
-    record.numerics.insert("kernel".into(), S::Kernel::NAME.into());
-    record.numerics.insert("integrator".into(), S::Integrator::NAME.into());
-    let mut seen = Seen { rows: Vec::new(), free_fall: [0.0; 2] };
+    let words = [("kernel", S::Kernel::NAME), ("integrator", S::Integrator::NAME)];
+    let mut record = water::begin((NAME, variant), s, numbers, words, context);
+    let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> =
         (0..=SAMPLES).map(|k| s.end / s.strain * k as f64 / SAMPLES as f64).collect();
-    (record.status, record.cost) =
-        runner::drive(&mut simulation, dt, &times, context, &mut (), &mut |simulation, _| {
-            seen.sample(&drop, simulation);
+    let pressure = |density| medium.eos.pressure(density);
+    (record.status, record.cost) = runner::drive(
+        &mut simulation,
+        dt,
+        &times,
+        context,
+        &mut (),
+        &pressure,
+        &mut |simulation, _| {
+            history.sample(&drop, simulation);
             ledger.sample(simulation);
-        });
-    seen.measure(&mut record);
-    let start = shape(drop.particles.iter().map(self::seen));
+        },
+    )?;
+    history.measure(&mut record);
+    let start = shape(drop.particles.iter().map(evolved));
     let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;
     ledger.measure(kinetic, "initial kinetic energy", &mut record);
     finish(&drop, &simulation, context, &mut record);
@@ -250,24 +268,13 @@ where
 }
 
 /// Extents, digest and particles at the end.
-fn finish<S: Scheme<Extra = ()>>(
-    drop: &Drop,
-    simulation: &Simulation<S>,
-    context: &Context,
-    record: &mut Record,
-) {
+fn finish(drop: &Drop, simulation: &dyn Stepper<()>, context: &Context, record: &mut Record) {
     let particles = simulation.particles();
-    let centre = shape(particles.iter().map(seen)).centre;
+    let centre = shape(particles.iter().map(evolved)).centre;
     let half = particles.iter().map(|p| (p.position - centre).y.abs()).fold(0.0, f64::max);
     let exact = drop.exact.after(simulation.time());
-    let value = (half + 0.5 * drop.medium.dx) / exact.b;
-    let formula =
-        "distance of the outermost particle from the centre along y, plus dx/2, over b_exact";
-    record.metrics.insert("tip_end".into(), Metric::new(value, "-", formula));
-    let numbers =
-        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
-    let state: Vec<[f64; 5]> = particles.iter().map(numbers).collect();
-    record.state = Some(record::digest(state.as_flattened()));
+    record.put(TIP_END, (half + 0.5 * drop.medium.dx) / exact.b);
+    record.state = Some(state(&particles));
     if context.keep_particles {
         let column = |f: &dyn Fn(&Particle) -> f64| particles.iter().map(f).collect();
         let profile = Profile::default()
@@ -278,19 +285,21 @@ fn finish<S: Scheme<Extra = ()>>(
     }
 }
 
-/// The drop as a [`Case`].
-pub const ELLIPTIC_DROP: &dyn Case = &Composed {
+/// The drop.
+pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     name: NAME,
     about: "A free drop in two dimensions, at first a circle, pulled into an ellipse by the uniform strain \
             that it starts with; its semi-axes follow an ordinary differential equation exactly. No wall and \
             no gravity, or gravity in which it falls freely, which must change nothing.",
     variants,
+    is_stable: completed,
+    declaration,
     plan,
-    studies: |_, runs| vec![study(runs)],
+    studies: |tier, runs| vec![study(tier, runs)],
 };
 
-/// Particles across the drop.
-fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
+/// Particles across the drops that are judged.
+fn judged(tier: Tier, variant: &str) -> &'static [usize] {
     match (tier, variant) {
         (Tier::Quick, "seed") => &[20],
         (Tier::Quick, _) => &[20, 40],
@@ -298,23 +307,68 @@ fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
     }
 }
 
+/// Particles across the drops of a ladder of resolutions.
+fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
+    match (tier, variant) {
+        (Tier::Quick, "seed") => &[14, 20, 28],
+        (Tier::Quick, _) => &[14, 20, 28, 40],
+        (Tier::Full, _) => &[20, 28, 40, 56, 80],
+    }
+}
+
+const VARIANTS: [&str; 3] = ["seed", "modern", "plain"];
+/// Particles across the drop of the figure.
+const SHOWN: usize = 40;
+
+/// A drop without gravity; with its particles where there is a picture of it.
+fn spec(variant: &str, n: usize) -> RunSpec {
+    let spec = ELLIPTIC_DROP.spec(variant, |s| s.n = n);
+    if (variant, n) == ("modern", SHOWN) { spec.keep_particles() } else { spec }
+}
+
+fn planned(variant: &str, n: usize) -> Planned {
+    Planned::new(spec(variant, n)).taking(0.7 * (n as f64 / 40.0).powi(3))
+}
+
+/// A falling drop.
+fn falling(variant: &str) -> RunSpec {
+    ELLIPTIC_DROP.spec(variant, |s| (s.n, s.gravity) = (20, FALL))
+}
+
+fn declaration(tier: Tier) -> Declaration {
+    let level = |variant: &str, n: usize| Level {
+        run: planned(variant, n),
+        spacing: 2.0 / n as f64,
+        label: format!("{n} across"),
+    };
+    let of = |variant: &'static str| {
+        Ladder::new(variant, ladder(tier, variant).iter().map(|n| level(variant, *n)))
+    };
+    let error = ErrorOf::Metric(B_ERROR.into());
+    let accuracy = Accuracy {
+        about: "The semi-axis that grows, until A t = 0.8, against the exact one.".into(),
+        spacing: "dx/R [-]",
+        slope: Some(1.0),
+        ladders: VARIANTS.map(of).into(),
+        ..Accuracy::new("elliptic-drop", error, "largest error of the semi-axis b [-]")
+    };
+    Declaration { accuracy: vec![accuracy], ..Declaration::default() }
+}
+
 fn plan(tier: Tier) -> Vec<Planned> {
     let mut runs = Vec::new();
-    for variant in ["seed", "modern", "plain"] {
-        for n in ladder(tier, variant) {
-            let run = Planned::new(variant, &[format!("n={n}")]);
-            let run = run.taking(0.7 * (*n as f64 / 40.0).powi(3));
-            runs.push(run.judged(gates(&format!("{variant}.{n}"), *n)));
+    for variant in VARIANTS {
+        for &n in judged(tier, variant) {
+            runs.push(planned(variant, n).judged(gates(&format!("{variant}.{n}"), n)));
         }
     }
-    for narrow in ["1.5", "2"] {
-        let set = ["n=40".to_string(), format!("h_over_dx={narrow}")];
-        let gates = invariants(&format!("modern.h{narrow}"));
-        runs.push(Planned::new("modern", &set).judged(gates));
+    for narrow in [1.5, 2.0] {
+        let run = ELLIPTIC_DROP.planned("modern", |s| (s.n, s.h_over_dx) = (40, narrow));
+        runs.push(run.judged(invariants(&format!("modern.h{narrow}"))));
     }
     for variant in ["seed", "modern"] {
-        let set = ["n=20".into(), format!("gravity={FALL}")];
-        runs.push(Planned::new(variant, &set).judged(invariants(&format!("{variant}.falling"))));
+        let run = Planned::new(falling(variant));
+        runs.push(run.judged(invariants(&format!("{variant}.falling"))));
     }
     runs
 }
@@ -322,8 +376,9 @@ fn plan(tier: Tier) -> Vec<Planned> {
 /// Gravity of the falling drop \[A² R\].
 const FALL: f64 = 1.0;
 
-fn gate(id: &str, metric: &str, bound: Bound, evidence: Evidence, because: &str) -> Gate {
-    Gate::new(format!("{NAME}.{id}.{metric}"), metric, bound, evidence, because)
+fn gate(id: &str, metric: MetricKey, bound: Bound, evidence: Evidence, because: &str) -> Gate {
+    let metric = String::from(metric);
+    Gate::new(format!("{NAME}.{id}.{metric}"), &metric, bound, evidence, because)
 }
 
 fn gates(id: &str, n: usize) -> Vec<Gate> {
@@ -331,7 +386,7 @@ fn gates(id: &str, n: usize) -> Vec<Gate> {
                 spacing, so of first order in it";
     let bound = Bound::Below(0.01 * (40.0 / n as f64).max(0.5));
     let mut gates = invariants(id);
-    gates.extend(["a_error", "b_error"].map(|m| {
+    gates.extend([A_ERROR, B_ERROR].map(|m| {
         let gate = gate(id, m, bound, Evidence::Analytic, axes);
         if id.starts_with("seed") { gate.with_limitation(STRINGS) } else { gate }
     }));
@@ -348,24 +403,22 @@ fn invariants(id: &str) -> Vec<Gate> {
     let closes = "pressure and (3) exchange energy exactly and every other term is accounted for: 0.1 % is \
                   for the time step and for sampling the powers";
     vec![
-        gate(id, "momentum_error", Bound::Below(1e-11), Evidence::Invariant, round_off),
-        gate(id, "centre_error", Bound::Below(1e-11), Evidence::Invariant, round_off),
-        gate(id, "energy_gap", Bound::Below(1e-3), Evidence::Invariant, closes),
+        gate(id, MOMENTUM_ERROR, Bound::Below(1e-11), Evidence::Invariant, round_off),
+        gate(id, CENTRE_ERROR, Bound::Below(1e-11), Evidence::Invariant, round_off),
+        gate(id, ledger::ENERGY_GAP, Bound::Below(1e-3), Evidence::Invariant, closes),
     ]
 }
 
-fn study(runs: &[JudgedRun]) -> Study {
+fn study(tier: Tier, runs: &Runs) -> Study {
     let mut study = Study::new("elliptic-drop", "Semi-axes of a free drop")
-        .block(figure(runs))
+        .block(figure(tier, runs))
         .block(table(runs));
     for variant in ["seed", "modern"] {
-        let of = |gravity: f64| {
-            let mut of_variant =
-                runs.iter().map(|run| &run.record).filter(|r| r.variant == variant);
-            of_variant.find(|r| r.setting("n") == 20.0 && r.setting("gravity") == gravity)
+        let both = runs.record(&spec(variant, 20)).zip(runs.record(&falling(variant)));
+        let change = |metric: MetricKey| {
+            let (still, falling) = both?;
+            Some((still.value(metric)? - falling.value(metric)?).abs())
         };
-        let (Some(still), Some(falling)) = (of(0.0), of(FALL)) else { continue };
-        let change = |name: &str| (still.measured(name) - falling.measured(name)).abs();
         let because = "gravity acts on all particles alike, so a drop that falls deforms like one that \
                        does not; round-off of its places, in a flow that is smooth";
         let id = format!("{NAME}.{variant}.falls-in-shape");
@@ -376,12 +429,13 @@ fn study(runs: &[JudgedRun]) -> Study {
             Evidence::Invariant,
             because,
         );
-        study = study.judge(gate, change("a_end").max(change("b_end")));
+        let largest = change(A_END).zip(change(B_END)).map(|(a, b)| a.max(b));
+        study.judged.push(Judged::new(gate, largest));
     }
     study
 }
 
-fn figure(runs: &[JudgedRun]) -> Figure {
+fn figure(tier: Tier, runs: &Runs) -> Figure {
     let caption = "Left: semi-axes of the drop over time, 40 particles across, and the exact ones (`seed` in \
                    the full tier only). Right: the drop of the variant `modern` at the end, coloured by \
                    pressure over the exact pressure at its centre at the start; dots have the size of an \
@@ -389,15 +443,12 @@ fn figure(runs: &[JudgedRun]) -> Figure {
     let axes = (Axis::linear("A t [-]"), Axis::linear("semi-axis [R]"));
     let mut plot = Plot::new("", axes.0, axes.1);
     let at_40 = |variant: &str| {
-        // The first: h/dx 2.5.
-        let is_it = |r: &&Record| r.variant == variant && r.setting("n") == 40.0;
-        runs.iter().map(|run| &run.record).find(is_it)
+        let is_run = judged(tier, variant).contains(&SHOWN);
+        is_run.then(|| runs.record(&spec(variant, SHOWN))).flatten()
     };
-    let points = |record: &Record, name: &str| -> Vec<(f64, f64)> {
-        let Some(series) = record.profiles.get("series") else { return Vec::new() };
-        let (a, r) = (record.setting("strain"), record.setting("radius"));
-        let points = series.column("t").iter().zip(series.column(name));
-        points.map(|(t, y)| (a * t, y / r)).collect()
+    let points = |record: &Record, name: &str| {
+        let s = record.settings_as::<DropSettings>();
+        water::curve(record, "series", ["t", name], [1.0 / s.strain, s.radius])
     };
     let mut drop = None;
     if let Some(record) = at_40("modern") {
@@ -422,19 +473,17 @@ fn figure(runs: &[JudgedRun]) -> Figure {
 }
 
 fn picture(record: &Record) -> ParticleMap {
-    let empty = Profile::default();
-    let profile = record.profiles.get("particles").unwrap_or(&empty);
-    let (a, r) = (record.setting("strain"), record.setting("radius"));
-    let scale = record.setting("rho") * Exact::circle(r, a).central_pressure();
-    let xy = profile.column("x").iter().zip(profile.column("y"));
-    let points = xy.zip(profile.column("p")).map(|((x, y), p)| (x / r, y / r, p / scale)).collect();
+    let s = record.settings_as::<DropSettings>();
+    let (r, scale) = (s.radius, s.rho * Exact::circle(s.radius, s.strain).central_pressure());
+    let [x, y, p] = ["x", "y", "p"].map(|name| record.column("particles", name));
+    let points = x.iter().zip(y).zip(p).map(|((x, y), p)| (x / r, y / r, p / scale)).collect();
     let axes = (Axis::linear("x [R]").range(-0.7, 0.7), Axis::linear("y [R]"));
-    let title = format!("A t = {}", sig(record.setting("end"), 2));
+    let title = format!("A t = {}", sig(s.end, 2));
     ParticleMap::new(&title, axes, "p/p(0) [-]", ColourMap::Sequential, points)
-        .diameter(2.0 / record.setting("n"))
+        .diameter(2.0 / s.n as f64)
 }
 
-fn table(runs: &[JudgedRun]) -> Table {
+fn table(runs: &Runs) -> Table {
     let columns = vec![
         Column::text("variant"),
         Column::num("particles across", "1"),
@@ -453,18 +502,20 @@ fn table(runs: &[JudgedRun]) -> Table {
                    across them has an error that no spacing takes away. Energies in units of the initial \
                    kinetic one.";
     let mut table = Table::new(caption, columns);
-    for record in runs.iter().map(|run| &run.record) {
+    let percent = |value| Cell::percent(value, 2);
+    for record in runs.all().iter().map(|run| &run.record) {
+        let s = record.settings_as::<DropSettings>();
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(record.setting("n"), 3),
-            Cell::num(record.setting("h_over_dx"), 2),
-            Cell::num(record.setting("gravity"), 2),
-            Cell::percent(record.measured("a_error"), 2),
-            Cell::percent(record.measured("b_error"), 2),
-            Cell::num(record.measured("tip_end"), 4),
-            Cell::percent(-record.measured("work_viscosity"), 2),
-            Cell::percent(record.measured("work_stress"), 2),
-            Cell::sci(record.measured("energy_gap"), 2),
+            Cell::num(s.n as f64, 3),
+            Cell::num(s.h_over_dx, 2),
+            Cell::num(s.gravity, 2),
+            water::cell(record, A_ERROR, percent),
+            water::cell(record, B_ERROR, percent),
+            water::cell(record, TIP_END, |tip| Cell::num(tip, 4)),
+            water::cell(record, ledger::WORK_VISCOSITY, |work| percent(-work)),
+            water::cell(record, ledger::WORK_STRESS, percent),
+            water::cell(record, ledger::ENERGY_GAP, |gap| Cell::sci(gap, 2)),
             Cell::count(record.cost.steps),
         ]);
     }
@@ -474,16 +525,16 @@ fn table(runs: &[JudgedRun]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use harness::case::Case;
 
-    fn ran(variant: &str, set: &[&str]) -> Record {
-        let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
-        ELLIPTIC_DROP.run(variant, &set, &Context::default()).expect("a run")
+    fn run(variant: &str, set: impl FnOnce(&mut DropSettings)) -> Result<Record, RunError> {
+        ELLIPTIC_DROP.run(&ELLIPTIC_DROP.spec(variant, set), &Context::default())
     }
 
     #[test]
     fn the_particles_of_the_start_are_the_exact_drop() {
         let drop = Drop::new(&DropSettings::default());
-        let start = shape(drop.particles.iter().map(seen));
+        let start = shape(drop.particles.iter().map(evolved));
         assert!(
             (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12
         );
@@ -496,27 +547,25 @@ mod tests {
 
     #[test]
     fn a_drop_falls_freely_and_keeps_its_momentum() {
-        for variant in ["seed", "modern", "plain"] {
-            let short = ["n=12", "end=0.2"];
-            let (still, falling) =
-                (ran(variant, &short), ran(variant, &[&short[..], &["gravity=2"]].concat()));
+        for variant in VARIANTS {
+            let ran = |gravity: f64| {
+                run(variant, |s| (s.n, s.end, s.gravity) = (12, 0.2, gravity)).expect("a run")
+            };
+            let (still, falling) = (ran(0.0), ran(2.0));
             for record in [&still, &falling] {
-                assert!(record.measured("momentum_error") < 1e-13);
-                assert!(record.measured("centre_error") < 1e-13);
+                assert!(record.value(MOMENTUM_ERROR).unwrap() < 1e-13);
+                assert!(record.value(CENTRE_ERROR).unwrap() < 1e-13);
             }
-            let difference = still.measured("b_end") - falling.measured("b_end");
+            let difference = still.value(B_END).unwrap() - falling.value(B_END).unwrap();
             assert!(difference.abs() < 1e-10, "{variant}: {difference:e}");
         }
     }
 
     #[test]
     fn a_drop_that_makes_no_sense_is_refused() {
-        let refused = |variant: &str, set: &str| {
-            ELLIPTIC_DROP.run(variant, &[set.to_string()], &Context::default()).err()
-        };
-        assert!(matches!(refused("modern", "n=2"), Some(RunError::Setting(_))));
-        assert!(matches!(refused("modern", "xsph=0.1"), Some(RunError::Unused { .. })));
-        assert!(matches!(refused("modern", "courant=3"), Some(RunError::TimeStep { .. })));
-        assert!(matches!(refused("modrn", "n=20"), Some(RunError::Variant { .. })));
+        assert!(matches!(run("modern", |s| s.n = 2), Err(RunError::Setting(_))));
+        assert!(matches!(run("modern", |s| s.xsph = 0.1), Err(RunError::Unused { .. })));
+        assert!(matches!(run("modern", |s| s.courant = 3.0), Err(RunError::TimeStep { .. })));
+        assert!(matches!(run("modrn", |_| {}), Err(RunError::Variant { .. })));
     }
 }

@@ -4,27 +4,37 @@
 
 use solver::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
-use super::Flow;
+use super::{
+    Channel, ChannelSettings, Flow,
+    declaration::{at_rows, compared_at, ladder, levels},
+    measure::L2,
+    run::KERNEL,
+};
 use base::record::Record;
+use harness::{
+    case::Tier,
+    convergence::{Level, convergence},
+    runs::Runs,
+    study::Study,
+};
 use maths::{
-    exact::{couette::Couette, poiseuille::Poiseuille},
     metrics::norms::{Scale, l2},
     theory::lattice::SquareLattice,
 };
-use report::percent;
+use report::{Cell, Column, Table, percent};
 
 /// A guard against 0/0 that changes no sum.
 const NO_GUARD: f64 = 1e-12;
 
 /// Errors that a viscosity of L₁ ν makes.
 #[derive(Clone, Copy, Debug)]
-pub struct LatticeFloor {
+struct LatticeFloor {
     /// Of a lattice in place.
-    pub in_place: f64,
+    in_place: f64,
     /// Of one whose rows have slid past each other, as shear makes them in time.
-    pub slid: f64,
+    slid: f64,
     /// The same two without η².
-    pub unguarded: [f64; 2],
+    unguarded: [f64; 2],
 }
 
 /// L₁ in place and with slid rows.
@@ -35,35 +45,30 @@ fn factors<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) -> [f64; 2] {
 
 /// Relative L2 difference of the flow of viscosity `factor` ν and that of viscosity ν, at νt/L² = `tau`.
 fn error(flow: Flow, factor: f64, tau: f64) -> f64 {
-    let velocity = |nu: f64, y: f64| match flow {
-        Flow::Couette => Couette { v0: 1.0, l: 1.0, nu }.velocity(y, tau),
-        Flow::Poiseuille => Poiseuille { v: 1.0 / nu, l: 1.0, nu }.velocity(y, tau),
-    };
     let stations = (1..100).map(|k| f64::from(k) / 100.0);
     let (found, exact): (Vec<f64>, Vec<f64>) =
-        stations.map(|y| (velocity(factor, y), velocity(1.0, y))).unzip();
+        stations.map(|y| (flow.exact(y, tau, factor), flow.exact(y, tau, 1.0))).unzip();
     Scale::rms(&exact).and_then(|scale| l2(&found, &exact, scale)).unwrap_or(f64::NAN)
 }
 
 impl LatticeFloor {
     /// Of the kernel, h/dx and η² of a run, at νt/L² = `tau`.
-    pub fn of(record: &Record, flow: Flow, tau: f64) -> Option<Self> {
-        let factors = match record.numerics.get("kernel")?.as_str()? {
+    fn of(record: &Record, flow: Flow, tau: f64) -> Option<Self> {
+        let factors = match record.numerics.get(KERNEL)?.as_str()? {
             CubicSpline::NAME => factors::<CubicSpline>,
             QuinticSpline::NAME => factors::<QuinticSpline>,
             WendlandC2::NAME => factors::<WendlandC2>,
             _ => return None,
         };
-        let errors = |eta2: f64| {
-            factors(record.setting("h_over_dx"), eta2).map(|factor| error(flow, factor, tau))
-        };
-        let [in_place, slid] = errors(record.setting("eta2_over_h2"));
+        let ChannelSettings { h_over_dx, eta2_over_h2, .. } = record.settings_as();
+        let errors = |eta2: f64| factors(h_over_dx, eta2).map(|factor| error(flow, factor, tau));
+        let [in_place, slid] = errors(eta2_over_h2);
         Some(Self { in_place, slid, unguarded: errors(NO_GUARD) })
     }
 
     /// What makes an error that stopped falling: the nearer one of the two lattices, if it is within a
     /// factor of two; η², if the error would be less than half without.
-    pub fn cause(&self, floor: f64) -> String {
+    fn cause(&self, floor: f64) -> String {
         let of = [("a lattice in place", self.in_place), ("slid rows", self.slid)];
         let off = |k: usize| (of[k].1 / floor).ln().abs();
         let k = usize::from(off(1) < off(0));
@@ -76,6 +81,49 @@ impl LatticeFloor {
         let [with, without] = [with, without].map(|error| percent(error, 2));
         format!("{part}: the viscosity of {lattice} makes {with}, without η² {without}")
     }
+}
+
+/// Where the ladders stop, and why.
+pub fn study(channel: Channel, tier: Tier, runs: &Runs) -> Study {
+    let flow = channel.flow;
+    let tau = compared_at(flow);
+    let columns = vec![
+        Column::text("variant"),
+        Column::num("lattice in place makes", "-"),
+        Column::num("slid rows make", "-"),
+        Column::num("fitted floor", "-"),
+        Column::text("cause"),
+    ];
+    let caption = format!(
+        "Errors of u at νt/L² = {tau} that the viscosity of a square lattice makes at any spacing, in place \
+         and with rows that shear has slid past each other, and the error at which a ladder stops."
+    );
+    let mut table = Table::new(caption, columns);
+    for variant in ladder(flow) {
+        let records = levels(tier)
+            .iter()
+            .map(|rows| (1.0 / *rows as f64, runs.completed(&at_rows(channel, variant, *rows))));
+        let records: Vec<(f64, Option<&Record>)> = records.collect();
+        let error = |record: &Record| record.value(L2.at(tau));
+        let level = |(spacing, record): &(f64, Option<&Record>)| Level {
+            spacing: *spacing,
+            value: record.and_then(error).unwrap_or(f64::NAN),
+        };
+        let found = convergence(&records.iter().map(level).collect::<Vec<_>>());
+        let floor = found.ok().and_then(|found| found.floor).map(|floor| floor.error);
+        let finest = records.last().and_then(|(_, record)| *record);
+        let Some(lattice) = finest.and_then(|record| LatticeFloor::of(record, flow, tau)) else {
+            continue;
+        };
+        table = table.row(vec![
+            Cell::text(format!("`{variant}`")),
+            Cell::percent(lattice.in_place, 2),
+            Cell::percent(lattice.slid, 2),
+            floor.map_or(Cell::text("none reached"), |floor| Cell::percent(floor, 2)),
+            Cell::text(floor.map_or("–".into(), |floor| lattice.cause(floor))),
+        ]);
+    }
+    Study::new(&format!("{}-floor", flow.name()), "The error that refinement leaves").block(table)
 }
 
 #[cfg(test)]

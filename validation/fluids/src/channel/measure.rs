@@ -1,10 +1,12 @@
 //! What is measured in a channel flow, each norm with its formula.
 
 use nalgebra::Vector2;
-use solver::{EquationOfState, Flow as Going, Observer, Particle, Role, Scheme, Simulation};
+use solver::{
+    EquationOfState, Flow as Going, Observer, Particle, Role, Scheme, Simulation, Stepper,
+};
 
 use super::Setup;
-use base::record::{Metric, Profile, Record};
+use base::record::{MetricKey, Profile, Record};
 use maths::metrics::{
     norms::{Scale, l2, linf},
     profile::{Field, interpolate},
@@ -17,8 +19,43 @@ const STATIONS: usize = 41;
 /// than a few spacings.
 const WORST_FROM: f64 = 0.1;
 
+/// Relative error of the velocity; at a νt/L².
+pub const L2: MetricKey = MetricKey::new("l2", "-", "rms(u - u_exact)/rms(u_exact) over particles");
+const LINF: MetricKey = MetricKey::new("linf", "-", "max|u - u_exact|/V over particles");
+const FIELD_L2: MetricKey = MetricKey::new(
+    "field_l2",
+    "-",
+    "rms(<u> - u_exact)/rms(u_exact), SPH field (1) at 41 stations",
+);
+const SHEAR: &str = "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall";
+/// Error of the slope at the lower wall; at a νt/L².
+pub const SHEAR_LOWER: MetricKey = MetricKey::new("shear_lower", "-", SHEAR);
+/// Error of the slope at the upper wall; at a νt/L².
+pub const SHEAR_UPPER: MetricKey = MetricKey::new("shear_upper", "-", SHEAR);
+/// The viscosity that the flow shows; at a νt/L².
+pub const NU_EFF: MetricKey =
+    MetricKey::new("nu_eff", "-", "nu_eff/nu of the exact flow nearest in l2");
+/// The largest [`L2`] once the boundary layer of the start is resolved.
+pub const L2_WORST: MetricKey =
+    MetricKey::new("l2_worst", "-", "largest l2 over the times of comparison with nu t/L^2 >= 0.1");
+/// Cross-flow.
+pub const V_RMS: MetricKey =
+    MetricKey::new("v_rms", "-", "rms(v)/V at the end, exactly 0 in the flow");
+/// Pressure.
+pub const P_RMS: MetricKey =
+    MetricKey::new("p_rms", "-", "rms(p - mean)/(rho V^2) at the end, exactly 0 in the flow");
+/// Change of volume.
+pub const VOLUME_DRIFT: MetricKey =
+    MetricKey::new("volume_drift", "-", "sum(m/rho)/sum(m/rho0) - 1 at the end");
+/// Momentum across the channel.
+pub const MOMENTUM_Y: MetricKey =
+    MetricKey::new("momentum_y", "-", "sum(m v)/(sum(m) V) at the end");
+/// Particles beyond a plate.
+pub const OUTSIDE: MetricKey =
+    MetricKey::new("outside", "-", "particles beyond the plates at the end");
+
 /// What is measured of a simulation: nothing here knows its scheme, so that it is compiled once.
-pub struct Seen {
+pub struct Sample {
     /// All particles in the order of the scene.
     all: Vec<Particle>,
     /// The fluid ones.
@@ -27,8 +64,8 @@ pub struct Seen {
     field: Option<Vec<f64>>,
 }
 
-impl Seen {
-    /// Looks at a simulation.
+impl Sample {
+    /// Reads a simulation.
     pub fn of<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Self {
         let all = simulation.particles();
         let fluid = all.iter().filter(|p| p.role == Role::Fluid).copied().collect();
@@ -43,69 +80,54 @@ impl Seen {
 }
 
 /// Compares with the exact flow at νt/L² = `tau` and adds metrics `name@tau` and a profile.
-pub fn compare(setup: &Setup, seen: &Seen, tau: f64, record: &mut Record) {
+pub fn compare(setup: &Setup, sample: &Sample, tau: f64, record: &mut Record) {
     let t = setup.time(tau);
-    let fluid = &seen.fluid;
+    let fluid = &sample.fluid;
     let u: Vec<f64> = fluid.iter().map(|p| p.velocity.x).collect();
     let exact: Vec<f64> = fluid.iter().map(|p| setup.exact(p.position.y, t)).collect();
-    let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
-        record.metrics.insert(format!("{name}@{tau}"), Metric::new(value, unit, formula));
-    };
     let rms = Scale::rms(&exact);
     let particle_l2 = rms.and_then(|rms| l2(&u, &exact, rms)).unwrap_or(f64::NAN);
-    put("l2", particle_l2, "-", "rms(u - u_exact)/rms(u_exact) over particles");
+    record.put(L2.at(tau), particle_l2);
     let max = Scale::new(setup.v).and_then(|v| linf(&u, &exact, v)).unwrap_or(f64::NAN);
-    put("linf", max, "-", "max|u - u_exact|/V over particles");
-    let field = interpolated_l2(setup, seen, t);
-    put("field_l2", field, "-", "rms(<u> - u_exact)/rms(u_exact), SPH field (1) at 41 stations");
-    for (name, error) in [("shear_lower", 0), ("shear_upper", 1)]
-        .map(|(name, wall)| (name, shear_error(setup, fluid, wall, t)))
-    {
-        put(
-            name,
-            error,
-            "-",
-            "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall",
-        );
-    }
+    record.put(LINF.at(tau), max);
+    record.put(FIELD_L2.at(tau), interpolated_l2(setup, sample, t));
+    record.put(SHEAR_LOWER.at(tau), shear_error(setup, fluid, 0, t));
+    record.put(SHEAR_UPPER.at(tau), shear_error(setup, fluid, 1, t));
     if depends_on_viscosity(setup, fluid, t) {
-        let nu = fitted_viscosity(setup, fluid, t);
-        put("nu_eff", nu, "-", "nu_eff/nu of the exact flow nearest in l2");
+        record.put(NU_EFF.at(tau), fitted_viscosity(setup, fluid, t));
     }
-    let profile = row_profile(setup, fluid, t);
-    record.profiles.insert(format!("u@{tau}"), profile);
+    record.profiles.insert(profile_at(tau), row_profile(setup, fluid, t));
     if tau >= WORST_FROM {
-        let so_far = record.metric("l2_worst").unwrap_or(0.0);
+        let so_far = record.value(L2_WORST).unwrap_or(0.0);
         // NaN must stay: max() would drop it.
         let worst = if particle_l2 > so_far || particle_l2.is_nan() { particle_l2 } else { so_far };
-        let formula = "largest l2 over the times of comparison with nu t/L^2 >= 0.1";
-        record.metrics.insert("l2_worst".into(), Metric::new(worst, "-", formula));
+        record.put(L2_WORST, worst);
     }
 }
 
+/// Name of the profile at νt/L² = `tau`.
+pub fn profile_at(tau: f64) -> String {
+    format!("u@{tau}")
+}
+
 /// Measures that need the end of the run only.
-pub fn at_the_end(setup: &Setup, seen: &Seen, record: &mut Record) {
-    let fluid = &seen.fluid;
+pub fn at_the_end(setup: &Setup, sample: &Sample, record: &mut Record) {
+    let fluid = &sample.fluid;
     let count = fluid.len() as f64;
     let mean = |f: &dyn Fn(&Particle) -> f64| fluid.iter().map(f).sum::<f64>() / count;
     let rms = |f: &dyn Fn(&Particle) -> f64| mean(&|p| f(p) * f(p)).sqrt();
-    let mut put = |name: &str, value: f64, formula: &str| {
-        record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-    };
     let (s, v) = (&setup.settings, setup.v);
-    put("v_rms", rms(&|p| p.velocity.y) / v, "rms(v)/V at the end, exactly 0 in the flow");
+    record.put(V_RMS, rms(&|p| p.velocity.y) / v);
     let pressure = |p: &Particle| setup.eos.pressure(p.density) - setup.eos.background;
     let mean_pressure = mean(&pressure);
-    let p_rms = rms(&|p| pressure(p) - mean_pressure) / (s.rho * v * v);
-    put("p_rms", p_rms, "rms(p - mean)/(rho V^2) at the end, exactly 0 in the flow");
+    record.put(P_RMS, rms(&|p| pressure(p) - mean_pressure) / (s.rho * v * v));
     let volume: f64 = fluid.iter().map(|p| p.mass / p.density).sum();
     let initial: f64 = fluid.iter().map(|p| p.mass / s.rho).sum();
-    put("volume_drift", volume / initial - 1.0, "sum(m/rho)/sum(m/rho0) - 1 at the end");
+    record.put(VOLUME_DRIFT, volume / initial - 1.0);
     let momentum: f64 = fluid.iter().map(|p| p.mass * p.velocity.y).sum();
-    let drift = momentum / (initial * s.rho * v);
-    put("momentum_y", drift, "sum(m v)/(sum(m) V) at the end");
+    record.put(MOMENTUM_Y, momentum / (initial * s.rho * v));
     let outside = fluid.iter().filter(|p| !(0.0..=s.width).contains(&p.position.y)).count();
-    put("outside", outside as f64, "particles beyond the plates at the end");
+    record.put(OUTSIDE, outside as f64);
 }
 
 /// All of the state, in the order of the scene.
@@ -116,8 +138,8 @@ pub fn state(particles: &[Particle]) -> Vec<f64> {
 }
 
 /// The particles themselves: x, y, u, v, p.
-pub fn particles(setup: &Setup, seen: &Seen) -> Profile {
-    let all = &seen.all;
+pub fn particles(setup: &Setup, sample: &Sample) -> Profile {
+    let all = &sample.all;
     let column = |f: &dyn Fn(&Particle) -> f64| all.iter().map(f).collect::<Vec<f64>>();
     Profile::default()
         .with("x", "m", column(&|p| p.position.x))
@@ -148,8 +170,8 @@ fn stations(setup: &Setup) -> Vec<Vector2<f64>> {
 }
 
 /// Relative L2 error of the SPH interpolation (1) at the stations.
-fn interpolated_l2(setup: &Setup, seen: &Seen, t: f64) -> f64 {
-    let Some(u) = &seen.field else { return f64::NAN };
+fn interpolated_l2(setup: &Setup, sample: &Sample, t: f64) -> f64 {
+    let Some(u) = &sample.field else { return f64::NAN };
     let exact: Vec<f64> = stations(setup).iter().map(|s| setup.exact(s.y, t)).collect();
     Scale::rms(&exact).and_then(|rms| l2(u, &exact, rms)).unwrap_or(f64::NAN)
 }
@@ -215,6 +237,15 @@ fn fitted_viscosity(setup: &Setup, fluid: &[Particle], t: f64) -> f64 {
 /// Points of a time series, at most.
 const POINTS: f64 = 300.0;
 
+/// How much of the end the pressure mode is kept of \[L/c0\].
+pub const WINDOW: f64 = 60.0;
+/// Name of the curve of the pressure mode; it is missing if the run was over before the window was full.
+pub const MODE: &str = "mode";
+/// Its column of the time before the end \[L/c0\].
+pub const MODE_TIME: &str = "t";
+/// Its column of the amplitude \[ρV²\].
+pub const MODE_AMPLITUDE: &str = "amplitude";
+
 /// Watches what should be exactly 0: cross-flow and pressure, the waves of hypothesis H3.
 pub struct Series {
     every: f64,
@@ -224,6 +255,10 @@ pub struct Series {
     eos: solver::Tait,
     rows: Vec<[f64; 4]>,
     count: f64,
+    width: f64,
+    /// Time \[s\] and amplitude of the lowest pressure mode cos(πy/L) \[ρV²\] after every step, if it is
+    /// watched.
+    mode: Option<Vec<(f64, f64)>>,
 }
 
 impl Series {
@@ -239,7 +274,22 @@ impl Series {
             eos: setup.eos,
             rows: Vec::new(),
             count: particles as f64,
+            width: setup.settings.width,
+            mode: setup.settings.watch_mode.then(Vec::new),
         }
+    }
+
+    /// The lowest pressure mode over the last [`WINDOW`] of a run that ended at `end` \[s\].
+    pub fn mode_until(&self, end: f64) -> Option<Profile> {
+        let crossing = self.width / self.eos.sound_speed;
+        let since_end = |t: f64| (t - end) / crossing;
+        if since_end(0.0) > -WINDOW {
+            return None;
+        }
+        let all = self.mode.as_ref()?.iter().map(|(t, p)| (since_end(*t), *p));
+        let (times, amplitudes) = all.filter(|(t, _)| *t >= -WINDOW).unzip();
+        let profile = Profile::default().with(MODE_TIME, "L/c0", times);
+        Some(profile.with(MODE_AMPLITUDE, "rho V^2", amplitudes))
     }
 
     /// The series as columns.
@@ -253,9 +303,18 @@ impl Series {
     }
 }
 
-impl<S: Scheme<Extra = ()>> Observer<S> for Series {
+impl Observer<()> for Series {
     #[inline]
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Going {
+    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Going {
+        if let Some(series) = &mut self.mode {
+            let (mut mode, mut count) = (0.0, 0.0);
+            for (_, e) in simulation.fluid() {
+                let phase = std::f64::consts::PI * e.position.y / self.width;
+                mode += 2.0 * self.eos.pressure(e.density) / self.pressure * phase.cos();
+                count += 1.0;
+            }
+            series.push((simulation.time(), mode / count));
+        }
         if simulation.time() >= self.next {
             self.next += self.every;
             let (mut u, mut v2, mut p1, mut p2) = (0.0, 0.0, 0.0, 0.0);

@@ -1,25 +1,47 @@
 //! Flow between two parallel plates from rest, what Couette and Poiseuille flow have in common:
 //! settings, the rules that turn them into a scene, variants and measurements.
 
+mod cures;
+mod declaration;
+mod extremes;
 mod floor;
-mod hypotheses;
 mod ingredients;
+mod limits;
+mod map;
 mod measure;
-pub mod plan;
+mod plan;
 mod run;
 mod settings;
 mod setup;
 mod starts;
 mod studies;
 mod variants;
+mod waves;
 
+pub use declaration::{declaration, ladder};
 pub use ingredients::{Arrangement, Ingredient};
+pub use limits::is_stable;
 pub use measure::state;
-pub use run::{run, run_scene, scene, uses};
+pub use plan::plan;
+pub use run::{ChannelScheme, run, run_scene, scene, uses};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};
 pub use studies::studies;
 pub use variants::{Drive, variants};
 
+use harness::composed::Composed;
+
 /// νt/L² at which profiles are compared.
 pub const TIMES: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5];
+
+/// A case of a channel flow.
+pub type ChannelCase = Composed<ChannelSettings>;
+
+/// A flow and its case.
+#[derive(Clone, Copy)]
+pub struct Channel {
+    /// What drives it.
+    pub flow: Flow,
+    /// The case.
+    pub case: &'static ChannelCase,
+}

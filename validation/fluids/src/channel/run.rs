@@ -1,11 +1,11 @@
 //! One run of a channel flow: scene, stepping, record.
 
 use nalgebra::Vector2;
-use solver::{Integrator, Kernel, Limits, Role, Scene, Scheme};
+use solver::{EquationOfState, Integrator, Kernel, Limits, Role, Scene, Scheme};
 
 use super::{
-    Arrangement, ChannelSettings, Drive, Flow, Ingredient, Setup, TIMES,
-    measure::{self, Seen, Series},
+    Arrangement, ChannelSettings, Drive, Flow, Ingredient, Setup,
+    measure::{self, Sample, Series},
 };
 use base::{
     number,
@@ -13,19 +13,24 @@ use base::{
     record::{self, Record},
 };
 use harness::{
-    case::RunError,
-    runner::{self, Context, Frames},
+    case::{Rules, RunError},
+    runner::{self, Context},
 };
 use maths::theory::Stepping;
 
-/// The scene of a setup, in the scheme `S`.
-pub fn scene<S>(setup: &Setup) -> Scene<S>
-where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: Arrangement,
+/// A scheme whose terms and walls can be made from the settings of a channel.
+pub trait ChannelScheme:
+    Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Walls: Arrangement>
 {
+}
+
+impl<S> ChannelScheme for S where
+    S: Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Walls: Arrangement>
+{
+}
+
+/// The scene of a setup, in the scheme `S`.
+pub fn scene<S: ChannelScheme>(setup: &Setup) -> Scene<S> {
     let s = &setup.settings;
     let mut particles = S::Walls::particles::<S::Kernel>(setup);
     let mut random = Random::new(1);
@@ -54,23 +59,25 @@ pub fn run<B, S>(
 ) -> Result<Record, RunError>
 where
     B: Drive,
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: Arrangement,
-    S::Integrator: Stepping,
+    S: ChannelScheme<Integrator: Stepping>,
 {
     run_scene::<S>(B::FLOW, variant, settings, &uses::<S>(), context, scene::<S>)
 }
 
-/// Optional settings that the types of `S` read.
-pub fn uses<S>() -> Vec<&'static str>
+/// What the rules choose for the scheme `S` of the flow driven by `B`.
+pub fn rules<B, S>(settings: &ChannelSettings) -> Result<Rules, RunError>
 where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: Arrangement,
+    B: Drive,
+    S: ChannelScheme<Integrator: Stepping>,
 {
+    let uses = uses::<S>();
+    let setup = Setup::new::<S::Kernel, S::Integrator>(B::FLOW, settings, &uses, true)?;
+    let Setup { dt, dt_limit, eos, .. } = setup;
+    Ok(Rules { dt, dt_limit, sound_speed: eos.sound_speed })
+}
+
+/// Optional settings that the types of `S` read.
+pub fn uses<S: ChannelScheme>() -> Vec<&'static str> {
     [S::Forces::uses(), S::Drift::uses(), S::Walls::USES.to_vec()].concat()
 }
 
@@ -85,9 +92,7 @@ pub fn run_scene<S>(
     scene: impl FnOnce(&Setup) -> Scene<S>,
 ) -> Result<Record, RunError>
 where
-    S: Scheme<Extra = ()>,
-    S::Walls: Arrangement,
-    S::Integrator: Stepping,
+    S: Scheme<Extra = (), Walls: Arrangement, Integrator: Stepping>,
 {
     let setup =
         Setup::new::<S::Kernel, S::Integrator>(flow, settings, uses, context.allow_unstable)?;
@@ -97,45 +102,41 @@ where
     }
     let mut simulation = scene.build()?;
     let json = serde_json::to_value(settings).unwrap_or_default();
-    let case = if flow == Flow::Couette { "couette" } else { "poiseuille" };
-    let mut record = Record::new(case, variant, json, context.threads.max(1));
+    let mut record = Record::new(flow.name(), variant, json, context.threads.max(1));
     describe(&setup, [S::Kernel::NAME, S::Integrator::NAME, S::Walls::NAME], &mut record);
 
-    let frames = Frames::of(context)?;
-    let stops = stops(&setup, context);
-    let times: Vec<f64> = stops.iter().map(|s| s.time).collect();
+    let compared = settings.compared();
+    let times: Vec<f64> = compared.iter().map(|tau| setup.time(*tau)).collect();
     let mut series = Series::new(&setup, simulation.fluid_count());
-    let mut failed_frame = None;
     let (status, cost) = runner::drive(
         &mut simulation,
         setup.dt,
         &times,
         context,
         &mut series,
+        &|density| setup.eos.pressure(density),
         &mut |simulation, k| {
-            if let Some(tau) = stops[k].compare {
-                measure::compare(&setup, &Seen::of(&setup, simulation), tau, &mut record);
-            }
-            if let (true, Some(frames)) = (stops[k].frame, &frames) {
-                failed_frame = failed_frame.take().or(frames.write(simulation, &setup.eos).err());
-            }
+            let sample = Sample::of(&setup, simulation);
+            measure::compare(&setup, &sample, compared[k], &mut record);
         },
-    );
-    if let Some(error) = failed_frame {
-        return Err(error.into());
-    }
+    )?;
     if status == record::Status::Completed {
-        let seen = Seen::of(&setup, &simulation);
-        measure::at_the_end(&setup, &seen, &mut record);
+        let sample = Sample::of(&setup, &simulation);
+        measure::at_the_end(&setup, &sample, &mut record);
         if context.keep_particles {
-            record.profiles.insert("particles".into(), measure::particles(&setup, &seen));
+            record.profiles.insert("particles".into(), measure::particles(&setup, &sample));
         }
     }
+    let mode = series.mode_until(simulation.time());
+    record.profiles.extend(mode.map(|mode| (measure::MODE.into(), mode)));
     record.profiles.insert("series".into(), series.into_profile());
     record.state = Some(record::digest(&measure::state(&simulation.particles())));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }
+
+/// Name of the kernel among what a run chose.
+pub const KERNEL: &str = "kernel";
 
 /// What the run chose.
 fn describe(setup: &Setup, [kernel, integrator, walls]: [&str; 3], record: &mut Record) {
@@ -149,31 +150,9 @@ fn describe(setup: &Setup, [kernel, integrator, walls]: [&str; 3], record: &mut 
         ("dt [s]", setup.dt),
         ("dt/limit", setup.dt / setup.dt_limit),
     ];
-    let words = [("kernel", kernel), ("integrator", integrator), ("walls", walls)];
+    let words = [(KERNEL, kernel), ("integrator", integrator), ("walls", walls)];
     let numerics = &mut record.numerics;
     numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
     numerics.extend(words.map(|(name, word)| (name.to_string(), word.into())));
     numerics.insert("columns".into(), setup.columns.into());
-}
-
-/// A time at which the run pauses.
-struct Stop {
-    time: f64,
-    /// νt/L² where the profile is compared.
-    compare: Option<f64>,
-    frame: bool,
-}
-
-/// Times of comparison up to the end, the end itself, and the times of frames.
-fn stops(setup: &Setup, context: &Context) -> Vec<Stop> {
-    let end = setup.settings.end;
-    let mut compared: Vec<f64> = TIMES.into_iter().filter(|tau| *tau < end).collect();
-    compared.push(end);
-    let stop = |tau: f64, compare, frame| Stop { time: setup.time(tau), compare, frame };
-    let mut stops: Vec<Stop> = compared.iter().map(|&tau| stop(tau, Some(tau), false)).collect();
-    if let Some((_, count)) = context.frames {
-        stops.extend((1..=count).map(|k| stop(end * k as f64 / count as f64, None, true)));
-    }
-    stops.sort_by(|a, b| a.time.total_cmp(&b.time));
-    stops
 }

@@ -1,5 +1,7 @@
 //! The settings of the channel flows.
 
+use super::TIMES;
+
 base::settings! {
     /// Settings of a flow between two plates. Lengths by the width L, times by L²/ν.
     pub struct ChannelSettings {
@@ -57,5 +59,25 @@ base::settings! {
         jitter: f64 ["dx"] in 0.0..=0.5 = 0.0,
         /// reach of neighbour rows beyond the support
         skin: f64 ["h"] in 0.0..=2.0 = 0.15,
+        /// keep the lowest pressure mode of the last 60 L/c0; profiles are compared at the end alone
+        watch_mode: bool = false,
+    }
+}
+
+impl ChannelSettings {
+    /// V = Re ν/L \[m/s\].
+    pub fn speed(&self) -> f64 {
+        self.re * self.nu / self.width
+    }
+
+    /// L²/ν, the unit of times \[s\].
+    pub fn unit_of_time(&self) -> f64 {
+        self.width.powi(2) / self.nu
+    }
+
+    /// νt/L² at which a run compares its profile with the exact one: [`TIMES`] before its end, and the end.
+    pub fn compared(&self) -> Vec<f64> {
+        let before = TIMES.into_iter().filter(|tau| *tau < self.end && !self.watch_mode);
+        before.chain([self.end]).collect()
     }
 }

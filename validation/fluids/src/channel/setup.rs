@@ -23,6 +23,25 @@ pub enum Flow {
     Poiseuille,
 }
 
+impl Flow {
+    /// Name of its case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Flow::Couette => "couette",
+            Flow::Poiseuille => "poiseuille",
+        }
+    }
+
+    /// The exact velocity at height y and time t of a fluid of viscosity `nu`, where L, V and the viscosity
+    /// that V is stated for are 1.
+    pub fn exact(self, y: f64, t: f64, nu: f64) -> f64 {
+        match self {
+            Flow::Couette => Couette { v0: 1.0, l: 1.0, nu }.velocity(y, t),
+            Flow::Poiseuille => Poiseuille { v: 1.0 / nu, l: 1.0, nu }.velocity(y, t),
+        }
+    }
+}
+
 /// The numbers of one run, SI units.
 #[derive(Clone, Debug)]
 pub struct Setup {
@@ -67,7 +86,7 @@ impl Setup {
         allow_unstable: bool,
     ) -> Result<Self, RunError> {
         let s = settings;
-        let v = s.re * s.nu / s.width;
+        let v = s.speed();
         let force = match flow {
             Flow::Couette => 0.0,
             Flow::Poiseuille => 8.0 * s.nu * v / (s.width * s.width),
@@ -167,15 +186,6 @@ impl Setup {
                 let v = self.force * l * l / (8.0 * nu);
                 Poiseuille { v, l, nu }.velocity(y, t)
             }
-        }
-    }
-
-    /// The exact velocity \[m/s\] from `terms` terms of the series.
-    pub fn exact_by_series(&self, y: f64, t: f64, terms: usize) -> f64 {
-        let (v, l, nu) = (self.v, self.settings.width, self.settings.nu);
-        match self.flow {
-            Flow::Couette => Couette { v0: v, l, nu }.velocity_by_series(y, t, terms),
-            Flow::Poiseuille => Poiseuille { v, l, nu }.velocity_by_series(y, t, terms),
         }
     }
 

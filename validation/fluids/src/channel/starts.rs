@@ -1,18 +1,63 @@
 //! One setting from several starts. An instability grows from the disorder of the start, or from
 //! round-off if there is none, so that a single run of a chaotic flow says little.
 
-use rayon::prelude::*;
-
-use base::record::{Record, Status};
-use harness::{case::Case, runner::Context};
+use base::{
+    record::{Record, Status},
+    spec::RunSpec,
+};
+use harness::{case::Tier, runs::Runs};
 use report::{percent, sig};
 
-/// Disorder of the starts \[dx\].
-pub const DISORDER: [f64; 3] = [1e-6, 1e-4, 1e-2];
+use super::{ChannelCase, ChannelSettings, measure::L2_WORST};
 
-/// The starts up to Reynolds number `most`; above, where runs are dear, the middle one alone.
-pub fn starts_up_to(most: f64, re: f64) -> &'static [f64] {
-    if re <= most { &DISORDER } else { &DISORDER[1..2] }
+/// Disorder of the starts \[dx\].
+const DISORDER: [f64; 3] = [1e-6, 1e-4, 1e-2];
+
+/// νt/L² at which the runs end.
+pub const END: f64 = 1.0;
+
+/// Above this Reynolds number the full tier takes one start instead of three; the quick tier always.
+const MANY_STARTS: f64 = 20.0;
+
+fn starts(tier: Tier, re: f64) -> &'static [f64] {
+    let is_cheap = tier == Tier::Full && re <= MANY_STARTS;
+    if is_cheap { &DISORDER } else { &DISORDER[1..2] }
+}
+
+/// How many starts a setting has, in words.
+pub fn in_words(tier: Tier) -> String {
+    match tier {
+        Tier::Quick => "Each has one start, disordered by 1e-4 dx: one sample and no more.".into(),
+        Tier::Full => format!(
+            "Up to Re {MANY_STARTS} each has {} starts, disordered by {} dx; above one, 1e-4 dx, which is \
+             one sample and no more.",
+            DISORDER.len(),
+            disorder(&DISORDER)
+        ),
+    }
+}
+
+/// Disorders as a list.
+pub fn disorder(starts: &[f64]) -> String {
+    let words: Vec<String> = starts.iter().map(|start| format!("{start:e}")).collect();
+    words.join(", ")
+}
+
+/// The runs of one setting at a Reynolds number to νt/L² = [`END`], one a start, whatever their time step.
+pub fn specs(
+    case: &ChannelCase,
+    (variant, re): (&str, f64),
+    tier: Tier,
+    set: impl Fn(&mut ChannelSettings),
+) -> Vec<RunSpec> {
+    let spec = |jitter: &f64| {
+        let spec = case.spec(variant, |s| {
+            (s.re, s.end, s.jitter) = (re, END, *jitter);
+            set(s);
+        });
+        spec.allow_unstable()
+    };
+    starts(tier, re).iter().map(spec).collect()
 }
 
 /// A run fails if it diverges or if its worst relative L2 error is larger than this.
@@ -28,11 +73,13 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    fn of(record: &Record) -> Self {
+    /// `None` of a run that was refused.
+    fn of(record: &Record) -> Option<Self> {
         match record.status {
             // L²/ν is 1 s in these channels.
-            Status::Diverged { time, .. } => Self::Diverged(time),
-            _ => Self::Reached(record.measured("l2_worst")),
+            Status::Diverged { time, .. } => Some(Self::Diverged(time)),
+            Status::Refused { .. } => None,
+            _ => Some(Self::Reached(record.value(L2_WORST).unwrap_or(f64::NAN))),
         }
     }
 
@@ -93,6 +140,16 @@ impl Starts {
         Self(outcomes)
     }
 
+    /// From the records of one setting.
+    pub fn of<'a>(records: impl IntoIterator<Item = &'a Record>) -> Self {
+        Self::new(records.into_iter().filter_map(Outcome::of).collect())
+    }
+
+    /// From the runs of one setting.
+    pub fn among(runs: &Runs, specs: &[RunSpec]) -> Self {
+        Self::of(specs.iter().filter_map(|spec| runs.record(spec)))
+    }
+
     /// How many there are.
     pub fn count(&self) -> usize {
         self.0.len()
@@ -139,38 +196,6 @@ impl Starts {
             Longer::Overlap
         }
     }
-}
-
-/// A setting to be run from several starts.
-pub struct Job {
-    /// Name of the variant.
-    pub variant: &'static str,
-    /// Settings without the disorder.
-    pub set: Vec<String>,
-    /// Disorder of each start \[dx\].
-    pub starts: &'static [f64],
-}
-
-/// Runs all starts of all settings side by side.
-pub fn run_all(case: &dyn Case, jobs: &[Job]) -> Vec<Starts> {
-    let single: Vec<(usize, f64)> = jobs
-        .iter()
-        .enumerate()
-        .flat_map(|(k, job)| job.starts.iter().map(move |start| (k, *start)))
-        .collect();
-    let context = Context { allow_unstable: true, ..Context::default() };
-    let outcomes: Vec<(usize, Option<Outcome>)> = single
-        .par_iter()
-        .with_max_len(1)
-        .map(|&(k, start)| {
-            let mut set = jobs[k].set.clone();
-            set.push(format!("jitter={start:e}"));
-            let record = case.run(jobs[k].variant, &set, &context).ok();
-            (k, record.as_ref().map(Outcome::of))
-        })
-        .collect();
-    let of_job = |k: usize| outcomes.iter().filter(move |o| o.0 == k).filter_map(|o| o.1);
-    (0..jobs.len()).map(|k| Starts::new(of_job(k).collect())).collect()
 }
 
 #[cfg(test)]

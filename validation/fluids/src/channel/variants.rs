@@ -3,14 +3,13 @@
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
     DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlip,
-    PredictorCorrector, Pressure, QuinticSpline, Scheme, Shifting, Tait, Term, Viscosity,
-    WendlandC2, Xsph,
+    PredictorCorrector, Pressure, QuinticSpline, Shifting, Tait, Term, Viscosity, WendlandC2, Xsph,
 };
 
 use super::{
-    Arrangement, ChannelSettings, Flow, Ingredient,
+    ChannelSettings, Flow, Ingredient,
     ingredients::OPTIONAL,
-    run::{run, uses},
+    run::{ChannelScheme, rules, run, uses},
 };
 use harness::{
     case::Variant,
@@ -40,8 +39,8 @@ type Damped<B> = (Pressure<Tait>, Viscosity, B, ArtificialViscosity<Tait>);
 type Stabilised = (Continuity, DensityDiffusion, Shifting);
 
 // A channel flow stores x, v and ρ, shows its neighbours one number, p/ρ², and nothing else.
-const _: () = assert!(size_of::<<Fluid<()> as Term<()>>::Shows>() == 8);
-const _: () = assert!(size_of::<<Stabilised as Term<()>>::Shows>() == 0);
+const _: () = assert!(size_of::<<Fluid<()> as Term<()>>::Derived>() == 8);
+const _: () = assert!(size_of::<<Stabilised as Term<()>>::Derived>() == 0);
 
 /// A variant of the flow driven by `B`: the scheme `S`.
 fn variant<B, S>(
@@ -51,14 +50,11 @@ fn variant<B, S>(
 ) -> Composition<ChannelSettings>
 where
     B: Drive,
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: Arrangement,
-    S::Integrator: Stepping,
+    S: ChannelScheme<Integrator: Stepping>,
 {
     let lacks = lacking(OPTIONAL, &uses::<S>());
-    Composition { variant: Variant { name, about }, adjust, run: run::<B, S>, lacks }
+    let (run, rules) = (run::<B, S>, rules::<B, S>);
+    Composition { variant: Variant { name, about }, adjust, run, rules, lacks }
 }
 
 /// Quintic spline, h = dx, η² a mere guard, long steps, c0 up to where sound costs no step.

@@ -1,10 +1,10 @@
 //! What is measured: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
-use solver::{EquationOfState, Kernel, Role, Scheme, Simulation, Smoothing};
+use solver::{EquationOfState, Kernel, Role, Scheme, Simulation, Smoothing, Stepper};
 
-use super::{Setup, setup::FLUX};
-use base::record::{Metric, Profile, Record};
+use super::{Setup, setup::FLUX as FLUX_WANTED};
+use base::record::{MetricKey, Profile, Record};
 
 /// Points across a section.
 pub const POINTS: usize = 200;
@@ -12,8 +12,41 @@ pub const POINTS: usize = 200;
 pub const STATIONS: [f64; 10] = [0.05, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
 /// Points along a wall, 0.025 H apart.
 pub const WALL: usize = 361;
+
+base::metrics! {
+    DRIFT = "drift" ["U_b"] "rms over stations of the change of mean u from one window to the next";
+    UNSTEADY = "unsteady" ["U_b"]
+        "drift r/(1 - r), r the ratio of the last two drifts, not above 0.9: what a decay leaves";
+    FORCE = "force" ["U_b^2/H"] "mean body force of the last window";
+    FORCE_RIPPLE = "force_ripple" ["-"] "rms(force/mean - 1)";
+    FLUX = "flux" ["-"] "mean flux over 2.035 U_b H, less 1, from the particles' volumes";
+    FLUX_RIPPLE = "flux_ripple" ["-"] "rms(flux/mean - 1)";
+    SECTION_FLUX = "section_flux" ["-"]
+        "largest |flux through a station/flux wanted - 1|, interpolated";
+    DRAG_BALANCE = "drag_balance" ["-"]
+        "(shear on both walls + pressure on the hill)/(force times area) - 1";
+    SEPARATION = "separation" ["H"] "where the wall shear on the hill changes its sign";
+    REATTACHMENT = "reattachment" ["H"] "where the wall shear on the hill changes its sign";
+    L2_U = "l2_u" ["U_b"] "rms over 10 stations of 200 points of u - finite elements";
+    L2_V = "l2_v" ["U_b"] "the same of v";
+    FORCE_ERROR = "force_error" ["-"] "force/finite elements - 1";
+    SEPARATION_ERROR = "separation_error" ["H"] "separation - finite elements";
+    REATTACHMENT_ERROR = "reattachment_error" ["H"] "reattachment - finite elements";
+    SHEAR_ERROR = "shear_error" ["-"]
+        "rms over the hill of shear stress - finite elements over the largest of these";
+    OUTSIDE = "outside" ["-"] "particles behind the walls at the end";
+    WALL_OFFSET = "wall_offset" ["dx"]
+        "largest distance of the first row of wall particles from its place";
+    HILL_SHEAR_DRAG = "hill_shear_drag" ["rho U_b^2 H"]
+        "integral over a period of the shear on the hill";
+    LID_SHEAR_DRAG = "lid_shear_drag" ["rho U_b^2 H"]
+        "integral over a period of the shear on the lid";
+    HILL_PRESSURE_DRAG = "hill_pressure_drag" ["rho U_b^2 H"]
+        "integral over a period of the pressure times slope of the hill";
+}
+
 /// What the drag is made of, named as in the reference.
-pub const DRAGS: [&str; 3] = ["hill_shear_drag", "lid_shear_drag", "hill_pressure_drag"];
+pub const DRAGS: [MetricKey; 3] = [HILL_SHEAR_DRAG, LID_SHEAR_DRAG, HILL_PRESSURE_DRAG];
 
 /// Velocity and pressure where it is asked for: a linear field fitted to the particles in reach, walls
 /// included, with the weights V W (moving least squares).
@@ -161,7 +194,7 @@ fn wall<K: Kernel>(setup: &Setup, field: &Field<K>, x: f64) -> [f64; 3] {
 }
 
 /// Mean velocity along x over the fluid's area \[m/s\].
-pub fn mean_velocity<S: Scheme<Extra = ()>>(s: &Simulation<S>, area: f64) -> f64 {
+pub fn mean_velocity(s: &dyn Stepper<()>, area: f64) -> f64 {
     s.fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
 }
 
@@ -172,44 +205,19 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 
 /// Metrics and profiles from the last three windows, in time.
 pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, record: &mut Record) {
-    let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
-        record.metrics.insert(name.into(), Metric::new(value, unit, formula));
-    };
     let sections = [first, second, last].map(|w| w.mean(&w.sections));
     let moved = |a: &[[f64; 2]], b: &[[f64; 2]]| rms(a.iter().zip(b).map(|(a, b)| a[0] - b[0]));
     let (early, late) = (moved(&sections[0], &sections[1]), moved(&sections[1], &sections[2]));
     let ratio = (late / early).min(0.9);
-    put(
-        "drift",
-        late,
-        "U_b",
-        "rms over stations of the change of mean u from one window to the next",
-    );
-    let formula =
-        "drift r/(1 - r), r the ratio of the last two drifts, not above 0.9: what a decay leaves";
-    put("unsteady", late * ratio / (1.0 - ratio), "U_b", formula);
+    record.put(DRIFT, late);
+    record.put(UNSTEADY, late * ratio / (1.0 - ratio));
     let wall = last.mean(&last.wall);
     let count = last.forces.len() as f64;
     let [force, flux] = [0, 1].map(|k| last.forces.iter().map(|f| f[k]).sum::<f64>() / count);
-    put("force", force, "U_b^2/H", "mean body force of the last window");
-    put(
-        "force_ripple",
-        rms(last.forces.iter().map(|f| f[0] / force - 1.0)),
-        "-",
-        "rms(force/mean - 1)",
-    );
-    put(
-        "flux",
-        flux / FLUX - 1.0,
-        "-",
-        "mean flux over 2.035 U_b H, less 1, from the particles' volumes",
-    );
-    put(
-        "flux_ripple",
-        rms(last.forces.iter().map(|f| f[1] / flux - 1.0)),
-        "-",
-        "rms(flux/mean - 1)",
-    );
+    record.put(FORCE, force);
+    record.put(FORCE_RIPPLE, rms(last.forces.iter().map(|f| f[0] / force - 1.0)));
+    record.put(FLUX, flux / FLUX_WANTED - 1.0);
+    record.put(FLUX_RIPPLE, rms(last.forces.iter().map(|f| f[1] / flux - 1.0)));
     let lid = setup.hill.lid();
     let through = |k: usize| {
         let u = &sections[2][k * POINTS..(k + 1) * POINTS];
@@ -217,22 +225,15 @@ pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, re
     };
     let worst =
         (0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()).fold(0.0, f64::max);
-    put(
-        "section_flux",
-        worst,
-        "-",
-        "largest |flux through a station/flux wanted - 1|, interpolated",
-    );
+    record.put(SECTION_FLUX, worst);
     let drags = drags(setup, &wall);
-    let formulas = ["shear on the hill", "shear on the lid", "pressure times slope of the hill"];
-    for ((name, drag), what) in DRAGS.into_iter().zip(drags).zip(formulas) {
-        put(name, drag, "rho U_b^2 H", &format!("integral over a period of the {what}"));
+    for (part, drag) in DRAGS.into_iter().zip(drags) {
+        record.put(part, drag);
     }
-    let formula = "(shear on both walls + pressure on the hill)/(force times area) - 1";
-    put("drag_balance", drags.iter().sum::<f64>() / (force * area) - 1.0, "-", formula);
-    for (name, sign) in [("separation", -1.0), ("reattachment", 1.0)] {
-        if let Some(x) = turning(&wall, sign) {
-            put(name, x, "H", "where the wall shear on the hill changes its sign");
+    record.put(DRAG_BALANCE, drags.iter().sum::<f64>() / (force * area) - 1.0);
+    for (metric, sign) in [(SEPARATION, -1.0), (REATTACHMENT, 1.0)] {
+        if let Some(x) = sign_change(&wall, sign) {
+            record.put(metric, x);
         }
     }
     compare(setup, &sections[2], &wall, record);
@@ -247,7 +248,7 @@ fn drags(setup: &Setup, wall: &[[f64; 3]]) -> [f64; 3] {
 
 /// Where the shear on the hill turns negative (sign −1) or positive (sign 1): the start and the end of the
 /// longest stretch of backward flow.
-fn turning(wall: &[[f64; 3]], sign: f64) -> Option<f64> {
+fn sign_change(wall: &[[f64; 3]], sign: f64) -> Option<f64> {
     let (mut best, mut start) = ((0, 0), None);
     for (k, stress) in wall.iter().enumerate() {
         match (stress[0] < 0.0, start) {
@@ -274,38 +275,19 @@ fn compare(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mut
     let Some(reference) = &setup.reference else { return };
     let exact: Vec<Vector2<f64>> =
         reference.stations.iter().flat_map(|s| s.v.iter().copied()).collect();
-    let found = |name: &str| record.metric(name);
-    let number = |name: &str| reference.number(name);
-    let gap = |name: &str| Some(found(name)? - number(name)?);
-    let force = gap("force").zip(number("force")).map(|(gap, exact)| gap / exact);
-    let (apart, back) = (gap("separation"), gap("reattachment"));
+    let gap = |metric: MetricKey| Some(record.value(metric)? - reference.number(metric)?);
+    let force = gap(FORCE).zip(reference.number(FORCE)).map(|(gap, exact)| gap / exact);
+    let (separation, reattachment) = (gap(SEPARATION), gap(REATTACHMENT));
     let stress = reference.wall.iter().map(|w| w[1].abs()).fold(0.0, f64::max);
-    let metrics = [
-        (
-            "l2_u",
-            Some(rms(sections.iter().zip(&exact).map(|(f, e)| f[0] - e.x))),
-            "U_b",
-            "rms over 10 stations of 200 points of u - finite elements",
-        ),
-        (
-            "l2_v",
-            Some(rms(sections.iter().zip(&exact).map(|(f, e)| f[1] - e.y))),
-            "U_b",
-            "the same of v",
-        ),
-        ("force_error", force, "-", "force/finite elements - 1"),
-        ("separation_error", apart, "H", "separation - finite elements"),
-        ("reattachment_error", back, "H", "reattachment - finite elements"),
-        (
-            "shear_error",
-            Some(rms(wall.iter().zip(&reference.wall).map(|(f, e)| f[0] - e[1])) / stress),
-            "-",
-            "rms over the hill of shear stress - finite elements over the largest of these",
-        ),
-    ];
-    for (name, value, unit, formula) in metrics {
-        if let Some(value) = value {
-            record.metrics.insert(name.into(), Metric::new(value, unit, formula));
+    record.put(L2_U, rms(sections.iter().zip(&exact).map(|(f, e)| f[0] - e.x)));
+    record.put(L2_V, rms(sections.iter().zip(&exact).map(|(f, e)| f[1] - e.y)));
+    let shear = rms(wall.iter().zip(&reference.wall).map(|(f, e)| f[0] - e[1])) / stress;
+    record.put(SHEAR_ERROR, shear);
+    let gaps =
+        [(FORCE_ERROR, force), (SEPARATION_ERROR, separation), (REATTACHMENT_ERROR, reattachment)];
+    for (metric, gap) in gaps {
+        if let Some(gap) = gap {
+            record.put(metric, gap);
         }
     }
 }
@@ -330,7 +312,7 @@ fn profiles(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mu
 
 /// How far wall particles are from where they belong \[dx\]: over the places along floor and lid, the
 /// largest difference between the depth of the nearest one and that of their first row.
-pub fn wall_offset<S: Scheme<Extra = ()>>(setup: &Setup, s: &Simulation<S>, first: f64) -> f64 {
+pub fn wall_offset(setup: &Setup, s: &dyn Stepper<()>, first: f64) -> f64 {
     let (dx, lid, period) = (setup.fluid.dx, setup.hill.lid(), setup.hill.period());
     let all = s.particles();
     let walls = || all.iter().filter(|p| p.role != Role::Fluid).map(|p| p.position);
@@ -366,7 +348,7 @@ fn behind_floor(setup: &Setup, place: Vector2<f64>) -> f64 {
 }
 
 /// The fluid particles: x, y, speed, and how many are beyond the walls.
-pub fn particles<S: Scheme<Extra = ()>>(setup: &Setup, s: &Simulation<S>) -> (Profile, usize) {
+pub fn particles(setup: &Setup, s: &dyn Stepper<()>) -> (Profile, usize) {
     let all = s.particles();
     let fluid: Vec<_> = all.iter().filter(|p| p.role == Role::Fluid).collect();
     let x = |k: usize| fluid[k].position.x.rem_euclid(setup.hill.period());

@@ -5,6 +5,7 @@
 //! Judged against finite elements (`references/periodic_hill`), for nobody has published these numbers.
 
 mod control;
+mod declaration;
 mod measure;
 mod plan;
 mod reference;
@@ -85,7 +86,8 @@ where
     S::Integrator: Stepping,
 {
     let lacks = lacking(OPTIONAL, &[S::Forces::uses(), S::Drift::uses()].concat());
-    Composition { variant: Variant { name, about }, adjust, run: run::run::<S>, lacks }
+    let (variant, rules) = (Variant { name, about }, |s: &_| Ok(Setup::new::<S>(s, true)?.rules()));
+    Composition { variant, adjust, run: run::run::<S>, rules, lacks }
 }
 
 type Extrapolating = ExtrapolatingWall<Tait, NoSlip>;
@@ -144,7 +146,7 @@ pub fn settings(variant: &str, set: &[String]) -> Result<HillSettings, RunError>
     CASE.settings_of(variant, set)
 }
 
-const CASE: Composed<HillSettings> = Composed {
+static CASE: Composed<HillSettings> = Composed {
     name: NAME,
     about: "A channel with hills on its floor, one every nine heights, and a flat lid. A body force drives a \
             given flux through it. From Re 50 on the flow leaves the wall behind the crest and comes back \
@@ -152,8 +154,10 @@ const CASE: Composed<HillSettings> = Composed {
             the crest and concave at the foot. The reference is a finite-element computation of this \
             project, for none is published.",
     variants,
+    is_stable: stability::is_stable,
+    declaration: declaration::declaration,
     plan: plan::plan,
-    studies: |tier, runs| studies::studies(PERIODIC_HILL, tier, runs),
+    studies: studies::studies,
 };
 
 /// Flow over periodic hills.

@@ -1,40 +1,44 @@
 //! The judged runs and their gates.
 
-use super::setup::FLUX;
-use base::gate::{Bound, Evidence, Gate};
+use super::{
+    CASE, HillSettings,
+    measure::{
+        DRAG_BALANCE, FLUX, FORCE, FORCE_ERROR, L2_U, OUTSIDE, REATTACHMENT_ERROR, SECTION_FLUX,
+        SEPARATION_ERROR, UNSTEADY, WALL_OFFSET,
+    },
+    setup::FLUX as FLUX_WANTED,
+    stability,
+};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::MetricKey,
+    spec::RunSpec,
+};
 use harness::case::{Planned, Tier};
 
 /// The variant that is held to the goals.
 pub const BEST: &str = "carried";
 
-/// Spacings along the height of the hill.
-pub const SIDES: [usize; 4] = [5, 10, 20, FINEST];
-
-/// Those of the finest runs. From rest they would take six minutes (Re 10) to twenty and more, so they start
-/// from the reference, within 0.04 % of U_b of it. What they show is whether the flow stays there, and
-/// `unsteady` how far it would still go; that coarser runs reach the same flow from there as from rest is
-/// gated.
+/// Spacings along the height of the hill in the finest runs. From rest they would take six minutes (Re 10)
+/// to twenty and more, so they start from the reference, within 0.04 % of U_b of it. What they show is
+/// whether the flow stays there, and `unsteady` how far it would still go; that coarser runs reach the same
+/// flow from there as from rest is gated.
 pub const FINEST: usize = 40;
 
-/// Reynolds number and end \[H/U_b\] of the finest runs: what the full tier can afford.
-const FINEST_RUNS: [(f64, f64); 3] = [(10.0, 5.0), (50.0, 6.0), (100.0, 6.0)];
-
-/// Why the last of them is not steady.
+/// Why the finest run at Re 100 is not steady.
 const OPEN: &str = "windows of a fifth of the run, 1.2 H/U_b, which is all that the full tier can afford, \
                     differ by 0.1 % of U_b for disorder alone, and where they do not come closer nine times \
                     that is taken to be left. Coarser runs at this Reynolds number have windows of 4 and \
                     more. By hand this one was run to 40, in twelve minutes: 0.12 % is left, the error of u \
                     is 0.07 %, of the force 0.04 %, reattachment is 0.005 H off";
 
-/// Variants, each at these resolutions in the full tier, from rest.
-pub const LADDER: [(&str, &[usize]); 6] = [
-    ("plain", &[5, 10]),
-    ("interface-wall", &[5, 10]),
-    ("modern", &[5, 10]),
-    ("carried", &[5, 10, 20]),
-    ("mixed", &[5, 10]),
-    ("consistent", &[5, 10]),
-];
+/// Variants.
+pub const VARIANTS: [&str; 6] =
+    ["plain", "interface-wall", "modern", "carried", "mixed", "consistent"];
+
+/// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50: at 30 the error of u at 20
+/// spacings is 0.8 % instead of 0.3 %, and the gate on what is left of the decay fails.
+pub const END: f64 = 40.0;
 
 /// What a run starts from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,105 +49,157 @@ pub enum Start {
     Reference,
 }
 
-/// The error budget: which part of the error a change of a setting shows.
-pub const BUDGET: [(&str, &str); 5] = [
-    ("time step", "courant=0.75"),
-    ("sound speed", "c0=30"),
-    ("h/dx", "h_over_dx=1.2"),
-    ("density diffusion", "diffusion=0.05"),
-    ("shifting", "shift=1.5"),
-];
-
-/// The runs of a tier: first the ladder at Re 50, variant by variant.
-pub fn plan(tier: Tier) -> Vec<Planned> {
-    if tier == Tier::Quick {
-        // Three quarters of the time, which the goal at ten spacings allows and finer ones do not.
-        return vec![run(BEST, 50.0, 10, 30.0, Start::Rest)];
-    }
-    let mut runs = Vec::new();
-    for (variant, resolutions) in LADDER {
-        runs.extend(resolutions.iter().map(|&n| run(variant, 50.0, n, END, Start::Rest)));
-    }
-    runs.extend(FINEST_RUNS.map(finest));
-    // At Re 10 the slowest decay is five times as fast, and yet it leaves 0.3 % of U_b at 10 H/U_b, as much
-    // as the error at H/dx = 20; at 15 it leaves 0.06 % (H/dx = 10).
-    runs.extend([10, 20].map(|n| run(BEST, 10.0, n, 15.0, Start::Rest)));
-    // At Re 100 the bubble fills slowly: from rest twice as long, or from near the answer.
-    runs.push(run(BEST, 100.0, 10, 2.0 * END, Start::Rest));
-    runs.push(run(BEST, 100.0, 20, 20.0, Start::Reference));
-    // From the interpolated reference: the same steady flow.
-    runs.extend(
-        [(10.0, 15.0), (50.0, END), (100.0, END)]
-            .map(|(re, end)| run(BEST, re, 10, end, Start::Reference)),
-    );
-    runs.extend(BUDGET.map(|(_, set)| Planned::new(BEST, &changed(set)).taking(seconds(10, END))));
-    runs.push(flat());
-    runs
+/// What distinguishes the runs of the plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HillRun {
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// Reynolds number.
+    pub re: f64,
+    /// Spacings along the height of the hill.
+    pub n: usize,
+    /// End \[H/U_b\].
+    pub end: f64,
+    /// The start.
+    pub start: Start,
 }
 
-/// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50: at 30 the error of u at 20
-/// spacings is 0.8 % instead of 0.3 %, and the gate on what is left of the decay fails.
-pub const END: f64 = 40.0;
+/// The run of the quick tier: three quarters of the time, which the goal at ten spacings allows and finer
+/// ones do not.
+pub const QUICK: HillRun = HillRun { end: 30.0, ..HillRun::rest(BEST, 10) };
+
+impl HillRun {
+    /// A run at Re 50 from rest.
+    pub const fn rest(variant: &'static str, n: usize) -> Self {
+        Self { variant, re: 50.0, n, end: END, start: Start::Rest }
+    }
+
+    /// A run of the best variant.
+    const fn best(re: f64, n: usize, end: f64, start: Start) -> Self {
+        Self { variant: BEST, re, n, end, start }
+    }
+
+    /// The run with its settings. Pictures need the particles of the finest runs of a tier.
+    pub fn spec(&self) -> RunSpec {
+        let spec = self.changed(|_| {});
+        if self.n == FINEST || *self == QUICK { spec.keep_particles() } else { spec }
+    }
+
+    /// The run with some setting changed.
+    pub fn changed(&self, set: fn(&mut HillSettings)) -> RunSpec {
+        CASE.spec(self.variant, |s| {
+            (s.re, s.n, s.end) = (self.re, self.n, self.end);
+            s.from_reference = self.start == Start::Reference;
+            set(s);
+        })
+    }
+
+    /// The run with how long it takes.
+    pub fn planned(&self) -> Planned {
+        Planned::new(self.spec()).taking(seconds(self.n, self.end))
+    }
+
+    /// `H/dx = 10, from rest`.
+    pub fn name(&self) -> String {
+        let start = if self.start == Start::Reference { "the reference" } else { "rest" };
+        format!("H/dx = {}, from {start}", self.n)
+    }
+}
+
+/// The best variant at a Reynolds number, coarse to fine: what figures show. The ends of the finest runs
+/// are what the full tier can afford.
+pub fn best(tier: Tier, re: f64) -> Vec<HillRun> {
+    use Start::{Reference, Rest};
+    let of = |runs: &[(usize, f64, Start)]| {
+        runs.iter().map(|&(n, end, start)| HillRun::best(re, n, end, start)).collect()
+    };
+    match (tier, re as usize) {
+        (Tier::Quick, 50) => vec![QUICK],
+        (Tier::Quick, _) => Vec::new(),
+        // At Re 10 the slowest decay is five times as fast, and yet it leaves 0.3 % of U_b at 10 H/U_b, as
+        // much as the error at H/dx = 20; at 15 it leaves 0.06 % (H/dx = 10).
+        (Tier::Full, 10) => of(&[(10, 15.0, Rest), (20, 15.0, Rest), (FINEST, 5.0, Reference)]),
+        (Tier::Full, 50) => {
+            of(&[(5, END, Rest), (10, END, Rest), (20, END, Rest), (FINEST, 6.0, Reference)])
+        }
+        // At Re 100 the bubble fills slowly: from rest twice as long, or from near the answer.
+        (Tier::Full, _) => {
+            of(&[(10, 2.0 * END, Rest), (20, 20.0, Reference), (FINEST, 6.0, Reference)])
+        }
+    }
+}
+
+/// Reynolds numbers that have a reference.
+pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];
+
+/// Runs from rest, and from the interpolated reference: the same steady flow.
+pub fn starts() -> [[HillRun; 2]; 3] {
+    let pair = |re, rest, end| {
+        let run = |end, start| HillRun::best(re, 10, end, start);
+        [run(rest, Start::Rest), run(end, Start::Reference)]
+    };
+    [pair(10.0, 15.0, 15.0), pair(50.0, END, END), pair(100.0, 2.0 * END, END)]
+}
+
+/// The runs of a tier, beside those of the declaration: first the ladder at Re 50, variant by variant.
+pub fn plan(tier: Tier) -> Vec<Planned> {
+    if tier == Tier::Quick {
+        return vec![judged(QUICK)];
+    }
+    let of_ladder = |variant| [5, 10].map(|n| HillRun::rest(variant, n));
+    let mut runs: Vec<HillRun> = VARIANTS.into_iter().flat_map(of_ladder).collect();
+    let others = REYNOLDS.into_iter().flat_map(|re| best(tier, re));
+    for run in others.chain(starts().into_iter().flatten()) {
+        if !runs.contains(&run) {
+            runs.push(run);
+        }
+    }
+    let mut plan: Vec<Planned> = runs.into_iter().map(judged).collect();
+    plan.push(flat());
+    plan.extend(stability::tried().map(|(spec, _)| Planned::new(spec).taking(seconds(10, 12.0))));
+    plan
+}
 
 /// Roughly what a run takes \[s\].
 fn seconds(n: usize, end: f64) -> f64 {
     0.4 * end * (n as f64 / 10.0).powi(3)
 }
 
-/// What distinguishes a run, but for its end.
-pub fn set(re: f64, n: usize, start: Start) -> Vec<String> {
-    let mut set = vec![format!("re={re}"), format!("n={n}")];
-    if start == Start::Reference {
-        set.push("from_reference=true".into());
+/// A run with its gates.
+fn judged(run: HillRun) -> Planned {
+    let mut gates = gates(run);
+    if run.n == FINEST && run.re == 100.0 {
+        let unsteady = gates.iter_mut().filter(|gate| gate.metric == String::from(UNSTEADY));
+        unsteady.for_each(|gate| *gate = gate.clone().with_limitation(OPEN));
     }
-    set
-}
-
-/// A run of the error budget.
-pub fn changed(what: &str) -> Vec<String> {
-    let mut changed = set(50.0, 10, Start::Rest);
-    changed.extend([format!("end={END}"), what.into()]);
-    changed
-}
-
-fn run(variant: &'static str, re: f64, n: usize, end: f64, start: Start) -> Planned {
-    let mut set = set(re, n, start);
-    set.push(format!("end={end}"));
-    Planned::new(variant, &set).judged(gates(variant, re, n, start)).taking(seconds(n, end))
-}
-
-/// A run at the finest spacing, and what its length leaves open.
-fn finest((re, end): (f64, f64)) -> Planned {
-    let mut planned = run(BEST, re, FINEST, end, Start::Reference);
-    for gate in planned.gates.iter_mut().filter(|gate| re == 100.0 && gate.metric == "unsteady") {
-        *gate = gate.clone().with_limitation(OPEN);
-    }
-    planned
+    run.planned().judged(gates)
 }
 
 /// Without the hill the flow between floor and lid is a parabola.
 fn flat() -> Planned {
-    let (gap, nu) = (1.0 + FLUX, 1.0 / 50.0);
-    let exact = 12.0 * nu * FLUX / gap.powi(3);
+    let (gap, nu) = (1.0 + FLUX_WANTED, 1.0 / 50.0);
+    let exact = 12.0 * nu * FLUX_WANTED / gap.powi(3);
     let force = Gate::new(
         format!("periodic_hill.{BEST}.flat.force"),
-        "force",
+        FORCE,
         Bound::Within(0.99 * exact, 1.01 * exact),
         Evidence::Analytic,
         "plane Poiseuille flow: 12 nu Q/D^3; the walls stand within 1 % of a spacing, which is 0.1 % of the \
          force, and 30 spacings across a parabola are good for 0.5 %",
     );
-    Planned::new(BEST, &changed("crest=0")).judged(vec![force]).taking(seconds(10, END))
+    let flat = HillRun::rest(BEST, 10).changed(|s| s.crest = 0.0);
+    Planned::new(flat).judged(vec![force]).taking(seconds(10, END))
 }
 
-fn gates(variant: &str, re: f64, n: usize, start: Start) -> Vec<Gate> {
+fn gates(HillRun { variant, re, n, start, .. }: HillRun) -> Vec<Gate> {
     let more = if start == Start::Reference { "reference." } else { "" };
-    let gate = |metric: &str, bound: Bound, evidence: Evidence, because: &str| {
+    let gate = |metric: MetricKey, bound: Bound, evidence: Evidence, because: &str| {
+        let metric = String::from(metric);
         let id = format!("periodic_hill.{more}{variant}.{re}.{n}.{metric}");
         Gate::new(id, metric, bound, evidence, because)
     };
     let none_outside =
-        gate("outside", Bound::Equals(0.0), Evidence::Invariant, "no particle passes a wall");
+        gate(OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, "no particle passes a wall");
     if variant == "plain" {
         return Vec::new();
     }
@@ -160,9 +216,9 @@ fn gates(variant: &str, re: f64, n: usize, start: Start) -> Vec<Gate> {
     let because = "the goal: 2 % of U_b at 20 spacings, 1 % at 40, so of first order, and 4 % at 10; the \
                    reference is known to 0.02 %";
     let mut gates = vec![
-        gate("l2_u", Bound::Below(goal), Evidence::Reference, because),
+        gate(L2_U, Bound::Below(goal), Evidence::Reference, because),
         gate(
-            "force_error",
+            FORCE_ERROR,
             Bound::Within(-goal, goal),
             Evidence::Reference,
             "the force goes with the velocity at the walls: the same goal as for the velocity",
@@ -173,22 +229,26 @@ fn gates(variant: &str, re: f64, n: usize, start: Start) -> Vec<Gate> {
     if re > 10.0 {
         let because = "a tenth of H, the goal at 20 spacings: two spacings";
         let bound = Bound::Within(-reach, reach);
-        gates.push(gate("reattachment_error", bound, Evidence::Reference, because));
+        gates.push(gate(REATTACHMENT_ERROR, bound, Evidence::Reference, because));
     }
     if re > 10.0 && n >= 20 {
         let because = "where the flow leaves the wall is held to the goal of where it comes back, a tenth of \
                        H: two spacings at 20; the reference is known to 7e-4 H";
         let bound = Bound::Within(-reach, reach);
-        gates.push(gate("separation_error", bound, Evidence::Reference, because));
+        gates.push(gate(SEPARATION_ERROR, bound, Evidence::Reference, because));
     }
     gates
 }
 
 /// What holds whatever the flow is: walls in place, mass, momentum, steadiness.
-fn balances(gate: &dyn Fn(&str, Bound, Evidence, &str) -> Gate, n: usize, goal: f64) -> Vec<Gate> {
+fn balances(
+    gate: &dyn Fn(MetricKey, Bound, Evidence, &str) -> Gate,
+    n: usize,
+    goal: f64,
+) -> Vec<Gate> {
     vec![
         gate(
-            "wall_offset",
+            WALL_OFFSET,
             Bound::Below(0.05),
             Evidence::Invariant,
             "rows follow the curve to a hundredth of a spacing, and more only at the kink of the crest: a \
@@ -196,7 +256,7 @@ fn balances(gate: &dyn Fn(&str, Bound, Evidence, &str) -> Gate, n: usize, goal: 
              error of the method there is as large and of the other sign",
         ),
         gate(
-            "section_flux",
+            SECTION_FLUX,
             Bound::Below(if n >= 20 { 0.005 } else { 0.012 }),
             Evidence::Invariant,
             "a steady flow has the same flux through every section, but for Mach's density variation of \
@@ -204,13 +264,13 @@ fn balances(gate: &dyn Fn(&str, Bound, Evidence, &str) -> Gate, n: usize, goal: 
              below a parabola by 0.27 h^2 |u''|",
         ),
         gate(
-            "flux",
+            FLUX,
             Bound::Within(-1e-3, 1e-3),
             Evidence::Invariant,
             "the controller integrates: the flux it holds is the one wanted",
         ),
         gate(
-            "drag_balance",
+            DRAG_BALANCE,
             if n >= 20 { Bound::Within(-0.01, 0.01) } else { Bound::Within(-0.04, 0.04) },
             Evidence::Invariant,
             "in steady flow the walls take what the force gives; stress at the wall from the field, not \
@@ -218,7 +278,7 @@ fn balances(gate: &dyn Fn(&str, Bound, Evidence, &str) -> Gate, n: usize, goal: 
              found to second order",
         ),
         gate(
-            "unsteady",
+            UNSTEADY,
             Bound::Below(0.25 * goal),
             Evidence::Theory,
             "what is left of a decay, extrapolated from three windows: a quarter of the goal. Where disorder \

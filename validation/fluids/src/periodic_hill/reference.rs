@@ -5,7 +5,10 @@ use std::sync::OnceLock;
 use nalgebra::Vector2;
 
 use super::HillSettings;
-use base::reference::{Reference as Package, ReferenceError, Table};
+use base::{
+    record::MetricKey,
+    reference::{Reference as Package, ReferenceError, Table},
+};
 use maths::geometry::Hill;
 
 /// Read and checked once: 25 000 rows, which every run and every figure asks for.
@@ -98,9 +101,10 @@ impl Reference {
         Ok(stations)
     }
 
-    /// A number of the summary.
-    pub fn number(&self, name: &str) -> Option<f64> {
-        self.numbers.iter().find(|(n, ..)| n == name).map(|(_, value, _)| *value)
+    /// What the summary has for a metric.
+    pub fn number(&self, metric: MetricKey) -> Option<f64> {
+        let name = String::from(metric);
+        self.numbers.iter().find(|(n, ..)| *n == name).map(|(_, value, _)| *value)
     }
 
     /// The velocity at x, at the share s of a section `gap` \[H\] high: a start that is near the flow, within
@@ -140,10 +144,10 @@ impl Station {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::measure::SEPARATION, *};
 
     /// rms distance of the start from what these stations hold \[U_b\].
-    fn apart(reference: &Reference, stations: &[Station]) -> f64 {
+    fn distance(reference: &Reference, stations: &[Station]) -> f64 {
         let squares: Vec<f64> = stations
             .iter()
             .flat_map(|station| {
@@ -164,13 +168,13 @@ mod tests {
             let reference = at(re).expect("sound").expect("computed");
             assert_eq!((reference.stations.len(), reference.wall.len()), (10, 361));
             assert!(reference.stations.iter().all(|s| s.y.len() == 200));
-            assert_eq!(reference.number("separation").is_some(), re > 10.0);
+            assert_eq!(reference.number(SEPARATION).is_some(), re > 10.0);
             // The start: its own stations as they stand, and the finer profiles as far as it holds them.
             assert_eq!(reference.starts.len(), 29);
             assert!(reference.starts.iter().all(|s| s.y.len() == 100));
-            let on_them = apart(&reference, &reference.starts);
+            let on_them = distance(&reference, &reference.starts);
             assert!(on_them < 1e-15, "{on_them:e} at Re {re}");
-            let off = apart(&reference, &reference.stations);
+            let off = distance(&reference, &reference.stations);
             assert!(off < 5e-4, "{off:e} at Re {re}");
             // The flux does not depend on the place, whatever the gap there.
             for x in [0.0, 0.3, 1.7, 5.5, 8.7] {

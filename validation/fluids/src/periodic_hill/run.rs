@@ -1,6 +1,6 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
-use solver::{Integrator, Kernel, Limits, Scene, Scheme};
+use solver::{EquationOfState, Integrator, Kernel, Limits, Scene, Scheme, Simulation};
 
 use super::{
     HillSettings,
@@ -8,14 +8,11 @@ use super::{
     measure::{self, Window},
     setup::{HillWall, Setup},
 };
-use crate::{channel, fluid::Ingredient};
-use base::{
-    number,
-    record::{self, Metric, Profile, Record, Status},
-};
+use crate::fluid::{self, Ingredient};
+use base::record::{Profile, Record, Status};
 use harness::{
     case::RunError,
-    runner::{self, Context, Frames},
+    runner::{self, Context},
 };
 use maths::theory::Stepping;
 
@@ -59,35 +56,36 @@ const ENTRY: f64 = 0.5;
 /// decay, is what moves a mean of few.
 const SAMPLES: f64 = 40.0;
 
-/// Something due once in a while.
-struct Due {
+/// Times at equal intervals.
+struct Schedule {
     next: f64,
     every: f64,
 }
 
-impl Due {
-    fn at(&mut self, time: f64) -> bool {
-        let due = time >= self.next - 1e-9;
-        if due {
+impl Schedule {
+    /// Has the next time come?
+    fn has_come(&mut self, time: f64) -> bool {
+        let has_come = time >= self.next - 1e-9;
+        if has_come {
             self.next = self.every * ((time + 1e-9) / self.every + 1.0).floor();
         }
-        due
+        has_come
     }
 }
 
-/// What is seen through time.
-struct Seen<'a> {
+/// Holds the flux and samples the flow through time.
+struct Monitor<'a> {
     setup: &'a Setup,
     area: f64,
     controller: Controller,
     windows: [Window; 3],
-    entry: Due,
-    sample: Due,
+    entry: Schedule,
+    sample: Schedule,
     /// t, force, flux, kinetic energy.
     series: Vec<[f64; 4]>,
 }
 
-impl Seen<'_> {
+impl Monitor<'_> {
     /// The window of a time: 3 before the first.
     fn window(&mut self, time: f64) -> Option<&mut Window> {
         let s = &self.setup.settings;
@@ -98,7 +96,7 @@ impl Seen<'_> {
     }
 
     /// After a stretch: the controller acts, and the flow is sampled if it is time.
-    fn look<S>(&mut self, simulation: &mut solver::Simulation<S>, stretch: f64)
+    fn look<S>(&mut self, simulation: &mut Simulation<S>, stretch: f64)
     where
         S: Scheme<Extra = ()>,
         S::Forces: Driven,
@@ -112,12 +110,12 @@ impl Seen<'_> {
         }
         self.controller.look(mean, stretch);
         simulation.forces_mut().drive(self.controller.force);
-        if self.entry.at(time) {
+        if self.entry.has_come(time) {
             let energy: f64 =
                 simulation.fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum();
             self.series.push([time, force, flux, energy]);
         }
-        if self.sample.at(time) {
+        if self.sample.has_come(time) {
             let setup = self.setup;
             if let Some(window) = self.window(time) {
                 window.sample(setup, simulation);
@@ -147,8 +145,6 @@ where
     let json = serde_json::to_value(s).unwrap_or_default();
     let mut record = Record::new(super::NAME, variant, json, context.threads.max(1));
     describe(setup, [S::Kernel::NAME, S::Integrator::NAME, S::Walls::NAME], &mut record);
-    let frames = Frames::of(context)?;
-    let every = context.frames.as_ref().map_or(0, |(_, count)| *count);
     let stretches = (s.end / (STRETCH * setup.dt)).ceil().max(1.0) as usize;
     let stretch = s.end / stretches as f64;
     let times: Vec<f64> = (1..=stretches).map(|k| stretch * k as f64).collect();
@@ -157,35 +153,24 @@ where
     let last = measure::mean_velocity(&simulation, area);
     let controller = Controller { wanted, response: s.response, force: s.force, last };
     let (windows, series) = (Default::default(), Vec::new());
-    let entry = Due { next: 0.0, every: ENTRY };
-    let sample = Due { next: 0.0, every: s.average * s.end / SAMPLES };
-    let mut seen = Seen { setup, area, controller, windows, entry, sample, series };
-    let mut failed = None;
+    let entry = Schedule { next: 0.0, every: ENTRY };
+    let sample = Schedule { next: 0.0, every: s.average * s.end / SAMPLES };
+    let mut monitor = Monitor { setup, area, controller, windows, entry, sample, series };
+    let pressure = |density| setup.fluid.eos.pressure(density);
+    let mut look = |simulation: &mut Simulation<S>, _| monitor.look(simulation, stretch);
     let (status, cost) =
-        runner::drive(&mut simulation, setup.dt, &times, context, &mut (), &mut |sim, k| {
-            seen.look(sim, stretch);
-            let due = every > 0 && (k + 1) * every / stretches > k * every / stretches;
-            if let (true, Some(frames)) = (due, &frames) {
-                failed = failed.take().or(frames.write(sim, &setup.fluid.eos).err());
-            }
-        });
-    if let Some(error) = failed {
-        return Err(error.into());
-    }
+        runner::drive(&mut simulation, setup.dt, &times, context, &mut (), &pressure, &mut look)?;
     if status == Status::Completed {
-        measure::measure(setup, &seen.windows, area, &mut record);
+        measure::measure(setup, &monitor.windows, area, &mut record);
         let (particles, outside) = measure::particles(setup, &simulation);
-        let formula = "particles behind the walls at the end";
-        record.metrics.insert("outside".into(), Metric::new(outside as f64, "-", formula));
-        let offset = measure::wall_offset(setup, &simulation, S::Walls::FIRST);
-        let formula = "largest distance of the first row of wall particles from its place";
-        record.metrics.insert("wall_offset".into(), Metric::new(offset, "dx", formula));
+        record.put(measure::OUTSIDE, outside as f64);
+        record.put(measure::WALL_OFFSET, measure::wall_offset(setup, &simulation, S::Walls::FIRST));
         if context.keep_particles {
             record.profiles.insert("particles".into(), particles);
         }
     }
-    record.profiles.insert("series".into(), profile(&seen.series));
-    record.state = Some(record::digest(&channel::state(&simulation.particles())));
+    record.profiles.insert("series".into(), profile(&monitor.series));
+    record.state = Some(fluid::digest(&simulation.particles()));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }
@@ -201,9 +186,7 @@ fn describe(setup: &Setup, [kernel, integrator, walls]: [&str; 3], record: &mut 
         ("dt/limit", setup.dt / setup.dt_limit),
     ];
     let words = [("kernel", kernel), ("integrator", integrator), ("walls", walls)];
-    let numerics = &mut record.numerics;
-    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    numerics.extend(words.map(|(name, word)| (name.to_string(), word.into())));
+    fluid::describe(&numbers, &words, record);
 }
 
 fn profile(series: &[[f64; 4]]) -> Profile {

@@ -7,8 +7,8 @@ use solver::{
 };
 
 use super::{HillSettings, reference::Reference};
-use crate::fluid::{Fluid, Ingredient};
-use harness::case::RunError;
+use crate::fluid::{Fluid, Ingredient, MOST_STEPS, at_most};
+use harness::case::{Rules, RunError};
 use maths::{
     geometry::{Curve, Hill},
     theory::Stepping,
@@ -33,8 +33,6 @@ pub struct Setup {
     pub reference: Option<Reference>,
 }
 
-/// More steps than this are refused.
-const MOST_STEPS: f64 = 1e8;
 /// The most that h' is, rounded up: sets the least height of a column.
 const MOST_PARTICLES: f64 = 1e7;
 
@@ -71,16 +69,16 @@ impl Setup {
         if dt > limit && !allow_unstable {
             return Err(RunError::TimeStep { dt, limit, integrator: I::NAME });
         }
-        let refuse = |what, value, most, setting| {
-            if value > most {
-                Err(RunError::TooMuch { what, value, most, setting })
-            } else {
-                Ok(())
-            }
-        };
         let particles = 27.0 / (self.fluid.dx * self.fluid.dx);
-        refuse("the number of time steps", self.settings.end / dt, MOST_STEPS, "end, c0 or n")?;
-        refuse("the number of particles", particles, MOST_PARTICLES, "n")
+        let steps = self.settings.end / dt;
+        at_most("the number of time steps", steps, MOST_STEPS, "end, c0 or n")?;
+        at_most("the number of particles", particles, MOST_PARTICLES, "n")
+    }
+
+    /// What the rules chose.
+    pub fn rules(&self) -> Rules {
+        let Self { dt, dt_limit, .. } = *self;
+        Rules { dt, dt_limit, sound_speed: self.fluid.eos.sound_speed }
     }
 
     /// Height of the floor at x \[m\].

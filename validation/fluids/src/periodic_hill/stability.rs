@@ -1,17 +1,29 @@
 //! How far the flow over hills can be pushed: the time step against theory, and the Reynolds number.
 
-use rayon::prelude::*;
-
-use super::{NAME, plan::BEST, studies::shown};
+use super::{
+    CASE, NAME,
+    measure::{DRIFT, FORCE, FORCE_RIPPLE, OUTSIDE, SECTION_FLUX},
+    plan::BEST,
+    studies::ended,
+};
+use crate::fluid::{MetricColumns, cells, heads};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{Record, Status},
+    spec::{Bisect, RunSpec},
 };
-use harness::{bisect::largest_stable, case::Case, runner::Context, suite::Study};
+use harness::{
+    case::{Case, Tier},
+    declare::{StepLimit, StepLimits},
+    runs::Runs,
+    study::Study,
+};
 use report::{Cell, Column, Table};
 
-/// Spacings along the height of the hill in all of these runs.
+/// Spacings along the height of the hill in the runs of the full tier.
 const N: usize = 10;
+/// Those of the quick tier.
+const QUICK_N: usize = 5;
 
 /// Variant, and its longest stable step over the default one when this study was introduced: not the
 /// truth, but the margin must not shrink unnoticed.
@@ -34,103 +46,106 @@ const TRIED: [(&str, f64); 6] = [
 /// End of these runs \[H/U_b\]: the flux has filled the period 0.96 times. `plain` diverges before.
 const TRIED_TO: f64 = 12.0;
 
-fn run(case: &dyn Case, variant: &str, set: &[String]) -> Option<Record> {
-    let context = Context { allow_unstable: true, ..Context::default() };
-    let mut all = vec![format!("n={N}")];
-    all.extend_from_slice(set);
-    case.run(variant, &all, &context).ok()
-}
-
 /// Ended, and no sample of the kinetic energy is above twice that of the start, which is near the answer.
-fn is_stable(record: &Record) -> bool {
+pub fn is_stable(record: &Record) -> bool {
     let energy = record.column("series", "kinetic energy");
     let bounded = |first: &f64| energy.iter().all(|e| *e <= 2.0 * first);
     record.status == Status::Completed && energy.first().is_some_and(bounded)
 }
 
-/// Default step and longest stable one, over the theoretical limit.
-fn longest(case: &dyn Case, variant: &str) -> [f64; 2] {
-    let short = run(case, variant, &["end=0.05".into()]);
-    let [courant, default] =
-        short.map_or([f64::NAN; 2], |r| [r.setting("courant"), r.chose("dt/limit")]);
-    // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
-    let stable = |of_theory: f64| {
-        let courant = format!("courant={}", courant * of_theory / default);
-        let set = ["from_reference=true".into(), courant, "end=3".into()];
-        run(case, variant, &set).is_some_and(|record| is_stable(&record))
+/// The longest stable step over the theoretical one, by bisection.
+pub fn limits(tier: Tier) -> StepLimits {
+    let (n, tried) = match tier {
+        Tier::Quick => (QUICK_N, "Of six variants one: the best."),
+        Tier::Full => (
+            N,
+            "Of six variants three: one each with sums over pairs, with shifted velocities and with \
+             consistent sums; `plain`, `interface-wall` and `mixed` were not tried.",
+        ),
     };
-    let bracket = largest_stable(1.0, RESOLUTION, stable);
-    [default, bracket.map_or(f64::NAN, |b| b.stable)]
+    let of = match tier {
+        Tier::Quick => [limit(BEST, n)].into_iter().flatten().collect(),
+        Tier::Full => MARGINS
+            .into_iter()
+            .filter_map(|(variant, margin)| Some(judged(limit(variant, n)?, margin)))
+            .collect(),
+    };
+    let about = format!(
+        "The longest time step with which the flow at Re 50, H/dx = {n}, goes on for 3 H/U_b from the \
+         interpolated reference without diverging or doubling its kinetic energy, by bisection to 2 %, over \
+         the limit of linear theory for a periodic lattice at rest. Walls, curvature and particles in \
+         disorder are not in that theory. {tried}"
+    );
+    StepLimits { id: "periodic-hill-time-step".into(), about, of }
 }
 
-/// The longest stable step over the theoretical one, by bisection.
-pub fn limits(case: &'static dyn Case) -> Study {
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("measured/theory", "-"),
-        Column::num("default/theory", "-"),
-        Column::num("measured/default", "-"),
-    ];
-    let caption = "The longest time step with which the flow at Re 50, H/dx = 10, goes on for 3 H/U_b from \
-                   the interpolated reference without diverging or doubling its kinetic energy, by bisection \
-                   to 2 %, over the limit of linear theory for a periodic lattice at rest. Walls, curvature \
-                   and particles in disorder are not in that theory. Of six variants three: one each with \
-                   sums over pairs, with shifted velocities and with consistent sums; `plain`, \
-                   `interface-wall` and `mixed` were not tried.";
-    let mut table = Table::new(caption, columns);
-    let mut study = Study::new("periodic-hill-time-step", "Largest stable time step");
-    let found: Vec<[f64; 2]> =
-        MARGINS.par_iter().map(|(variant, _)| longest(case, variant)).collect();
-    for ((variant, margin), [default, measured]) in MARGINS.into_iter().zip(found) {
-        table = table.row(vec![
-            Cell::text(format!("`{variant}`")),
-            Cell::num(measured, 3),
-            Cell::num(default, 3),
-            Cell::num(measured / default, 3),
-        ]);
-        let gate = |what: &str, metric: &str, bound: Bound, evidence: Evidence, because: &str| {
-            Gate::new(format!("{NAME}.step.{variant}.{what}"), metric, bound, evidence, because)
-        };
-        let theory = gate(
-            "theory",
-            "measured/theory",
-            Bound::Within(default, 1.2),
-            Evidence::Theory,
-            "the default must be stable, and nothing in disorder makes sound slower or the stencil softer by \
-             a fifth: a limit far above that of the lattice would be a wrong theory",
-        );
-        let kept = gate(
-            "margin",
-            "longest stable dt/default dt",
-            Bound::Above(margin - RESOLUTION / default),
-            Evidence::Regression,
-            "what was measured when this study was introduced, less the resolution of the bisection",
-        );
-        study = study.judge(theory, measured).judge(kept, measured / default);
-    }
-    study.block(table)
+/// The bisection of a variant; none if its settings make no run.
+fn limit(variant: &'static str, n: usize) -> Option<StepLimit> {
+    let spec = CASE.spec(variant, |s| (s.n, s.from_reference, s.end) = (n, true, 3.0));
+    let rules = CASE.rules(&spec).ok()?;
+    let default = rules.dt / rules.dt_limit;
+    // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
+    let unit = CASE.settings_of(variant, &[]).ok()?.courant / default;
+    let bisect =
+        Bisect { setting: "courant".into(), guess: 1.0, unit, resolution: RESOLUTION, end: None };
+    Some(StepLimit {
+        variant,
+        scene: format!("Re 50, H/dx = {n}"),
+        spec: spec.allow_unstable().bisect(bisect),
+        theory_at: 1.0,
+        theory: rules.dt_limit,
+        default_at: default,
+        of_theory: Vec::new(),
+        of_default: Vec::new(),
+    })
+}
+
+/// The same with its gates.
+fn judged(limit: StepLimit, margin: f64) -> StepLimit {
+    let StepLimit { variant, default_at: default, .. } = limit;
+    let gate = |what: &str, metric: &str, bound: Bound, evidence: Evidence, because: &str| {
+        Gate::new(format!("{NAME}.step.{variant}.{what}"), metric, bound, evidence, because)
+    };
+    let theory = gate(
+        "theory",
+        "measured/theory",
+        Bound::Within(default, 1.2),
+        Evidence::Theory,
+        "the default must be stable, and nothing in disorder makes sound slower or the stencil softer by a \
+         fifth: a limit far above that of the lattice would be a wrong theory",
+    );
+    let kept = gate(
+        "margin",
+        "longest stable dt/default dt",
+        Bound::Above(margin - RESOLUTION / default),
+        Evidence::Regression,
+        "what was measured when this study was introduced, less the resolution of the bisection",
+    );
+    StepLimit { of_theory: vec![theory], of_default: vec![kept], ..limit }
 }
 
 /// Completed, no particle behind a wall, and the force that holds the flux is one against a drag.
 fn holds(record: &Record) -> bool {
     record.status == Status::Completed
-        && record.measured("outside") == 0.0
-        && record.measured("force") > 0.0
+        && record.value(OUTSIDE) == Some(0.0)
+        && record.value(FORCE).is_some_and(|force| force > 0.0)
+}
+
+/// The runs at the highest Reynolds number, with that number.
+pub fn tried() -> [(RunSpec, f64); 6] {
+    let run = |(variant, re)| (CASE.spec(variant, |s| (s.n, s.re, s.end) = (N, re, TRIED_TO)), re);
+    TRIED.map(run)
 }
 
 /// A Reynolds number that variants hold.
-pub fn reynolds(case: &'static dyn Case) -> Study {
-    let columns = vec![
+pub fn reynolds(runs: &Runs) -> Study {
+    let mut columns = vec![
         Column::text("variant"),
         Column::num("Re", "-"),
         Column::num("U_b dx/ν", "-"),
         Column::text("ended"),
-        Column::num("outside", "1"),
-        Column::num("force", "U_b^2/H"),
-        Column::num("ripple of it", "-"),
-        Column::num("flux of sections", "-"),
-        Column::num("windows differ by", "U_b"),
     ];
+    columns.extend(heads(COLUMNS));
     let caption = format!(
         "Every variant at the highest Reynolds number that the setting allows, 1000, a lower bound of what \
          it holds, and `plain` at 10, the lowest tried: H/dx = 10, from rest to {TRIED_TO} H/U_b. A variant \
@@ -142,13 +157,10 @@ pub fn reynolds(case: &'static dyn Case) -> Study {
     );
     let mut table = Table::new(caption, columns);
     let mut study = Study::new("periodic-hill-reynolds", "Highest Reynolds number");
-    let tried = |(variant, re): &(&str, f64)| {
-        run(case, variant, &[format!("re={re}"), format!("end={TRIED_TO}")])
-    };
-    let found: Vec<_> = TRIED.par_iter().map(tried).collect();
-    for ((variant, re), record) in TRIED.into_iter().zip(found) {
-        table = record.iter().fold(table, |table, record| table.row(row(variant, re, record)));
-        let held = if record.is_some_and(|record| holds(&record)) { re } else { 0.0 };
+    for (spec, re) in tried() {
+        let (variant, record) = (spec.variant.as_str(), runs.record(&spec));
+        table = record.iter().fold(table, |table, record| table.row(row(re, record)));
+        let held = if record.is_some_and(holds) { re } else { 0.0 };
         let gate = Gate::new(
             format!("{NAME}.highest_re.{variant}"),
             "highest Re held",
@@ -164,21 +176,21 @@ pub fn reynolds(case: &'static dyn Case) -> Study {
     study.block(table)
 }
 
-fn row(variant: &str, re: f64, record: &Record) -> Vec<Cell> {
-    let ended = match &record.status {
-        Status::Completed => "completed".to_string(),
-        Status::Diverged { time, field, .. } => format!("diverged at {time:.1} H/U_b: {field}"),
-        _ => "interrupted".into(),
-    };
-    vec![
-        Cell::text(format!("`{variant}`")),
+const COLUMNS: &MetricColumns = &[
+    ("outside", "1", OUTSIDE, |v| Cell::count(v as u64)),
+    ("force", "U_b^2/H", FORCE, |v| Cell::num(v, 3)),
+    ("ripple of it", "-", FORCE_RIPPLE, |v| Cell::percent(v, 1)),
+    ("flux of sections", "-", SECTION_FLUX, |v| Cell::percent(v, 1)),
+    ("windows differ by", "U_b", DRIFT, |v| Cell::sci(v, 1)),
+];
+
+fn row(re: f64, record: &Record) -> Vec<Cell> {
+    let mut row = vec![
+        Cell::text(format!("`{}`", record.variant)),
         Cell::exact(re),
         Cell::num(re / N as f64, 2),
-        Cell::text(ended),
-        shown(record, "outside", |v| Cell::count(v as u64)),
-        shown(record, "force", |v| Cell::num(v, 3)),
-        shown(record, "force_ripple", |v| Cell::percent(v, 1)),
-        shown(record, "section_flux", |v| Cell::percent(v, 1)),
-        shown(record, "drift", |v| Cell::sci(v, 1)),
-    ]
+        Cell::text(ended(record)),
+    ];
+    row.extend(cells(COLUMNS, |metric| record.value(metric)));
+    row
 }

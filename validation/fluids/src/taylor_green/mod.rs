@@ -1,10 +1,12 @@
 //! Taylor-Green vortices in a periodic box: interior flow without walls, from a lattice that suits it
 //! and from one that does not. Length L = 1 m, largest speed at the start U = 1 m/s, ρ = 1 kg/m³.
 
+mod declaration;
 mod plan;
 mod run;
 mod studies;
 
+use base::record::Status;
 use harness::composed::{Composed, Composition, lacking};
 use maths::theory::Stepping;
 use solver::{
@@ -68,7 +70,8 @@ where
     S::Integrator: Stepping,
 {
     let lacks = lacking(OPTIONAL, &[S::Forces::uses(), S::Drift::uses()].concat());
-    Composition { variant: Variant { name, about }, adjust, run: run::run::<S>, lacks }
+    let (variant, rules) = (Variant { name, about }, |s: &_| Ok(Setup::new::<S>(s, true)?.rules()));
+    Composition { variant, adjust, run: run::run::<S>, rules, lacks }
 }
 
 type Pairs = (Pressure<Tait>, Viscosity);
@@ -127,13 +130,15 @@ pub fn settings(variant: &str, set: &[String]) -> Result<VortexSettings, RunErro
     CASE.settings_of(variant, set)
 }
 
-const CASE: Composed<VortexSettings> = Composed {
+static CASE: Composed<VortexSettings> = Composed {
     name: NAME,
     about: "A periodic array of vortices decays by viscosity without changing its shape: an exact solution \
             of the incompressible equations. Particles go round with the flow and are stretched at its \
             stagnation points, so that whatever order the start had is soon lost: the test of what a method \
             does with disorder. Started from a square lattice and from one that is disturbed.",
     variants,
+    is_stable: |record| record.status == Status::Completed,
+    declaration: declaration::declaration,
     plan: plan::plan,
     studies: studies::studies,
 };

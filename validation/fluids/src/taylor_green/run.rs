@@ -3,22 +3,18 @@
 use nalgebra::Vector2;
 use solver::{
     Domain, EquationOfState, Integrator, Kernel, Limits, Open, Particle, Scene, Scheme, Simulation,
-    Tait,
+    Stepper, Tait,
 };
 
 use super::VortexSettings;
-use crate::{
-    channel,
-    fluid::{Fluid, Ingredient},
-};
+use crate::fluid::{self, Fluid, Ingredient, MOST_STEPS, at_most};
 use base::{
-    number,
     random::Random,
-    record::{self, Metric, Profile, Record, Status},
+    record::{Profile, Record, Status},
 };
 use harness::{
-    case::RunError,
-    runner::{self, Context, Frames},
+    case::{Rules, RunError},
+    runner::{self, Context},
 };
 use maths::{exact::TaylorGreen, theory::Stepping};
 
@@ -37,8 +33,19 @@ pub struct Setup {
     pub dt_limit: f64,
 }
 
-/// More steps than this are refused.
-const MOST_STEPS: f64 = 1e8;
+base::metrics! {
+    L2 = "l2" ["-"] "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end";
+    L2_WORST = "l2_worst" ["-"] "largest l2 over 40 times";
+    ENERGY = "energy" ["-"] "kinetic energy over the exact one at the end, less 1";
+    NU_EFF = "nu_eff" ["-"] "log of the fall of kinetic energy over that of the exact one";
+    MOMENTUM = "momentum" ["-"]
+        "|sum m v|/(sum m U) at the end: that of a disturbed start, and what the run added";
+    MOMENTUM_ADDED = "momentum_added" ["-"]
+        "|sum m v at the end - sum m v at the start|/(sum m U), exactly 0";
+    PRESSURE_L2 = "pressure_l2" ["-"] "(sum (p - mean - p_exact)^2/sum p_exact^2)^(1/2) at the end";
+    VOLUME_DRIFT = "volume_drift" ["-"] "sum(m/rho)/L^2 - 1 at the end";
+    NEAREST = "nearest" ["-"] "least distance of two particles over dx";
+}
 
 impl Setup {
     /// Follows the rules for the scheme `S`.
@@ -75,13 +82,16 @@ impl Setup {
             let (limit, integrator) = (dt_limit, S::Integrator::NAME);
             return Err(RunError::TimeStep { dt, limit, integrator });
         }
-        if s.end / dt > MOST_STEPS {
-            let (what, setting) = ("the number of time steps", "end, dt, c0 or n");
-            let (value, most) = (s.end / dt, MOST_STEPS);
-            return Err(RunError::TooMuch { what, value, most, setting });
-        }
+        let setting = "end, dt, c0 or n";
+        at_most("the number of time steps", s.end / dt, MOST_STEPS, setting)?;
         let exact = TaylorGreen { speed: 1.0, length: 1.0, nu, rho: 1.0 };
         Ok(Self { settings: s.clone(), exact, fluid, dt, dt_limit })
+    }
+
+    /// What the rules chose.
+    pub fn rules(&self) -> Rules {
+        let Self { dt, dt_limit, .. } = *self;
+        Rules { dt, dt_limit, sound_speed: self.fluid.eos.sound_speed }
     }
 
     /// Particles of equal volume with the velocity and the pressure of the flow at their places.
@@ -151,21 +161,15 @@ pub fn run_scene<S: Scheme<Extra = ()>>(
     let json = serde_json::to_value(&setup.settings).unwrap_or_default();
     let mut record = Record::new(super::NAME, variant, json, context.threads.max(1));
     describe(setup, [S::Kernel::NAME, S::Integrator::NAME], &mut record);
-    let frames = Frames::of(context)?;
     let end = setup.settings.end;
     let times: Vec<f64> = (1..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let mut series = vec![Sample::of(setup, &simulation)];
-    let mut failed_frame = None;
+    let pressure = |density| setup.fluid.eos.pressure(density);
+    let mut sample = |simulation: &mut Simulation<S>, _| {
+        series.push(Sample::of(setup, simulation));
+    };
     let (status, cost) =
-        runner::drive(&mut simulation, setup.dt, &times, context, &mut (), &mut |s, _| {
-            series.push(Sample::of(setup, s));
-            if let Some(frames) = &frames {
-                failed_frame = failed_frame.take().or(frames.write(s, &setup.fluid.eos).err());
-            }
-        });
-    if let Some(error) = failed_frame {
-        return Err(error.into());
-    }
+        runner::drive(&mut simulation, setup.dt, &times, context, &mut (), &pressure, &mut sample)?;
     if status == Status::Completed {
         measure(setup, &simulation, &series, &mut record);
         if context.keep_particles {
@@ -173,8 +177,7 @@ pub fn run_scene<S: Scheme<Extra = ()>>(
         }
     }
     record.profiles.insert("series".into(), profile(&series));
-    let state = channel::state(&simulation.particles());
-    record.state = Some(record::digest(&state));
+    record.state = Some(fluid::digest(&simulation.particles()));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }
@@ -189,13 +192,11 @@ fn describe(setup: &Setup, [kernel, integrator]: [&str; 2], record: &mut Record)
         ("dt [s]", setup.dt),
         ("dt/limit", setup.dt / setup.dt_limit),
     ];
-    let numerics = &mut record.numerics;
-    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    numerics.insert("kernel".into(), kernel.into());
-    numerics.insert("integrator".into(), integrator.into());
+    let words = [("kernel", kernel), ("integrator", integrator)];
+    fluid::describe(&numbers, &words, record);
 }
 
-/// What is seen at one time.
+/// The flow at one time.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     time: f64,
@@ -208,7 +209,7 @@ struct Sample {
 }
 
 impl Sample {
-    fn of<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Self {
+    fn of(setup: &Setup, simulation: &dyn Stepper<()>) -> Self {
         let time = simulation.time();
         let (mut difference, mut scale, mut energy, mut mass) = (0.0, 0.0, 0.0, 0.0);
         for p in simulation.particles() {
@@ -233,28 +234,17 @@ fn profile(series: &[Sample]) -> Profile {
         .with("momentum", "U", column(|s| s.momentum.norm()))
 }
 
-fn measure<S: Scheme<Extra = ()>>(
-    setup: &Setup,
-    simulation: &Simulation<S>,
-    series: &[Sample],
-    record: &mut Record,
-) {
-    let mut put = |name: &str, value: f64, formula: &str| {
-        record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-    };
+fn measure(setup: &Setup, simulation: &dyn Stepper<()>, series: &[Sample], record: &mut Record) {
     let (first, last) = (series[0], series[series.len() - 1]);
-    put("l2", last.error, "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end");
+    record.put(L2, last.error);
     let worst = series.iter().map(|s| s.error).fold(0.0, f64::max);
-    put("l2_worst", worst, "largest l2 over 40 times");
-    put("energy", last.energy - 1.0, "kinetic energy over the exact one at the end, less 1");
+    record.put(L2_WORST, worst);
+    record.put(ENERGY, last.energy - 1.0);
     let exact = (setup.exact.kinetic_energy(0.0) / setup.exact.kinetic_energy(last.time)).ln();
     let found = exact - (last.energy / first.energy).ln();
-    put("nu_eff", found / exact, "log of the fall of kinetic energy over that of the exact one");
-    let formula =
-        "|sum m v|/(sum m U) at the end: that of a disturbed start, and what the run added";
-    put("momentum", last.momentum.norm(), formula);
-    let formula = "|sum m v at the end - sum m v at the start|/(sum m U), exactly 0";
-    put("momentum_added", (last.momentum - first.momentum).norm(), formula);
+    record.put(NU_EFF, found / exact);
+    record.put(MOMENTUM, last.momentum.norm());
+    record.put(MOMENTUM_ADDED, (last.momentum - first.momentum).norm());
     let particles = simulation.particles();
     let fluid = setup.fluid;
     let pressure = |p: &Particle| fluid.eos.pressure(p.density) - fluid.eos.background;
@@ -265,11 +255,10 @@ fn measure<S: Scheme<Extra = ()>>(
         difference += (pressure(p) - mean - exact).powi(2);
         scale += exact.powi(2);
     }
-    let formula = "(sum (p - mean - p_exact)^2/sum p_exact^2)^(1/2) at the end";
-    put("pressure_l2", (difference / scale).sqrt(), formula);
+    record.put(PRESSURE_L2, (difference / scale).sqrt());
     let volume: f64 = particles.iter().map(|p| p.mass / p.density).sum();
-    put("volume_drift", volume - 1.0, "sum(m/rho)/L^2 - 1 at the end");
-    put("nearest", nearest(&particles) / fluid.dx, "least distance of two particles over dx");
+    record.put(VOLUME_DRIFT, volume - 1.0);
+    record.put(NEAREST, nearest(&particles) / fluid.dx);
 }
 
 /// The least distance of two particles, those across an edge left out \[m\].
@@ -285,7 +274,7 @@ fn nearest(particles: &[Particle]) -> f64 {
 }
 
 /// The particles themselves: x, y, speed, error.
-fn particles<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Profile {
+fn particles(setup: &Setup, simulation: &dyn Stepper<()>) -> Profile {
     let (all, t) = (simulation.particles(), simulation.time());
     let column = |f: &dyn Fn(&Particle) -> f64| all.iter().map(f).collect();
     let wrapped = |x: f64| x.rem_euclid(1.0);

@@ -4,150 +4,227 @@
 //! Common to all: nothing hangs, nothing panics, and a run that leaves its bounds ends as
 //! [`solver::Outcome::Diverged`] with step, time, particle and quantity.
 
-mod channel;
+mod experiment;
 mod odd;
-mod rubber;
-mod step;
+mod smoothing;
 mod vortex;
 
-use rayon::prelude::*;
+pub use experiment::{Experiment, in_words, plan, study};
 
-use base::gate::{Bound, Evidence, Gate, Verdict};
-use harness::{
-    case::Tier,
-    suite::{Judged, Study},
+use solver::{
+    CubicSpline, EquationOfState, Integrator, Kernel, QuinticSpline, Scheme, Simulation, Tait,
+    WendlandC2,
 };
-use report::{Cell, Column, Status, Table};
 
-/// One setting, what must come, and what came.
-pub struct Entry {
-    /// What is extreme.
-    what: String,
-    /// The numbers of it.
-    setting: String,
-    /// What came, in words.
-    found: String,
-    /// The judged value.
-    value: f64,
-    gate: Gate,
-}
+use base::{
+    record::{Record, Status},
+    settings::Settings,
+};
+use harness::{
+    case::{RunError, Tier, Variant},
+    composed::{Composed, Composition, lacking},
+    declare::Declaration,
+    runner::{self, Context},
+    runs::Runs,
+    study::Study,
+};
 
-impl Entry {
-    /// `name` ends the gate's name; `metric` is what `value` is, `because` why the bound is there.
-    fn new(name: &str, [what, setting]: [String; 2], metric: &str, bound: Bound) -> Self {
-        let because = "see the column what must come";
-        let id = format!("extremes.{name}");
-        let gate = Gate::new(id, metric, bound, Evidence::Invariant, because);
-        Self { what, setting, found: String::new(), value: f64::NAN, gate }
-    }
-
-    /// Why the bound is where it is, and what stands behind it.
-    fn because(mut self, evidence: Evidence, because: &str) -> Self {
-        (self.gate.evidence, self.gate.because) = (evidence, because.into());
-        self
-    }
-
-    /// Shown, not judged.
-    fn reported(self) -> Self {
-        Self { gate: self.gate.reported(), ..self }
-    }
-
-    /// What came.
-    fn found(self, value: f64, found: String) -> Self {
-        Self { value, found, ..self }
-    }
-}
-
-impl From<Entry> for Vec<Entry> {
-    fn from(entry: Entry) -> Self {
-        vec![entry]
+base::settings! {
+    /// Settings of the experiments; each uses some of them.
+    pub struct ExtremeSettings {
+        /// particles along each side of the periodic box
+        n: usize ["-"] in 4..=400 = 10,
+        /// smoothing length over spacing
+        h_over_dx: f64 ["-"] in 0.5..=5.0 = 1.2,
+        /// number of time steps
+        steps: usize ["-"] in 10..=100000000 = 400,
+        /// time step
+        dt: f64 ["dx/c0"] in 1e-9..=100.0 = 0.6,
+        /// pressure at rest
+        background: f64 ["rho0 c0^2"] in 0.0..=1.0 = 0.0,
+        /// distance of the two particles that are too close
+        distance: f64 ["dx"] in 0.0..=1.0 = 0.0,
+        /// number of particles out of each other's reach
+        count: usize ["-"] in 1..=1000 = 1,
+        /// speed of the moving block
+        speed: f64 ["c0"] in 0.0..=1e6 = 1000.0,
+        /// Mach number of the vortex
+        mach: f64 ["-"] in 1e-6..=10.0 = 0.1,
+        /// Reynolds number of the vortex
+        re: f64 ["-"] in 1e-3..=1e6 = 100.0,
+        /// standard deviation of the initial places
+        jitter: f64 ["dx"] in 0.0..=0.5 = 0.0,
+        /// end of the run of the vortex, in units of its side over its speed
+        end: f64 ["-"] in 1e-6..=100.0 = 0.5,
     }
 }
 
-/// The groups of entries; each is one task.
-type Group = fn(Tier) -> Vec<Entry>;
-const GROUPS: &[Group] = &[
-    odd::rest,
-    channel::stiff_sound,
-    vortex::stiff_sound,
-    channel::slow,
-    channel::smoothing,
-    step::beyond_the_limit,
-    vortex::fast,
-    vortex::jittered,
-    odd::coincident,
-    odd::alone,
-    odd::fast_blocks,
-    odd::refused,
-    rubber::incompressible,
-    rubber::stiffer,
-    rubber::fast,
-    rubber::alone,
-    rubber::overlapping,
-];
+/// Settings far outside of the usual.
+pub static EXTREMES: Composed<ExtremeSettings> = Composed {
+    name: "extremes",
+    about: "What breaks a naive program: a lattice at rest for very long, particles on top of each other or \
+            far from all others, a block at a thousand times the speed of sound, scenes that are none, \
+            vortices with sound too slow and too fast and on disturbed lattices, smoothing lengths from too \
+            short to too long. Each variant is an experiment of its own.",
+    variants,
+    is_stable: |record| record.status == Status::Completed,
+    declaration: |_| Declaration::default(),
+    plan: |tier| plan(experiments(tier)),
+    studies,
+};
 
-/// The study.
-pub fn study(tier: Tier) -> Study {
-    let entries: Vec<Vec<Entry>> = GROUPS.par_iter().map(|group| group(tier)).collect();
-    let columns = vec![
-        Column::text("what"),
-        Column::text("setting"),
-        Column::text("what must come"),
-        Column::text("what came"),
-        Column::text("verdict"),
-    ];
-    let mut table = Table::new("Extreme settings.", columns);
-    let mut judged = Vec::new();
-    for entry in entries.into_iter().flatten() {
-        let Gate { metric, bound, because, .. } = &entry.gate;
-        let expected = format!("{metric} {bound}: {because}");
-        let judgement = Judged::new(entry.gate, Some(entry.value));
-        table = table.row(vec![
-            Cell::text(entry.what),
-            Cell::text(entry.setting),
-            Cell::text(expected),
-            Cell::text(entry.found),
-            Cell::status(status(&judgement.judgement.verdict)),
-        ]);
-        judged.push(judgement);
-    }
-    let mut study = Study::new("extremes", "Extreme settings").prose(LEAD).block(table);
-    study.judged = judged;
-    study
+type Run = fn(&str, &ExtremeSettings, &Context) -> Result<Record, RunError>;
+
+type Adjust = fn(&mut ExtremeSettings);
+
+/// A variant that uses some of the settings.
+fn variant(
+    [name, about]: [&'static str; 2],
+    uses: &[&str],
+    adjust: Adjust,
+    run: Run,
+) -> Composition<ExtremeSettings> {
+    let all: Vec<&'static str> = ExtremeSettings::FIELDS.iter().map(|field| field.name).collect();
+    let rules = |_: &ExtremeSettings| Err(RunError::NoRules { case: EXTREMES.name.into() });
+    let variant = Variant { name, about };
+    Composition { variant, adjust, run, rules, lacks: lacking(&all, uses) }
 }
 
-const LEAD: &str = "What breaks a naive program: vanishing and huge Reynolds numbers, steps beyond \
-    the limit, sound a thousand times too fast, particles on top of each other or far from all \
-    others. Each entry has a criterion of its own; where a run cannot succeed, the criterion is that \
-    it says so, in time. Of a disturbed lattice only the energy is judged, which must not rise; the errors \
-    of energy and velocity beside it are reported.";
-
-fn status(verdict: &Verdict) -> Status {
-    match verdict {
-        Verdict::Pass => Status::Pass,
-        Verdict::Fail => Status::Fail,
-        Verdict::Reported | Verdict::NotMeasured => Status::Reported,
-        Verdict::Limitation(_) => Status::Limitation,
-        Verdict::ExpectedFailure => Status::ExpectedFailure,
-    }
+fn variants() -> Vec<Composition<ExtremeSettings>> {
+    const AT_REST: &[&str] = &["n", "h_over_dx", "steps", "dt", "background"];
+    const VORTEX: &[&str] = &["n", "h_over_dx", "mach", "re", "jitter", "end"];
+    const SMOOTHING: &[&str] = &["n", "h_over_dx"];
+    let at_rest: Adjust = |s| (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7);
+    // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
+    let pressed: Adjust = |s| {
+        (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
+    };
+    let long: Adjust = |s| s.n = 20;
+    vec![
+        variant(
+            ["rest", "a lattice at rest, cubic spline"],
+            AT_REST,
+            at_rest,
+            odd::rest::<CubicSpline>,
+        ),
+        variant(
+            ["pressed", "a lattice at rest under pressure, Wendland function"],
+            AT_REST,
+            pressed,
+            odd::rest::<WendlandC2>,
+        ),
+        variant(
+            ["coincident", "two particles at one place in a lattice stirred at 0.05 c0"],
+            &["distance", "steps", "dt"],
+            |_| (),
+            odd::coincident,
+        ),
+        variant(
+            ["alone", "particles out of each other's reach"],
+            &["count", "steps", "dt"],
+            |s| s.steps = 1000,
+            odd::alone,
+        ),
+        variant(
+            ["bullet", "a block that hits another"],
+            &["speed", "steps", "dt"],
+            |s| (s.steps, s.dt) = (200, 0.3),
+            odd::bullet,
+        ),
+        variant(["refused", "what is not a scene"], &[], |_| (), odd::refused),
+        variant(
+            ["vortex", "Taylor-Green vortices, the modern composition of the channels"],
+            VORTEX,
+            |s| (s.n, s.h_over_dx) = (32, 1.0),
+            vortex::run,
+        ),
+        variant(
+            ["smoothing-cubic", "long waves, cubic spline"],
+            SMOOTHING,
+            long,
+            smoothing::run::<CubicSpline>,
+        ),
+        variant(
+            ["smoothing-quintic", "long waves, quintic spline"],
+            SMOOTHING,
+            long,
+            smoothing::run::<QuinticSpline>,
+        ),
+        variant(
+            ["smoothing-wendland", "long waves, Wendland function"],
+            SMOOTHING,
+            long,
+            smoothing::run::<WendlandC2>,
+        ),
+    ]
 }
 
-/// A number as in tables.
-fn sci(x: f64) -> String {
-    report::sci(x, 3)
+/// All experiments, in the order of the table.
+fn experiments(tier: Tier) -> Vec<Experiment> {
+    [
+        odd::at_rest(tier),
+        vortex::stiff_sound(tier),
+        smoothing::lengths(tier),
+        vortex::fast(),
+        vortex::jittered(),
+        odd::close(),
+        odd::far(),
+        odd::fast_blocks(),
+        odd::no_scenes(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+const LEAD: &str = "What breaks a naive program: sound a thousand times too fast, particles on top of \
+    each other or far from all others, a flow that compresses. Each entry has a criterion of its own; where \
+    a run cannot succeed, the criterion is that it says so, in time. Of a disturbed lattice only the energy \
+    is judged, which must not rise; the errors of energy and velocity beside it are reported. Steps beyond \
+    the limit, creeping flows and rubber at its extremes are with their own cases.";
+
+fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
+    vec![study(["extremes", "Extreme settings"], LEAD, experiments(tier), runs)]
+}
+
+/// A record of an experiment that is yet to be filled.
+fn record_of(variant: &str, settings: &ExtremeSettings) -> Record {
+    Record::new(EXTREMES.name, variant, serde_json::to_value(settings).unwrap_or_default(), 1)
+}
+
+/// Steps a simulation through `times`, at which `at` looks, to its end.
+fn drive<S: Scheme<Extra = ()>>(
+    (variant, settings): (&str, &ExtremeSettings),
+    simulation: &mut Simulation<S>,
+    (dt, times, eos): (f64, &[f64], Tait),
+    context: &Context,
+    at: &mut dyn FnMut(&mut Simulation<S>, usize),
+) -> Result<Record, RunError> {
+    let mut record = record_of(variant, settings);
+    let pressure = |density| eos.pressure(density);
+    (record.status, record.cost) =
+        runner::drive(simulation, dt, times, context, &mut (), &pressure, at)?;
+    record.numerics.insert("dt [s]".into(), dt.into());
+    record.numerics.insert("kernel".into(), S::Kernel::NAME.into());
+    record.numerics.insert("integrator".into(), <S::Integrator as Integrator<()>>::NAME.into());
+    record.state = Some(crate::state(&simulation.particles()));
+    Ok(record)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{stability::RESTING_BOX, tests::judged};
+    use base::gate::Gate;
 
     #[test]
     fn the_quick_tier_survives_its_extremes() {
-        let study = study(Tier::Quick);
-        let gates: Vec<Gate> = study.judged.iter().map(|judged| judged.gate.clone()).collect();
+        let judged = judged(&[&EXTREMES, &RESTING_BOX]);
+        let gates: Vec<Gate> = judged.iter().map(|judged| judged.gate.clone()).collect();
         assert_eq!(base::gate::check_all(&gates), Ok(()));
-        for Judged { gate, judgement } in &study.judged {
-            assert!(!judgement.verdict.is_failure(), "{}: {:?}", gate.id, judgement.value);
+        for judged in &judged {
+            let (id, value) = (&judged.gate.id, judged.judgement.value);
+            assert!(!judged.judgement.verdict.is_failure(), "{id}: {value:?}");
         }
     }
 }

@@ -3,28 +3,59 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, Domain, Kernel, Leapfrog, Open, Outcome, Particle, Pressure,
-    Scene, SceneError, Simulation, Tait, Viscosity, WendlandC2,
+    Compose, Continuity, CubicSpline, Domain, Kernel, Leapfrog, Open, Particle, Pressure, Scene,
+    SceneError, Simulation, Tait, Viscosity, WendlandC2,
 };
 
-use super::{Entry, sci};
+use super::{
+    EXTREMES, Experiment, ExtremeSettings, drive,
+    experiment::{completed, in_words, measured, sci},
+    record_of,
+};
 use base::{
     gate::{Bound, Evidence},
     random::Random,
+    record::{MetricKey, Record, Status},
 };
-use harness::case::Tier;
+use harness::{
+    case::{RunError, Tier},
+    context::Context,
+    extremes::Entry,
+};
 
 type Plain<K> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
 
-/// ρ₀ = c₀ = dx = 1; ν = 0.1.
+const HEAT: MetricKey = MetricKey::new("heat", "c0^2", "largest v^2/2 of a particle at the end");
+const CLOCK_ERROR: MetricKey = MetricKey::new(
+    "clock_error",
+    "dx/c0",
+    "largest |t - n dt| at ten times, infinite if the steps are not n",
+);
+const MOMENTUM_ERROR: MetricKey =
+    MetricKey::new("momentum_error", "-", "|change of sum m v|/sum m |v| of the moving particles");
+const FASTEST: MetricKey = MetricKey::new("fastest", "c0", "largest speed at the end");
+const GAP: MetricKey = MetricKey::new("gap", "dx", "distance of the two particles at the end");
+const FLIGHT_ERROR: MetricKey = MetricKey::new(
+    "flight_error",
+    "-",
+    "largest |x - x0 - v t|/|v t| + |rho/rho0 - 1| of a particle",
+);
+const REFUSALS: MetricKey =
+    MetricKey::new("refusals", "-", "impossible scenes, of six, that are refused for their reason");
+
+/// ρ₀ = c₀ = dx = 1.
+fn fluid(background: f64) -> Tait {
+    Tait { background, ..Tait::new(1.0, 1.0) }
+}
+
+/// ν = 0.1.
 fn scene<K: Kernel>(
     h: f64,
     domain: Domain,
     background: f64,
     particles: Vec<Particle>,
 ) -> Scene<Plain<K>> {
-    let eos = Tait { background, ..Tait::new(1.0, 1.0) };
-    let forces = (Pressure::new(eos), Viscosity { mu: 0.1, eta2: 1e-6 * h * h });
+    let forces = (Pressure::new(fluid(background)), Viscosity { mu: 0.1, eta2: 1e-6 * h * h });
     let mut scene = Scene::new(h, domain, particles, forces, Continuity, Open);
     scene.parallel_from = usize::MAX;
     scene
@@ -45,164 +76,223 @@ fn fastest(particles: &[Particle]) -> f64 {
     all.fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
 }
 
-/// Σ m v over Σ m |v|, or 0 if nothing moves.
-fn momentum(particles: &[Particle], initial: Vector2<f64>) -> f64 {
-    let total = particles.iter().fold(-initial, |sum, p| sum + p.velocity * p.mass);
-    let scale: f64 = particles.iter().map(|p| p.mass * p.velocity.norm()).sum();
-    if scale > 0.0 { total.norm() / scale } else { total.norm() }
+/// Σ m v
+fn momentum(particles: &[Particle]) -> Vector2<f64> {
+    particles.iter().fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass)
 }
 
-/// A lattice at rest for very many steps, without and with background pressure.
-pub fn rest(tier: Tier) -> Vec<Entry> {
-    let pressed = if tier == Tier::Full { 1_000_000 } else { 10_000 };
-    let mut entries = rest_of::<CubicSpline>("rest", 1.2, [5, 100_000], 0.0);
-    // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
-    entries.extend(rest_of::<WendlandC2>("pressed", 1.5, [7, pressed], 0.05));
-    entries
+/// Steps a scene of a cubic spline by all steps.
+fn drive_to_end(
+    run: (&str, &ExtremeSettings),
+    (domain, particles): (Domain, Vec<Particle>),
+    context: &Context,
+) -> Result<(Record, Simulation<Plain<CubicSpline>>), RunError> {
+    let mut simulation = scene(1.2, domain, 0.0, particles).build()?;
+    let ExtremeSettings { dt, steps, .. } = *run.1;
+    let times = [dt * steps as f64];
+    let record = drive(run, &mut simulation, (dt, &times, fluid(0.0)), context, &mut |_, _| ())?;
+    Ok((record, simulation))
 }
 
-fn rest_of<K: Kernel>(name: &str, h: f64, [n, steps]: [usize; 2], background: f64) -> Vec<Entry> {
-    let setting = format!("{steps} steps, p = {background} ρc₀², {}, h/dx = {h}", K::NAME);
-    let what = |what: &str| [what.to_string(), setting.clone()];
-    let energy = Entry::new(&format!("{name}.energy"), what("lattice at rest"), "½v²/c₀²", {
-        Bound::Below(1e-20)
-    })
-    .because(Evidence::Invariant, "round-off of forces that cancel must not heat the lattice");
-    let time = Entry::new(&format!("{name}.time"), what("clock of a long run"), "|t - n dt|", {
-        Bound::Equals(0.0)
-    })
-    .because(Evidence::Invariant, "the time is counted in whole steps, so it does not drift");
+/// A lattice at rest for very many steps.
+pub fn rest<K: Kernel>(
+    variant: &str,
+    settings: &ExtremeSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let ExtremeSettings { n, h_over_dx, steps, dt, background, .. } = *settings;
     let (domain, particles) = torus(n);
-    let Ok(mut simulation) = scene::<K>(h, domain, background, particles).build() else {
-        return vec![energy, time];
-    };
-    let dt = 0.7;
+    let mut simulation = scene::<K>(h_over_dx, domain, background, particles).build()?;
+    let done = |k: usize| (k + 1) * steps / 10;
+    let times: Vec<f64> = (0..10).map(|k| done(k) as f64 * dt).collect();
     let mut late = 0.0f64;
-    for k in 1..=10 {
-        let until = (k * steps / 10) as f64 * dt;
-        let outcome = simulation.advance(until, dt, &mut ());
-        let on_time = outcome == Outcome::Reached
-            && simulation.work().steps == (k * steps / 10) as u64
-            && simulation.time() == until;
-        late = late.max(if on_time { 0.0 } else { f64::INFINITY });
-    }
-    let heat = fastest(&simulation.particles());
-    let clock = format!("t = {} after {} steps", simulation.time(), simulation.work().steps);
-    vec![energy.found(heat, sci(heat)), time.found(late, clock)]
+    let mut look = |simulation: &mut Simulation<Plain<K>>, k: usize| {
+        let is_on_time = simulation.work().steps == done(k) as u64;
+        let off = (simulation.time() - times[k]).abs();
+        late = late.max(if is_on_time { off } else { f64::INFINITY });
+    };
+    let stepping = (dt, &times[..], fluid(background));
+    let mut record = drive((variant, settings), &mut simulation, stepping, context, &mut look)?;
+    record.put(HEAT, fastest(&simulation.particles()));
+    record.put(CLOCK_ERROR, late);
+    Ok(record)
 }
 
-/// Runs `steps` steps of 0.5 h/c₀.
-fn advance<K: Kernel>(simulation: &mut Simulation<Plain<K>>, steps: u32) -> Outcome {
-    let dt = 0.5 * simulation.kernel().h();
-    simulation.advance(dt * f64::from(steps), dt, &mut ())
+/// A lattice at rest, without and with background pressure.
+pub fn at_rest(tier: Tier) -> Vec<Experiment> {
+    let pressed = if tier == Tier::Full { 1_000_000 } else { 10_000 };
+    let specs = [
+        (CubicSpline::NAME, 0.7, EXTREMES.spec("rest", |_| ())),
+        (
+            WendlandC2::NAME,
+            1.5e-5 * pressed as f64,
+            EXTREMES.spec("pressed", |s| s.steps = pressed),
+        ),
+    ];
+    let experiment = |(kernel, seconds, spec)| {
+        Experiment::new(vec![spec], seconds, move |records| rested(kernel, records[0]))
+    };
+    specs.map(experiment).into()
+}
+
+fn rested(kernel: &str, record: &Record) -> Vec<Entry> {
+    let ExtremeSettings { h_over_dx, steps, background, dt, .. } = record.settings_as();
+    let setting = format!("{steps} steps, p = {background} ρc₀², {kernel}, h/dx = {h_over_dx}");
+    let name = |what: &str| format!("{}.{what}", record.variant);
+    let what = |what: &str| [what.to_string(), setting.clone()];
+    let cold = Bound::Below(1e-20);
+    let energy = Entry::new(&name("energy"), what("lattice at rest"), "½v²/c₀²", cold)
+        .because(Evidence::Invariant, "round-off of forces that cancel must not heat the lattice");
+    let exact = Bound::Equals(0.0);
+    let time = Entry::new(&name("time"), what("clock of a long run"), "|t - n dt|", exact)
+        .because(Evidence::Invariant, "the time is counted in whole steps, so it does not drift");
+    let clock = format!("; t = {} after {} steps", steps as f64 * dt, record.cost.steps);
+    vec![measured(energy, record, HEAT, ""), measured(time, record, CLOCK_ERROR, &clock)]
 }
 
 /// Two particles at one place, or all but, in a lattice stirred at 0.05 c₀.
-pub fn coincident(_tier: Tier) -> Vec<Entry> {
-    let run = |distance: f64| {
-        let what = ["two particles at one place".into(), format!("distance {} dx", sci(distance))];
-        let name = format!("coincident.{distance:e}");
-        let entry = Entry::new(&name, what, "momentum error/Σm|v|", Bound::Below(1e-12)).because(
-            Evidence::Invariant,
-            "no 0/0: finite for 400 steps, and every pair force has its opposite",
-        );
-        let (domain, mut particles) = torus(10);
-        let mut random = Random::new(5);
-        for particle in &mut particles {
-            particle.velocity = Vector2::new(random.normal(), random.normal()) * 0.05;
-        }
-        particles[34].position = particles[33].position + Vector2::new(distance, 0.0);
-        particles[34].velocity = particles[33].velocity;
-        let initial = particles.iter().fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass);
-        let scale: f64 = particles.iter().map(|p| p.mass * p.velocity.norm()).sum();
-        let Ok(mut simulation) = scene::<CubicSpline>(1.2, domain, 0.0, particles).build() else {
-            return entry;
-        };
-        let outcome = advance(&mut simulation, 400);
-        let particles = simulation.particles();
-        let apart = (particles[33].position - particles[34].position).norm();
-        let error = (simulation.momentum() - initial).norm() / scale;
-        let speed = (2.0 * fastest(&particles)).sqrt();
-        match outcome {
-            Outcome::Reached if speed.is_finite() => {
-                let found =
-                    format!("{}; fastest {} c₀, {} dx apart", sci(error), sci(speed), sci(apart));
-                entry.found(error, found)
+pub fn coincident(
+    variant: &str,
+    settings: &ExtremeSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let (domain, mut particles) = torus(10);
+    let mut random = Random::new(5);
+    for particle in &mut particles {
+        particle.velocity = Vector2::new(random.normal(), random.normal()) * 0.05;
+    }
+    let [first, second] = [33, 34];
+    particles[second].position = particles[first].position + Vector2::new(settings.distance, 0.0);
+    particles[second].velocity = particles[first].velocity;
+    let initial = momentum(&particles);
+    let scale: f64 = particles.iter().map(|p| p.mass * p.velocity.norm()).sum();
+    let (mut record, simulation) = drive_to_end((variant, settings), (domain, particles), context)?;
+    let particles = simulation.particles();
+    record.put(MOMENTUM_ERROR, (simulation.momentum() - initial).norm() / scale);
+    record.put(FASTEST, (2.0 * fastest(&particles)).sqrt());
+    record.put(GAP, (particles[first].position - particles[second].position).norm());
+    Ok(record)
+}
+
+/// Two particles at one place.
+pub fn close() -> Vec<Experiment> {
+    let at = |distance: f64| {
+        let spec = EXTREMES.spec("coincident", |s| s.distance = distance);
+        Experiment::of(spec, 0.1, move |record| {
+            let setting = format!("distance {} dx", sci(distance));
+            let what = ["two particles at one place".into(), setting];
+            let name = format!("coincident.{distance:e}");
+            let entry = Entry::new(&name, what, "momentum error/Σm|v|", Bound::Below(1e-12));
+            let entry = entry.because(
+                Evidence::Invariant,
+                "no 0/0: finite for 400 steps, and every pair force has its opposite",
+            );
+            let [speed, gap] = [FASTEST, GAP].map(|key| completed(record, key));
+            let more = format!("; fastest {} c₀, {} dx between them", sci(speed), sci(gap));
+            match speed {
+                Some(speed) if !speed.is_finite() => entry.found(f64::NAN, "not finite"),
+                _ => measured(entry, record, MOMENTUM_ERROR, &more),
             }
-            other => entry.found(f64::NAN, format!("{other:?}")),
-        }
+        })
     };
-    [0.0, 1e-14].map(run).into()
+    [0.0, 1e-14].map(at).into()
 }
 
-/// One particle, and several out of each other's reach.
-pub fn alone(_tier: Tier) -> Vec<Entry> {
-    let run = |count: usize| {
-        let what =
-            ["particles without neighbours".to_string(), format!("{count} in an open domain")];
-        let name = format!("alone.{count}");
-        let entry =
-            Entry::new(&name, what, "distance from x₀ + v t over |v t|", Bound::Below(1e-12))
-                .because(Evidence::Analytic, "free flight; density stays, for nothing changes it");
-        let velocity = Vector2::new(0.3, -0.7);
-        let places: Vec<_> = (0..count).map(|k| Vector2::new(50.0 * k as f64, k as f64)).collect();
-        let particles = places.iter().map(|&x| Particle::fluid(x, velocity, 1.0, 1.0)).collect();
-        let Ok(mut simulation) = scene::<CubicSpline>(1.2, Domain::open(), 0.0, particles).build()
-        else {
-            return entry;
-        };
-        let outcome = advance(&mut simulation, 1000);
-        let flown = velocity * simulation.time();
-        let off = |(p, x): (&Particle, &Vector2<f64>)| {
-            (p.position - x - flown).norm() / flown.norm() + (p.density - 1.0).abs()
-        };
-        let particles = simulation.particles();
-        let worst = particles.iter().zip(&places).map(off).fold(0.0, f64::max);
-        let value = if outcome == Outcome::Reached { worst } else { f64::NAN };
-        entry.found(value, format!("{} after 1000 steps", sci(worst)))
+/// One particle, or several out of each other's reach.
+pub fn alone(
+    variant: &str,
+    settings: &ExtremeSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let velocity = Vector2::new(0.3, -0.7);
+    let place = |k: usize| Vector2::new(50.0 * k as f64, k as f64);
+    let places: Vec<_> = (0..settings.count).map(place).collect();
+    let particles = places.iter().map(|&x| Particle::fluid(x, velocity, 1.0, 1.0)).collect();
+    let (mut record, simulation) =
+        drive_to_end((variant, settings), (Domain::open(), particles), context)?;
+    let flown = velocity * simulation.time();
+    let off = |(p, x): (&Particle, &Vector2<f64>)| {
+        (p.position - x - flown).norm() / flown.norm() + (p.density - 1.0).abs()
     };
-    [1, 4].map(run).into()
+    let particles = simulation.particles();
+    record.put(FLIGHT_ERROR, particles.iter().zip(&places).map(off).fold(0.0, f64::max));
+    Ok(record)
 }
 
-/// A block that hits another at 1000 c₀, with steps for sound and with steps for its speed.
-pub fn fast_blocks(_tier: Tier) -> Vec<Entry> {
-    let run = |(name, step, steps): (&str, f64, u32)| {
-        let what = ["block at 1000 c₀".to_string(), format!("open domain, dt for {name}")];
-        let metric = "momentum error/Σm|v|, 0 if it says so";
-        let entry = Entry::new(&format!("bullet.{name}"), what, metric, Bound::Below(1e-12))
-            .because(
+/// Particles without neighbours.
+pub fn far() -> Vec<Experiment> {
+    let of = |count: usize| {
+        Experiment::of(EXTREMES.spec("alone", |s| s.count = count), 0.1, move |record| {
+            let setting = format!("{count} in an open domain");
+            let what = ["particles without neighbours".to_string(), setting];
+            let (name, metric) = (format!("alone.{count}"), "distance from x₀ + v t over |v t|");
+            let because = "free flight; density stays, for nothing changes it";
+            let entry = Entry::new(&name, what, metric, Bound::Below(1e-12))
+                .because(Evidence::Analytic, because);
+            measured(entry, record, FLIGHT_ERROR, " after 1000 steps")
+        })
+    };
+    [1, 4].map(of).into()
+}
+
+/// A block that hits another.
+pub fn bullet(
+    variant: &str,
+    settings: &ExtremeSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let velocity = Vector2::new(settings.speed, 0.0);
+    let at_rest = solver::lattice(Vector2::zeros(), 1.0, 10, 10).map(resting);
+    let moving = solver::lattice(Vector2::new(-12.0, 0.0), 1.0, 10, 10)
+        .map(|place| Particle { velocity, ..resting(place) });
+    let particles: Vec<Particle> = at_rest.chain(moving).collect();
+    let initial = momentum(&particles);
+    let (mut record, simulation) =
+        drive_to_end((variant, settings), (Domain::open(), particles), context)?;
+    let particles = simulation.particles();
+    let total = particles.iter().fold(-initial, |sum, p| sum + p.velocity * p.mass);
+    let scale: f64 = particles.iter().map(|p| p.mass * p.velocity.norm()).sum();
+    let error = if scale > 0.0 { total.norm() / scale } else { total.norm() };
+    record.put(MOMENTUM_ERROR, error);
+    record.put(FASTEST, (2.0 * fastest(&particles)).sqrt());
+    Ok(record)
+}
+
+/// A block at 1000 c₀, with steps for sound and with steps for its speed.
+pub fn fast_blocks() -> Vec<Experiment> {
+    let of = |(name, dt, steps): (&'static str, f64, usize)| {
+        let spec = EXTREMES.spec("bullet", |s| (s.dt, s.steps) = (dt, steps));
+        Experiment::of(spec, 0.2, move |record| {
+            let what = ["block at 1000 c₀".to_string(), format!("open domain, dt for {name}")];
+            let metric = "momentum error/Σm|v|, 0 if it says so";
+            let entry = Entry::new(&format!("bullet.{name}"), what, metric, Bound::Below(1e-12));
+            let entry = entry.because(
                 Evidence::Invariant,
                 "finite with exact momentum, or a typed divergence: never NaN, never a hang. With steps for \
                  sound the blocks pass through each other unseen, so there it is finiteness alone",
             );
-        let at_rest = solver::lattice(Vector2::zeros(), 1.0, 10, 10).map(resting);
-        let moving = solver::lattice(Vector2::new(-12.0, 0.0), 1.0, 10, 10)
-            .map(|place| Particle { velocity: Vector2::new(1000.0, 0.0), ..resting(place) });
-        let particles: Vec<Particle> = at_rest.chain(moving).collect();
-        let initial = particles.iter().fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass);
-        let Ok(mut simulation) = scene::<CubicSpline>(1.2, Domain::open(), 0.0, particles).build()
-        else {
-            return entry;
-        };
-        let outcome = simulation.advance(step * f64::from(steps), step, &mut ());
-        let particles = simulation.particles();
-        let fastest = fastest(&particles);
-        match outcome {
-            Outcome::Diverged(divergence) => entry.found(0.0, divergence.to_string()),
-            _ if !fastest.is_finite() => entry.found(f64::NAN, "not finite".into()),
-            _ => {
-                let value = momentum(&particles, initial);
-                let found =
-                    format!("momentum to {}, fastest {:.0} c₀", sci(value), (2.0 * fastest).sqrt());
-                entry.found(value, found)
+            let speed = completed(record, FASTEST);
+            match record.status {
+                Status::Diverged { .. } => entry.found(0.0, in_words(record)),
+                _ if speed.is_some_and(|speed| !speed.is_finite()) => {
+                    entry.found(f64::NAN, "not finite")
+                }
+                _ => {
+                    let more = speed.map_or(String::new(), |v| format!(", fastest {v:.0} c₀"));
+                    measured(entry, record, MOMENTUM_ERROR, &more)
+                }
             }
-        }
+        })
     };
-    vec![run(("sound", 0.3, 200)), run(("its speed", 1e-4, 2000))]
+    [("sound", 0.3, 200), ("its speed", 1e-4, 2000)].map(of).into()
 }
 
-/// What is not a particle is refused before the first step.
-pub fn refused(_tier: Tier) -> Vec<Entry> {
+/// What is not a particle is refused before the first step, and the reason names it.
+pub fn refused(
+    variant: &str,
+    settings: &ExtremeSettings,
+    _context: &Context,
+) -> Result<Record, RunError> {
     let build = |particles: Vec<Particle>, domain| {
         scene::<CubicSpline>(1.2, domain, 0.0, particles).build().err()
     };
@@ -226,11 +316,21 @@ pub fn refused(_tier: Tier) -> Vec<Entry> {
         ),
         matches!(build(few, Domain::open()), Some(SceneError::Empty)),
     ];
-    let count = refusals.iter().filter(|refused| **refused).count() as f64;
-    let setting =
-        "NaN place, infinite speed, negative mass, no density, period of 4 dx, no particle";
-    let what = ["what is not a scene".to_string(), setting.into()];
-    let because = "each with its reason, by type, before the first step";
-    let entry = Entry::new("refused", what, "refusals", Bound::Equals(6.0));
-    vec![entry.because(Evidence::Invariant, because).found(count, format!("{count} of 6 refused"))]
+    let mut record = record_of(variant, settings);
+    record.put(REFUSALS, refusals.iter().filter(|refused| **refused).count() as f64);
+    Ok(record)
+}
+
+/// Scenes that are none.
+pub fn no_scenes() -> Vec<Experiment> {
+    let judge = |record: &Record| {
+        let setting =
+            "NaN place, infinite speed, negative mass, no density, period of 4 dx, no particle";
+        let what = ["what is not a scene".to_string(), setting.into()];
+        let because = "each with its reason, by type, before the first step";
+        let entry = Entry::new("refused", what, "refusals", Bound::Equals(6.0))
+            .because(Evidence::Invariant, because);
+        measured(entry, record, REFUSALS, " of 6 refused")
+    };
+    vec![Experiment::of(EXTREMES.spec("refused", |_| ()), 0.1, judge)]
 }

@@ -1,10 +1,9 @@
-//! Limits and margins that this study measured before: not the truth, but nothing may get worse
-//! unnoticed. The numbers depend on no clock and no machine, only on the program and, in their last
-//! digits, on its libm; so they stand here, to four digits.
+//! Limits that this study measured before: not the truth, but nothing may get worse unnoticed. The numbers
+//! depend on no clock and no machine, only on the program and, in their last digits, on its libm; so they
+//! stand here, to four digits.
 //!
-//! Obtained with `studies::stability::study(Tier::Full)`: the limits with boxes of 12 × 12 particles, the
-//! margins at the commit that introduced this file. A change that moves one on purpose changes it here, and
-//! says why.
+//! Obtained with the full tier, boxes of 12 × 12 particles. A change that moves one on purpose changes it
+//! here, and says why.
 
 use base::gate::{Bound, Evidence, Gate};
 
@@ -80,30 +79,6 @@ const LIMITS: &[(&str, f64)] = &[
     ("stability.wendland-c2.h2.leapfrog.stiffnessinf.alpha0.1.delta0", 1.703),
 ];
 
-/// Variant of Couette flow at 20 rows: longest stable dt over the default dt, and over the theory of
-/// the periodic lattice.
-const DEFAULTS: &[(&str, [f64; 2])] = &[
-    ("seed", [2.8455, 1.0098]),
-    ("interface-wall", [2.8596, 1.0148]),
-    ("seed-small-eta", [2.8194, 1.0149]),
-    ("cubic-leapfrog", [1.3203, 1.0149]),
-    ("wendland-leapfrog", [1.2903, 1.0101]),
-    ("quintic-pc", [1.3206, 1.0151]),
-    ("plain", [1.3401, 1.0299]),
-    ("curved", [1.3401, 1.0299]),
-    ("modern", [1.3734, 1.0555]),
-    ("modern-mirror", [1.3734, 1.0555]),
-    ("cure-background", [2.8596, 1.0148]),
-    ("cure-stress", [2.8455, 1.0098]),
-    ("cure-viscosity", [2.8173, 1.0100]),
-    ("cure-xsph", [2.8455, 1.0098]),
-    ("cure-diffusion", [2.8455, 1.0098]),
-    ("cure-shifting", [2.8455, 1.0098]),
-    ("cure-both", [2.8455, 1.0098]),
-    ("cure-leapfrog", [2.8877, 1.0248]),
-    ("extrapolating-wall", [1.3401, 1.0299]),
-];
-
 const BECAUSE: &str = "what this study measured when its baseline was set, less 1 % for the \
                        resolution of the bisection";
 
@@ -112,13 +87,4 @@ pub fn limit_gate(id: &str) -> Option<Gate> {
     let (_, limit) = LIMITS.iter().find(|(name, _)| *name == id)?;
     let bound = Bound::Above(SLACK * limit);
     Some(Gate::new(format!("{id}.limit"), "c0 dt/h", bound, Evidence::Regression, BECAUSE))
-}
-
-/// The gate that the margin (or the ratio to theory) of a default step must not shrink.
-pub fn default_gate(id: &str, variant: &str, what: &str) -> Option<Gate> {
-    let (_, [margin, ratio]) = DEFAULTS.iter().find(|(name, _)| *name == variant)?;
-    let baseline = if what == "margin" { margin } else { ratio };
-    let bound = Bound::Above(SLACK * baseline);
-    let metric = if what == "margin" { "longest stable dt/default dt" } else { "measured/theory" };
-    Some(Gate::new(format!("{id}.{what}"), metric, bound, Evidence::Regression, BECAUSE))
 }

@@ -1,5 +1,4 @@
-//! The largest stable time step, measured, against linear theory; and how far the default steps of
-//! the channel variants are from it.
+//! A lattice at rest: the largest stable time step, measured, against linear theory.
 //!
 //! A box of 12 × 12 particles at rest with velocity noise of 1e-8 c₀ runs for N steps at a dt; dt is
 //! bisected to 0.4 %. It grows if its energy (kinetic and acoustic) exceeds a hundred times the start
@@ -8,24 +7,129 @@
 //! limit), at least 300 and at most 12 000: so weakly growing modes have time to show.
 
 mod baseline;
-mod defaults;
+mod beyond;
 mod noisy_box;
+mod studies;
 
-pub use defaults::{DefaultStep, measure_default};
-pub use harness::bisect::{Bracket, Growth, largest_stable};
-pub use noisy_box::{Limit, NOISE, NoisyBox};
+pub use noisy_box::{Limit, NoisyBox, Theory};
 
 use std::marker::PhantomData;
 
-use rayon::prelude::*;
 use solver::{
     CubicSpline, Integrator, Kernel, Leapfrog, PredictorCorrector, QuinticSpline, WendlandC2,
 };
 
-use base::gate::{Bound, Evidence, Gate};
-use harness::{case::Tier, suite::Study};
-use maths::theory::{Stepping, lattice::SquareLattice, time_step};
-use report::{Axis, Cell, Colour, Column, Dash, Figure, Layer, Plot, Series, Shape, Table};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::{MetricKey, Record, Status},
+    spec::{Bisect, RunSpec},
+};
+use harness::{
+    bisect::{Bracket, STABLE, UNSTABLE},
+    case::{Planned, Tier, Variant},
+    composed::{Composed, Composition},
+    declare::Declaration,
+    runs::Runs,
+};
+use maths::theory::{Stepping, time_step};
+
+use crate::extremes;
+
+base::settings! {
+    /// Settings of a periodic lattice at rest with velocity noise; its side, its density and its sound
+    /// speed are 1.
+    pub struct BoxSettings {
+        /// particles along each side
+        n: usize ["-"] in 4..=400 = 12,
+        /// smoothing length over spacing
+        h_over_dx: f64 ["-"] in 0.5..=5.0 = 1.3,
+        /// sound against viscosity, c0 h/nu; auto: no viscosity at all
+        stiffness: Option<f64> ["-"] in 1e-6..=1e9 = Some(10.0),
+        /// alpha of the artificial viscosity, on every pair
+        alpha: f64 ["-"] in 0.0..=10.0 = 0.0,
+        /// delta of the density diffusion
+        delta: f64 ["-"] in 0.0..=10.0 = 0.0,
+        /// time step
+        courant: f64 ["h/c0"] in 1e-9..=1e3 = 0.25,
+        /// number of time steps
+        steps: usize ["-"] in 4..=100000000 = 300,
+        /// do all steps; otherwise the run is over as soon as its energy exceeds a hundred times that of
+        /// the start
+        to_the_end: bool = false,
+    }
+}
+
+/// Did the energy grow?
+pub const GREW: MetricKey = MetricKey::new(
+    "grew",
+    "-",
+    "1 if the energy exceeded a hundred times that of the start at some step, or in the mean of the last \
+     quarter of the steps 1.5 times that of the second; else 0",
+);
+/// The energy of the end.
+pub const ENERGY: MetricKey =
+    MetricKey::new("energy_ratio", "-", "kinetic and acoustic energy at the end/at the start");
+/// Growth of the stiffest wave.
+pub const WAVE_GROWTH: MetricKey = MetricKey::new(
+    "wave_growth",
+    "1/step",
+    "ln(amplitude at the end/at the start)/steps, of the sound wave of highest frequency",
+);
+/// Phase that the stiffest wave turns by in a step.
+pub const WAVE_ANGLE: MetricKey =
+    MetricKey::new("wave_angle", "-", "omega dt of that wave on the lattice, exact in time");
+
+/// A lattice at rest.
+pub static RESTING_BOX: Composed<BoxSettings> = Composed {
+    name: "resting_box",
+    about: "A periodic lattice at rest with velocity noise of 1e-8 c0: every wave of the box at once, too \
+            small to be anything but linear. Whether its energy grows says whether the time step is \
+            stable, and linear theory of the same box says where the limit is.",
+    variants,
+    is_stable,
+    declaration: |_| Declaration::default(),
+    plan,
+    studies: studies::all,
+};
+
+fn is_stable(record: &Record) -> bool {
+    record.status == Status::Completed && record.value(GREW) == Some(0.0)
+}
+
+fn variants() -> Vec<Composition<BoxSettings>> {
+    fn variant<K: Kernel, I: Stepping>(adjust: fn(&mut BoxSettings)) -> Composition<BoxSettings> {
+        let about = "one kernel and one integrator; the equations, and damping if it is set";
+        Composition {
+            variant: Variant { name: name_of::<K, I>(), about },
+            adjust,
+            run: noisy_box::run::<K, I>,
+            rules: noisy_box::rules::<K, I>,
+            lacks: Vec::new(),
+        }
+    }
+    vec![
+        variant::<CubicSpline, Leapfrog>(|_| ()),
+        variant::<CubicSpline, PredictorCorrector>(|_| ()),
+        variant::<QuinticSpline, Leapfrog>(|s| s.h_over_dx = 1.0),
+        variant::<QuinticSpline, PredictorCorrector>(|s| s.h_over_dx = 1.0),
+        variant::<WendlandC2, Leapfrog>(|s| s.h_over_dx = 2.0),
+        variant::<WendlandC2, PredictorCorrector>(|s| s.h_over_dx = 2.0),
+    ]
+}
+
+/// Name of the variant with this kernel and this integrator.
+fn name_of<K: Kernel, I: Stepping>() -> &'static str {
+    use time_step::Integrator::{Leapfrog, PredictorCorrector};
+    match (K::NAME, I::THEORY) {
+        (CubicSpline::NAME, Leapfrog) => "cubic-leapfrog",
+        (CubicSpline::NAME, PredictorCorrector) => "cubic-pc",
+        (QuinticSpline::NAME, Leapfrog) => "quintic-leapfrog",
+        (QuinticSpline::NAME, PredictorCorrector) => "quintic-pc",
+        (WendlandC2::NAME, Leapfrog) => "wendland-leapfrog",
+        (WendlandC2::NAME, PredictorCorrector) => "wendland-pc",
+        _ => "none",
+    }
+}
 
 /// Particles along each side of the box: three supports of the widest kernel. Theory is that of the same
 /// box. A larger one has waves between, of which one may be stiffer: with 20 limits are up to 1.6 %
@@ -33,22 +137,14 @@ use report::{Axis, Cell, Colour, Column, Dash, Figure, Layer, Plot, Series, Shap
 const SIDE: usize = 12;
 /// c₀h/ν of the study; the leapfrog also without viscosity.
 const STIFFNESS: [f64; 5] = [1.0, 3.0, 10.0, 30.0, 100.0];
-/// Where "no viscosity" stands on the axis of c₀h/ν.
-const INVISCID_AT: f64 = 1000.0;
 
-/// One bisection: what it is called, and its doing.
+/// One bisection: kernel and integrator, the box, theory.
 pub struct Point {
+    variant: &'static str,
     kernel: &'static str,
-    h_over_dx: f64,
     integrator: &'static str,
-    stiffness: f64,
-    alpha: f64,
-    delta: f64,
-    measure: fn(&Point) -> Limit,
-}
-
-fn measure<K: Kernel, I: Stepping>(point: &Point) -> Limit {
-    point.noisy_box::<K>().limit::<I>()
+    settings: BoxSettings,
+    theory: Theory,
 }
 
 impl Point {
@@ -57,23 +153,57 @@ impl Point {
         h_over_dx: f64,
         [stiffness, alpha, delta]: [f64; 3],
     ) -> Self {
+        let stiffness = stiffness.is_finite().then_some(stiffness);
+        let mut settings =
+            BoxSettings { n: SIDE, h_over_dx, stiffness, alpha, delta, ..Default::default() };
+        let theory = NoisyBox::<K>::new(&settings).theory(I::THEORY);
+        (settings.courant, settings.steps) = (theory.limit, theory.steps);
         let (kernel, integrator) = (K::NAME, <I as Integrator<()>>::NAME);
-        Self { kernel, h_over_dx, integrator, stiffness, alpha, delta, measure: measure::<K, I> }
+        Self { variant: name_of::<K, I>(), kernel, integrator, settings, theory }
     }
 
     /// The box of this point, seen through its kernel.
     pub fn noisy_box<K: Kernel>(&self) -> NoisyBox<K> {
-        let Point { h_over_dx, stiffness, alpha, delta, .. } = *self;
-        NoisyBox { n: SIDE, h_over_dx, stiffness, alpha, delta, kernel: PhantomData }
+        NoisyBox::new(&self.settings)
+    }
+
+    /// c₀h/ν, infinite without viscosity.
+    fn stiffness(&self) -> f64 {
+        self.settings.stiffness.unwrap_or(f64::INFINITY)
+    }
+
+    /// The bisection.
+    fn spec(&self) -> RunSpec {
+        let bisect = Bisect {
+            setting: "courant".into(),
+            guess: self.theory.limit,
+            unit: 1.0,
+            resolution: noisy_box::RESOLUTION,
+            end: None,
+        };
+        RESTING_BOX
+            .spec(self.variant, |s| *s = self.settings.clone())
+            .allow_unstable()
+            .bisect(bisect)
+    }
+
+    /// What it found, beside theory.
+    fn limit(&self, runs: &Runs) -> Limit {
+        let bracket = |record: &Record| {
+            let [stable, unstable] = [STABLE, UNSTABLE].map(|name| record.metric(name));
+            Some(Bracket { stable: stable?, unstable: unstable? })
+        };
+        Limit { measured: runs.completed(&self.spec()).and_then(bracket), theory: self.theory }
     }
 
     /// What damps, in words.
     fn fluid(&self) -> String {
         let number = |name: &str, x: f64| format!("{name} = {x}");
+        let BoxSettings { stiffness, alpha, delta, .. } = self.settings;
         let parts = [
-            self.stiffness.is_finite().then(|| number("c₀h/ν", self.stiffness)),
-            (self.alpha > 0.0).then(|| number("α", self.alpha)),
-            (self.delta > 0.0).then(|| number("δ", self.delta)),
+            stiffness.map(|stiffness| number("c₀h/ν", stiffness)),
+            (alpha > 0.0).then(|| number("α", alpha)),
+            (delta > 0.0).then(|| number("δ", delta)),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         if parts.is_empty() { "nothing damps".into() } else { parts.join(", ") }
@@ -81,11 +211,13 @@ impl Point {
 
     /// Name in gates.
     fn id(&self) -> String {
-        let Self { kernel, h_over_dx, integrator, stiffness, alpha, delta, .. } = self;
-        let damping = match (alpha > &0.0, delta > &0.0) {
-            (false, false) => String::new(),
-            _ => format!(".alpha{alpha}.delta{delta}"),
+        let Self { kernel, integrator, .. } = self;
+        let BoxSettings { h_over_dx, alpha, delta, .. } = self.settings;
+        let damping = match alpha > 0.0 || delta > 0.0 {
+            false => String::new(),
+            true => format!(".alpha{alpha}.delta{delta}"),
         };
+        let stiffness = self.stiffness();
         format!("stability.{kernel}.h{h_over_dx}.{integrator}.stiffness{stiffness}{damping}")
     }
 }
@@ -128,9 +260,10 @@ fn points(tier: Tier) -> Vec<Point> {
     points
 }
 
-/// Courant numbers at which the weak growth of the predictor-corrector is measured, and the steps.
+/// Courant numbers at which the weak growth of the predictor-corrector is measured.
 const WEAK: [f64; 5] = [0.2, 0.3, 0.4, 0.5, 0.7];
-pub const WEAK_STEPS: u64 = 300;
+/// Steps of that measurement.
+pub const WEAK_STEPS: usize = 300;
 
 /// The box of that measurement.
 pub fn undamped_box() -> NoisyBox<CubicSpline> {
@@ -139,59 +272,28 @@ pub fn undamped_box() -> NoisyBox<CubicSpline> {
     NoisyBox { n: SIDE, h_over_dx: 1.3, stiffness, alpha: 0.0, delta: 0.0, kernel }
 }
 
-/// Measured growth a step of the stiffest wave and its ω dt, at one Courant number.
-fn weak_growth(courant: f64) -> [f64; 2] {
-    undamped_box().stiffest_wave::<PredictorCorrector>(courant, WEAK_STEPS)
+/// Measures the growth of the stiffest wave at one Courant number.
+fn weak_growth(variant: &str, courant: f64) -> RunSpec {
+    let set = |s: &mut BoxSettings| {
+        (s.n, s.h_over_dx, s.stiffness) = (SIDE, 1.3, None);
+        (s.courant, s.steps, s.to_the_end) = (courant, WEAK_STEPS, true);
+    };
+    RESTING_BOX.spec(variant, set).allow_unstable()
 }
 
-/// The study.
-pub fn study(tier: Tier) -> Study {
-    let points = points(tier);
-    let variants = defaults::variants(tier);
-    let (limits, (weak, steps)) = rayon::join(
-        || points.par_iter().map(|point| (point.measure)(point)).collect::<Vec<Limit>>(),
-        || {
-            rayon::join(
-                || WEAK.par_iter().map(|&courant| weak_growth(courant)).collect::<Vec<_>>(),
-                || variants.par_iter().map(|v| measure_default(v)).collect::<Vec<_>>(),
-            )
-        },
-    );
-    let mut study = Study::new("time-step-limits", "The largest stable time step")
-        .prose(METHOD)
-        .block(figure(&points, &limits, &weak))
-        .block(limits_table(&points, &limits))
-        .prose(WEAK_TEXT)
-        .block(weak_table(&weak))
-        .prose(DEFAULTS_TEXT)
-        .block(defaults::table(&steps));
-    for (point, limit) in points.iter().zip(&limits) {
-        study = study.judge(ratio_gate(point), limit.ratio());
-        if let Some(gate) = baseline::limit_gate(&point.id()) {
-            study = study.judge(gate, limit.middle());
-        }
-    }
-    for (courant, [growth, omega_dt]) in WEAK.iter().zip(&weak) {
-        study = study.judge(weak_gate(*courant), growth / theory_of_weak_growth(*omega_dt));
-    }
-    defaults::judge(study, &steps)
+/// The same of the predictor-corrector.
+fn weak(courant: f64) -> RunSpec {
+    weak_growth(name_of::<CubicSpline, PredictorCorrector>(), courant)
 }
 
-const METHOD: &str = "A periodic lattice of 12 × 12 particles at rest, cubic or other kernel, \
-    η² = 0.01 h², velocity noise of 10⁻⁸ c₀: every wave of the box, too small to be anything but \
-    linear. The longest stable dt is bisected to 0.4 %; a run grows if its energy exceeds a hundred \
-    times the start, or if its mean over the last quarter exceeds that over the second by half. \
-    Theory is linear stability of the same box (every wave vector, the coupled limit of sound and \
-    damping, not the smaller of two limits). The predictor-corrector has no limit without damping: \
-    it grows at every dt. Its limits at c₀h/ν above 10, where weak growth takes thousands of steps to \
-    show, are left to the full tier.";
-const WEAK_TEXT: &str = "Without damping the predictor-corrector amplifies sound by \
-    ½ ln(1 + (ω dt)⁴/4) ≈ (ω dt)⁴/8 a step. Measured on the stiffest wave of the box, cubic spline, \
-    h/dx = 1.3, over 300 steps; dt/h c₀ is the Courant number.";
-const DEFAULTS_TEXT: &str = "How much longer the default step of each channel variant could be. The \
-    limit is bisected on the Couette run itself (20 rows, walls and all, the lattice disturbed by \
-    10⁻⁶ dx, 1500 steps; a run that diverges, or whose cross-flow exceeds V, is unstable), so it \
-    contains walls, motion and stabilisers, which the theory beside it does not.";
+fn plan(tier: Tier) -> Vec<Planned> {
+    // A bisection takes about a dozen runs, a step of a box about 50 µs.
+    let seconds = |point: &Point| 6e-4 * point.theory.steps as f64;
+    let limits = points(tier);
+    let limits = limits.iter().map(|point| Planned::new(point.spec()).taking(seconds(point)));
+    let weak = WEAK.map(|courant| Planned::new(weak(courant)).taking(0.02));
+    limits.chain(weak).chain(extremes::plan(beyond::experiments())).collect()
+}
 
 /// The gate on a measured limit over its theory.
 pub fn ratio_gate(point: &Point) -> Gate {
@@ -221,143 +323,16 @@ pub fn theory_of_weak_growth(omega_dt: f64) -> f64 {
     time_step::predictor_corrector_growth(omega_dt)
 }
 
-fn limits_table(points: &[Point], limits: &[Limit]) -> Table {
-    let columns = vec![
-        Column::text("kernel"),
-        Column::num("h/dx", ""),
-        Column::text("integrator"),
-        Column::text("damping"),
-        Column::num("measured c₀dt/h", ""),
-        Column::num("theory", ""),
-        Column::num("measured/theory", ""),
-        Column::num("steps a run", ""),
-    ];
-    let table = Table::new("Longest stable step, measured and in theory.", columns);
-    points.iter().zip(limits).fold(table, |table, (point, limit)| {
-        table.row(vec![
-            Cell::text(point.kernel),
-            Cell::num(point.h_over_dx, 2),
-            Cell::text(point.integrator),
-            Cell::text(point.fluid()),
-            Cell::num(limit.middle(), 4),
-            Cell::num(limit.theory, 4),
-            Cell::num(limit.ratio(), 4),
-            Cell::count(limit.steps),
-        ])
-    })
-}
-
-fn weak_table(weak: &[[f64; 2]]) -> Table {
-    let columns = vec![
-        Column::num("Courant number", ""),
-        Column::num("ω dt", ""),
-        Column::num("measured growth", "1/step"),
-        Column::num("½ ln(1 + (ω dt)⁴/4)", "1/step"),
-        Column::num("(ω dt)⁴/8", "1/step"),
-    ];
-    let caption = "Weak instability of the predictor-corrector without damping.";
-    WEAK.iter().zip(weak).fold(Table::new(caption, columns), |table, (courant, &[growth, wdt])| {
-        table.row(vec![
-            Cell::num(*courant, 2),
-            Cell::num(wdt, 4),
-            Cell::sci(growth, 4),
-            Cell::sci(theory_of_weak_growth(wdt), 4),
-            Cell::sci(wdt.powi(4) / 8.0, 4),
-        ])
-    })
-}
-
-/// The theoretical limit over c₀h/ν, without artificial damping.
-fn theory_line<K: Kernel>(h_over_dx: f64, integrator: time_step::Integrator) -> Vec<(f64, f64)> {
-    let lattice = SquareLattice::<K>::new(h_over_dx, noisy_box::ETA2);
-    let at = |k: u32| {
-        let stiffness = 0.8 * (400.0f64 / 0.8).powf(f64::from(k) / 60.0);
-        let medium =
-            time_step::Medium { c0: 1.0, h: 1.0, nu: 1.0 / stiffness, alpha: 0.0, delta: 0.0 };
-        let modes = time_step::modes(&lattice, SIDE, &medium);
-        (stiffness, time_step::time_step_limit(&modes, integrator))
-    };
-    (0..=60).map(at).collect()
-}
-
-fn figure(points: &[Point], limits: &[Limit], weak: &[[f64; 2]]) -> Figure {
-    use time_step::Integrator::{Leapfrog as LeapfrogTheory, PredictorCorrector as MidpointTheory};
-    let mut plot = Plot::new(
-        "Longest stable step",
-        Axis::log("sound against viscosity c₀h/ν [1]").ticks([1.0, 3.0, 10.0, 30.0, 100.0]),
-        Axis::log("longest stable step c₀ dt/h [1]").ticks([0.3, 0.5, 1.0, 2.0]),
-    );
-    let both = [LeapfrogTheory, MidpointTheory];
-    let kernels = [
-        (CubicSpline::NAME, 1.3, both.map(|i| theory_line::<CubicSpline>(1.3, i))),
-        (QuinticSpline::NAME, 1.0, both.map(|i| theory_line::<QuinticSpline>(1.0, i))),
-    ];
-    for (k, (kernel, h_over_dx, [leapfrog, midpoint])) in kernels.into_iter().enumerate() {
-        let colour = Colour::cycle(k);
-        plot = plot
-            .layer(Series::line(format!("{kernel}, leapfrog, theory"), leapfrog).colour(colour))
-            .layer(
-                Series::line(format!("{kernel}, predictor-corrector, theory"), midpoint)
-                    .colour(colour)
-                    .dash(Dash::Dashed),
-            );
-        for (integrator, shape) in
-            [("predictor-corrector", Shape::Square), ("leapfrog", Shape::Circle)]
-        {
-            let chosen = points.iter().zip(limits).filter(|(p, _)| {
-                p.kernel == kernel
-                    && p.h_over_dx == h_over_dx
-                    && p.integrator == integrator
-                    && p.alpha + p.delta == 0.0
-            });
-            let marks = chosen.map(|(p, l)| (p.stiffness.min(INVISCID_AT), l.middle()));
-            let name = format!("{kernel}, {integrator}, measured");
-            let marks = Series::markers(name, marks.collect()).colour(colour).shape(shape);
-            // Where both integrators have one limit, an open square around a dot.
-            let is_square = shape == Shape::Square;
-            plot = plot.layer(if is_square { marks.open().size(11.0) } else { marks });
-        }
-    }
-    plot = plot.layer(Layer::vertical(INVISCID_AT, "ν = 0"));
-    Figure::new(
-        "time-step-limits",
-        "Left: symbols are bisected runs of 12 × 12 particles, lines linear stability of the same \
-         box; at c₀h/ν ≲ 3 viscosity decides, and both integrators have the same limit. Right: \
-         growth of the stiffest sound wave a step of the predictor-corrector without viscosity.",
-    )
-    .title("Stability of the time step")
-    .panel(plot.legend(report::Legend::Outside))
-    .panel(weak_plot(weak))
-    .columns(2)
-    .panel_size(360.0, 290.0)
-}
-
-fn weak_plot(weak: &[[f64; 2]]) -> Plot {
-    let measured = weak.iter().map(|[growth, wdt]| (*wdt, *growth)).collect();
-    let wave = |k: u32| 0.2 + 0.6 * f64::from(k) / 40.0;
-    let line = |f: &dyn Fn(f64) -> f64| (0..=40).map(|k| (wave(k), f(wave(k)))).collect();
-    Plot::new(
-        "Weak instability of the predictor-corrector",
-        Axis::log("ω dt of the stiffest wave [1]").ticks([0.2, 0.3, 0.4, 0.5, 0.6, 0.8]),
-        Axis::log("growth of the amplitude a step [1]"),
-    )
-    .layer(Series::line("½ ln(1 + (ω dt)⁴/4)", line(&theory_of_weak_growth)).colour(Colour::BLACK))
-    .layer(
-        Series::line("(ω dt)⁴/8", line(&|x| x.powi(4) / 8.0))
-            .colour(Colour::GREY)
-            .dash(Dash::Dotted),
-    )
-    .layer(Series::markers("measured", measured))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use base::gate::check_all;
+    use harness::{case::Case, context::Context};
 
     fn limit<I: Stepping>(stiffness: f64) -> Limit {
         let point = Point::new::<CubicSpline, I>(1.3, [stiffness, 0.0, 0.0]);
-        (point.measure)(&point)
+        let fluid = point.noisy_box::<CubicSpline>();
+        fluid.limit_of(|| fluid.plain::<I>())
     }
 
     #[test]
@@ -374,11 +349,34 @@ mod tests {
 
     #[test]
     fn undamped_sound_grows_as_theory_says_and_not_in_the_leapfrog() {
-        let [growth, omega_dt] = weak_growth(0.5);
-        assert!((growth / theory_of_weak_growth(omega_dt) - 1.0).abs() < 1e-4);
+        let record = |spec: RunSpec| RESTING_BOX.run(&spec, &Context::default()).expect("a run");
+        let run = record(weak(0.5));
+        let [growth, angle] =
+            [WAVE_GROWTH, WAVE_ANGLE].map(|key| run.value(key).expect("a number"));
+        assert!((growth / theory_of_weak_growth(angle) - 1.0).abs() < 1e-4);
         // The leapfrog's energy beats by ω dt, and that is all.
-        let [growth, _] = undamped_box().stiffest_wave::<Leapfrog>(0.5, 1000);
-        assert!(growth.abs() < 1e-3, "{growth}");
+        let run = record(weak_growth("cubic-leapfrog", 0.5));
+        assert!(run.value(WAVE_GROWTH).expect("measured").abs() < 3e-3, "{:?}", run.metrics);
+    }
+
+    /// What the plan bisects is what the limit of a scene is bisected by.
+    #[test]
+    fn a_planned_limit_is_that_of_its_scene() {
+        let point = Point::new::<CubicSpline, Leapfrog>(1.3, [1.0, 0.0, 0.0]);
+        let spec = point.spec();
+        let record =
+            harness::make::run(&RESTING_BOX, &spec, &Context::default()).expect("a record");
+        let found = limit::<Leapfrog>(1.0).measured.expect("a limit");
+        assert_eq!(record.metric(STABLE), Some(found.stable));
+        assert_eq!(record.metric(UNSTABLE), Some(found.unstable));
+    }
+
+    #[test]
+    fn a_step_beyond_the_limit_is_refused_unless_allowed() {
+        let spec = RESTING_BOX.spec("cubic-leapfrog", |s| s.courant = 2.0);
+        assert!(RESTING_BOX.run(&spec, &Context::default()).is_err());
+        let record = RESTING_BOX.run(&spec.allow_unstable(), &Context::default()).expect("a run");
+        assert!(!is_stable(&record) && record.value(GREW) == Some(1.0));
     }
 
     #[test]
@@ -388,9 +386,6 @@ mod tests {
         assert_eq!(check_all(&gates), Ok(()));
         for point in points {
             assert!(baseline::limit_gate(&point.id()).is_some(), "{}", point.id());
-        }
-        for variant in defaults::variants(Tier::Full) {
-            assert!(baseline::default_gate("x", variant, "margin").is_some(), "{variant}");
         }
     }
 }

@@ -1,17 +1,27 @@
-//! A periodic lattice with velocity noise of 1e-8 c₀: every wave of the box at once, too small to be
-//! anything but linear.
+//! One run of a periodic lattice with velocity noise of 1e-8 c₀: every wave of the box at once, too small
+//! to be anything but linear.
 
 use std::marker::PhantomData;
 
 use nalgebra::{Complex, Vector2};
 use solver::terms::Always;
 use solver::{
-    ArtificialViscosity, Compose, Continuity, DensityDiffusion, Domain, Flow, Kernel, Limits,
-    Observer, Open, Outcome, Particle, Pressure, Scene, Scheme, Simulation, Tait, Viscosity,
+    ArtificialViscosity, Compose, Continuity, DensityDiffusion, Domain, EquationOfState, Flow,
+    Integrator, Kernel, Limits, Numbers, Observer, Open, Particle, Pressure, Scene, Scheme,
+    Stepper, Tait, Viscosity,
 };
 
-use base::random::Random;
-use harness::bisect::{Bracket, Growth, largest_stable};
+use super::{BoxSettings, ENERGY, GREW, RESTING_BOX, WAVE_ANGLE, WAVE_GROWTH};
+use base::{
+    number,
+    random::Random,
+    record::{Cost, Record, Status},
+};
+use harness::{
+    bisect::{Bracket, Growth, largest_stable},
+    case::{Rules, RunError},
+    runner::{self, Context},
+};
 use maths::theory::{
     Stepping,
     lattice::{SquareLattice, wave_vectors},
@@ -23,7 +33,7 @@ pub const ETA2: f64 = 0.01;
 /// Initial velocity noise, standard deviation of each component \[c₀\].
 pub const NOISE: f64 = 1e-8;
 /// Resolution of the bisection, relative to the theoretical limit.
-const RESOLUTION: f64 = 0.004;
+pub const RESOLUTION: f64 = 0.004;
 /// A growth that theory gives at this much beyond the limit must be seen, so it sets the number of
 /// steps; the number has no other influence on the limit that is found.
 const SEEN_FROM: f64 = 1.005;
@@ -52,21 +62,28 @@ pub struct NoisyBox<K> {
     pub kernel: PhantomData<K>,
 }
 
+/// What theory says of a box and an integrator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Theory {
+    /// [`time_step::time_step_limit`] \[h/c₀\].
+    pub limit: f64,
+    /// Steps after which growth just beyond the limit is seen.
+    pub steps: usize,
+}
+
 /// A measured limit and its theory, both as c₀ dt/h.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit {
     /// By bisection; `None` if there is none near the theory.
     pub measured: Option<Bracket>,
-    /// [`time_step::time_step_limit`] of the same box.
-    pub theory: f64,
-    /// Steps of each run.
-    pub steps: u64,
+    /// Theory of the same box.
+    pub theory: Theory,
 }
 
 impl Limit {
     /// Measured over theoretical; NaN if nothing was measured.
     pub fn ratio(&self) -> f64 {
-        self.middle() / self.theory
+        self.middle() / self.theory.limit
     }
 
     /// The measured limit; NaN if nothing was measured.
@@ -75,25 +92,87 @@ impl Limit {
     }
 }
 
+/// What came of a run.
+pub struct Measured {
+    /// How it ended: that of a run which is over early because its energy grew beyond doubt is completed.
+    pub status: Status,
+    /// What it took.
+    pub cost: Cost,
+    /// Did the energy grow, or did the run diverge?
+    pub grew: bool,
+    /// Energy at the end over that at the start.
+    energy: f64,
+    /// Growth a step of the amplitude of the stiffest sound wave, of a run with all its steps.
+    wave_growth: Option<f64>,
+    /// Places, velocities, densities at the end.
+    state: String,
+}
+
 struct Watch {
     growth: Growth,
+    to_the_end: bool,
+    stopped: bool,
 }
 
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
-fn energy<S: Scheme>(simulation: &Simulation<S>) -> f64 {
-    let of = |(mass, e): (f64, &solver::Evolved<S::Extra>)| {
+fn energy<X: Numbers>(simulation: &dyn Stepper<X>) -> f64 {
+    let of = |(mass, e): (f64, &solver::Evolved<X>)| {
         0.5 * mass * (e.velocity.norm_squared() + (e.density - 1.0) * (e.density - 1.0))
     };
     simulation.fluid().map(of).sum()
 }
 
-impl<S: Scheme> Observer<S> for Watch {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
-        if self.growth.see(energy(simulation)) { Flow::Stop } else { Flow::Continue }
+impl<X: Numbers> Observer<X> for Watch {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
+        self.stopped = self.growth.see(energy(simulation)) && !self.to_the_end;
+        if self.stopped { Flow::Stop } else { Flow::Continue }
+    }
+}
+
+/// The sound wave of a box with the highest frequency.
+struct StiffestWave {
+    /// Side of the box in particles.
+    n: usize,
+    /// Phase from one particle to the next.
+    theta: Vector2<f64>,
+    /// Unit vector along the gradient symbol.
+    along: Vector2<f64>,
+    /// Angular frequency \[c₀/h\].
+    omega: f64,
+}
+
+impl StiffestWave {
+    fn of<K: Kernel>(fluid: &NoisyBox<K>) -> Self {
+        let lattice = fluid.lattice();
+        let omega = |theta: &Vector2<f64>| Mode::new(&lattice, *theta, &fluid.medium()).omega;
+        let stiffest = wave_vectors(fluid.n).max_by(|a, b| omega(a).total_cmp(&omega(b)));
+        let theta = stiffest.unwrap_or_else(Vector2::zeros);
+        let along = lattice.gradient(theta).normalize();
+        Self { n: fluid.n, theta, along, omega: omega(&theta) }
+    }
+
+    /// Its energy, which is the same at every phase of the wave, so that two looks are enough.
+    fn energy(&self, particles: &[Particle]) -> f64 {
+        let labels = solver::lattice(Vector2::zeros(), 1.0, self.n, self.n);
+        let (mut p, mut v) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
+        for (particle, label) in particles.iter().zip(labels) {
+            let wave = Complex::<f64>::cis(-self.theta.dot(&label));
+            p += wave * (particle.density - 1.0);
+            v += wave * particle.velocity.dot(&self.along);
+        }
+        p.norm_sqr() + v.norm_sqr()
     }
 }
 
 impl<K: Kernel> NoisyBox<K> {
+    /// The box of these settings, seen through its kernel.
+    pub fn new(settings: &BoxSettings) -> Self {
+        let BoxSettings { n, h_over_dx, stiffness, alpha, delta, .. } = *settings;
+        let stiffness = stiffness.unwrap_or(f64::INFINITY);
+        Self { n, h_over_dx, stiffness, alpha, delta, kernel: PhantomData }
+    }
+
+    /// Smoothing length \[m\].
     fn h(&self) -> f64 {
         self.h_over_dx / self.n as f64
     }
@@ -107,6 +186,19 @@ impl<K: Kernel> NoisyBox<K> {
     pub fn medium(&self) -> Medium {
         let Self { alpha, delta, stiffness, .. } = *self;
         Medium { c0: 1.0, h: 1.0, nu: 1.0 / stiffness, alpha, delta }
+    }
+
+    /// The waves of the box, in units of c₀ and h.
+    pub fn modes(&self) -> Vec<Mode> {
+        time_step::modes(&self.lattice(), self.n, &self.medium())
+    }
+
+    /// The limit of an integrator, and how many steps show growth beyond it.
+    pub fn theory(&self, integrator: time_step::Integrator) -> Theory {
+        let modes = self.modes();
+        let limit = time_step::time_step_limit(&modes, integrator);
+        let growth = time_step::growth_per_step(&modes, integrator, SEEN_FROM * limit);
+        Theory { limit, steps: (0.5 / growth).clamp(STEPS[0], STEPS[1]) as usize }
     }
 
     fn scene<S: Scheme<Kernel = K>>(
@@ -148,77 +240,113 @@ impl<K: Kernel> NoisyBox<K> {
         self.scene(forces, (Continuity, diffusion), Open)
     }
 
-    /// Whether the energy grows within `steps` steps of `courant` h/c₀.
-    fn grows<S: Scheme>(&self, scene: Scene<S>, courant: f64, steps: u64) -> bool {
-        let Ok(mut simulation) = scene.build() else { return true };
+    /// Runs a scene of this box for its number of steps of `courant` h/c₀.
+    fn run_scene<S: Scheme<Extra = ()>>(
+        &self,
+        scene: Scene<S>,
+        (courant, steps): (f64, usize),
+        to_the_end: bool,
+        context: &Context,
+    ) -> Result<Measured, RunError> {
+        let mut simulation = scene.build()?;
         let dt = courant * self.h();
-        let mut watch = Watch { growth: Growth::new(energy(&simulation), steps) };
-        match simulation.advance(dt * steps as f64, dt, &mut watch) {
-            Outcome::Diverged(_) => true,
-            Outcome::Reached | Outcome::Stopped => watch.growth.grew(),
+        let wave = StiffestWave::of(self);
+        let (start, wave_start) = (energy(&simulation), wave.energy(&simulation.particles()));
+        let growth = Growth::new(start, steps as u64);
+        let mut watch = Watch { growth, to_the_end, stopped: false };
+        let mut wave_growth = None;
+        let (mut status, cost) = runner::drive(
+            &mut simulation,
+            dt,
+            &[dt * steps as f64],
+            context,
+            &mut watch,
+            &|density| Tait::new(1.0, 1.0).pressure(density),
+            &mut |simulation, _| {
+                let ratio = wave.energy(&simulation.particles()) / wave_start;
+                wave_growth = Some(0.5 * ratio.ln() / steps as f64);
+            },
+        )?;
+        if watch.stopped {
+            status = Status::Completed;
         }
+        let grew = matches!(status, Status::Diverged { .. }) || watch.growth.grew();
+        let (energy, state) = (energy(&simulation) / start, crate::state(&simulation.particles()));
+        Ok(Measured { status, cost, grew, energy, wave_growth, state })
     }
 
-    /// Bisects the largest c₀ dt/h without growth.
-    pub fn limit<I: Stepping>(&self) -> Limit {
-        if self.alpha == 0.0 && self.delta == 0.0 {
-            self.limit_of(|| self.plain::<I>())
-        } else {
-            self.limit_of(|| self.damped::<I>())
-        }
-    }
-
-    /// The limit of any scene, beside the theory of this box.
-    pub fn limit_of<S: Scheme>(&self, scene: impl Fn() -> Scene<S>) -> Limit
+    /// The limit of any scene of this box, beside the theory of the box: how the bisection of the plan goes
+    /// for a scene that is not what its settings say.
+    pub fn limit_of<S: Scheme<Extra = ()>>(&self, scene: impl Fn() -> Scene<S>) -> Limit
     where
         S::Integrator: Stepping,
     {
-        let integrator = S::Integrator::THEORY;
-        let modes = time_step::modes(&self.lattice(), self.n, &self.medium());
-        let theory = time_step::time_step_limit(&modes, integrator);
-        let growth = time_step::growth_per_step(&modes, integrator, SEEN_FROM * theory);
-        let steps = (0.5 / growth).clamp(STEPS[0], STEPS[1]) as u64;
-        let is_stable = |courant| !self.grows(scene(), courant, steps);
-        let measured = largest_stable(theory, RESOLUTION, is_stable);
-        Limit { measured, theory, steps }
+        let theory = self.theory(S::Integrator::THEORY);
+        let is_stable = |courant| {
+            let run = self.run_scene(scene(), (courant, theory.steps), false, &Context::default());
+            run.is_ok_and(|run| !run.grew)
+        };
+        Limit { measured: largest_stable(theory.limit, RESOLUTION, is_stable), theory }
     }
 
-    /// Growth per step of the stiffest wave's amplitude at `courant`, measured and ω dt of theory.
-    /// Its energy is the same at every phase of the wave, so two looks are enough.
-    pub fn stiffest_wave<I: Stepping>(&self, courant: f64, steps: u64) -> [f64; 2] {
-        self.stiffest_wave_of(self.plain::<I>(), courant, steps)
-    }
-
-    /// The same of any scene of this box.
+    /// Growth a step of the amplitude of the stiffest wave of any scene of this box, and ω dt of theory.
     pub fn stiffest_wave_of<S: Scheme<Extra = ()>>(
         &self,
         scene: Scene<S>,
         courant: f64,
-        steps: u64,
+        steps: usize,
     ) -> [f64; 2] {
-        let lattice = self.lattice();
-        let omega = |theta: &Vector2<f64>| Mode::new(&lattice, *theta, &self.medium()).omega;
-        let stiffest = wave_vectors(self.n).max_by(|a, b| omega(a).total_cmp(&omega(b)));
-        let theta = stiffest.unwrap_or_else(Vector2::zeros);
-        let along = lattice.gradient(theta).normalize();
-        let energy = |particles: &[Particle]| -> f64 {
-            let labels = solver::lattice(Vector2::zeros(), 1.0, self.n, self.n);
-            let (mut p, mut v) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
-            for (particle, label) in particles.iter().zip(labels) {
-                let wave = Complex::<f64>::cis(-theta.dot(&label));
-                p += wave * (particle.density - 1.0);
-                v += wave * particle.velocity.dot(&along);
-            }
-            p.norm_sqr() + v.norm_sqr()
-        };
-        let Ok(mut simulation) = scene.build() else { return [f64::NAN; 2] };
-        let start = energy(&simulation.particles());
-        let dt = courant * self.h();
-        let outcome = simulation.advance(dt * steps as f64, dt, &mut ());
-        let growth = match outcome {
-            Outcome::Reached => 0.5 * (energy(&simulation.particles()) / start).ln() / steps as f64,
-            _ => f64::NAN,
-        };
-        [growth, omega(&theta) * courant]
+        let run = self.run_scene(scene, (courant, steps), true, &Context::default());
+        let growth = run.ok().and_then(|run| run.wave_growth).unwrap_or(f64::NAN);
+        [growth, StiffestWave::of(self).omega * courant]
     }
+}
+
+/// One run of the case.
+pub fn run<K: Kernel, I: Stepping>(
+    variant: &str,
+    settings: &BoxSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let fluid = NoisyBox::<K>::new(settings);
+    let &BoxSettings { courant, steps, to_the_end, .. } = settings;
+    let Rules { dt, dt_limit, sound_speed } = rules::<K, I>(settings)?;
+    let integrator = <I as Integrator<()>>::NAME;
+    if dt > dt_limit && !context.allow_unstable {
+        return Err(RunError::TimeStep { dt, limit: dt_limit, integrator });
+    }
+    let measured = if fluid.alpha == 0.0 && fluid.delta == 0.0 {
+        fluid.run_scene(fluid.plain::<I>(), (courant, steps), to_the_end, context)?
+    } else {
+        fluid.run_scene(fluid.damped::<I>(), (courant, steps), to_the_end, context)?
+    };
+    let json = serde_json::to_value(settings).unwrap_or_default();
+    let mut record = Record::new(RESTING_BOX.name, variant, json, 1);
+    let numbers = [
+        ("h/dx", fluid.h_over_dx),
+        ("c0 [m/s]", sound_speed),
+        ("c0 h/nu", fluid.stiffness),
+        ("dt [s]", dt),
+        ("dt/limit", dt / dt_limit),
+    ];
+    record.numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
+    record.numerics.insert("kernel".into(), K::NAME.into());
+    record.numerics.insert("integrator".into(), integrator.into());
+    record.put(GREW, f64::from(u8::from(measured.grew)));
+    record.put(ENERGY, measured.energy);
+    record.put(WAVE_ANGLE, StiffestWave::of(&fluid).omega * courant);
+    if let Some(growth) = measured.wave_growth {
+        record.put(WAVE_GROWTH, growth);
+    }
+    record.state = Some(measured.state);
+    (record.status, record.cost) = (measured.status, measured.cost);
+    Ok(record)
+}
+
+/// What the settings say, and theory.
+pub fn rules<K: Kernel, I: Stepping>(settings: &BoxSettings) -> Result<Rules, RunError> {
+    let fluid = NoisyBox::<K>::new(settings);
+    let limit = time_step::time_step_limit(&fluid.modes(), I::THEORY);
+    let (dt, dt_limit) = (settings.courant * fluid.h(), limit * fluid.h());
+    Ok(Rules { dt, dt_limit, sound_speed: 1.0 })
 }

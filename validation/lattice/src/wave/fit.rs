@@ -95,6 +95,18 @@ pub fn factor_between(values: &[f64]) -> Option<f64> {
     (square > 0.0).then(|| forward / square)
 }
 
+/// ω and γ of a sound wave from its amplitudes (p, v along, v across) after each step.
+pub fn mode_of(series: &[[f64; 3]], integrator: Integrator, dt: f64) -> Option<DampedMode> {
+    let states: Vec<Vector2<f64>> = series.iter().map(|a| Vector2::new(a[0], a[1])).collect();
+    Some(mode_of_step(&matrix_between(&states)?, integrator, dt))
+}
+
+/// γ of a shear wave from its amplitudes after each step.
+pub fn decay_of(series: &[[f64; 3]], integrator: Integrator, dt: f64) -> Option<f64> {
+    let values: Vec<f64> = series.iter().map(|a| a[2]).collect();
+    Some(shear_of_step(factor_between(&values)?, integrator, dt))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,7 +14,7 @@
 pub mod fit;
 mod run;
 
-pub use run::{Diffusive, Wave, measure, measure_scene, run_scene};
+pub use run::{Diffusive, Wave, measure, run_scene};
 
 use solver::{
     Compose, Continuity, CubicSpline, Kernel, Leapfrog, Open, PredictorCorrector, Pressure,
@@ -23,13 +23,12 @@ use solver::{
 
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::Record,
-    settings::{self, Field, Settings},
+    record::{MetricKey, Status},
 };
 use harness::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
-    runner::Context,
-    suite::{JudgedRun, Study},
+    case::{Planned, Tier, Variant},
+    composed::{Composed, Composition},
+    declare::Declaration,
 };
 use maths::theory::Stepping;
 
@@ -84,7 +83,7 @@ pub enum Polarisation {
     Shear,
 }
 
-/// A wave as a [`Case`].
+/// What tells the case of one wave from that of the other.
 pub struct WaveCase {
     /// Name on the command line.
     pub name: &'static str,
@@ -93,26 +92,48 @@ pub struct WaveCase {
     /// Which wave.
     pub polarisation: Polarisation,
     /// Settings of the planned runs beside kernel and wave number.
-    pub set: &'static [&'static str],
+    pub set: fn(&mut WaveSettings),
     /// What the gates are on: metric, why the bound is where it is.
-    pub gates: &'static [(&'static str, &'static str)],
+    pub gates: &'static [(MetricKey, &'static str)],
     /// The same on a compressed lattice, one gate and one run for each variant.
-    pub compressed: Option<(&'static str, &'static str)>,
+    pub compressed: Option<(MetricKey, &'static str)>,
     /// The same on a disordered lattice: a gate on what holds there too.
-    pub disordered: Option<(&'static str, &'static str)>,
+    pub disordered: Option<(MetricKey, &'static str)>,
 }
 
-type Run = fn(&WaveCase, &str, &WaveSettings, &Context) -> Result<Record, RunError>;
-
-/// A composition of kernel and integrator.
-struct WaveVariant {
-    variant: Variant,
-    run: Run,
-    /// Whether density diffusion is in it.
-    diffuses: bool,
-    /// h/dx of the plan: quick tier, and more in the full one.
-    ratios: [&'static [f64]; 2],
+/// A kind of wave as a type, so that its variants are functions without state.
+pub trait Kind {
+    /// Its case.
+    const CASE: &'static WaveCase;
 }
+
+/// Error of the frequency of a sound wave.
+pub const FREQUENCY_ERROR: MetricKey = MetricKey::new(
+    "frequency_error",
+    "-",
+    "|omega - c0 |g(k)||/(c0 |g(k)|), time error divided out",
+);
+/// Error of the decay of a sound wave.
+pub const DECAY_ERROR: MetricKey =
+    MetricKey::new("decay_error", "-", "|gamma - nu lambda(k)|/(nu lambda(k)), of omega if nu = 0");
+/// Error of the decay of a shear wave.
+pub const SHEAR_DECAY_ERROR: MetricKey = MetricKey::new(
+    "decay_error",
+    "-",
+    "|gamma - nu lambda(k)|/(nu lambda(k)), time error divided out",
+);
+/// Distance of the amplitudes from exact steps.
+pub const TRAJECTORY_ERROR: MetricKey = MetricKey::new(
+    "trajectory_error",
+    "-",
+    "max|amplitudes - exact steps|/amplitude over p, v along, v across and all steps",
+);
+/// Change of momentum.
+pub const MOMENTUM_ERROR: MetricKey = MetricKey::new(
+    "momentum_error",
+    "-",
+    "|change of sum m v after the first step|/(sum m times the velocity amplitude)",
+);
 
 /// The scheme of a wave: no more than the equations.
 pub type Scheme<K, I> = SchemeWith<K, Continuity, I>;
@@ -137,170 +158,153 @@ const DIFFUSION: f64 = 0.1;
 /// Compression of the compressed lattice: with the exponent 6 for 7 its sound is 2.5 % slower.
 const COMPRESSION: f64 = 0.05;
 
-#[rustfmt::skip] // one line a variant: a table
-fn variants() -> Vec<WaveVariant> {
-    type Ratios = [&'static [f64]; 2];
-    fn variant<K: Kernel, I: Stepping>(name: &'static str, ratios: Ratios) -> WaveVariant {
+/// The variant with density diffusion, and its h/dx in the plan.
+const DIFFUSIVE: (&str, f64) = ("cubic-leapfrog-diffusion", 1.2);
+
+/// h/dx in the plan: of the quick tier, and more of the full one.
+type Ratios = [&'static [f64]; 2];
+const CUBIC: Ratios = [&[1.2, 1.3], &[1.0, 1.5, 2.0]];
+const QUINTIC: Ratios = [&[1.0, 1.3], &[0.9, 1.5]];
+const WENDLAND: Ratios = [&[1.5, 2.0], &[1.2, 2.5]];
+
+/// The other variants and their h/dx in the plan.
+const PLANNED: [(&str, Ratios); 6] = [
+    ("cubic-leapfrog", CUBIC),
+    ("cubic-pc", CUBIC),
+    ("quintic-leapfrog", QUINTIC),
+    ("quintic-pc", QUINTIC),
+    ("wendland-leapfrog", WENDLAND),
+    ("wendland-pc", WENDLAND),
+];
+
+fn variants<P: Kind>() -> Vec<Composition<WaveSettings>> {
+    fn variant<P: Kind, K: Kernel, I: Stepping>(name: &'static str) -> Composition<WaveSettings> {
         let about = "one kernel and one integrator; the equations and nothing else";
-        let variant = Variant { name, about };
-        WaveVariant { variant, run: run::run::<K, I>, diffuses: false, ratios }
+        Composition {
+            variant: Variant { name, about },
+            adjust: |_| (),
+            run: run::run::<P, K, I>,
+            rules: run::rules::<P, K>,
+            lacks: vec!["diffusion"],
+        }
     }
-    let diffusive = WaveVariant {
-        variant: Variant {
-            name: "cubic-leapfrog-diffusion",
-            about: "the cubic spline and the leapfrog, with density diffusion",
-        },
-        run: run::run_diffusive::<CubicSpline, Leapfrog>,
-        diffuses: true,
-        ratios: [&[1.2], &[]],
-    };
-    const CUBIC: Ratios = [&[1.2, 1.3], &[1.0, 1.5, 2.0]];
-    const QUINTIC: Ratios = [&[1.0, 1.3], &[0.9, 1.5]];
-    const WENDLAND: Ratios = [&[1.5, 2.0], &[1.2, 2.5]];
+    let about = "the cubic spline and the leapfrog, with density diffusion";
     vec![
-        variant::<CubicSpline, Leapfrog>("cubic-leapfrog", CUBIC),
-        variant::<CubicSpline, PredictorCorrector>("cubic-pc", CUBIC),
-        variant::<QuinticSpline, Leapfrog>("quintic-leapfrog", QUINTIC),
-        variant::<QuinticSpline, PredictorCorrector>("quintic-pc", QUINTIC),
-        variant::<WendlandC2, Leapfrog>("wendland-leapfrog", WENDLAND),
-        variant::<WendlandC2, PredictorCorrector>("wendland-pc", WENDLAND),
-        diffusive,
+        variant::<P, CubicSpline, Leapfrog>("cubic-leapfrog"),
+        variant::<P, CubicSpline, PredictorCorrector>("cubic-pc"),
+        variant::<P, QuinticSpline, Leapfrog>("quintic-leapfrog"),
+        variant::<P, QuinticSpline, PredictorCorrector>("quintic-pc"),
+        variant::<P, WendlandC2, Leapfrog>("wendland-leapfrog"),
+        variant::<P, WendlandC2, PredictorCorrector>("wendland-pc"),
+        Composition {
+            variant: Variant { name: DIFFUSIVE.0, about },
+            adjust: |settings| settings.diffusion = DIFFUSION,
+            run: run::run_diffusive::<P, CubicSpline, Leapfrog>,
+            rules: run::rules::<P, CubicSpline>,
+            lacks: Vec::new(),
+        },
     ]
 }
 
-impl WaveCase {
-    /// One run of the plan; the full tier adds waves that are oblique to the lattice.
-    fn planned(&self, variant: &WaveVariant, ratio: f64, [kx, ky]: [usize; 2]) -> Planned {
-        let set = vec![format!("h_over_dx={ratio}"), format!("kx={kx}"), format!("ky={ky}")];
-        let name = variant.variant.name;
-        let id = format!("{}.{name}.h{ratio}.k{kx}{ky}", self.name);
+/// The case of a kind of wave.
+pub const fn case<P: Kind>() -> Composed<WaveSettings> {
+    Composed {
+        name: P::CASE.name,
+        about: P::CASE.about,
+        variants: variants::<P>,
+        is_stable: |record| record.status == Status::Completed,
+        declaration: |_| Declaration::default(),
+        plan: plan::<P>,
+        studies: |_, _| Vec::new(),
+    }
+}
+
+/// The runs of a tier; the full one adds waves that are oblique to the lattice.
+fn plan<P: Kind>(tier: Tier) -> Vec<Planned> {
+    let case = P::CASE;
+    let mut plan = Vec::new();
+    for (variant, [quick, more]) in PLANNED {
+        let one = |ratio, k| on_lattice::<P>(variant, case.gates, ratio, k);
+        plan.extend(quick.iter().map(|&ratio| one(ratio, [1, 0])));
+        plan.extend(compressed::<P>(variant, quick[0]));
+        plan.extend(disordered::<P>(variant, quick[0]));
+        if tier == Tier::Full {
+            plan.extend(quick.iter().chain(more).map(|&ratio| one(ratio, [3, 2])));
+        }
+    }
+    if case.polarisation == Polarisation::Sound {
         // Density diffusion has no inverse of its own in `fit`: the trajectory shows it.
-        let is_seen = |gate: &&(&str, &str)| !variant.diffuses || gate.0 == "trajectory_error";
-        let gates: Vec<_> = self.gates.iter().filter(is_seen).copied().collect();
-        self.judged(name, &set, &id, &gates, TOLERANCE, Evidence::Theory)
+        let on_trajectory = |gate: &&(MetricKey, _)| gate.0 == TRAJECTORY_ERROR;
+        let gates: Vec<_> = case.gates.iter().filter(on_trajectory).copied().collect();
+        let (variant, ratio) = DIFFUSIVE;
+        let waves: &[[usize; 2]] = if tier == Tier::Full { &[[1, 0], [3, 2]] } else { &[[1, 0]] };
+        plan.extend(waves.iter().map(|&k| on_lattice::<P>(variant, &gates, ratio, k)));
     }
-
-    /// The run of the plan on a compressed lattice.
-    fn compressed(&self, variant: &'static str, ratio: f64) -> Option<Planned> {
-        let set = [format!("h_over_dx={ratio}"), format!("compression={COMPRESSION}")];
-        let id = format!("{}.{variant}.h{ratio}.compressed{COMPRESSION}", self.name);
-        self.compressed
-            .map(|gate| self.judged(variant, &set, &id, &[gate], TOLERANCE, Evidence::Theory))
-    }
-
-    /// The run of the plan on a disordered lattice.
-    fn disordered(&self, variant: &'static str, ratio: f64) -> Option<Planned> {
-        let set = [format!("h_over_dx={ratio}"), format!("jitter={JITTER}")];
-        let id = format!("{}.{variant}.h{ratio}.jitter{JITTER}", self.name);
-        self.disordered
-            .map(|gate| self.judged(variant, &set, &id, &[gate], MOMENTUM, Evidence::Invariant))
-    }
-
-    fn judged(
-        &self,
-        variant: &'static str,
-        set: &[String],
-        id: &str,
-        gates: &[(&'static str, &'static str)],
-        most: f64,
-        evidence: Evidence,
-    ) -> Planned {
-        let mut set = set.to_vec();
-        set.extend(self.set.iter().map(|text| text.to_string()));
-        let gate = |(metric, because): &(&str, &str)| {
-            let id = format!("{id}.{metric}");
-            Gate::new(id, *metric, Bound::Below(most), evidence, *because)
-        };
-        Planned::new(variant, &set).judged(gates.iter().map(gate).collect())
-    }
+    plan
 }
 
-impl WaveVariant {
-    /// The variant's settings with `key=value` texts applied.
-    fn settings(&self, set: &[String]) -> Result<WaveSettings, RunError> {
-        let diffusion = if self.diffuses { DIFFUSION } else { 0.0 };
-        let mut settings = WaveSettings { diffusion, ..WaveSettings::default() };
-        settings::apply(&mut settings, set)?;
-        if !self.diffuses && settings.diffusion != 0.0 {
-            let variant = self.variant.name.to_string();
-            return Err(RunError::Unused { key: "diffusion".into(), variant });
-        }
-        Ok(settings)
-    }
+/// A run on the lattice as it is.
+fn on_lattice<P: Kind>(
+    variant: &str,
+    gates: &[(MetricKey, &str)],
+    ratio: f64,
+    [kx, ky]: [usize; 2],
+) -> Planned {
+    let id = format!("{}.{variant}.h{ratio}.k{kx}{ky}", P::CASE.name);
+    let gate = |gate: &(MetricKey, &str)| gate_of(&id, gate, TOLERANCE, Evidence::Theory);
+    let set = |s: &mut WaveSettings| (s.h_over_dx, s.kx, s.ky) = (ratio, kx, ky);
+    planned::<P>(variant, set).judged(gates.iter().map(gate).collect())
 }
 
-/// The settings of a variant with `key=value` texts applied.
-pub fn settings(variant: &str, set: &[String]) -> Result<WaveSettings, RunError> {
-    let variants = variants();
-    case::find("wave", &variants, variant, |v| v.variant.name)?.settings(set)
+/// A run on a compressed lattice.
+fn compressed<P: Kind>(variant: &str, ratio: f64) -> Option<Planned> {
+    let id = format!("{}.{variant}.h{ratio}.compressed{COMPRESSION}", P::CASE.name);
+    let gate = gate_of(&id, &P::CASE.compressed?, TOLERANCE, Evidence::Theory);
+    let set = |s: &mut WaveSettings| (s.h_over_dx, s.compression) = (ratio, COMPRESSION);
+    Some(planned::<P>(variant, set).judged(vec![gate]))
 }
 
-impl Case for WaveCase {
-    fn name(&self) -> &'static str {
-        self.name
-    }
+/// A run on a disordered lattice.
+fn disordered<P: Kind>(variant: &str, ratio: f64) -> Option<Planned> {
+    let id = format!("{}.{variant}.h{ratio}.jitter{JITTER}", P::CASE.name);
+    let gate = gate_of(&id, &P::CASE.disordered?, MOMENTUM, Evidence::Invariant);
+    let set = |s: &mut WaveSettings| (s.h_over_dx, s.jitter) = (ratio, JITTER);
+    Some(planned::<P>(variant, set).judged(vec![gate]))
+}
 
-    fn about(&self) -> &'static str {
-        self.about
-    }
+fn planned<P: Kind>(variant: &str, set: impl FnOnce(&mut WaveSettings)) -> Planned {
+    let set = |settings: &mut WaveSettings| {
+        (P::CASE.set)(settings);
+        set(settings);
+    };
+    case::<P>().planned(variant, set).taking(0.03)
+}
 
-    fn variants(&self) -> Vec<Variant> {
-        variants().into_iter().map(|v| v.variant).collect()
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        WaveSettings::FIELDS
-    }
-
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        let variants = variants();
-        let chosen = case::find(self.name, &variants, variant, |v| v.variant.name)?;
-        Ok(serde_json::to_value(chosen.settings(set)?).unwrap_or_default())
-    }
-
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        let variants = variants();
-        let chosen = case::find(self.name, &variants, variant, |v| v.variant.name)?;
-        (chosen.run)(self, variant, &chosen.settings(set)?, context)
-    }
-
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        let mut plan = Vec::new();
-        for chosen in
-            variants().iter().filter(|v| self.polarisation == Polarisation::Sound || !v.diffuses)
-        {
-            let (name, [quick, more]) = (chosen.variant.name, chosen.ratios);
-            plan.extend(quick.iter().map(|&ratio| self.planned(chosen, ratio, [1, 0])));
-            if !chosen.diffuses {
-                plan.extend(self.compressed(name, quick[0]));
-                plan.extend(self.disordered(name, quick[0]));
-            }
-            if tier == Tier::Full {
-                let oblique = quick.iter().chain(more);
-                plan.extend(oblique.map(|&ratio| self.planned(chosen, ratio, [3, 2])));
-            }
-        }
-        plan
-    }
-
-    fn studies(&self, _tier: Tier, _runs: &[JudgedRun]) -> Vec<Study> {
-        Vec::new()
-    }
+fn gate_of(
+    id: &str,
+    &(metric, because): &(MetricKey, &str),
+    most: f64,
+    evidence: Evidence,
+) -> Gate {
+    let metric = String::from(metric);
+    Gate::new(format!("{id}.{metric}"), metric, Bound::Below(most), evidence, because)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::suite::{Watch, run};
-    use harness::case::find_in;
+    use crate::{acoustic_wave::ACOUSTIC_WAVE, shear_wave::SHEAR_WAVE, tests::judged};
+    use harness::{
+        case::{Case, RunError},
+        context::Context,
+    };
 
     /// Every kernel, integrator and smoothing length of the quick tier has the lattice's symbols.
     #[test]
     fn waves_have_the_symbols_of_the_lattice() {
-        let cases = ["acoustic_wave", "shear_wave"].map(|name| find_in(crate::CASES, name).expect("a case"));
-        let suite = run(&cases, Tier::Quick, None, &Watch::default()).expect("planned runs");
-        assert_eq!(suite.judged().count(), 12 * 3 + 6 + 6 + 1 + 12 * 2);
-        for judged in suite.judged() {
+        let judged = judged(&[&ACOUSTIC_WAVE, &SHEAR_WAVE]);
+        assert_eq!(judged.len(), 12 * 3 + 6 + 6 + 1 + 12 * 2);
+        for judged in judged {
             let (id, value) = (&judged.gate.id, judged.judgement.value);
             assert!(!judged.judgement.verdict.is_failure(), "{id}: {value:?}");
         }
@@ -309,18 +313,19 @@ mod tests {
     /// What the gates are worth: a larger amplitude is not linear, and fails them.
     #[test]
     fn an_amplitude_that_is_not_linear_is_seen() {
-        let case = find_in(crate::CASES, "acoustic_wave").expect("a case");
-        let set = ["amplitude=1e-3".to_string()];
-        let record = case.run("cubic-leapfrog", &set, &Context::default()).expect("a run");
-        assert!(record.metric("decay_error").expect("measured") > 1e-4);
+        let spec = ACOUSTIC_WAVE.spec("cubic-leapfrog", |s| s.amplitude = 1e-3);
+        let record = ACOUSTIC_WAVE.run(&spec, &Context::default()).expect("a run");
+        assert!(record.value(DECAY_ERROR).expect("measured") > 1e-4);
     }
 
     #[test]
     fn a_wave_that_the_lattice_does_not_carry_is_refused() {
-        let case = find_in(crate::CASES, "acoustic_wave").expect("a case");
-        let refused = |set: &str| case.run("cubic-pc", &[set.into()], &Context::default()).err();
-        assert!(matches!(refused("kx=8"), Some(RunError::TooMuch { .. })));
-        assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));
-        assert!(matches!(refused("n=4"), Some(RunError::Scene(_))));
+        let refused = |set: fn(&mut WaveSettings)| {
+            let spec = ACOUSTIC_WAVE.spec("cubic-pc", set);
+            ACOUSTIC_WAVE.run(&spec, &Context::default()).err()
+        };
+        assert!(matches!(refused(|s| s.kx = 8), Some(RunError::TooMuch { .. })));
+        assert!(matches!(refused(|s| s.dt = Some(1.0)), Some(RunError::TimeStep { .. })));
+        assert!(matches!(refused(|s| s.n = 4), Some(RunError::Scene(_))));
     }
 }

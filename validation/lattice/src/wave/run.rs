@@ -3,18 +3,21 @@
 use nalgebra::Vector2;
 use solver::{
     Continuity, DensityDiffusion, Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle,
-    Pressure, Scene, Simulation, Tait, Term, Viscosity,
+    Pressure, Scene, Stepper, Tait, Term, Viscosity,
 };
 
-use super::{Polarisation, Scheme, SchemeWith, WaveCase, WaveSettings, fit};
+use super::{
+    DECAY_ERROR, FREQUENCY_ERROR, Kind, MOMENTUM_ERROR, Polarisation, SHEAR_DECAY_ERROR, Scheme,
+    SchemeWith, TRAJECTORY_ERROR, WaveCase, WaveSettings, fit,
+};
 use base::{
     number,
     random::Random,
-    record::{self, Cost, Metric, Profile, Record, Status},
+    record::{self, Cost, MetricKey, Profile, Record, Status},
 };
 use harness::{
-    case::RunError,
-    runner::{self, Context, Frames},
+    case::{Rules, RunError},
+    runner::{self, Context},
 };
 use maths::{
     exact::damped_mode::DampedMode,
@@ -48,8 +51,10 @@ pub struct Wave {
     pub shear: f64,
     /// Decay that theory gives to density by itself \[1/s\].
     diffusion: f64,
-    /// Time step \[s\].
+    /// Time step \[s\], of which a whole number ends the run.
     pub dt: f64,
+    /// The leapfrog's limit of it \[s\].
+    dt_limit: f64,
     /// End of the run \[s\].
     end: f64,
 }
@@ -116,6 +121,8 @@ impl Wave {
             Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,
             _ => period,
         };
+        let end = s.span * time;
+        let dt = end / (end / dt).ceil().max(4.0);
         Ok(Self {
             settings: s.clone(),
             polarisation,
@@ -129,7 +136,8 @@ impl Wave {
             shear: mode.transverse,
             diffusion: mode.density,
             dt,
-            end: s.span * time,
+            dt_limit: limit,
+            end,
         })
     }
 
@@ -211,8 +219,8 @@ impl<'a> Projection<'a> {
     }
 }
 
-impl<S: solver::Scheme<Extra = ()>> Observer<S> for Projection<'_> {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Flow {
+impl Observer<()> for Projection<'_> {
+    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
         let Wave { density, sound_speed, along, .. } = self.wave;
         let across = self.wave.across();
         let mut sums = [0.0; 3];
@@ -237,70 +245,71 @@ fn without_pressure_at(density: f64, eos: Tait) -> Tait {
     Tait { background: -eos.pressure(density), ..eos }
 }
 
-/// Runs a wave; the step is adjusted so that a whole number of steps ends the run.
+/// Runs a wave.
+///
+/// # Errors
+/// If its scene is impossible or a frame cannot be written.
 pub fn measure<K: Kernel, I: Stepping>(
-    wave: &mut Wave,
+    wave: &Wave,
     context: &Context,
 ) -> Result<Measured, RunError> {
     measure_scene(wave, context, Wave::scene::<K, I>)
 }
 
 /// Runs the scene that `scene` makes of a wave and projects it on the wave.
-pub fn measure_scene<S: solver::Scheme<Extra = ()>>(
-    wave: &mut Wave,
+fn measure_scene<S: solver::Scheme<Extra = ()>>(
+    wave: &Wave,
     context: &Context,
     scene: impl FnOnce(&Wave) -> Scene<S>,
 ) -> Result<Measured, RunError> {
-    let steps = (wave.end / wave.dt).ceil().max(4.0);
-    wave.dt = wave.end / steps;
     let mut scene = scene(wave);
     if context.threads <= 1 {
         scene.parallel_from = usize::MAX;
     }
     let mut simulation = scene.build()?;
     let mut projection = Projection::new(wave);
+    let pressure = |density: f64| wave.eos.pressure(density);
     // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
-    let frames = Frames::of(context)?;
-    let mut failed = None;
     let (status, cost) = runner::drive(
         &mut simulation,
         wave.dt,
         &[wave.end],
         context,
         &mut projection,
-        &mut |simulation, _| {
-            failed = frames.as_ref().and_then(|f| f.write(simulation, &wave.eos).err());
-        },
-    );
-    match failed {
-        Some(error) => Err(error.into()),
-        None => Ok(Measured {
-            momentum_change: projection.momentum.map_or(f64::NAN, |[a, b]| (b - a).norm()),
-            series: projection.series,
-            status,
-            cost,
-        }),
-    }
+        &pressure,
+        &mut |_, _| (),
+    )?;
+    Ok(Measured {
+        momentum_change: projection.momentum.map_or(f64::NAN, |[a, b]| (b - a).norm()),
+        series: projection.series,
+        status,
+        cost,
+    })
+}
+
+/// What the rules choose.
+pub(super) fn rules<P: Kind, K: Kernel>(settings: &WaveSettings) -> Result<Rules, RunError> {
+    let Wave { dt, dt_limit, sound_speed, .. } =
+        Wave::new::<K>(P::CASE.polarisation, settings, true)?;
+    Ok(Rules { dt, dt_limit, sound_speed })
 }
 
 /// Runs a wave and compares it with theory.
-pub(super) fn run<K: Kernel, I: Stepping>(
-    case: &WaveCase,
+pub(super) fn run<P: Kind, K: Kernel, I: Stepping>(
     variant: &str,
     settings: &WaveSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    run_scene(case, variant, settings, context, Wave::scene::<K, I>)
+    run_scene(P::CASE, variant, settings, context, Wave::scene::<K, I>)
 }
 
 /// The same with density diffusion.
-pub(super) fn run_diffusive<K: Kernel, I: Stepping>(
-    case: &WaveCase,
+pub(super) fn run_diffusive<P: Kind, K: Kernel, I: Stepping>(
     variant: &str,
     settings: &WaveSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    run_scene(case, variant, settings, context, Wave::diffusive_scene::<K, I>)
+    run_scene(P::CASE, variant, settings, context, Wave::diffusive_scene::<K, I>)
 }
 
 /// Runs the scene that `scene` makes of a wave and compares it with the theory of the wave: the same
@@ -316,8 +325,8 @@ where
     S: solver::Scheme<Extra = ()>,
     S::Integrator: Stepping,
 {
-    let mut wave = Wave::new::<S::Kernel>(case.polarisation, settings, context.allow_unstable)?;
-    let measured = measure_scene(&mut wave, context, scene)?;
+    let wave = Wave::new::<S::Kernel>(case.polarisation, settings, context.allow_unstable)?;
+    let measured = measure_scene(&wave, context, scene)?;
     let json = serde_json::to_value(settings).unwrap_or_default();
     let mut record = Record::new(case.name, variant, json, context.threads.max(1));
     describe::<S::Kernel, S::Integrator>(&wave, &mut record);
@@ -325,9 +334,7 @@ where
     let s = settings;
     let mass = wave.density * s.length * s.length;
     let scale = mass * s.amplitude * wave.sound_speed;
-    let formula = "|change of sum m v after the first step|/(sum m times the velocity amplitude)";
-    let change = Metric::new(measured.momentum_change / scale, "-", formula);
-    record.metrics.insert("momentum_error".into(), change);
+    record.put(MOMENTUM_ERROR, measured.momentum_change / scale);
     let column = |k: usize| measured.series.iter().map(|a| a[k]).collect();
     let times = (1..=measured.series.len()).map(|k| k as f64 * wave.dt).collect();
     let profile = Profile::default()
@@ -341,6 +348,14 @@ where
     Ok(record)
 }
 
+const FREQUENCY: MetricKey =
+    MetricKey::new("frequency", "1/s", "(omega^2 - gamma^2/4)^(1/2) of continuous time");
+const DECAY: MetricKey = MetricKey::new("decay", "1/s", "gamma/2 of continuous time");
+const SHEAR_DECAY: MetricKey = MetricKey::new("decay", "1/s", "gamma of continuous time");
+const SOUND_FACTOR: MetricKey =
+    MetricKey::new("sound_factor", "-", "omega/(c0 k), 1 in the continuum");
+const VISCOUS_FACTOR: MetricKey = MetricKey::new("viscous_factor", "-", "gamma/(nu k^2)");
+
 /// Frequency and damping against the symbols, and every amplitude against exact steps.
 fn compare(
     wave: &Wave,
@@ -348,41 +363,27 @@ fn compare(
     series: &[[f64; 3]],
     record: &mut Record,
 ) {
-    let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
-        record.metrics.insert(name.into(), Metric::new(value, unit, formula));
-    };
     let relative = |found: f64, expected: f64, scale: f64| (found - expected).abs() / scale;
     if wave.polarisation == Polarisation::Sound {
-        let states: Vec<Vector2<f64>> = series.iter().map(|a| Vector2::new(a[0], a[1])).collect();
         let nothing = DampedMode { omega: f64::NAN, gamma: f64::NAN };
-        let found = fit::matrix_between(&states)
-            .map_or(nothing, |m| fit::mode_of_step(&m, integrator, wave.dt));
+        let found = fit::mode_of(series, integrator, wave.dt).unwrap_or(nothing);
         let expected = wave.sound;
         let scale = if expected.gamma > 0.0 { expected.gamma } else { expected.omega };
-        let formula = "|omega - c0 |g(k)||/(c0 |g(k)|), time error divided out";
-        put("frequency_error", relative(found.omega, expected.omega, expected.omega), "-", formula);
-        let formula = "|gamma - nu lambda(k)|/(nu lambda(k)), of omega if nu = 0";
-        put("decay_error", relative(found.gamma, expected.gamma, scale), "-", formula);
-        put(
-            "frequency",
-            found.frequency(),
-            "1/s",
-            "(omega^2 - gamma^2/4)^(1/2) of continuous time",
-        );
-        put("decay", 0.5 * found.gamma, "1/s", "gamma/2 of continuous time");
+        let error = relative(found.omega, expected.omega, expected.omega);
+        record.put(FREQUENCY_ERROR, error);
+        record.put(DECAY_ERROR, relative(found.gamma, expected.gamma, scale));
+        record.put(FREQUENCY, found.frequency());
+        record.put(DECAY, 0.5 * found.gamma);
         let sound =
             wave.sound_speed * wave.theta.norm() * wave.settings.n as f64 / wave.settings.length;
-        put("sound_factor", found.omega / sound, "-", "omega/(c0 k), 1 in the continuum");
+        record.put(SOUND_FACTOR, found.omega / sound);
     } else {
-        let values: Vec<f64> = series.iter().map(|a| a[2]).collect();
-        let found = fit::factor_between(&values)
-            .map_or(f64::NAN, |f| fit::shear_of_step(f, integrator, wave.dt));
+        let found = fit::decay_of(series, integrator, wave.dt).unwrap_or(f64::NAN);
         let scale = if wave.shear > 0.0 { wave.shear } else { wave.sound.omega };
-        let formula = "|gamma - nu lambda(k)|/(nu lambda(k)), time error divided out";
-        put("decay_error", relative(found, wave.shear, scale), "-", formula);
-        put("decay", found, "1/s", "gamma of continuous time");
+        record.put(SHEAR_DECAY_ERROR, relative(found, wave.shear, scale));
+        record.put(SHEAR_DECAY, found);
         let k = wave.theta.norm() * wave.settings.n as f64 / wave.settings.length;
-        put("viscous_factor", found / (wave.settings.nu * k * k), "-", "gamma/(nu k^2)");
+        record.put(VISCOUS_FACTOR, found / (wave.settings.nu * k * k));
     }
     let predicted = wave.predicted(integrator, series.len());
     let largest = |f: &dyn Fn(usize, usize) -> f64| {
@@ -391,8 +392,7 @@ fn compare(
         all.map(|(n, k)| f(n, k)).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
     };
     let error = largest(&|n, k| (series[n][k] - predicted[n][k]).abs());
-    let formula = "max|amplitudes - exact steps|/amplitude over p, v along, v across and all steps";
-    put("trajectory_error", error / wave.settings.amplitude, "-", formula);
+    record.put(TRAJECTORY_ERROR, error / wave.settings.amplitude);
 }
 
 /// What the run chose.

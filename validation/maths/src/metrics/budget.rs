@@ -9,7 +9,8 @@
 
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion,
-    EquationOfState, Evolved, Pressure, Rate, Scheme, Simulation, Term, Viscosity, Xsph,
+    EquationOfState, Evolved, Pressure, Rate, Scheme, Simulation, Stepper as _, Term, Viscosity,
+    Xsph,
     terms::{Rest, Switch},
 };
 

@@ -1,7 +1,7 @@
 //! The energies of weakly compressible water under gravity, from its particles.
 
 use nalgebra::Vector2;
-use solver::{EquationOfState, Evolved, Rate, Scheme, Simulation, Tait};
+use solver::{EquationOfState, Evolved, Numbers, Rate, Stepper, Tait};
 
 /// What the energy of a particle depends on.
 #[derive(Clone, Copy, Debug)]
@@ -46,16 +46,15 @@ impl Water {
     }
 
     /// The energy of all particles.
-    pub fn energy<S: Scheme>(&self, simulation: &Simulation<S>) -> Energy {
-        let add = |sum: Energy, (mass, p): (f64, &Evolved<S::Extra>)| Energy {
+    pub fn energy<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Energy {
+        let add = |sum: Energy, (mass, p): (f64, &Evolved<X>)| Energy {
             kinetic: sum.kinetic + 0.5 * mass * p.velocity.norm_squared(),
             potential: sum.potential - mass * self.gravity.dot(&p.position),
             compression: sum.compression + mass * self.compression(p.density),
         };
         let fluid = simulation.fluid().fold(Energy::default(), add);
-        let pressed = |sum: f64, (mass, p): (f64, &Evolved<S::Extra>)| {
-            sum + mass * self.compression(p.density)
-        };
+        let pressed =
+            |sum: f64, (mass, p): (f64, &Evolved<X>)| sum + mass * self.compression(p.density);
         let compression = simulation.walls().fold(fluid.compression, pressed);
         Energy { compression, ..fluid }
     }

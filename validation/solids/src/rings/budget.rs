@@ -5,21 +5,21 @@ use solver::{
     ArtificialViscosity, CauchyStress, Continuity, JaumannRate, Scheme, Simulation, Symmetric,
 };
 
-use super::{Rings, Tensile};
+use super::{
+    Rings, Tensile,
+    metrics::{ENERGY_GAP, WORK_ELASTIC, WORK_STRESS, WORK_VISCOSITY},
+};
 use crate::solid::{Energy, solid_slope};
-use base::record::{Metric, Profile, Record};
+use base::record::{MetricKey, Profile, Record};
 use maths::metrics::budget::{Account, Items, Meter, STRESS, VISCOSITY};
 
 /// (9) to (12) with (3), which only exchange energy up to the third order in the strain: the stored
 /// energy S:S/(4μρ) is that of small strains.
 const ELASTIC: &str = "elastic law";
 
-/// The items, as metrics name them.
-const ITEMS: [(&str, &str); 3] =
-    [(VISCOSITY, "work_viscosity"), (STRESS, "work_stress"), (ELASTIC, "work_elastic")];
-
-/// Samples of a run.
-pub const SAMPLES: usize = 200;
+/// The items and the metrics of their works.
+const ITEMS: [(&str, MetricKey); 3] =
+    [(VISCOSITY, WORK_VISCOSITY), (STRESS, WORK_STRESS), (ELASTIC, WORK_ELASTIC)];
 
 /// The powers of the terms of a scene with the artificial stress `R` \[W/m\]. XSPH moves particles and
 /// changes neither velocity, density nor stress: it has no power of its own.
@@ -69,23 +69,19 @@ impl Budget {
         let Some(start) = self.rows.first().map(total).filter(|energy| *energy > 0.0) else {
             return;
         };
-        let mut put = |name: &str, value: f64, formula: String| {
-            record.metrics.insert(name.into(), Metric::new(value, "-", &formula));
-        };
         let gap = |row: &[f64; 7]| (total(row) - start - row[4] - row[5] - row[6]).abs();
         let gap = self.rows.iter().map(gap).fold(0.0, f64::max) / start;
-        put("energy_gap", gap, "max over samples of |E(t) - E(0) - work of all terms|/E(0)".into());
-        for (name, key) in ITEMS {
-            let formula = format!("energy that the {name} has added until the end/E(0)");
-            put(key, self.account.work(name) / start, formula);
+        record.put(ENERGY_GAP, gap);
+        for (name, work) in ITEMS {
+            record.put(work, self.account.work(name) / start);
         }
         let column = |k: usize, unit: f64| self.rows.iter().map(|row| row[k] / unit).collect();
-        let names =
-            ["kinetic", "compression", "shear"].into_iter().chain(ITEMS.map(|(_, key)| key));
+        let works = ITEMS.map(|(_, work)| String::from(work));
+        let names = ["kinetic", "compression", "shear"].map(String::from).into_iter().chain(works);
         let times = Profile::default().with("t", "L/c0", column(0, 1.0 / rings.c0));
         let profile = names
             .zip(1..)
-            .fold(times, |profile, (name, k)| profile.with(name, "E(0)", column(k, start)));
+            .fold(times, |profile, (name, k)| profile.with(&name, "E(0)", column(k, start)));
         record.profiles.insert("budget".into(), profile);
     }
 }

@@ -1,12 +1,12 @@
 //! What is measured of the rings, sample by sample and at the end.
 
 use nalgebra::Vector2;
-use solver::{Evolved, Flow as Going, Observer, Particle, Scheme, Simulation, Symmetric};
+use solver::{Evolved, Flow as Going, Observer, Particle, Stepper, Symmetric};
 use std::collections::HashMap;
 
-use super::Rings;
+use super::{Rings, metrics::*};
 use crate::solid::Energy;
-use base::record::{Metric, Profile, Record};
+use base::record::{Profile, Record};
 
 /// Samples of a run, at most, and how many of them pass between two counts of fragments.
 const SAMPLES: f64 = 800.0;
@@ -37,15 +37,15 @@ fn energy(rings: &Rings, particles: &[Particle<Symmetric>]) -> Energy {
 }
 
 /// The particles in the frame whose x axis is the line of flight, as the scene orders them.
-pub fn seen<S: Scheme<Extra = Symmetric>>(
+pub fn along_flight(
     rings: &Rings,
-    simulation: &Simulation<S>,
+    simulation: &dyn Stepper<Symmetric>,
 ) -> Vec<Particle<Symmetric>> {
     let mut particles = simulation.particles();
     if rings.settings.angle != 0.0 {
-        let turn = rings.turn_back();
+        let rotation = rings.to_flight();
         for p in &mut particles {
-            (p.position, p.velocity) = (turn * p.position, turn * p.velocity);
+            (p.position, p.velocity) = (rotation * p.position, rotation * p.velocity);
         }
     }
     particles
@@ -73,10 +73,10 @@ pub fn fragments(ring: &[Particle<Symmetric>], dx: f64) -> usize {
     for (k, p) in ring.iter().enumerate() {
         cells.entry(cell(p.position)).or_default().push(k);
     }
-    let mut seen = vec![false; ring.len()];
+    let mut is_counted = vec![false; ring.len()];
     let mut pieces = 0;
     for start in 0..ring.len() {
-        if std::mem::replace(&mut seen[start], true) {
+        if std::mem::replace(&mut is_counted[start], true) {
             continue;
         }
         pieces += 1;
@@ -86,7 +86,7 @@ pub fn fragments(ring: &[Particle<Symmetric>], dx: f64) -> usize {
             let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
             for &other in around.filter_map(|c| cells.get(&c)).flatten() {
                 let near = (ring[k].position - ring[other].position).norm() <= reach;
-                if near && !std::mem::replace(&mut seen[other], true) {
+                if near && !std::mem::replace(&mut is_counted[other], true) {
                     open.push(other);
                 }
             }
@@ -137,15 +137,15 @@ impl<'a> Series<'a> {
             self.most_pieces = self.most_pieces.max(self.pieces);
         }
         self.samples += 1;
-        let seen = side(right, dx);
+        let ring = side(right, dx);
         let energies = energy(rings, particles);
         let mirror = mirror_error(left, right) / dx;
         self.rows.push([
             time * rings.c0,
-            seen.centre.x,
-            seen.velocity.x / rings.c0,
-            seen.width,
-            seen.height,
+            ring.centre.x,
+            ring.velocity.x / rings.c0,
+            ring.width,
+            ring.height,
             self.pieces as f64,
             energies.kinetic,
             energies.compression,
@@ -163,19 +163,6 @@ impl<'a> Series<'a> {
         self.rows.iter().map(|row| (row[0], row[k])).collect()
     }
 
-    /// A number that [`super::reference`] compares.
-    pub fn metric(&self, name: &str) -> Option<f64> {
-        let column = |k: usize| self.rows.iter().map(move |row| row[k]);
-        let last = self.rows.last()?;
-        Some(match name {
-            "restitution" => last[2] / self.rings.settings.speed,
-            "x_c_min" => column(1).fold(f64::INFINITY, f64::min),
-            "width_min" => column(3).fold(f64::INFINITY, f64::min),
-            "height_max" => column(4).fold(f64::NEG_INFINITY, f64::max),
-            _ => return None,
-        })
-    }
-
     /// The series as columns.
     pub fn profile(&self) -> Profile {
         let add = |profile: Profile, (k, (name, unit)): (usize, &(&str, &str))| {
@@ -186,48 +173,31 @@ impl<'a> Series<'a> {
 
     /// Metrics of the whole run.
     pub fn measure(&self, record: &mut Record) {
-        let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
-            record.metrics.insert(name.into(), Metric::new(value, unit, formula));
-        };
         let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return };
-        let found = |name: &str| self.metric(name).unwrap_or(f64::NAN);
-        let formula = "velocity of the centre of mass at the end/V";
-        put("restitution", found("restitution"), "-", formula);
-        put("pieces", last[5], "1", "connected pieces at the end, 1.5 dx; two rings are 2");
-        let formula = "most connected pieces at any time";
-        put("pieces_most", self.most_pieces as f64, "1", formula);
-        let formula = "least extent of a ring along the line of flight";
-        put("width_min", found("width_min"), "L", formula);
-        put("height_max", found("height_max"), "L", "largest extent of a ring across it");
-        let formula = "least distance of a ring's centre of mass from the plane";
-        put("x_c_min", found("x_c_min"), "L", formula);
-        put("x_c_end", last[1], "L", "that distance at the end");
+        let column = |k: usize| self.rows.iter().map(move |row| row[k]);
+        let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
+        let speed = self.rings.settings.speed;
+        record.put(RESTITUTION, last[2] / speed);
+        record.put(PIECES, last[5]);
+        record.put(PIECES_MOST, self.most_pieces as f64);
+        record.put(WIDTH_MIN, least(3));
+        record.put(HEIGHT_MAX, column(4).fold(f64::NEG_INFINITY, f64::max));
+        record.put(X_C_MIN, least(1));
+        record.put(X_C_END, last[1]);
         let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
-        let lost = 1.0 - energy(last) / energy(first);
-        put("energy_lost", lost, "-", "1 - (kinetic + strain energy) at the end/at the start");
-        let gained = self.rows.iter().map(energy).fold(0.0, f64::max) / energy(first) - 1.0;
-        put("energy_gained", gained, "-", "largest total energy at any time/at the start - 1");
+        record.put(ENERGY_LOST, 1.0 - energy(last) / energy(first));
+        let largest = self.rows.iter().map(energy).fold(0.0, f64::max);
+        record.put(ENERGY_GAINED, largest / energy(first) - 1.0);
         let late = self.rows.iter().filter(|row| row[0] >= 0.9 * last[0]);
         let pushed = late.map(|row| (row[2] - last[2]).abs()).fold(0.0, f64::max);
-        let formula = "max |v_c - v_c(end)|/V of a ring in the last tenth of the run";
-        put("pushed_by_itself", pushed / self.rings.settings.speed, "-", formula);
-        let mirror = self.column(9).into_iter().fold(0.0, f64::max);
-        put(
-            "mirror",
-            mirror,
-            "dx",
-            "max over particles and times of the distance from the mirror image",
-        );
+        record.put(PUSHED_BY_ITSELF, pushed / speed);
+        record.put(MIRROR, column(9).fold(0.0, f64::max));
         let phases = self.phases();
-        put("phases", phases.len() as f64, "1", "phases of contact, at least 5 L/c0 apart");
-        for (k, phase) in phases.iter().enumerate().take(2) {
-            let name = |what: &str| format!("{what}@phase{}", k + 1);
-            let formula = "mass of a ring times the change of its velocity in this phase";
-            put(&name("impulse"), phase.impulse, "rho c0 L^2", formula);
-            for (share, time) in SHARES.iter().zip(phase.times) {
-                let what = format!("t_impulse_{}", 100.0 * share);
-                let formula = "when this share (in %) of the phase's impulse has passed";
-                put(&name(&what), time, "L/c0", formula);
+        record.put(PHASES, phases.len() as f64);
+        for (k, found) in phases.iter().enumerate().take(2) {
+            record.put(IMPULSE.at(phase(k)), found.impulse);
+            for (metric, time) in T_IMPULSE.iter().zip(found.times) {
+                record.put(metric.at(phase(k)), time);
             }
         }
     }
@@ -298,11 +268,11 @@ pub fn momentum_error(rings: &Rings, particles: &[Particle<Symmetric>]) -> f64 {
     momentum.norm() / (0.5 * mass * rings.v.max(f64::MIN_POSITIVE))
 }
 
-impl<S: Scheme<Extra = Symmetric>> Observer<S> for Series<'_> {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Going {
+impl Observer<Symmetric> for Series<'_> {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Going {
         if simulation.time() >= self.next {
             self.next += self.every;
-            self.sample(simulation.time(), &seen(self.rings, simulation));
+            self.sample(simulation.time(), &along_flight(self.rings, simulation));
         }
         Going::Continue
     }

@@ -5,14 +5,21 @@
 //! against a frictionless plane (`references/rubber_rings`), which is half of this problem.
 
 mod budget;
+mod declaration;
+mod extremes;
 mod measure;
+mod metrics;
 mod plan;
 mod reference;
 mod run;
 mod setup;
 mod studies;
 
-use harness::composed::{Composed, Composition, lacking};
+use base::record::{Record, Status};
+use harness::{
+    case::Variant,
+    composed::{Composed, Composition, lacking},
+};
 use maths::theory::Stepping;
 use solver::{
     ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Symmetric, terms::TensileStress,
@@ -21,8 +28,6 @@ use solver::{
 pub use budget::powers;
 pub use run::{Rubber, run_scene};
 pub use setup::{Rings, Tensile};
-
-use harness::case::{Case, RunError, Variant};
 
 base::settings! {
     /// Settings of the collision of two rings; L is 1 m.
@@ -43,7 +48,7 @@ base::settings! {
         shear_modulus: f64 ["K"] in 0.0..=1.5 = 0.22,
         /// speed of each ring
         speed: f64 ["c0"] in 0.0..=1.0 = 0.059,
-        /// direction of the flight: the whole scene is turned by this angle
+        /// direction of the flight: the whole scene is rotated by this angle
         angle: f64 ["deg"] in -360.0..=360.0 = 0.0,
         /// end of the run
         end: f64 ["L/c0"] in 1e-3..=1e6 = 200.0,
@@ -63,6 +68,8 @@ base::settings! {
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,
         /// exponent of the artificial stress
         stress_exponent: usize ["-"] in 1..=16 = 4,
+        /// samples of the energy budget; no time step is longer than what is between them
+        samples: usize ["-"] in 1..=100000 = 200,
     }
 }
 
@@ -79,7 +86,8 @@ where
     I: Stepping<Symmetric>,
 {
     let lacks = lacking(OPTIONAL, R::USES);
-    Composition { variant: Variant { name, about }, adjust, run: run::run::<R, I>, lacks }
+    let rules = run::rules::<I>;
+    Composition { variant: Variant { name, about }, adjust, run: run::run::<R, I>, rules, lacks }
 }
 
 /// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
@@ -113,12 +121,8 @@ fn variants() -> Vec<Composition<RingSettings>> {
     ]
 }
 
-/// The settings of a variant with `key=value` texts applied.
-pub fn settings(variant: &str, set: &[String]) -> Result<RingSettings, RunError> {
-    CASE.settings_of(variant, set)
-}
-
-const CASE: Composed<RingSettings> = Composed {
+/// Colliding rubber rings.
+pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     name: NAME,
     about: "Two rubber rings, inner radius 3, outer radius 4, fly at each other at 0.059 of the bulk sound \
             speed each, touch, flatten, and part. Plane strain, shear modulus 0.22 K. By symmetry it is one \
@@ -126,11 +130,19 @@ const CASE: Composed<RingSettings> = Composed {
             and mirror symmetry are exact, and a ring must not break: numerical fracture is the tensile \
             instability that artificial stress is there to prevent.",
     variants,
+    is_stable,
+    declaration: declaration::declaration,
     plan: plan::plan,
-    studies: |tier, runs| studies::studies(RUBBER_RINGS, tier, runs),
+    studies: studies::studies,
 };
 
 const NAME: &str = "rubber_rings";
 
-/// Colliding rubber rings.
-pub const RUBBER_RINGS: &dyn Case = &CASE;
+/// The largest energy at any time over that at the start, less 1: what stress rates in time leave.
+const MOST_ENERGY_GAINED: f64 = 0.01;
+
+/// Nothing drives the rings, so that a run is stable if it ends and its energy never rises.
+fn is_stable(record: &Record) -> bool {
+    let gained = record.value(metrics::ENERGY_GAINED);
+    record.status == Status::Completed && gained.is_some_and(|gained| gained <= MOST_ENERGY_GAINED)
+}

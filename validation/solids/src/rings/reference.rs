@@ -1,8 +1,12 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
-use super::{RingSettings, measure::Series};
+use super::{
+    RingSettings,
+    measure::Series,
+    metrics::{self, COMPARED, IMPULSE_ERROR, RMS},
+};
 use base::{
-    record::{Metric, Record},
+    record::{MetricKey, Record},
     reference::{Reference as Package, ReferenceError},
 };
 
@@ -81,31 +85,26 @@ impl Reference {
     }
 
     /// A number of the summary with its uncertainty.
-    pub fn number(&self, name: &str) -> Option<(f64, f64)> {
-        self.summary.iter().find(|(n, ..)| n == name).map(|(_, value, spread)| (*value, *spread))
+    pub fn number(&self, quantity: MetricKey) -> Option<(f64, f64)> {
+        let quantity = String::from(quantity);
+        let found = self.summary.iter().find(|(name, ..)| *name == quantity)?;
+        Some((found.1, found.2))
     }
 
-    /// Adds the distances from the reference to the metrics of a run.
+    /// Adds the distances from the reference to the metrics of a run that has been measured.
     pub fn compare(&self, series: &Series, record: &mut Record) {
-        let mut put = |name: String, value: f64, unit: &str, formula: String| {
-            record.metrics.insert(name, Metric::new(value, unit, &formula));
-        };
-        for name in ["restitution", "width_min", "height_max", "x_c_min"] {
-            let (Some((exact, _)), Some(found)) = (self.number(name), series.metric(name)) else {
-                continue;
-            };
-            let formula = format!("|{name} - finite elements|/finite elements");
-            put(format!("{name}_error"), (found / exact - 1.0).abs(), "-", formula);
+        for (quantity, error) in COMPARED {
+            let (exact, found) = (self.number(quantity), record.value(quantity));
+            if let Some(((exact, _), found)) = exact.zip(found) {
+                record.put(error, (found / exact - 1.0).abs());
+            }
         }
         for (k, (exact, found)) in self.phases.iter().zip(series.phases()).enumerate() {
-            let name = format!("impulse_error@phase{}", k + 1);
-            let formula = "|impulse of the phase - finite elements|/finite elements".to_string();
-            put(name, (found.impulse / exact[0].0 - 1.0).abs(), "-", formula);
+            let error = (found.impulse / exact[0].0 - 1.0).abs();
+            record.put(IMPULSE_ERROR.at(metrics::phase(k)), error);
         }
-        for (k, name) in Self::COLUMNS.iter().enumerate() {
-            let unit = if *name == "v_c" { "c0" } else { "L" };
-            let formula = format!("rms over the run of {name} - finite elements");
-            put(format!("{name}_rms"), self.distance(k, series), unit, formula);
+        for (k, rms) in RMS.into_iter().enumerate() {
+            record.put(rms, self.distance(k, series));
         }
     }
 
@@ -132,7 +131,7 @@ mod tests {
     fn two_speeds_have_a_reference_and_others_have_none() {
         let at = |speed| Reference::of(&RingSettings { speed, ..RingSettings::default() });
         let paper = at(0.059).expect("the paper's speed");
-        let (restitution, spread) = paper.number("restitution").expect("measured");
+        let (restitution, spread) = paper.number(metrics::RESTITUTION).expect("measured");
         assert!((restitution - 0.7956).abs() < 1e-3 && spread < 0.01);
         assert!(at(0.03).is_some() && at(0.12).is_none());
         assert!((paper.phases[0][0].0 - 1.19383).abs() < 1e-4 && paper.phases.len() == 2);

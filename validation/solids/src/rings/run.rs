@@ -1,23 +1,24 @@
 //! One run of the rings: scene, stepping, record.
 
 use solver::{
-    ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, JaumannRate, Linear, Open,
-    Particle, Scene, Scheme, Simulation, Symmetric, Xsph,
+    ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, EquationOfState,
+    JaumannRate, Linear, Open, Particle, Scene, Scheme, Simulation, Stepper, Symmetric, Xsph,
 };
 
 use super::{
     RingSettings, Rings, Tensile,
     budget::{self, Budget},
     measure::{self, Series},
+    metrics::{COURANT, MOMENTUM},
     reference::Reference,
 };
 use base::{
     number,
-    record::{self, Metric, Profile, Record, Status},
+    record::{self, Profile, Record, Status},
 };
 use harness::{
-    case::RunError,
-    runner::{self, Context, Frames},
+    case::{Rules, RunError},
+    runner::{self, Context},
 };
 use maths::{metrics::budget::Items, theory::Stepping};
 
@@ -56,6 +57,12 @@ where
     run_scene(&rings, variant, I::NAME, rings.scene::<R, I>(), &budget::powers::<R, _>, context)
 }
 
+/// What the rules choose.
+pub fn rules<I: Stepping<Symmetric>>(settings: &RingSettings) -> Result<Rules, RunError> {
+    let Rings { dt, dt_limit, c0: sound_speed, .. } = Rings::new::<I>(settings, true)?;
+    Ok(Rules { dt, dt_limit, sound_speed })
+}
+
 /// What the terms of a scene do to its energy \[W/m\].
 pub type Powers<'a, S> = &'a dyn Fn(&Rings, &Simulation<S>) -> Items;
 
@@ -74,30 +81,29 @@ pub fn run_scene<S: Scheme<Extra = Symmetric>>(
     }
     let mut simulation = scene.build()?;
     let mut record = begin(rings, variant, integrator, context);
-    let frames = Frames::of(context)?;
     let mut series = Series::new(rings);
     let mut budget = Budget::default();
     simulation.advance(0.0, rings.dt, &mut ());
     budget.sample(rings, &simulation, &powers(rings, &simulation));
     keep(rings, &simulation, 0.0, context, &mut record);
     let stops = stops(rings, context);
-    let times: Vec<f64> = stops.iter().map(|s| s.0).collect();
-    let mut failed_frame = None;
-    let (status, cost) =
-        runner::drive(&mut simulation, rings.dt, &times, context, &mut series, &mut |s, k| {
-            match (stops[k].1, &frames) {
-                (Due::Frame, Some(frames)) => {
-                    failed_frame = failed_frame.take().or(frames.write(s, &rings.eos).err());
-                }
-                (Due::Budget, _) => budget.sample(rings, s, &powers(rings, s)),
-                _ => {}
+    let times: Vec<f64> = stops.iter().map(|stop| stop.time).collect();
+    let pressure = |density| rings.eos.pressure(density);
+    let (status, cost) = runner::drive(
+        &mut simulation,
+        rings.dt,
+        &times,
+        context,
+        &mut series,
+        &pressure,
+        &mut |s, k| {
+            if stops[k].is_sample {
+                budget.sample(rings, s, &powers(rings, s));
             }
             keep(rings, s, times[k], context, &mut record);
-        });
-    if let Some(error) = failed_frame {
-        return Err(error.into());
-    }
-    let particles = measure::seen(rings, &simulation);
+        },
+    )?;
+    let particles = measure::along_flight(rings, &simulation);
     if status == Status::Completed {
         series.sample(simulation.time(), &particles);
         series.measure(&mut record);
@@ -105,12 +111,8 @@ pub fn run_scene<S: Scheme<Extra = Symmetric>>(
         if let Some(reference) = Reference::of(&rings.settings) {
             reference.compare(&series, &mut record);
         }
-        let momentum = measure::momentum_error(rings, &particles);
-        let formula = "|sum m v| at the end/momentum of one ring, exactly 0";
-        record.metrics.insert("momentum".into(), Metric::new(momentum, "-", formula));
-        let courant = rings.dt * (rings.cp + rings.v) / rings.h;
-        let formula = "dt (c_p + V)/h, c_p = ((K + 4 mu/3)/rho)^(1/2)";
-        record.metrics.insert("courant".into(), Metric::new(courant, "-", formula));
+        record.put(MOMENTUM, measure::momentum_error(rings, &particles));
+        record.put(COURANT, rings.dt * (rings.cp + rings.v) / rings.h);
     }
     record.profiles.insert("series".into(), series.profile());
     record.state = Some(record::digest(&state(&simulation.particles())));
@@ -138,40 +140,38 @@ fn begin(rings: &Rings, variant: &str, integrator: &str, context: &Context) -> R
     record
 }
 
-/// What is due at a stop, beside pictures.
-#[derive(Clone, Copy)]
-enum Due {
-    Nothing,
-    Frame,
-    Budget,
+/// A stop of a run: for a picture, or for a sample of the energy budget.
+struct Stop {
+    /// \[s\].
+    time: f64,
+    is_sample: bool,
 }
 
-/// (time \[s\], what is due), ascending.
-fn stops(rings: &Rings, context: &Context) -> Vec<(f64, Due)> {
+/// Ascending.
+fn stops(rings: &Rings, context: &Context) -> Vec<Stop> {
     let end = rings.settings.end / rings.c0;
     let pictures = pictures(context).into_iter().filter(|share| *share > 0.0);
-    let mut stops: Vec<(f64, Due)> = pictures.map(|share| (share * end, Due::Nothing)).collect();
-    let sample = |k: usize| (end * k as f64 / budget::SAMPLES as f64, Due::Budget);
-    stops.extend((1..=budget::SAMPLES).map(sample));
-    if let Some((_, count)) = context.frames {
-        stops.extend((1..=count).map(|k| (end * k as f64 / count as f64, Due::Frame)));
-    }
-    stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let picture = |share: f64| Stop { time: share * end, is_sample: false };
+    let count = rings.settings.samples;
+    let sample = |k: usize| Stop { time: end * k as f64 / count as f64, is_sample: true };
+    let samples = (1..=count).map(sample);
+    let mut stops: Vec<Stop> = pictures.map(picture).chain(samples).collect();
+    stops.sort_by(|a, b| a.time.total_cmp(&b.time));
     stops
 }
 
 /// Keeps x, y and the largest principal stress at the times of pictures.
-fn keep<S: Scheme<Extra = Symmetric>>(
+fn keep(
     rings: &Rings,
-    simulation: &Simulation<S>,
+    simulation: &dyn Stepper<Symmetric>,
     time: f64,
     context: &Context,
     record: &mut Record,
 ) {
     let end = rings.settings.end / rings.c0;
-    let is_due = pictures(context).into_iter().find(|share| share * end == time);
-    let (true, Some(share)) = (context.keep_particles, is_due) else { return };
-    let all = measure::seen(rings, simulation);
+    let picture = pictures(context).into_iter().find(|share| share * end == time);
+    let (true, Some(share)) = (context.keep_particles, picture) else { return };
+    let all = measure::along_flight(rings, simulation);
     let column = |f: &dyn Fn(&Particle<Symmetric>) -> f64| all.iter().map(f).collect::<Vec<f64>>();
     let largest = |p: &Particle<Symmetric>| {
         let (m, d) = (0.5 * (p.extra.xx + p.extra.yy), 0.5 * (p.extra.xx - p.extra.yy));

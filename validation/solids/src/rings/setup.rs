@@ -123,8 +123,8 @@ impl Rings {
         Smoothing::<CubicSpline>::new(self.h).w(self.dx * self.dx)
     }
 
-    /// Turns the line of flight to the x axis.
-    pub fn turn_back(&self) -> Rotation2<f64> {
+    /// Rotates the line of flight to the x axis.
+    pub fn to_flight(&self) -> Rotation2<f64> {
         Rotation2::new(-self.settings.angle.to_radians())
     }
 
@@ -133,7 +133,7 @@ impl Rings {
     /// image of the one on the left, in the same order.
     pub fn particles(&self) -> Vec<Particle<Symmetric>> {
         let s = &self.settings;
-        let turn = self.turn_back().inverse();
+        let rotation = self.to_flight().inverse();
         let (mut left, mut right) = (Vec::new(), Vec::new());
         let layers = ((s.outer - s.inner) / self.dx).round() as usize;
         for k in 0..layers {
@@ -147,7 +147,12 @@ impl Rings {
                     // On the right: the mirror image, to the last bit.
                     let place = Vector2::new(side * (s.centre + place.x), place.y);
                     let velocity = Vector2::new(-side * self.v, 0.0);
-                    ring.push(Particle::fluid(turn * place, turn * velocity, s.rho, volume));
+                    ring.push(Particle::fluid(
+                        rotation * place,
+                        rotation * velocity,
+                        s.rho,
+                        volume,
+                    ));
                 };
                 put(-1.0, &mut left);
                 put(1.0, &mut right);

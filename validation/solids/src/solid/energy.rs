@@ -1,7 +1,7 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
 use nalgebra::Vector2;
-use solver::{Evolved, Rate, Scheme, Simulation, Symmetric};
+use solver::{Evolved, Numbers, Rate, Stepper, Symmetric};
 
 use super::Material;
 
@@ -18,7 +18,7 @@ pub struct Energy {
 
 impl Energy {
     /// Of all fluid particles of a simulation.
-    pub fn of<S: Scheme<Extra = Symmetric>>(simulation: &Simulation<S>, of: &Material) -> Self {
+    pub fn of(simulation: &dyn Stepper<Symmetric>, of: &Material) -> Self {
         simulation.fluid().fold(Self::default(), |sum, (mass, p)| sum + Self::of_one(mass, p, of))
     }
 
@@ -93,7 +93,7 @@ fn product(s: &Symmetric, t: &Symmetric) -> f64 {
 }
 
 /// Angular momentum about the centre of mass \[kg m²/s per m\].
-pub fn angular_momentum<S: Scheme>(simulation: &Simulation<S>) -> f64 {
+pub fn angular_momentum<X: Numbers>(simulation: &dyn Stepper<X>) -> f64 {
     let sums = simulation.fluid().fold(
         (0.0, Vector2::zeros(), Vector2::zeros()),
         |(mass, first, momentum), (m, p)| {
@@ -101,8 +101,7 @@ pub fn angular_momentum<S: Scheme>(simulation: &Simulation<S>) -> f64 {
         },
     );
     let (centre, drift) = (sums.1 / sums.0, sums.2 / sums.0);
-    let spin =
-        |(m, p): (f64, &Evolved<S::Extra>)| m * (p.position - centre).perp(&(p.velocity - drift));
+    let spin = |(m, p): (f64, &Evolved<X>)| m * (p.position - centre).perp(&(p.velocity - drift));
     simulation.fluid().map(spin).fold(0.0, |sum, one| sum + one)
 }
 

@@ -2,7 +2,10 @@
 
 use solver::{CubicSpline, Kernel, Linear, Smoothing};
 
-use harness::{case::RunError, runner::Context};
+use harness::{
+    case::{Rules, RunError},
+    runner::Context,
+};
 use maths::theory::{
     lattice::SquareLattice,
     time_step::{self, Medium},
@@ -75,22 +78,22 @@ impl Solid {
         Smoothing::<CubicSpline>::new(self.h(dx)).w(dx * dx)
     }
 
-    /// The time step courant h/(c_p + V) \[s\] for speeds of V \[m/s\]; refused beyond the limit of
+    /// The time step courant h/(c_p + V) \[s\] for speeds of V \[m/s\] unless it is given, and the limit of
     /// the undamped leapfrog on a lattice, about 1.87 h/c_p, and that of the artificial viscosity.
-    pub fn time_step(
-        &self,
-        dx: f64,
-        speed: f64,
-        courant: f64,
-        context: &Context,
-    ) -> Result<f64, RunError> {
+    pub fn rules(&self, dx: f64, speed: f64, courant: f64) -> Rules {
         let (h, c0) = (self.h(dx), self.material.p_wave_speed());
         let dt = self.dt.unwrap_or(self.courant.unwrap_or(courant) * h / (c0 + speed));
         let lattice = SquareLattice::<CubicSpline>::new(self.h_over_dx, 0.01);
         let medium = Medium { c0, h, nu: 0.0, alpha: self.viscosity[0], delta: 0.0 };
         let modes = time_step::modes(&lattice, 24, &medium);
         // The predictor-corrector amplifies undamped sound at every dt: what it does is measured.
-        let limit = time_step::time_step_limit(&modes, time_step::Integrator::Leapfrog);
+        let dt_limit = time_step::time_step_limit(&modes, time_step::Integrator::Leapfrog);
+        Rules { dt, dt_limit, sound_speed: self.material.sound_speed() }
+    }
+
+    /// The time step of these rules \[s\]; refused beyond their limit.
+    pub fn time_step(&self, rules: Rules, context: &Context) -> Result<f64, RunError> {
+        let Rules { dt, dt_limit: limit, .. } = rules;
         if dt > limit && !context.allow_unstable {
             return Err(RunError::TimeStep { dt, limit, integrator: "leapfrog" });
         }

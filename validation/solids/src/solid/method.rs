@@ -116,8 +116,8 @@ pub struct Clamp {
 }
 
 impl Walls<Symmetric> for Clamp {
-    type Rows = (Continuity, JaumannRate);
-    fn rows(&self) -> Self::Rows {
+    type Terms = (Continuity, JaumannRate);
+    fn terms(&self) -> Self::Terms {
         (Continuity, JaumannRate { shear_modulus: self.shear_modulus })
     }
 }

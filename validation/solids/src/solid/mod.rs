@@ -1,5 +1,5 @@
 //! What cases of the elastic solid have in common: material, methods, settings, energies, and the
-//! case itself around a problem.
+//! variants of a problem.
 
 mod energy;
 mod material;
@@ -9,10 +9,16 @@ mod problem;
 pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
 pub use material::{Material, Solid};
 pub use method::{Bare, Clamp, Method, Plain, Scheme, Seed};
-pub use problem::{Problem, Ran, SolidCase, describe, digest, run_to};
+pub use problem::{Finished, Problem, SharedSettings, begin, digest, run_to, variants};
+
+/// The largest of these numbers, none of which is negative; NaN if one is NaN, for what was not measured must
+/// not pass.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+}
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, and turns
-/// the latter into a [`Solid`] by a method `solid`.
+/// the latter into a [`Solid`] by [`SharedSettings`].
 #[macro_export]
 macro_rules! solid_settings {
     (
@@ -49,9 +55,8 @@ macro_rules! solid_settings {
             }
         }
 
-        impl $Struct {
-            /// What all solid cases share.
-            pub fn solid(&self) -> $crate::solid::Solid {
+        impl $crate::solid::SharedSettings for $Struct {
+            fn solid(&self) -> $crate::solid::Solid {
                 let Self { rho, young, poisson, h_over_dx, xi, xsph, dt, courant, .. } = *self;
                 $crate::solid::Solid {
                     material: $crate::solid::Material::from_young(rho, young, poisson),

@@ -1,67 +1,55 @@
-//! A solid case around a problem: variants, settings, and what every record states.
-
-use std::marker::PhantomData;
+//! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
 use solver::{
-    CubicSpline, Integrator, Kernel, Linear, Observer, Scene, Scheme, Simulation, Symmetric,
+    CubicSpline, EquationOfState, Integrator, Kernel, Linear, Observer, Scene, Scheme, Simulation,
+    Stepper, Symmetric,
 };
 
 use super::{Bare, Method, Plain, Seed, Solid};
 use base::{
     number,
     record::{self, Cost, Record, Status},
-    settings::{self, Field, Settings, Value},
+    settings::{Settings, Value},
 };
 use harness::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
-    runner::{self, Context, Frames},
-    suite::{JudgedRun, Study},
+    case::{RunError, Variant},
+    composed::Composition,
+    runner::{self, Context},
 };
 
-/// A problem of elasticity: what differs between solid cases.
-pub trait Problem: Send + Sync + 'static {
-    /// Name on the command line.
-    const NAME: &'static str;
-    /// The problem in words.
-    const ABOUT: &'static str;
-    /// Its settings, by [`solid_settings!`](crate::solid_settings!).
-    type Settings: Settings;
+/// Settings by [`solid_settings!`](crate::solid_settings!).
+pub trait SharedSettings: Settings {
+    /// What all solid cases share.
+    fn solid(&self) -> Solid;
+}
 
+/// A problem of elasticity, stated by its settings: what differs between solid cases.
+pub trait Problem: SharedSettings {
+    /// Name of the case.
+    const NAME: &'static str;
+
+    /// Spacing \[m\].
+    fn dx(&self) -> f64;
+    /// Largest speed at the start \[m/s\].
+    fn speed(&self) -> f64;
     /// One run with a method.
     fn run<M: Method>(
         variant: &str,
-        settings: &Self::Settings,
+        settings: &Self,
         context: &Context,
     ) -> Result<Record, RunError>;
-    /// The judged runs.
-    fn plan(tier: Tier) -> Vec<Planned>;
-    /// What the runs say together.
-    fn studies(tier: Tier, runs: &[JudgedRun]) -> Vec<Study>;
 }
 
-/// A problem as a [`Case`].
-pub struct SolidCase<P>(PhantomData<P>);
-
-impl<P> SolidCase<P> {
-    /// The case of the problem `P`.
-    pub const CASE: Self = Self(PhantomData);
-}
-
-type Run<S> = fn(&str, &S, &Context) -> Result<Record, RunError>;
-
-/// A method as a variant of a problem.
-struct SolidVariant<S> {
-    variant: Variant,
-    unused: &'static [&'static str],
-    run: Run<S>,
-}
-
-fn variants<P: Problem>() -> Vec<SolidVariant<P::Settings>> {
-    fn entry<P: Problem, M: Method>(
-        name: &'static str,
-        about: &'static str,
-    ) -> SolidVariant<P::Settings> {
-        SolidVariant { variant: Variant { name, about }, unused: M::UNUSED, run: P::run::<M> }
+/// The methods as variants of a problem.
+pub fn variants<P: Problem>() -> Vec<Composition<P>> {
+    fn entry<P: Problem, M: Method>(name: &'static str, about: &'static str) -> Composition<P> {
+        Composition {
+            variant: Variant { name, about },
+            adjust: leave_out::<P, M>,
+            run: P::run::<M>,
+            rules: |s| Ok(s.solid().rules(s.dx(), s.speed(), M::COURANT)),
+            lacks: M::UNUSED.to_vec(),
+        }
     }
     vec![
         entry::<P, Seed>(
@@ -77,79 +65,23 @@ fn variants<P: Problem>() -> Vec<SolidVariant<P::Settings>> {
     ]
 }
 
-impl<S: Settings> SolidVariant<S> {
-    /// The settings with `key=value` texts applied; those of absent terms are 0 or, where that is
-    /// out of range, what they are.
-    fn settings(&self, set: &[String]) -> Result<S, RunError> {
-        let key = |text: &String| text.split('=').next().unwrap_or_default().trim().to_string();
-        if let Some(key) = set.iter().map(key).find(|key| self.unused.contains(&key.as_str())) {
-            return Err(RunError::Unused { key, variant: self.variant.name.into() });
+/// Settings of terms that a method lacks are 0, or stay what they are where that is out of range.
+fn leave_out<P: Problem, M: Method>(settings: &mut P) {
+    for name in M::UNUSED {
+        if let Some(Value::Real(_)) = settings.get(name) {
+            let _out_of_range = settings.set(name, "0");
         }
-        let mut settings = S::default();
-        for absent in self.unused {
-            if let Some(Value::Real(_)) = settings.get(absent) {
-                settings.set(absent, "0")?;
-            }
-        }
-        settings::apply(&mut settings, set)?;
-        settings.validate()?;
-        Ok(settings)
     }
 }
 
-impl<P: Problem> SolidCase<P> {
-    fn variant<T>(
-        name: &str,
-        then: impl FnOnce(&SolidVariant<P::Settings>) -> Result<T, RunError>,
-    ) -> Result<T, RunError> {
-        let variants = variants::<P>();
-        then(case::find(P::NAME, &variants, name, |v| v.variant.name)?)
-    }
-}
-
-impl<P: Problem> Case for SolidCase<P> {
-    fn name(&self) -> &'static str {
-        P::NAME
-    }
-
-    fn about(&self) -> &'static str {
-        P::ABOUT
-    }
-
-    fn variants(&self) -> Vec<Variant> {
-        variants::<P>().into_iter().map(|v| v.variant).collect()
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        P::Settings::FIELDS
-    }
-
-    fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        let settings = Self::variant(variant, |v| v.settings(set))?;
-        Ok(serde_json::to_value(settings).unwrap_or_default())
-    }
-
-    fn run(&self, variant: &str, set: &[String], context: &Context) -> Result<Record, RunError> {
-        Self::variant(variant, |v| (v.run)(variant, &v.settings(set)?, context))
-    }
-
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        P::plan(tier)
-    }
-
-    fn studies(&self, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
-        P::studies(tier, runs)
-    }
-}
-
-/// A record of a run of the method `M`, with what it chose.
-pub fn describe<P: Problem, M: Method>(
+/// A record of a run of the method `M`, with what it chose, and the time step \[s\].
+pub fn begin<P: Problem, M: Method>(
     variant: &str,
-    settings: &P::Settings,
-    solid: &Solid,
-    [dx, dt]: [f64; 2],
+    settings: &P,
     context: &Context,
-) -> Record {
+) -> Result<(Record, f64), RunError> {
+    let (solid, dx) = (settings.solid(), settings.dx());
+    let dt = solid.time_step(solid.rules(dx, settings.speed(), M::COURANT), context)?;
     let json = serde_json::to_value(settings).unwrap_or_default();
     let mut record = Record::new(P::NAME, variant, json, context.threads.max(1));
     let material = &solid.material;
@@ -167,24 +99,11 @@ pub fn describe<P: Problem, M: Method>(
     numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
     numerics.insert("kernel".into(), CubicSpline::NAME.into());
     numerics.insert("integrator".into(), M::Integrator::NAME.into());
-    record
+    Ok((record, dt))
 }
 
-/// The times of a run: its end \[s\], and the times of frames before it.
-///
-/// A stop brings the leapfrog's velocities to a whole step, so there is none that nobody asked for.
-/// Refused where more than ten million steps would be needed.
-fn steps_and_frames(end: f64, dt: f64, context: &Context) -> Result<Vec<f64>, RunError> {
-    let (value, most) = (end / dt, 1e7);
-    if value > most {
-        return Err(RunError::TooMuch { what: "the steps", value, most, setting: "end or dt" });
-    }
-    let count = context.frames.as_ref().map_or(1, |(_, count)| *count.max(&1));
-    Ok((1..=count).map(|k| end * (k as f64 / count as f64)).collect())
-}
-
-/// A run that is over.
-pub struct Ran<S: Scheme> {
+/// A run that has ended.
+pub struct Finished<S: Scheme> {
     /// The simulation at its end.
     pub simulation: Simulation<S>,
     /// How it ended.
@@ -193,35 +112,32 @@ pub struct Ran<S: Scheme> {
     pub cost: Cost,
 }
 
-/// Steps a scene to its end with an observer, writing frames if the context asks for any.
+/// Steps a scene to its end \[s\] with an observer; refused where more than ten million steps would be
+/// needed.
 pub fn run_to<S: Scheme<Extra = Symmetric>>(
     mut scene: Scene<S>,
     [dt, end]: [f64; 2],
     eos: Linear,
     context: &Context,
-    observer: &mut impl Observer<S>,
-) -> Result<Ran<S>, RunError> {
+    observer: &mut dyn Observer<S::Extra>,
+) -> Result<Finished<S>, RunError> {
+    let (value, most) = (end / dt, 1e7);
+    if value > most {
+        return Err(RunError::TooMuch { what: "the steps", value, most, setting: "end or dt" });
+    }
     if context.threads <= 1 {
         scene.parallel_from = usize::MAX;
     }
-    let times = steps_and_frames(end, dt, context)?;
     let mut simulation = scene.build()?;
-    let frames = Frames::of(context)?;
-    let mut failed = None;
+    let pressure = |density| eos.pressure(density);
+    // No stop but the end: one would bring the leapfrog's velocities to a whole step.
     let (status, cost) =
-        runner::drive(&mut simulation, dt, &times, context, observer, &mut |simulation, _| {
-            if let Some(frames) = &frames {
-                failed = failed.take().or(frames.write(simulation, &eos).err());
-            }
-        });
-    match failed {
-        Some(error) => Err(error.into()),
-        None => Ok(Ran { simulation, status, cost }),
-    }
+        runner::drive(&mut simulation, dt, &[end], context, observer, &pressure, &mut |_, _| {})?;
+    Ok(Finished { simulation, status, cost })
 }
 
 /// A digest of the state at the end.
-pub fn digest<S: Scheme<Extra = Symmetric>>(simulation: &Simulation<S>) -> String {
+pub fn digest(simulation: &dyn Stepper<Symmetric>) -> String {
     let numbers = |p: solver::Particle<Symmetric>| {
         let Symmetric { xx, yy, xy } = p.extra;
         [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density, xx, yy, xy]

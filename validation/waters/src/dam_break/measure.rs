@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 use solver::{
-    EquationOfState, Evolved, Flow as Going, Kernel, Observer, Scheme, Simulation, Smoothing, Tait,
+    EquationOfState, Evolved, Flow, Kernel, Observer, Scheme, Simulation, Smoothing, Stepper, Tait,
     Term,
 };
 
-use super::Dam;
-use base::record::{Metric, Profile, Record};
+use super::{Dam, metrics};
+use base::record::{Profile, Record};
 
 /// Heights of the sensors on the far wall \[m\], and their diameter (Lobovsky et al. 2014).
 pub const SENSORS: [f64; 4] = [0.003, 0.015, 0.030, 0.080];
@@ -63,7 +63,7 @@ struct Sample {
 }
 
 /// Samples of a run.
-pub struct Seen<'a, F> {
+pub struct Samples<'a, F> {
     dam: &'a Dam,
     forces: F,
     /// x of the foremost particle at the start \[m\].
@@ -83,7 +83,7 @@ struct Balance {
     gap: f64,
 }
 
-impl<'a, F: Term<()>> Seen<'a, F> {
+impl<'a, F: Term<()>> Samples<'a, F> {
     /// For a scene with these forces.
     pub fn new(dam: &'a Dam, forces: &F) -> Self {
         let (samples, balance) = (Vec::new(), None);
@@ -161,24 +161,17 @@ impl<'a, F: Term<()>> Seen<'a, F> {
     /// Metrics that need no reference, and the series.
     pub fn measure(&self, mass: f64, record: &mut Record) {
         let Dam { settings: s, medium, .. } = self.dam;
-        let mut put = |name: &str, value: f64, unit: &str, formula: &str| {
-            record.metrics.insert(name.into(), Metric::new(value, unit, formula));
-        };
         let most = |f: &dyn Fn(&Sample) -> f64| self.samples.iter().map(f).fold(f64::NAN, f64::max);
-        let formula = "most particles more than dx/2 behind bottom and sides at any time";
-        put("outside", most(&|s| s.outside), "1", formula);
+        record.put(metrics::OUTSIDE, most(&|s| s.outside));
         let last = self.samples.last().map_or(f64::NAN, |s| s.outside);
-        put("outside_end", last, "1", "those at the end");
-        let formula = "the deepest that a particle was behind bottom or sides";
-        put("outside_depth", most(&|s| s.deepest), "dx", formula);
-        let mach = most(&|s| s.speed) / medium.eos.sound_speed;
-        put("mach", mach, "-", "largest speed of a particle/c0");
-        put("density_most", most(&|s| s.density[1]), "-", "largest rho/rho_0 - 1");
-        put("density_least", -most(&|s| -s.density[0]), "-", "least rho/rho_0 - 1");
+        record.put(metrics::OUTSIDE_END, last);
+        record.put(metrics::OUTSIDE_DEPTH, most(&|s| s.deepest));
+        record.put(metrics::MACH, most(&|s| s.speed) / medium.eos.sound_speed);
+        record.put(metrics::DENSITY_MOST, most(&|s| s.density[1]));
+        record.put(metrics::DENSITY_LEAST, -most(&|s| -s.density[0]));
         let scale = mass * (s.gravity * s.height).sqrt();
         let gap = self.balance.map_or(f64::NAN, |b| b.gap) / scale;
-        let formula = "max |change of momentum - impulse of walls and gravity|/(M (g H)^(1/2))";
-        put("momentum_gap", gap, "-", formula);
+        record.put(metrics::MOMENTUM_GAP, gap);
         let column = |f: &dyn Fn(&Sample) -> f64| self.samples.iter().map(f).collect();
         let mut series = Profile::default()
             .with("t", "s", column(&|s| s.time))
@@ -221,7 +214,7 @@ impl<K: Kernel> Gauge<K> {
         Self { kernel, eos: dam.medium.eos, wall, sensors, rows: Vec::new() }
     }
 
-    fn read<S: Scheme<Extra = ()>>(&self, simulation: &Simulation<S>) -> Vec<f64> {
+    fn read(&self, simulation: &dyn Stepper<()>) -> Vec<f64> {
         let reach = self.wall - self.kernel.support();
         let near: Vec<(Vector2<f64>, f64, f64)> = simulation
             .fluid()
@@ -287,13 +280,13 @@ fn inside<K: Kernel>(kernel: &Smoothing<K>, height: f64) -> f64 {
         .fold(0.0, |sum, (x, y)| sum + cell * cell * kernel.w(x * x + y * y))
 }
 
-impl<S: Scheme<Extra = ()>, K: Kernel> Observer<S> for Gauge<K> {
-    fn after_step(&mut self, simulation: &Simulation<S>) -> Going {
+impl<K: Kernel> Observer<()> for Gauge<K> {
+    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
         if self.is_there() {
             let p = self.read(simulation);
             self.rows.push([simulation.time(), p[0], p[1], p[2], p[3]]);
         }
-        Going::Continue
+        Flow::Continue
     }
 }
 

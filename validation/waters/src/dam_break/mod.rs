@@ -5,8 +5,10 @@
 //! exact, momentum follows gravity and the force of the walls, and every term accounts for its energy.
 
 mod ablation;
-mod cost;
+mod declared;
+mod front;
 mod measure;
+mod metrics;
 mod plan;
 mod reference;
 mod run;
@@ -14,19 +16,20 @@ mod setup;
 mod stability;
 mod studies;
 
-use harness::composed::{Composed, Composition, lacking};
-use maths::theory::Stepping;
+use harness::{
+    case::Variant,
+    composed::{Composed, Composition},
+};
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
     DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, PredictorCorrector,
-    Pressure, Scheme, SlipGhosts, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+    Pressure, SlipGhosts, Tait, WendlandC2, Xsph, terms::Hydrostatic,
 };
 
 pub use run::{Watched, run_scene};
 pub use setup::{Dam, Vessel};
 
-use super::water::{Ingredient, OPTIONAL};
-use harness::case::{Case, RunError, Variant};
+use super::water::WaterScheme;
 
 crate::water_settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
@@ -47,12 +50,16 @@ crate::water_settings! {
         c0: f64 ["(g H)^(1/2)"] in 1.0..=1e3 = 14.142135623730951,
         /// end of the run
         end: f64 ["(H/g)^(1/2)"] in 1e-6..=100.0 = 1.8,
+        /// the column starts this far to the left of its place and below it, with the densities of its place
+        shift: f64 ["dx"] in 0.0..=0.5 = 0.0,
     }
 }
 
-/// What makes the settings those of Lobovsky et al.: a reservoir of 600 mm by 300 mm in a tank of
-/// 1610 mm, whose walls are 600 mm high.
-pub const LOBOVSKY: [&str; 5] = ["width=0.6", "height=0.3", "tank=1.61", "rim=2", "end=6"];
+/// Makes the settings those of Lobovsky et al.: a reservoir of 600 mm by 300 mm in a tank of 1610 mm, whose
+/// walls are 600 mm high.
+pub fn lobovsky(s: &mut DamSettings) {
+    (s.width, s.height, s.tank, s.rim, s.end) = (0.6, 0.3, 1.61, 2.0, 6.0);
+}
 
 /// The name of the case.
 pub const NAME: &str = "dam_break";
@@ -68,20 +75,19 @@ pub type Diffusion = DensityDiffusion<Hydrostatic>;
 pub type Modern<D = (Continuity, Diffusion), W = ExtrapolatingWall<Tait>> =
     Compose<WendlandC2, Water, D, W, Leapfrog>;
 
-fn variant<S>(
+fn variant<S: WaterScheme<Walls: Vessel>>(
     name: &'static str,
     about: &'static str,
     adjust: fn(&mut DamSettings),
-) -> Composition<DamSettings>
-where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: Vessel,
-    S::Integrator: Stepping,
-{
-    let lacks = lacking(OPTIONAL, &[S::Forces::uses(), S::Drift::uses()].concat());
-    Composition { variant: Variant { name, about }, adjust, run: run::run::<S>, lacks }
+) -> Composition<DamSettings> {
+    let lacks = S::lacks();
+    Composition {
+        variant: Variant { name, about },
+        adjust,
+        run: run::run::<S>,
+        rules: run::rules::<S>,
+        lacks,
+    }
 }
 
 /// The seed's step: at Courant number 0.4 the predictor-corrector needs α = 0.03 on every pair, and
@@ -184,12 +190,8 @@ fn ablations() -> Vec<Composition<DamSettings>> {
     ]
 }
 
-/// The settings of a variant with `key=value` texts applied.
-pub fn settings(variant: &str, set: &[String]) -> Result<DamSettings, RunError> {
-    CASE.settings_of(variant, set)
-}
-
-const CASE: Composed<DamSettings> = Composed {
+/// Collapsing columns.
+pub static DAM_BREAK: Composed<DamSettings> = Composed {
     name: NAME,
     about: "A column of water, held by a wall on its left, is released at once and collapses on a dry floor \
             (Martin & Moyce 1952: twice as high as wide, on an endless floor; Lobovsky et al. 2014: 600 mm \
@@ -197,9 +199,8 @@ const CASE: Composed<DamSettings> = Composed {
             pressures and impulses are compared with the experiments; energy and momentum are accounted for \
             term by term.",
     variants,
+    is_stable: stability::is_stable,
+    declaration: declared::declaration,
     plan: plan::plan,
-    studies: |tier, runs| studies::studies(DAM_BREAK, tier, runs),
+    studies: studies::studies,
 };
-
-/// Collapsing columns.
-pub const DAM_BREAK: &dyn Case = &CASE;

@@ -1,7 +1,16 @@
-//! The judged runs: both experiments over resolutions and variants, and their gates.
+//! The runs: both experiments over resolutions and variants with their gates, and what single studies need.
 
-use super::LOBOVSKY;
-use base::gate::{Bound, Evidence, Gate, Purpose};
+use super::{
+    DAM_BREAK, NAME, ablation, lobovsky,
+    metrics::{self, FRONT, HEIGHT, IMPULSE, LEVELS},
+    stability,
+};
+use crate::water::ledger;
+use base::{
+    gate::{Bound, Evidence, Gate, Purpose},
+    record::MetricName,
+    spec::RunSpec,
+};
 use harness::case::{Planned, Tier};
 
 /// The variants that are judged.
@@ -19,7 +28,7 @@ pub fn martin_moyce(variant: &str, tier: Tier) -> &'static [usize] {
 }
 
 /// Spacings along the height of the column of Lobovsky et al.
-pub fn lobovsky(variant: &str, tier: Tier) -> &'static [usize] {
+pub fn in_tank(variant: &str, tier: Tier) -> &'static [usize] {
     match (tier, variant) {
         (Tier::Quick, "modern") => &[30],
         (Tier::Quick, _) => &[],
@@ -31,38 +40,90 @@ pub fn lobovsky(variant: &str, tier: Tier) -> &'static [usize] {
 /// Roughly what a run takes \[s\], `whole` being what `modern` takes at the spacing of `n`: particles times
 /// steps, and two right-hand sides a step where the seed's integrator is.
 fn seconds(variant: &str, whole: f64, n: usize, of: usize) -> f64 {
-    let dear = if variant == "modern" { 1.0 } else { 2.5 };
+    let dear = if variant.starts_with("modern") { 1.0 } else { 2.5 };
     whole * dear * (n as f64 / of as f64).powi(3)
 }
 
-/// The settings of a run of Lobovsky's column.
-pub fn in_tank(n: usize) -> Vec<String> {
-    let mut set: Vec<String> = LOBOVSKY.map(String::from).to_vec();
-    set.push(format!("n={n}"));
-    set
+/// The same run with the particles of its pictures, if there are pictures of it: of the finest of `modern`.
+fn pictured(spec: RunSpec, n: usize, ladder: &[usize]) -> RunSpec {
+    let is_finest = spec.variant == "modern" && ladder.last() == Some(&n);
+    if is_finest { spec.keep_particles() } else { spec }
 }
 
-/// The runs: Martin & Moyce variant by variant, then Lobovsky et al.
+/// The column of Martin & Moyce.
+pub fn free(tier: Tier, variant: &str, n: usize) -> RunSpec {
+    pictured(DAM_BREAK.spec(variant, |s| s.n = n), n, martin_moyce(variant, tier))
+}
+
+/// The same as a run of a plan, without gates.
+pub fn planned_free(tier: Tier, variant: &str, n: usize) -> Planned {
+    Planned::new(free(tier, variant, n)).taking(seconds(variant, 6.0, n, 40))
+}
+
+/// The tank of Lobovsky et al.
+pub fn tank(tier: Tier, variant: &str, n: usize) -> RunSpec {
+    let spec = DAM_BREAK.spec(variant, |s| {
+        lobovsky(s);
+        s.n = n;
+    });
+    pictured(spec, n, in_tank(variant, tier))
+}
+
+/// The judged runs of the column of Martin & Moyce.
+pub fn all_free(tier: Tier) -> impl Iterator<Item = RunSpec> {
+    let of =
+        move |variant| martin_moyce(variant, tier).iter().map(move |n| free(tier, variant, *n));
+    JUDGED.into_iter().flat_map(of)
+}
+
+/// The judged runs of the tank of Lobovsky et al.
+pub fn all_in_tank(tier: Tier) -> impl Iterator<Item = RunSpec> {
+    let of = move |variant| in_tank(variant, tier).iter().map(move |n| tank(tier, variant, *n));
+    JUDGED.into_iter().flat_map(of)
+}
+
+/// Pictures of the film, and spacings along the height of its column.
+pub const FRAMES: usize = 21;
+pub const FILM_ROWS: usize = 15;
+
+/// The tank as a film: `modern` with a picture every quarter of √(H/g).
+pub fn film(tier: Tier) -> RunSpec {
+    tank(tier, "modern", FILM_ROWS).keep_pictures(FRAMES)
+}
+
+/// The runs: Martin & Moyce variant by variant, then Lobovsky et al., then those of single studies.
 pub fn plan(tier: Tier) -> Vec<Planned> {
     let mut runs = Vec::new();
     for variant in JUDGED {
         for &n in martin_moyce(variant, tier) {
-            let run = Planned::new(variant, &[format!("n={n}")]);
-            let run = run.taking(seconds(variant, 6.0, n, 40));
-            runs.push(run.judged(free_gates(variant, n)));
+            runs.push(planned_free(tier, variant, n).judged(free_gates(variant, n)));
         }
     }
     for variant in JUDGED {
-        for &n in lobovsky(variant, tier) {
-            let run = Planned::new(variant, &in_tank(n)).taking(seconds(variant, 5.0, n, 30));
+        for &n in in_tank(variant, tier) {
+            let run = Planned::new(tank(tier, variant, n)).taking(seconds(variant, 5.0, n, 30));
             runs.push(run.judged(tank_gates(variant, n)));
         }
+    }
+    runs.push(Planned::new(film(tier)));
+    runs.push(planned_free(tier, "modern", stability::USUAL));
+    runs.extend(stability::extremes(tier).map(|extreme| Planned::new(extreme.spec)));
+    if tier == Tier::Full {
+        runs.extend(ablation::specs().map(|spec| Planned::new(spec).taking(3.0)));
+        runs.extend(stability::SPEEDS.map(|c0| Planned::new(stability::at_speed(c0)).taking(2.0)));
     }
     runs
 }
 
-fn gate(id: &str, metric: &str, bound: Bound, evidence: Evidence, because: &str) -> Gate {
-    Gate::new(format!("dam_break.{id}.{metric}"), metric, bound, evidence, because)
+fn gate(
+    id: &str,
+    metric: impl Into<MetricName>,
+    bound: Bound,
+    evidence: Evidence,
+    because: &str,
+) -> Gate {
+    let metric = metric.into();
+    Gate::new(format!("{NAME}.{id}.{}", metric.name()), metric.name(), bound, evidence, because)
 }
 
 /// What holds whatever the water does.
@@ -79,12 +140,12 @@ fn invariants(variant: &str, id: &str) -> Vec<Gate> {
     let still =
         "walls that stand still do no work; 5 % is for what their pressure stores and gives back";
     let gates = vec![
-        gate(id, "work_walls", Bound::Within(-0.05, 0.05), Evidence::Invariant, still),
-        gate(id, "outside", Bound::Equals(0.0), Evidence::Invariant, tight),
-        gate(id, "mass_error", Bound::Equals(0.0), Evidence::Invariant, kept),
-        gate(id, "energy_gap", Bound::Below(1e-3), Evidence::Invariant, closes),
-        gate(id, "momentum_gap", Bound::Below(0.01), Evidence::Invariant, momentum),
-        gate(id, "mach", Bound::Below(0.3), Evidence::Theory, slow),
+        gate(id, ledger::WORK_WALLS, Bound::Within(-0.05, 0.05), Evidence::Invariant, still),
+        gate(id, metrics::OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, tight),
+        gate(id, metrics::MASS_ERROR, Bound::Equals(0.0), Evidence::Invariant, kept),
+        gate(id, ledger::ENERGY_GAP, Bound::Below(1e-3), Evidence::Invariant, closes),
+        gate(id, metrics::MOMENTUM_GAP, Bound::Below(0.01), Evidence::Invariant, momentum),
+        gate(id, metrics::MACH, Bound::Below(0.3), Evidence::Theory, slow),
     ];
     match variant {
         "ghosts" => gates.into_iter().map(mirrored).collect(),
@@ -129,7 +190,7 @@ pub const FRONT_SPREAD: f64 = 0.1;
 pub const IMPULSE_SPREAD: f64 = 0.06;
 /// What three other codes of particles give for Z at T = 2 and 3, see the reference `peers` of the
 /// report: SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
-pub const PEERS: [(&str, f64, f64); 2] = [("z@2", 2.62, 2.66), ("z@3", 3.97, 4.00)];
+pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
 
 /// Gates of a column that runs out freely.
 fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
@@ -140,22 +201,22 @@ fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
     }
     let peers = "three other codes agree within 0.04 that the front of two-dimensional water released at \
                  once is there; 0.1 is the spread of digitised curves of the experiment, which is slower";
-    for (metric, low, high) in PEERS {
+    for (t, low, high) in PEERS {
         let bound = Bound::Within(low - FRONT_SPREAD, high + FRONT_SPREAD);
-        let gate = gate(&id, metric, bound, Evidence::Reference, peers);
+        let gate = gate(&id, metrics::Z.at(t), bound, Evidence::Reference, peers);
         gates.push(if n < 40 { gate.reported() } else { gate });
     }
     let front = "the spread of digitised curves of the experiment is 0.1 a";
     let bound = Bound::Below(FRONT_SPREAD);
-    gates.push(gate(&id, "front_rms_shifted", bound, Evidence::Reference, front));
+    gates.push(gate(&id, FRONT.rms_shifted, bound, Evidence::Reference, front));
     let late = "the diaphragm takes time to open and a film of real water sticks: the experiment is late, \
                 by 0.175 as it is customary to assume, and by 0.25 against other codes; never early";
-    gates.push(gate(&id, "front_shift", Bound::Within(0.0, 0.4), Evidence::Reference, late));
+    gates.push(gate(&id, FRONT.shift, Bound::Within(0.0, 0.4), Evidence::Reference, late));
     let height = "stations of the height are 1/18 of the column apart";
     let bound = Bound::Below(1.0 / 18.0);
-    gates.push(gate(&id, "height_rms_shifted", bound, Evidence::Reference, height));
+    gates.push(gate(&id, HEIGHT.rms_shifted, bound, Evidence::Reference, height));
     let clock = "a diaphragm that takes time to open can only delay: the height, as the front";
-    gates.push(gate(&id, "height_shift", Bound::Above(0.0), Evidence::Reference, clock));
+    gates.push(gate(&id, HEIGHT.shift, Bound::Above(0.0), Evidence::Reference, clock));
     let limited = |gate: Gate| match (variant, gate.evidence, gate.metric.as_str()) {
         ("ghosts", Evidence::Reference, _) => gate.when_measured().with_limitation(MIRRORED),
         ("seed", Evidence::Reference, "height_shift") => gate.with_limitation(LAYER),
@@ -175,17 +236,16 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
     let mut gates = invariants(variant, &id);
     let front = "3 % of the way to the far wall; what the gate adds is not known, and a shift of the clock \
                  takes out only a part of it";
-    gates.push(gate(&id, "front_rms_shifted", Bound::Below(0.1), Evidence::Reference, front));
+    gates.push(gate(&id, FRONT.rms_shifted, Bound::Below(0.1), Evidence::Reference, front));
     let levels = "twice the distance between two series of the experiment at H4 (rms 0.024 H)";
-    gates.push(gate(&id, "levels_rms_shifted", Bound::Below(0.05), Evidence::Reference, levels));
+    gates.push(gate(&id, LEVELS.rms_shifted, Bound::Below(0.05), Evidence::Reference, levels));
     let impulse = "two sensors at 15 mm, side by side in one event, differ by 6 % in this window: the spread \
                    of two places in one event, that of P2, taken for the other heights too, for which none \
                    is known; three times that";
-    for sensor in ["P1", "P2", "P3", "P4"] {
+    for (k, sensor) in IMPULSE.into_iter().enumerate() {
         let bound = Bound::Within(-3.0 * IMPULSE_SPREAD, 3.0 * IMPULSE_SPREAD);
-        let metric = format!("impulse_{sensor}@1");
-        let gate = gate(&id, &metric, bound, Evidence::Reference, impulse);
-        let is_high = ["P3", "P4"].contains(&sensor);
+        let gate = gate(&id, sensor.at(1), bound, Evidence::Reference, impulse);
+        let is_high = k >= 2;
         gates.push(if is_high { gate.with_limitation(TONGUE) } else { gate });
     }
     let limited = |gate: Gate| match (variant, &gate.purpose, gate.evidence) {

@@ -2,10 +2,11 @@
 
 use super::{
     Dam,
-    measure::{Gauge, PROBES, SENSORS, Seen},
+    measure::{Gauge, PROBES, SENSORS, Samples},
+    metrics::{self, Distance, FRONT, HEIGHT, LEVELS},
 };
 use base::{
-    record::{Metric, Profile, Record},
+    record::{Profile, Record},
     reference::{Reference as Package, ReferenceError, Table},
 };
 use harness::convergence;
@@ -152,31 +153,24 @@ fn noise(pressure: &[(f64, f64)], from: f64) -> f64 {
     (later.iter().map(square).sum::<f64>() / later.len() as f64).sqrt()
 }
 
-/// Puts metrics into a record.
-struct Put<'a>(&'a mut Record);
-
-impl Put<'_> {
-    fn metric(&mut self, name: &str, value: f64, formula: &str) {
-        self.0.metrics.insert(name.into(), Metric::new(value, "-", formula));
-    }
-
-    /// rms of curves as they are and after their best common shift.
-    fn compare(&mut self, name: &str, pairs: &[(Curve, Curve)], range: f64, what: &str) {
-        let all = |shift: f64| {
-            let count: f64 = pairs.iter().map(|(_, m)| m.len() as f64).sum();
-            let squares: f64 =
-                pairs.iter().map(|(c, m)| rms(c, m, shift).powi(2) * m.len() as f64).sum();
-            (squares / count).sqrt()
-        };
-        let shift = best_shift(pairs, range);
-        let formula = format!("rms distance of {what} over the points of the experiment");
-        self.metric(&format!("{name}_rms"), all(0.0), &formula);
-        let formula =
-            format!("the same with the clock of the computation put forward by {name}_shift");
-        self.metric(&format!("{name}_rms_shifted"), all(shift), &formula);
-        let formula = "that shift, of the least rms, in the experiment's unit of time";
-        self.metric(&format!("{name}_shift"), shift, formula);
-    }
+/// rms of curves as they are and after their best common shift.
+fn put_distance(
+    record: &mut Record,
+    of: Distance,
+    pairs: &[(Curve, Curve)],
+    range: f64,
+    what: &str,
+) {
+    let all = |shift: f64| {
+        let count: f64 = pairs.iter().map(|(_, m)| m.len() as f64).sum();
+        let squares: f64 =
+            pairs.iter().map(|(c, m)| rms(c, m, shift).powi(2) * m.len() as f64).sum();
+        (squares / count).sqrt()
+    };
+    let shift = best_shift(pairs, range);
+    record.put(of.rms.of(what), all(0.0));
+    record.put(of.rms_shifted, all(shift));
+    record.put(of.shift, shift);
 }
 
 fn scaled(curve: &[(f64, f64)], t: f64, y: f64, zero: f64) -> Curve {
@@ -186,111 +180,91 @@ fn scaled(curve: &[(f64, f64)], t: f64, y: f64, zero: f64) -> Curve {
 /// Adds the distance from the experiment that the settings are those of, if they are.
 pub fn compare<F: Term<()>, K: Kernel>(
     dam: &Dam,
-    seen: &Seen<F>,
+    samples: &Samples<F>,
     gauge: &Gauge<K>,
     record: &mut Record,
 ) -> Result<(), ReferenceError> {
     if dam.is_martin_moyce() {
-        with_martin_moyce(dam, seen, record)?;
+        with_martin_moyce(dam, samples, record)?;
     }
     if dam.is_lobovsky() {
-        with_lobovsky(dam, seen, gauge, record)?;
+        with_lobovsky(dam, samples, gauge, record)?;
     }
     Ok(())
 }
 
 fn with_martin_moyce<F: Term<()>>(
     dam: &Dam,
-    seen: &Seen<F>,
+    samples: &Samples<F>,
     record: &mut Record,
 ) -> Result<(), ReferenceError> {
     let (a, g) = (dam.settings.width, dam.settings.gravity);
     let [measured_front, measured_height] = martin_moyce()?;
-    let front = scaled(&seen.front(), (0.5 * a / g).sqrt(), a, 0.0);
-    let height = scaled(&seen.height(), (a / g).sqrt(), dam.settings.height, 0.0);
+    let front = scaled(&samples.front(), (0.5 * a / g).sqrt(), a, 0.0);
+    let height = scaled(&samples.height(), (a / g).sqrt(), dam.settings.height, 0.0);
     let ends = |curve: &Curve| curve.last().map_or(0.0, |(t, _)| *t);
     let within = |measured: Curve, end: f64| -> Curve {
         measured.into_iter().filter(|(t, _)| *t <= end).collect()
     };
     let (front_end, height_end) = (ends(&front), ends(&height));
-    let mut put = Put(record);
-    for (t, name) in [(2.0, "z@2"), (3.0, "z@3")] {
-        put.metric(name, value(&front, t), "Z = front from the back wall/a at T = t (2g/a)^(1/2)");
+    for t in [2.0, 3.0] {
+        record.put(metrics::Z.at(t), value(&front, t));
     }
     let pairs = [(front, within(measured_front, front_end))];
-    put.compare("front", &pairs, 1.0, "Z at equal T");
+    put_distance(record, FRONT, &pairs, 1.0, "Z at equal T");
     let pairs = [(height, within(measured_height, height_end))];
     let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
                 from what was read there, at equal tau";
-    put.compare("height", &pairs, 1.0, what);
+    put_distance(record, HEIGHT, &pairs, 1.0, what);
     Ok(())
 }
 
 fn with_lobovsky<F: Term<()>, K: Kernel>(
     dam: &Dam,
-    seen: &Seen<F>,
+    samples: &Samples<F>,
     gauge: &Gauge<K>,
     record: &mut Record,
 ) -> Result<(), ReferenceError> {
     let lobovsky = Lobovsky::load()?;
     let (unit, h) = (dam.unit_time(), dam.settings.height);
     let end = dam.settings.end;
-    let mut put = Put(record);
-    let front = scaled(&seen.front(), unit, h, dam.settings.width);
+    let front = scaled(&samples.front(), unit, h, dam.settings.width);
     let measured: Curve = lobovsky.front.iter().filter(|(t, _)| *t <= end).copied().collect();
-    let both = [&front, &measured].map(|curve| front_speed(curve, &measured));
-    let formula = "slope of the least squares line of x/H over t (g/H)^(1/2) from 1 to 2.3, at the times \
-                   of the experiment";
-    put.metric("front_speed", both[0], formula);
-    put.metric("front_speed_measured", both[1], "the same of the experiment");
-    put.compare("front", &[(front, measured)], 0.6, "x of the tip from the gate/H");
+    record.put(metrics::FRONT_SPEED, front_speed(&front, &measured));
+    record.put(metrics::FRONT_SPEED_MEASURED, front_speed(&measured, &measured));
+    put_distance(record, FRONT, &[(front, measured)], 0.6, "x of the tip from the gate/H");
     let pairs: Vec<(Curve, Curve)> = (0..PROBES.len())
-        .map(|k| (scaled(&seen.level(k), unit, h, 0.0), lobovsky.level(k, end)))
+        .map(|k| (scaled(&samples.level(k), unit, h, 0.0), lobovsky.level(k, end)))
         .collect();
-    for (k, pair) in pairs.iter().enumerate() {
-        let formula = "rms distance of the level/H from the mean of the series, as released";
-        put.metric(&format!("H{}_rms", k + 1), rms(&pair.0, &pair.1, 0.0), formula);
+    for (pair, level_rms) in pairs.iter().zip(metrics::LEVEL_RMS) {
+        record.put(level_rms, rms(&pair.0, &pair.1, 0.0));
     }
-    put.compare("levels", &pairs, 0.6, "all four levels/H");
+    put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
     let [ours, theirs] = [tongue(&pairs[3].0), tongue(&pairs[3].1)];
-    let formula = "mean level at H4 for one (H/g)^(1/2) from when it first exceeds 0.02 H, over that of the \
-                   experiment, less 1";
-    put.metric("tongue", ours / theirs - 1.0, formula);
-    pressures(dam, &lobovsky, gauge, &mut put);
+    record.put(metrics::TONGUE, ours / theirs - 1.0);
+    pressures(dam, &lobovsky, gauge, record);
     Ok(())
 }
 
-fn pressures<K: Kernel>(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge<K>, put: &mut Put) {
+fn pressures<K: Kernel>(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge<K>, record: &mut Record) {
     let (unit, scale) = (dam.unit_time(), dam.unit_pressure());
     let curves: Vec<Curve> = (0..SENSORS.len())
         .map(|k| scaled(&gauge.pressure(k, BLOCK * unit), unit, scale, 0.0))
         .collect();
     let (ours, theirs) = (arrival(&curves[0]), arrival(&lobovsky.pressure[0]));
-    let formula =
-        "t (g/H)^(1/2) at which P1 first exceeds 0.1 rho g H; pressures are aligned by it";
-    put.metric("arrival", ours, formula);
-    put.metric(
-        "arrival_measured",
-        theirs,
-        "the same of the experiment, on the clock of its pressures",
-    );
+    record.put(metrics::ARRIVAL, ours);
+    record.put(metrics::ARRIVAL_MEASURED, theirs);
     for (k, computed) in curves.iter().enumerate() {
-        let name = format!("P{}", k + 1);
         let measured = &lobovsky.pressure[k];
         for window in WINDOWS {
             let (a, b) = (impulse(computed, ours, window), impulse(measured, theirs, window));
-            let formula = "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured \
-                           one, less 1";
-            put.metric(&format!("impulse_{name}@{window}"), a / b - 1.0, formula);
+            record.put(metrics::IMPULSE[k].at(window), a / b - 1.0);
         }
         let peak = computed.iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
-        put.metric(&format!("peak_{name}"), peak, "largest pressure/(rho g H), means over 0.01");
+        record.put(metrics::PEAK[k], peak);
     }
-    let level = noise(&curves[1], ours + WINDOWS[0]);
-    let formula = "rms distance of P2/(rho g H) from its running mean over 0.1 (H/g)^(1/2)";
-    put.metric("pressure_noise", level, formula);
-    let theirs = noise(&lobovsky.pressure[1], theirs + WINDOWS[0]);
-    put.metric("pressure_noise_measured", theirs, "the same of the experiment, sampled at 2 kHz");
+    record.put(metrics::NOISE, noise(&curves[1], ours + WINDOWS[0]));
+    record.put(metrics::NOISE_MEASURED, noise(&lobovsky.pressure[1], theirs + WINDOWS[0]));
     let mut profile = Profile::default();
     let times = curves[0].iter().map(|(t, _)| *t).collect();
     profile = profile.with("t", "(H/g)^(1/2)", times);
@@ -298,7 +272,7 @@ fn pressures<K: Kernel>(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge<K>, put: &
         let values = curve.iter().map(|(_, p)| *p).collect();
         profile = profile.with(&format!("P{}", k + 1), "rho g H", values);
     }
-    put.0.profiles.insert("pressure".into(), profile);
+    record.profiles.insert("pressure".into(), profile);
 }
 
 #[cfg(test)]

@@ -1,31 +1,38 @@
 //! One run of the collapse: scene, stepping, record.
 
-use solver::{EquationOfState, Integrator, Kernel, Particle, Role, Scene, Scheme, Simulation};
+use std::collections::BTreeMap;
+
+use solver::{EquationOfState, Integrator, Kernel, Particle, Role, Scene, Scheme, Stepper};
 
 use super::{
     Dam, DamSettings, NAME, Vessel,
-    measure::{Gauge, Seen},
-    reference,
+    measure::{Gauge, Samples},
+    metrics, reference,
 };
-use crate::water::{Ingredient, Ledger};
-use base::{
-    number,
-    record::{self, Metric, Profile, Record, Status},
-};
+use crate::water::{self, Ledger, WaterScheme};
+use base::record::{Profile, Record, Status};
 use harness::{
-    case::RunError,
-    runner::{self, Context, Frames},
+    case::{Rules, RunError},
+    runner::{self, Context},
+    simulate::state,
 };
-use maths::{metrics::budget::Itemised, theory::Stepping};
+use maths::metrics::budget::Itemised;
 
 /// Times at which particles are kept for pictures, shares of the run.
 pub const PICTURES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-/// Those, or as many at equal intervals as the context asks for.
+
+/// Those, or as many at equal intervals as the context asks for; none if no picture needs them.
 fn pictures(context: &Context) -> Vec<f64> {
     match context.pictures {
-        Some(count) => (0..count).map(|k| k as f64 / (count.max(2) - 1) as f64).collect(),
-        None => PICTURES.to_vec(),
+        Some(count) => (0..count).map(|k| share(k, count)).collect(),
+        None if context.keep_particles => PICTURES.to_vec(),
+        None => Vec::new(),
     }
+}
+
+/// The share of the run at which one of so many pictures is taken.
+pub fn share(k: usize, count: usize) -> f64 {
+    k as f64 / (count.max(2) - 1) as f64
 }
 
 /// Time between samples \[h/(c0 + v)\], rounded to whole steps: powers and forces are summed over them,
@@ -39,14 +46,16 @@ const MOST_SAMPLES: f64 = 2e4;
 pub trait Watched: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>> {}
 impl<S: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>>> Watched for S {}
 
+/// What the rules choose.
+pub fn rules<S: WaterScheme>(settings: &DamSettings) -> Result<Rules, RunError> {
+    let Dam { dt, dt_limit, medium, .. } = Dam::new::<S>(settings, true)?;
+    Ok(Rules { dt, dt_limit, sound_speed: medium.eos.sound_speed })
+}
+
 /// Runs and measures.
 pub fn run<S>(variant: &str, settings: &DamSettings, context: &Context) -> Result<Record, RunError>
 where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: Vessel,
-    S::Integrator: Stepping,
+    S: WaterScheme<Walls: Vessel>,
 {
     let dam = Dam::new::<S>(settings, context.allow_unstable)?;
     run_scene::<S>(&dam, variant, S::Walls::NAME, dam.scene::<S>(), context)
@@ -66,44 +75,40 @@ pub fn run_scene<S: Watched>(
     }
     let mut record = begin::<S>(dam, variant, walls, context);
     let mut ledger = Ledger::new(dam.medium.water(), &scene.forces, &scene.drift);
-    let mut seen = Seen::new(dam, &scene.forces);
+    let mut samples = Samples::new(dam, &scene.forces);
     let mut gauge = Gauge::<S::Kernel>::new(dam);
-    let frames = Frames::of(context)?;
     let filled = water_mass(&scene.particles);
     let mut simulation = scene.build()?;
-    let stops = stops(dam, context);
-    let times: Vec<f64> = stops.iter().map(|s| s.time).collect();
-    let mut failed = None;
-    let (status, cost) =
-        runner::drive(&mut simulation, dam.dt, &times, context, &mut gauge, &mut |s, k| {
-            seen.sample(s);
+    let (times, pictures) = stops(dam, context);
+    let pressure = |density| dam.medium.eos.pressure(density);
+    let (status, cost) = runner::drive(
+        &mut simulation,
+        dam.dt,
+        &times,
+        context,
+        &mut gauge,
+        &pressure,
+        &mut |s, k| {
+            samples.sample(s);
             ledger.sample(s);
-            if let (true, Some(frames)) = (stops[k].frame, &frames) {
-                failed = failed.take().or(frames.write(s, &dam.medium.eos).err());
-            }
-            if let (true, Some(share)) = (context.keep_particles, stops[k].picture) {
+            if let Some(share) = pictures.get(&k) {
                 record.profiles.insert(format!("particles@{share}"), picture(dam, s));
             }
-        });
-    if let Some(error) = failed {
-        return Err(error.into());
-    }
+        },
+    )?;
     let particles = simulation.particles();
     let mass = water_mass(&particles);
-    seen.measure(mass, &mut record);
-    let formula =
-        "|mass of the water at the end/that at the start - 1|, of all particles, lost ones too";
-    let error = Metric::new((mass / filled - 1.0).abs(), "-", formula);
-    record.metrics.insert("mass_error".into(), error);
+    samples.measure(mass, &mut record);
+    record.put(metrics::MASS_ERROR, (mass / filled - 1.0).abs());
     let fall = 0.5 * mass * dam.settings.gravity * dam.settings.height;
     ledger.measure(fall, "M g H/2, the potential energy of the column", &mut record);
     if status == Status::Completed
-        && let Err(error) = reference::compare(dam, &seen, &gauge, &mut record)
+        && let Err(error) = reference::compare(dam, &samples, &gauge, &mut record)
     {
         // Packages are embedded and checked by a test.
         record.numerics.insert("reference".into(), error.to_string().into());
     }
-    record.state = Some(record::digest(&state(&particles)));
+    record.state = Some(state(&particles));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }
@@ -116,8 +121,6 @@ fn water_mass(particles: &[Particle]) -> f64 {
 
 /// A record with what the run chose.
 fn begin<S: Scheme>(dam: &Dam, variant: &str, walls: &str, context: &Context) -> Record {
-    let json = serde_json::to_value(&dam.settings).unwrap_or_default();
-    let mut record = Record::new(NAME, variant, json, context.threads.max(1));
     let numbers = [
         ("h/dx", dam.settings.h_over_dx),
         ("dx [m]", dam.medium.dx),
@@ -125,49 +128,28 @@ fn begin<S: Scheme>(dam: &Dam, variant: &str, walls: &str, context: &Context) ->
         ("dt [s]", dam.dt),
         ("dt/limit", dam.dt / dam.dt_limit),
     ];
-    let numerics = &mut record.numerics;
-    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    numerics.insert("kernel".into(), S::Kernel::NAME.into());
-    numerics.insert("integrator".into(), S::Integrator::NAME.into());
-    numerics.insert("walls".into(), walls.into());
-    record
+    let words =
+        [("kernel", S::Kernel::NAME), ("integrator", S::Integrator::NAME), ("walls", walls)];
+    water::begin((NAME, variant), &dam.settings, numbers, words, context)
 }
 
-/// A time at which the run stops to be looked at.
-struct Stop {
-    /// \[s\].
-    time: f64,
-    /// Whether a frame is due.
-    frame: bool,
-    /// The picture that is due, by its share of the run.
-    picture: Option<f64>,
-}
-
-/// Stops, ascending: a whole number of steps apart, so that none is shortened.
-fn stops(dam: &Dam, context: &Context) -> Vec<Stop> {
+/// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and the
+/// samples that are pictures, by their share of the run.
+fn stops(dam: &Dam, context: &Context) -> (Vec<f64>, BTreeMap<usize, f64>) {
     let (end, dt) = (dam.settings.end * dam.unit_time(), dam.dt);
     let (h, eos) = (dam.medium.h, dam.medium.eos);
     let crossing = SAMPLE * h / (eos.sound_speed + dam.medium.speed);
     let every = (crossing.max(end / MOST_SAMPLES) / dt).round().max(1.0) * dt;
     let count = (end / every - 0.5).floor().max(0.0) as usize;
-    let at = |k: usize| Stop { time: k as f64 * every, frame: false, picture: None };
-    let mut stops: Vec<Stop> = (0..=count).map(at).collect();
-    stops.push(Stop { time: end, frame: false, picture: None });
-    for share in pictures(context) {
-        let nearest = (share * end / every).round() as usize;
-        let last = stops.len() - 1;
-        stops[nearest.min(last)].picture = Some(share);
-    }
-    if let Some((_, count)) = context.frames {
-        let frame = |k: usize| end * (k as f64 / count as f64);
-        stops.extend((1..=count).map(|k| Stop { time: frame(k), frame: true, picture: None }));
-        stops.sort_by(|a, b| a.time.total_cmp(&b.time));
-    }
-    stops
+    let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
+    times.push(end);
+    let last = times.len() - 1;
+    let nearest = |share: f64| ((share * end / every).round() as usize).min(last);
+    (times, pictures(context).into_iter().map(|share| (nearest(share), share)).collect())
 }
 
 /// x, y and the pressure.
-fn picture<S: Scheme<Extra = ()>>(dam: &Dam, simulation: &Simulation<S>) -> Profile {
+fn picture(dam: &Dam, simulation: &dyn Stepper<()>) -> Profile {
     let fluid: Vec<_> = simulation.fluid().map(|(_, p)| *p).collect();
     let unit = dam.settings.height;
     let pressure = |density: f64| dam.medium.eos.pressure(density) / dam.unit_pressure();
@@ -175,13 +157,4 @@ fn picture<S: Scheme<Extra = ()>>(dam: &Dam, simulation: &Simulation<S>) -> Prof
         .with("x", "H", fluid.iter().map(|p| p.position.x / unit).collect())
         .with("y", "H", fluid.iter().map(|p| p.position.y / unit).collect())
         .with("p", "rho g H", fluid.iter().map(|p| pressure(p.density)).collect())
-}
-
-/// All of the state, in the order of the scene.
-fn state(particles: &[Particle]) -> Vec<f64> {
-    let numbers = |p: &Particle| {
-        let (x, v) = (p.position, p.velocity);
-        [x.x, x.y, v.x, v.y, p.density]
-    };
-    particles.iter().flat_map(numbers).collect()
 }

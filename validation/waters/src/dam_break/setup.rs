@@ -3,19 +3,19 @@
 use nalgebra::Vector2;
 use solver::{
     Domain, EquationOfState, ExtrapolatingWall, Ghosts, InterfaceWall, Kernel, Limits, Particle,
-    Role, Scene, Scheme, SlipGhosts, Tait, walls::Walls,
+    Role, Scene, SlipGhosts, Tait, walls::Walls,
 };
 
 use super::DamSettings;
-use crate::water::{Ingredient, Medium};
+use crate::water::{Ingredient, Medium, WaterScheme};
 use harness::case::RunError;
-use maths::{geometry::Tank, theory::Stepping};
+use maths::geometry::Tank;
 
 /// More steps or particles than anyone waits for.
 const MOST_STEPS: f64 = 1e7;
 const MOST_PARTICLES: f64 = 2e6;
 
-/// Steps of the fastest water that neighbour rows reach ahead, there and back.
+/// Steps of the fastest water that the Verlet skin reaches ahead, there and back.
 const SKIN_STEPS: f64 = 4.0;
 
 /// The numbers of one run.
@@ -112,13 +112,7 @@ impl Vessel for ExtrapolatingWall<Tait> {
 
 impl Dam {
     /// Checks the settings and derives the rest, for schemes with the terms and walls of `S`.
-    pub fn new<S>(s: &DamSettings, allow_unstable: bool) -> Result<Self, RunError>
-    where
-        S: Scheme<Extra = ()>,
-        S::Forces: Ingredient,
-        S::Drift: Ingredient,
-        S::Integrator: Stepping,
-    {
+    pub fn new<S: WaterScheme>(s: &DamSettings, allow_unstable: bool) -> Result<Self, RunError> {
         let too_much =
             |what, value, most, setting| RunError::TooMuch { what, value, most, setting };
         let dx = s.width.min(s.height) / s.n as f64;
@@ -136,8 +130,7 @@ impl Dam {
         let gravity = Vector2::new(0.0, -s.gravity);
         // The front of a dam break in shallow water runs at 2 (g H)^(1/2).
         let medium = Medium::new(s.numerics(), dx, s.c0 * fall, gravity, 2.0 * fall);
-        let uses = [S::Forces::uses(), S::Drift::uses()].concat();
-        let [dt, dt_limit] = medium.time_step::<S::Kernel, S::Integrator>(&uses, allow_unstable)?;
+        let [dt, dt_limit] = medium.time_step::<S>(allow_unstable)?;
         let steps = s.end * s.height / fall / dt;
         if steps > MOST_STEPS {
             let setting = "end, dt, courant, c0 or n";
@@ -180,22 +173,17 @@ impl Dam {
         let columns = columns - usize::from(W::ON_SURFACE && columns == self.tank.columns);
         let dx = self.medium.dx;
         let surface = (first - 0.5 + rows as f64) * dx;
+        let shift = Vector2::repeat(s.shift * dx);
         solver::lattice(Vector2::repeat(first * dx), dx, columns, rows)
             .map(|x| {
                 let density = self.medium.eos.density(s.rho * s.gravity * (surface - x.y));
-                Particle::fluid(x, Vector2::zeros(), density, dx * dx)
+                Particle::fluid(x - shift, Vector2::zeros(), density, dx * dx)
             })
             .collect()
     }
 
     /// The scene.
-    pub fn scene<S>(&self) -> Scene<S>
-    where
-        S: Scheme<Extra = ()>,
-        S::Forces: Ingredient,
-        S::Drift: Ingredient,
-        S::Walls: Vessel,
-    {
+    pub fn scene<S: WaterScheme<Walls: Vessel>>(&self) -> Scene<S> {
         let (medium, tank) = (&self.medium, &self.tank);
         let mut particles = self.water::<S::Walls>();
         particles.extend(S::Walls::particles(medium, tank, S::Kernel::SUPPORT * medium.h));
@@ -203,7 +191,7 @@ impl Dam {
         let drift = S::Drift::new::<S::Kernel>(medium);
         let walls = S::Walls::new(medium, tank);
         let mut scene = Scene::new(medium.h, Domain::open(), particles, forces, drift, walls);
-        // The fastest water crosses the usual skin in a step or two; rows that last longer are worth
+        // The fastest water crosses the usual skin in a step or two; lists that last longer are worth
         // their length.
         scene.skin = scene.skin.max(SKIN_STEPS * self.dt * medium.speed);
         // Water that is twice as dense, or as fast as sound, is no water any more.
@@ -216,19 +204,21 @@ impl Dam {
 
 #[cfg(test)]
 mod tests {
+    use harness::{case::Case, context::Context};
     use solver::InterfaceWall;
 
     use super::*;
-    use crate::dam_break::{LOBOVSKY, Modern, Seed, settings};
+    use crate::dam_break::{DAM_BREAK, Modern, Seed, lobovsky};
 
-    fn dam(set: &[&str]) -> Result<Dam, RunError> {
-        let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
-        Dam::new::<Modern>(&settings("modern", &set)?, false)
+    fn dam(set: impl FnOnce(&mut DamSettings)) -> Result<Dam, RunError> {
+        let spec = DAM_BREAK.spec("modern", set);
+        let settings = serde_json::from_value(spec.settings).expect("settings of the case");
+        Dam::new::<Modern>(&settings, false)
     }
 
     #[test]
     fn the_column_fills_its_corner_and_bears_its_weight() {
-        let dam = dam(&["n=20"]).unwrap();
+        let dam = dam(|_| {}).unwrap();
         assert!(dam.is_martin_moyce() && !dam.is_lobovsky());
         for (water, on_surface) in
             [(dam.water::<ExtrapolatingWall<Tait>>(), 0.0), (dam.water::<InterfaceWall>(), 0.5)]
@@ -244,21 +234,28 @@ mod tests {
 
     #[test]
     fn the_experiments_are_told_apart_at_any_scale() {
-        let tank = dam(&LOBOVSKY).unwrap();
+        let tank = dam(lobovsky).unwrap();
         assert!(tank.is_lobovsky() && !tank.is_martin_moyce());
-        assert!(!dam(&["tank=0.2"]).unwrap().is_martin_moyce(), "its end would be reached");
-        assert!(dam(&["width=1", "height=2", "tank=10"]).unwrap().is_martin_moyce());
+        assert!(!dam(|s| s.tank = 0.2).unwrap().is_martin_moyce(), "its end would be reached");
+        assert!(dam(|s| (s.width, s.height, s.tank) = (1.0, 2.0, 10.0)).unwrap().is_martin_moyce());
     }
 
     #[test]
     fn scenes_that_make_no_sense_are_refused_with_their_setting() {
-        assert!(matches!(dam(&["tank=0.05"]), Err(RunError::TooMuch { .. })));
-        assert!(matches!(dam(&["courant=2"]), Err(RunError::TimeStep { .. })));
-        assert!(matches!(dam(&["n=2000", "tank=100"]), Err(RunError::TooMuch { .. })));
-        assert!(matches!(dam(&["xsph=0.5"]), Err(RunError::Unused { .. })));
-        assert!(matches!(dam(&["courant=1e-6"]), Err(RunError::TooMuch { .. })));
+        let is_too_much =
+            |set: fn(&mut DamSettings)| matches!(dam(set), Err(RunError::TooMuch { .. }));
+        assert!(is_too_much(|s| s.tank = 0.05));
+        assert!(is_too_much(|s| (s.n, s.tank) = (2000, 100.0)));
+        assert!(is_too_much(|s| s.courant = 1e-6));
+        assert!(matches!(dam(|s| s.courant = 2.0), Err(RunError::TimeStep { .. })));
+        let unused = DAM_BREAK.spec("modern", |s| s.xsph = 0.25);
+        assert!(matches!(
+            DAM_BREAK.run(&unused, &Context::default()),
+            Err(RunError::Unused { .. })
+        ));
         // Without viscosity the predictor-corrector has no stable step.
-        let inviscid = settings("seed", &["alpha=0".to_string()]).unwrap();
+        let mut inviscid = DamSettings::default();
+        inviscid.alpha = 0.0;
         let refused = Dam::new::<Seed<InterfaceWall>>(&inviscid, false);
         assert!(matches!(refused, Err(RunError::TimeStep { .. })));
     }

@@ -2,48 +2,43 @@
 //! energies, and error against run time.
 
 use super::{
-    ablation, cost,
+    DamSettings, ablation, front,
     measure::{PROBES, SENSORS},
-    plan::{self, FRONT_SPREAD, PEERS},
+    metrics::{self, FRONT, HEIGHT, LEVELS},
+    plan::{self, FILM_ROWS, FRAMES, FRONT_SPREAD, PEERS},
     reference::{self, Curve, Lobovsky},
-    run::PICTURES,
+    run::{self, PICTURES},
     stability,
 };
-use crate::water::ITEMS;
+use crate::water::{self, curve, ledger};
 use base::{
-    record::{Profile, Record},
+    record::{MetricName, Record},
     reference::ReferenceError,
 };
-use harness::{
-    case::{Case, Tier},
-    gate_power,
-    runner::Context,
-    suite::{JudgedRun, Study},
-};
+use harness::{case::Tier, gate_power, runs::Runs, study::Study};
 use report::{
     Axis, Cell, Colour, ColourMap, Column, Dash, Figure, Film, Layer, Legend, ParticleMap, Plot,
     Series, Shape, Table, percent, sig,
 };
 
 /// All of them.
-pub fn studies(case: &'static dyn Case, tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
+pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let mut studies = Vec::new();
-    for study in [free(runs), tank(case, runs)] {
+    for study in [free(tier, runs), tank(tier, runs)] {
         // Packages are embedded and checked by a test.
         studies.push(study.unwrap_or_else(|error| {
             Study::new("dam-break-reference", "Reference").prose(error.to_string())
         }));
     }
-    studies.push(energies(runs));
-    studies.push(cost::study(tier, runs));
+    studies.push(energies(tier, runs));
     studies.push(match tier {
         Tier::Quick => ablation::elsewhere(),
-        Tier::Full => ablation::study(case),
+        Tier::Full => ablation::study(runs),
     });
-    studies.push(stability::extremes(case));
+    studies.push(stability::extreme_settings(tier, runs));
     if tier == Tier::Full {
-        studies.push(stability::limits(case));
-        studies.push(stability::sound(case));
+        studies.push(front::orders(tier, runs));
+        studies.push(stability::sound(runs));
     }
     studies.push(power());
     studies
@@ -61,48 +56,49 @@ fn power() -> Study {
     ))
 }
 
-/// A number, or a dash where there is none because the run ended early.
-pub(super) fn number(record: &Record, name: &str) -> Cell {
-    Cell::or_dash(record.measured(name), |value| Cell::num(value, 3))
+/// A metric, or a dash where there is none because the run ended early.
+pub(super) fn number(record: &Record, metric: impl Into<MetricName>) -> Cell {
+    water::cell(record, metric, |value| Cell::num(value, 3))
 }
 
-/// The same as a percentage.
-pub(super) fn share(value: f64) -> Cell {
-    Cell::or_dash(value, |value| Cell::percent(value, 2))
+/// The same as a percentage, times a sign.
+pub(super) fn share(record: &Record, metric: impl Into<MetricName>, sign: f64) -> Cell {
+    water::cell(record, metric, |value| Cell::percent(sign * value, 2))
 }
 
-/// A column of a profile over its time, each in a unit.
-pub(super) fn curve(
-    record: &Record,
-    profile: &str,
-    name: &str,
-    units: [f64; 2],
-    zero: f64,
-) -> Curve {
-    let Some(profile) = record.profiles.get(profile) else { return Vec::new() };
-    let points = profile.column("t").iter().zip(profile.column(name));
-    points.map(|(t, y)| (t / units[0], (y - zero) / units[1])).collect()
+fn settings(record: &Record) -> DamSettings {
+    record.settings_as()
+}
+
+/// Spacings along the shorter side.
+fn n(record: &Record) -> usize {
+    settings(record).n
 }
 
 /// Is it a run of the column of Martin & Moyce?
-pub(super) fn is_free(record: &Record) -> bool {
-    record.setting("height") > record.setting("width")
+fn is_free(record: &Record) -> bool {
+    let s = settings(record);
+    s.height > s.width
 }
 
-/// Runs of one of the experiments, in the order of the plan.
-fn of(runs: &[JudgedRun], free: bool) -> Vec<&Record> {
-    runs.iter().map(|run| &run.record).filter(|record| is_free(record) == free).collect()
+/// The judged runs of the column of Martin & Moyce, in the order of the plan.
+fn all_free(tier: Tier, runs: &Runs) -> Vec<&Record> {
+    plan::all_free(tier).filter_map(|spec| runs.record(&spec)).collect()
+}
+
+/// Those of the tank of Lobovsky et al.
+fn all_in_tank(tier: Tier, runs: &Runs) -> Vec<&Record> {
+    plan::all_in_tank(tier).filter_map(|spec| runs.record(&spec)).collect()
 }
 
 fn name_of(record: &Record, side: &str) -> String {
-    format!("{}, {side}/dx = {}", record.variant, record.setting("n"))
+    format!("{}, {side}/dx = {}", record.variant, n(record))
 }
 
 /// A line of one of these runs: its variant has a colour, its finest resolution is solid.
 fn line(records: &[&Record], record: &Record, side: &str, points: Curve) -> Layer {
     let colour = plan::JUDGED.iter().position(|variant| *variant == record.variant);
-    let is_finer =
-        |r: &&&Record| r.variant == record.variant && r.setting("n") > record.setting("n");
+    let is_finer = |r: &&&Record| r.variant == record.variant && n(r) > n(record);
     let dash = match records.iter().filter(is_finer).count() {
         0 => Dash::Solid,
         1 => Dash::Dashed,
@@ -113,10 +109,9 @@ fn line(records: &[&Record], record: &Record, side: &str, points: Curve) -> Laye
 }
 
 /// Martin & Moyce.
-fn free(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
-    let records = of(runs, true);
-    let shown: Vec<&Record> =
-        records.iter().copied().filter(|record| record.setting("n") >= 20.0).collect();
+fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
+    let records = all_free(tier, runs);
+    let shown: Vec<&Record> = records.iter().copied().filter(|record| n(record) >= 20).collect();
     let [front, height] = reference::martin_moyce()?;
     let band = |curve: &Curve, by: f64| curve.iter().map(|(t, y)| (*t, y - by, y + by)).collect();
     let legend = [Legend::TopLeft, Legend::Hidden];
@@ -137,17 +132,16 @@ fn free(runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
         let until: Curve = measured.iter().filter(|(t, _)| *t <= end).copied().collect();
         plot = plot.layer(Layer::band("", band(&until, spreads[k]), Colour::GREY));
         for record in &shown {
-            let (a, g) = (record.setting("width"), record.setting("gravity"));
+            let DamSettings { width: a, gravity: g, .. } = settings(record);
             let (name, unit, of) = match k {
                 0 => ("front", (0.5 * a / g).sqrt(), a),
                 _ => ("height", (a / g).sqrt(), 2.0 * a),
             };
-            let points = curve(record, "series", name, [unit, of], 0.0);
+            let points = curve(record, "series", ["t", name], [unit, of]);
             plot = plot.layer(line(&shown, record, "a", points));
         }
         if k == 0 {
-            let peers =
-                [(2.0, 0.5 * (PEERS[0].1 + PEERS[0].2)), (3.0, 0.5 * (PEERS[1].1 + PEERS[1].2))];
+            let peers = PEERS.map(|(t, low, high)| (t, 0.5 * (low + high)));
             let peers = Series::markers("three other codes", peers.to_vec());
             plot = plot.layer(peers.shape(Shape::Diamond).colour(Colour::BROWN));
         }
@@ -189,18 +183,18 @@ fn free_table(records: &[&Record]) -> Table {
                    codes have 2.62 to 2.66 and 3.97 to 4.00.";
     let mut table = Table::new(caption, columns);
     for record in records {
-        let number = |name: &str| number(record, name);
+        let number = |metric| number(record, metric);
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(record.setting("n"), 3),
-            number("z@2"),
-            number("z@3"),
-            number("front_rms"),
-            number("front_rms_shifted"),
-            number("front_shift"),
-            number("height_rms"),
-            number("height_rms_shifted"),
-            number("height_shift"),
+            Cell::num(n(record) as f64, 3),
+            number(metrics::Z.at(2)),
+            number(metrics::Z.at(3)),
+            number(FRONT.rms.into()),
+            number(FRONT.rms_shifted.into()),
+            number(FRONT.shift.into()),
+            number(HEIGHT.rms.into()),
+            number(HEIGHT.rms_shifted.into()),
+            number(HEIGHT.shift.into()),
             Cell::count(record.cost.steps),
         ]);
     }
@@ -208,8 +202,8 @@ fn free_table(records: &[&Record]) -> Table {
 }
 
 /// Lobovsky et al.
-fn tank(case: &'static dyn Case, runs: &[JudgedRun]) -> Result<Study, ReferenceError> {
-    let (records, lobovsky) = (of(runs, false), Lobovsky::load()?);
+fn tank(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
+    let (records, lobovsky) = (all_in_tank(tier, runs), Lobovsky::load()?);
     let mut study =
         Study::new("dam-break-lobovsky", "Lobovsky et al. 2014: front, levels, pressures")
             .block(levels(&records, &lobovsky));
@@ -224,10 +218,15 @@ fn tank(case: &'static dyn Case, runs: &[JudgedRun]) -> Result<Study, ReferenceE
     if let Some(record) = finest {
         study = study.block(pictures(record, "dam-break-lobovsky-pictures", (1.61 / 0.3, 2.0)));
     }
-    Ok(match film(case) {
+    Ok(match film(tier, runs) {
         Ok(film) => study.block(film),
         Err(error) => study.prose(error),
     })
+}
+
+/// (H/g)^(1/2) \[s\].
+fn unit_time(s: &DamSettings) -> f64 {
+    (s.height / s.gravity).sqrt()
 }
 
 fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
@@ -239,12 +238,12 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let mut figure = Figure::new("dam-break-levels", caption).columns(3);
     let end = 6.0;
     let axis = |label: String| (Axis::linear("t √(g/H) [-]"), Axis::linear(label));
-    let unit = |record: &Record| (record.setting("height") / record.setting("gravity")).sqrt();
     let (x, y) = axis("front from the gate [H]".into());
     let mut plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::Auto);
     for record in records {
-        let (h, zero) = (record.setting("height"), record.setting("width"));
-        let points = curve(record, "series", "front", [unit(record), h], zero);
+        let s = settings(record);
+        let points = curve(record, "series", ["t", "front"], [unit_time(&s), s.height]);
+        let points = points.into_iter().map(|(t, x)| (t, x - s.width / s.height)).collect();
         plot = plot.layer(line(records, record, "H", points));
     }
     let measured = Series::line("experiment", lobovsky.front.clone()).colour(Colour::BLACK);
@@ -264,8 +263,9 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
             plot = plot.layer(Series::line("", one).colour(Colour::BLACK).width(1.0));
         }
         for record in records {
-            let units = [unit(record), record.setting("height")];
-            let points = curve(record, "series", &format!("H{}", k + 1), units, 0.0);
+            let s = settings(record);
+            let level = format!("H{}", k + 1);
+            let points = curve(record, "series", ["t", &level], [unit_time(&s), s.height]);
             plot = plot.layer(line(records, record, "H", points));
         }
         figure = figure.panel(plot);
@@ -291,7 +291,7 @@ fn pressures(finest: &Record, lobovsky: &Lobovsky) -> Figure {
         let x = Axis::linear("(t − arrival) √(g/H) [-]");
         let y = Axis::linear("pressure [ρ g H]").range(-0.2, 3.5);
         let mut plot = Plot::new(title, x, y).legend(Legend::Hidden);
-        let points = since(&pressure(finest, k), finest.measured("arrival"));
+        let points = since(&pressure(finest, k), arrival(finest));
         plot = plot.layer(Series::line("", points).colour(Colour::SKY).width(1.0));
         if k == 1 {
             let aside = since(&lobovsky.aside, at);
@@ -305,7 +305,12 @@ fn pressures(finest: &Record, lobovsky: &Lobovsky) -> Figure {
 
 /// Pressure at sensor k \[ρ g H\] over t \[(H/g)^(1/2)\].
 fn pressure(record: &Record, k: usize) -> Curve {
-    curve(record, "pressure", &format!("P{}", k + 1), [1.0, 1.0], 0.0)
+    curve(record, "pressure", ["t", &format!("P{}", k + 1)], [1.0, 1.0])
+}
+
+/// When the wave arrives at P1; NaN, so that no curve is drawn, if it did not.
+fn arrival(record: &Record) -> f64 {
+    record.value(metrics::ARRIVAL).unwrap_or(f64::NAN)
 }
 
 /// The part of a curve about the arrival of the wave, from which its time counts.
@@ -338,12 +343,12 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
         let y = Axis::linear("impulse [ρ g H √(H/g)]");
         let legend = if k == 3 { Legend::Auto } else { Legend::Hidden };
         let measured = so_far(&lobovsky.pressure[k], at);
-        let apart = two.iter().zip(&aside).map(|((_, a), (_, b))| (a - b).abs());
-        let band = measured.iter().zip(apart).map(|((t, y), by)| (*t, y - by, y + by)).collect();
+        let spread = two.iter().zip(&aside).map(|((_, a), (_, b))| (a - b).abs());
+        let band = measured.iter().zip(spread).map(|((t, y), by)| (*t, y - by, y + by)).collect();
         let mut plot = Plot::new(title, x, y).legend(legend);
         plot = plot.layer(Layer::band("", band, Colour::GREY));
         for record in records {
-            let points = so_far(&pressure(record, k), record.measured("arrival"));
+            let points = so_far(&pressure(record, k), arrival(record));
             if points.is_empty() {
                 continue;
             }
@@ -378,19 +383,19 @@ fn tank_table(records: &[&Record]) -> Table {
                    as long as `modern`, whose run at 120 is the longest of this case.";
     let mut table = Table::new(caption.to_string() + &away(records), columns);
     for record in records {
-        let number = |name: &str| number(record, name);
+        let number = |metric| number(record, metric);
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(record.setting("n"), 3),
-            number("front_rms"),
-            number("front_rms_shifted"),
-            number("front_shift"),
-            number("front_speed"),
-            number("front_speed_measured"),
-            number("levels_rms"),
-            number("levels_rms_shifted"),
-            number("levels_shift"),
-            share(record.measured("tongue")),
+            Cell::num(n(record) as f64, 3),
+            number(FRONT.rms),
+            number(FRONT.rms_shifted),
+            number(FRONT.shift),
+            number(metrics::FRONT_SPEED),
+            number(metrics::FRONT_SPEED_MEASURED),
+            number(LEVELS.rms),
+            number(LEVELS.rms_shifted),
+            number(LEVELS.shift),
+            share(record, metrics::TONGUE, 1.0),
         ]);
     }
     table
@@ -402,18 +407,19 @@ fn away(records: &[&Record]) -> String {
     let each = |of: &dyn Fn(&Record) -> String| -> String {
         ladder.iter().map(|record| of(record)).collect::<Vec<_>>().join(", ")
     };
-    let number = |name: &'static str| each(&|r| sig(r.measured(name), 3));
-    let error = |r: Option<&&Record>| r.map_or(f64::NAN, |r| r.measured("front_rms_shifted"));
+    let value = |r: &Record, metric: MetricName| r.value(metric).unwrap_or(f64::NAN);
+    let number = |metric: MetricName| each(&|r| sig(value(r, metric.clone()), 3));
+    let error = |r: Option<&&Record>| r.and_then(|r| r.value(FRONT.rms_shifted));
     if error(ladder.last()) > error(ladder.first()) {
         format!(
             " Finer runs of `modern` are not nearer to the experiment: at H/dx = {} its front is {} H away \
              after the shift, at a speed of {} √(g H), and the impulse on P2 is {} in error. What they \
              approach is water in two dimensions, without gate and friction; where a coarse one agrees, its \
              errors and what it lacks cancel.",
-            each(&|r| sig(r.setting("n"), 3)),
-            number("front_rms_shifted"),
-            number("front_speed"),
-            each(&|r| percent(r.measured("impulse_P2@1"), 2)),
+            each(&|r| n(r).to_string()),
+            number(FRONT.rms_shifted.into()),
+            number(metrics::FRONT_SPEED.into()),
+            each(&|r| percent(value(r, metrics::IMPULSE[1].at(1)), 2)),
         )
     } else {
         String::new()
@@ -428,11 +434,11 @@ fn impact_table(records: &[&Record]) -> Table {
         Column::num("arrival at P1", "√(H/g)"),
     ];
     let windows =
-        reference::WINDOWS.into_iter().flat_map(|window| (1..=4).map(move |k| (k, window)));
+        reference::WINDOWS.into_iter().flat_map(|window| (0..4).map(move |k| (k, window)));
     columns.extend(
-        windows
-            .clone()
-            .map(|(k, window)| Column::num(format!("impulse P{k} to {}", sig(window, 2)), "-")),
+        windows.clone().map(|(k, window)| {
+            Column::num(format!("impulse P{} to {}", k + 1, sig(window, 2)), "-")
+        }),
     );
     columns.extend([Column::num("noise of P2", "ρ g H"), Column::num("largest P1", "ρ g H")]);
     let caption = "Impulses on the far wall: relative error against Lobovsky et al. from the arrival at P1 \
@@ -443,18 +449,16 @@ fn impact_table(records: &[&Record]) -> Table {
                    tension, and an error below −100 % a negative impulse.";
     let mut table = Table::new(caption, columns);
     for record in records {
-        let number = |name: &str| number(record, name);
+        let number = |metric| number(record, metric);
         let mut cells = vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(record.setting("n"), 3),
-            number("arrival"),
+            Cell::num(n(record) as f64, 3),
+            number(metrics::ARRIVAL),
         ];
-        cells.extend(
-            windows
-                .clone()
-                .map(|(k, window)| share(record.measured(&format!("impulse_P{k}@{window}")))),
-        );
-        cells.extend([number("pressure_noise"), number("peak_P1")]);
+        let impulses = windows.clone();
+        cells
+            .extend(impulses.map(|(k, window)| share(record, metrics::IMPULSE[k].at(window), 1.0)));
+        cells.extend([number(metrics::NOISE), number(metrics::PEAK[0])]);
         table = table.row(cells);
     }
     table
@@ -481,27 +485,22 @@ fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
 
 /// One of them.
 fn picture(record: &Record, share: f64, (width, height): (f64, f64)) -> ParticleMap {
-    let empty = Profile::default();
-    let profile = record.profiles.get(&format!("particles@{share}")).unwrap_or(&empty);
-    let (x, y) = (profile.column("x"), profile.column("y"));
-    let values = profile.column("p").iter();
-    let points = x.iter().zip(y).zip(values).map(|((x, y), p)| (*x, *y, *p)).collect();
+    let [x, y, p] = ["x", "y", "p"].map(|name| record.column(&format!("particles@{share}"), name));
+    let points = x.iter().zip(y).zip(p).map(|((x, y), p)| (*x, *y, *p)).collect();
+    let s = settings(record);
     let axes = (Axis::linear("x [H]").range(0.0, width), Axis::linear("y [H]").range(0.0, height));
-    let title = format!("t √(g/H) = {}", sig(record.setting("end") * share, 3));
-    let shorter = record.setting("width").min(record.setting("height"));
-    let dx = shorter / record.setting("n") / record.setting("height");
+    let title = format!("t √(g/H) = {}", sig(s.end * share, 3));
+    let dx = s.width.min(s.height) / s.n as f64 / s.height;
     ParticleMap::new(&title, axes, "p [ρ g H]", ColourMap::Sequential, points)
         .diameter(dx)
         .values(0.0, 1.0)
 }
 
-/// The tank as a film: `modern` again, with a picture every quarter of √(H/g).
-fn film(case: &'static dyn Case) -> Result<Film, String> {
-    let context = Context { keep_particles: true, pictures: Some(FRAMES), ..Context::default() };
-    let set = plan::in_tank(FILM_ROWS);
-    let record = case.run("modern", &set, &context).map_err(|error| error.to_string())?;
+/// The tank as a film.
+fn film(tier: Tier, runs: &Runs) -> Result<Film, String> {
+    let record = runs.record(&plan::film(tier)).ok_or("The film was not run.")?;
     let frame = |k: usize| {
-        let map = picture(&record, k as f64 / (FRAMES - 1) as f64, (1.61 / 0.3, 2.0));
+        let map = picture(record, run::share(k, FRAMES), (1.61 / 0.3, 2.0));
         Figure::new("frame", "").panel(map).panel_size(380.0, 145.0)
     };
     let frames: Vec<Figure> = (0..FRAMES).map(frame).collect();
@@ -512,12 +511,8 @@ fn film(case: &'static dyn Case) -> Result<Film, String> {
     Film::new("dam-break-film", caption, &frames, 160)
 }
 
-/// Pictures of the film, and spacings along the height of its column.
-const FRAMES: usize = 21;
-const FILM_ROWS: usize = 15;
-
 /// Where the energy goes.
-fn energies(runs: &[JudgedRun]) -> Study {
+fn energies(tier: Tier, runs: &Runs) -> Study {
     let caption = "Energy of the column of Martin & Moyce, a/dx = 20, over M g H/2, the potential energy of \
                    a column that stands on the floor. That of `seed` starts at 1.03: particles that stand on \
                    the floor raise its water by half a spacing, which is 0.025, and it starts compressed. \
@@ -525,22 +520,21 @@ fn energies(runs: &[JudgedRun]) -> Study {
                    power, where it is more than 1e-4. The black line is the sum of all, which must \
                    stay at its first value.";
     let mut figure = Figure::new("dam-break-energy", caption).columns(2);
-    for record in of(runs, true) {
-        if record.setting("n") == 20.0 && ["seed", "modern"].contains(&record.variant.as_str()) {
+    for variant in ["seed", "modern"] {
+        if let Some(record) = runs.record(&plan::free(tier, variant, 20)) {
             figure = figure.panel(energy_plot(record));
         }
     }
     Study::new("dam-break-energy", "Energy, term by term")
         .block(figure.panel_size(430.0, 280.0))
-        .block(energy_table(runs))
+        .block(energy_table(tier, runs))
 }
 
 fn energy_plot(record: &Record) -> Plot {
-    let (h, g) = (record.setting("height"), record.setting("gravity"));
-    let mass = record.setting("rho") * record.setting("width") * h;
-    let units = [(h / g).sqrt(), 0.5 * mass * g * h];
-    let of =
-        |name: &str, sign: f64| curve(record, "energy", name, [units[0], sign * units[1]], 0.0);
+    let s = settings(record);
+    let mass = s.rho * s.width * s.height;
+    let [time, energy] = [unit_time(&s), 0.5 * mass * s.gravity * s.height];
+    let of = |name: &str, sign: f64| curve(record, "energy", ["t", name], [time, sign * energy]);
     let mut plot = Plot::new(
         record.variant.as_str(),
         Axis::linear("t √(g/H) [-]"),
@@ -555,8 +549,8 @@ fn energy_plot(record: &Record) -> Plot {
         }
         plot = plot.layer(Series::line(name, points).colour(Colour::cycle(k)));
     }
-    for (k, (name, key)) in ITEMS.into_iter().enumerate() {
-        let points = of(key, -1.0);
+    for (k, (name, work)) in ledger::ITEMS.into_iter().enumerate() {
+        let points = of(&String::from(work), -1.0);
         sum.iter_mut().zip(&points).for_each(|(s, p)| s.1 += p.1);
         if points.iter().any(|(_, y)| y.abs() > 1e-4) {
             // Black is the sum.
@@ -569,24 +563,26 @@ fn energy_plot(record: &Record) -> Plot {
     plot.layer(Series::line("sum", sum).colour(Colour::BLACK))
 }
 
-fn energy_table(runs: &[JudgedRun]) -> Table {
+fn energy_table(tier: Tier, runs: &Runs) -> Table {
     let mut columns = vec![Column::text("variant"), Column::text("case"), Column::num("n", "1")];
-    columns.extend(ITEMS.map(|(name, _)| Column::num(name, "-")));
+    columns.extend(ledger::ITEMS.map(|(name, _)| Column::num(name, "-")));
     columns.push(Column::num("not accounted for", "-"));
     columns.push(Column::num("momentum not accounted for", "-"));
     let caption = "What each term has added to the energy until the end, over M g H/2 at the start; below \
                    0 it took energy. The work of the walls is what their pressure does beyond what they \
                    store. Momentum over M √(g H).";
     let mut table = Table::new(caption, columns);
-    for record in runs.iter().map(|run| &run.record) {
+    for record in all_free(tier, runs).into_iter().chain(all_in_tank(tier, runs)) {
         let mut cells = vec![
             Cell::text(format!("`{}`", record.variant)),
             Cell::text(if is_free(record) { "Martin & Moyce" } else { "Lobovsky" }),
-            Cell::num(record.setting("n"), 3),
+            Cell::num(n(record) as f64, 3),
         ];
-        cells.extend(ITEMS.map(|(_, key)| Cell::percent(record.measured(key), 3)));
-        cells.push(Cell::sci(record.measured("energy_gap"), 2));
-        cells.push(Cell::sci(record.measured("momentum_gap"), 2));
+        let percent = |value| Cell::percent(value, 3);
+        cells.extend(ledger::ITEMS.map(|(_, work)| water::cell(record, work, percent)));
+        let sci = |value| Cell::sci(value, 2);
+        cells.push(water::cell(record, ledger::ENERGY_GAP, sci));
+        cells.push(water::cell(record, metrics::MOMENTUM_GAP, sci));
         table = table.row(cells);
     }
     table

@@ -318,5 +318,6 @@ where
     I: Stepping,
 {
     let lacks = lacking(OPTIONAL, &[R::USES, D::USES, W::USES].concat());
-    Composition { variant: Variant { name, about }, adjust, run: run::run::<K, R, D, W, I>, lacks }
+    let (run, rules) = (run::run::<K, R, D, W, I>, run::rules::<K, D, I>);
+    Composition { variant: Variant { name, about }, adjust, run, rules, lacks }
 }

@@ -6,15 +6,13 @@ mod plan;
 mod run;
 mod studies;
 
-use harness::composed::{Composed, Composition};
+use harness::composed::{Composed, Composition, completed};
 use solver::{
     ArtificialStress, CubicSpline, DensityDiffusion, ExtrapolatingWall, Ghosts, Hydrostatic,
     InterfaceWall, Leapfrog, PredictorCorrector, Tait, WendlandC2, Xsph,
 };
 
 pub use column::Column;
-
-use harness::case::Case;
 
 base::settings! {
     /// Settings of water at rest in an open tank.
@@ -104,13 +102,15 @@ fn variants() -> Vec<Composition<HydrostaticSettings>> {
 const NAME: &str = "hydrostatic";
 
 /// Water at rest in an open tank.
-pub const HYDROSTATIC: &dyn Case = &Composed {
+pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
     name: NAME,
     about: "Water at rest in an open tank, compressed by its own weight by g H/c0^2. The exact solution is \
             rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing moves. After \
             20 acoustic periods 4 H/c0: the pressure, the level, the kinetic energy that should be 0, the \
             gap between water and bottom, particles outside of the tank.",
     variants,
+    is_stable: completed,
+    declaration: plan::declaration,
     plan: plan::plan,
     studies: studies::studies,
 };

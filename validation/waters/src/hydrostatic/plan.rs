@@ -1,12 +1,23 @@
 //! The judged runs: three compressibilities with the modern method, the paper's at one, a control; in
 //! the full tier every wall with every density treatment.
 
-use super::NAME;
-use base::gate::{Bound, Evidence, Gate};
-use harness::case::{Planned, Tier};
+use super::{
+    HYDROSTATIC, HydrostaticSettings, NAME,
+    run::{GAP, KINETIC, LEVEL_DRIFT, OUTSIDE, P_L2},
+};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::MetricKey,
+    spec::RunSpec,
+};
+use harness::{
+    case::{Planned, Tier},
+    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level},
+};
 
-/// g H/c₀².
-pub const COMPRESSIBILITIES: [&str; 3] = ["1e-4", "0.01", "0.1"];
+/// g H/c₀², and as gates name it.
+pub const COMPRESSIBILITIES: [(f64, &str); 3] = [(1e-4, "1e-4"), USUAL, (0.1, "0.1")];
+const USUAL: (f64, &str) = (0.01, "0.01");
 
 /// Variants of the quick tier and what they are called in figures.
 pub const SHOWN: [&str; 3] = ["seed", "ghosts", "modern"];
@@ -24,51 +35,83 @@ pub const TABLE: [&str; 9] = [
     "modern",
 ];
 
+/// A run with 20 rows and nothing else special.
+pub fn plain(variant: &str, compressibility: f64) -> RunSpec {
+    HYDROSTATIC.spec(variant, |s| s.compressibility = compressibility)
+}
+
 /// The runs.
 pub fn plan(tier: Tier) -> Vec<Planned> {
+    let judged = |variant: &str, (value, name): (f64, &str)| {
+        planned(plain(variant, value)).judged(gates(variant, name))
+    };
     let mut runs = Vec::new();
-    for compressibility in COMPRESSIBILITIES {
-        runs.push(run("modern", compressibility, &[]).judged(gates("modern", compressibility)));
-    }
-    for variant in ["seed", "ghosts"] {
-        runs.push(run(variant, "0.01", &[]).judged(gates(variant, "0.01")));
-    }
-    runs.push(run("modern", "0.01", &["wall_gravity=0"]).judged(vec![control()]));
+    runs.extend(COMPRESSIBILITIES.map(|c| judged("modern", c)));
+    runs.extend(["seed", "ghosts"].map(|variant| judged(variant, USUAL)));
+    let modern = |set: fn(&mut HydrostaticSettings)| planned(HYDROSTATIC.spec("modern", set));
+    runs.push(modern(|s| s.wall_gravity = 0.0).judged(vec![control()]));
     if tier == Tier::Full {
-        for (variant, compressibility) in
-            ["seed", "ghosts"].into_iter().flat_map(|v| [(v, "1e-4"), (v, "0.1")])
-        {
-            runs.push(run(variant, compressibility, &[]).judged(gates(variant, compressibility)));
+        for variant in ["seed", "ghosts"] {
+            runs.extend([0, 2].map(|k| judged(variant, COMPRESSIBILITIES[k])));
         }
         for variant in TABLE.into_iter().filter(|v| *v != "modern") {
-            runs.extend(COMPRESSIBILITIES.map(|c| run(variant, c, &[])));
+            runs.extend(COMPRESSIBILITIES.map(|(c, _)| planned(plain(variant, c))));
         }
-        for set in [["rows=40", "columns=20"], ["jitter=0.1", "end=40"], ["uniform=true", "end=40"]]
-        {
-            runs.push(run("modern", "0.01", &set));
-        }
+        runs.push(modern(|s| (s.jitter, s.end) = (0.1, 40.0)));
+        runs.push(modern(|s| (s.uniform, s.end) = (true, 40.0)));
     }
     runs
 }
 
-fn run(variant: &'static str, compressibility: &str, more: &[&str]) -> Planned {
-    let mut set = vec![format!("compressibility={compressibility}")];
-    set.extend(more.iter().map(|text| (*text).to_string()));
-    // Twice as many rows and columns take half the step, and two right-hand sides a step twice as long.
-    let fine = if more.contains(&"rows=40") { 8.0 } else { 1.0 };
-    let dear = if ["seed", "ghosts"].contains(&variant) { 3.0 } else { 1.0 };
-    Planned::new(variant, &set).taking(0.3 * fine * dear)
+fn planned(spec: RunSpec) -> Planned {
+    let dear = if ["seed", "ghosts"].contains(&spec.variant.as_str()) { 3.0 } else { 1.0 };
+    Planned::new(spec).taking(0.3 * dear)
 }
 
-fn gate(id: &str, metric: &str, bound: Bound, evidence: Evidence, because: &str) -> Gate {
-    Gate::new(format!("{NAME}.{id}.{metric}"), metric, bound, evidence, because)
+/// Resolutions: rows.
+fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
+    match (tier, variant) {
+        (Tier::Quick, _) => &[10, 14, 20],
+        (Tier::Full, "modern") => &[10, 14, 20, 28, 40],
+        (Tier::Full, _) => &[10, 14, 20, 28],
+    }
+}
+
+/// Error of the pressure over resolutions.
+pub fn declaration(tier: Tier) -> Declaration {
+    let level = |variant: &str, rows: usize| {
+        let spec = HYDROSTATIC.spec(variant, |s| (s.rows, s.columns) = (rows, rows / 2));
+        let (spacing, label) = (1.0 / rows as f64, format!("{rows} rows"));
+        // Twice as many rows and columns take half the step.
+        let seconds = 0.3 * (rows as f64 / 20.0).powi(3);
+        Level { run: Planned::new(spec).taking(seconds), spacing, label }
+    };
+    let of = |variant: &'static str| {
+        Ladder::new(variant, ladder(tier, variant).iter().map(|rows| level(variant, *rows)))
+    };
+    let error = ErrorOf::Metric(P_L2.into());
+    let about = "rms distance from the exact pressure after 20 acoustic periods, g H/c0^2 = 0.01, over its \
+                 rms.";
+    let accuracy = Accuracy {
+        about: about.into(),
+        spacing: "dx/H [-]",
+        slope: Some(1.0),
+        ladders: SHOWN.map(of).into(),
+        ..Accuracy::new("hydrostatic", error, "error of the pressure [-]")
+    };
+    Declaration { accuracy: vec![accuracy], ..Declaration::default() }
+}
+
+fn gate(id: &str, metric: MetricKey, bound: Bound, evidence: Evidence, because: &str) -> Gate {
+    let metric = String::from(metric);
+    Gate::new(format!("{NAME}.{id}.{metric}"), &metric, bound, evidence, because)
 }
 
 fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
     let id = format!("{variant}.{compressibility}");
     let pressure = gate(
         &id,
-        "p_l2",
+        P_L2,
         Bound::Below(0.02),
         Evidence::Analytic,
         "the pressure of water at rest is known exactly; 2 % of its rms is a fifth of the weight of one of \
@@ -85,7 +128,7 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
         pressure,
         gate(
             &id,
-            "level_drift",
+            LEVEL_DRIFT,
             Bound::Within(-0.005, 0.005),
             Evidence::Analytic,
             "the level of water at rest stays: a tenth of one of 20 spacings is what the surface may \
@@ -93,7 +136,7 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
         ),
         gate(
             &id,
-            "gap",
+            GAP,
             Bound::Within(-0.25, 0.25),
             Evidence::Analytic,
             "the lowest row starts where it belongs: a wall that pushes it away by a quarter of a spacing \
@@ -101,13 +144,13 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
         ),
         gate(
             &id,
-            "kinetic",
+            KINETIC,
             Bound::Below(2.5e-5),
             Evidence::Analytic,
             "nothing moves: less than the energy that raises the surface by a tenth of a spacing, (0.1 \
              dx/H)^2 of M g H at 20 rows",
         ),
-        gate(&id, "outside", Bound::Equals(0.0), Evidence::Invariant, "no particle passes a wall"),
+        gate(&id, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, "no particle passes a wall"),
     ]
 }
 
@@ -115,6 +158,6 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
 fn control() -> Gate {
     let because = "control: without g in the extrapolation the bottom bears the mean pressure of the water \
                    before it instead of that at its own depth, and the water sinks";
-    gate("modern.no-wall-gravity", "p_l2", Bound::Below(0.02), Evidence::Analytic, because)
+    gate("modern.no-wall-gravity", P_L2, Bound::Below(0.02), Evidence::Analytic, because)
         .expected_to_fail()
 }

@@ -1,23 +1,40 @@
 //! One run: scene, stepping, what is measured.
 
-use solver::{EquationOfState, Integrator, Kernel, Particle, Role, Scheme, Simulation};
+use solver::{EquationOfState, Integrator, Kernel, Particle, Role, Scheme, Simulation, Stepper};
 
 use super::{
     Column, HydrostaticSettings, NAME,
     column::{Part, TankWall, TensilePart},
 };
-use base::{
-    number,
-    record::{self, Metric, Profile, Record, Status},
-};
+use crate::water;
+use base::record::{Profile, Record, Status};
 use harness::{
-    case::RunError,
-    runner::{self, Context, Frames},
+    case::{Rules, RunError},
+    runner::{self, Context},
+    simulate::state,
 };
 use maths::{
     metrics::norms::{Scale, l2},
     theory::Stepping,
 };
+
+base::metrics! {
+    P_L2 = "p_l2" ["-"]
+        "rms(p - p_exact)/rms(p_exact) over particles, p_exact at their places, at the end";
+    LEVEL_DRIFT = "level_drift" ["-"]
+        "mean height of the highest particle in each strip of width dx, end less start, over H";
+    GAP = "gap" ["-"]
+        "mean height of the lowest particle in each strip of width dx, end less start, over dx";
+    KINETIC = "kinetic" ["-"]
+        "largest sum m v^2/2 over M g H, once a period over the last quarter of the run";
+    OUTSIDE = "outside" ["-"] "most particles beyond bottom or sides, once a period";
+}
+
+/// What the rules choose.
+pub fn rules<K: Kernel, D: Part, I: Stepping>(s: &HydrostaticSettings) -> Result<Rules, RunError> {
+    let Column { dt, dt_limit, eos, .. } = Column::new::<K, D, I>(s, true)?;
+    Ok(Rules { dt, dt_limit, sound_speed: eos.sound_speed })
+}
 
 /// One run of a composition.
 pub fn run<K, R, D, W, I>(
@@ -38,41 +55,6 @@ where
         scene.parallel_from = usize::MAX;
     }
     let mut simulation = scene.build()?;
-    let json = serde_json::to_value(settings).unwrap_or_default();
-    let mut record = Record::new(NAME, variant, json, context.threads.max(1));
-    describe(&column, [K::NAME, <I as Integrator<()>>::NAME, W::NAME], &mut record);
-    let frames = Frames::of(context)?;
-    let mut seen = Seen::new::<_, W>(&column, &simulation);
-    let mut failed = None;
-    let stops = stops(&column, context);
-    let (status, cost) = runner::drive(
-        &mut simulation,
-        column.dt,
-        &stops,
-        context,
-        &mut (),
-        &mut |simulation, _| {
-            seen.look(&column, simulation);
-            if let Some(frames) = &frames {
-                failed = failed.take().or(frames.write(simulation, &column.eos).err());
-            }
-        },
-    );
-    if let Some(error) = failed {
-        return Err(error.into());
-    }
-    if status == Status::Completed {
-        seen.metrics(&mut record);
-        record.profiles.insert("pressure".into(), profile(&column, &seen, &water(&simulation)));
-    }
-    record.profiles.insert("history".into(), seen.history());
-    record.state = Some(record::digest(&state(&simulation.particles())));
-    (record.status, record.cost) = (status, cost);
-    Ok(record)
-}
-
-/// What the run chose.
-fn describe(column: &Column, [kernel, integrator, walls]: [&str; 3], record: &mut Record) {
     let numbers = [
         ("h/dx", column.settings.h_over_dx),
         ("dx [m]", column.dx),
@@ -80,38 +62,42 @@ fn describe(column: &Column, [kernel, integrator, walls]: [&str; 3], record: &mu
         ("dt [s]", column.dt),
         ("dt/limit", column.dt / column.dt_limit),
     ];
-    let words = [("kernel", kernel), ("integrator", integrator), ("walls", walls)];
-    let numerics = &mut record.numerics;
-    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    numerics.extend(words.map(|(name, word)| (name.to_string(), word.into())));
+    let integrator = <I as Integrator<()>>::NAME;
+    let words = [("kernel", K::NAME), ("integrator", integrator), ("walls", W::NAME)];
+    let mut record = water::begin((NAME, variant), settings, numbers, words, context);
+    let mut history = History::new::<_, W>(&column, &simulation);
+    let pressure = |density| column.eos.pressure(density);
+    let (status, cost) = runner::drive(
+        &mut simulation,
+        column.dt,
+        &times(&column),
+        context,
+        &mut (),
+        &pressure,
+        &mut |simulation, _| history.sample(&column, simulation),
+    )?;
+    if status == Status::Completed {
+        history.metrics(&mut record);
+        record.profiles.insert("pressure".into(), profile(&column, &history, &fluid(&simulation)));
+    }
+    record.profiles.insert("history".into(), history.profile());
+    record.state = Some(state(&simulation.particles()));
+    (record.status, record.cost) = (status, cost);
+    Ok(record)
 }
 
-/// Once a period and at the end, and at the times of frames \[s\].
-fn stops(column: &Column, context: &Context) -> Vec<f64> {
+/// Once a period and at the end \[s\].
+fn times(column: &Column) -> Vec<f64> {
     let end = column.end();
-    let frames = context.frames.as_ref().map_or(1, |(_, count)| *count.max(&1));
-    let frames = (1..=frames).map(|k| end * (k as f64 / frames as f64));
-    let mut stops: Vec<f64> = (1..)
-        .map(|k| f64::from(k) * column.period())
-        .take_while(|t| *t < end)
-        .chain(frames)
-        .collect();
-    stops.sort_by(f64::total_cmp);
-    stops.dedup();
-    stops
+    let periods = (1..).map(|k| f64::from(k) * column.period()).take_while(|t| *t < end);
+    periods.chain([end]).collect()
 }
 
-fn water<S: Scheme<Extra = ()>>(simulation: &Simulation<S>) -> Vec<Particle> {
+fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
     simulation.particles().into_iter().filter(|p| p.role == Role::Fluid).collect()
 }
 
-fn state(particles: &[Particle]) -> Vec<f64> {
-    let numbers =
-        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
-    particles.iter().flat_map(numbers).collect()
-}
-
-/// What is seen of the water at one time.
+/// What is measured of the water at one time.
 struct Moment {
     /// t \[4 H/c₀\].
     time: f64,
@@ -126,7 +112,7 @@ struct Moment {
     outside: usize,
 }
 
-struct Seen {
+struct History {
     /// Height of the surface \[m\].
     surface: f64,
     /// Mean heights of the lowest and of the highest particles at the start \[m\].
@@ -134,13 +120,13 @@ struct Seen {
     moments: Vec<Moment>,
 }
 
-impl Seen {
+impl History {
     fn new<S: Scheme<Extra = ()>, W: TankWall>(
         column: &Column,
         simulation: &Simulation<S>,
     ) -> Self {
         let surface = column.level::<W>();
-        Self { surface, start: ends(column, &water(simulation)), moments: Vec::new() }
+        Self { surface, start: ends(column, &fluid(simulation)), moments: Vec::new() }
     }
 
     /// The exact pressure at the place of a particle \[Pa\].
@@ -148,8 +134,8 @@ impl Seen {
         column.exact.pressure(self.surface - p.position.y)
     }
 
-    fn look<S: Scheme<Extra = ()>>(&mut self, column: &Column, simulation: &Simulation<S>) {
-        let water = water(simulation);
+    fn sample(&mut self, column: &Column, simulation: &dyn Stepper<()>) {
+        let water = fluid(simulation);
         let (s, tank) = (&column.settings, column.tank());
         let pressure: Vec<f64> = water.iter().map(|p| column.eos.pressure(p.density)).collect();
         let exact: Vec<f64> = water.iter().map(|p| self.exact(column, p)).collect();
@@ -174,36 +160,17 @@ impl Seen {
 
     fn metrics(&self, record: &mut Record) {
         let Some(last) = self.moments.last() else { return };
-        let mut put = |name: &str, value: f64, formula: &str| {
-            record.metrics.insert(name.into(), Metric::new(value, "-", formula));
-        };
-        put(
-            "p_l2",
-            last.pressure,
-            "rms(p - p_exact)/rms(p_exact) over particles, p_exact at their places, at the end",
-        );
-        put(
-            "level_drift",
-            last.level,
-            "mean height of the highest particle in each strip of width dx, end less start, over H",
-        );
-        put(
-            "gap",
-            last.gap,
-            "mean height of the lowest particle in each strip of width dx, end less start, over dx",
-        );
+        record.put(P_L2, last.pressure);
+        record.put(LEVEL_DRIFT, last.level);
+        record.put(GAP, last.gap);
         let later = self.moments.iter().filter(|m| m.time >= 0.75 * last.time);
         let kinetic = later.map(|m| m.kinetic).fold(0.0, f64::max);
-        put(
-            "kinetic",
-            kinetic,
-            "largest sum m v^2/2 over M g H, once a period over the last quarter of the run",
-        );
+        record.put(KINETIC, kinetic);
         let outside = self.moments.iter().map(|m| m.outside).max().unwrap_or_default();
-        put("outside", outside as f64, "most particles beyond bottom or sides, once a period");
+        record.put(OUTSIDE, outside as f64);
     }
 
-    fn history(&self) -> Profile {
+    fn profile(&self) -> Profile {
         let column = |of: fn(&Moment) -> f64| self.moments.iter().map(of).collect();
         Profile::default()
             .with("t", "4 H/c0", column(|m| m.time))
@@ -228,7 +195,7 @@ fn ends(column: &Column, water: &[Particle]) -> [f64; 2] {
 }
 
 /// Height, pressure and exact pressure of every particle, the lowest first.
-fn profile(column: &Column, seen: &Seen, water: &[Particle]) -> Profile {
+fn profile(column: &Column, history: &History, water: &[Particle]) -> Profile {
     let mut water = water.to_vec();
     water.sort_by(|a, b| a.position.y.total_cmp(&b.position.y));
     let s = &column.settings;
@@ -237,5 +204,5 @@ fn profile(column: &Column, seen: &Seen, water: &[Particle]) -> Profile {
     Profile::default()
         .with("y", "H", numbers(&|p| p.position.y / s.depth))
         .with("p", "rho0 g H", numbers(&|p| column.eos.pressure(p.density) / scale))
-        .with("p_exact", "rho0 g H", numbers(&|p| seen.exact(column, p) / scale))
+        .with("p_exact", "rho0 g H", numbers(&|p| history.exact(column, p) / scale))
 }

@@ -1,22 +1,28 @@
 //! What the runs say together: pressures over the exact line, and walls by density treatments.
 
-use super::plan::{SHOWN, TABLE};
-use base::record::{Record, Status};
-use harness::{
-    case::Tier,
-    suite::{JudgedRun, Study},
+use super::{
+    HydrostaticSettings,
+    plan::{self, COMPRESSIBILITIES, SHOWN, TABLE},
+    run::{GAP, KINETIC, LEVEL_DRIFT, OUTSIDE, P_L2},
 };
+use crate::water::cell;
+use base::record::{Record, Status};
+use harness::{case::Tier, runs::Runs, study::Study};
 use report::{Axis, Cell, Colour, Column, Figure, Legend, Plot, Series, Shape, Table};
 
 /// All of them.
-pub fn studies(tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
+pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let pressures = Study::new("hydrostatic-pressure", "Pressure of water at rest")
         .block(pressures(runs))
-        .block(table("All runs after 20 acoustic periods.", runs.iter().map(|run| &run.record)));
+        .block(table(
+            "All runs after 20 acoustic periods.",
+            runs.all().iter().map(|run| &run.record),
+        ));
     let mut studies = vec![pressures];
     if tier == Tier::Full {
         let of = |variant: &'static str| {
-            runs.iter().map(|run| &run.record).filter(move |r| r.variant == variant && is_plain(r))
+            let specs = COMPRESSIBILITIES.map(|(c, _)| plan::plain(variant, c));
+            specs.into_iter().filter_map(|spec| runs.record(&spec))
         };
         let caption =
             "Every wall with every density treatment, Wendland C2, h/dx 1.5, leapfrog, 20 rows.";
@@ -27,15 +33,8 @@ pub fn studies(tier: Tier, runs: &[JudgedRun]) -> Vec<Study> {
     studies
 }
 
-/// Whether a run differs from others by its variant and compressibility only.
-fn is_plain(record: &Record) -> bool {
-    record.setting("rows") == 20.0
-        && record.setting("end") == 20.0
-        && record.setting("wall_gravity") == 1.0
-}
-
 /// p over y of the variants at g H/c₀² = 0.01, and how far it is from exact.
-fn pressures(runs: &[JudgedRun]) -> Figure {
+fn pressures(runs: &Runs) -> Figure {
     let caption = "Pressure of every particle over its height after 20 acoustic periods, g H/c0^2 = 0.01, 20 \
                    rows by 10 columns, on the exact line (left), and its distance from the exact pressure \
                    at the particle's place (right). The lines differ by the place of the surface, half a \
@@ -46,14 +45,8 @@ fn pressures(runs: &[JudgedRun]) -> Figure {
     let mut error =
         Plot::new("", Axis::linear("(p - p_exact)/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
     for (k, variant) in SHOWN.into_iter().enumerate() {
-        let is_shown = |r: &&Record| {
-            r.variant == variant && r.setting("compressibility") == 0.01 && is_plain(r)
-        };
-        let found = runs.iter().map(|run| &run.record).find(is_shown);
-        let Some(profile) = found.and_then(|record| record.profiles.get("pressure")) else {
-            continue;
-        };
-        let [y, p, exact] = ["y", "p", "p_exact"].map(|name| profile.column(name));
+        let Some(record) = runs.record(&plan::plain(variant, 0.01)) else { continue };
+        let [y, p, exact] = ["y", "p", "p_exact"].map(|name| record.column("pressure", name));
         let line = exact.iter().zip(y).map(|(p, y)| (*p, *y)).collect();
         over = over.layer(Series::line(format!("exact, {variant}"), line).colour(Colour::cycle(k)));
         let series = |points: Vec<(f64, f64)>| {
@@ -61,8 +54,8 @@ fn pressures(runs: &[JudgedRun]) -> Figure {
             markers.shape(Shape::cycle(k)).open().size(5.0)
         };
         over = over.layer(series(p.iter().zip(y).map(|(p, y)| (*p, *y)).collect()));
-        let apart = p.iter().zip(exact).zip(y).map(|((p, exact), y)| (p - exact, *y));
-        error = error.layer(series(apart.collect()));
+        let distance = p.iter().zip(exact).zip(y).map(|((p, exact), y)| (p - exact, *y));
+        error = error.layer(series(distance.collect()));
     }
     Figure::new("hydrostatic-pressure", caption)
         .columns(2)
@@ -82,47 +75,44 @@ fn table<'a>(caption: &str, records: impl Iterator<Item = &'a Record>) -> Table 
         Column::num("gap at the bottom", "dx"),
         Column::num("kinetic energy", "M g H"),
         Column::num("outside", "-"),
-        Column::num("CPU time", "s"),
     ];
     let mut table = Table::new(caption, columns);
     for record in records {
-        let shown = |name: &str, cell: fn(f64, usize) -> Cell| {
-            Cell::or_dash(record.measured(name), |value| cell(value, 2))
-        };
+        let s = record.settings_as::<HydrostaticSettings>();
+        let percent = |value| Cell::percent(value, 2);
         let outside = match &record.status {
-            Status::Completed => Cell::num(record.measured("outside"), 3),
+            Status::Completed => cell(record, OUTSIDE, |count| Cell::num(count, 3)),
             _ => Cell::text("did not finish"),
         };
         table = table.row(vec![
             Cell::text(format!("`{}`", record.variant)),
-            Cell::num(record.setting("compressibility"), 2),
-            Cell::num(record.setting("rows"), 3),
-            Cell::text(others(record)),
-            shown("p_l2", Cell::percent),
-            shown("level_drift", Cell::percent),
-            shown("gap", Cell::num),
-            shown("kinetic", Cell::sci),
+            Cell::num(s.compressibility, 2),
+            Cell::num(s.rows as f64, 3),
+            Cell::text(others(&s)),
+            cell(record, P_L2, percent),
+            cell(record, LEVEL_DRIFT, percent),
+            cell(record, GAP, |gap| Cell::num(gap, 2)),
+            cell(record, KINETIC, |energy| Cell::sci(energy, 2)),
             outside,
-            Cell::seconds(record.cost.cpu_s),
         ]);
     }
     table
 }
 
 /// What else is not the default.
-fn others(record: &Record) -> String {
+fn others(s: &HydrostaticSettings) -> String {
     let mut words = Vec::new();
-    if record.setting("wall_gravity") != 1.0 {
+    if s.wall_gravity != 1.0 {
         words.push("wall without gravity".to_string());
     }
-    if record.setting("jitter") != 0.0 {
-        words.push(format!("jitter {} dx", record.setting("jitter")));
+    if s.jitter != 0.0 {
+        words.push(format!("jitter {} dx", s.jitter));
     }
-    if record.settings.get("uniform").and_then(serde_json::Value::as_bool) == Some(true) {
+    if s.uniform {
         words.push("starts uncompressed".into());
     }
-    if record.setting("end") != 20.0 {
-        words.push(format!("{} periods", record.setting("end")));
+    if s.end != 20.0 {
+        words.push(format!("{} periods", s.end));
     }
     words.join(", ")
 }

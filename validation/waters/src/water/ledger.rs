@@ -2,19 +2,30 @@
 
 use solver::{Scheme, Simulation};
 
-use base::record::{Metric, Profile, Record};
+use base::record::{MetricKey, Profile, Record};
 use maths::metrics::{
     budget::{Account, DIFFUSION, Itemised, Meter, STRESS, VISCOSITY, WALLS, XSPH},
     energy::{Energy, Water, water_slope},
 };
 
-/// The items of a budget, as metrics and figures name them.
-pub const ITEMS: [(&str, &str); 5] = [
-    (VISCOSITY, "work_viscosity"),
-    (STRESS, "work_stress"),
-    (DIFFUSION, "work_diffusion"),
-    (XSPH, "work_xsph"),
-    (WALLS, "work_walls"),
+base::metrics! {
+    ENERGY_GAP = "energy_gap" ["-"] "max over samples of |E(t) - E(0) - work of all terms|/{}";
+    WORK_VISCOSITY = "work_viscosity" ["-"]
+        "energy that artificial viscosity has added until the end/{}";
+    WORK_STRESS = "work_stress" ["-"] "energy that artificial stress has added until the end/{}";
+    WORK_DIFFUSION = "work_diffusion" ["-"]
+        "energy that density diffusion has added until the end/{}";
+    WORK_XSPH = "work_xsph" ["-"] "energy that XSPH has added until the end/{}";
+    WORK_WALLS = "work_walls" ["-"] "energy that walls has added until the end/{}";
+}
+
+/// The items of a budget: as accounts name them, and their metrics, which are columns of the series too.
+pub const ITEMS: [(&str, MetricKey); 5] = [
+    (VISCOSITY, WORK_VISCOSITY),
+    (STRESS, WORK_STRESS),
+    (DIFFUSION, WORK_DIFFUSION),
+    (XSPH, WORK_XSPH),
+    (WALLS, WORK_WALLS),
 ];
 
 /// Keeps the budget of a scene with these terms.
@@ -55,20 +66,15 @@ impl<F: Itemised<()>, D: Itemised<()>> Ledger<F, D> {
 
     /// Metrics relative to a scale \[J/m\], and the series.
     pub fn measure(&self, scale: f64, of_what: &str, record: &mut Record) {
-        let mut put = |name: &str, value: f64, formula: String| {
-            record.metrics.insert(name.into(), Metric::new(value, "-", &formula));
-        };
-        let formula = format!("max over samples of |E(t) - E(0) - work of all terms|/{of_what}");
-        put("energy_gap", self.gap() / scale, formula);
-        for (name, key) in ITEMS {
-            let formula = format!("energy that {name} has added until the end/{of_what}");
-            put(key, self.account.work(name) / scale, formula);
+        record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
+        for (name, work) in ITEMS {
+            record.put(work.of(of_what), self.account.work(name) / scale);
         }
-        let names = ["t", "kinetic", "potential", "compression"];
-        let names = names.into_iter().chain(ITEMS.map(|(_, key)| key));
-        let add = |profile: Profile, (k, name): (usize, &str)| {
+        let names = ["t", "kinetic", "potential", "compression"].map(String::from);
+        let names = names.into_iter().chain(ITEMS.map(|(_, work)| work.into()));
+        let add = |profile: Profile, (k, name): (usize, String)| {
             let unit = if k == 0 { "s" } else { "J/m" };
-            profile.with(name, unit, self.rows.iter().map(|row| row[k]).collect())
+            profile.with(&name, unit, self.rows.iter().map(|row| row[k]).collect())
         };
         let series = names.enumerate().fold(Profile::default(), add);
         record.profiles.insert("energy".into(), series);

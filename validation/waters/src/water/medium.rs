@@ -1,8 +1,9 @@
 //! From settings to the numbers that terms are made of, and to the time step.
 
 use nalgebra::Vector2;
-use solver::{Kernel, Smoothing, Tait};
+use solver::{Integrator, Kernel, Smoothing, Tait};
 
+use super::WaterScheme;
 use harness::case::RunError;
 use maths::{
     metrics::energy::Water,
@@ -81,22 +82,20 @@ impl Medium {
     }
 
     /// Time step and its theoretical limit \[s\]: a resting lattice with artificial viscosity on every
-    /// pair and the terms that `uses` names. A longer step is refused unless asked for.
-    pub fn time_step<K: Kernel, I: Stepping>(
-        &self,
-        uses: &[&str],
-        allow_unstable: bool,
-    ) -> Result<[f64; 2], RunError> {
+    /// pair and the terms of the scheme. A longer step is refused unless asked for.
+    pub fn time_step<S: WaterScheme>(&self, allow_unstable: bool) -> Result<[f64; 2], RunError> {
+        let uses = S::uses();
         let Numerics { alpha, diffusion, courant, h_over_dx, .. } = self.numerics;
         let used = |key: &str, value: f64| if uses.contains(&key) { value } else { 0.0 };
         let (alpha, delta) = (used("alpha", alpha), used("diffusion", diffusion));
-        let lattice = SquareLattice::<K>::new(h_over_dx, 0.01);
+        let lattice = SquareLattice::<S::Kernel>::new(h_over_dx, 0.01);
         let waves = Waves { c0: self.eos.sound_speed, h: self.h, nu: 0.0, alpha, delta };
         let modes = time_step::modes(&lattice, LIMIT_BOX, &waves);
-        let limit = time_step::time_step_limit(&modes, I::THEORY);
+        let limit = time_step::time_step_limit(&modes, S::Integrator::THEORY);
         let dt = self.numerics.dt.unwrap_or(courant * self.h / (self.eos.sound_speed + self.speed));
         if dt > limit && !allow_unstable {
-            return Err(RunError::TimeStep { dt, limit, integrator: I::NAME });
+            let integrator = S::Integrator::NAME;
+            return Err(RunError::TimeStep { dt, limit, integrator });
         }
         Ok([dt, limit])
     }

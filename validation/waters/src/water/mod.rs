@@ -5,12 +5,74 @@
 //! neither Morris viscosity nor a search for the surface.
 
 mod ingredients;
-mod ledger;
+pub mod ledger;
 mod medium;
 
-pub use ingredients::{Ingredient, OPTIONAL, TensileIngredient};
-pub use ledger::{ITEMS, Ledger};
+use base::{
+    number,
+    record::{MetricName, Record},
+    settings::Settings,
+};
+use harness::{composed::lacking, context::Context};
+use maths::theory::Stepping;
+use report::Cell;
+use solver::Scheme;
+
+pub use ingredients::{Ingredient, TensileIngredient};
+pub use ledger::Ledger;
 pub use medium::{Medium, Numerics};
+
+/// A scheme whose terms can be made from the settings of water.
+pub trait WaterScheme:
+    Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Integrator: Stepping>
+{
+    /// Settings that its terms read and others do not have.
+    fn uses() -> Vec<&'static str> {
+        [Self::Forces::uses(), Self::Drift::uses()].concat()
+    }
+
+    /// Those of other terms.
+    fn lacks() -> Vec<&'static str> {
+        lacking(ingredients::OPTIONAL, &Self::uses())
+    }
+}
+
+impl<S> WaterScheme for S where
+    S: Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Integrator: Stepping>
+{
+}
+
+/// A record of a case and variant with what the rules chose: numbers, then words.
+pub fn begin<const N: usize, const M: usize>(
+    (case, variant): (&str, &str),
+    settings: &impl Settings,
+    numbers: [(&str, f64); N],
+    words: [(&str, &str); M],
+    context: &Context,
+) -> Record {
+    let json = serde_json::to_value(settings).unwrap_or_default();
+    let mut record = Record::new(case, variant, json, context.threads.max(1));
+    let numbers = numbers.map(|(name, value)| (name.to_string(), number::json(value)));
+    record.numerics.extend(numbers);
+    record.numerics.extend(words.map(|(name, word)| (name.to_string(), word.into())));
+    record
+}
+
+/// A metric in a table; a dash if it was not measured.
+pub fn cell(record: &Record, metric: impl Into<MetricName>, show: impl Fn(f64) -> Cell) -> Cell {
+    Cell::or_dash(record.value(metric).unwrap_or(f64::NAN), show)
+}
+
+/// A column of a profile over another one, each in a unit.
+pub fn curve(
+    record: &Record,
+    profile: &str,
+    [x, y]: [&str; 2],
+    units: [f64; 2],
+) -> Vec<(f64, f64)> {
+    let points = record.column(profile, x).iter().zip(record.column(profile, y));
+    points.map(|(x, y)| (x / units[0], y / units[1])).collect()
+}
 
 /// Declares the settings of a case of water: its own, then those that every such case has, and turns
 /// the latter into [`Numerics`] by a method `numerics`.

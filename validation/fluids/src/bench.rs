@@ -9,12 +9,13 @@ use std::time::Instant;
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, DensityDiffusion, Domain, Engine, Euler, Evolved, Fault,
-    Ghosts, Integrator, Leapfrog, Open, Particle, PredictorCorrector, Pressure, QuinticSpline,
-    Scene, SceneError, Scheme, Shifting, Simulation, Tait, Viscosity, lattice,
+    BodyForce, Compose, Continuity, CubicSpline, DensityDiffusion, Domain, Engine, Euler, Evolved,
+    Fault, Ghosts, Integrator, Leapfrog, Open, Particle, Physics, PredictorCorrector, Pressure,
+    QuinticSpline, Scene, SceneError, Scheme, Shifting, Simulation, Stepper, Tait, Viscosity,
+    lattice,
 };
 
-use fluids::channel::{self, ChannelSettings, Drive, Flow, Ingredient, Setup};
+use crate::channel::{self, ChannelSettings, Drive, Flow, Ingredient, Setup};
 use harness::{case::RunError, composed::Composition};
 use maths::theory::Stepping;
 
@@ -61,9 +62,9 @@ impl Integrator<()> for Rebuilding {
     const NAME: &'static str = "rebuilding";
     const ORDER: [u32; 2] = [0, 0];
 
-    fn step<S: Scheme<Extra = ()>>(
+    fn step<P: Physics<Extra = ()>>(
         &mut self,
-        engine: &mut Engine<S>,
+        engine: &mut Engine<P>,
         state: &mut [Evolved<()>],
         dt: f64,
     ) -> Result<(), Fault> {
@@ -85,9 +86,9 @@ impl<I: Sweeping> Integrator<()> for Bare<I> {
     const NAME: &'static str = "bare sweeps";
     const ORDER: [u32; 2] = [0, 0];
 
-    fn step<S: Scheme<Extra = ()>>(
+    fn step<P: Physics<Extra = ()>>(
         &mut self,
-        engine: &mut Engine<S>,
+        engine: &mut Engine<P>,
         state: &mut [Evolved<()>],
         _dt: f64,
     ) -> Result<(), Fault> {
@@ -103,11 +104,11 @@ impl<I: Sweeping> Integrator<()> for Bare<I> {
 /// An integrator whose sweeps can be done without the rest of its step.
 pub trait Sweeping: Integrator<()> {
     /// The sweeps of one step, with updates over no time.
-    fn sweep<S: Scheme<Extra = ()>>(engine: &mut Engine<S>, state: &mut [Evolved<()>]);
+    fn sweep<P: Physics<Extra = ()>>(engine: &mut Engine<P>, state: &mut [Evolved<()>]);
 }
 
 impl Sweeping for PredictorCorrector {
-    fn sweep<S: Scheme<Extra = ()>>(engine: &mut Engine<S>, state: &mut [Evolved<()>]) {
+    fn sweep<P: Physics<Extra = ()>>(engine: &mut Engine<P>, state: &mut [Evolved<()>]) {
         for _ in 0..2 {
             engine.sweep_all(state, |_, evolved, rate| *evolved = evolved.advanced(0.0, rate));
         }
@@ -115,7 +116,7 @@ impl Sweeping for PredictorCorrector {
 }
 
 impl Sweeping for Leapfrog {
-    fn sweep<S: Scheme<Extra = ()>>(engine: &mut Engine<S>, state: &mut [Evolved<()>]) {
+    fn sweep<P: Physics<Extra = ()>>(engine: &mut Engine<P>, state: &mut [Evolved<()>]) {
         engine.sweep_forces(state, |_, evolved, rate| evolved.kick(0.0, rate));
         engine.sweep_drift(state, |_, evolved, rate| evolved.drift(0.0, rate));
     }
@@ -194,9 +195,22 @@ type Modern<B, I> = Compose<QuinticSpline, (Pressure<Tait>, Viscosity, B), Stabi
 /// while slows both.
 pub const PAIRS: usize = 21;
 
+/// Of each variant.
+pub type Shares = [(&'static str, Share); 2];
+
+/// Of the flow that a plate drives. Not generic: its schemes are those of the variants, compiled in this crate.
+pub fn shares_of_couette(rows: usize, budget: f64) -> Result<Shares, RunError> {
+    shares::<()>(rows, budget)
+}
+
+/// Of the flow that a body force drives.
+pub fn shares_of_poiseuille(rows: usize, budget: f64) -> Result<Shares, RunError> {
+    shares::<BodyForce>(rows, budget)
+}
+
 /// Times whole steps of the variants `seed` and `modern` of a channel flow driven by `B`, and as
 /// many bare sweeps in turn, at so many rows, for about `budget` seconds each.
-pub fn shares<B: Drive>(rows: usize, budget: f64) -> Result<[(&'static str, Share); 2], RunError> {
+fn shares<B: Drive>(rows: usize, budget: f64) -> Result<Shares, RunError> {
     let variants = channel::variants::<B>();
     let settings = |name: &str| {
         let find = |v: &&Composition<ChannelSettings>| v.variant.name == name;

@@ -5,8 +5,14 @@ use base::{
     manifest::{Known, Manifest},
     record::Status as Ended,
     reference::Reference,
+    spec::{RunSpec, Task},
 };
-use harness::suite::{CaseResults, Judged, JudgedRun, Study, Suite};
+use harness::{
+    case::{self, Case, Tier},
+    runs::{Judged, JudgedRun},
+    study::Study,
+    suite::{CaseResults, Suite},
+};
 use report::{Block, Cell, Column, Counts, Page, Section, Status, Table, sig};
 
 /// The whole report.
@@ -18,7 +24,7 @@ pub fn assemble(suite: &Suite) -> Page {
          before it breaks? Each number below was measured by this run of touchstone; each gate says what \
          it stands on."
             .to_string(),
-        format!("{} tier. {}", tier_name(suite), provenance(&manifest)),
+        format!("{} tier. {}{}", tier_name(suite), provenance(&manifest), reused(suite)),
     ];
     let mut sections: Vec<Section> = vec![summary(suite)];
     sections.extend(suite.cases.iter().map(case_section));
@@ -39,8 +45,20 @@ pub fn assemble(suite: &Suite) -> Page {
 
 fn tier_name(suite: &Suite) -> &'static str {
     match suite.tier {
-        harness::case::Tier::Quick => "Quick",
-        harness::case::Tier::Full => "Full",
+        Tier::Quick => "Quick",
+        Tier::Full => "Full",
+    }
+}
+
+/// What was not made for this page.
+fn reused(suite: &Suite) -> String {
+    let other = match suite.of_other_sources {
+        0 => String::new(),
+        count => format!(" **{count} of them were made by a build of other sources.**"),
+    };
+    match suite.reused {
+        0 => String::new(),
+        count => format!(" {count} records were in the store before.{other}"),
     }
 }
 
@@ -91,7 +109,7 @@ fn summary(suite: &Suite) -> Section {
         ]);
     };
     for results in &suite.cases {
-        let runs = results.runs.iter().flat_map(|run| &run.judged).collect();
+        let runs = results.runs.all().iter().flat_map(|run| &run.judged).collect();
         row(results.case.name(), &format!("{}: single runs", results.case.name()), runs);
         for study in &results.studies {
             let title = format!("{}: {}", results.case.name(), study.title);
@@ -106,7 +124,7 @@ fn summary(suite: &Suite) -> Section {
 
 fn case_section(results: &CaseResults) -> Section {
     let case = results.case;
-    let judged = || results.runs.iter().flat_map(|run| &run.judged);
+    let judged = || results.runs.all().iter().flat_map(|run| &run.judged);
     let mut section = Section::new(case.name(), case.name()).prose(case.about());
     if let Some(status) = worst(judged().chain(results.studies.iter().flat_map(|s| &s.judged))) {
         section = section.status(status);
@@ -124,7 +142,7 @@ fn case_section(results: &CaseResults) -> Section {
         })
         .block(Block::Details {
             summary: "Runs and what they cost".into(),
-            blocks: vec![run_table(&results.runs).into()],
+            blocks: vec![run_table(case, results.runs.all()).into()],
         })
 }
 
@@ -219,7 +237,7 @@ fn settings_table(results: &CaseResults) -> Table {
     table
 }
 
-fn run_table(runs: &[JudgedRun]) -> Table {
+fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
     let columns = vec![
         Column::text("variant"),
         Column::text("set"),
@@ -228,12 +246,15 @@ fn run_table(runs: &[JudgedRun]) -> Table {
         Column::num("steps", "1"),
         Column::num("pair interactions", "1"),
         Column::num("right-hand sides", "1"),
-        Column::num("processor time", "s"),
+        Column::num("stepping, alone", "s"),
+        Column::num("stepping", "s"),
+        Column::num("observers", "s"),
         Column::num("solver memory", "kB"),
         Column::text("state"),
     ];
-    let caption = "Every run of the plan. Runs were made side by side, so their times are only rough. The \
-                   state is a digest of the bits at the end: the same for any number of threads.";
+    let caption = "Every run of the plan. Seconds alone are the median of timings with nothing else of this \
+                   program at work; other seconds were taken side by side and are only rough. The state is a \
+                   digest of the bits at the end: the same for any number of threads.";
     let mut table = Table::new(caption, columns);
     for run in runs {
         let (record, cost) = (&run.record, &run.record.cost);
@@ -250,19 +271,38 @@ fn run_table(runs: &[JudgedRun]) -> Table {
         };
         let state: String = record.state.iter().flat_map(|s| s.chars()).take(8).collect();
         table = table.row(vec![
-            Cell::text(format!("`{}`", run.planned.variant)),
-            Cell::text(run.planned.set.join(" ")),
+            Cell::text(format!("`{}`", run.planned.spec.variant)),
+            Cell::text(what(case, &run.planned.spec)),
             Cell::text(ended),
             Cell::count(cost.particles as u64),
             Cell::count(cost.steps),
             Cell::sci(cost.pair_interactions as f64, 2),
             Cell::sci(cost.particle_rhs as f64, 2),
+            median(&cost.alone_s).map_or(Cell::text("–"), Cell::seconds),
             Cell::seconds(cost.cpu_s),
+            Cell::seconds(cost.observing_s),
             Cell::num(cost.solver_bytes as f64 / 1e3, 4),
             Cell::text(format!("`{state}`")),
         ]);
     }
     table
+}
+
+/// `key=value` of what differs from the defaults of the variant, and what is done with it.
+fn what(case: &dyn Case, spec: &RunSpec) -> String {
+    let mut words = case::changed(case, spec);
+    if let Task::Bisect(bisect) = &spec.task {
+        words.push(format!("(bisects {})", bisect.setting));
+    }
+    words.join(" ")
+}
+
+/// The middle of the timings.
+fn median(seconds: &[f64]) -> Option<f64> {
+    let mut seconds = seconds.to_vec();
+    seconds.sort_by(f64::total_cmp);
+    let n = seconds.len();
+    (n > 0).then(|| 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]))
 }
 
 fn references_section() -> Section {

@@ -1,0 +1,345 @@
+//! Particle data: what a simulation holds of its particles whatever their equations are, so that sorting,
+//! neighbour lists, bounds, counting and checkpoints are compiled once for each set of extra fields.
+
+use nalgebra::Vector2;
+
+use crate::{
+    neighbours::Neighbours,
+    numbers::Numbers,
+    particles::{Evolved, Fixed, Particle, Role},
+};
+
+/// What was done, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Time steps.
+    pub steps: u64,
+    /// Neighbours visited, each pair sweep counted, padding not.
+    pub pair_interactions: u64,
+    /// Right-hand sides of moving particles.
+    pub right_hand_sides: u64,
+    /// Times that neighbour lists were built.
+    pub list_builds: u64,
+}
+
+/// A state that no simulation may reach, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fault {
+    /// Number of the particle, in the order of the scene.
+    pub particle: u32,
+    /// The quantity.
+    pub field: &'static str,
+    /// Its value, of a vector the length.
+    pub value: f64,
+}
+
+/// Bounds that a run must not leave; a run that does has diverged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Least and largest density \[kg/m³\].
+    pub density: [f64; 2],
+    /// Largest speed \[m/s\].
+    pub speed: f64,
+}
+
+impl Default for Limits {
+    /// Any positive density, any finite speed.
+    fn default() -> Self {
+        Self { density: [0.0, f64::MAX], speed: f64::MAX }
+    }
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// Simulated time \[s\].
+    pub time: f64,
+    /// Length of the last step \[s\].
+    pub dt: f64,
+    /// What was done so far.
+    pub work: Work,
+    /// Largest displacement since the neighbour lists were built, at the start of the last step \[m\].
+    pub last_displacement: f64,
+    /// Whether the lists were built inside a step, for particles neither sorted nor wrapped.
+    pub built_inside_a_step: bool,
+}
+
+/// All that decides how a run goes on, as plain data: [`crate::Scene::resume`] continues it with the
+/// same bits as if it had not been interrupted.
+///
+/// Sums are added in the order of the neighbour lists, so the order of storage belongs to it, and the
+/// places that the lists were built at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint<X = ()> {
+    /// Time, work and the age of the neighbour lists.
+    pub progress: Progress,
+    /// How far the velocities are behind the rest \[s\]; 0 after [`crate::Simulation::advance`] reached
+    /// a time.
+    pub lag: f64,
+    /// Particles as they are stored, with their numbers in the scene.
+    pub particles: Vec<(u32, Particle<X>)>,
+    /// Where each was when the neighbour lists were built \[m\].
+    pub built_at: Vec<Vector2<f64>>,
+}
+
+/// Largest squares found in a state.
+#[derive(Clone, Copy)]
+pub(crate) struct Extent {
+    pub displacement2: f64,
+    pub speed2: f64,
+    within_limits: bool,
+}
+
+impl Extent {
+    pub const NIL: Self = Self { displacement2: 0.0, speed2: 0.0, within_limits: true };
+
+    /// Exact, so it does not matter in which order.
+    fn and(mut self, other: Self) -> Self {
+        self.displacement2 = self.displacement2.max(other.displacement2);
+        self.speed2 = self.speed2.max(other.speed2);
+        self.within_limits &= other.within_limits;
+        self
+    }
+}
+
+/// The particles of a simulation, their neighbour lists, the time, and the work done. A
+/// [`crate::Simulation`] and a [`crate::Stepper`] dereference to it.
+#[derive(Default)]
+pub struct ParticleData<X = ()> {
+    /// Empty while a step is under way, which has it.
+    pub(crate) state: Vec<Evolved<X>>,
+    pub(crate) fixed: Vec<Fixed>,
+    /// Fluid and wall particles; interface particles follow them.
+    pub(crate) counts: [usize; 2],
+    pub(crate) neighbours: Neighbours,
+    pub(crate) limits: Limits,
+    /// (largest displacement that keeps the neighbour lists exact)² \[m²\].
+    pub(crate) slack2: f64,
+    /// (displacement beyond which the step, not the flow, moved a particle)² \[m²\]: half a period,
+    /// since images stand one period away, on either side.
+    pub(crate) reach2: f64,
+    pub(crate) parallel: bool,
+    pub(crate) progress: Progress,
+    order: Vec<u32>,
+}
+
+impl<X: Numbers> ParticleData<X> {
+    /// Particles in this order, with their numbers in the scene, without neighbour lists.
+    pub(crate) fn new(particles: &[(u32, Particle<X>)], neighbours: Neighbours) -> Self {
+        let count = |role| particles.iter().filter(|(_, p)| p.role == role).count();
+        let evolved = |(_, p): &(u32, Particle<X>)| {
+            let Particle { position, velocity, density, extra, .. } = *p;
+            Evolved { position, velocity, density, extra }
+        };
+        let fixed = |(id, p): &(u32, Particle<X>)| Fixed { mass: p.mass, id: *id, role: p.role };
+        Self {
+            state: particles.iter().map(evolved).collect(),
+            fixed: particles.iter().map(fixed).collect(),
+            counts: [count(Role::Fluid), count(Role::Wall)],
+            neighbours,
+            ..Self::default()
+        }
+    }
+
+    /// Simulated time \[s\].
+    pub fn time(&self) -> f64 {
+        self.progress.time
+    }
+
+    /// Length of the last step \[s\].
+    pub fn dt(&self) -> f64 {
+        self.progress.dt
+    }
+
+    /// What was done so far.
+    pub fn work(&self) -> Work {
+        self.progress.work
+    }
+
+    /// Number of fluid particles.
+    pub fn fluid_count(&self) -> usize {
+        self.counts[0]
+    }
+
+    /// Mass \[kg/m\] and state of the fluid particles as they are stored, without order; for observers
+    /// that sum.
+    pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<X>)> {
+        let fluid = self.counts[0];
+        self.fixed[..fluid].iter().map(|f| f.mass).zip(&self.state[..fluid])
+    }
+
+    /// Mass \[kg/m\] and state of the wall particles with an evolving density, likewise.
+    pub fn walls(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<X>)> {
+        let range = self.neighbours.wall_lists.of.clone();
+        self.fixed[range.clone()].iter().map(|f| f.mass).zip(&self.state[range])
+    }
+
+    /// All particles in the order of the scene.
+    pub fn particles(&self) -> Vec<Particle<X>> {
+        let nothing = Particle::fluid(Vector2::zeros(), Vector2::zeros(), 0.0, 0.0);
+        let mut particles = vec![nothing; self.state.len()];
+        for (id, particle) in self.stored() {
+            particles[id as usize] = particle;
+        }
+        particles
+    }
+
+    /// Total momentum of the fluid per unit depth \[kg/s\], summed in the order of the scene.
+    pub fn momentum(&self) -> Vector2<f64> {
+        let fluid = self.particles().into_iter().filter(|p| p.role == Role::Fluid);
+        fluid.fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass)
+    }
+
+    /// All particles as they are stored, with their numbers in the scene.
+    fn stored(&self) -> impl Iterator<Item = (u32, Particle<X>)> {
+        self.fixed.iter().zip(&self.state).map(|(&Fixed { mass, id, role }, evolved)| {
+            let Evolved { position, velocity, density, extra } = *evolved;
+            (id, Particle { role, position, velocity, density, mass, extra })
+        })
+    }
+
+    /// What it takes to go on from here, with velocities so far behind \[s\].
+    pub(crate) fn checkpoint(&self, lag: f64) -> Checkpoint<X> {
+        Checkpoint {
+            progress: self.progress,
+            lag,
+            particles: self.stored().collect(),
+            built_at: self.neighbours.built_at.to_vec(),
+        }
+    }
+
+    /// Memory held \[bytes\].
+    pub(crate) fn bytes(&self) -> usize {
+        self.state.capacity() * size_of::<Evolved<X>>()
+            + self.fixed.capacity() * size_of::<Fixed>()
+            + self.order.capacity() * size_of::<u32>()
+            + self.neighbours.bytes()
+    }
+
+    /// Puts fluid particles in the order of their cells, and all inside the period.
+    pub(crate) fn sort(&mut self, state: &mut [Evolved<X>]) {
+        for evolved in &mut *state {
+            evolved.position = self.neighbours.domain.wrap(evolved.position);
+        }
+        let fluid = self.counts[0];
+        self.neighbours.place(state[..fluid].iter().map(|e| e.position));
+        self.neighbours.order(&mut self.order);
+        let fixed = &mut self.fixed;
+        apply_order(&mut self.order, &mut |i, j| {
+            state.swap(i, j);
+            fixed.swap(i, j);
+        });
+    }
+
+    /// Builds neighbour lists and images for particles where they were placed.
+    pub(crate) fn build_lists(&mut self, fluid_only: bool) {
+        self.neighbours.build(self.counts, fluid_only, self.parallel);
+        self.progress.work.list_builds += 1;
+    }
+
+    /// Counts a pair sweep.
+    pub(crate) fn count(&mut self, completes_a_right_hand_side: bool) {
+        self.progress.work.pair_interactions += self.neighbours.pairs();
+        if completes_a_right_hand_side {
+            self.progress.work.right_hand_sides += self.counts[0] as u64;
+        }
+    }
+
+    /// The extremes of a part of a state that was built at these places.
+    pub(crate) fn extent(&self, state: &[Evolved<X>], built_at: &[Vector2<f64>]) -> Extent {
+        let mut extent = Extent::NIL;
+        for (evolved, built_at) in state.iter().zip(built_at) {
+            let displacement2 = (evolved.position - built_at).norm_squared();
+            let speed2 = evolved.velocity.norm_squared();
+            let excess = self.excess(evolved, displacement2);
+            let within_limits = excess.is_none() && evolved.extra.is_finite();
+            extent = extent.and(Extent { displacement2, speed2, within_limits });
+        }
+        extent
+    }
+
+    /// The extremes of a whole state from those of its parts.
+    pub(crate) fn check(&self, state: &[Evolved<X>], of: &[Extent]) -> Result<Extent, Fault> {
+        let extent = of.iter().copied().fold(Extent::NIL, Extent::and);
+        if extent.within_limits { Ok(extent) } else { Err(self.find_fault(state)) }
+    }
+
+    /// Whether neighbour lists are not exact any more when a particle has moved so far² \[m²\].
+    pub(crate) fn is_stale(&self, displacement2: f64) -> bool {
+        // Negated, so that a slack that is not a number means "always".
+        !(displacement2 <= self.slack2)
+    }
+
+    /// Whether neighbour lists will be stale within a step like the last one: better built now, in
+    /// order, than inside the step and again after it.
+    pub(crate) fn is_stale_soon(&mut self, extent: Extent) -> bool {
+        let displacement = extent.displacement2.sqrt();
+        let ahead = displacement + (displacement - self.progress.last_displacement).max(0.0);
+        let stale = self.is_stale(ahead * ahead);
+        self.progress.last_displacement = if stale { 0.0 } else { displacement };
+        stale
+    }
+
+    /// The first particle, in the order of the scene, that is out of bounds.
+    fn find_fault(&self, state: &[Evolved<X>]) -> Fault {
+        let fault = |((evolved, fixed), built_at): ((&Evolved<X>, &Fixed), &Vector2<f64>)| {
+            let displacement2 = (evolved.position - built_at).norm_squared();
+            let field = evolved.fault().or_else(|| self.excess(evolved, displacement2))?;
+            let value = match field {
+                "position" => evolved.position.norm(),
+                "velocity" => evolved.velocity.norm(),
+                "density" => evolved.density,
+                _ => f64::NAN,
+            };
+            Some(Fault { particle: fixed.id, field, value })
+        };
+        let particles = state.iter().zip(&self.fixed).zip(&self.neighbours.built_at);
+        let first = particles.filter_map(fault).min_by_key(|f| f.particle);
+        first.expect("a state that is out of bounds has a particle that is")
+    }
+
+    /// The first field that is beyond its limit. A NaN fails every comparison.
+    #[inline(always)]
+    fn excess(&self, evolved: &Evolved<X>, displacement2: f64) -> Option<&'static str> {
+        let ([least, most], speed2) = (self.limits.density, evolved.velocity.norm_squared());
+        // The square of the limit may be infinite.
+        let speed_limit2 = self.limits.speed * self.limits.speed;
+        match evolved.density {
+            _ if !(displacement2 <= self.reach2) => Some("position"),
+            _ if !(speed2 <= speed_limit2 && speed2.is_finite()) => Some("velocity"),
+            density if !(density > least && density < most) => Some("density"),
+            _ => None,
+        }
+    }
+}
+
+/// Permutes in place by swaps: entry i becomes what was at `order[i]`.
+fn apply_order(order: &mut [u32], swap: &mut dyn FnMut(usize, usize)) {
+    for i in 0..order.len() {
+        // Where order[i] is now: entries before i were swapped away along the chain.
+        let mut from = order[i] as usize;
+        while from < i {
+            from = order[from] as usize;
+        }
+        order[i] = from as u32;
+        swap(i, from);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::apply_order;
+
+    #[test]
+    fn permuting_in_place_is_gathering_by_the_order() {
+        for seed in 1_u64..50 {
+            let n = (seed % 17 + 1) as usize;
+            let mut order: Vec<u32> = (0..n as u32).collect();
+            order.sort_by_key(|&k| (u64::from(k) + 1).wrapping_mul(0x9E37_79B9 * seed) % 1009);
+            let expected = order.clone();
+            let mut permuted: Vec<u32> = (0..n as u32).collect();
+            apply_order(&mut order, &mut |i, j| permuted.swap(i, j));
+            assert_eq!(permuted, expected);
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Physics: the equations of a scene as one type, without the integration in time.
+
+use std::marker::PhantomData;
+
+use crate::{kernel::Kernel, numbers::Numbers, particles::Evolved, terms::Term, walls::Walls};
+
+/// The right-hand side of d(x, v, ρ, …)/dt as types. Schemes that differ in their integrator alone have the
+/// same physics, and share what is compiled for it.
+pub trait Physics: Sized + 'static {
+    /// What a particle integrates beyond x, v and ρ; `()` for a fluid.
+    type Extra: Numbers;
+    /// Smoothing kernel.
+    type Kernel: Kernel;
+    /// Terms of dv/dt.
+    type Forces: Term<Self::Extra>;
+    /// Terms of dx/dt (beyond v), dρ/dt and the extra fields.
+    type Drift: Term<Self::Extra>;
+    /// Wall representation.
+    type Walls: Walls<Self::Extra>;
+}
+
+/// A composition of types: the whole method, written as one line
+/// `Compose<Kernel, Forces, Drift, Walls, Integrator>`. What is not named here is not in the program.
+/// The physics of it does not depend on the integrator `I`; with `I` = `()` it is a physics and no scheme.
+#[derive(Debug)]
+pub struct Compose<K, F, D, W, I = (), X = ()>(PhantomData<(K, F, D, W, I, X)>);
+
+impl<K, F, D, W, I, X> Physics for Compose<K, F, D, W, I, X>
+where
+    X: Numbers,
+    K: Kernel,
+    F: Term<X>,
+    D: Term<X>,
+    W: Walls<X>,
+    I: 'static,
+{
+    type Extra = X;
+    type Kernel = K;
+    type Forces = F;
+    type Drift = D;
+    type Walls = W;
+}
+
+/// What the integrator advances in the physics `P`, particle by particle.
+pub type State<P> = [Evolved<<P as Physics>::Extra>];
+
+/// The derived numbers of a particle in the physics `P`: those that the forces read, and the drift.
+pub type Derived<P> =
+    <(<P as Physics>::Forces, <P as Physics>::Drift) as Term<<P as Physics>::Extra>>::Derived;

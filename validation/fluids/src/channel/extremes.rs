@@ -1,0 +1,244 @@
+//! Extreme Couette flows: creeping ones against the row-reduced matrix, sound a thousand times too fast,
+//! smoothing lengths from too short to too long.
+
+use nalgebra::DVector;
+use solver::{CubicSpline, Kernel, QuinticSpline};
+
+use super::{ChannelCase, ChannelSettings, TIMES, measure::L2};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::Record,
+    spec::RunSpec,
+};
+use harness::{
+    case::{Case, Tier},
+    runs::{Judged, Runs},
+    study::Study,
+};
+use maths::{
+    exact::couette::Couette,
+    theory::channel::{Alignment, Channel, RowModel, WallRule},
+};
+use report::{Cell, Column, Table};
+
+/// νt/L² of the end and of the comparison, if nothing else is said.
+const END: f64 = 0.1;
+
+/// The runs of the study.
+pub fn specs(case: &ChannelCase, tier: Tier) -> Vec<RunSpec> {
+    let slow =
+        slow_settings(tier).into_iter().map(|(variant, rows)| slow_spec(case, variant, rows));
+    let sound = sound_settings(tier).iter().flat_map(|re| sound_specs(case, *re, tier));
+    let smoothed = smoothing_lengths(tier).into_iter().map(|of| smoothed_spec(case, of));
+    slow.chain(sound).chain(smoothed).collect()
+}
+
+/// The study.
+pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
+    let columns = vec![
+        Column::text("setting"),
+        Column::text("what must come"),
+        Column::text("what came"),
+        Column::num("judged value", "-"),
+    ];
+    let mut table = Table::new("Extreme Couette flows.", columns);
+    let mut study = Study::new("couette-extremes", "Extreme settings").prose(LEAD);
+    let mut entries = slow(case, tier, runs);
+    entries.extend(sound(case, tier, runs));
+    entries.extend(smoothing(case, tier, runs));
+    for Entry { setting, found, value, gate } in entries {
+        table = table.row(vec![
+            Cell::text(setting),
+            Cell::text(format!("{} {}: {}", gate.metric, gate.bound, gate.because)),
+            Cell::text(found),
+            value.map_or(Cell::text("not measured"), |value| Cell::num(value, 4)),
+        ]);
+        study.judged.push(Judged::new(gate, value));
+    }
+    study.block(table)
+}
+
+const LEAD: &str = "What breaks a naive program: a vanishing Reynolds number, sound a thousand times too \
+    fast, smoothing lengths that are too short or too long.";
+
+/// One setting, what must come, and what came.
+struct Entry {
+    setting: String,
+    found: String,
+    value: Option<f64>,
+    gate: Gate,
+}
+
+/// The error of a run that completed.
+fn error(runs: &Runs, spec: &RunSpec) -> Option<f64> {
+    let record = runs.completed(spec)?;
+    record.value(L2.at(record.settings_as::<ChannelSettings>().end))
+}
+
+/// An error in words.
+fn text(error: Option<f64>) -> String {
+    error.map_or("not measured".into(), |error| report::sci(error, 3))
+}
+
+/// The rows of Couette flow in units of L, ν and V.
+fn rows<K: Kernel>(rows: usize, h_over_dx: f64, eta2: f64) -> Option<RowModel> {
+    let channel = Channel {
+        rows,
+        width: 1.0,
+        nu: 1.0,
+        wall_velocity: [0.0, 1.0],
+        force: 0.0,
+        wall_rule: WallRule::Ghosts,
+        alignment: Alignment::Aligned,
+    };
+    channel.reduce::<K>(h_over_dx, eta2).ok()
+}
+
+/// Relative error at νt/L² = 0.1.
+fn error_of(model: &RowModel, u: &DVector<f64>) -> f64 {
+    let exact = Couette { v0: 1.0, l: 1.0, nu: 1.0 };
+    model.relative_error(u, |y| exact.velocity(y, END))
+}
+
+/// Relative error of the row-reduced matrix at νt/L² = 0.1, exact in time.
+fn matrix_error<K: Kernel>(count: usize, h_over_dx: f64, eta2: f64) -> Option<f64> {
+    let model = rows::<K>(count, h_over_dx, eta2)?;
+    let u = model.at(END)?;
+    Some(error_of(&model, &u))
+}
+
+/// The same with the steps of a leapfrog of at most `dt` \[L²/ν\]: half a kick first, whole ones, half a
+/// kick last, between the times at which a run pauses.
+fn stepped_error(count: usize, dt: f64) -> Option<f64> {
+    let model = rows::<QuinticSpline>(count, 1.0, 1e-6)?;
+    let (mut u, mut start) = (DVector::zeros(count), 0.0);
+    for until in TIMES.into_iter().filter(|tau| *tau <= END) {
+        let steps = ((until - start) / dt * (1.0 - 1e-12)).ceil();
+        let dt = (until - start) / steps;
+        u += model.rate(&u) * (0.5 * dt);
+        for _ in 1..steps as usize {
+            u += model.rate(&u) * dt;
+        }
+        u += model.rate(&u) * (0.5 * dt);
+        start = until;
+    }
+    Some(error_of(&model, &u))
+}
+
+/// Variants and rows at Reynolds number 1e-4: viscosity alone sets the step, and rows do not slide.
+fn slow_settings(tier: Tier) -> Vec<(&'static str, usize)> {
+    let rows: &[usize] = if tier == Tier::Full { &[20, 40] } else { &[20] };
+    let variants = |rows: &usize| ["seed", "quintic-pc", "modern"].map(|variant| (variant, *rows));
+    rows.iter().flat_map(variants).collect()
+}
+
+fn slow_spec(case: &ChannelCase, variant: &str, rows: usize) -> RunSpec {
+    case.spec(variant, |s| (s.end, s.re, s.rows) = (END, 1e-4, rows))
+}
+
+fn slow(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
+    let entry = |(variant, rows): (&str, usize)| {
+        let spec = slow_spec(case, variant, rows);
+        let found = error(runs, &spec);
+        // The leapfrog is of first order in dt here, so the matrix takes its steps; L²/ν is 1 s.
+        let matrix = match variant {
+            "seed" => matrix_error::<CubicSpline>(rows, 1.2, 0.01),
+            "quintic-pc" => matrix_error::<QuinticSpline>(rows, 1.0, 1e-6),
+            _ => case.rules(&spec).ok().and_then(|rules| stepped_error(rows, rules.dt)),
+        };
+        let gate = Gate::new(
+            format!("extremes.slow.{variant}.{rows}"),
+            "error/matrix",
+            Bound::Within(0.9, 1.1),
+            Evidence::Theory,
+            "the row-reduced matrix is the exact answer of the sums, for `modern` with its own steps; \
+             10 % for the time step",
+        );
+        Entry {
+            setting: format!("Couette flow that creeps: Re 10⁻⁴, {rows} rows, `{variant}`"),
+            found: format!("{}, matrix {}", text(found), text(matrix)),
+            value: found.zip(matrix).map(|(found, matrix)| found / matrix),
+            gate,
+        }
+    };
+    slow_settings(tier).into_iter().map(entry).collect()
+}
+
+/// Reynolds numbers at which sound is a thousand times faster than the rule asks for: where rows stay in
+/// place, and, reported, where they slide past each other.
+fn sound_settings(tier: Tier) -> &'static [f64] {
+    if tier == Tier::Full { &[1e-3, 0.5] } else { &[1e-3] }
+}
+
+/// With the usual sound speed, and with the fast one.
+fn sound_specs(case: &ChannelCase, re: f64, tier: Tier) -> [RunSpec; 2] {
+    [1.0, 1000.0].map(|factor| {
+        case.spec("seed", |s| {
+            s.re = re;
+            s.end = if tier == Tier::Full { 0.1 } else { 0.02 };
+            // Morris' rule at this Reynolds number, L = 1 mm, ν = 1e-6 m²/s: c0² = ν V/(L 0.01).
+            s.c0 = Some(factor * 1e-3 * (re / 0.01).sqrt());
+            // At the default Courant number 0.25 the fastest sound is beyond the weak limit of the
+            // predictor-corrector, c₀h/ν = 399, and refused.
+            s.courant = 0.2;
+        })
+    })
+}
+
+fn sound(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
+    let still = "sound does not enter the exact flow, nor that of rows in their places, but for the step: \
+                 its part of the error is below 5 %";
+    let sliding =
+        "reported: rows that slide by a spacing swing the density, and c₀² makes that force";
+    let entry = |re: &f64| {
+        let specs = sound_specs(case, *re, tier);
+        let [usual, fast] = specs.each_ref().map(|spec| error(runs, spec));
+        let slides = *re > 1e-3;
+        let (id, bound) = (format!("extremes.sound.couette.{re}"), Bound::Within(0.95, 1.05));
+        let because = if slides { sliding } else { still };
+        let gate = Gate::new(id, "error/usual error", bound, Evidence::Theory, because);
+        let ended = |spec: &RunSpec, error: Option<f64>| match runs.record(spec) {
+            Some(Record { status, .. }) if error.is_none() => format!("{status:?}"),
+            _ => text(error),
+        };
+        Entry {
+            setting: format!("c₀ a thousand times too fast: Re {re}, `seed`"),
+            found: format!("error {} becomes {}", ended(&specs[0], usual), ended(&specs[1], fast)),
+            value: fast.zip(usual).map(|(fast, usual)| fast / usual),
+            gate: if slides { gate.reported() } else { gate },
+        }
+    };
+    sound_settings(tier).iter().map(entry).collect()
+}
+
+/// Variants, for their kernels, and h/dx.
+fn smoothing_lengths(tier: Tier) -> Vec<(&'static str, f64)> {
+    let all = [0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 2.5, 3.0];
+    let ratios: &[f64] = if tier == Tier::Full { &all } else { &[0.9, 1.5, 3.0] };
+    let variants = ["cubic-leapfrog", "plain", "wendland-leapfrog"];
+    ratios.iter().flat_map(|ratio| variants.map(|variant| (variant, *ratio))).collect()
+}
+
+fn smoothed_spec(case: &ChannelCase, (variant, ratio): (&str, f64)) -> RunSpec {
+    // A step that every kernel and smoothing length stands.
+    case.spec(variant, |s| {
+        (s.end, s.h_over_dx, s.viscous, s.courant) = (END, ratio, 0.2, 0.5);
+    })
+}
+
+fn smoothing(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
+    let because = "a smoothing length changes how good a flow is, not whether there is one";
+    let entry = |of: (&str, f64)| {
+        let (variant, ratio) = of;
+        let found = error(runs, &smoothed_spec(case, of));
+        let (id, bound) =
+            (format!("extremes.smoothing.couette.{variant}.{ratio}"), Bound::Below(1.0));
+        Entry {
+            setting: format!("smoothing length: `{variant}`, h/dx = {ratio}"),
+            found: format!("error {}", text(found)),
+            value: found,
+            gate: Gate::new(id, "error", bound, Evidence::Invariant, because),
+        }
+    };
+    smoothing_lengths(tier).into_iter().map(entry).collect()
+}

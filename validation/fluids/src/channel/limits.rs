@@ -1,0 +1,146 @@
+//! How far the default time step of each variant is from where its run blows up.
+
+use super::{
+    Channel, ChannelSettings, Flow,
+    measure::{L2, V_RMS},
+};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::{MetricName, Record, Status},
+    spec::{Bisect, EndAfter},
+};
+use harness::{
+    case::{Case, Tier},
+    declare::{StepLimit, StepLimits},
+};
+
+/// Steps of a run; growth of 1 % a step fills the eight decades from the disturbance to V.
+const STEPS: f64 = 1500.0;
+/// Resolution of the bisection, relative to the theoretical limit.
+const RESOLUTION: f64 = 0.01;
+/// Disorder of the lattice at the start \[dx\].
+const DISORDER: f64 = 1e-6;
+
+/// Completed, and neither cross-flow nor error is as large as the flow itself.
+pub fn is_stable(record: &Record) -> bool {
+    let is_small = |metric: MetricName| record.value(metric).is_some_and(|value| value < 1.0);
+    let settings: ChannelSettings = record.settings_as();
+    let mut compared = settings.compared().into_iter();
+    record.status == Status::Completed
+        && is_small(V_RMS.into())
+        && compared.all(|tau| is_small(L2.at(tau)))
+}
+
+/// The step limits of a flow.
+pub fn limits(channel: Channel, tier: Tier) -> StepLimits {
+    let of = variants(channel, tier).into_iter().filter_map(|variant| limit(channel, variant));
+    StepLimits {
+        id: format!("{}-time-step", channel.flow.name()),
+        about: format!(
+            "The default step of each variant, and how much longer it could be: 20 rows, walls and all, \
+             the lattice disturbed by {DISORDER:e} dx, {STEPS} steps. A run that diverges, or whose \
+             cross-flow or error exceeds V, is unstable. Theory is that of the periodic lattice with sound, \
+             viscosity and what else damps; it knows neither walls nor motion nor stabilisers."
+        ),
+        of: of.collect(),
+    }
+}
+
+/// Variants that a tier measures: of Couette flow all in the full tier.
+fn variants(Channel { flow, case }: Channel, tier: Tier) -> Vec<&'static str> {
+    match (flow, tier) {
+        (Flow::Couette, Tier::Full) => case.variants().into_iter().map(|v| v.name).collect(),
+        (Flow::Couette, Tier::Quick) => vec!["seed", "interface-wall", "plain", "modern"],
+        (Flow::Poiseuille, Tier::Full) => {
+            vec!["seed", "interface-wall", "plain", "curved", "modern"]
+        }
+        (Flow::Poiseuille, Tier::Quick) => vec!["seed"],
+    }
+}
+
+fn limit(Channel { flow, case }: Channel, variant: &'static str) -> Option<StepLimit> {
+    let spec = case.spec(variant, |s| s.jitter = DISORDER).allow_unstable();
+    let rules = case.rules(&spec).ok()?;
+    // Not `dt_limit`, in the last bit: bisections begin where they always have.
+    let theory = rules.dt / (rules.dt / rules.dt_limit);
+    let defaults = ChannelSettings::default();
+    let bisect = Bisect {
+        setting: "dt".into(),
+        guess: theory,
+        unit: 1.0,
+        resolution: RESOLUTION,
+        end: Some(EndAfter { steps: STEPS, unit: defaults.unit_of_time() }),
+    };
+    let name = match flow {
+        Flow::Couette => format!("stability.default.{variant}"),
+        Flow::Poiseuille => format!("poiseuille.time-step.{variant}"),
+    };
+    let because = "a default step beyond the stability limit is no default";
+    let (of_default, bound) = ("longest stable dt/default dt", Bound::Above(1.0));
+    let stable = Gate::new(format!("{name}.stable"), of_default, bound, Evidence::Theory, because);
+    let before = BEFORE.iter().find(|(known, _)| flow == Flow::Couette && *known == variant);
+    let no_less = |what: &str, metric: &str, value: f64| {
+        let bound = Bound::Above(SLACK * value);
+        Gate::new(format!("{name}.{what}"), metric, bound, Evidence::Regression, BECAUSE)
+    };
+    let ratio = before.map(|(_, [_, ratio])| no_less("ratio", "measured/theory", *ratio));
+    let margin = before.map(|(_, [margin, _])| no_less("margin", of_default, *margin));
+    Some(StepLimit {
+        variant,
+        scene: "20 rows".into(),
+        spec: spec.bisect(bisect),
+        theory,
+        theory_at: theory,
+        default_at: rules.dt,
+        of_theory: ratio.into_iter().collect(),
+        of_default: [stable].into_iter().chain(margin).collect(),
+    })
+}
+
+/// A limit may be this much below what it was: the resolution of the bisections.
+const SLACK: f64 = 0.99;
+
+const BECAUSE: &str = "what this study measured when its baseline was set, less 1 % for the \
+                       resolution of the bisection";
+
+/// Variant of Couette flow at 20 rows: longest stable dt over the default dt, and over the theory of the
+/// periodic lattice, as they were measured when they were first written down: not the truth, but nothing may
+/// get worse unnoticed. They depend on no clock and no machine, only on the program and, in their last
+/// digits, on its libm. A change that moves one on purpose changes it here, and says why.
+const BEFORE: &[(&str, [f64; 2])] = &[
+    ("seed", [2.8455, 1.0098]),
+    ("interface-wall", [2.8596, 1.0148]),
+    ("seed-small-eta", [2.8194, 1.0149]),
+    ("cubic-leapfrog", [1.3203, 1.0149]),
+    ("wendland-leapfrog", [1.2903, 1.0101]),
+    ("quintic-pc", [1.3206, 1.0151]),
+    ("plain", [1.3401, 1.0299]),
+    ("curved", [1.3401, 1.0299]),
+    ("modern", [1.3734, 1.0555]),
+    ("modern-mirror", [1.3734, 1.0555]),
+    ("cure-background", [2.8596, 1.0148]),
+    ("cure-stress", [2.8455, 1.0098]),
+    ("cure-viscosity", [2.8173, 1.0100]),
+    ("cure-xsph", [2.8455, 1.0098]),
+    ("cure-diffusion", [2.8455, 1.0098]),
+    ("cure-shifting", [2.8455, 1.0098]),
+    ("cure-both", [2.8455, 1.0098]),
+    ("cure-leapfrog", [2.8877, 1.0248]),
+    ("extrapolating-wall", [1.3401, 1.0299]),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::couette::COUETTE;
+
+    #[test]
+    fn every_variant_of_couette_flow_has_a_limit_and_a_baseline() {
+        let channel = Channel { flow: Flow::Couette, case: &COUETTE };
+        let names = variants(channel, Tier::Full);
+        assert_eq!(limits(channel, Tier::Full).of.len(), names.len());
+        for name in names {
+            assert!(BEFORE.iter().any(|(known, _)| *known == name), "{name}");
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! What the studies that every case has are made of: profiles and shear over finite elements, order, error
+//! against run time, error budget, largest stable time step.
+
+use nalgebra::Vector2;
+
+use super::{
+    HillSettings, NAME,
+    measure::{L2_U, POINTS, STATIONS},
+    plan::{BEST, HillRun, REYNOLDS, Start, VARIANTS, best},
+    reference::Reference,
+    stability,
+    studies::floor,
+};
+use base::{
+    gate::{Bound, Evidence},
+    record::Record,
+};
+use harness::{
+    case::Tier,
+    declare::{
+        Accuracy, Budget, Budgets, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
+        Ladder, Level, OrderGate,
+    },
+};
+use report::Axis;
+
+const ERROR: &str = "rms error of u [U_b]";
+
+/// The declaration of a tier.
+pub fn declaration(tier: Tier) -> Declaration {
+    Declaration {
+        curves: vec![profiles(tier), shear(tier)],
+        accuracy: vec![accuracy(tier)],
+        budgets: Some(budgets(tier)),
+        limits: Some(stability::limits(tier)),
+        maps: Vec::new(),
+    }
+}
+
+/// What finite elements have at this Reynolds number. A reference that cannot be read makes every run
+/// fail: there is no need to say it once more.
+pub fn reference(re: f64) -> Option<Reference> {
+    Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
+}
+
+/// A run of the quick tier's ladder and budget: at Re 10 the decay is the fastest.
+fn quick(variant: &'static str, n: usize) -> HillRun {
+    HillRun { re: 10.0, end: 10.0, ..HillRun::rest(variant, n) }
+}
+
+fn ladder(runs: Vec<HillRun>) -> Ladder {
+    let level = |run: &HillRun| Level {
+        run: run.planned(),
+        spacing: 1.0 / run.n as f64,
+        label: format!("H/dx = {}", run.n),
+    };
+    let variant = runs.first().map_or(BEST, |run| run.variant);
+    Ladder { variant, note: String::new(), levels: runs.iter().map(level).collect(), order: None }
+}
+
+fn accuracy(tier: Tier) -> Accuracy {
+    let (about, ladders) = match tier {
+        Tier::Quick => (
+            "Re 10, from rest to 10 H/U_b, where about 0.3 % of U_b is left of the start: rms over ten \
+             stations against finite elements.",
+            ["interface-wall", "modern", BEST]
+                .map(|variant| ladder([4, 5, 7].map(|n| quick(variant, n)).into()))
+                .into(),
+        ),
+        Tier::Full => (
+            "Re 50, from rest to 40 H/U_b, which is what it takes to become steady: rms over ten stations \
+             against finite elements.",
+            VARIANTS.map(full_ladder).into(),
+        ),
+    };
+    Accuracy {
+        id: "periodic-hill".into(),
+        error: ErrorOf::Metric(L2_U.into()),
+        label: ERROR.into(),
+        about: about.into(),
+        spacing: "dx/H [-]",
+        slope: Some(1.0),
+        ladders,
+        more: Vec::new(),
+        peers: Vec::new(),
+    }
+}
+
+/// Runs from rest alone: those from the reference end before they could leave it.
+fn full_ladder(variant: &'static str) -> Ladder {
+    let finest = if variant == BEST { Some(20) } else { None };
+    let sides = [4, 5, 7, 10].into_iter().chain(finest);
+    let ladder = ladder(sides.map(|n| HillRun::rest(variant, n)).collect());
+    let order = (variant == BEST).then(|| OrderGate {
+        id: format!("{NAME}.{BEST}.50.order"),
+        bound: Bound::Above(1.0),
+        evidence: Evidence::Theory,
+        because: "the walls are of first order on disordered particles, their sums of second: the goal of 2 \
+                  % at 20 spacings and 1 % at 40 is first order"
+            .into(),
+    });
+    Ladder { order, ..ladder }
+}
+
+/// Changes a setting.
+type Set = fn(&mut HillSettings);
+
+/// What a budget changes, one thing at a time: in words, part of the error, setting. In the quick tier the
+/// first three.
+const CHANGES: [(&str, &str, Set); 5] = [
+    ("dt/2", "time", |s| s.courant = 0.75),
+    ("c0=30", "sound speed", |s| s.c0 = 30.0),
+    ("h_over_dx=1.2", "h/dx", |s| s.h_over_dx = 1.2),
+    ("diffusion=0.05", "density diffusion", |s| s.diffusion = 0.05),
+    ("shift=1.5", "shifting", |s| s.shift = 1.5),
+];
+
+fn budgets(tier: Tier) -> Budgets {
+    let (about, base, finer, settings) = match tier {
+        Tier::Quick => {
+            let about = "Re 10, H/dx = 5 and 7, from rest to 10 H/U_b.";
+            (about, quick(BEST, 5), quick(BEST, 7), &CHANGES[..3])
+        }
+        Tier::Full => (
+            "Re 50, H/dx = 10 and 20, from rest. What moves less than the start does is within what disorder \
+             does.",
+            HillRun::rest(BEST, 10),
+            HillRun::rest(BEST, 20),
+            &CHANGES[..],
+        ),
+    };
+    let change = |what, part, run: HillRun| Change::new(what, part, run.spec());
+    let mut changes = vec![change("none", "none", base), change("finer spacing", "spacing", finer)];
+    let changed = |(what, part, set): &(&str, &'static str, Set)| {
+        Change::new(*what, part, base.changed(*set))
+    };
+    changes.extend(settings.iter().map(changed));
+    if tier == Tier::Full {
+        let other = |variant| HillRun { variant, ..base };
+        let from_reference = HillRun { start: Start::Reference, ..base };
+        changes.extend([
+            change("from the reference", "start", from_reference),
+            change("`mixed`: consistent pressure and continuity", "sums", other("mixed")),
+            change("`consistent`: viscosity too", "sums", other("consistent")),
+            change("`modern`: weaker shifting, no velocities", "shifting", other("modern")),
+        ]);
+        let against = changes.len() - 1;
+        let wall = change("`interface-wall` over `modern`", "wall", other("interface-wall"));
+        changes.push(Change { against, ..wall });
+    }
+    Budgets {
+        id: "periodic-hill-error-budget".into(),
+        error: ErrorOf::Metric(L2_U.into()),
+        label: ERROR.into(),
+        about: about.into(),
+        of: vec![Budget { variant: BEST, changes }],
+    }
+}
+
+/// Profiles at their stations, symbols on lines.
+fn profiles(tier: Tier) -> Curves {
+    let caption = "Velocity along x (left) and y (right) across ten stations, drawn from the place of the \
+                   station: a distance of 1 H is 1.25 U_b of u and 0.4 U_b of v. Lines: finite elements, and \
+                   the floor. Symbols: the finest run of variant `carried`, whose title says where it \
+                   started, every tenth of 200 points.";
+    let mut panels = Vec::new();
+    for re in REYNOLDS {
+        if let Some((run, reference)) = best(tier, re).last().zip(reference(re)) {
+            panels.push(profile(run, &reference, "u", 0.8, |v| v.x));
+            panels.push(profile(run, &reference, "v", 2.5, |v| v.y));
+        }
+    }
+    let (id, title) = ("periodic-hill-profiles".into(), "Profiles over finite elements".into());
+    Curves { id, title, caption: caption.into(), columns: 2, panels }
+}
+
+/// One component of the velocity.
+fn profile(
+    run: &HillRun,
+    reference: &Reference,
+    name: &'static str,
+    scale: f64,
+    component: fn(&Vector2<f64>) -> f64,
+) -> CurvePanel {
+    let line = |k: usize| CurveOf {
+        name: if k == 0 { "particles".into() } else { String::new() },
+        spec: run.spec(),
+        points: Box::new(move |record| station(record, k, name, scale)),
+    };
+    let exact = reference.stations.iter().map(|station| {
+        let at = |(y, v): (&f64, &Vector2<f64>)| (station.x + scale * component(v), *y);
+        (String::new(), station.y.iter().zip(&station.v).map(at).collect())
+    });
+    CurvePanel {
+        title: format!("Re {}, {}: {name}", run.re, run.name()),
+        x: Axis::linear(format!("x/H + {scale} {name}/U_b")),
+        y: Axis::linear("y/H").range(0.0, 3.1),
+        lines: (0..STATIONS.len()).map(line).collect(),
+        references: exact.chain([(String::new(), floor())]).collect(),
+        symbols: true,
+    }
+}
+
+/// Every tenth point of the k-th station.
+fn station(record: &Record, k: usize, name: &str, scale: f64) -> Vec<(f64, f64)> {
+    let [x, y, values] = ["x", "y", name].map(|name| record.column("stations", name));
+    let points = (k * POINTS + 5..((k + 1) * POINTS).min(values.len())).step_by(10);
+    points.map(|j| (x[j] + scale * values[j], y[j])).collect()
+}
+
+/// Shear stress along hill and lid.
+fn shear(tier: Tier) -> Curves {
+    let caption = "Shear stress along the hill (left) and the lid (right), variant `carried`, over finite \
+                   elements (black). Where it is negative on the hill the flow goes backwards. The crest is \
+                   at x = 0 and 9 H.";
+    let mut panels = Vec::new();
+    for re in REYNOLDS {
+        let runs = best(tier, re);
+        let Some(reference) = reference(re).filter(|_| !runs.is_empty()) else { continue };
+        for (name, k) in [("hill shear", 1), ("lid shear", 2)] {
+            let line = |run: &HillRun| CurveOf {
+                name: run.name(),
+                spec: run.spec(),
+                points: Box::new(move |record| wall(record, name)),
+            };
+            let exact = reference.wall.iter().map(|w| (w[0], w[k])).collect();
+            panels.push(CurvePanel {
+                title: format!("Re {re}: {name}"),
+                x: Axis::linear("x/H"),
+                y: Axis::linear("shear stress [ρ U_b²]"),
+                lines: runs.iter().map(line).collect(),
+                references: vec![("finite elements".into(), exact)],
+                symbols: false,
+            });
+        }
+    }
+    let (id, title) = ("periodic-hill-shear".into(), "Shear along the walls".into());
+    Curves { id, title, caption: caption.into(), columns: 2, panels }
+}
+
+fn wall(record: &Record, name: &str) -> Vec<(f64, f64)> {
+    let [x, y] = ["x", name].map(|name| record.column("wall", name).iter().copied());
+    x.zip(y).collect()
+}

@@ -1,0 +1,50 @@
+//! How a run is to be done, apart from what it computes.
+
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+use base::spec::RunSpec;
+
+/// What a progress bar shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Simulated time \[s\].
+    pub time: f64,
+    /// Time of the end \[s\].
+    pub end: f64,
+    /// Time step \[s\].
+    pub dt: f64,
+    /// Particle steps done.
+    pub particle_steps: u64,
+}
+
+/// How a run is to be done, apart from what it computes.
+#[derive(Clone, Default)]
+pub struct Context<'a> {
+    /// Run even with a time step beyond the theoretical limit.
+    pub allow_unstable: bool,
+    /// Threads inside the run, 1 for serial; 0 counts as 1.
+    pub threads: usize,
+    /// Frames for ParaView: the folder, and how many.
+    pub frames: Option<(PathBuf, usize)>,
+    /// Keep the particles of the last time in the record.
+    pub keep_particles: bool,
+    /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
+    pub pictures: Option<usize>,
+    /// Told how far the run is.
+    pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
+    /// Set from outside to stop.
+    pub interrupt: Option<&'a AtomicBool>,
+}
+
+impl Context<'_> {
+    /// The same for this run: what its spec says of the step and of what is kept.
+    pub fn of(&self, spec: &RunSpec) -> Self {
+        Self {
+            allow_unstable: spec.allow_unstable,
+            keep_particles: spec.keep.particles,
+            pictures: spec.keep.pictures,
+            ..self.clone()
+        }
+    }
+}

@@ -1,0 +1,381 @@
+//! What a case declares so that it gets the studies that every case has, in one form: curves over their
+//! reference, order of accuracy, error against cost, cheapest settings, error budget, largest stable time
+//! step, maps. A declaration is plain data for one tier; [`crate::studies`] turns it into runs and, from
+//! their records, into statements.
+
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::{MetricName, Record, Status},
+    spec::{Bisect, RunSpec},
+};
+use report::{Axis, Colour};
+
+use crate::{planned::Planned, rules::Rules, runs::Runs};
+
+/// What the studies of one case and tier are made of.
+#[derive(Default)]
+pub struct Declaration {
+    /// Profiles or histories over their reference.
+    pub curves: Vec<Curves>,
+    /// Resolution ladders: order, error against cost, cheapest settings.
+    pub accuracy: Vec<Accuracy>,
+    /// What the error is made of.
+    pub budgets: Option<Budgets>,
+    /// Largest stable time steps.
+    pub limits: Option<StepLimits>,
+    /// Outcomes over two settings.
+    pub maps: Vec<Map>,
+}
+
+/// Error against spacing and against cost.
+pub struct Accuracy {
+    /// Anchor of its studies: the case, in letters, digits and hyphens, and what tells several apart.
+    pub id: String,
+    /// What an error is.
+    pub error: ErrorOf,
+    /// Name of the error with its unit, for axes.
+    pub label: String,
+    /// What was run and compared, one or two sentences.
+    pub about: String,
+    /// Name of the spacing with its unit, for axes.
+    pub spacing: &'static str,
+    /// The order that the method should have, drawn as a slope; none if nothing is known.
+    pub slope: Option<f64>,
+    /// A ladder of resolutions a variant, coarse to fine.
+    pub ladders: Vec<Ladder>,
+    /// More points of the cost diagram and of the table of cheapest settings, beside the ladders.
+    pub more: Vec<Ladder>,
+    /// Results of other codes.
+    pub peers: Vec<Peer>,
+}
+
+/// What the error of a run is.
+#[derive(Clone)]
+pub enum ErrorOf {
+    /// A metric of its record: the distance from an exact solution or a reference. Of a metric with a sign
+    /// the magnitude counts.
+    Metric(MetricName),
+    /// The distance between two records; the error of a run is its distance from one that was made with the
+    /// finest spacing.
+    Distance {
+        /// The finest run, which has no error of its own.
+        finest: RunSpec,
+        /// The distance, symmetric.
+        between: fn(&Record, &Record) -> f64,
+    },
+}
+
+impl ErrorOf {
+    /// The error of a run that reached its end; `None` if it did not, or if it is what others are compared
+    /// with.
+    pub fn value(&self, record: &Record, runs: &Runs) -> Option<f64> {
+        let value = match self {
+            _ if record.status != Status::Completed => None,
+            ErrorOf::Metric(metric) => record.value(metric.clone()).map(f64::abs),
+            ErrorOf::Distance { finest, .. } if record.key() == finest.key() => None,
+            ErrorOf::Distance { finest, between } => {
+                runs.completed(finest).map(|finest| between(record, finest))
+            }
+        };
+        value.filter(|value| value.is_finite())
+    }
+}
+
+/// Runs of one variant over resolutions.
+pub struct Ladder {
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// What else is special about it, after the name; mostly nothing.
+    pub note: String,
+    /// The runs, coarse to fine.
+    pub levels: Vec<Level>,
+    /// Gate on the order, if it is judged.
+    pub order: Option<OrderGate>,
+}
+
+/// One resolution of a ladder.
+pub struct Level {
+    /// The run and its gates.
+    pub run: Planned,
+    /// Spacing, in the unit of [`Accuracy::spacing`].
+    pub spacing: f64,
+    /// The resolution in words, such as `20 rows`.
+    pub label: String,
+}
+
+/// A gate on an observed order.
+#[derive(Clone)]
+pub struct OrderGate {
+    /// Name of the gate.
+    pub id: String,
+    /// Where the order must lie.
+    pub bound: Bound,
+    /// What stands behind the bound.
+    pub evidence: Evidence,
+    /// Why it is where it is.
+    pub because: String,
+}
+
+/// A result of somebody else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Peer {
+    /// Code, scheme and resolution.
+    pub name: String,
+    /// Processor seconds \[s\].
+    pub seconds: f64,
+    /// Spacing, in the unit of [`Accuracy::spacing`].
+    pub spacing: f64,
+    /// Error, in the unit of [`Accuracy::label`].
+    pub error: f64,
+    /// Machine and date of the timing.
+    pub timed: String,
+}
+
+/// Error budgets: the same run with one thing changed at a time.
+pub struct Budgets {
+    /// Anchor of the study.
+    pub id: String,
+    /// What an error is.
+    pub error: ErrorOf,
+    /// Name of the error.
+    pub label: String,
+    /// What was run, one or two sentences.
+    pub about: String,
+    /// One a variant.
+    pub of: Vec<Budget>,
+}
+
+/// The error budget of one variant.
+pub struct Budget {
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// The changes; the first one is none.
+    pub changes: Vec<Change>,
+}
+
+/// A run with one thing changed.
+pub struct Change {
+    /// What is changed, such as `dt/2`.
+    pub what: String,
+    /// The part of the error that this changes; `time` is the time step.
+    pub part: &'static str,
+    /// The run.
+    pub spec: RunSpec,
+    /// Index of the change that it is compared with; mostly 0.
+    pub against: usize,
+}
+
+impl Accuracy {
+    /// Without ladders yet; id of its studies, what an error is, and the name of the error with its unit.
+    /// Spacings are in units of a length of the problem, and the method should be of second order.
+    pub fn new(id: &str, error: ErrorOf, label: &str) -> Self {
+        let (id, label, about) = (id.to_string(), label.to_string(), String::new());
+        let (spacing, slope) = ("Δx [-]", Some(2.0));
+        let (ladders, more, peers) = (Vec::new(), Vec::new(), Vec::new());
+        Self { id, error, label, about, spacing, slope, ladders, more, peers }
+    }
+}
+
+impl Accuracy {
+    /// The same with a ladder a variant, of which no order is judged. `level` gives the run of a variant at a
+    /// resolution n; its spacing is 1/n.
+    pub fn over<const N: usize>(
+        mut self,
+        variants: &[&'static str],
+        resolutions: [usize; N],
+        level: impl Fn(&str, usize) -> Planned,
+    ) -> Self {
+        self.ladders.extend(variants.iter().map(|&variant| {
+            let level = |n: usize| Level {
+                run: level(variant, n),
+                spacing: 1.0 / n as f64,
+                label: format!("n = {n}"),
+            };
+            Ladder::new(variant, resolutions.map(level))
+        }));
+        self
+    }
+}
+
+impl Ladder {
+    /// The levels of a variant, coarse to fine, whose order is not judged.
+    pub fn new(variant: &'static str, levels: impl IntoIterator<Item = Level>) -> Self {
+        let levels = levels.into_iter().collect();
+        Self { variant, note: String::new(), levels, order: None }
+    }
+}
+
+impl Budgets {
+    /// Budgets of the error that a ladder is judged by.
+    pub fn of(accuracy: &Accuracy, of: Vec<Budget>) -> Self {
+        let (error, label) = (accuracy.error.clone(), accuracy.label.clone());
+        let (id, about) = (format!("{}-error-budget", accuracy.id), accuracy.about.clone());
+        Self { id, error, label, about, of }
+    }
+}
+
+impl StepLimits {
+    /// StepLimits of a case whose anchors begin with `case`.
+    pub fn new(case: &str, about: &str, of: impl IntoIterator<Item = StepLimit>) -> Self {
+        let of = of.into_iter().collect();
+        Self { id: format!("{case}-time-step"), about: about.into(), of }
+    }
+}
+
+impl StepLimit {
+    /// The bisection of a setting that is the time step over its theoretical limit, or in proportion to it:
+    /// the setting has the value `unit` at the limit. `rules` are those of the run with its default step.
+    pub fn proportional(
+        variant: &'static str,
+        scene: &str,
+        spec: RunSpec,
+        (setting, unit): (&str, f64),
+        rules: &Rules,
+    ) -> Self {
+        let setting = setting.to_string();
+        let bisect = Bisect { setting, guess: 1.0, unit, resolution: 0.02, end: None };
+        Self {
+            variant,
+            scene: scene.into(),
+            spec: spec.allow_unstable().bisect(bisect),
+            theory_at: 1.0,
+            theory: rules.dt_limit,
+            default_at: rules.dt / rules.dt_limit,
+            of_theory: Vec::new(),
+            of_default: Vec::new(),
+        }
+    }
+}
+
+impl Change {
+    /// A change that is compared with no change.
+    pub fn new(what: impl Into<String>, part: &'static str, spec: RunSpec) -> Self {
+        Self { what: what.into(), part, spec, against: 0 }
+    }
+}
+
+/// Largest stable time steps against theory.
+pub struct StepLimits {
+    /// Anchor of the study.
+    pub id: String,
+    /// What was run and what counts as stable, one or two sentences.
+    pub about: String,
+    /// One a variant and scene.
+    pub of: Vec<StepLimit>,
+}
+
+/// The largest stable time step of one variant.
+pub struct StepLimit {
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// The scene in words.
+    pub scene: String,
+    /// The bisection.
+    pub spec: RunSpec,
+    /// Theoretical limit \[s\].
+    pub theory: f64,
+    /// The x of the bisection at the theoretical limit.
+    pub theory_at: f64,
+    /// The x of the bisection at the default step.
+    pub default_at: f64,
+    /// Gates on the largest stable step over the theoretical limit.
+    pub of_theory: Vec<Gate>,
+    /// Gates on the largest stable step over the default one.
+    pub of_default: Vec<Gate>,
+}
+
+/// Outcomes over two settings.
+pub struct Map {
+    /// Anchor of the study and of its figure.
+    pub id: String,
+    /// Title of the section.
+    pub title: String,
+    /// Caption of the figure.
+    pub caption: String,
+    /// Name of the horizontal setting, with its unit.
+    pub x: String,
+    /// Name of the vertical setting, with its unit.
+    pub y: String,
+    /// What a cell can be, in the order of the legend.
+    pub outcomes: Vec<(String, Colour)>,
+    /// Panels side by side.
+    pub panels: Vec<MapPanel>,
+    /// Which of the outcomes the records of a cell are, and a short text. A run that was refused is a
+    /// record too.
+    pub outcome: fn(&[&Record]) -> (usize, String),
+}
+
+/// One panel of a map.
+pub struct MapPanel {
+    /// Title of the panel.
+    pub title: String,
+    /// Values of the horizontal setting, left to right.
+    pub x: Vec<String>,
+    /// Values of the vertical setting, bottom to top.
+    pub y: Vec<String>,
+    /// `cells[row][column]`: the runs of a cell; none if it is not run.
+    pub cells: Vec<Vec<Vec<RunSpec>>>,
+}
+
+/// Curves over their reference.
+pub struct Curves {
+    /// Anchor of the study and of its figure.
+    pub id: String,
+    /// Title of the section.
+    pub title: String,
+    /// Caption of the figure.
+    pub caption: String,
+    /// Panels a row.
+    pub columns: usize,
+    /// The panels.
+    pub panels: Vec<CurvePanel>,
+}
+
+/// One panel of curves.
+pub struct CurvePanel {
+    /// Title of the panel.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Curves of runs.
+    pub lines: Vec<CurveOf>,
+    /// Curves of references: name and points.
+    pub references: Vec<(String, Vec<(f64, f64)>)>,
+    /// Are lines drawn as symbols, one colour with the reference of the same position?
+    pub symbols: bool,
+}
+
+/// A curve of a run.
+pub struct CurveOf {
+    /// Name in the legend.
+    pub name: String,
+    /// The run.
+    pub spec: RunSpec,
+    /// Its points.
+    pub points: Box<dyn Fn(&Record) -> Vec<(f64, f64)> + Send + Sync>,
+}
+
+impl Declaration {
+    /// Every run that the studies need.
+    pub fn runs(&self) -> Vec<Planned> {
+        let mut runs = Vec::new();
+        for Accuracy { error, ladders, more, .. } in &self.accuracy {
+            let levels = ladders.iter().chain(more).flat_map(|ladder| &ladder.levels);
+            runs.extend(levels.map(|level| level.run.clone().timed()));
+            if let ErrorOf::Distance { finest, .. } = error {
+                runs.push(Planned::new(finest.clone()));
+            }
+        }
+        let mut plain = |spec: &RunSpec| runs.push(Planned::new(spec.clone()));
+        let budgets = self.budgets.iter().flat_map(|budgets| &budgets.of);
+        budgets.flat_map(|budget| &budget.changes).for_each(|change| plain(&change.spec));
+        self.limits.iter().flat_map(|limits| &limits.of).for_each(|limit| plain(&limit.spec));
+        let cells = self.maps.iter().flat_map(|map| &map.panels).flat_map(|panel| &panel.cells);
+        cells.flatten().flatten().for_each(&mut plain);
+        let panels = self.curves.iter().flat_map(|curves| &curves.panels);
+        panels.flat_map(|panel| &panel.lines).for_each(|line| plain(&line.spec));
+        runs
+    }
+}

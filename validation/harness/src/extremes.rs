@@ -1,0 +1,72 @@
+//! Settings far outside of the usual as a table: what is extreme, what must come, what came. Each entry has
+//! a criterion of its own; where a run cannot succeed, the criterion is that it says so.
+
+use base::gate::{Bound, Evidence, Gate, Verdict};
+use report::{Cell, Column, Status, Table};
+
+use crate::{runs::Judged, study::Study};
+
+/// One setting, what must come, and what came.
+pub struct Entry {
+    /// What is extreme.
+    what: String,
+    /// The numbers of it.
+    setting: String,
+    /// What came, in words.
+    found: String,
+    /// The judged value.
+    value: f64,
+    gate: Gate,
+}
+
+impl Entry {
+    /// `name` ends the gate's name; `metric` is what the judged value is.
+    pub fn new(name: &str, [what, setting]: [String; 2], metric: &str, bound: Bound) -> Self {
+        let because = "see the column what must come";
+        let id = format!("extremes.{name}");
+        let gate = Gate::new(id, metric, bound, Evidence::Invariant, because);
+        Self { what, setting, found: "not run".into(), value: f64::NAN, gate }
+    }
+
+    /// Why the bound is where it is, and what stands behind it.
+    pub fn because(mut self, evidence: Evidence, because: &str) -> Self {
+        (self.gate.evidence, self.gate.because) = (evidence, because.into());
+        self
+    }
+
+    /// Shown, not judged.
+    pub fn reported(self) -> Self {
+        Self { gate: self.gate.reported(), ..self }
+    }
+
+    /// What came: the judged value, and words.
+    pub fn found(self, value: f64, found: impl Into<String>) -> Self {
+        Self { value, found: found.into(), ..self }
+    }
+}
+
+/// Entries as a study.
+pub fn study(id: &str, title: &str, lead: &str, entries: Vec<Entry>) -> Study {
+    let columns = ["what", "setting", "what must come", "what came", "verdict"].map(Column::text);
+    let mut table = Table::new(format!("{title}."), columns.to_vec());
+    let mut study = Study::new(id, title).prose(lead);
+    for Entry { what, setting, found, value, gate } in entries {
+        let expected = format!("{} {}: {}", gate.metric, gate.bound, gate.because);
+        let judged = Judged::new(gate, Some(value));
+        let [what, setting, expected, found] = [what, setting, expected, found].map(Cell::text);
+        let verdict = Cell::status(status(&judged.judgement.verdict));
+        table = table.row(vec![what, setting, expected, found, verdict]);
+        study.judged.push(judged);
+    }
+    study.block(table)
+}
+
+fn status(verdict: &Verdict) -> Status {
+    match verdict {
+        Verdict::Pass => Status::Pass,
+        Verdict::Fail => Status::Fail,
+        Verdict::Reported | Verdict::NotMeasured => Status::Reported,
+        Verdict::Limitation(_) => Status::Limitation,
+        Verdict::ExpectedFailure => Status::ExpectedFailure,
+    }
+}

@@ -1,0 +1,66 @@
+//! From what cases declare to a list of runs, each of which is there once.
+
+use std::collections::BTreeMap;
+
+use base::spec::RunKey;
+
+use crate::{
+    case::Case,
+    planned::{Planned, Tier},
+};
+
+/// The runs of a case in a tier: those of its own plan, then those of its declaration. Runs that are asked
+/// for several times are one, with the gates of all.
+pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
+    let mut all = case.plan(tier);
+    all.extend(case.declaration(tier).runs());
+    merged(all)
+}
+
+/// Each run once, at its first place, with all gates; timed if one of them is.
+pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
+    let mut merged: Vec<Planned> = Vec::new();
+    let mut places: BTreeMap<RunKey, usize> = BTreeMap::new();
+    for planned in all {
+        match places.get(&planned.spec.key()) {
+            None => {
+                places.insert(planned.spec.key(), merged.len());
+                merged.push(planned);
+            }
+            Some(&place) => {
+                let first = &mut merged[place];
+                first.gates.extend(planned.gates);
+                first.timed |= planned.timed;
+                first.seconds = first.seconds.max(planned.seconds);
+            }
+        }
+    }
+    merged
+}
+
+#[cfg(test)]
+mod tests {
+    use base::{
+        gate::{Bound, Evidence, Gate},
+        spec::RunSpec,
+    };
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_run_that_is_planned_twice_is_made_once_and_judged_by_all_gates() {
+        let gate = |id: &str| Gate::new(id, "l2", Bound::Below(1.0), Evidence::Theory, "why");
+        let run = |rows: usize| Planned::new(RunSpec::new("c", "v", json!({ "rows": rows })));
+        let all = vec![
+            run(20).judged(vec![gate("c.a")]),
+            run(40),
+            run(20).judged(vec![gate("c.b")]).timed().taking(7.0),
+        ];
+        let merged = merged(all);
+        assert_eq!(merged.len(), 2);
+        let first = &merged[0];
+        assert_eq!((first.gates.len(), first.timed, first.seconds), (2, true, 7.0));
+        assert!(!merged[1].timed);
+    }
+}

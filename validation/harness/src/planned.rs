@@ -1,0 +1,49 @@
+//! A run of a plan and how it is judged.
+
+use base::{gate::Gate, spec::RunSpec};
+
+/// How much to run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Tier {
+    /// Under a minute on two cores.
+    Quick,
+    /// Under twenty minutes.
+    Full,
+}
+
+/// A run of the plan and how it is judged.
+#[derive(Clone, Debug)]
+pub struct Planned {
+    /// What is run.
+    pub spec: RunSpec,
+    /// Judged on the record of this run.
+    pub gates: Vec<Gate>,
+    /// Are its seconds shown? Then it runs in the quiet phase, with nothing else at work.
+    pub timed: bool,
+    /// Roughly how long it takes \[s\]; only the order counts: long runs start first, so that no core
+    /// waits for the last one.
+    pub seconds: f64,
+}
+
+impl Planned {
+    /// A run without gates.
+    pub fn new(spec: RunSpec) -> Self {
+        Self { spec, gates: Vec::new(), timed: false, seconds: 1.0 }
+    }
+
+    /// The same run, which takes roughly so long \[s\].
+    pub fn taking(self, seconds: f64) -> Self {
+        Self { seconds, ..self }
+    }
+
+    /// The same run, judged.
+    pub fn judged(mut self, gates: Vec<Gate>) -> Self {
+        self.gates.extend(gates);
+        self
+    }
+
+    /// The same run, timed.
+    pub fn timed(self) -> Self {
+        Self { timed: true, ..self }
+    }
+}

@@ -1,0 +1,12 @@
+//! What the rules of a case choose.
+
+/// What the rules of a case choose before the first step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// Time step \[s\].
+    pub dt: f64,
+    /// Its theoretical limit \[s\].
+    pub dt_limit: f64,
+    /// Sound speed \[m/s\].
+    pub sound_speed: f64,
+}

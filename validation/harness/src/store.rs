@@ -1,0 +1,173 @@
+//! A folder of records by key: `CASE-VARIANT-KEY.json`, each written whole or not at all. Runs need nothing
+//! of each other, so a store may be filled by several processes, on several machines, in any order.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use base::{
+    files::{FileError, OutputFolder},
+    manifest::UNKNOWN,
+    record::{Record, RecordError, Status},
+    spec::RunSpec,
+};
+use thiserror::Error;
+
+/// A folder of records.
+#[derive(Debug)]
+pub struct Store {
+    folder: OutputFolder,
+}
+
+/// Why a record of a store was not read or not written.
+#[derive(Debug, Error)]
+pub enum StoreError {
+    /// Its folder or file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Its content.
+    #[error("{path}: {reason}", path = .path.display())]
+    Record {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: RecordError,
+    },
+}
+
+/// What a store has of a run.
+#[derive(Debug)]
+pub enum Found {
+    /// Nothing that can be read as a record of this run.
+    Nothing,
+    /// A record that the same sources made.
+    Same(Box<Record>),
+    /// A record that other sources made.
+    Other(Box<Record>),
+}
+
+impl Store {
+    /// The store in a folder, which is made if it does not exist.
+    ///
+    /// # Errors
+    /// If the folder cannot be made or written to.
+    pub fn open(path: &Path) -> Result<Self, FileError> {
+        Ok(Self { folder: OutputFolder::create(path)? })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    fn name(spec: &RunSpec) -> String {
+        format!("{}-{}-{}.json", spec.case, spec.variant, spec.key())
+    }
+
+    /// The record of a run, if there is one, and whether sources of this digest made it. One that was
+    /// interrupted is none, and so is a file that is no record: it will be made again.
+    pub fn find(&self, spec: &RunSpec, sources: &str) -> Found {
+        let Ok(text) = fs::read_to_string(self.path().join(Self::name(spec))) else {
+            return Found::Nothing;
+        };
+        match Record::from_json(&text) {
+            Ok(record) if record.spec() != *spec => Found::Nothing,
+            Ok(Record { status: Status::Interrupted { .. }, .. }) | Err(_) => Found::Nothing,
+            Ok(record) if record.manifest.sources == sources && sources != UNKNOWN => {
+                Found::Same(Box::new(record))
+            }
+            Ok(record) => Found::Other(Box::new(record)),
+        }
+    }
+
+    /// Writes a record in place of an older one of the same run.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or the record holds what a document cannot.
+    pub fn write(&self, record: &Record) -> Result<PathBuf, StoreError> {
+        let name = Self::name(&record.spec());
+        let path = self.path().join(&name);
+        let text = record.to_json().map_err(|reason| StoreError::Record { path, reason })?;
+        Ok(self.folder.write(&name, text.as_bytes())?)
+    }
+
+    /// Removes the record of a run, if there is one.
+    ///
+    /// # Errors
+    /// If the file is there and cannot be removed.
+    pub fn remove(&self, spec: &RunSpec) -> Result<(), FileError> {
+        let path = self.path().join(Self::name(spec));
+        match fs::remove_file(&path) {
+            Err(reason) if reason.kind() != std::io::ErrorKind::NotFound => {
+                Err(FileError::File { path, reason })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Every record of the folder, sorted by file name. What a process that was killed had not finished is
+    /// none: its name begins with a dot.
+    ///
+    /// # Errors
+    /// If the folder or a file of it cannot be read, or a `.json` file is no record.
+    pub fn all(path: &Path) -> Result<Vec<Record>, StoreError> {
+        let unreadable = |path: &Path, reason| FileError::File { path: path.to_path_buf(), reason };
+        let entries = fs::read_dir(path).map_err(|reason| unreadable(path, reason))?;
+        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        let is_hidden = |path: &Path| {
+            path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
+        };
+        paths.retain(|path| path.extension().is_some_and(|e| e == "json") && !is_hidden(path));
+        paths.sort();
+        let read = |path: PathBuf| {
+            let text = fs::read_to_string(&path).map_err(|reason| unreadable(&path, reason))?;
+            Record::from_json(&text).map_err(|reason| StoreError::Record { path, reason })
+        };
+        paths.into_iter().map(read).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn record(status: Status) -> Record {
+        let mut record = Record::new("c", "v", json!({"rows": 20}), 1);
+        record.manifest.sources = "abc".into();
+        Record { status, ..record }
+    }
+
+    #[test]
+    fn a_record_comes_back_and_one_of_other_sources_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(&folder.path().join("records")).unwrap();
+        let whole = record(Status::Completed);
+        assert!(matches!(store.find(&whole.spec(), "abc"), Found::Nothing));
+        store.write(&whole).unwrap();
+        match store.find(&whole.spec(), "abc") {
+            Found::Same(found) => assert_eq!(*found, whole),
+            other => panic!("{other:?}"),
+        }
+        assert!(matches!(store.find(&whole.spec(), "abd"), Found::Other(_)));
+        assert!(matches!(store.find(&whole.spec(), UNKNOWN), Found::Other(_)));
+        let finer = whole.spec().with_setting("rows", 40);
+        assert!(matches!(store.find(&finer, "abc"), Found::Nothing));
+        assert_eq!(Store::all(store.path()).unwrap(), [whole]);
+    }
+
+    #[test]
+    fn what_was_cut_short_or_spoiled_is_made_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let cut = record(Status::Interrupted { step: 1, time: 0.1 });
+        store.write(&cut).unwrap();
+        assert!(matches!(store.find(&cut.spec(), "abc"), Found::Nothing));
+        let path = store.write(&record(Status::Completed)).unwrap();
+        fs::write(folder.path().join(".unfinished-1-0-c.json"), "{").unwrap();
+        assert_eq!(Store::all(store.path()).unwrap().len(), 1);
+        fs::write(&path, "{").unwrap();
+        assert!(matches!(store.find(&cut.spec(), "abc"), Found::Nothing));
+        assert!(matches!(Store::all(store.path()), Err(StoreError::Record { .. })));
+    }
+}

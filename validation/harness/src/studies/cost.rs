@@ -1,0 +1,318 @@
+//! Error against cost: which settings reach an error with the least work, in seconds of a run that had the
+//! machine for itself, and in pair interactions, which no other program can disturb.
+
+use base::record::Status;
+use report::{
+    Axis, Cell, Colour, Column, Dash, Figure, Layer, Legend, Plot, Series, Shape, Table, seconds,
+};
+
+use crate::{
+    declare::{Accuracy, Ladder, Peer},
+    runs::Runs,
+    study::Study,
+};
+
+/// One run of a cost diagram.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Name of the ladder: variant and note.
+    pub ladder: String,
+    /// Spacing.
+    pub spacing: f64,
+    /// The resolution in words.
+    pub label: String,
+    /// Its error; NaN if it has none.
+    pub error: f64,
+    /// Processor seconds of the stepping, sorted, taken alone \[s\].
+    pub seconds: Vec<f64>,
+    /// Pair interactions.
+    pub pairs: f64,
+    /// Time steps.
+    pub steps: u64,
+    /// Why there is no error, of a run that failed.
+    pub failure: Option<String>,
+}
+
+impl Point {
+    /// Median of the timings \[s\]; NaN if the run was not timed.
+    pub fn median(&self) -> f64 {
+        let n = self.seconds.len();
+        if n == 0 { f64::NAN } else { 0.5 * (self.seconds[(n - 1) / 2] + self.seconds[n / 2]) }
+    }
+
+    /// Fastest and slowest \[s\].
+    pub fn spread(&self) -> (f64, f64) {
+        let end = |value: Option<&f64>| value.copied().unwrap_or(f64::NAN);
+        (end(self.seconds.first()), end(self.seconds.last()))
+    }
+}
+
+/// The points of some ladders.
+pub fn points<'a>(
+    accuracy: &Accuracy,
+    ladders: impl IntoIterator<Item = &'a Ladder>,
+    runs: &Runs,
+) -> Vec<Point> {
+    let mut points = Vec::new();
+    for ladder in ladders {
+        for level in &ladder.levels {
+            let Some(record) = runs.record(&level.run.spec) else { continue };
+            let error = accuracy.error.value(record, runs);
+            let name = format!("{}{}", ladder.variant, ladder.note);
+            let failure = match &record.status {
+                Status::Completed => None,
+                Status::Diverged { time, .. } => {
+                    Some(format!("{name}, {}: diverged at {time:.3} s", level.label))
+                }
+                Status::Refused { reason } => Some(reason.clone()),
+                Status::Interrupted { .. } => Some("interrupted".into()),
+            };
+            if error.is_none() && failure.is_none() {
+                continue; // the run that the others are compared with
+            }
+            let mut seconds = record.cost.alone_s.clone();
+            seconds.sort_by(f64::total_cmp);
+            points.push(Point {
+                ladder: name,
+                spacing: level.spacing,
+                label: level.label.clone(),
+                error: error.unwrap_or(f64::NAN),
+                seconds,
+                pairs: record.cost.pair_interactions as f64,
+                steps: record.cost.steps,
+                failure,
+            });
+        }
+    }
+    points
+}
+
+/// Points that no other point beats in both error and seconds, cheapest first.
+pub fn pareto(points: &[Point]) -> Vec<&Point> {
+    let mut sorted: Vec<&Point> = points.iter().filter(|p| p.error.is_finite()).collect();
+    sorted.sort_by(|a, b| a.median().total_cmp(&b.median()));
+    let mut front: Vec<&Point> = Vec::new();
+    for point in sorted {
+        if front.last().is_none_or(|best| point.error < best.error) {
+            front.push(point);
+        }
+    }
+    front
+}
+
+/// The cheapest point with at most this error, of those whose finer levels have at most this error too:
+/// a single level may be good because parts of its error cancel.
+pub fn cheapest(points: &[Point], error: f64) -> Option<&Point> {
+    let holds = |point: &&Point| {
+        let ladder = points.iter().filter(|p| p.ladder == point.ladder);
+        ladder.filter(|p| p.spacing <= point.spacing).all(|p| p.error <= error)
+    };
+    points.iter().filter(holds).min_by(|a, b| a.median().total_cmp(&b.median()))
+}
+
+/// The most accurate point at a spacing.
+fn at_spacing(points: &[Point], spacing: f64) -> Option<&Point> {
+    let is_at = |p: &&Point| (p.spacing / spacing - 1.0).abs() < 1e-9 && p.error.is_finite();
+    points.iter().filter(is_at).min_by(|a, b| a.error.total_cmp(&b.error))
+}
+
+pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
+    let id = format!("{}-work-precision", accuracy.id);
+    let all = accuracy.ladders.iter().chain(&accuracy.more);
+    let (drawn, listed) = (points(accuracy, &accuracy.ladders, runs), points(accuracy, all, runs));
+    let study = Study::new(&id, "Error against run time")
+        .block(figure(&id, accuracy, &drawn))
+        .block(cheapest_table(&listed));
+    if accuracy.peers.is_empty() {
+        return study;
+    }
+    study.block(peer_table(&accuracy.peers, &listed))
+}
+
+fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
+    let others = match accuracy.peers.first() {
+        Some(peer) => format!(" Grey: other codes ({}).", peer.timed),
+        None => String::new(),
+    };
+    let caption = format!(
+        "{} against the cost of the whole run. {} Left: processor seconds of the stepping, one run at a time \
+         on one thread, the median of its repetitions, with bars from the fastest to the slowest.{others} \
+         Right: pair interactions.",
+        accuracy.label, accuracy.about
+    );
+    let label = accuracy.label.as_str();
+    let median = |p: &Point| p.median();
+    let mut clock =
+        panel("Error against run time", "stepping, one core [s]", label, points, median);
+    clock.layers.splice(0..0, peer_layers(&accuracy.peers));
+    let front = pareto(points).iter().map(|p| (p.median(), p.error)).collect();
+    let line = Series::line("Pareto front", front).colour(Colour::GREY).dash(Dash::DashDot);
+    clock = clock.layer(line).legend(Legend::Outside);
+    let pairs = |p: &Point| p.pairs;
+    let counted = panel("Error against work", "pair interactions [1]", label, points, pairs);
+    Figure::new(id, caption).panel(clock).panel(counted.legend(Legend::Hidden)).columns(2)
+}
+
+fn panel(
+    title: &str,
+    cost_label: &str,
+    error_label: &str,
+    points: &[Point],
+    cost: impl Fn(&Point) -> f64,
+) -> Plot {
+    let mut plot = Plot::new(title, Axis::log(cost_label), Axis::log(error_label));
+    let mut ladders: Vec<&str> = points.iter().map(|p| p.ladder.as_str()).collect();
+    ladders.dedup();
+    for (k, ladder) in ladders.into_iter().enumerate() {
+        let own: Vec<&Point> =
+            points.iter().filter(|p| p.ladder == ladder && p.error.is_finite()).collect();
+        let line = own.iter().map(|p| (cost(p), p.error)).collect();
+        let mut series = Series::line_markers(ladder, line).cycle(k);
+        if title.contains("time") {
+            series = series.x_bars(own.iter().map(|p| p.spread()).collect());
+        }
+        plot = plot.layer(series);
+    }
+    let failed: Vec<(f64, String)> =
+        points.iter().filter_map(|p| Some((cost(p), p.failure.clone()?))).collect();
+    if failed.is_empty() { plot } else { plot.layer(Layer::Failed(failed)) }
+}
+
+/// One series a code, so that each is named and has a symbol of its own.
+fn peer_layers(peers: &[Peer]) -> Vec<Layer> {
+    let layer = |(k, peer): (usize, &Peer)| {
+        let point = vec![(peer.seconds, peer.error)];
+        Series::markers(&peer.name, point).colour(Colour::GREY).shape(Shape::cycle(k)).into()
+    };
+    peers.iter().enumerate().map(layer).collect()
+}
+
+const CHEAPEST: &str = "Cheapest setting that reaches an error. At a single level errors of time and \
+    spacing can cancel, so a point counts only if every finer level of its ladder meets the goal as well; \
+    of the finest level nothing finer is known.";
+
+fn cheapest_table(points: &[Point]) -> Table {
+    let columns = vec![
+        Column::num("error wanted", "-"),
+        Column::text("cheapest setting"),
+        Column::num("error", "-"),
+        Column::num("median", "s"),
+        Column::text("fastest – slowest (runs)"),
+        Column::num("steps", "1"),
+        Column::num("pair interactions", "1"),
+    ];
+    let mut table = Table::new(CHEAPEST, columns);
+    for goal in [1e-2, 3e-3, 1e-3, 3e-4] {
+        let wanted = Cell::percent(goal, 1);
+        let Some(p) = cheapest(points, goal) else {
+            let none = Cell::text("none of the settings run");
+            let rest = (0..5).map(|_| Cell::text("–"));
+            table = table.row([wanted, none].into_iter().chain(rest).collect());
+            continue;
+        };
+        let (fast, slow) = p.spread();
+        table = table.row(vec![
+            wanted,
+            Cell::text(format!("`{}`, {}", p.ladder, p.label)),
+            Cell::percent(p.error, 2),
+            Cell::seconds(p.median()),
+            Cell::text(format!("{} – {} ({})", seconds(fast), seconds(slow), p.seconds.len())),
+            Cell::count(p.steps),
+            Cell::sci(p.pairs, 2),
+        ]);
+    }
+    table
+}
+
+/// At the error of each peer, the cheapest of ours and how many times faster it is.
+fn peer_table(peers: &[Peer], points: &[Point]) -> Table {
+    let columns = vec![
+        Column::text("code"),
+        Column::num("its error", "-"),
+        Column::num("its time", "s"),
+        Column::text("timed"),
+        Column::text("ours at no more error"),
+        Column::num("our error", "-"),
+        Column::num("our time", "s"),
+        Column::num("times as fast", "-"),
+        Column::text("ours at its resolution"),
+        Column::num("our error", "-"),
+        Column::num("times as fast", "-"),
+    ];
+    let caption = "Other codes on the same work, against our cheapest setting with no more error, and against \
+                   the most accurate of ours at the same resolution. At equal error, points of ours count \
+                   whose finer levels have no more error either.";
+    let mut table = Table::new(caption, columns);
+    for peer in peers {
+        let mut row = vec![
+            Cell::text(&peer.name),
+            Cell::percent(peer.error, 2),
+            Cell::seconds(peer.seconds),
+            Cell::text(&peer.timed),
+        ];
+        match cheapest(points, peer.error) {
+            Some(p) => row.extend([
+                Cell::text(format!("`{}`, {}", p.ladder, p.label)),
+                Cell::percent(p.error, 2),
+                Cell::seconds(p.median()),
+                Cell::num(peer.seconds / p.median(), 2),
+            ]),
+            None => row.extend((0..4).map(|_| Cell::text("–"))),
+        }
+        match at_spacing(points, peer.spacing) {
+            Some(p) => row.extend([
+                Cell::text(format!("`{}`", p.ladder)),
+                Cell::percent(p.error, 2),
+                Cell::num(peer.seconds / p.median(), 2),
+            ]),
+            None => row.extend((0..3).map(|_| Cell::text("–"))),
+        }
+        table = table.row(row);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(ladder: &str, error: f64, seconds: &[f64]) -> Point {
+        Point {
+            ladder: ladder.into(),
+            spacing: 0.1,
+            label: "10 rows".into(),
+            error,
+            seconds: seconds.to_vec(),
+            pairs: 1.0,
+            steps: 1,
+            failure: None,
+        }
+    }
+
+    #[test]
+    fn the_front_keeps_what_nothing_beats_and_ignores_failures() {
+        let points = [
+            point("slow and good", 1e-4, &[1.0, 2.0, 3.0]),
+            point("fast and bad", 1e-2, &[0.1]),
+            point("slow and bad", 2e-2, &[1.5]),
+            point("failed", f64::NAN, &[0.01]),
+        ];
+        let names: Vec<_> = pareto(&points).iter().map(|p| p.ladder.as_str()).collect();
+        assert_eq!(names, ["fast and bad", "slow and good"]);
+        assert_eq!(points[0].median(), 2.0);
+        assert_eq!(points[0].spread(), (1.0, 3.0));
+        assert_eq!(cheapest(&points, 1e-2).map(|p| p.ladder.as_str()), Some("fast and bad"));
+        assert!(cheapest(&points, 1e-5).is_none());
+    }
+
+    #[test]
+    fn an_error_that_a_finer_level_does_not_reach_is_not_the_cheapest() {
+        let of = |spacing: f64, error: f64, seconds: f64| Point {
+            spacing,
+            ..point("cancels", error, &[seconds])
+        };
+        let points = [of(0.1, 1e-3, 0.1), of(0.05, 2e-3, 1.0), of(0.025, 5e-4, 9.0)];
+        assert_eq!(cheapest(&points, 1e-3).map(|p| p.spacing), Some(0.025));
+        assert_eq!(cheapest(&points, 3e-3).map(|p| p.spacing), Some(0.1));
+    }
+}

@@ -1,0 +1,26 @@
+//! The studies that every case has: from its [`Declaration`] and the records, to statements. Pure functions.
+
+mod budget;
+mod cost;
+mod curves;
+mod limit;
+mod map;
+mod order;
+
+pub use limit::of_theory as limit_of_theory;
+
+use crate::{declare::Declaration, runs::Runs, study::Study};
+
+/// All studies of a declaration, in the order of the report.
+pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
+    let mut studies: Vec<Study> =
+        declared.curves.iter().map(|curves| curves::study(curves, runs)).collect();
+    for accuracy in &declared.accuracy {
+        studies.push(order::study(accuracy, runs));
+        studies.push(cost::study(accuracy, runs));
+    }
+    studies.extend(declared.budgets.iter().map(|budgets| budget::study(budgets, runs)));
+    studies.extend(declared.limits.iter().map(|limits| limit::study(case, limits, runs)));
+    studies.extend(declared.maps.iter().map(|map| map::study(map, runs)));
+    studies
+}

@@ -1,0 +1,117 @@
+//! Order of accuracy with its interval.
+
+use base::gate::Gate;
+use report::{Axis, Cell, Column, Figure, Layer, Legend, Plot, Series, Table, sig};
+
+use crate::{
+    convergence::{Convergence, Label, Level as Point, convergence},
+    declare::{Accuracy, ErrorOf, Ladder},
+    runs::Runs,
+    study::Study,
+};
+
+/// The points that the order of a ladder is fitted to.
+///
+/// With a metric these are the errors of its levels. With a distance they are the distances between
+/// successive levels at the coarser spacing, which fall as the error does: the distance from a finest run
+/// would fall faster.
+pub fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
+    let levels = ladder.levels.iter();
+    match &accuracy.error {
+        error @ ErrorOf::Metric(_) => levels
+            .map(|level| {
+                let record = runs.record(&level.run.spec);
+                let value = record.and_then(|record| error.value(record, runs));
+                Point { spacing: level.spacing, value: value.unwrap_or(f64::NAN) }
+            })
+            .collect(),
+        ErrorOf::Distance { between, .. } => ladder
+            .levels
+            .windows(2)
+            .map(|pair| {
+                let [coarse, fine] = [0, 1].map(|k| runs.completed(&pair[k].run.spec));
+                let distance = coarse.zip(fine).map(|(coarse, fine)| between(coarse, fine));
+                Point { spacing: pair[0].spacing, value: distance.unwrap_or(f64::NAN) }
+            })
+            .collect(),
+    }
+}
+
+pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
+    let id = format!("{}-convergence", accuracy.id);
+    let successive = match accuracy.error {
+        ErrorOf::Metric(_) => "",
+        ErrorOf::Distance { .. } => {
+            " The errors are distances between runs of successive spacings, drawn at the coarser one."
+        }
+    };
+    let slope = accuracy.slope.map_or(String::new(), |p| format!(" The triangle shows order {p}."));
+    let caption = format!("{} against spacing.{successive}{slope}", accuracy.label);
+    let mut plot = Plot::new("", Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
+    let columns = vec![
+        Column::text("variant"),
+        Column::num("order ± standard error", "-"),
+        Column::text("95 % interval"),
+        Column::text("local orders, coarse to fine"),
+        Column::text("label"),
+        Column::num("finest error", "-"),
+        Column::num("fitted floor", "-"),
+    ];
+    let about = format!(
+        "Observed order: least squares over all levels, with the 95 % interval of Student's t. {}",
+        accuracy.about
+    );
+    let mut table = Table::new(about, columns);
+    let mut study = Study::new(&id, "Order of accuracy");
+    for (k, ladder) in accuracy.ladders.iter().enumerate() {
+        let points = points(accuracy, ladder, runs);
+        let usable = points.iter().filter(|p| p.value.is_finite());
+        let line = usable.map(|p| (p.spacing, p.value)).collect();
+        let name = format!("{}{}", ladder.variant, ladder.note);
+        plot = plot.layer(Series::line_markers(&name, line).cycle(k));
+        let found = convergence(&points);
+        if let Some(order) = ladder.order.clone() {
+            let gate = Gate::new(order.id, "order", order.bound, order.evidence, order.because);
+            study = study.judge(gate, found.as_ref().map_or(f64::NAN, |c| c.order));
+        }
+        let finest = points.last().map_or(f64::NAN, |p| p.value);
+        table = table.row(match found {
+            Ok(found) => row(&name, &found, finest),
+            Err(error) => unknown(&name, &error.to_string(), finest),
+        });
+    }
+    if let Some(order) = accuracy.slope {
+        plot = plot.layer(Layer::slope(order));
+    }
+    let figure = Figure::new(&id, caption).panel(plot.legend(Legend::Outside));
+    study.block(figure).block(table)
+}
+
+fn error_cell(error: f64) -> Cell {
+    if error.is_finite() { Cell::percent(error, 2) } else { Cell::text("–") }
+}
+
+fn row(name: &str, found: &Convergence, finest: f64) -> Vec<Cell> {
+    let local: Vec<String> = found.local_orders.iter().map(|p| sig(*p, 2)).collect();
+    let label = match found.label {
+        Label::Asymptotic => "asymptotic",
+        Label::FloorReached => "floor reached",
+        Label::NotAsymptotic => "not asymptotic",
+    };
+    let [low, high] = found.interval.map(|end| sig(end, 2));
+    vec![
+        Cell::text(format!("`{name}`")),
+        Cell::text(format!("{} ± {}", sig(found.order, 3), sig(found.standard_error, 2))),
+        Cell::text(format!("{low} … {high}")),
+        Cell::text(local.join(", ")),
+        Cell::text(label),
+        error_cell(finest),
+        found.floor.map_or(Cell::text("–"), |floor| Cell::percent(floor.error, 2)),
+    ]
+}
+
+fn unknown(name: &str, why: &str, finest: f64) -> Vec<Cell> {
+    let [dash, none] = [Cell::text("–"), Cell::text("–")];
+    let (name, why) = (Cell::text(format!("`{name}`")), Cell::text(format!("no order: {why}")));
+    vec![name, dash.clone(), dash, none.clone(), why, error_cell(finest), none]
+}

@@ -1,0 +1,43 @@
+//! A statement from many runs.
+
+use base::gate::Gate;
+use report::Block;
+
+use crate::runs::Judged;
+
+/// A statement from many runs: what the report shows, and the gates on it.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// Anchor in the report: letters, digits, hyphens.
+    pub id: String,
+    /// Title of the section.
+    pub title: String,
+    /// Prose, figures, tables.
+    pub blocks: Vec<Block>,
+    /// Judgements on what was found.
+    pub judged: Vec<Judged>,
+}
+
+impl Study {
+    /// An empty study.
+    pub fn new(id: &str, title: &str) -> Self {
+        Self { id: id.into(), title: title.into(), blocks: Vec::new(), judged: Vec::new() }
+    }
+
+    /// The same with one more block.
+    pub fn block(mut self, block: impl Into<Block>) -> Self {
+        self.blocks.push(block.into());
+        self
+    }
+
+    /// The same with one more paragraph.
+    pub fn prose(self, text: impl Into<String>) -> Self {
+        self.block(Block::Prose(vec![text.into()]))
+    }
+
+    /// The same with a judged value.
+    pub fn judge(mut self, gate: Gate, value: f64) -> Self {
+        self.judged.push(Judged::new(gate, Some(value)));
+        self
+    }
+}

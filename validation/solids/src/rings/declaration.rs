@@ -1,0 +1,324 @@
+//! What the studies that every case has are made of: histories over finite elements, errors over spacing and
+//! cost, an error budget, step limits, maps.
+
+use super::{
+    RUBBER_RINGS, RingSettings,
+    metrics::{HEIGHT_MAX_ERROR, PIECES_MOST, RESTITUTION, RESTITUTION_ERROR, WIDTH_MIN_ERROR},
+    plan::{self, FIVE_LAYERS, SPEED, collision},
+    reference::Reference,
+};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::{MetricKey, Record},
+    spec::RunSpec,
+};
+use harness::{
+    case::{Case, Planned, Tier},
+    declare::{
+        Accuracy, Budget, Budgets, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
+        Ladder, Level, Map, MapPanel, StepLimit, StepLimits,
+    },
+};
+use report::{Axis, Colour, sig};
+
+/// Everything that the harness draws and judges.
+pub fn declaration(tier: Tier) -> Declaration {
+    let mut maps = vec![fracture_map(tier)];
+    if tier == Tier::Full {
+        maps.extend([stress_map(), viscosity_map()]);
+    }
+    Declaration {
+        curves: vec![histories(tier)],
+        accuracy: accuracy(tier),
+        budgets: Some(budgets(tier)),
+        limits: Some(limits(tier)),
+        maps,
+    }
+}
+
+/// The variant with the most spacings at the paper's speed; of equals the cheapest.
+pub fn shown(tier: Tier) -> &'static str {
+    match tier {
+        Tier::Quick => "leapfrog",
+        Tier::Full => "seed",
+    }
+}
+
+fn histories(tier: Tier) -> Curves {
+    let variant = shown(tier);
+    let reference = Reference::of(&RingSettings::default());
+    let labels = ["centre of mass [L]", "its velocity [c0]", "width [L]", "height [L]"];
+    let panel = |(k, name): (usize, &'static str)| {
+        let line = |spacing: &f64| CurveOf {
+            name: format!("spacing {} L", sig(*spacing, 2)),
+            spec: collision(variant, *spacing, SPEED),
+            points: Box::new(move |record| {
+                let [t, y] = ["t", name].map(|name| record.column("series", name));
+                t.iter().copied().zip(y.iter().copied()).collect()
+            }),
+        };
+        let exact = reference.iter().map(|reference| {
+            let points = reference.times.iter().zip(&reference.columns[k]);
+            let points = points.map(|(t, (y, _))| (*t, *y)).collect();
+            ("finite elements".to_string(), points)
+        });
+        CurvePanel {
+            title: String::new(),
+            x: Axis::linear("t [L/c0]"),
+            y: Axis::linear(labels[k]),
+            lines: plan::spacings(variant, tier).iter().map(line).collect(),
+            references: exact.collect(),
+            symbols: false,
+        }
+    };
+    Curves {
+        id: "rubber-rings-histories".into(),
+        title: "Histories over finite elements".into(),
+        caption: format!(
+            "One of two rings that collide at 0.059 c0 each, variant `{variant}`, at several spacings, \
+             against time in L/c0. Black: finite elements, one ring against a frictionless plane, \
+             logarithmic strain; their uncertainty is less than the width of the line. Centre of mass and \
+             its velocity, and the outer extents along the line of flight and across it."
+        ),
+        columns: 2,
+        panels: Reference::COLUMNS.into_iter().enumerate().map(panel).collect(),
+    }
+}
+
+/// Layers through the thickness of rings that only show how the error falls.
+const COARSE: [f64; 2] = [1.0 / 3.0, 0.25];
+
+/// The runs that `spec` makes of these spacings.
+fn ladder(
+    variant: &'static str,
+    spacings: impl IntoIterator<Item = f64>,
+    spec: impl Fn(f64) -> RunSpec,
+) -> Ladder {
+    let level = |spacing: f64| Level {
+        run: Planned::new(spec(spacing)),
+        spacing,
+        label: format!("{} layers", (1.0 / spacing).round()),
+    };
+    Ladder::new(variant, spacings.into_iter().map(level))
+}
+
+fn ladders(tier: Tier) -> Vec<Ladder> {
+    let over_spacings = |variant| {
+        let spacings = COARSE.iter().chain(plan::spacings(variant, tier)).copied();
+        ladder(variant, spacings, |spacing| collision(variant, spacing, SPEED))
+    };
+    let mut ladders: Vec<Ladder> = ["seed", "leapfrog", "componentwise"].map(over_spacings).into();
+    if tier == Tier::Full {
+        let without_xsph =
+            |spacing: f64| RUBBER_RINGS.spec("leapfrog", |s| (s.spacing, s.xsph) = (spacing, 0.0));
+        let spacings = COARSE.into_iter().chain([FIVE_LAYERS, 0.1]);
+        let note = " without XSPH".into();
+        ladders.push(over_spacings("no-artificial-stress"));
+        ladders.push(Ladder { note, ..ladder("leapfrog", spacings, without_xsph) });
+    }
+    ladders
+}
+
+/// Every run of the ladders.
+pub fn specs_of_ladders(tier: Tier) -> impl Iterator<Item = RunSpec> {
+    ladders(tier).into_iter().flat_map(|ladder| ladder.levels).map(|level| level.run.spec)
+}
+
+fn accuracy(tier: Tier) -> Vec<Accuracy> {
+    let of = |what: &str, metric: MetricKey| {
+        let id = format!("rubber-rings-{}", what.replace(' ', "-"));
+        let (error, label) =
+            (ErrorOf::Metric(metric.into()), format!("relative error of the {what} [-]"));
+        Accuracy {
+            about: format!(
+                "The {what} of a ring against finite elements, in a collision at 0.059 c0 each to t = 200 \
+                 L/c0; the thickness of a ring is 1 L."
+            ),
+            spacing: "spacing [L]",
+            slope: Some(1.0),
+            ladders: ladders(tier),
+            ..Accuracy::new(&id, error, &label)
+        }
+    };
+    vec![
+        of("restitution", RESTITUTION_ERROR),
+        of("least width", WIDTH_MIN_ERROR),
+        of("largest height", HEIGHT_MAX_ERROR),
+    ]
+}
+
+fn budgets(tier: Tier) -> Budgets {
+    let (spacing, variants): (f64, &[&'static str]) = match tier {
+        Tier::Quick => (0.25, &["leapfrog"]),
+        Tier::Full => (FIVE_LAYERS, &["seed", "leapfrog"]),
+    };
+    let budget = |variant: &&'static str| {
+        let changed = |set: &dyn Fn(&mut RingSettings)| {
+            RUBBER_RINGS.spec(variant, |s| {
+                s.spacing = spacing;
+                set(s);
+            })
+        };
+        let less_viscous =
+            |s: &mut RingSettings| (s.alpha, s.beta) = (0.25 * s.alpha, 0.25 * s.beta);
+        let changes = vec![
+            Change::new("none", "", collision(variant, spacing, SPEED)),
+            Change::new("dt/2", "time", changed(&|s| s.courant *= 0.5)),
+            Change::new("spacing 0.1 L", "space", collision(variant, 0.1, SPEED)),
+            Change::new("α/4, β/4", "artificial viscosity", changed(&less_viscous)),
+            Change::new("no XSPH", "XSPH", changed(&|s| s.xsph = 0.0)),
+            Change::new("ξ = 0", "artificial stress", changed(&|s| s.xi = 0.0)),
+        ];
+        Budget { variant, changes }
+    };
+    Budgets {
+        id: "rubber-rings-budget".into(),
+        error: ErrorOf::Metric(WIDTH_MIN_ERROR.into()),
+        label: "relative error of the least width".into(),
+        about: format!(
+            "The collision at 0.059 c0 each at spacing {spacing} L; the least width against finite elements."
+        ),
+        of: variants.iter().map(budget).collect(),
+    }
+}
+
+fn limits(tier: Tier) -> StepLimits {
+    let variants: &[&'static str] = match tier {
+        Tier::Quick => &["leapfrog"],
+        Tier::Full => &["seed", "leapfrog", "no-artificial-stress", "componentwise"],
+    };
+    let about = "Rings of 4 layers collide at 0.059 c0 each, to t = 100 L/c0. Stable: the energy never rises \
+                 by more than 1 %. Theory: a stress-free lattice with artificial viscosity on every pair; \
+                 rings have it on approaching pairs alone.";
+    StepLimits::new(
+        "rubber-rings",
+        about,
+        variants.iter().filter_map(|variant| step_limit(variant)),
+    )
+}
+
+fn step_limit(variant: &'static str) -> Option<StepLimit> {
+    // A sample or a picture would shorten the step before it.
+    let set = |s: &mut RingSettings| (s.spacing, s.end, s.samples) = (0.25, 100.0, 1);
+    let spec = RUBBER_RINGS.spec(variant, set).keep_pictures(1);
+    let rules = RUBBER_RINGS.rules(&spec).ok()?;
+    let because = "nothing drives the rings: at the default step their energy does not rise";
+    let id = format!("rubber_rings.{variant}.step_limit");
+    let bound = Bound::Above(1.0);
+    let gate = Gate::new(id, "stable dt/default dt", bound, Evidence::Invariant, because);
+    let limit = StepLimit::proportional(variant, "collision", spec, ("dt", rules.dt_limit), &rules);
+    Some(StepLimit { of_default: vec![gate], ..limit })
+}
+
+/// What a collision can come to.
+fn outcomes() -> Vec<(String, Colour)> {
+    let outcomes =
+        [("whole", Colour::GREEN), ("broken", Colour::ORANGE), ("diverged", Colour::VERMILLION)];
+    outcomes.map(|(name, colour)| (name.into(), colour)).into()
+}
+
+fn outcome(records: &[&Record]) -> (usize, String) {
+    let [record] = records else { return (2, String::new()) };
+    match record.value(PIECES_MOST) {
+        None => (2, "diverged".into()),
+        Some(2.0) => {
+            let restitution = record.value(RESTITUTION).unwrap_or(f64::NAN);
+            (0, format!("2; {}", sig(restitution, 2)))
+        }
+        Some(pieces) => (1, format!("{pieces}")),
+    }
+}
+
+fn texts<T: ToString>(values: &[T]) -> Vec<String> {
+    values.iter().map(T::to_string).collect()
+}
+
+/// Claim M2: pieces over speed and spacing.
+fn fracture_map(tier: Tier) -> Map {
+    let mut speeds = [plan::speeds(tier), &[SPEED]].concat();
+    speeds.sort_by(f64::total_cmp);
+    let spacings = [0.05, 0.1, FIVE_LAYERS];
+    let panel = |variant: &str| {
+        let is_run = |spacing: f64, speed: f64| {
+            let spacings = match speed {
+                SPEED => plan::spacings(variant, tier),
+                _ => plan::spacings_at(variant, speed, tier),
+            };
+            spacings.contains(&spacing)
+        };
+        let cell = |spacing: f64, speed: f64| match is_run(spacing, speed) {
+            true => vec![collision(variant, spacing, speed)],
+            false => Vec::new(),
+        };
+        let row = |spacing: &f64| speeds.iter().map(|speed| cell(*spacing, *speed)).collect();
+        MapPanel {
+            title: variant.into(),
+            x: texts(&speeds),
+            y: texts(&spacings),
+            cells: spacings.iter().map(row).collect(),
+        }
+    };
+    Map {
+        id: "rubber-rings-fracture-map".into(),
+        title: "M2: pieces over speed and spacing".into(),
+        caption: "Most pieces of the two rings over the speed of each and the spacing; for whole rings the \
+                  restitution follows."
+            .into(),
+        x: "speed [c0]".into(),
+        y: "spacing [L]".into(),
+        outcomes: outcomes(),
+        panels: ["seed", "no-artificial-stress", "componentwise"].map(panel).into(),
+        outcome,
+    }
+}
+
+/// A cell of a map over settings: rings of five layers at 0.12 c0 each, whatever their step.
+fn cell(set: impl FnOnce(&mut RingSettings)) -> Vec<RunSpec> {
+    let spec = RUBBER_RINGS.spec("seed", |s| {
+        (s.spacing, s.speed) = (FIVE_LAYERS, 0.12);
+        set(s);
+    });
+    vec![spec.allow_unstable()]
+}
+
+/// Pieces over ξ and n.
+fn stress_map() -> Map {
+    const XI: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.5];
+    const N: [usize; 3] = [2, 4, 6];
+    let row = |n: usize| XI.map(|xi| cell(|s| (s.xi, s.stress_exponent) = (xi, n))).into();
+    let cells = N.map(row).into();
+    Map {
+        id: "rubber-rings-stress-map".into(),
+        title: "Stability over the artificial stress".into(),
+        caption: "Most pieces of the two rings at 0.12 c0 each, spacing 0.2 L, over strength and exponent of \
+                  the artificial stress; for whole rings the restitution follows."
+            .into(),
+        x: "ξ [-]".into(),
+        y: "n [-]".into(),
+        outcomes: outcomes(),
+        panels: vec![MapPanel { title: String::new(), x: texts(&XI), y: texts(&N), cells }],
+        outcome,
+    }
+}
+
+/// Pieces over α.
+fn viscosity_map() -> Map {
+    const ALPHA: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
+    let row = ALPHA.map(|alpha| cell(|s| (s.alpha, s.beta) = (alpha, 2.0 * alpha))).into();
+    let panel = MapPanel {
+        title: String::new(),
+        x: texts(&ALPHA),
+        y: vec![String::new()],
+        cells: vec![row],
+    };
+    Map {
+        id: "rubber-rings-viscosity-map".into(),
+        title: "Stability over the artificial viscosity".into(),
+        caption: "The same over the artificial viscosity with β = 2α.".into(),
+        x: "α [-]".into(),
+        y: String::new(),
+        outcomes: outcomes(),
+        panels: vec![panel],
+        outcome,
+    }
+}

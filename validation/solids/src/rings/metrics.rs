@@ -1,0 +1,58 @@
+//! What the records of the rings state.
+
+use base::record::MetricKey;
+
+base::metrics! {
+    RESTITUTION = "restitution" ["-"] "velocity of the centre of mass at the end/V";
+    PIECES = "pieces" ["1"] "connected pieces at the end, 1.5 dx; two rings are 2";
+    PIECES_MOST = "pieces_most" ["1"] "most connected pieces at any time";
+    WIDTH_MIN = "width_min" ["L"] "least extent of a ring along the line of flight";
+    HEIGHT_MAX = "height_max" ["L"] "largest extent of a ring across it";
+    X_C_MIN = "x_c_min" ["L"] "least distance of a ring's centre of mass from the plane";
+    X_C_END = "x_c_end" ["L"] "that distance at the end";
+    ENERGY_LOST = "energy_lost" ["-"] "1 - (kinetic + strain energy) at the end/at the start";
+    ENERGY_GAINED = "energy_gained" ["-"] "largest total energy at any time/at the start - 1";
+    PUSHED_BY_ITSELF = "pushed_by_itself" ["-"]
+        "max |v_c - v_c(end)|/V of a ring in the last tenth of the run";
+    MIRROR = "mirror" ["dx"] "max over particles and times of the distance from the mirror image";
+    PHASES = "phases" ["1"] "phases of contact, at least 5 L/c0 apart";
+    MOMENTUM = "momentum" ["-"] "|sum m v| at the end/momentum of one ring, exactly 0";
+    COURANT = "courant" ["-"] "dt (c_p + V)/h, c_p = ((K + 4 mu/3)/rho)^(1/2)";
+    IMPULSE = "impulse" ["rho c0 L^2"] "mass of a ring times the change of its velocity in this phase";
+    T_IMPULSE_1 = "t_impulse_1" ["L/c0"] "when this share (in %) of the phase's impulse has passed";
+    T_IMPULSE_50 = "t_impulse_50" ["L/c0"] "when this share (in %) of the phase's impulse has passed";
+    T_IMPULSE_99 = "t_impulse_99" ["L/c0"] "when this share (in %) of the phase's impulse has passed";
+    IMPULSE_ERROR = "impulse_error" ["-"] "|impulse of the phase - finite elements|/finite elements";
+    RESTITUTION_ERROR = "restitution_error" ["-"] "|restitution - finite elements|/finite elements";
+    WIDTH_MIN_ERROR = "width_min_error" ["-"] "|width_min - finite elements|/finite elements";
+    HEIGHT_MAX_ERROR = "height_max_error" ["-"] "|height_max - finite elements|/finite elements";
+    X_C_MIN_ERROR = "x_c_min_error" ["-"] "|x_c_min - finite elements|/finite elements";
+    X_C_RMS = "x_c_rms" ["L"] "rms over the run of x_c - finite elements";
+    V_C_RMS = "v_c_rms" ["c0"] "rms over the run of v_c - finite elements";
+    WIDTH_RMS = "width_rms" ["L"] "rms over the run of width - finite elements";
+    HEIGHT_RMS = "height_rms" ["L"] "rms over the run of height - finite elements";
+    ENERGY_GAP = "energy_gap" ["-"] "max over samples of |E(t) - E(0) - work of all terms|/E(0)";
+    WORK_VISCOSITY = "work_viscosity" ["-"]
+        "energy that the artificial viscosity has added until the end/E(0)";
+    WORK_STRESS = "work_stress" ["-"] "energy that the artificial stress has added until the end/E(0)";
+    WORK_ELASTIC = "work_elastic" ["-"] "energy that the elastic law has added until the end/E(0)";
+}
+
+/// Of a phase of contact, for each of [`super::measure::SHARES`].
+pub const T_IMPULSE: [MetricKey; 3] = [T_IMPULSE_1, T_IMPULSE_50, T_IMPULSE_99];
+
+/// Numbers that finite elements have too, and the distance from these.
+pub const COMPARED: [(MetricKey, MetricKey); 4] = [
+    (RESTITUTION, RESTITUTION_ERROR),
+    (WIDTH_MIN, WIDTH_MIN_ERROR),
+    (HEIGHT_MAX, HEIGHT_MAX_ERROR),
+    (X_C_MIN, X_C_MIN_ERROR),
+];
+
+/// Distances of the columns of [`super::reference::Reference::COLUMNS`].
+pub const RMS: [MetricKey; 4] = [X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS];
+
+/// The mark of the metrics of a phase of contact, counted from 0.
+pub fn phase(k: usize) -> String {
+    format!("phase{}", k + 1)
+}

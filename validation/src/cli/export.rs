@@ -1,0 +1,87 @@
+//! Verdicts for other programs: JUnit XML and Markdown.
+
+use ::report;
+use base::{
+    files::write_atomically,
+    gate::{Judgement, Verdict},
+};
+use harness::suite::Suite;
+
+use super::{Failure, arguments, judged};
+
+/// Writes the files that were asked for.
+pub fn write(suite: &Suite, export: &arguments::Export) -> Result<(), Failure> {
+    for (path, text) in [
+        (&export.junit, junit as fn(&Suite) -> String),
+        (&export.markdown, markdown as fn(&Suite) -> String),
+    ] {
+        if let Some(path) = path {
+            write_atomically(path, text(suite).as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+fn value(judgement: &Judgement) -> String {
+    judgement.value.map_or("not measured".into(), |value| report::sig(value, 5))
+}
+
+/// A test case a gate, by case. Failing gates are failures; a limitation, an expected failure and a number
+/// that is only reported or not measured are skipped, with the verdict as the message.
+fn junit(suite: &Suite) -> String {
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
+    for results in &suite.cases {
+        let runs = results.runs.all().iter().flat_map(|run| &run.judged);
+        let all: Vec<_> = runs.chain(results.studies.iter().flat_map(|s| &s.judged)).collect();
+        let failed = all.iter().filter(|j| j.judgement.verdict.is_failure()).count();
+        let name = escaped(results.case.name());
+        text += &format!(
+            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\">\n",
+            all.len()
+        );
+        for judged in all {
+            let (gate, judgement) = (&judged.gate, &judged.judgement);
+            let message = format!("{} {}; {}", value(judgement), gate.bound, judgement.verdict);
+            let body = match judgement.verdict {
+                Verdict::Pass => String::new(),
+                Verdict::Fail => format!(
+                    "<failure message=\"{}\">{}</failure>",
+                    escaped(&message),
+                    escaped(&gate.because)
+                ),
+                _ => format!("<skipped message=\"{}\"/>", escaped(&message)),
+            };
+            let id = escaped(&gate.id);
+            text +=
+                &format!("    <testcase classname=\"{name}\" name=\"{id}\">{body}</testcase>\n");
+        }
+        text += "  </testsuite>\n";
+    }
+    text + "</testsuites>\n"
+}
+
+fn escaped(text: &str) -> String {
+    let escape = |char: char| match char {
+        '&' => "&amp;".into(),
+        '<' => "&lt;".into(),
+        '>' => "&gt;".into(),
+        '"' => "&quot;".into(),
+        char => char.to_string(),
+    };
+    text.chars().map(escape).collect()
+}
+
+/// Counts, then a table of every gate that did not simply pass.
+fn markdown(suite: &Suite) -> String {
+    let mut text = format!("# Verdicts\n\n{}\n\n", judged::in_words(suite));
+    text += "| verdict | gate | value | bound |\n|---|---|---|---|\n";
+    let mut rows: Vec<_> =
+        suite.judged().filter(|j| j.judgement.verdict != Verdict::Pass).collect();
+    rows.sort_by_key(|j| !j.judgement.verdict.is_failure());
+    for judged in rows {
+        let verdict = judged.judgement.verdict.to_string().replace('|', "\\|");
+        let (id, bound) = (&judged.gate.id, judged.gate.bound);
+        text += &format!("| {verdict} | `{id}` | {} | {bound} |\n", value(&judged.judgement));
+    }
+    text
+}

@@ -1,0 +1,50 @@
+//! `plan`: runs as JSON lines.
+
+use base::spec::RunSpec;
+use harness::{
+    case::{self, Case},
+    plan,
+};
+
+use super::{Exit, Failure, Outcome, World, arguments, list::default_variant, output};
+
+pub fn plan(arguments: &arguments::Plan, world: &World) -> Outcome {
+    let cases = world.choose(&arguments.cases)?;
+    let specs = if arguments.set.is_empty() && arguments.variant.is_empty() {
+        let tier = arguments.tier.into();
+        let of_case = |case: &&'static dyn Case| plan::of_case(*case, tier);
+        cases.iter().flat_map(of_case).map(|planned| planned.spec).collect()
+    } else {
+        let [case] = cases[..] else {
+            let words = "a sweep with --set or --variant is one over settings of one case; name it";
+            return Err(Failure::usage(anyhow::anyhow!(words)));
+        };
+        sweep(case, &arguments.variant, &arguments.set)?
+    };
+    let lines: Vec<String> = specs.iter().map(|spec: &RunSpec| spec.canonical() + "\n").collect();
+    output::print(&lines.concat())?;
+    Ok(Exit::Pass)
+}
+
+/// Every combination of variants and values, the last setting fastest.
+fn sweep(case: &dyn Case, variants: &[String], set: &[String]) -> Result<Vec<RunSpec>, Failure> {
+    let default = [default_variant(case).to_string()];
+    let variants = if variants.is_empty() { &default } else { variants };
+    let mut combinations: Vec<Vec<String>> = vec![Vec::new()];
+    for assignment in set {
+        let (key, values) = assignment.split_once('=').unwrap_or((assignment, ""));
+        let one = |before: &Vec<String>, value: &str| {
+            let text = if assignment.contains('=') { format!("{key}={value}") } else { key.into() };
+            [before.as_slice(), &[text]].concat()
+        };
+        let all = combinations.iter().flat_map(|c| values.split(',').map(move |v| one(c, v)));
+        combinations = all.collect();
+    }
+    let mut specs = Vec::new();
+    for variant in variants {
+        for set in &combinations {
+            specs.push(case::spec(case, variant, set)?);
+        }
+    }
+    Ok(specs)
+}

@@ -1,0 +1,154 @@
+//! What the studies that every case has are made of: the front of the column of Martin & Moyce over
+//! resolutions, what its error is made of, and the longest stable time steps in both scenes.
+
+use super::{DAM_BREAK, DamSettings, NAME, front, lobovsky, plan};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::Record,
+    spec::RunSpec,
+};
+use harness::{
+    case::{Case, Rules, Tier},
+    declare::{
+        Accuracy, Budget, Budgets, Change, Declaration, ErrorOf, Ladder, Level, StepLimit,
+        StepLimits,
+    },
+};
+
+/// All of it.
+pub fn declaration(tier: Tier) -> Declaration {
+    let accuracy = accuracy(tier);
+    let (budgets, limits) = (Some(budgets(tier, &accuracy)), Some(limits(tier)));
+    Declaration { accuracy: vec![accuracy], budgets, limits, ..Declaration::default() }
+}
+
+/// rms distance of two fronts \[a\].
+fn between(one: &Record, other: &Record) -> f64 {
+    front::rms(&front::front(one), &front::front(other), front::LATER)
+}
+
+/// Variants and resolutions of the ladders: successive spacings differ by √2 or nearly so, and each fills
+/// the column.
+pub fn ladders(tier: Tier) -> Vec<(&'static str, &'static [usize])> {
+    match tier {
+        Tier::Quick => {
+            ["seed", "modern", "modern-interface"].map(|v| (v, &[7, 10, 14, 20][..])).to_vec()
+        }
+        Tier::Full => vec![
+            ("seed", &[10, 14, 20, 28, 40]),
+            ("modern", &[10, 14, 20, 28, 40]),
+            ("seed-no-stress", &[10, 14, 20, 28]),
+            ("modern-interface", &[10, 14, 20, 28]),
+            ("modern-bare", &[10, 14, 20, 28]),
+        ],
+    }
+}
+
+fn accuracy(tier: Tier) -> Accuracy {
+    // The finest run of `modern`.
+    let n = plan::martin_moyce("modern", tier).last().copied().unwrap_or_default();
+    let error = ErrorOf::Distance { finest: plan::free(tier, "modern", n), between };
+    let level = |variant: &str, n: usize| Level {
+        run: plan::planned_free(tier, variant, n),
+        spacing: 1.0 / n as f64,
+        label: format!("a/dx {n}"),
+    };
+    let ladder = |(variant, resolutions): (&'static str, &[usize])| {
+        Ladder::new(variant, resolutions.iter().map(|n| level(variant, *n)))
+    };
+    let about = format!(
+        "Front Z(T), 1 ≤ T ≤ 3.3, of the column of Martin & Moyce; per cent are of its width a. An error \
+         is the rms distance from the front of `modern` at a/dx = {n}, which is itself short of the \
+         limit: a point nearer to it than the last of its ladder says no more."
+    );
+    Accuracy {
+        about,
+        spacing: "dx/a [-]",
+        slope: Some(1.0),
+        ladders: ladders(tier).into_iter().map(ladder).collect(),
+        ..Accuracy::new("dam-break", error, "rms distance of the front [a]")
+    }
+}
+
+fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
+    let n = match tier {
+        Tier::Quick => 10,
+        Tier::Full => 20,
+    };
+    let changes = |variant: &'static str, own: &[(&str, &'static str, fn(&mut DamSettings))]| {
+        let changed = |set: fn(&mut DamSettings)| {
+            let change = |s: &mut DamSettings| {
+                s.n = n;
+                set(s);
+            };
+            // A change may ask more of the time step than the variant's own settings do.
+            DAM_BREAK.spec(variant, change).allow_unstable()
+        };
+        let mut changes = vec![
+            Change::new("none", "all", plan::free(tier, variant, n)),
+            Change::new("dt/2", "time", changed(|s| s.courant *= 0.5)),
+            Change::new("dx/2", "spacing", plan::free(tier, variant, 2 * n)),
+            Change::new("2 c0", "compressibility", changed(|s| s.c0 *= 2.0)),
+            Change::new("alpha/2", "artificial viscosity", changed(|s| s.alpha *= 0.5)),
+            Change::new("h/dx 2", "smoothing", changed(|s| s.h_over_dx = 2.0)),
+        ];
+        changes.extend(own.iter().map(|(what, part, set)| Change::new(*what, part, changed(*set))));
+        Budget { variant, changes }
+    };
+    let mut of =
+        vec![changes("modern", &[("delta/2", "density diffusion", |s| s.diffusion *= 0.5)])];
+    if tier == Tier::Full {
+        of.push(changes(
+            "seed",
+            &[
+                ("no artificial stress", "artificial stress", |s| s.xi = 0.0),
+                ("no XSPH", "XSPH", |s| s.xsph = 0.0),
+            ],
+        ));
+    }
+    Budgets::of(accuracy, of)
+}
+
+fn limits(tier: Tier) -> StepLimits {
+    let free = |s: &mut DamSettings| s.n = 15;
+    let tank = |s: &mut DamSettings| {
+        lobovsky(s);
+        (s.n, s.end) = (15, 4.0);
+    };
+    let both = |variant| {
+        let of = [
+            ("Martin & Moyce", DAM_BREAK.spec(variant, free)),
+            ("Lobovsky", DAM_BREAK.spec(variant, tank)),
+        ];
+        of.map(|(scene, spec)| (variant, scene, spec))
+    };
+    let mut all: Vec<_> =
+        ["modern", "modern-bare", "seed-leapfrog", "seed"].into_iter().flat_map(both).collect();
+    if tier == Tier::Quick {
+        all.truncate(1);
+    }
+    let about = "Stable is a collapse that ends with its energy accounted for within 2 %. Theory is the \
+                 limit of a resting lattice. Water that moves, is compressed and loses its lattice is \
+                 expected at 0.7 to 1.0 of it.";
+    let limit = |(variant, scene, spec)| limit(variant, scene, spec);
+    StepLimits::new("dam-break", about, all.into_iter().filter_map(limit))
+}
+
+/// The theoretical limit of the time step as the record's dt and dt/limit state it \[s\].
+pub fn theory(Rules { dt, dt_limit, .. }: Rules) -> f64 {
+    dt / (dt / dt_limit)
+}
+
+fn limit(variant: &'static str, scene: &str, spec: RunSpec) -> Option<StepLimit> {
+    let rules = DAM_BREAK.rules(&spec).ok()?;
+    let because = "R1 to R5: a resting lattice; the moving, disordered water is expected between 0.7 and \
+                   1.0 of its limit, and the step of the case must be below what is measured. At 1.2 of it \
+                   leapfrog lets the stiffest mode grow 3.5-fold a step: a run that ends there would tell of \
+                   a limit that is not that of this water";
+    let id = format!("{NAME}.limit.{variant}.{}", scene.split(' ').next().unwrap_or_default());
+    let bound = Bound::Within(rules.dt / rules.dt_limit, 1.2);
+    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
+    let setting = ("dt", theory(rules));
+    let limit = StepLimit::proportional(variant, scene, spec, setting, &rules);
+    Some(StepLimit { of_theory: vec![gate], ..limit })
+}

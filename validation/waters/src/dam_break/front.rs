@@ -1,0 +1,104 @@
+//! The front of the column of Martin & Moyce over resolutions: the distance of two runs, and the observed
+//! order over parts of the time.
+
+use super::{
+    DamSettings, metrics,
+    plan::{self, PEERS},
+    reference::{Curve, value},
+};
+use crate::water;
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::Record,
+};
+use harness::{case::Tier, runs::Runs, study::Study};
+use report::{Cell, Column, Table, sig};
+
+/// T between which fronts are compared: before, they have hardly moved; later, there is no experiment.
+pub const LATER: [f64; 2] = [1.0, 3.3];
+
+/// Z over T.
+pub fn front(record: &Record) -> Curve {
+    let DamSettings { width: a, gravity: g, .. } = record.settings_as();
+    water::curve(record, "series", ["t", "front"], [(0.5 * a / g).sqrt(), a])
+}
+
+/// rms distance of two curves over a window of time.
+pub fn rms(one: &Curve, other: &Curve, [from, to]: [f64; 2]) -> f64 {
+    const POINTS: usize = 100;
+    let at = |k: usize| from + (to - from) * (k as f64 + 0.5) / POINTS as f64;
+    let square = |k: usize| (value(one, at(k)) - value(other, at(k))).powi(2);
+    ((0..POINTS).map(square).sum::<f64>() / POINTS as f64).sqrt()
+}
+
+/// The observed order of three curves, each at half the spacing of the one before: log2 of the rms of
+/// successive differences, over the whole window, and the least and most over its thirds.
+fn order([coarse, middle, fine]: [&Curve; 3]) -> [f64; 3] {
+    let over = |window| (rms(coarse, middle, window) / rms(middle, fine, window)).log2();
+    let [from, to] = LATER;
+    let third = (to - from) / 3.0;
+    let thirds = [0.0, 1.0, 2.0].map(|k| over([from + k * third, from + (k + 1.0) * third]));
+    let fold = |f: fn(f64, f64) -> f64| thirds.into_iter().fold(f64::NAN, f);
+    [over(LATER), fold(f64::min), fold(f64::max)]
+}
+
+/// The observed order of the front, variant by variant, from the three finest judged runs of each.
+pub fn orders(tier: Tier, runs: &Runs) -> Study {
+    let columns = vec![
+        Column::text("variant"),
+        Column::text("a/dx"),
+        Column::text("Z at T = 3"),
+        Column::num("order", "-"),
+        Column::text("over thirds of the time"),
+        Column::num("Z at T = 3 in the limit", "a"),
+    ];
+    let caption = format!(
+        "Observed order of the front: log2 of the ratio of the rms of successive differences of Z(T), 1 ≤ T \
+         ≤ 3.3, and as its error the range over thirds of that time. The limit is Richardson's with that \
+         order. Three other codes have {} to {} at T = 3.",
+        PEERS[1].1, PEERS[1].2
+    );
+    let mut table = Table::new(caption, columns);
+    let mut study = Study::new("dam-break-front-order", "Order of the front");
+    for variant in ["seed", "modern"] {
+        let Some(&n) = plan::martin_moyce(variant, tier).last_chunk::<3>() else { continue };
+        let records = n.map(|n| runs.record(&plan::free(tier, variant, n)));
+        let [Some(a), Some(b), Some(c)] = records else { continue };
+        let [p, least, most] = order([&front(a), &front(b), &front(c)]);
+        let z = |record: &Record| record.value(metrics::Z.at(3)).unwrap_or(f64::NAN);
+        let limit = z(c) + (z(c) - z(b)) / (p.exp2() - 1.0);
+        table = table.row(vec![
+            Cell::text(format!("`{variant}`")),
+            Cell::text(n.map(|n| n.to_string()).join(", ")),
+            Cell::text([a, b, c].map(|record| sig(z(record), 4)).join(", ")),
+            Cell::num(p, 2),
+            Cell::text(format!("{} to {}", sig(least, 2), sig(most, 2))),
+            Cell::num(limit, 3),
+        ]);
+        if variant == "modern" {
+            let because = "artificial viscosity, the place of a surface and what a wall sees of it are of \
+                           first order in dx: differences at least fall as the root of it, and faster than \
+                           the second order of the interior they cannot";
+            let bound = Bound::Within(0.5, 2.5);
+            let id = "dam_break.martin-moyce.modern.front.order";
+            let gate = Gate::new(id, "order of the front", bound, Evidence::Theory, because);
+            study = study.judge(gate, p);
+        }
+    }
+    study.block(table)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_order_is_found_from_three_curves() {
+        let with = |dx: f64| -> Curve {
+            (0..80).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t + dx.powf(1.5) * t)).collect()
+        };
+        let curves = [0.4, 0.2, 0.1].map(with);
+        let [p, least, most] = order([&curves[0], &curves[1], &curves[2]]);
+        assert!((p - 1.5).abs() < 1e-9 && least <= p && p <= most && most - least < 1e-9, "{p}");
+    }
+}

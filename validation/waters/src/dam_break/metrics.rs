@@ -1,0 +1,91 @@
+//! Metrics of a collapsing column.
+
+use base::record::MetricKey;
+
+/// Distance of curves from those of an experiment.
+pub struct Distance {
+    /// As released.
+    pub rms: MetricKey,
+    /// After the best shift of the clock.
+    pub rms_shifted: MetricKey,
+    /// That shift.
+    pub shift: MetricKey,
+}
+
+macro_rules! distance {
+    ($name:literal) => {{
+        let rms = "rms distance of {} over the points of the experiment";
+        let shifted =
+            concat!("the same with the clock of the computation put forward by ", $name, "_shift");
+        let shift = "that shift, of the least rms, in the experiment's unit of time";
+        Distance {
+            rms: MetricKey::new(concat!($name, "_rms"), "-", rms),
+            rms_shifted: MetricKey::new(concat!($name, "_rms_shifted"), "-", shifted),
+            shift: MetricKey::new(concat!($name, "_shift"), "-", shift),
+        }
+    }};
+}
+
+/// Of the front.
+pub const FRONT: Distance = distance!("front");
+/// Of the residual height.
+pub const HEIGHT: Distance = distance!("height");
+/// Of the levels.
+pub const LEVELS: Distance = distance!("levels");
+
+base::metrics! {
+    OUTSIDE = "outside" ["1"] "most particles more than dx/2 behind bottom and sides at any time";
+    OUTSIDE_END = "outside_end" ["1"] "those at the end";
+    OUTSIDE_DEPTH = "outside_depth" ["dx"] "the deepest that a particle was behind bottom or sides";
+    MACH = "mach" ["-"] "largest speed of a particle/c0";
+    DENSITY_MOST = "density_most" ["-"] "largest rho/rho_0 - 1";
+    DENSITY_LEAST = "density_least" ["-"] "least rho/rho_0 - 1";
+    MOMENTUM_GAP = "momentum_gap" ["-"]
+        "max |change of momentum - impulse of walls and gravity|/(M (g H)^(1/2))";
+    MASS_ERROR = "mass_error" ["-"]
+        "|mass of the water at the end/that at the start - 1|, of all particles, lost ones too";
+    Z = "z" ["-"] "Z = front from the back wall/a at T = t (2g/a)^(1/2)";
+    FRONT_SPEED = "front_speed" ["-"]
+        "slope of the least squares line of x/H over t (g/H)^(1/2) from 1 to 2.3, at the times of the \
+         experiment";
+    FRONT_SPEED_MEASURED = "front_speed_measured" ["-"] "the same of the experiment";
+    TONGUE = "tongue" ["-"]
+        "mean level at H4 for one (H/g)^(1/2) from when it first exceeds 0.02 H, over that of the \
+         experiment, less 1";
+    ARRIVAL = "arrival" ["-"]
+        "t (g/H)^(1/2) at which P1 first exceeds 0.1 rho g H; pressures are aligned by it";
+    ARRIVAL_MEASURED = "arrival_measured" ["-"]
+        "the same of the experiment, on the clock of its pressures";
+    NOISE = "pressure_noise" ["-"]
+        "rms distance of P2/(rho g H) from its running mean over 0.1 (H/g)^(1/2)";
+    NOISE_MEASURED = "pressure_noise_measured" ["-"] "the same of the experiment, sampled at 2 kHz";
+}
+
+macro_rules! four {
+    ($formula:expr, $($name:literal),+) => { [$(MetricKey::new($name, "-", $formula)),+] };
+}
+
+/// Distance of each level.
+pub const LEVEL_RMS: [MetricKey; 4] = four!(
+    "rms distance of the level/H from the mean of the series, as released",
+    "H1_rms",
+    "H2_rms",
+    "H3_rms",
+    "H4_rms"
+);
+/// Impulse on each sensor, at the end of its window.
+pub const IMPULSE: [MetricKey; 4] = four!(
+    "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured one, less 1",
+    "impulse_P1",
+    "impulse_P2",
+    "impulse_P3",
+    "impulse_P4"
+);
+/// Peak of each sensor.
+pub const PEAK: [MetricKey; 4] = four!(
+    "largest pressure/(rho g H), means over 0.01",
+    "peak_P1",
+    "peak_P2",
+    "peak_P3",
+    "peak_P4"
+);
