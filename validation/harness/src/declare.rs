@@ -354,8 +354,11 @@ pub struct CurveOf {
     /// The run.
     pub spec: RunSpec,
     /// Its points.
-    pub points: Box<dyn Fn(&Record) -> Vec<(f64, f64)> + Send + Sync>,
+    pub points: PointsOf,
 }
+
+/// Points of a curve from a record.
+pub type PointsOf = Box<dyn Fn(&Record) -> Vec<(f64, f64)> + Send + Sync>;
 
 impl Declaration {
     /// Every run that the studies need.

@@ -50,10 +50,7 @@ fn settings(record: &Record) -> RingSettings {
 }
 
 /// The records of these runs.
-fn records<'a>(
-    specs: impl IntoIterator<Item = RunSpec>,
-    runs: &'a Runs,
-) -> impl Iterator<Item = &'a Record> {
+fn records(specs: impl IntoIterator<Item = RunSpec>, runs: &Runs) -> impl Iterator<Item = &Record> {
     specs.into_iter().filter_map(|spec| runs.record(&spec))
 }
 

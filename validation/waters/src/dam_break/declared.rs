@@ -70,13 +70,16 @@ fn accuracy(tier: Tier) -> Accuracy {
     }
 }
 
+/// A change of the settings.
+type Set = fn(&mut DamSettings);
+
 fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
     let n = match tier {
         Tier::Quick => 10,
         Tier::Full => 20,
     };
-    let changes = |variant: &'static str, own: &[(&str, &'static str, fn(&mut DamSettings))]| {
-        let changed = |set: fn(&mut DamSettings)| {
+    let changes = |variant: &'static str, own: &[(&str, &'static str, Set)]| {
+        let changed = |set: Set| {
             let change = |s: &mut DamSettings| {
                 s.n = n;
                 set(s);

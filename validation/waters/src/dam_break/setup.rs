@@ -254,8 +254,7 @@ mod tests {
             Err(RunError::Unused { .. })
         ));
         // Without viscosity the predictor-corrector has no stable step.
-        let mut inviscid = DamSettings::default();
-        inviscid.alpha = 0.0;
+        let inviscid = DamSettings { alpha: 0.0, ..DamSettings::default() };
         let refused = Dam::new::<Seed<InterfaceWall>>(&inviscid, false);
         assert!(matches!(refused, Err(RunError::TimeStep { .. })));
     }

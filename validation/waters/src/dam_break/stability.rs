@@ -91,7 +91,8 @@ pub const USUAL: usize = 10;
 
 /// All of them.
 pub fn extremes(tier: Tier) -> impl Iterator<Item = Extreme> {
-    let rows: [(&str, fn(&mut DamSettings)); 5] = [
+    type Row = (&'static str, fn(&mut DamSettings));
+    let rows: [Row; 5] = [
         ("g x 1000", |s| (s.gravity, s.n) = (9810.0, 10)),
         ("a column one particle wide", |s| (s.width, s.height, s.n, s.tank) = (0.01, 0.2, 1, 0.5)),
         ("a tank filled to the brim", |s| {
