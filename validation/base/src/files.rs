@@ -5,8 +5,8 @@
 //! [`remove_unfinished`] before the process ends.
 //!
 //! ```no_run
-//! # fn main() -> Result<(), validation::files::FileError> {
-//! use validation::files::{CsvTable, OutputFolder};
+//! # fn main() -> Result<(), base::files::FileError> {
+//! use base::files::{CsvTable, OutputFolder};
 //! let folder = OutputFolder::create("out".as_ref())?;
 //! let mut profile = CsvTable::new(&["t[s]", "y[m]", "u[m/s]"])?;
 //! profile.numbers(&[0.1, 2.5e-5, 1.2e-4])?;

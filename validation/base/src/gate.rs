@@ -4,7 +4,7 @@
 //! metric that was not measured fail. What is not judged says so.
 //!
 //! ```
-//! use validation::gate::{Bound, Evidence, Gate, Verdict};
+//! use base::gate::{Bound, Evidence, Gate, Verdict};
 //! let gate = Gate::new(
 //!     "couette.l2.t0.1",
 //!     "l2.t0.1",

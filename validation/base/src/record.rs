@@ -5,13 +5,13 @@
 //! [`number`](crate::number)), a value that does not exist is a key that does not exist.
 //!
 //! ```
-//! use validation::record::{Metric, Record};
+//! use base::record::{Metric, Record};
 //! let mut record = Record::new("couette", "seed", serde_json::json!({"re": 0.5}), 1);
 //! let formula = "sqrt(sum (u - u_exact)^2 / sum u_exact^2)";
 //! record.metrics.insert("l2".into(), Metric::new(1e-3, "-", formula));
 //! let text = record.to_json()?;
 //! assert_eq!(Record::from_json(&text)?, record);
-//! # Ok::<(), validation::record::RecordError>(())
+//! # Ok::<(), base::record::RecordError>(())
 //! ```
 
 use std::collections::BTreeMap;

@@ -5,13 +5,13 @@
 //! A package without provenance or with a table that is not the one it describes is refused.
 //!
 //! ```
-//! use validation::reference::Reference;
+//! use base::reference::Reference;
 //! let peers = Reference::load("peers_channel")?;
 //! let table = peers.table("errors")?;
 //! let (codes, seconds) = (table.texts("code")?, table.optional("seconds")?);
 //! assert_eq!((codes[0], seconds[0]), ("JAX-SPH", Some(3.4)));
 //! assert_eq!(table.unit("seconds")?, "s");
-//! # Ok::<(), validation::reference::ReferenceError>(())
+//! # Ok::<(), base::reference::ReferenceError>(())
 //! ```
 
 use std::fmt::Write;

@@ -5,9 +5,9 @@
 //! No way in (text, JSON) leaves a struct with a value outside its range.
 //!
 //! ```
-//! use validation::settings::{self, Settings};
+//! use base::settings::{self, Settings};
 //!
-//! validation::settings! {
+//! base::settings! {
 //!     /// A channel between two plates.
 //!     pub struct Channel {
 //!         /// Reynolds number V L / nu

@@ -7,7 +7,7 @@
 //! and a state that diverged is exactly what one wants to look at.
 //!
 //! ```
-//! use validation::vtk::{Collection, Particles};
+//! use base::vtk::{Collection, Particles};
 //! let positions = [[0.0, 0.0], [1.0, 0.5]];
 //! let file = Particles::new(0.25, &positions)?
 //!     .scalar("p", &[1.0, 2.0])?
@@ -16,7 +16,7 @@
 //! let mut collection = Collection::default();
 //! collection.push(0.25, "particles_0001.vtp");
 //! # assert!(file.contains("<Verts>") && collection.to_xml().contains("timestep=\"0.25\""));
-//! # Ok::<(), validation::vtk::VtkError>(())
+//! # Ok::<(), base::vtk::VtkError>(())
 //! ```
 
 use std::fmt::Write;
