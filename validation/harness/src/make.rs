@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use base::{
     record::{Record, Status},
@@ -163,8 +164,8 @@ impl Told<'_> {
 
 /// Each thread takes the longest run that is left.
 fn side_by_side(jobs: &[&Job], told: &Told) -> Result<Vec<Record>, MakeError> {
-    let next = AtomicUsize::new(0);
-    let work = |_: rayon::BroadcastContext<'_>| {
+    let (next, made) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let work = || -> Result<Vec<Record>, MakeError> {
         let mut mine = Vec::new();
         while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
             if told.is_interrupted() {
@@ -174,8 +175,17 @@ fn side_by_side(jobs: &[&Job], told: &Told) -> Result<Vec<Record>, MakeError> {
         }
         Ok(mine)
     };
-    let made: Result<Vec<Vec<Record>>, MakeError> = rayon::broadcast(work).into_iter().collect();
-    Ok(made?.into_iter().flatten().collect())
+    // Not a broadcast, which would wait for threads of the pool that are busy with other things.
+    rayon::scope(|scope| {
+        for _ in 0..rayon::current_num_threads() {
+            scope.spawn(|_| {
+                let mine = work();
+                made.lock().unwrap_or_else(PoisonError::into_inner).push(mine);
+            });
+        }
+    });
+    let made = made.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(made.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
 /// One run at a time; cheap ones again in further rounds. A record is kept as soon as it is there, and
