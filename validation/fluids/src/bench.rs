@@ -198,7 +198,8 @@ pub const PAIRS: usize = 21;
 /// Of each variant.
 pub type Shares = [(&'static str, Share); 2];
 
-/// Of the flow that a plate drives. Not generic: its schemes are those of the variants, compiled in this crate.
+/// Of the flow that a plate drives. Not generic: its schemes are those of the variants, compiled in this
+/// crate.
 pub fn shares_of_couette(rows: usize, budget: f64) -> Result<Shares, RunError> {
     shares::<()>(rows, budget)
 }

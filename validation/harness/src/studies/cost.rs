@@ -239,9 +239,9 @@ fn peer_table(peers: &[Peer], points: &[Point]) -> Table {
         Column::num("our error", "-"),
         Column::num("times as fast", "-"),
     ];
-    let caption = "Other codes on the same work, against our cheapest setting with no more error, and against \
-                   the most accurate of ours at the same resolution. At equal error, points of ours count \
-                   whose finer levels have no more error either.";
+    let caption = "Other codes on the same work, against our cheapest setting with no more error, and \
+                   against the most accurate of ours at the same resolution. At equal error, points of ours \
+                   count whose finer levels have no more error either.";
     let mut table = Table::new(caption, columns);
     for peer in peers {
         let mut row = vec![
