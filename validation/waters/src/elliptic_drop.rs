@@ -563,7 +563,7 @@ mod tests {
 
     #[test]
     fn a_drop_that_makes_no_sense_is_refused() {
-        assert!(matches!(run("modern", |s| s.n = 2), Err(RunError::Setting(_))));
+        assert!(matches!(run("modern", |s| s.n = 2), Err(RunError::Settings { .. })));
         assert!(matches!(run("modern", |s| s.xsph = 0.1), Err(RunError::Unused { .. })));
         assert!(matches!(run("modern", |s| s.courant = 3.0), Err(RunError::TimeStep { .. })));
         assert!(matches!(run("modrn", |_| {}), Err(RunError::Variant { .. })));
