@@ -393,7 +393,7 @@ fn assignment(case: usize) -> impl Strategy<Value = String> {
 
 /// Settings that make a scene small, of those that the case has.
 fn small(case: &dyn Case, variant: &str) -> Vec<String> {
-    let all = ["rows=5", "columns=0", "layers=6", "n=6", "spacing=0.5"].map(String::from);
+    let all = ["rows=5", "columns=0", "layers=6", "n=8", "spacing=0.5"].map(String::from);
     let is_known = |set: &String| case.settings(variant, std::slice::from_ref(set)).is_ok();
     all.into_iter().filter(is_known).collect()
 }
@@ -406,7 +406,7 @@ fn no_settings_make_a_run_panic() {
         let set = prop::collection::vec(assignment(case), 0..4);
         (Just(case), any::<prop::sample::Index>(), set, any::<bool>())
     });
-    let config = ProptestConfig { cases: 500, ..ProptestConfig::default() };
+    let config = ProptestConfig { cases: 800, ..ProptestConfig::default() };
     // Runs of each case that were built and begun: a test of refusals alone would be none.
     let begun: Vec<AtomicUsize> = (0..count).map(|_| AtomicUsize::new(0)).collect();
     let mut runner = TestRunner::new(config);
