@@ -416,8 +416,12 @@ impl Table {
     }
 
     fn number(&self, row: usize, column: &str, text: &str) -> Result<f64, ReferenceError> {
-        let (table, column) = (self.name.clone(), column.into());
-        let not_a_number = || ReferenceError::NotANumber { table, row, column, text: text.into() };
+        let not_a_number = || ReferenceError::NotANumber {
+            table: self.name.clone(),
+            row,
+            column: column.into(),
+            text: text.into(),
+        };
         finite(text).ok_or_else(not_a_number)
     }
 
