@@ -270,6 +270,21 @@ pub struct Cost {
     pub alone_s: Vec<f64>,
 }
 
+impl Cost {
+    /// Median of the timings of a run that had the machine for itself \[s\]; `None` if it was not timed.
+    pub fn alone_median(&self) -> Option<f64> {
+        median(&self.alone_s)
+    }
+}
+
+/// The middle of some numbers, the mean of the two in the middle if their count is even.
+pub fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    (n > 0).then(|| 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]))
+}
+
 /// Columns of one length: a profile at one time, or a series in time.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

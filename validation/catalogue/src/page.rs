@@ -17,7 +17,7 @@ use report::{Block, Cell, Column, Counts, Page, Section, Status, Table, sig};
 
 /// The whole report.
 pub fn assemble(suite: &Suite) -> Page {
-    let counts = Counts::of(suite.judged().map(|j| status(&j.judgement.verdict)));
+    let counts = Counts::of(suite.judged().map(Judged::status));
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
     let lead = vec![
         "How wrong is a particle method, what does being less wrong cost, and how far can it be pushed \
@@ -75,19 +75,8 @@ fn provenance(m: &Manifest) -> String {
     )
 }
 
-/// From the verdict of a gate to how it is shown.
-pub fn status(verdict: &Verdict) -> Status {
-    match verdict {
-        Verdict::Pass => Status::Pass,
-        Verdict::Fail => Status::Fail,
-        Verdict::Reported | Verdict::NotMeasured => Status::Reported,
-        Verdict::Limitation(_) => Status::Limitation,
-        Verdict::ExpectedFailure => Status::ExpectedFailure,
-    }
-}
-
 fn worst<'a>(judged: impl Iterator<Item = &'a Judged>) -> Option<Status> {
-    judged.map(|j| status(&j.judgement.verdict)).max()
+    judged.map(Judged::status).max()
 }
 
 fn summary(suite: &Suite) -> Section {
@@ -177,7 +166,8 @@ fn gate_table<'a>(caption: &str, judged: impl Iterator<Item = &'a Judged>) -> Ta
         Column::text("verdict"),
     ];
     let mut table = Table::new(caption, columns);
-    for Judged { gate, judgement } in judged {
+    for judged in judged {
+        let Judged { gate, judgement } = judged;
         let value = judgement.value.map_or(Cell::text("not measured"), measured);
         let margin = judgement.margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
         let because = match &judgement.verdict {
@@ -191,7 +181,7 @@ fn gate_table<'a>(caption: &str, judged: impl Iterator<Item = &'a Judged>) -> Ta
             margin,
             Cell::text(evidence(gate.evidence)),
             Cell::text(because),
-            Cell::status(status(&judgement.verdict)),
+            Cell::status(judged.status()),
         ]);
     }
     table
@@ -278,7 +268,7 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
             Cell::count(cost.steps),
             Cell::sci(cost.pair_interactions as f64, 2),
             Cell::sci(cost.particle_rhs as f64, 2),
-            median(&cost.alone_s).map_or(Cell::text("–"), Cell::seconds),
+            cost.alone_median().map_or(Cell::text("–"), Cell::seconds),
             Cell::seconds(cost.cpu_s),
             Cell::seconds(cost.observing_s),
             Cell::num(cost.solver_bytes as f64 / 1e3, 4),
@@ -295,14 +285,6 @@ fn what(case: &dyn Case, spec: &RunSpec) -> String {
         words.push(format!("(bisects {})", bisect.setting));
     }
     words.join(" ")
-}
-
-/// The middle of the timings.
-fn median(seconds: &[f64]) -> Option<f64> {
-    let mut seconds = seconds.to_vec();
-    seconds.sort_by(f64::total_cmp);
-    let n = seconds.len();
-    (n > 0).then(|| 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]))
 }
 
 fn references_section() -> Section {

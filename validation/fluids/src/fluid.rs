@@ -4,13 +4,12 @@
 use nalgebra::Vector2;
 use solver::{
     BodyForce, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
-    DensityDiffusion, Kernel, Particle, Pressure, ShiftAdvection, Shifting, Smoothing, Tait, Term,
-    Viscosity,
+    DensityDiffusion, Kernel, Pressure, ShiftAdvection, Shifting, Smoothing, Tait, Term, Viscosity,
 };
 
 use base::{
     number,
-    record::{self, MetricKey, Record},
+    record::{MetricKey, Record},
 };
 use harness::case::RunError;
 use maths::theory::Stepping;
@@ -44,14 +43,6 @@ pub fn describe(numbers: &[(&str, f64)], words: &[(&str, &str)], record: &mut Re
     let numbers = numbers.iter().map(|(name, value)| (name.to_string(), number::json(*value)));
     record.numerics.extend(numbers);
     record.numerics.extend(words.iter().map(|(name, word)| (name.to_string(), (*word).into())));
-}
-
-/// Digest of places, velocities and densities at the end of a run.
-pub fn digest(particles: &[Particle]) -> String {
-    let numbers =
-        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
-    let state: Vec<[f64; 5]> = particles.iter().map(numbers).collect();
-    record::digest(state.as_flattened())
 }
 
 /// Columns of a table of runs that show metrics: head, unit, metric, how its value is shown.

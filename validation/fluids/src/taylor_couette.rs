@@ -224,7 +224,7 @@ fn run<W: CylinderWall>(
     if status == Status::Completed {
         measure(&cylinders, &simulation, &mut record);
     }
-    record.state = Some(fluid::digest(&simulation.particles()));
+    record.state = Some(harness::simulate::state(&simulation.particles()));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }

@@ -43,7 +43,7 @@ pub fn run(
                 }
                 case.is_stable(&run)
             }
-            Err(error @ (RunError::File(_) | RunError::Frame(_) | RunError::Reference(_))) => {
+            Err(error) if !error.is_refusal() => {
                 *failed.borrow_mut() = Some(error);
                 false
             }

@@ -78,16 +78,24 @@ pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
 }
 
 /// The variant of that name, or an error that lists the names.
-pub fn find<'a, V>(
+pub fn find<V>(
     case: &'static str,
-    variants: &'a [V],
+    mut variants: Vec<V>,
     name: &str,
     name_of: impl Fn(&V) -> &'static str,
-) -> Result<&'a V, RunError> {
-    variants.iter().find(|v| name_of(v) == name).ok_or_else(|| {
-        let known: Vec<_> = variants.iter().map(name_of).collect();
-        RunError::Variant { case, name: name.into(), nearest: nearest(&known, name), known }
-    })
+) -> Result<V, RunError> {
+    match variants.iter().position(|v| name_of(v) == name) {
+        Some(place) => Ok(variants.swap_remove(place)),
+        None => {
+            let known: Vec<_> = variants.iter().map(name_of).collect();
+            Err(RunError::Variant {
+                case,
+                name: name.into(),
+                nearest: nearest(&known, name),
+                known,
+            })
+        }
+    }
 }
 
 /// The case of that name among these.

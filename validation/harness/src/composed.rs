@@ -90,15 +90,14 @@ impl<T: Settings> Composed<T> {
     /// # Errors
     /// If there is no such variant or setting, or a value is out of range.
     pub fn settings_of(&self, variant: &str, set: &[String]) -> Result<T, RunError> {
-        let variants = (self.variants)();
-        case::find(self.name, &variants, variant, |v| v.variant.name)?.settings(set)
+        self.composition(variant)?.settings(set)
     }
 
     /// The run of a variant with its default settings, changed by `set`. A name that no variant has, or a
     /// value out of range, makes a run that is refused, with the reason in its record.
     pub fn spec(&self, variant: &str, set: impl FnOnce(&mut T)) -> RunSpec {
         let mut settings = T::default();
-        if let Some(chosen) = (self.variants)().iter().find(|v| v.variant.name == variant) {
+        if let Ok(chosen) = self.composition(variant) {
             (chosen.adjust)(&mut settings);
         }
         set(&mut settings);
@@ -110,23 +109,23 @@ impl<T: Settings> Composed<T> {
         Planned::new(self.spec(variant, set))
     }
 
+    /// The composition of that name.
+    fn composition(&self, variant: &str) -> Result<Composition<T>, RunError> {
+        case::find(self.name, (self.variants)(), variant, |v| v.variant.name)
+    }
+
     /// The composition of a run and its settings.
     fn resolve(&self, spec: &RunSpec) -> Result<(Composition<T>, T), RunError> {
-        let variants = (self.variants)();
-        let name =
-            case::find(self.name, &variants, &spec.variant, |v| v.variant.name)?.variant.name;
-        let chosen = variants.into_iter().find(|v| v.variant.name == name);
+        let chosen = self.composition(&spec.variant)?;
         let settings: T = serde_json::from_value(spec.settings.clone()).map_err(|reason| {
             RunError::Settings { case: self.name.into(), reason: reason.to_string() }
         })?;
         settings.validate()?;
-        // Found just before.
-        let chosen = chosen.ok_or(RunError::NoRules { case: self.name.into() })?;
         let mut defaults = T::default();
         (chosen.adjust)(&mut defaults);
         let is_changed = |key: &&&str| settings.get(key) != defaults.get(key);
         if let Some(key) = chosen.lacks.iter().find(is_changed) {
-            let (key, variant) = (key.to_string(), name.to_string());
+            let (key, variant) = (key.to_string(), spec.variant.clone());
             return Err(RunError::Unused { key, variant });
         }
         Ok((chosen, settings))

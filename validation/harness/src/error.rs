@@ -99,3 +99,11 @@ pub enum RunError {
     #[error(transparent)]
     Frame(#[from] FrameError),
 }
+
+impl RunError {
+    /// Was the run refused for what it asks? Else a file or a reference is in the way, which is no property
+    /// of the run.
+    pub fn is_refusal(&self) -> bool {
+        !matches!(self, Self::File(_) | Self::Frame(_) | Self::Reference(_))
+    }
+}

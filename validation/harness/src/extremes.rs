@@ -1,8 +1,8 @@
 //! Settings far outside of the usual as a table: what is extreme, what must come, what came. Each entry has
 //! a criterion of its own; where a run cannot succeed, the criterion is that it says so.
 
-use base::gate::{Bound, Evidence, Gate, Verdict};
-use report::{Cell, Column, Status, Table};
+use base::gate::{Bound, Evidence, Gate};
+use report::{Cell, Column, Table};
 
 use crate::{runs::Judged, study::Study};
 
@@ -54,19 +54,9 @@ pub fn study(id: &str, title: &str, lead: &str, entries: Vec<Entry>) -> Study {
         let expected = format!("{} {}: {}", gate.metric, gate.bound, gate.because);
         let judged = Judged::new(gate, Some(value));
         let [what, setting, expected, found] = [what, setting, expected, found].map(Cell::text);
-        let verdict = Cell::status(status(&judged.judgement.verdict));
+        let verdict = Cell::status(judged.status());
         table = table.row(vec![what, setting, expected, found, verdict]);
         study.judged.push(judged);
     }
     study.block(table)
-}
-
-fn status(verdict: &Verdict) -> Status {
-    match verdict {
-        Verdict::Pass => Status::Pass,
-        Verdict::Fail => Status::Fail,
-        Verdict::Reported | Verdict::NotMeasured => Status::Reported,
-        Verdict::Limitation(_) => Status::Limitation,
-        Verdict::ExpectedFailure => Status::ExpectedFailure,
-    }
 }

@@ -116,24 +116,25 @@ pub fn make(jobs: &[Job], making: &Making) -> Result<Made, MakeError> {
     let (timed, mut rest): (Vec<&Job>, Vec<&Job>) =
         missing.into_iter().partition(|job| job.planned.timed);
     rest.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
-    let told = Told { making, all: timed.len() + rest.len(), done: AtomicUsize::new(0) };
-    for record in side_by_side(&rest, &told)? {
+    let batch = Batch { making, all: timed.len() + rest.len(), done: AtomicUsize::new(0) };
+    for record in side_by_side(&rest, &batch)? {
         made.records.insert(record.key(), record);
     }
-    for record in alone(&timed, &told)? {
+    for record in alone(&timed, &batch)? {
         made.records.insert(record.key(), record);
     }
-    made.interrupted = told.is_interrupted();
+    made.interrupted = batch.is_interrupted();
     Ok(made)
 }
 
-struct Told<'a> {
+/// The runs that are being made, and who is told of each.
+struct Batch<'a> {
     making: &'a Making<'a>,
     all: usize,
     done: AtomicUsize,
 }
 
-impl Told<'_> {
+impl Batch<'_> {
     fn is_interrupted(&self) -> bool {
         self.making.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
@@ -163,15 +164,15 @@ impl Told<'_> {
 }
 
 /// Each thread takes the longest run that is left.
-fn side_by_side(jobs: &[&Job], told: &Told) -> Result<Vec<Record>, MakeError> {
+fn side_by_side(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, MakeError> {
     let (next, made) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let work = || -> Result<Vec<Record>, MakeError> {
         let mut mine = Vec::new();
         while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-            if told.is_interrupted() {
+            if batch.is_interrupted() {
                 break;
             }
-            mine.extend(told.done(job, told.run(job)?)?);
+            mine.extend(batch.done(job, batch.run(job)?)?);
         }
         Ok(mine)
     };
@@ -190,21 +191,21 @@ fn side_by_side(jobs: &[&Job], told: &Told) -> Result<Vec<Record>, MakeError> {
 
 /// One run at a time; cheap ones again in further rounds. A record is kept as soon as it is there, and
 /// again with the timings of a later round.
-fn alone(jobs: &[&Job], told: &Told) -> Result<Vec<Record>, MakeError> {
-    let again_below = timed_again_below(told.making.tier);
+fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, MakeError> {
+    let again_below = timed_again_below(batch.making.tier);
     let mut records: Vec<Record> = Vec::new();
     for job in jobs {
-        if told.is_interrupted() {
+        if batch.is_interrupted() {
             return Ok(records);
         }
-        let mut record = told.run(job)?;
+        let mut record = batch.run(job)?;
         record.cost.alone_s = vec![record.cost.cpu_s];
-        records.extend(told.done(job, record)?);
+        records.extend(batch.done(job, record)?);
     }
     for _ in 1..REPETITIONS {
         for (job, record) in jobs.iter().zip(&mut records) {
-            if !told.is_interrupted() && record.cost.alone_s[0] < again_below {
-                let again = told.run(job)?;
+            if !batch.is_interrupted() && record.cost.alone_s[0] < again_below {
+                let again = batch.run(job)?;
                 if !matches!(again.status, Status::Interrupted { .. }) {
                     record.cost.alone_s.push(again.cost.cpu_s);
                 }
@@ -213,7 +214,7 @@ fn alone(jobs: &[&Job], told: &Told) -> Result<Vec<Record>, MakeError> {
     }
     let again = records.iter().filter(|record| record.cost.alone_s.len() > 1);
     again
-        .filter_map(|record| told.making.store.map(|store| store.write(record)))
+        .filter_map(|record| batch.making.store.map(|store| store.write(record)))
         .collect::<Result<Vec<_>, _>>()?;
     Ok(records)
 }
@@ -229,10 +230,8 @@ pub fn run(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record,
         Task::Bisect(bisect) => bisect::run(case, spec, bisect, context),
     };
     match record {
-        Err(error @ (RunError::File(_) | RunError::Frame(_) | RunError::Reference(_))) => {
-            Err(error)
-        }
-        Err(refusal) => Ok(Record::refused(spec, refusal.to_string())),
+        Err(refusal) if refusal.is_refusal() => Ok(Record::refused(spec, refusal.to_string())),
+        Err(error) => Err(error),
         Ok(record) => Ok(record.of(spec)),
     }
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
 use base::{
-    gate::{Gate, Judgement},
+    gate::{Gate, Judgement, Verdict},
     record::{Record, Status},
     spec::{RunKey, RunSpec},
 };
@@ -45,6 +45,18 @@ impl Judged {
     pub fn new(gate: Gate, value: Option<f64>) -> Self {
         let judgement = gate.judge(value);
         Self { gate, judgement }
+    }
+
+    /// How the verdict is shown.
+    pub fn status(&self) -> report::Status {
+        use report::Status;
+        match self.judgement.verdict {
+            Verdict::Pass => Status::Pass,
+            Verdict::Fail => Status::Fail,
+            Verdict::Reported | Verdict::NotMeasured => Status::Reported,
+            Verdict::Limitation(_) => Status::Limitation,
+            Verdict::ExpectedFailure => Status::ExpectedFailure,
+        }
     }
 }
 

@@ -6,9 +6,7 @@ pub mod shear_wave;
 pub mod stability;
 pub mod wave;
 
-use base::record;
 use harness::case::Case;
-use solver::Particle;
 
 /// The cases of the family.
 pub const CASES: &[&dyn Case] = &[
@@ -17,12 +15,6 @@ pub const CASES: &[&dyn Case] = &[
     &stability::RESTING_BOX,
     &extremes::EXTREMES,
 ];
-
-/// Digest of places, velocities and densities.
-fn state(particles: &[Particle]) -> String {
-    let values = |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
-    record::digest(particles.iter().map(values).collect::<Vec<_>>().as_flattened())
-}
 
 #[cfg(test)]
 mod tests {

@@ -170,7 +170,9 @@ fn of_records(old: &BTreeMap<String, Record>, new: &BTreeMap<String, Record>) ->
             );
             add("work", name, words);
         }
-        let (Some(before), Some(after)) = (median(was), median(is)) else { continue };
+        let (Some(before), Some(after)) = (from.alone_median(), to.alone_median()) else {
+            continue;
+        };
         let is_other = (after / before).ln().abs() > NOTABLE.ln();
         if is_other && was.manifest.is_same_machine(&is.manifest) {
             let words = format!("{before:.4} to {after:.4} s, {:.3} times", after / before);
@@ -178,12 +180,4 @@ fn of_records(old: &BTreeMap<String, Record>, new: &BTreeMap<String, Record>) ->
         }
     }
     changes
-}
-
-/// Median of the timings of a run that had the machine for itself \[s\].
-fn median(record: &Record) -> Option<f64> {
-    let mut seconds = record.cost.alone_s.clone();
-    seconds.sort_by(f64::total_cmp);
-    let n = seconds.len();
-    (n > 0).then(|| 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]))
 }

@@ -38,9 +38,9 @@ use base::files::FileError;
 use base::manifest::{Known, Source, UNKNOWN, tell_source};
 use base::record::RecordError;
 use clap::{CommandFactory, Parser};
-use harness::case::{Case, RunError};
-use harness::make::MakeError;
-use harness::store::StoreError;
+use harness::case::{Case, RunError, Tier};
+use harness::make::{self, Job, Made, MakeError, Making};
+use harness::store::{Store, StoreError};
 use validation::cases;
 
 use arguments::{Arguments, Command};
@@ -156,6 +156,30 @@ impl World {
             }
         }
         Ok(chosen)
+    }
+
+    /// Makes the runs that a store lacks, on a pool of so many threads, with a bar.
+    fn make(
+        &self,
+        jobs: &[Job],
+        tier: Tier,
+        store: Option<&Store>,
+        reuse_other: bool,
+        threads: Option<u16>,
+    ) -> Result<Made, Failure> {
+        let bar = progress::Bar::new(1);
+        let show = |done: usize, all: usize, name: &str| bar.show_runs(done, all, name);
+        let making = Making {
+            tier,
+            store,
+            sources: &self.sources,
+            reuse_other,
+            progress: Some(&show),
+            interrupt: Some(self.interrupt),
+        };
+        let made = on_threads(threads, || Ok(make::make(jobs, &making)?));
+        bar.clear();
+        made
     }
 
     fn is_interrupted(&self) -> bool {

@@ -8,12 +8,12 @@ use anyhow::Context as _;
 use base::{record::Status, spec::RunSpec};
 use harness::{
     case::{Case, Planned, Tier},
-    make::{Job, Making, make},
+    make::Job,
     store::Store,
 };
 use validation::cases;
 
-use super::{Exit, Failure, Outcome, World, arguments, on_threads, output, progress::Bar};
+use super::{Exit, Failure, Outcome, World, arguments, output};
 
 pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     let Some(path) = &arguments.store else {
@@ -26,19 +26,8 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     };
     let jobs = specs.into_iter().map(job).collect::<Result<Vec<Job>, Failure>>()?;
     let store = Store::open(path)?;
-    let bar = Bar::new(1);
-    let show = |done: usize, all: usize, name: &str| bar.show_runs(done, all, name);
-    let making = Making {
-        tier: Tier::Quick, // nothing is timed here
-        store: Some(&store),
-        sources: &world.sources,
-        reuse_other: false,
-        progress: Some(&show),
-        interrupt: Some(world.interrupt),
-    };
-    let made = on_threads(arguments.threads, || Ok(make(&jobs, &making)?));
-    bar.clear();
-    let made = made?;
+    let tier = Tier::Quick; // nothing is timed here
+    let made = world.make(&jobs, tier, Some(&store), false, arguments.threads)?;
     let ended = |of: fn(&Status) -> bool| made.records.values().filter(|r| of(&r.status)).count();
     let words = format!(
         "{} runs: {} completed, {} diverged, {} refused; {} of them were in the store before",

@@ -4,14 +4,14 @@ use ::report;
 use harness::{
     case::Case,
     declare::StepLimit,
-    make::{Job, Making, make},
+    make::Job,
     planned::Planned,
     runs::{JudgedRun, Runs},
     studies::limit_of_theory,
 };
 use serde_json::{Value, json};
 
-use super::{Exit, Failure, Outcome, World, arguments, on_threads, output, progress::Bar};
+use super::{Exit, Failure, Outcome, World, arguments, output};
 
 /// A declared limit and the case that it is of.
 struct Declared {
@@ -36,19 +36,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         planned: Planned::new(limit.spec.clone()),
     };
     let jobs: Vec<Job> = declared.iter().map(job).collect();
-    let bar = Bar::new(1);
-    let show = |done: usize, all: usize, name: &str| bar.show_runs(done, all, name);
-    let making = Making {
-        tier: arguments.tier.into(),
-        store: None,
-        sources: &world.sources,
-        reuse_other: false,
-        progress: Some(&show),
-        interrupt: Some(world.interrupt),
-    };
-    let made = on_threads(arguments.threads, || Ok(make(&jobs, &making)?));
-    bar.clear();
-    let mut made = made?;
+    let mut made = world.make(&jobs, arguments.tier.into(), None, false, arguments.threads)?;
     if made.interrupted {
         return Err(Failure::interrupted("no limit is known"));
     }

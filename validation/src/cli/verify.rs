@@ -7,7 +7,7 @@ use base::record::Status;
 use harness::{
     case::{self, Case, Tier},
     gate_power,
-    make::{Made, Making},
+    make::{self, Made},
     store::{Found, Store},
     suite::{self, Suite},
 };
@@ -15,8 +15,7 @@ use harness::{
 use super::{
     Exit, Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
-    on_threads, output,
-    progress::Bar,
+    output,
 };
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
@@ -85,38 +84,20 @@ pub fn run(
     threads: Option<u16>,
     world: &World,
 ) -> Result<Suite, Failure> {
-    let bar = Bar::new(1);
-    let show = |done: usize, all: usize, name: &str| bar.show_runs(done, all, name);
+    let plans = suite::plans(cases, tier);
     if reuse.fresh {
-        forget(cases, tier, store)?;
+        for planned in plans.iter().flat_map(|(_, plan)| plan) {
+            store.remove(&planned.spec)?;
+        }
     }
-    let making = Making {
-        tier,
-        store: Some(store),
-        sources: &world.sources,
-        reuse_other: reuse.any_build,
-        progress: Some(&show),
-        interrupt: Some(world.interrupt),
-    };
-    let suite = on_threads(threads, || Ok(suite::run(cases, &making)?));
-    bar.clear();
-    let suite = suite?;
+    let jobs = make::jobs(plans.clone());
+    let made = world.make(&jobs, tier, Some(store), reuse.any_build, threads)?;
     if world.is_interrupted() {
         return Err(Failure::interrupted(
             "nothing is judged; what was run is kept, and the same command goes on with the rest",
         ));
     }
-    Ok(suite)
-}
-
-/// Removes the records of a plan from a store.
-fn forget(cases: &[&'static dyn Case], tier: Tier, store: &Store) -> Result<(), Failure> {
-    for (_, plan) in suite::plans(cases, tier) {
-        for planned in plan {
-            store.remove(&planned.spec)?;
-        }
-    }
-    Ok(())
+    Ok(suite::judge(plans, tier, made))
 }
 
 /// Judges what a store has, and runs nothing.

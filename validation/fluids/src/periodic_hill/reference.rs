@@ -1,6 +1,7 @@
 //! The finite-element flow of this Reynolds number, and its field between the stations.
 
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use nalgebra::Vector2;
 
@@ -13,6 +14,8 @@ use maths::geometry::Hill;
 
 /// Read and checked once: 25 000 rows, which every run and every figure asks for.
 static PACKAGE: OnceLock<Package> = OnceLock::new();
+/// What was taken from them, by the bits of the Reynolds number: every plan asks for it, too.
+static KNOWN: Mutex<BTreeMap<u64, Option<Reference>>> = Mutex::new(BTreeMap::new());
 
 /// A profile across one section.
 #[derive(Clone, Debug, Default)]
@@ -46,6 +49,17 @@ impl Reference {
         if settings.crest == 0.0 {
             return Ok(None);
         }
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(reference) = known.get(&settings.re.to_bits()) {
+            return Ok(reference.clone());
+        }
+        let reference = Self::read(settings.re)?;
+        known.insert(settings.re.to_bits(), reference.clone());
+        Ok(reference)
+    }
+
+    /// The rows of a Reynolds number.
+    fn read(reynolds: f64) -> Result<Option<Self>, ReferenceError> {
         let package = match PACKAGE.get() {
             Some(package) => package,
             None => {
@@ -55,7 +69,7 @@ impl Reference {
         };
         let rows = |table: &Table| -> Result<Vec<usize>, ReferenceError> {
             let re = table.numbers("re")?;
-            Ok((0..re.len()).filter(|&k| re[k] == settings.re).collect())
+            Ok((0..re.len()).filter(|&k| re[k] == reynolds).collect())
         };
         let summary = package.table("summary")?;
         let kept = rows(summary)?;

@@ -170,7 +170,7 @@ where
         }
     }
     record.profiles.insert("series".into(), profile(&monitor.series));
-    record.state = Some(fluid::digest(&simulation.particles()));
+    record.state = Some(harness::simulate::state(&simulation.particles()));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }

@@ -177,7 +177,7 @@ pub fn run_scene<S: Scheme<Extra = ()>>(
         }
     }
     record.profiles.insert("series".into(), profile(&series));
-    record.state = Some(fluid::digest(&simulation.particles()));
+    record.state = Some(harness::simulate::state(&simulation.particles()));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }

@@ -1,7 +1,7 @@
 //! Error against cost: which settings reach an error with the least work, in seconds of a run that had the
 //! machine for itself, and in pair interactions, which no other program can disturb.
 
-use base::record::Status;
+use base::record::{Status, median};
 use report::{
     Axis, Cell, Colour, Column, Dash, Figure, Layer, Legend, Plot, Series, Shape, Table, seconds,
 };
@@ -36,8 +36,7 @@ pub struct Point {
 impl Point {
     /// Median of the timings \[s\]; NaN if the run was not timed.
     pub fn median(&self) -> f64 {
-        let n = self.seconds.len();
-        if n == 0 { f64::NAN } else { 0.5 * (self.seconds[(n - 1) / 2] + self.seconds[n / 2]) }
+        median(&self.seconds).unwrap_or(f64::NAN)
     }
 
     /// Fastest and slowest \[s\].

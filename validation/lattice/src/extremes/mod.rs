@@ -207,7 +207,7 @@ fn drive<S: Scheme<Extra = ()>>(
     record.numerics.insert("dt [s]".into(), dt.into());
     record.numerics.insert("kernel".into(), S::Kernel::NAME.into());
     record.numerics.insert("integrator".into(), <S::Integrator as Integrator<()>>::NAME.into());
-    record.state = Some(crate::state(&simulation.particles()));
+    record.state = Some(harness::simulate::state(&simulation.particles()));
     Ok(record)
 }
 

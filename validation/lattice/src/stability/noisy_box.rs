@@ -271,7 +271,8 @@ impl<K: Kernel> NoisyBox<K> {
             status = Status::Completed;
         }
         let grew = matches!(status, Status::Diverged { .. }) || watch.growth.grew();
-        let (energy, state) = (energy(&simulation) / start, crate::state(&simulation.particles()));
+        let (energy, state) =
+            (energy(&simulation) / start, harness::simulate::state(&simulation.particles()));
         Ok(Measured { status, cost, grew, energy, wave_growth, state })
     }
 
