@@ -206,10 +206,10 @@ impl<S: Scheme> Simulation<S> {
         &self.engine.kernel
     }
 
-    /// The terms of dv/dt, to be changed between stretches: a force that drives the flow, say. They are no
-    /// part of a checkpoint.
-    pub fn forces_mut(&mut self) -> &mut S::Forces {
-        &mut self.engine.terms.0
+    /// The forces and the drift, to be changed between stretches: a force that drives the flow, say. They are
+    /// no part of a checkpoint.
+    pub fn terms_mut(&mut self) -> &mut (S::Forces, S::Drift) {
+        &mut self.engine.terms
     }
 
     /// What these terms by themselves do to each particle of [`ParticleData::fluid`] now, after

@@ -2,6 +2,8 @@
 //! right-hand side.
 
 pub mod new_case;
+pub mod new_term;
+pub mod new_wall;
 pub mod spoil;
 
 use nalgebra::Vector2;

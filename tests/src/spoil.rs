@@ -4,14 +4,13 @@
 //! that fault: the same particles and numbers, its types wrapped. With the neutral fault the wrapped
 //! scene has the bits of the healthy one, which is checked.
 
-use fluids::channel::{Arrangement, Setup};
 use maths::theory::{Stepping, time_step};
 use nalgebra::Vector2;
 use solver::{
     BodyForce, Compose, Continuity, DensityDiffusion, Engine, EquationOfState, Evolved,
-    Fault as Lost, Ghosts, Integrator, InterfaceWall, Kernel, Leapfrog, Numbers, Open, Particle,
-    Physics, PredictorCorrector, Pressure, Rate, Scene, Shifting, Tait, Term, Viscosity,
-    lane::Lane, particles::Common, physics::State, terms::Pair, walls::Walls,
+    Fault as Lost, Ghosts, Integrator, InterfaceWall, Kernel, Leapfrog, Numbers, Open, Physics,
+    PredictorCorrector, Pressure, Rate, Scene, Shifting, Tait, Term, Viscosity, lane::Lane,
+    particles::Common, physics::State, terms::Pair, walls::Walls,
 };
 
 /// What is wrong, and by how much: factors, where not said otherwise.
@@ -51,7 +50,7 @@ pub struct Fault {
     pub wall_particles: f64,
     /// Of the continuity equation of wall particles.
     pub wall_rows: f64,
-    /// Share of the skin that a particle may move before rows are rebuilt; not a factor.
+    /// Share of the skin that a particle may move before lists are rebuilt; not a factor.
     pub skin_share: f64,
     /// The integrator takes its other form, see [`Spoilable::Spoiled`] of integrators.
     pub integrator: bool,
@@ -172,17 +171,6 @@ impl Walls<()> for SpoiledRows {
     type Terms = Spoiled<Continuity>;
     fn terms(&self) -> Self::Terms {
         self.0.clone()
-    }
-}
-
-impl Arrangement for SpoiledRows {
-    const NAME: &'static str = InterfaceWall::NAME;
-    const USES: &'static [&'static str] = InterfaceWall::USES;
-    fn walls(setup: &Setup) -> Self {
-        InterfaceWall::walls(setup).spoiled(&Fault::NONE, setup.h)
-    }
-    fn particles<K: Kernel>(setup: &Setup) -> Vec<Particle> {
-        InterfaceWall::particles::<K>(setup)
     }
 }
 

@@ -5,16 +5,21 @@
 use base::{gate::Gate, record::Record};
 use harness::{
     case::{Case, Planned, Tier},
+    method::{Standard, scene},
     runner::Context,
 };
+use maths::metrics::budget::Itemised;
 use nalgebra::Vector2;
 use rayon::prelude::*;
 use solver::{
-    BodyForce, Compose, Continuity, CubicSpline, InterfaceWall, Leapfrog, PredictorCorrector,
-    Scene, WendlandC2, Xsph, walls::Walls,
+    ArtificialStress, BodyForce, Compose, Continuity, CubicSpline, InterfaceWall, Leapfrog,
+    PredictorCorrector, Scene, Scheme, WendlandC2, Xsph, walls::Walls,
 };
 use std::path::Path;
-use waters::dam_break::{self, DAM_BREAK, Dam, DamSettings, Diffusion, Modern, Seed, Water};
+use waters::{
+    dam_break::{self, DAM_BREAK, Dam, DamSettings},
+    water::{Diffusion, Modern, Seed, Water, WaterMethod, method},
+};
 
 /// Walls whose particles keep the density, and so the pressure 0, that they were given.
 #[derive(Clone, Copy, Debug)]
@@ -26,19 +31,14 @@ impl Walls<()> for Frozen {
 }
 
 type ModernFrozen = Compose<WendlandC2, Water, (Continuity, Diffusion), Frozen, Leapfrog>;
-type SeedFrozen = Compose<
-    CubicSpline,
-    Water<solver::ArtificialStress>,
-    (Continuity, Xsph),
-    Frozen,
-    PredictorCorrector,
->;
+type SeedFrozen =
+    Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), Frozen, PredictorCorrector>;
 
 /// The same scene with walls of another type.
 fn frozen<A, B>(scene: Scene<A>) -> Scene<B>
 where
-    A: solver::Scheme<Extra = ()>,
-    B: solver::Scheme<Extra = (), Forces = A::Forces, Drift = A::Drift, Walls = Frozen>,
+    A: Scheme<Extra = ()>,
+    B: Scheme<Extra = (), Forces = A::Forces, Drift = A::Drift, Walls = Frozen>,
 {
     Scene {
         h: scene.h,
@@ -64,23 +64,47 @@ fn settings(planned: &Planned) -> DamSettings {
     serde_json::from_value(planned.spec.settings.clone()).expect("planned settings")
 }
 
-fn modern() -> (Planned, Dam) {
-    let planned = planned("modern");
-    let dam = Dam::new::<Modern>(&settings(&planned), false).expect("sound settings");
-    (planned, dam)
+/// A planned run, its setup, and the method that makes its healthy scene, the scheme `S`.
+struct Healthy {
+    planned: Planned,
+    method: WaterMethod,
+    dam: Dam,
 }
 
-fn seed(spoil: fn(&mut DamSettings)) -> (Planned, Dam) {
-    let planned = planned("seed");
-    let mut settings = settings(&planned);
-    spoil(&mut settings);
-    let dam = Dam::new::<Seed<InterfaceWall>>(&settings, false).expect("sound settings");
-    (planned, dam)
+impl Healthy {
+    fn of<S>(variant: &str, spoil: fn(&mut DamSettings)) -> Self
+    where
+        S: Standard<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>>,
+    {
+        let (planned, method) = (planned(variant), method::<S>());
+        let mut settings = settings(&planned);
+        spoil(&mut settings);
+        let dam = Dam::new(&settings, &method, &Context::default()).expect("sound settings");
+        Self { planned, method, dam }
+    }
+
+    fn scene<S: Standard<Extra = ()>>(&self) -> Scene<S> {
+        scene::<S>(self.dam.parts(&self.method, &Context::default()))
+    }
+
+    fn run<S>(self, scene: Scene<S>) -> (Planned, Record)
+    where
+        S: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>>,
+    {
+        let Self { planned, method, dam } = self;
+        let simulation = Box::new(scene.build().expect("a scene"));
+        let variant = &planned.spec.variant;
+        let record = dam_break::measured(&dam, &method, variant, simulation, &Context::default());
+        (planned, record.expect("a run"))
+    }
 }
 
-fn run<S: dam_break::Watched>(dam: &Dam, variant: &str, scene: Scene<S>) -> Record {
-    let context = Context::default();
-    dam_break::run_scene(dam, variant, "as spoiled", scene, &context).expect("a run")
+fn modern() -> Healthy {
+    Healthy::of::<Modern>("modern", |_| {})
+}
+
+fn seed(spoil: fn(&mut DamSettings)) -> Healthy {
+    Healthy::of::<Seed<InterfaceWall>>("seed", spoil)
 }
 
 /// A run with a fault, and the plan whose gates judge it.
@@ -88,33 +112,31 @@ type Mutant = (&'static str, fn() -> (Planned, Record));
 
 const MUTANTS: [Mutant; 5] = [
     ("gravity x 1.03", || {
-        let (planned, dam) = modern();
-        let mut scene = dam.scene::<Modern>();
+        let healthy = modern();
+        let mut scene = healthy.scene::<Modern>();
         scene.forces.2 = BodyForce(scene.forces.2.0 * 1.03);
-        let record = run(&dam, "modern", scene);
-        (planned, record)
+        healthy.run(scene)
     }),
     ("XSPH with the wrong sign", || {
-        let (planned, dam) = seed(|s| s.xsph = -0.5);
-        let record = run(&dam, "seed", dam.scene::<Seed<InterfaceWall>>());
-        (planned, record)
+        let spoiled = seed(|s| s.xsph = -0.5);
+        let scene = spoiled.scene::<Seed<InterfaceWall>>();
+        spoiled.run(scene)
     }),
     ("one-sided pressure at the wall", || {
-        let (planned, dam) = modern();
-        let record = run(&dam, "modern", frozen::<_, ModernFrozen>(dam.scene::<Modern>()));
-        (planned, record)
+        let healthy = modern();
+        let scene = frozen::<_, ModernFrozen>(healthy.scene::<Modern>());
+        healthy.run(scene)
     }),
     ("wall density not evolved", || {
-        let (planned, dam) = seed(|_| {});
-        let scene = frozen::<_, SeedFrozen>(dam.scene::<Seed<InterfaceWall>>());
-        let record = run(&dam, "seed", scene);
-        (planned, record)
+        let healthy = seed(|_| {});
+        let scene = frozen::<_, SeedFrozen>(healthy.scene::<Seed<InterfaceWall>>());
+        healthy.run(scene)
     }),
     ("front of the wrong particle", || {
-        let (planned, mut dam) = modern();
-        dam.is_front = |place: Vector2<f64>, height| place.y > 0.5 * height;
-        let record = run(&dam, "modern", dam.scene::<Modern>());
-        (planned, record)
+        let mut spoiled = modern();
+        spoiled.dam.is_front = |place: Vector2<f64>, height| place.y > 0.5 * height;
+        let scene = spoiled.scene::<Modern>();
+        spoiled.run(scene)
     }),
 ];
 
@@ -125,9 +147,10 @@ fn failed(planned: &Planned, record: &Record) -> Vec<String> {
 
 #[test]
 fn no_fault_has_the_bits_of_the_case() {
-    let (planned, dam) = modern();
-    let own = DAM_BREAK.run(&planned.spec, &Context::default()).expect("a run");
-    let same = run(&dam, "modern", dam.scene::<Modern>());
+    let healthy = modern();
+    let own = DAM_BREAK.run(&healthy.planned.spec, &Context::default()).expect("a run");
+    let scene = healthy.scene::<Modern>();
+    let (planned, same) = healthy.run(scene);
     assert!(own.state.is_some() && own.state == same.state);
     assert_eq!(failed(&planned, &same), Vec::<String>::new());
 }

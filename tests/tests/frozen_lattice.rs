@@ -7,24 +7,26 @@
 //! the density keeps its bits.
 
 use base::record::{Record, Status};
-use fluids::channel::{
-    Arrangement, ChannelSettings, Flow, Ingredient, Setup, TIMES, scene, variants,
+use fluids::channel::{COUETTE, ChannelSettings, Flow, Fluid, POISEUILLE, Setup, TIMES, variants};
+use harness::{
+    composed::Composition,
+    context::Context,
+    method::{self, Boundary, Method, Standard},
+    simulate::{INTEGRATOR, KERNEL, WALLS},
 };
-use harness::{composed::Composition, runner::Context};
 use maths::theory::{
-    Stepping,
     channel::{Alignment, Channel, RowModel, WallRule},
     time_step::Integrator,
 };
 use nalgebra::DVector;
 use solver::{
-    BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, InterfaceWall,
-    Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, Pressure, QuinticSpline, Scheme,
-    Simulation, Tait, Viscosity, WendlandC2,
+    BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, Integrator as _,
+    InterfaceWall, Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline,
+    Simulation, Tait, WendlandC2, walls::Walls,
 };
 
 /// A channel flow in the kernel K, the walls W and the integrator I, and no stabiliser.
-type Channels<K, W, I> = Compose<K, (Pressure<Tait>, Viscosity, BodyForce), Continuity, W, I>;
+type Channels<K, W, I> = Compose<K, Fluid<BodyForce>, Continuity, W, I>;
 
 /// Against the matrix stepped alike \[V\]: round-off of some thousand steps.
 const ROUND_OFF: f64 = 1e-12;
@@ -39,6 +41,18 @@ const WENDLAND: (f64, f64) = (2.0, 1e-6);
 
 fn settings(rows: usize, (h_over_dx, eta2_over_h2): (f64, f64)) -> ChannelSettings {
     ChannelSettings { re: 1e-9, rows, h_over_dx, eta2_over_h2, ..ChannelSettings::default() }
+}
+
+/// The method of a scheme and the setup of its flow.
+fn setup<S: Standard<Extra = ()>>(s: &ChannelSettings, flow: Flow) -> (Method, Setup) {
+    let method = Method::of::<S>();
+    let setup = Setup::new(flow, s, &method, &Context::default()).expect("settings");
+    (method, setup)
+}
+
+fn simulation<S: Standard<Extra = ()>>(method: &Method, setup: &Setup) -> Simulation<S> {
+    let parts = setup.parts(method, &Context::default());
+    method::scene::<S>(parts).build().expect("a scene")
 }
 
 /// What the matrix calls the walls of a setup.
@@ -84,18 +98,18 @@ fn division(span: f64, dt_max: f64) -> (usize, f64) {
 }
 
 /// y and u of every particle of the fluid.
-fn fluid<S: Scheme<Extra = ()>>(simulation: &Simulation<S>) -> Vec<(f64, f64)> {
+fn fluid<S: Standard<Extra = ()>>(simulation: &Simulation<S>) -> Vec<(f64, f64)> {
     simulation.fluid().map(|(_, e)| (e.position.y, e.velocity.x)).collect()
 }
 
 /// Largest difference \[V\] of any particle from its row.
 fn apart(setup: &Setup, fluid: &[(f64, f64)], model: &RowModel, u: &DVector<f64>) -> f64 {
     assert!(fluid.len() >= u.len() && fluid.len().is_multiple_of(u.len()));
-    let first = model.y[0] / setup.dx;
+    let first = model.y[0] / setup.medium.dx;
     let mut largest = 0.0_f64;
     for (y, velocity) in fluid {
-        let row = (y / setup.dx - first).round() as usize;
-        assert!((y - model.y[row]).abs() < 1e-9 * setup.dx, "row {row} is at {y} m");
+        let row = (y / setup.medium.dx - first).round() as usize;
+        assert!((y - model.y[row]).abs() < 1e-9 * setup.medium.dx, "row {row} is at {y} m");
         let apart = (velocity - u[row]).abs() / setup.v;
         // A NaN must not hide behind a maximum.
         largest = if apart > largest || apart.is_nan() { apart } else { largest };
@@ -105,18 +119,10 @@ fn apart(setup: &Setup, fluid: &[(f64, f64)], model: &RowModel, u: &DVector<f64>
 
 /// From rest to each νt/L² in turn, against the matrix stepped alike; at the last one against the
 /// steady state too.
-fn check_steps<S>(settings: &ChannelSettings, flow: Flow)
-where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: Arrangement,
-    S::Integrator: Stepping,
-{
-    let setup =
-        Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false).expect("settings");
-    let mut simulation = scene::<S>(&setup).build().expect("a scene");
-    let model = reduced::<S::Kernel>(&setup, rule(&setup, S::Walls::NAME));
+fn check_steps<S: Standard<Extra = ()>>(settings: &ChannelSettings, flow: Flow) {
+    let (method, setup) = setup::<S>(settings, flow);
+    let mut simulation = simulation::<S>(&method, &setup);
+    let model = reduced::<S::Kernel>(&setup, rule(&setup, method.walls));
     let name = format!("{flow:?}, {}, {settings:?}", std::any::type_name::<S>());
     let (mut u, mut before) = (DVector::zeros(model.y.len()), 0.0);
     for tau in [0.005, 0.02, 0.1, 0.5, 2.0] {
@@ -124,7 +130,7 @@ where
         assert_eq!(simulation.advance(until, setup.dt, &mut ()), Outcome::Reached);
         let (steps, dt) = division(until - before, setup.dt);
         assert_eq!(simulation.dt(), dt, "{name}");
-        stepped(&model, S::Integrator::THEORY, &mut u, dt, steps);
+        stepped(&model, method.theory, &mut u, dt, steps);
         let apart = apart(&setup, &fluid(&simulation), &model, &u);
         assert!(apart < ROUND_OFF, "{tau}: {apart:e} V from the matrix, {name}");
         before = until;
@@ -135,8 +141,8 @@ where
 }
 
 /// Both flows at two resolutions with every kernel and integrator.
-fn check_walls<W: Arrangement>(wall_curvature: bool) {
-    fn check_kernel<K: Kernel, W: Arrangement>(kernel: (f64, f64), wall_curvature: bool) {
+fn check_walls<W: Boundary + Walls<()>>(wall_curvature: bool) {
+    fn check_kernel<K: Kernel, W: Boundary + Walls<()>>(kernel: (f64, f64), wall_curvature: bool) {
         for (flow, rows) in FLOWS.into_iter().flat_map(|flow| [(flow, 10), (flow, 20)]) {
             let s = ChannelSettings { wall_curvature, ..settings(rows, kernel) };
             check_steps::<Channels<K, W, PredictorCorrector>>(&s, flow);
@@ -174,24 +180,19 @@ fn extrapolating_walls_are_the_matrix_to_round_off() {
 /// order of the integrator and of the next two are taken out.
 fn extrapolated<S>(settings: &ChannelSettings, flow: Flow, tau: f64) -> Vec<(f64, f64)>
 where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: Arrangement,
-    S::Integrator: Stepping,
+    S: Standard<Extra = ()>,
 {
-    let setup =
-        Setup::new::<S::Kernel, S::Integrator>(flow, settings, &[], false).expect("settings");
+    let (method, setup) = setup::<S>(settings, flow);
     // A whole number of steps at the coarsest level: the next ones halve it exactly.
     let (_, dt) = division(setup.time(tau), setup.dt);
     let run = |finer: f64| {
-        let mut simulation = scene::<S>(&setup).build().expect("a scene");
+        let mut simulation = simulation::<S>(&method, &setup);
         let outcome = simulation.advance(setup.time(tau), dt / finer, &mut ());
         assert_eq!(outcome, Outcome::Reached);
         fluid(&simulation)
     };
     let mut runs = [1.0, 2.0, 4.0, 8.0].map(run).to_vec();
-    let mut order = <S::Integrator as solver::Integrator<()>>::ORDER[1];
+    let mut order = S::Integrator::ORDER[1];
     while runs.len() > 1 {
         let finer = |(a, b): (&(f64, f64), &(f64, f64))| {
             (b.0, b.1 + (b.1 - a.1) / (2_f64.powi(order as i32) - 1.0))
@@ -204,10 +205,10 @@ where
 }
 
 /// Without the integrator: dt extrapolated away, against the exponential of the matrix.
-fn check_exponential<K: Kernel, W: Arrangement>(kernel: (f64, f64), wall_curvature: bool) {
+fn check_exponential<K: Kernel, W: Boundary + Walls<()>>(kernel: (f64, f64), wall_curvature: bool) {
     for (flow, tau) in FLOWS.into_iter().flat_map(|flow| [(flow, 0.03), (flow, 0.1)]) {
         let s = ChannelSettings { wall_curvature, ..settings(20, kernel) };
-        let setup = Setup::new::<K, Leapfrog>(flow, &s, &[], false).expect("settings");
+        let (_, setup) = setup::<Channels<K, W, Leapfrog>>(&s, flow);
         let model = reduced::<K>(&setup, rule(&setup, W::NAME));
         let exact = model.at(setup.time(tau)).expect("regular");
         let leapfrog = extrapolated::<Channels<K, W, Leapfrog>>(&s, flow, tau);
@@ -230,8 +231,8 @@ fn with_dt_extrapolated_away_runs_are_the_exponential_of_the_matrix() {
 /// The matrix of a record, which knows its kernel and its walls by name.
 fn matrix_of(record: &Record, setup: &Setup) -> RowModel {
     let word = |key: &str| record.numerics[key].as_str().expect("a word");
-    let wall_rule = rule(setup, word("walls"));
-    match word("kernel") {
+    let wall_rule = rule(setup, word(WALLS));
+    match word(KERNEL) {
         CubicSpline::NAME => reduced::<CubicSpline>(setup, wall_rule),
         QuinticSpline::NAME => reduced::<QuinticSpline>(setup, wall_rule),
         WendlandC2::NAME => reduced::<WendlandC2>(setup, wall_rule),
@@ -247,14 +248,16 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
     let set = ["re=1e-9", "end=0.2", "c0_viscous=0"].map(String::from);
     let settings = variant.settings(&set).expect("settings");
     let name = format!("{flow:?}, {}", variant.variant.name);
-    let record = (variant.run)(variant.variant.name, &settings, &Context::default()).expect(&name);
+    let record = variant.run(&settings, &Context::default()).expect(&name);
     assert_eq!(record.status, Status::Completed, "{name}");
-    let by = match record.numerics["integrator"].as_str() {
+    let by = match record.numerics[INTEGRATOR].as_str() {
         Some("leapfrog") => Integrator::Leapfrog,
         _ => Integrator::PredictorCorrector,
     };
     // The kernel and the integrator decide on the limit of dt only, which is not used here.
-    let setup = Setup::new::<QuinticSpline, Leapfrog>(flow, &settings, &[], true).expect(&name);
+    let method = Method::of::<Channels<QuinticSpline, Ghosts, Leapfrog>>();
+    let context = Context { allow_unstable: true, ..Context::default() };
+    let setup = Setup::new(flow, &settings, &method, &context).expect(&name);
     let model = matrix_of(&record, &setup);
     let (mut u, mut before) = (DVector::zeros(model.y.len()), 0.0);
     for tau in TIMES.into_iter().filter(|tau| *tau <= settings.end) {
@@ -271,10 +274,10 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
 
 #[test]
 fn every_variant_is_its_matrix() {
-    for variant in variants::<BodyForce>() {
+    for variant in variants::<BodyForce>(&POISEUILLE) {
         check_variant(&variant, Flow::Poiseuille);
     }
-    for variant in variants::<()>() {
+    for variant in variants::<()>(&COUETTE) {
         check_variant(&variant, Flow::Couette);
     }
 }
@@ -283,12 +286,12 @@ fn every_variant_is_its_matrix() {
 /// what the tests above allow, so they would fail.
 #[test]
 fn a_slightly_different_method_is_another_matrix() {
-    let setup = |eta2: f64| {
+    let of = |eta2: f64| {
         let s = settings(20, (CUBIC.0, CUBIC.1 * eta2));
-        Setup::new::<CubicSpline, Leapfrog>(Flow::Poiseuille, &s, &[], false).expect("settings")
+        setup::<Channels<CubicSpline, Ghosts, Leapfrog>>(&s, Flow::Poiseuille).1
     };
     let at = |eta2: f64, wall: WallRule| {
-        let setup = setup(eta2);
+        let setup = of(eta2);
         reduced::<CubicSpline>(&setup, wall).at(setup.time(0.1)).expect("regular") / setup.v
     };
     let as_it_is = at(1.0, WallRule::Ghosts);

@@ -3,16 +3,17 @@
 //! `INSTA_UPDATE=always`.
 
 use base::record::Record;
-use fluids::periodic_hill::{self, HillSettings, HillWall, PERIODIC_HILL, Setup};
+use fluids::periodic_hill::{self, Driving, HillSettings, PERIODIC_HILL, Setup};
 use harness::{
     case::{Planned, Tier},
-    runner::Context,
+    context::Context,
+    method,
 };
 use nalgebra::Vector2;
 use rayon::prelude::*;
 use solver::{
     BodyForce, Compose, Continuity, DensityDiffusion, ExtrapolatingWall, Leapfrog, NoSlip,
-    Pressure, QuinticSpline, Scene, Scheme, ShiftAdvection, Shifting, Tait, Viscosity,
+    Pressure, QuinticSpline, Scene, ShiftAdvection, Shifting, Tait, Viscosity,
     lane::Lane,
     numbers::Numbers,
     walls::{WallVelocity, Walls},
@@ -21,9 +22,8 @@ use std::path::Path;
 
 type Forces = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Drift = (Continuity, DensityDiffusion, Shifting);
-type Method<W> = Compose<QuinticSpline, Forces, Drift, W, Leapfrog>;
+type Hill<W> = Compose<QuinticSpline, Forces, Drift, W, Leapfrog>;
 type Sticking = ExtrapolatingWall<Tait, NoSlip>;
-type Slipping = ExtrapolatingWall<Tait, Slip>;
 
 /// Wall particles move with the fluid before them.
 #[derive(Clone, Copy, Debug)]
@@ -36,26 +36,6 @@ impl WallVelocity for Slip {
     }
     fn beyond(sum: Vector2<f64>, weight: f64) -> Vector2<f64> {
         -NoSlip::beyond(sum, weight)
-    }
-}
-
-/// [`HillWall`] for a wall of somebody else.
-#[derive(Clone, Copy, Debug)]
-struct Wall<U>(ExtrapolatingWall<Tait, U>);
-
-impl<U: WallVelocity> Walls<()> for Wall<U> {
-    type Terms = ExtrapolatingWall<Tait, U>;
-    const EXTRAPOLATES: bool = true;
-    fn terms(&self) -> Self::Terms {
-        self.0
-    }
-}
-
-impl<U: WallVelocity> HillWall for Wall<U> {
-    const NAME: &'static str = "extrapolating-wall";
-    const FIRST: f64 = 0.5;
-    fn walls(_: &Setup) -> Self {
-        unreachable!("the walls of the healthy scene are taken")
     }
 }
 
@@ -97,7 +77,7 @@ fn planned() -> Planned {
 }
 
 /// The scene of the settings with its walls replaced.
-fn with_walls<W: Walls<()>>(healthy: Scene<Method<Sticking>>, walls: W) -> Scene<Method<W>> {
+fn with_walls<W: Walls<()>>(healthy: Scene<Hill<Sticking>>, walls: W) -> Scene<Hill<W>> {
     Scene {
         h: healthy.h,
         domain: healthy.domain,
@@ -113,49 +93,31 @@ fn with_walls<W: Walls<()>>(healthy: Scene<Method<Sticking>>, walls: W) -> Scene
 }
 
 fn run(fault: &Fault) -> Record {
-    let planned = planned();
+    let (planned, context) = (planned(), Context::default());
+    let method = periodic_hill::method::<Hill<Sticking>>();
     let setup = |spoil: fn(&mut HillSettings)| {
         let settings = planned.spec.settings.clone();
         let mut settings = serde_json::from_value(settings).expect("planned settings");
         spoil(&mut settings);
-        Setup::new::<Method<Sticking>>(&settings, false).expect("sound settings")
+        Setup::new(&settings, &method, &context).expect("sound settings")
     };
-    let mut scene = periodic_hill::scene::<Method<Sticking>>(&setup(fault.scene));
+    let mut scene = method::scene::<Hill<Sticking>>(setup(fault.scene).parts(&context));
     let setup = setup(fault.run);
+    let medium = &setup.flow.medium;
     scene.forces.1.mu *= fault.viscosity;
     if fault.shifting == 0.0 {
-        let none = Shifting::new(0.0, setup.fluid.h, setup.fluid.w_at_spacing);
+        let none = Shifting::new(0.0, medium.h, medium.w_at_spacing);
         (scene.forces.3, scene.drift.2) = (ShiftAdvection(none), none);
     }
-    let context = Context::default();
-    let (eos, variant) = (setup.fluid.eos, planned.spec.variant.as_str());
-    let none = Vector2::zeros();
-    let record = if fault.slips {
-        let velocity = Slip;
-        let walls: Slipping = ExtrapolatingWall {
-            eos,
-            acceleration: none,
-            least_pressure: f64::NEG_INFINITY,
-            velocity,
-        };
-        run_scene(&setup, variant, with_walls(scene, Wall(walls)), &context)
+    let simulation: Box<dyn Driving> = if fault.slips {
+        let Sticking { eos, acceleration, least_pressure, .. } = scene.walls;
+        let walls = ExtrapolatingWall { eos, acceleration, least_pressure, velocity: Slip };
+        Box::new(with_walls(scene, walls).build().expect("a scene"))
     } else {
-        run_scene(&setup, variant, with_walls(scene, Wall(Sticking::no_slip(eos, none))), &context)
+        Box::new(scene.build().expect("a scene"))
     };
-    record.expect("a run")
-}
-
-fn run_scene<S>(
-    setup: &Setup,
-    variant: &str,
-    scene: Scene<S>,
-    context: &Context,
-) -> Result<Record, harness::case::RunError>
-where
-    S: Scheme<Extra = (), Forces = Forces>,
-    S::Walls: HillWall,
-{
-    periodic_hill::run_scene(setup, variant, scene, context)
+    let variant = planned.spec.variant.as_str();
+    periodic_hill::measured(&setup, &method, variant, simulation, &context).expect("a run")
 }
 
 /// Gates that this record fails.

@@ -14,6 +14,7 @@ mod invariance;
 mod layers;
 mod new_case;
 mod pairs;
+mod plans;
 mod restart;
 mod ring_power;
 mod shifting;

@@ -1,4 +1,4 @@
-//! The case that `CONTRIBUTING.md` shows is this one, and it gets every study that a declaration asks for.
+//! What `CONTRIBUTING.md` shows is compiled here, and its case gets every study that a declaration asks for.
 
 use std::fs;
 use std::path::Path;
@@ -7,16 +7,38 @@ use harness::case::Case;
 use harness::case::Tier;
 use harness::make::Making;
 use harness::suite;
-use touchstone_tests::new_case::DECAY;
+use solver::{Continuity, CubicSpline};
+use touchstone_tests::{
+    new_case::DECAY, new_term::CentralViscosity, open_rates, patch, relative_sum,
+};
 
-const SOURCE: &str = include_str!("../src/new_case.rs");
+const CASE: &str = include_str!("../src/new_case.rs");
+const TERM: &str = include_str!("../src/new_term.rs");
+const WALL: &str = include_str!("../src/new_wall.rs");
 
 #[test]
-fn contributing_shows_this_case_and_it_is_short() {
-    assert!(SOURCE.lines().count() <= 80, "{} lines", SOURCE.lines().count());
+fn contributing_shows_what_is_compiled_and_the_case_is_short() {
+    assert!(CASE.lines().count() <= 80, "{} lines", CASE.lines().count());
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../CONTRIBUTING.md");
     let text = fs::read_to_string(path).expect("a text");
-    assert!(text.contains(&format!("```rust\n{SOURCE}```")), "CONTRIBUTING.md shows another case");
+    for source in [CASE, TERM, WALL] {
+        let first = source.lines().next();
+        assert!(text.contains(&format!("```rust\n{source}```")), "another text: {first:?}");
+    }
+}
+
+/// Forces along the line of centres, opposite in every pair: no force and no moment in all.
+#[test]
+fn a_new_term_conserves_both_momenta() {
+    let particles = patch(8, 0.2, 3);
+    let term = CentralViscosity { nu: 0.1, eta2: 1e-6 };
+    let rates = open_rates::<CubicSpline, _, _, ()>(0.16, &particles, term, Continuity);
+    let forces =
+        || rates.iter().zip(&particles).map(|(rate, p)| (p.position, rate.velocity * p.mass));
+    let moment = forces().map(|(x, f)| x.x * f.y - x.y * f.x);
+    for sum in [relative_sum(forces().map(|(_, f)| f.x)), relative_sum(moment)] {
+        assert!(sum.abs() < 1e-12, "{sum:e}");
+    }
 }
 
 #[test]

@@ -146,7 +146,7 @@ fn a_step_goes_by_the_rates_of_its_terms() {
     let mut simulation = periodic::<Euler>().build().unwrap();
     let dt = 0.1 * DX;
     assert_eq!(simulation.advance(2.0 * dt, dt, &mut ()), Outcome::Reached);
-    let forces = *simulation.forces_mut();
+    let forces = simulation.terms_mut().0;
     let rates = simulation.rates(&forces);
     let drift = simulation.rates(&Continuity);
     let before: Vec<_> = simulation.fluid().map(|(_, p)| *p).collect();

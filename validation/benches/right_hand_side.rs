@@ -1,4 +1,4 @@
-//! Wall time of steps and of neighbour rows, 10³ to 10⁶ particles, one thread. Never a gate.
+//! Wall time of steps and of neighbour lists, 10³ to 10⁶ particles, one thread. Never a gate.
 //!
 //! The scenes are those of `touchstone doctor --bench`. Criterion's throughput is particles a second;
 //! a predictor-corrector step has two right-hand sides, the others have one.

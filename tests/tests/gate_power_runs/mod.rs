@@ -1,17 +1,18 @@
 //! The planned runs that mutants go through, each with its gates.
 
 use base::{gate::Gate, record::Record, spec::Task};
-use fluids::channel::{self, Arrangement, ChannelSettings, Flow, Ingredient};
+use fluids::channel::{self, ChannelSettings, Flow, Modern, Seed, Setup, Stabilised};
 use harness::{
     case::{Planned, Tier, changed},
+    context::Context,
+    method::{self, Boundary, FromMedium, Method},
     plan,
-    runner::Context,
 };
 use lattice::{
     acoustic_wave::Acoustic,
     shear_wave::Shear,
-    stability::{self, NoisyBox, Point},
-    wave::{self, Kind, Wave, WaveCase, WaveSettings},
+    stability::{self, Pair, Plain, Point},
+    wave::{self, Diffusive, Kind, Wave, WaveCase, WaveSettings},
 };
 use maths::{
     exact::{couette::Couette, poiseuille::Poiseuille},
@@ -19,9 +20,8 @@ use maths::{
 };
 use serde::de::DeserializeOwned;
 use solver::{
-    BodyForce, Compose, Continuity, CubicSpline, DensityDiffusion, Ghosts, InterfaceWall, Kernel,
-    Leapfrog, PredictorCorrector, Pressure, QuinticSpline, Scene, Scheme, Shifting, Tait, Term,
-    Viscosity as Morris, WendlandC2,
+    BodyForce, Compose, Continuity, CubicSpline, InterfaceWall, Kernel, Leapfrog,
+    PredictorCorrector, QuinticSpline, SceneError, Stepper, Term, WendlandC2, walls::Walls,
 };
 use std::f64::consts::PI;
 use touchstone_tests::spoil::{Fault, Mistaken, Spoilable, spoil};
@@ -95,12 +95,13 @@ const LIMITS: [&str; 3] = ["leapfrog, viscous", "predictor-corrector, viscous", 
 /// Courant number of the weak growth.
 const COURANT: f64 = 0.5;
 
+fn pair(name: &str) -> Pair {
+    if name.starts_with("leapfrog") { Pair::cubic_leapfrog() } else { Pair::cubic_pc() }
+}
+
 fn point(name: &str) -> Point {
-    match name {
-        "leapfrog, viscous" => Point::new::<CubicSpline, Leapfrog>(1.3, [1.0, 0.0, 0.0]),
-        "leapfrog, sound" => Point::new::<CubicSpline, Leapfrog>(1.3, [f64::INFINITY, 0.0, 0.0]),
-        _ => Point::new::<CubicSpline, PredictorCorrector>(1.3, [1.0, 0.0, 0.0]),
-    }
+    let stiffness = if name.ends_with("sound") { f64::INFINITY } else { 1.0 };
+    Point::new(&pair(name), 1.3, [stiffness, 0.0, 0.0])
 }
 
 /// The settings of a planned run.
@@ -213,8 +214,8 @@ impl Job {
         match self {
             Job::Channel(flow, planned) => {
                 let record = match flow {
-                    Flow::Couette => channel_run::<()>(planned, fault),
-                    Flow::Poiseuille => channel_run::<BodyForce>(planned, fault),
+                    Flow::Couette => channel_run::<()>(*flow, planned, fault),
+                    Flow::Poiseuille => channel_run::<BodyForce>(*flow, planned, fault),
                 };
                 Measured::Record(Box::new(record))
             }
@@ -250,143 +251,105 @@ impl Job {
     }
 }
 
-type Continuous<K, B, D, W, I> = Compose<K, (Pressure<Tait>, Morris, B), D, W, I>;
-
 /// What drives a channel.
-trait SpoilableDrive: channel::Drive + Spoilable<Spoiled: Term<()>> {}
-impl<B: channel::Drive + Spoilable<Spoiled: Term<()>>> SpoilableDrive for B {}
+trait SpoilableDrive: FromMedium + Term<()> + Spoilable<Spoiled: Term<()>> {}
+impl<B: FromMedium + Term<()> + Spoilable<Spoiled: Term<()>>> SpoilableDrive for B {}
 
-fn channel_run<B: SpoilableDrive>(planned: &Planned, fault: &Fault) -> Record {
-    type Stabilised = (Continuity, DensityDiffusion, Shifting);
-    let variant = planned.spec.variant.as_str();
-    let run = match variant {
-        "plain" | "curved" => one_channel::<QuinticSpline, B, Continuity, Ghosts, Leapfrog>,
-        "modern" => one_channel::<QuinticSpline, B, Stabilised, Ghosts, Leapfrog>,
-        "seed" => one_channel::<CubicSpline, B, Continuity, Ghosts, PredictorCorrector>,
-        "interface-wall" => {
-            one_channel::<CubicSpline, B, Continuity, InterfaceWall, PredictorCorrector>
-        }
-        other => panic!("{other} is not considered"),
-    };
-    run(B::FLOW, variant, &settings(planned), fault)
+type Simulation = Box<dyn Stepper<()>>;
+
+/// The simulation of these parts with a fault, in the scheme of a healthy one.
+trait Faulty {
+    fn build(parts: method::Parts, fault: &Fault) -> Result<Simulation, SceneError>;
 }
 
-fn one_channel<K, B, D, W, I>(
-    flow: Flow,
-    variant: &str,
-    settings: &ChannelSettings,
-    fault: &Fault,
-) -> Record
+impl<K, F, D, W, I> Faulty for Compose<K, F, D, W, I>
 where
     K: Kernel,
-    B: SpoilableDrive,
-    D: Ingredient + Spoilable<Spoiled: Term<()>>,
-    W: Arrangement + Spoilable<Spoiled: Arrangement>,
+    F: FromMedium + Term<()> + Spoilable<Spoiled: Term<()>>,
+    D: FromMedium + Term<()> + Spoilable<Spoiled: Term<()>>,
+    W: Boundary + Walls<()> + Spoilable<Spoiled: Walls<()>>,
     I: Mistaken,
 {
-    type Faulty<K, B, D, W, J> = Compose<
-        K,
-        <(Pressure<Tait>, Morris, B) as Spoilable>::Spoiled,
-        <D as Spoilable>::Spoiled,
-        <W as Spoilable>::Spoiled,
-        J,
-    >;
-    let healthy = channel::scene::<Continuous<K, B, D, W, I>>;
-    let context = Context::default();
-    let record = if fault.integrator {
-        let scene = |setup: &_| spoil::<_, _, _, _, _, I::As>(healthy(setup), fault);
-        let run = channel::run_scene::<Faulty<K, B, D, W, I::As>>;
-        run(flow, variant, settings, &[], &context, scene)
-    } else {
-        let scene = |setup: &_| spoil::<_, _, _, _, _, I>(healthy(setup), fault);
-        let run = channel::run_scene::<Faulty<K, B, D, W, I>>;
-        run(flow, variant, settings, &[], &context, scene)
+    fn build(parts: method::Parts, fault: &Fault) -> Result<Simulation, SceneError> {
+        let healthy = method::scene::<Self>(parts);
+        if fault.integrator {
+            Ok(Box::new(spoil::<_, _, _, _, _, I::As>(healthy, fault).build()?))
+        } else {
+            Ok(Box::new(spoil::<_, _, _, _, _, I>(healthy, fault).build()?))
+        }
+    }
+}
+
+fn channel_run<B: SpoilableDrive>(flow: Flow, planned: &Planned, fault: &Fault) -> Record {
+    type Fluid<B> = channel::Fluid<B>;
+    let run = match planned.spec.variant.as_str() {
+        "plain" | "curved" => one_channel::<Modern<Fluid<B>, Continuity>>,
+        "modern" => one_channel::<Modern<Fluid<B>, Stabilised>>,
+        "seed" => one_channel::<Seed<Fluid<B>, Continuity>>,
+        "interface-wall" => one_channel::<Seed<Fluid<B>, Continuity, InterfaceWall>>,
+        other => panic!("{other} is not considered"),
     };
+    run(flow, planned, fault)
+}
+
+fn one_channel<S>(flow: Flow, planned: &Planned, fault: &Fault) -> Record
+where
+    S: method::Standard<Extra = ()> + Faulty,
+{
+    let (method, context) = (Method::of::<S>(), Context::default());
+    let setup = Setup::new(flow, &settings(planned), &method, &context).expect("settings");
+    let simulation = S::build(setup.parts(&method, &context), fault).expect("a scene");
+    let record = channel::measured(&setup, &method, &planned.spec.variant, simulation, &context);
     record.expect("a planned run")
 }
 
 fn wave_run(case: &WaveCase, planned: &Planned, fault: &Fault) -> Record {
-    let (variant, settings) = (planned.spec.variant.as_str(), settings(planned));
-    let run = match variant {
-        "cubic-leapfrog-diffusion" => diffusive_wave,
-        "cubic-leapfrog" => one_wave::<CubicSpline, Leapfrog>,
-        "cubic-pc" => one_wave::<CubicSpline, PredictorCorrector>,
-        "quintic-leapfrog" => one_wave::<QuinticSpline, Leapfrog>,
-        "quintic-pc" => one_wave::<QuinticSpline, PredictorCorrector>,
-        "wendland-leapfrog" => one_wave::<WendlandC2, Leapfrog>,
-        "wendland-pc" => one_wave::<WendlandC2, PredictorCorrector>,
+    let run = match planned.spec.variant.as_str() {
+        "cubic-leapfrog-diffusion" => one_wave::<Diffusive<CubicSpline, Leapfrog>>,
+        "cubic-leapfrog" => one_wave::<wave::Scheme<CubicSpline, Leapfrog>>,
+        "cubic-pc" => one_wave::<wave::Scheme<CubicSpline, PredictorCorrector>>,
+        "quintic-leapfrog" => one_wave::<wave::Scheme<QuinticSpline, Leapfrog>>,
+        "quintic-pc" => one_wave::<wave::Scheme<QuinticSpline, PredictorCorrector>>,
+        "wendland-leapfrog" => one_wave::<wave::Scheme<WendlandC2, Leapfrog>>,
+        "wendland-pc" => one_wave::<wave::Scheme<WendlandC2, PredictorCorrector>>,
         other => panic!("{other} is not considered"),
     };
-    run(case, variant, &settings, fault)
+    run(case, planned, fault)
 }
 
-fn one_wave<K: Kernel, I: Mistaken>(
-    case: &WaveCase,
-    variant: &str,
-    settings: &WaveSettings,
-    fault: &Fault,
-) -> Record {
-    let context = Context::default();
-    let record = if fault.integrator {
-        let scene = |wave: &Wave| spoil::<_, _, _, _, _, I::As>(wave.scene::<K, I>(), fault);
-        wave::run_scene(case, variant, settings, &context, scene)
-    } else {
-        let scene = |wave: &Wave| spoil::<_, _, _, _, _, I>(wave.scene::<K, I>(), fault);
-        wave::run_scene(case, variant, settings, &context, scene)
-    };
-    record.expect("a planned run")
-}
-
-fn diffusive_wave(
-    case: &WaveCase,
-    variant: &str,
-    settings: &WaveSettings,
-    fault: &Fault,
-) -> Record {
-    type Old = <Leapfrog as Mistaken>::As;
-    let context = Context::default();
-    let healthy = Wave::diffusive_scene::<CubicSpline, Leapfrog>;
-    let record = if fault.integrator {
-        let scene = |wave: &Wave| spoil::<_, _, _, _, _, Old>(healthy(wave), fault);
-        wave::run_scene(case, variant, settings, &context, scene)
-    } else {
-        let scene = |wave: &Wave| spoil::<_, _, _, _, _, Leapfrog>(healthy(wave), fault);
-        wave::run_scene(case, variant, settings, &context, scene)
-    };
-    record.expect("a planned run")
+fn one_wave<S>(case: &WaveCase, planned: &Planned, fault: &Fault) -> Record
+where
+    S: method::Standard<Extra = ()> + Faulty,
+{
+    let (method, context) = (Method::of::<S>(), Context::default());
+    let settings: WaveSettings = settings(planned);
+    let wave = Wave::new(case.polarisation, &settings, &method, &context).expect("settings");
+    let simulation = S::build(wave.parts(&context), fault).expect("a scene");
+    let variant = &planned.spec.variant;
+    wave::measured(case, &wave, &method, variant, simulation, &context).expect("a planned run")
 }
 
 /// Measured over theoretical limit of the step.
 fn limit(name: &str, fault: &Fault) -> f64 {
-    let fluid = point(name).noisy_box::<CubicSpline>();
-    if name.starts_with("leapfrog") {
-        limit_of::<Leapfrog>(&fluid, fault)
+    let (fluid, pair) = (point(name).noisy_box(), pair(name));
+    let method = pair.plain();
+    let build = if name.starts_with("leapfrog") {
+        <Plain<CubicSpline, Leapfrog> as Faulty>::build
     } else {
-        limit_of::<PredictorCorrector>(&fluid, fault)
-    }
-}
-
-fn limit_of<I: Mistaken>(fluid: &NoisyBox<CubicSpline>, fault: &Fault) -> f64 {
-    if fault.integrator {
-        fluid.limit_of(|| spoil::<_, _, _, _, _, I::As>(fluid.plain::<I>(), fault)).ratio()
-    } else {
-        fluid.limit_of(|| spoil::<_, _, _, _, _, I>(fluid.plain::<I>(), fault)).ratio()
-    }
+        <Plain<CubicSpline, PredictorCorrector> as Faulty>::build
+    };
+    fluid.limit_of(method, || build(fluid.parts(method), fault)).ratio()
 }
 
 /// Measured over theoretical growth of an undamped wave.
 fn weak_growth(fault: &Fault) -> f64 {
-    type I = PredictorCorrector;
-    fn ratio<S: Scheme<Extra = ()>>(fluid: &NoisyBox<CubicSpline>, scene: Scene<S>) -> f64 {
-        let [growth, omega_dt] = fluid.stiffest_wave_of(scene, COURANT, stability::WEAK_STEPS);
-        growth / stability::theory_of_weak_growth(omega_dt)
-    }
-    let fluid = stability::undamped_box();
-    if fault.integrator {
-        ratio(&fluid, spoil::<_, _, _, _, _, <I as Mistaken>::As>(fluid.plain::<I>(), fault))
-    } else {
-        ratio(&fluid, spoil::<_, _, _, _, _, I>(fluid.plain::<I>(), fault))
-    }
+    let (fluid, pair) = (stability::undamped_box(), Pair::cubic_pc());
+    let method = pair.plain();
+    let build = <Plain<CubicSpline, PredictorCorrector> as Faulty>::build;
+    let simulation = build(fluid.parts(method), fault).expect("a scene");
+    let [growth, omega_dt] =
+        fluid.stiffest_wave_of(method, simulation, COURANT, stability::WEAK_STEPS);
+    growth / stability::theory_of_weak_growth(omega_dt)
 }
 
 /// u(y, t) of a spoiled reference, V, L and ν given; `None` where a flow does not use it.

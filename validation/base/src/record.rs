@@ -307,6 +307,15 @@ pub struct Column {
 }
 
 impl Profile {
+    /// Columns of these names and units from rows.
+    pub fn of_rows<const N: usize>(columns: &[(&str, &str); N], rows: &[[f64; N]]) -> Self {
+        let column = |k: usize| rows.iter().map(|row| row[k]).collect();
+        let add = |profile: Self, (k, (name, unit)): (usize, &(&str, &str))| {
+            profile.with(name, unit, column(k))
+        };
+        columns.iter().enumerate().fold(Self::default(), add)
+    }
+
     /// Adds a column.
     pub fn with(mut self, name: &str, unit: &str, values: Vec<f64>) -> Self {
         self.columns.push(Column { name: name.into(), unit: unit.into(), values });

@@ -2,22 +2,28 @@
 //!
 //! The scene is a torus of particles on a square lattice in a slow shear, cubic spline with
 //! h/dx = 1.2, so 20 neighbours within the support; continuity, pressure and Morris viscosity. Steps
-//! are so short that rows are never rebuilt: what is measured is the right-hand side. Building rows
+//! are so short that lists are never rebuilt: what is measured is the right-hand side. Building lists
 //! is measured by [`Rebuilding`], an integrator that does nothing else.
 
 use std::time::Instant;
 
 use nalgebra::Vector2;
 use solver::{
-    BodyForce, Compose, Continuity, CubicSpline, DensityDiffusion, Domain, Engine, Euler, Evolved,
-    Fault, Ghosts, Integrator, Leapfrog, Open, Particle, Physics, PredictorCorrector, Pressure,
-    QuinticSpline, Scene, SceneError, Scheme, Shifting, Simulation, Stepper, Tait, Viscosity,
-    lattice,
+    BodyForce, Compose, Continuity, CubicSpline, Domain, Engine, Euler, Evolved, Fault, Ghosts,
+    Integrator, Leapfrog, Open, Particle, Physics, PredictorCorrector, Pressure, QuinticSpline,
+    Scene, SceneError, Scheme, Simulation, Stepper, Tait, Viscosity, lattice,
 };
 
-use crate::channel::{self, ChannelSettings, Drive, Flow, Ingredient, Setup};
-use harness::{case::RunError, composed::Composition};
-use maths::theory::Stepping;
+use crate::{
+    channel::{self, ChannelSettings, Drive, Flow, Setup, Stabilised},
+    couette::COUETTE,
+    poiseuille::POISEUILLE,
+};
+use harness::{
+    case::RunError,
+    context::Context,
+    method::{self, Boundary, FromMedium, Method, Standard},
+};
 
 /// The scheme whose right-hand side is measured.
 pub type Fluid<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
@@ -46,12 +52,12 @@ pub fn scene<I: Integrator<()>>(side: usize, parallel: bool) -> Scene<Fluid<I>> 
     scene
 }
 
-/// Distance that makes rows stale in a scene of that many particles a side: a third of h.
+/// Distance that makes lists stale in a scene of that many particles a side: a third of h.
 pub fn stale_distance(side: usize) -> f64 {
     0.4 / side as f64
 }
 
-/// Moves all particles to and fro and starts a step: sorts them and builds their rows. The "time
+/// Moves all particles to and fro and starts a step: sorts them and builds their lists. The "time
 /// step" is the distance, which must be more than half a skin.
 #[derive(Debug, Default)]
 pub struct Rebuilding {
@@ -75,7 +81,7 @@ impl Integrator<()> for Rebuilding {
     }
 }
 
-/// The sweeps of the integrator `I` and nothing else: no columns, no rows, no time.
+/// The sweeps of the integrator `I` and nothing else: no refresh, no lists, no time.
 #[derive(Debug, Default)]
 pub struct Bare<I> {
     is_begun: bool,
@@ -149,11 +155,11 @@ pub struct Speed {
     pub particles: usize,
     /// Right-hand sides of a particle a second.
     pub rate: f64,
-    /// Neighbours in a row, those within the skin included.
+    /// Neighbours in a list, those within the skin included.
     pub neighbours: f64,
     /// Memory a particle \[bytes\].
     pub bytes: usize,
-    /// Particles sorted and put into rows a second.
+    /// Particles sorted and put into lists a second.
     pub list_rate: f64,
 }
 
@@ -176,20 +182,19 @@ pub fn speed(side: usize, parallel: bool, budget: f64) -> Result<Speed, SceneErr
 pub struct Share {
     /// A whole step \[s\].
     pub step: f64,
-    /// The row loops of a step alone \[s\].
+    /// The pair sweeps of a step alone \[s\].
     pub sweeps: f64,
 }
 
 impl Share {
-    /// Share of the row loop in a step.
-    pub fn of_row_loop(&self) -> f64 {
+    /// Share of the pair sweeps in a step.
+    pub fn of_sweeps(&self) -> f64 {
         self.sweeps / self.step
     }
 }
 
-type Seed<B, I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity, B), Continuity, Ghosts, I>;
-type Stabilised = (Continuity, DensityDiffusion, Shifting);
-type Modern<B, I> = Compose<QuinticSpline, (Pressure<Tait>, Viscosity, B), Stabilised, Ghosts, I>;
+type Seed<B, I> = Compose<CubicSpline, channel::Fluid<B>, Continuity, Ghosts, I>;
+type Modern<B, I> = Compose<QuinticSpline, channel::Fluid<B>, Stabilised, Ghosts, I>;
 
 /// Batches of whole steps, each followed by as many bare sweeps, so that what slows the machine for a
 /// while slows both.
@@ -201,30 +206,26 @@ pub type Shares = [(&'static str, Share); 2];
 /// Of the flow that a plate drives. Not generic: its schemes are those of the variants, compiled in this
 /// crate.
 pub fn shares_of_couette(rows: usize, budget: f64) -> Result<Shares, RunError> {
-    shares::<()>(rows, budget)
+    shares::<()>(Flow::Couette, rows, budget)
 }
 
 /// Of the flow that a body force drives.
 pub fn shares_of_poiseuille(rows: usize, budget: f64) -> Result<Shares, RunError> {
-    shares::<BodyForce>(rows, budget)
+    shares::<BodyForce>(Flow::Poiseuille, rows, budget)
 }
 
 /// Times whole steps of the variants `seed` and `modern` of a channel flow driven by `B`, and as
 /// many bare sweeps in turn, at so many rows, for about `budget` seconds each.
-fn shares<B: Drive>(rows: usize, budget: f64) -> Result<Shares, RunError> {
-    let variants = channel::variants::<B>();
-    let settings = |name: &str| {
-        let find = |v: &&Composition<ChannelSettings>| v.variant.name == name;
-        let set = [format!("rows={rows}")];
-        variants.iter().find(find).map_or_else(|| Ok(Default::default()), |v| v.settings(&set))
-    };
+fn shares<B: Drive>(flow: Flow, rows: usize, budget: f64) -> Result<Shares, RunError> {
+    let case = if flow == Flow::Couette { &COUETTE } else { &POISEUILLE };
+    let settings = |variant: &str| case.settings_of(variant, &[format!("rows={rows}")]);
     let seed = share::<Seed<B, PredictorCorrector>, Seed<B, Bare<PredictorCorrector>>>(
-        B::FLOW,
+        flow,
         &settings("seed")?,
         budget,
     )?;
     let modern = share::<Modern<B, Leapfrog>, Modern<B, Bare<Leapfrog>>>(
-        B::FLOW,
+        flow,
         &settings("modern")?,
         budget,
     )?;
@@ -233,21 +234,13 @@ fn shares<B: Drive>(rows: usize, budget: f64) -> Result<Shares, RunError> {
 
 fn share<S, Sweeps>(flow: Flow, settings: &ChannelSettings, budget: f64) -> Result<Share, RunError>
 where
-    S: Scheme<Extra = ()>,
-    S::Integrator: Stepping,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: channel::Arrangement,
-    Sweeps: Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Walls: channel::Arrangement>,
+    S: Standard<Extra = ()>,
+    Sweeps: Scheme<Extra = (), Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
 {
-    let setup =
-        Setup::new::<S::Kernel, S::Integrator>(flow, settings, &channel::uses::<S>(), false)?;
-    let mut whole = channel::scene::<S>(&setup);
-    whole.parallel_from = usize::MAX;
-    let mut whole = whole.build()?;
-    let mut bare = channel::scene::<Sweeps>(&setup);
-    bare.parallel_from = usize::MAX;
-    let mut bare = bare.build()?;
+    let (method, context) = (Method::of::<S>(), Context::default());
+    let setup = Setup::new(flow, settings, &method, &context)?;
+    let mut whole = method::scene::<S>(setup.parts(&method, &context)).build()?;
+    let mut bare = method::scene::<Sweeps>(setup.parts(&method, &context)).build()?;
     // The flow at work, not the lattice at rest.
     let _ = whole.advance(setup.time(0.1), setup.dt, &mut ());
     let mut pair = |steps| Share {
@@ -256,6 +249,6 @@ where
     };
     let steps = steps_in(budget / PAIRS as f64, pair(100).step);
     let mut pairs = [(); PAIRS].map(|()| pair(steps));
-    pairs.sort_by(|a, b| a.of_row_loop().total_cmp(&b.of_row_loop()));
+    pairs.sort_by(|a, b| a.of_sweeps().total_cmp(&b.of_sweeps()));
     Ok(pairs[PAIRS / 2])
 }

@@ -8,7 +8,7 @@ pub static COUETTE: ChannelCase = ChannelCase {
     about: "Water at rest between two infinite plates L = 1 mm apart. At t = 0 the upper plate \
             starts at constant speed V = Re nu/L, Re = 0.5. The exact velocity is a Fourier series; \
             pressure and cross-flow are exactly zero.",
-    variants: variants::<()>,
+    variants: || variants::<()>(&channel::COUETTE),
     is_stable: channel::is_stable,
     declaration: |tier| channel::declaration(CHANNEL, tier),
     plan: |tier| channel::plan(CHANNEL, tier),

@@ -3,11 +3,12 @@
 pub mod bench;
 pub mod channel;
 pub mod couette;
-pub mod fluid;
 pub mod periodic_hill;
 pub mod poiseuille;
+mod runs_table;
 pub mod taylor_couette;
 pub mod taylor_green;
+mod unit_flow;
 
 use harness::case::Case;
 

@@ -11,7 +11,7 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
             F = 8 nu V/L^2 along the plates sets in; V = Re nu/L is the centre-line velocity of the \
             steady parabola. The exact velocity is a Fourier series; pressure and cross-flow are \
             exactly zero.",
-    variants: variants::<BodyForce>,
+    variants: || variants::<BodyForce>(&channel::POISEUILLE),
     is_stable: channel::is_stable,
     declaration: |tier| channel::declaration(CHANNEL, tier),
     plan: |tier| channel::plan(CHANNEL, tier),

@@ -2,9 +2,8 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, Domain, EquationOfState, ExtrapolatingWall, Integrator, InterfaceWall,
-    Kernel, Leapfrog, NoSlip, Particle, Pressure, QuinticSpline, Role, Scene, Simulation, Tait,
-    Viscosity, walls::Walls,
+    Continuity, Domain, ExtrapolatingWall, InterfaceWall, Limits, NoSlip, Particle, Pressure, Role,
+    Stepper, Tait, Viscosity,
 };
 
 use base::{
@@ -12,27 +11,24 @@ use base::{
     record::{Profile, Record, Status},
 };
 use harness::{
-    case::{Case, Planned, Rules, RunError, Tier, Variant},
-    composed::{Composed, Composition},
+    case::{Case, Planned, Rules, RunError, Tier},
+    composed::{self, Composed, Composition, Program, Variants},
+    context::Context,
     declare::{
         Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Ladder, Level, OrderGate,
     },
-    runner::{self, Context},
+    method::{Medium, Method, Parts},
+    simulate,
     study::Study,
 };
-use maths::theory::Stepping;
 use maths::{
     exact::TaylorCouette,
     geometry::{Curve, Row},
     metrics::norms::{Scale, l2},
-    theory::{
-        lattice::SquareLattice,
-        time_step::{self, Medium},
-    },
 };
 use report::Axis;
 
-use crate::fluid::{self, MOST_STEPS, at_most};
+use crate::unit_flow::{LIMIT_BOX, Quintic};
 
 base::settings! {
     /// Settings of the flow between two cylinders, the inner one turning.
@@ -64,12 +60,13 @@ base::settings! {
     }
 }
 
-type Method<W> = Compose<QuinticSpline, (Pressure<Tait>, Viscosity), Continuity, W, Leapfrog>;
-type Extrapolating = ExtrapolatingWall<Tait, NoSlip>;
+type With<W> = Quintic<(Pressure<Tait>, Viscosity), Continuity, W>;
 
 const NAME: &str = "taylor_couette";
-const LIMIT_BOX: usize = 32;
-const MOST_PARTICLES: f64 = 1e7;
+const INTERFACE: &str = "interface-wall";
+const EXTRAPOLATING: &str = "extrapolating-wall";
+/// More time steps and more particles than these are refused.
+const MOST: [(f64, &str); 2] = [(1e8, "end, viscous or layers"), (1e7, "layers or ratio")];
 
 base::metrics! {
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles, u the velocity around the axis";
@@ -81,174 +78,106 @@ base::metrics! {
 struct Cylinders {
     settings: CylinderSettings,
     flow: TaylorCouette,
-    dx: f64,
-    h: f64,
-    eos: Tait,
-    dt: f64,
-    dt_limit: f64,
+    /// Walls extrapolate the pressure without the centripetal acceleration of the inner surface: the pressure
+    /// that balances it is below Mach² = 1e-2 of ρ c², and the flow around the axis does not depend on it.
+    medium: Medium,
+    rules: Rules,
 }
 
 impl Cylinders {
-    fn new(s: &CylinderSettings, allow_unstable: bool) -> Result<Self, RunError> {
+    fn new(s: &CylinderSettings, method: &Method, context: &Context) -> Result<Self, RunError> {
         let dx = s.gap / s.layers as f64;
         let (h, speed) = (s.h_over_dx * dx, s.re * s.nu / s.gap);
         let inner = s.gap / (s.ratio - 1.0);
         // Mach 0.1, and not below what is as stiff as viscosity.
-        let sound = (10.0 * speed).max(s.c0_viscous * s.nu / h);
-        let medium = Medium { c0: sound, h, nu: s.nu, alpha: 0.0, delta: 0.0 };
-        let lattice = SquareLattice::<QuinticSpline>::new(s.h_over_dx, s.eta2_over_h2);
-        let modes = time_step::modes(&lattice, LIMIT_BOX, &medium);
-        let cylinders = Self {
-            settings: s.clone(),
-            flow: TaylorCouette { inner, outer: inner + s.gap, speed },
-            dx,
-            h,
-            eos: Tait::new(s.rho, sound),
-            dt: (s.courant * h / (sound + speed)).min(s.viscous * h * h / s.nu),
-            dt_limit: time_step::time_step_limit(&modes, <Leapfrog as Stepping>::THEORY),
-        };
-        cylinders.check(allow_unstable)?;
-        Ok(cylinders)
-    }
-
-    fn check(&self, allow_unstable: bool) -> Result<(), RunError> {
-        let Self { flow, dt, dt_limit: limit, .. } = self;
-        let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
-        let particles = area / (self.dx * self.dx);
-        let setting = "end, viscous or layers";
-        at_most("the number of time steps", self.end() / dt, MOST_STEPS, setting)?;
-        at_most("the number of particles", particles, MOST_PARTICLES, "layers or ratio")?;
+        let sound_speed = (10.0 * speed).max(s.c0_viscous * s.nu / h);
+        let medium = method.medium(Tait::new(s.rho, sound_speed), [dx, h]);
+        let medium = Medium { nu: s.nu, eta2_over_h2: s.eta2_over_h2, ..medium };
+        let dt = (s.courant * h / (sound_speed + speed)).min(s.viscous * h * h / s.nu);
+        let waves = medium.waves(&method.uses);
+        let dt_limit = method.step_limit([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let rules = Rules { dt, dt_limit, sound_speed };
+        let flow = TaylorCouette { inner, outer: inner + s.gap, speed };
         // Rows out to the support must fit into the inner cylinder.
-        let share = QuinticSpline::SUPPORT * self.h / flow.inner;
+        let share = method.support * h / inner;
         if share >= 1.0 {
             let (what, setting) = ("the support over the inner radius", "ratio or layers");
             return Err(RunError::TooMuch { what, value: share, most: 1.0, setting });
         }
-        if dt > limit && !allow_unstable {
-            let integrator = <Leapfrog as Integrator<()>>::NAME;
-            return Err(RunError::TimeStep { dt: *dt, limit: *limit, integrator });
-        }
-        Ok(())
+        let cylinders = Self { settings: s.clone(), flow, medium, rules };
+        let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
+        let (end, particles) = (cylinders.end(), area / (dx * dx));
+        simulate::check(method.integrator, rules, end, particles, MOST, context)?;
+        Ok(cylinders)
     }
 
     fn end(&self) -> f64 {
         self.settings.end * self.settings.gap * self.settings.gap / self.settings.nu
     }
 
-    /// Particles of a row, each with its share of the row's area.
-    fn of_row(&self, row: &Row, role: Role, speed: f64) -> Vec<Particle> {
-        let volume = row.spacing * self.dx;
-        let particle = |x: &Vector2<f64>| {
-            let around = Vector2::new(-x.y, x.x) / x.norm();
-            Particle::fluid(*x, around * speed, self.settings.rho, volume).with_role(role)
-        };
-        row.points.iter().map(particle).collect()
-    }
-
     /// Fluid in layers about the axis, and rows behind both cylinders, all with the velocity of the
     /// surface before them.
-    fn particles<W: CylinderWall>(&self) -> Vec<Particle> {
-        let (dx, flow) = (self.dx, &self.flow);
+    fn particles(&self, method: &Method) -> Vec<Particle> {
+        let (Self { flow, settings: s, .. }, &Medium { dx, h, .. }) = (self, &self.medium);
         let inner = Curve::circle(Vector2::zeros(), flow.inner, true, dx);
         let outer = Curve::circle(Vector2::zeros(), flow.outer, false, dx);
-        let (nearest, layers) = match W::FIRST {
-            0.0 => (1.0, self.settings.layers - 1),
-            first => (first, self.settings.layers),
+        let first = method.first_row.depth();
+        let (nearest, layers) = if first == 0.0 { (1.0, s.layers - 1) } else { (first, s.layers) };
+        let fluid = (0..layers).map(|k| (inner.row(-(nearest + k as f64) * dx, dx), 0.0));
+        let behind = |curve: &Curve| curve.rows_behind(dx, first, method.support * h);
+        let inside = behind(&inner).into_iter().map(|row| (row, flow.speed));
+        let outside = behind(&outer).into_iter().map(|row| (row, 0.0));
+        let particles = |(row, speed): (Row, f64)| {
+            let around = |x: Vector2<f64>| Vector2::new(-x.y, x.x) / x.norm() * speed;
+            row.particles(dx, s.rho, around).collect::<Vec<Particle>>()
         };
-        let depths = (0..layers).map(|k| -(nearest + k as f64) * dx);
-        let mut particles: Vec<Particle> =
-            depths.flat_map(|d| self.of_row(&inner.row(d, dx), Role::Fluid, 0.0)).collect();
-        let support = QuinticSpline::SUPPORT * self.h;
-        for (curve, speed) in [(inner, flow.speed), (outer, 0.0)] {
-            for row in curve.rows_behind(dx, W::FIRST, support) {
-                let role = if row.depth == 0.0 { Role::Interface } else { Role::Wall };
-                particles.extend(self.of_row(&row, role, speed));
-            }
-        }
-        particles
+        fluid.chain(inside).chain(outside).flat_map(particles).collect()
     }
 
-    fn scene<W: CylinderWall>(&self) -> Scene<Method<W>> {
-        let s = &self.settings;
-        let viscosity = Viscosity { mu: s.rho * s.nu, eta2: s.eta2_over_h2 * self.h * self.h };
-        let forces = (Pressure::new(self.eos), viscosity);
-        let particles = self.particles::<W>();
-        Scene::new(self.h, Domain::open(), particles, forces, Continuity, W::walls(self))
+    /// What the run chose.
+    fn numbers(&self) -> [(&'static str, f64); 6] {
+        let Rules { dt, dt_limit, sound_speed } = self.rules;
+        [
+            ("h/dx", self.settings.h_over_dx),
+            ("dx [m]", self.medium.dx),
+            ("V [m/s]", self.flow.speed),
+            ("c0 [m/s]", sound_speed),
+            ("dt [s]", dt),
+            ("dt/limit", dt / dt_limit),
+        ]
     }
 }
 
-/// Walls of particles behind a curve.
-trait CylinderWall: Walls<()> {
-    const NAME: &'static str;
-    /// Depth of the first row \[dx\].
-    const FIRST: f64;
-    fn walls(cylinders: &Cylinders) -> Self;
-}
+const PROGRAM: Program<CylinderSettings, Method> =
+    Program { run, rules: |method, s| Ok(Cylinders::new(s, method, &Context::of_rules())?.rules) };
 
-impl CylinderWall for InterfaceWall {
-    const NAME: &'static str = "interface-wall";
-    const FIRST: f64 = 0.0;
-    fn walls(_: &Cylinders) -> Self {
-        Self
-    }
-}
-
-impl CylinderWall for Extrapolating {
-    const NAME: &'static str = "extrapolating-wall";
-    const FIRST: f64 = 0.5;
-    /// Without the centripetal acceleration of the inner surface: the pressure that balances it is below
-    /// Mach² = 1e-2 of ρ c², and the flow around the axis does not depend on it.
-    fn walls(cylinders: &Cylinders) -> Self {
-        Self::no_slip(cylinders.eos, Vector2::zeros())
-    }
-}
-
-fn run<W: CylinderWall>(
+fn run(
+    method: &Method,
     variant: &str,
     settings: &CylinderSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let cylinders = Cylinders::new(settings, context.allow_unstable)?;
-    let mut scene = cylinders.scene::<W>();
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
+    let cylinders = Cylinders::new(settings, method, context)?;
+    let numbers = cylinders.numbers();
+    let parts = Parts {
+        medium: cylinders.medium.clone(),
+        domain: Domain::open(),
+        particles: cylinders.particles(method),
+        mirrors: Vec::new(),
+        skin: None,
+        limits: Limits::default(),
+        threads: context.threads,
+    };
+    let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
+    let until = [cylinders.rules.dt, cylinders.end()];
+    let simulation = simulate::simulate(method, parts, until, context, &mut record)?;
+    if record.status == Status::Completed {
+        measure(&cylinders.flow, &*simulation, &mut record);
     }
-    let mut simulation = scene.build()?;
-    let json = serde_json::to_value(settings).unwrap_or_default();
-    let mut record = Record::new(NAME, variant, json, context.threads.max(1));
-    describe::<W>(&cylinders, &mut record);
-    let (end, dt) = ([cylinders.end()], cylinders.dt);
-    let pressure = |density| cylinders.eos.pressure(density);
-    let (status, cost) =
-        runner::drive(&mut simulation, dt, &end, context, &mut (), &pressure, &mut |_, _| {})?;
-    if status == Status::Completed {
-        measure(&cylinders, &simulation, &mut record);
-    }
-    record.state = Some(harness::simulate::state(&simulation.particles()));
-    (record.status, record.cost) = (status, cost);
     Ok(record)
 }
 
-fn describe<W: CylinderWall>(cylinders: &Cylinders, record: &mut Record) {
-    let numbers = [
-        ("h/dx", cylinders.settings.h_over_dx),
-        ("dx [m]", cylinders.dx),
-        ("V [m/s]", cylinders.flow.speed),
-        ("c0 [m/s]", cylinders.eos.sound_speed),
-        ("dt [s]", cylinders.dt),
-        ("dt/limit", cylinders.dt / cylinders.dt_limit),
-    ];
-    let integrator = <Leapfrog as Integrator<()>>::NAME;
-    let words = [("kernel", QuinticSpline::NAME), ("integrator", integrator), ("walls", W::NAME)];
-    fluid::describe(&numbers, &words, record);
-}
-
-fn measure<W: CylinderWall>(
-    cylinders: &Cylinders,
-    simulation: &Simulation<Method<W>>,
-    record: &mut Record,
-) {
-    let flow = &cylinders.flow;
+fn measure(flow: &TaylorCouette, simulation: &dyn Stepper<()>, record: &mut Record) {
     let mut fluid: Vec<[f64; 3]> = simulation
         .particles()
         .iter()
@@ -275,29 +204,21 @@ fn measure<W: CylinderWall>(
     record.profiles.insert("velocity".into(), profile);
 }
 
-fn variant<W: CylinderWall>(
-    name: &'static str,
-    about: &'static str,
-) -> Composition<CylinderSettings> {
-    let rules = |settings: &CylinderSettings| {
-        let Cylinders { dt, dt_limit, eos, .. } = Cylinders::new(settings, true)?;
-        Ok(Rules { dt, dt_limit, sound_speed: eos.sound_speed })
-    };
-    let variant = Variant { name, about };
-    Composition { variant, adjust: |_| {}, run: run::<W>, rules, lacks: Vec::new() }
-}
-
 fn variants() -> Vec<Composition<CylinderSettings>> {
-    vec![
-        variant::<InterfaceWall>(
-            InterfaceWall::NAME,
+    Variants::of(&PROGRAM)
+        .with(
+            INTERFACE,
             "interface and wall particles of the paper, on and behind both cylinders",
-        ),
-        variant::<Extrapolating>(
-            Extrapolating::NAME,
+            Method::of::<With<InterfaceWall>>(),
+            |_| {},
+        )
+        .with(
+            EXTRAPOLATING,
             "wall particles behind both cylinders that extrapolate velocity and pressure",
-        ),
-    ]
+            Method::of::<With<ExtrapolatingWall<Tait, NoSlip>>>(),
+            |_| {},
+        )
+        .all
 }
 
 static CASE: Composed<CylinderSettings> = Composed {
@@ -306,7 +227,7 @@ static CASE: Composed<CylinderSettings> = Composed {
             + B/r, exact. Both walls are curved, the inner one convex and the outer one concave, and made of \
             rows of particles that are spaced by their own arc length.",
     variants,
-    is_stable: |record| record.status == Status::Completed,
+    is_stable: composed::completed,
     declaration,
     plan,
     studies: |_, _| vec![Study::new("taylor-couette", "Curved walls").prose(FALLING)],
@@ -318,14 +239,14 @@ pub const TAYLOR_COUETTE: &dyn Case = &CASE;
 /// The walls of both variants, the order that they should have, and why.
 const ORDERS: [(&str, f64, &str); 2] = [
     (
-        InterfaceWall::NAME,
+        INTERFACE,
         1.0,
         "interface particles carry the velocity of the wall, and so do the rows behind: first order, as in \
          the row-reduced matrix of flat walls; 0.3 either way tells it from second order, whatever the \
          number of levels",
     ),
     (
-        Extrapolating::NAME,
+        EXTRAPOLATING,
         2.0,
         "walls that extrapolate linearly: second order, as in the row-reduced matrix of flat walls; 0.3 \
          either way tells it from first order, whatever the number of levels, and not from an order that \
@@ -354,7 +275,7 @@ fn gates(variant: &str, layers: usize) -> Vec<Gate> {
     let (across, of_plates) = (layers as f64, [1.9, 0.22]);
     // The matrix of plane Poiseuille flow at 10 and 20 rows: 1.9e-2, 4.6e-3; 2.2e-2, 1.0e-2.
     let most = match variant {
-        "extrapolating-wall" => of_plates[0] / (across * across),
+        EXTRAPOLATING => of_plates[0] / (across * across),
         _ => of_plates[1] / across,
     };
     vec![
@@ -402,28 +323,23 @@ fn accuracy(tier: Tier) -> Accuracy {
         spacing: 1.0 / n as f64,
         label: format!("{n} spacings across"),
     };
-    let ladder = |(variant, expected, because): (&'static str, f64, &str)| Ladder {
-        variant,
-        note: String::new(),
-        levels: levels(tier).iter().map(|&n| level(variant, n)).collect(),
-        order: Some(OrderGate {
+    let ladder = |(variant, expected, because): (&'static str, f64, &str)| {
+        let order = OrderGate {
             id: format!("{NAME}.{variant}.order"),
             bound: Bound::Within(expected - 0.3, expected + 0.3),
             evidence: Evidence::Theory,
             because: because.into(),
-        }),
+        };
+        let levels = levels(tier).iter().map(|&n| level(variant, n));
+        Ladder { order: Some(order), ..Ladder::new(variant, levels) }
     };
+    let label = "relative L2 error of the velocity around the axis [-]";
     Accuracy {
-        id: "taylor-couette".into(),
-        error: ErrorOf::Metric(L2.into()),
-        label: "relative L2 error of the velocity around the axis [-]".into(),
         about: "Steady flow from rest at t = 1 d^2/nu, Re = V d/nu = 0.5, outer radius twice the inner one."
             .into(),
         spacing: "dx/d [-]",
-        slope: Some(2.0),
         ladders: ORDERS.map(ladder).into(),
-        more: Vec::new(),
-        peers: Vec::new(),
+        ..Accuracy::new("taylor-couette", ErrorOf::Metric(L2.into()), label)
     }
 }
 

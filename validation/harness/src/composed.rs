@@ -1,7 +1,10 @@
 //! A case that is a table of compositions with a declaration, a plan and studies of its own.
 
+use std::{fmt::Display, rc::Rc};
+
 use base::{
-    record::{Record, Status},
+    gate::{Bound, Evidence, Gate},
+    record::{MetricName, Record, Status},
     settings::{self, Field, Settings},
     spec::RunSpec,
 };
@@ -10,30 +13,95 @@ use crate::{
     case::{self, Case, Planned, Rules, RunError, Tier, Variant},
     context::Context,
     declare::Declaration,
+    method::{Knob, Method},
     runs::Runs,
     study::Study,
 };
 
-/// A variant: its name, its settings before `--set`, and the program that its types make.
+/// What runs a variant: its name, settings.
+type Run<T> = dyn Fn(&str, &T, &Context) -> Result<Record, RunError>;
+
+/// What states the rules of a variant.
+type Ruled<T> = dyn Fn(&T) -> Result<Rules, RunError>;
+
+/// A variant: its name, its settings before `--set`, and its method.
 pub struct Composition<T> {
     /// Name and description.
     pub variant: Variant,
-    /// Changes the default settings.
-    pub adjust: fn(&mut T),
-    /// Runs it: name of the variant, settings.
-    pub run: fn(&str, &T, &Context) -> Result<Record, RunError>,
-    /// What the rules choose from the settings.
-    pub rules: fn(&T) -> Result<Rules, RunError>,
+    adjust: fn(&mut T),
+    run: Box<Run<T>>,
+    rules: Box<Ruled<T>>,
     /// Settings that none of its types reads: there they are refused.
-    pub lacks: Vec<&'static str>,
+    lacks: Vec<&'static str>,
 }
 
-/// Those of the optional settings that are not in use.
-pub fn lacking(optional: &[&'static str], uses: &[&str]) -> Vec<&'static str> {
-    optional.iter().copied().filter(|key| !uses.contains(key)).collect()
+/// What a case does with any of its methods.
+pub struct Program<T, M> {
+    /// Runs it: method, name of the variant, settings.
+    pub run: fn(&M, &str, &T, &Context) -> Result<Record, RunError>,
+    /// What the rules choose from the settings.
+    pub rules: fn(&M, &T) -> Result<Rules, RunError>,
 }
 
-impl<T: Settings> Composition<T> {
+/// Variants that the same program runs, one after another.
+pub struct Variants<'a, T, M> {
+    program: &'a Program<T, M>,
+    /// Those so far.
+    pub all: Vec<Composition<T>>,
+}
+
+impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T, Method<X, D>> {
+    /// None yet.
+    pub fn of(program: &'a Program<T, Method<X, D>>) -> Self {
+        Self { program, all: Vec::new() }
+    }
+
+    /// One more: name, description, method, and what it changes of the default settings.
+    #[must_use]
+    pub fn with(
+        mut self,
+        name: &'static str,
+        about: &'static str,
+        method: Method<X, D>,
+        adjust: fn(&mut T),
+    ) -> Self {
+        let (method, &Program { run, rules }) = (Rc::new(method), self.program);
+        let is_setting = |name: &&str| T::FIELDS.iter().any(|field| field.name == *name);
+        let lacks = Knob::others(&method.uses).filter(is_setting).collect();
+        let ruled = Rc::clone(&method);
+        self.all.push(Composition::new(
+            (name, about),
+            adjust,
+            move |variant, settings, context| run(&method, variant, settings, context),
+            move |settings| rules(&ruled, settings),
+            lacks,
+        ));
+        self
+    }
+}
+
+impl<T: Settings + 'static> Composition<T> {
+    /// A variant of that name and description: what it changes of the default settings, what runs it, what its
+    /// rules choose, and the settings that it does not read.
+    pub fn new(
+        (name, about): (&'static str, &'static str),
+        adjust: fn(&mut T),
+        run: impl Fn(&str, &T, &Context) -> Result<Record, RunError> + 'static,
+        rules: impl Fn(&T) -> Result<Rules, RunError> + 'static,
+        lacks: Vec<&'static str>,
+    ) -> Self {
+        let variant = Variant { name, about };
+        Self { variant, adjust, run: Box::new(run), rules: Box::new(rules), lacks }
+    }
+
+    /// One simulation with these settings.
+    ///
+    /// # Errors
+    /// Why it was refused.
+    pub fn run(&self, settings: &T, context: &Context) -> Result<Record, RunError> {
+        (self.run)(self.variant.name, settings, context)
+    }
+
     /// The settings of this variant with `key=value` texts applied.
     pub fn settings(&self, set: &[String]) -> Result<T, RunError> {
         let mut settings = T::default();
@@ -84,7 +152,7 @@ pub struct Composed<T> {
     pub studies: fn(Tier, &Runs) -> Vec<Study>,
 }
 
-impl<T: Settings> Composed<T> {
+impl<T: Settings + 'static> Composed<T> {
     /// The settings of a variant with `key=value` texts applied.
     ///
     /// # Errors
@@ -107,6 +175,22 @@ impl<T: Settings> Composed<T> {
     /// [`Composed::spec`] as a run of a plan.
     pub fn planned(&self, variant: &str, set: impl FnOnce(&mut T)) -> Planned {
         Planned::new(self.spec(variant, set))
+    }
+
+    /// A gate on a metric of a run, called `case.run.metric`.
+    ///
+    /// # Panics
+    /// If the gate is unsound, see [`Gate::new`].
+    pub fn gate(
+        &self,
+        run: impl Display,
+        metric: impl Into<MetricName>,
+        bound: Bound,
+        evidence: Evidence,
+        because: &str,
+    ) -> Gate {
+        let metric = String::from(metric.into());
+        Gate::new(format!("{}.{run}.{metric}", self.name), metric, bound, evidence, because)
     }
 
     /// The composition of that name.
@@ -132,7 +216,7 @@ impl<T: Settings> Composed<T> {
     }
 }
 
-impl<T: Settings> Case for Composed<T> {
+impl<T: Settings + 'static> Case for Composed<T> {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -155,7 +239,7 @@ impl<T: Settings> Case for Composed<T> {
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
         let (chosen, settings) = self.resolve(spec)?;
-        Ok((chosen.run)(&spec.variant, &settings, &context.of(spec))?.of(spec))
+        Ok(chosen.run(&settings, &context.of(spec))?.of(spec))
     }
 
     fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {

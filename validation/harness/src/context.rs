@@ -38,6 +38,11 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
+    /// For rules, which say what the step is and not whether it is stable.
+    pub fn of_rules() -> Self {
+        Self { allow_unstable: true, ..Self::default() }
+    }
+
     /// The same for this run: what its spec says of the step and of what is kept.
     pub fn of(&self, spec: &RunSpec) -> Self {
         Self {

@@ -317,6 +317,21 @@ pub struct MapPanel {
     pub cells: Vec<Vec<Vec<RunSpec>>>,
 }
 
+impl MapPanel {
+    /// A panel over values of two settings; `cell(x, y)` are the runs of a cell.
+    pub fn over<A: Copy + ToString, B: Copy + ToString>(
+        title: &str,
+        x: &[A],
+        y: &[B],
+        cell: impl Fn(A, B) -> Vec<RunSpec>,
+    ) -> Self {
+        let row = |y: &B| x.iter().map(|x| cell(*x, *y)).collect();
+        let cells = y.iter().map(row).collect();
+        let (x, y) = (x.iter().map(A::to_string).collect(), y.iter().map(B::to_string).collect());
+        Self { title: title.into(), x, y, cells }
+    }
+}
+
 /// Curves over their reference.
 pub struct Curves {
     /// Anchor of the study and of its figure.

@@ -7,6 +7,7 @@ use report::{Cell, Column, Table};
 use crate::{runs::Judged, study::Study};
 
 /// One setting, what must come, and what came.
+#[derive(Clone)]
 pub struct Entry {
     /// What is extreme.
     what: String,

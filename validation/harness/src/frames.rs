@@ -41,9 +41,10 @@ impl<'a> Frames<'a> {
     ///
     /// # Errors
     /// The first frame that could not be written.
-    pub fn finish<X>(mut self, end: Option<&dyn Stepper<X>>) -> Result<(), FrameError>
+    pub fn finish<X, D>(mut self, end: Option<&D>) -> Result<(), FrameError>
     where
         X: Numbers,
+        D: Stepper<X> + ?Sized,
     {
         match (self.failed.take(), end) {
             (Some(error), _) => Err(error),
@@ -65,7 +66,10 @@ impl<'a> Frames<'a> {
         next < self.count && time >= self.end * next as f64 / self.count as f64
     }
 
-    fn write<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) -> Result<(), FrameError> {
+    fn write<X: Numbers>(
+        &mut self,
+        simulation: &(impl Stepper<X> + ?Sized),
+    ) -> Result<(), FrameError> {
         let particles = simulation.particles();
         let column = |f: &dyn Fn(&solver::Particle<X>) -> f64| -> Vec<f64> {
             particles.iter().map(f).collect()

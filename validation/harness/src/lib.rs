@@ -9,6 +9,7 @@
 
 pub mod bisect;
 pub mod case;
+pub mod columns;
 pub mod composed;
 pub mod context;
 pub mod convergence;
@@ -18,6 +19,7 @@ pub mod extremes;
 pub mod frames;
 pub mod gate_power;
 pub mod make;
+pub mod method;
 pub mod plan;
 pub mod planned;
 pub mod rules;

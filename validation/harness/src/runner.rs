@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use base::record::{Cost, Status};
 use cpu_time::{ProcessTime, ThreadTime};
-use solver::{Flow, Numbers, Observer, Outcome, Scheme, Simulation, Stepper};
+use solver::{Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{error::RunError, frames::Frames};
@@ -76,7 +76,10 @@ struct Run<'a, X> {
 
 impl<X: Numbers> Run<'_, X> {
     /// Steps to a time; how the run ended, if it did not get there.
-    fn step_to(&mut self, simulation: &mut dyn Stepper<X>, until: f64) -> Option<Status> {
+    fn step_to<D>(&mut self, simulation: &mut D, until: f64) -> Option<Status>
+    where
+        D: Stepper<X> + ?Sized,
+    {
         let Self { dt, watch, observer, frames, cost, .. } = self;
         let mut timed = Timed { observer: &mut **observer, frames, seconds: 0.0 };
         let (wall, cpu, process) = (Instant::now(), ThreadTime::now(), ProcessTime::now());
@@ -104,7 +107,10 @@ impl<X: Numbers> Run<'_, X> {
     }
 
     /// The last frame of a run that reached its end, and what was counted.
-    fn finish(self, simulation: &dyn Stepper<X>, status: &Status) -> Result<Cost, RunError> {
+    fn finish<D>(self, simulation: &D, status: &Status) -> Result<Cost, RunError>
+    where
+        D: Stepper<X> + ?Sized,
+    {
         if let Some(frames) = self.frames {
             let has_ended = *status == Status::Completed;
             frames.finish(has_ended.then_some(simulation))?;
@@ -129,14 +135,14 @@ impl<X: Numbers> Run<'_, X> {
 ///
 /// # Errors
 /// If a frame cannot be written: the run stops at once.
-pub fn drive<S: Scheme>(
-    simulation: &mut Simulation<S>,
+pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
+    simulation: &mut D,
     dt: f64,
     times: &[f64],
     context: &Context,
-    observer: &mut dyn Observer<S::Extra>,
+    observer: &mut dyn Observer<X>,
     pressure: &dyn Fn(f64) -> f64,
-    at: &mut dyn FnMut(&mut Simulation<S>, usize),
+    at: &mut dyn FnMut(&mut D, usize),
 ) -> Result<(Status, Cost), RunError> {
     let end = times.last().copied().unwrap_or_default();
     let watch = Watch { context, end, until_look: Cell::new(LOOK_EVERY) };

@@ -97,6 +97,11 @@ impl Runs {
         self.judged(spec).map(|run| &run.record)
     }
 
+    /// The records of these specs, of those that were planned.
+    pub fn records(&self, specs: impl IntoIterator<Item = RunSpec>) -> Vec<&Record> {
+        specs.into_iter().filter_map(|spec| self.record(&spec)).collect()
+    }
+
     /// The record of a run that reached its end.
     pub fn completed(&self, spec: &RunSpec) -> Option<&Record> {
         self.record(spec).filter(|record| record.status == Status::Completed)

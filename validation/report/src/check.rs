@@ -32,7 +32,7 @@ struct Tag<'a> {
 
 /// What a figure was seen to have.
 #[derive(Default)]
-struct Seen {
+struct FigureContent {
     shapes: usize,
     caption: usize,
 }
@@ -43,7 +43,7 @@ struct Walk<'a> {
     open: Vec<&'a str>,
     ids: BTreeSet<&'a str>,
     targets: BTreeSet<&'a str>,
-    figure: Option<Seen>,
+    figure: Option<FigureContent>,
     summary: Summary,
 }
 
@@ -139,10 +139,10 @@ impl<'a> Walk<'a> {
         if within == "style" && (text.contains("@import") || loads(text, "url(")) {
             return Err("the style sheet loads a file".into());
         }
-        if let Some(seen) = &mut self.figure
+        if let Some(figure) = &mut self.figure
             && self.open.contains(&"figcaption")
         {
-            seen.caption += text.trim().len();
+            figure.caption += text.trim().len();
         }
         Ok(())
     }
@@ -157,17 +157,17 @@ impl<'a> Walk<'a> {
         }
         match tag.name {
             "figure" if self.figure.is_some() => return Err("a figure inside a figure".into()),
-            "figure" => self.figure = Some(Seen::default()),
+            "figure" => self.figure = Some(FigureContent::default()),
             "img" => {
-                if let Some(seen) = &mut self.figure {
-                    seen.shapes += LEAST_SHAPES;
+                if let Some(figure) = &mut self.figure {
+                    figure.shapes += LEAST_SHAPES;
                 }
             }
             "table" => self.summary.tables += 1,
             "section" => self.summary.sections += 1,
             "polyline" | "polygon" | "circle" | "line" | "rect" | "text" | "path" => {
-                if let Some(seen) = &mut self.figure {
-                    seen.shapes += 1;
+                if let Some(figure) = &mut self.figure {
+                    figure.shapes += 1;
                 }
             }
             _ => {}
@@ -209,12 +209,12 @@ impl<'a> Walk<'a> {
             other => return Err(format!("</{name}> closes <{}>", other.unwrap_or("nothing"))),
         }
         if name == "figure" {
-            let seen = self.figure.take().unwrap_or_default();
+            let figure = self.figure.take().unwrap_or_default();
             self.summary.figures += 1;
-            if seen.shapes < LEAST_SHAPES {
+            if figure.shapes < LEAST_SHAPES {
                 return Err(format!("figure {} shows nothing", self.summary.figures));
             }
-            if seen.caption < 12 {
+            if figure.caption < 12 {
                 return Err(format!("figure {} has no caption", self.summary.figures));
             }
         }

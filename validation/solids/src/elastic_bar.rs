@@ -1,22 +1,21 @@
 //! Waves in uniaxial strain: a pulse through a bar, and two equal bars that meet.
 
 use nalgebra::Vector2;
-use solver::{Domain, Flow, Observer, Open, Particle, Scene, Stepper, Symmetric};
-
-use super::solid::{
-    self, Energy, Finished, Material, Method, Problem, Scheme, SharedSettings, begin, digest,
-    run_to,
+use solver::{
+    CubicSpline, Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle, Stepper,
+    Symmetric,
 };
+
+use super::solid::{self, Energy, Material, Problem, SharedSettings, Watch};
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricKey, Profile, Record, Status},
+    record::{MetricKey, Profile, Record},
     spec::RunSpec,
 };
 use harness::{
-    case::{Planned, RunError, Tier},
-    composed::Composed,
+    case::{Planned, Tier},
+    composed::{self, Composed},
     declare::{Accuracy, Declaration, ErrorOf},
-    runner::Context,
 };
 use maths::{exact::impact::Impact, theory::lattice::SquareLattice};
 
@@ -47,11 +46,11 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
             = ((K + 4 mu/3)/rho)^(1/2). A pulse runs through one bar; or two equal bars at speeds V and -V \
             meet: the contact bears rho c_p V (the jump conditions at finite V) for 2 L/c_p, and then both \
             have exchanged their velocities.",
-    variants: solid::variants,
-    is_stable: |record| record.status == Status::Completed,
+    variants: solid::variants::<_, Open>,
+    is_stable: composed::completed,
     declaration,
     plan,
-    studies: |_, _| Vec::new(),
+    studies: composed::no_studies,
 };
 
 base::metrics! {
@@ -79,85 +78,97 @@ const STATIONS: [f64; 2] = [0.3, 0.7];
 /// Shares of the velocity exchange between which it is timed.
 const EXCHANGED: [f64; 2] = [0.1, 0.9];
 
-/// Lengths, speeds and times of a run.
-struct Bar {
-    settings: BarSettings,
-    material: Material,
-    dx: f64,
-    /// V \[m/s\].
-    speed: f64,
+impl BarSettings {
     /// c_p \[m/s\].
-    wave: f64,
-    /// \[s\].
-    end: f64,
-    rows: usize,
-}
+    fn wave(&self) -> f64 {
+        self.material().p_wave_speed()
+    }
 
-impl Bar {
-    fn new(s: &BarSettings) -> Self {
-        let solid = s.solid();
-        let wave = solid.material.p_wave_speed();
-        let auto = match (s.collide, s.gap > 0.0) {
-            (false, _) => 0.3,
-            (true, false) => 1.3,
-            (true, true) => 3.0,
-        };
-        Self {
-            settings: s.clone(),
-            material: solid.material,
-            dx: s.dx(),
-            speed: s.speed(),
-            wave,
-            end: s.end.unwrap_or(auto) * 2.0 * s.length / wave,
-            rows: solid.rows_of_a_period(),
-        }
+    /// Rows of particles in a period that every support fits into twice.
+    fn rows(&self) -> usize {
+        (2.0 * CubicSpline::SUPPORT * self.h_over_dx - 1e-9).ceil() as usize
     }
 
     /// The pulse: v at x, that is −σ/(ρ c_p), for a wave to the right alone \[m/s\].
     fn pulse(&self, x: f64) -> f64 {
-        let z = (x / self.settings.length - START) / self.settings.width;
-        self.speed * (-0.5 * z * z).exp()
+        let z = (x / self.length - START) / self.width;
+        self.speed() * (-0.5 * z * z).exp()
+    }
+}
+
+impl Problem for BarSettings {
+    const NAME: &'static str = "elastic_bar";
+    type Watch = Motion;
+
+    fn dx(&self) -> f64 {
+        self.length / self.n as f64
+    }
+
+    fn speed(&self) -> f64 {
+        self.speed * self.wave()
+    }
+
+    fn end(&self) -> f64 {
+        let auto = match (self.collide, self.gap > 0.0) {
+            (false, _) => 0.3,
+            (true, false) => 1.3,
+            (true, true) => 3.0,
+        };
+        self.end.unwrap_or(auto) * 2.0 * self.length / self.wave()
+    }
+
+    fn domain(&self) -> Domain {
+        Domain { low: Vector2::zeros(), period: [None, Some(self.rows() as f64 * self.dx())] }
     }
 
     fn particles(&self) -> Vec<Particle<Symmetric>> {
-        let Self { settings: s, dx, .. } = self;
+        let (dx, speed, wave) = (self.dx(), self.speed(), self.wave());
+        let Material { density, shear, .. } = self.material();
         let lattice =
-            |first: f64| solver::lattice(Vector2::new(first, 0.5 * dx), *dx, s.n, self.rows);
-        let at = |x, v| Particle::fluid(x, Vector2::new(v, 0.0), self.material.density, dx * dx);
-        if s.collide {
-            let half = 0.5 * (1.0 + s.gap) * dx;
-            let left = lattice(-half - (s.n - 1) as f64 * dx).map(|x| at(x, self.speed));
-            return left.chain(lattice(half).map(|x| at(x, -self.speed))).collect();
+            |first: f64| solver::lattice(Vector2::new(first, 0.5 * dx), dx, self.n, self.rows());
+        let at = |x, v| Particle::fluid(x, Vector2::new(v, 0.0), density, dx * dx);
+        if self.collide {
+            let half = 0.5 * (1.0 + self.gap) * dx;
+            let left = lattice(-half - (self.n - 1) as f64 * dx).map(|x| at(x, speed));
+            return left.chain(lattice(half).map(|x| at(x, -speed))).collect();
         }
         let strained = |x: Vector2<f64>| {
             let v = self.pulse(x.x);
-            let e = -v / self.wave; // strain along x; the mass is that without it
-            let two_mu = 2.0 * self.material.shear;
+            let e = -v / wave; // strain along x; the mass is that without it
+            let two_mu = 2.0 * shear;
             let extra = Symmetric { xx: two_mu * e * 2.0 / 3.0, yy: -two_mu * e / 3.0, xy: 0.0 };
-            Particle { density: self.material.density / (1.0 + e), extra, ..at(x, v) }
+            Particle { density: density / (1.0 + e), extra, ..at(x, v) }
         };
         lattice(0.5 * dx).map(strained).collect()
     }
 
-    fn scene<M: Method>(&self) -> Scene<Scheme<M, Open>> {
-        let solid = self.settings.solid();
-        let period = [None, Some(self.rows as f64 * self.dx)];
-        let domain = Domain { low: Vector2::zeros(), period };
-        let (forces, drift) = (M::forces(&solid, self.dx), M::drift(&solid));
-        Scene::new(solid.h(self.dx), domain, self.particles(), forces, drift, Open)
+    fn watch(&self, start: &[Particle<Symmetric>]) -> Motion {
+        Motion {
+            settings: self.clone(),
+            momentum: start.iter().map(|p| p.velocity * p.mass).sum(),
+            total: start.iter().map(|p| p.velocity.norm() * p.mass).sum(),
+            energy: Energy::of_all(start, &self.material()).total(),
+            series: Vec::new(),
+            stress: None,
+        }
     }
 }
 
 /// The motion of the bars, step by step.
-struct Motion<'a> {
-    bar: &'a Bar,
+pub struct Motion {
+    settings: BarSettings,
+    /// Σ m v and Σ m |v| at the start \[kg/s\].
+    momentum: Vector2<f64>,
+    total: f64,
+    /// Energy at the start \[J/m\].
+    energy: f64,
     /// t \[s\], centre of the velocity \[m\], mean velocities left and right of x = 0 \[m/s\].
     series: Vec<[f64; 4]>,
     /// Mean −σˣˣ within L/2 of the contact when the bars have come to rest \[Pa\].
     stress: Option<f64>,
 }
 
-impl Observer<Symmetric> for Motion<'_> {
+impl Observer<Symmetric> for Motion {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
         let (mut momentum, mut first) = ([0.0; 2], 0.0);
         let mut mass = [0.0; 2];
@@ -170,17 +181,16 @@ impl Observer<Symmetric> for Motion<'_> {
         let mean = [0, 1].map(|k| momentum[k] / mass[k]);
         let centre = first / (momentum[0] + momentum[1]);
         self.series.push([simulation.time(), centre, mean[0], mean[1]]);
-        if self.bar.settings.collide && self.stress.is_none() && mean[0] <= 0.0 {
+        if self.settings.collide && self.stress.is_none() && mean[0] <= 0.0 {
             self.stress = Some(self.contact_stress(simulation));
         }
         Flow::Continue
     }
 }
 
-impl Motion<'_> {
+impl Motion {
     fn contact_stress(&self, simulation: &dyn Stepper<Symmetric>) -> f64 {
-        use solver::EquationOfState;
-        let (eos, reach) = (self.bar.material.eos(), 0.5 * self.bar.settings.length);
+        let (eos, reach) = (self.settings.material().eos(), 0.5 * self.settings.length);
         let near = simulation.fluid().filter(|(_, p)| p.position.x.abs() < reach);
         let (count, sum) = near.fold((0.0, 0.0), |(count, sum), (_, p)| {
             (count + 1.0, sum + eos.pressure(p.density) - p.extra.xx)
@@ -198,85 +208,53 @@ impl Motion<'_> {
     }
 
     fn pulse_metrics(&self, record: &mut Record) {
-        let (s, bar) = (&self.bar.settings, self.bar);
+        let s = &self.settings;
         let [from, to] = STATIONS.map(|x| self.passes(1, x * s.length));
-        let span = (STATIONS[1] - STATIONS[0]) * s.length / bar.wave;
-        let lattice = SquareLattice::<solver::CubicSpline>::new(s.h_over_dx, 0.01);
+        let span = (STATIONS[1] - STATIONS[0]) * s.length / s.wave();
+        let lattice = SquareLattice::<CubicSpline>::new(s.h_over_dx, 0.01);
         let factor = lattice.gradient_factor();
         record.put(TRAVEL_ERROR, (to - from) / span - 1.0);
         record.put(TRAVEL_LATTICE_ERROR, (to - from) / span * factor - 1.0);
     }
 
     fn impact_metrics(&self, record: &mut Record) {
-        let (s, bar) = (&self.bar.settings, self.bar);
-        let Material { density, bulk, shear } = bar.material;
-        let exact = Impact::new(bulk, shear, density, bar.speed);
+        let (s, speed, wave) = (&self.settings, self.settings.speed(), self.settings.wave());
+        let Material { density, bulk, shear } = s.material();
+        let exact = Impact::new(bulk, shear, density, speed);
         let stress = self.stress.unwrap_or(f64::NAN);
-        let [from, to] = EXCHANGED.map(|share| self.passes(2, (1.0 - 2.0 * share) * bar.speed));
+        let [from, to] = EXCHANGED.map(|share| self.passes(2, (1.0 - 2.0 * share) * speed));
         let time = (to - from) / (EXCHANGED[1] - EXCHANGED[0]);
         let last = self.series.last().copied().unwrap_or([f64::NAN; 4]);
         let least = self.series.iter().map(|row| row[2]).fold(f64::INFINITY, f64::min);
-        let linear = density * bar.wave * bar.speed;
+        let linear = density * wave * speed;
         record.put(STRESS_ERROR, stress / exact.stress - 1.0);
         record.put(STRESS_RATIO, stress / linear);
         record.put(CONTACT_TIME_ERROR, time * exact.speed / (2.0 * s.length) - 1.0);
-        record.put(CONTACT_TIME_RATIO, time * bar.wave / (2.0 * s.length));
-        record.put(EXCHANGE, -least / bar.speed);
-        record.put(RESTITUTION, (last[3] - last[2]) / (2.0 * bar.speed));
+        record.put(CONTACT_TIME_RATIO, time * wave / (2.0 * s.length));
+        record.put(EXCHANGE, -least / speed);
+        record.put(RESTITUTION, (last[3] - last[2]) / (2.0 * speed));
     }
 }
 
-impl Problem for BarSettings {
-    const NAME: &'static str = "elastic_bar";
-
-    fn dx(&self) -> f64 {
-        self.length / self.n as f64
-    }
-
-    fn speed(&self) -> f64 {
-        self.speed * self.solid().material.p_wave_speed()
-    }
-
-    fn run<M: Method>(
-        variant: &str,
-        settings: &Self,
-        context: &Context,
-    ) -> Result<Record, RunError> {
-        let bar = Bar::new(settings);
-        let (mut record, dt) = begin::<Self, M>(variant, settings, context)?;
-        let mut motion = Motion { bar: &bar, series: Vec::new(), stress: None };
-        let scene = bar.scene::<M>();
-        let start = scene.particles.iter().map(|p| p.velocity * p.mass).sum::<Vector2<f64>>();
-        let total = scene.particles.iter().map(|p| p.velocity.norm() * p.mass).sum::<f64>();
-        let before = energy_of(&scene.particles, &bar.material);
-        let Finished { simulation, status, cost } =
-            run_to(scene, [dt, bar.end], bar.material.eos(), context, &mut motion)?;
-        let after = Energy::of(&simulation, &bar.material);
-        match settings.collide {
-            true => motion.impact_metrics(&mut record),
-            false => motion.pulse_metrics(&mut record),
+impl Watch for Motion {
+    fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+        match self.settings.collide {
+            true => self.impact_metrics(record),
+            false => self.pulse_metrics(record),
         }
-        record.put(MOMENTUM_ERROR, (simulation.momentum() - start).norm() / total);
-        record.put(ENERGY_CHANGE, after.total() / before.total() - 1.0);
-        let column = |k: usize| motion.series.iter().map(|row| row[k]).collect();
-        let profile = Profile::default()
-            .with("t", "s", column(0))
-            .with("centre of velocity", "m", column(1))
-            .with("left mean velocity", "m/s", column(2))
-            .with("right mean velocity", "m/s", column(3));
+        let after = Energy::of(simulation, &self.settings.material());
+        let momentum = simulation.momentum() - self.momentum;
+        record.put(MOMENTUM_ERROR, momentum.norm() / self.total);
+        record.put(ENERGY_CHANGE, after.total() / self.energy - 1.0);
+        let columns = [
+            ("t", "s"),
+            ("centre of velocity", "m"),
+            ("left mean velocity", "m/s"),
+            ("right mean velocity", "m/s"),
+        ];
+        let profile = Profile::of_rows(&columns, &self.series);
         record.profiles.insert("motion".into(), profile);
-        record.state = Some(digest(&simulation));
-        (record.status, record.cost) = (status, cost);
-        Ok(record)
     }
-}
-
-fn energy_of(particles: &[Particle<Symmetric>], material: &Material) -> Energy {
-    let one = |p: &Particle<Symmetric>| {
-        let Particle { position, velocity, density, extra, .. } = *p;
-        Energy::of_one(p.mass, &solver::Evolved { position, velocity, density, extra }, material)
-    };
-    particles.iter().map(one).fold(Energy::default(), |sum, one| sum + one)
 }
 
 /// What a lattice of long waves and a front of a few spacings leave of linear theory: G1 differs from
@@ -286,20 +264,15 @@ const LATTICE: f64 = 0.02;
 const SPEEDS: [(&str, f64); 4] = [("1e-4", 1e-4), ("1e-3", 1e-3), ("1e-2", 1e-2), ("0.1", 0.1)];
 const VARIANTS: [&str; 3] = ["bare", "plain", "seed"];
 
-/// A gate of the run `id`.
-fn judged(id: &str, metric: MetricKey, bound: Bound, evidence: Evidence, because: &str) -> Gate {
-    let metric = String::from(metric);
-    Gate::new(format!("elastic_bar.{id}.{metric}"), metric, bound, evidence, because)
-}
-
+/// A gate of the run `id` on what theory says exactly.
 fn gate(id: &str, metric: MetricKey, bound: Bound, because: &str) -> Gate {
-    judged(id, metric, bound, Evidence::Analytic, because)
+    ELASTIC_BAR.gate(id, metric, bound, Evidence::Analytic, because)
 }
 
 fn momentum(id: &str) -> Gate {
     let because = "forces of pairs are equal and opposite: what is left is the round-off of some \
                    thousand steps";
-    judged(id, MOMENTUM_ERROR, Bound::Below(1e-12), Evidence::Invariant, because)
+    ELASTIC_BAR.gate(id, MOMENTUM_ERROR, Bound::Below(1e-12), Evidence::Invariant, because)
 }
 
 /// A pulse through a bar of so many spacings.
@@ -334,13 +307,13 @@ fn pulse(variant: &'static str, n: usize) -> Planned {
         let because = "on a lattice nothing is left but the amplitude of 1e-4, (omega dt)^2/24 and the \
                        3e-4 of the pulse that stand outside four standard deviations";
         let bound = Bound::Within(-1e-3, 1e-3);
-        gates.push(judged(&id, TRAVEL_LATTICE_ERROR, bound, Evidence::Theory, because));
+        gates.push(ELASTIC_BAR.gate(&id, TRAVEL_LATTICE_ERROR, bound, Evidence::Theory, because));
     }
     if variant != "bare" && n >= 640 {
         let because = "against the speed of the lattice only what viscosity adds is left, 6 % at 40 \
                        spacings and proportional to dx: 0.4 %, twice that for what is not linear in h/width";
         let bound = Bound::Within(-0.01, 0.01);
-        gates.push(judged(&id, TRAVEL_LATTICE_ERROR, bound, Evidence::Theory, because));
+        gates.push(ELASTIC_BAR.gate(&id, TRAVEL_LATTICE_ERROR, bound, Evidence::Theory, because));
     }
     Planned::new(pulse_spec(variant, n)).judged(gates)
 }
@@ -442,15 +415,11 @@ fn declaration(tier: Tier) -> Declaration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::case::{self, Case};
-
-    fn refused(variant: &str, set: &str) -> Option<RunError> {
-        let spec = case::spec(&ELASTIC_BAR, variant, &[set.into()]);
-        spec.and_then(|spec| ELASTIC_BAR.run(&spec, &Context::default())).err()
-    }
+    use harness::case::{Case, RunError};
 
     #[test]
     fn settings_that_make_no_sense_are_refused() {
+        let refused = |variant, set| solid::refused(&ELASTIC_BAR, variant, set);
         assert!(matches!(refused("bare", "alpha=1"), Some(RunError::Unused { .. })));
         assert!(matches!(refused("plain", "xsph=0.5"), Some(RunError::Unused { .. })));
         assert!(matches!(refused("plain", "poisson=0.5"), Some(RunError::Setting(_))));

@@ -6,26 +6,28 @@
 
 use nalgebra::Vector2;
 use solver::{
-    CauchyStress, Compose, Continuity, CubicSpline, Domain, Flow, JaumannRate, Kernel, Leapfrog,
-    Linear, Observer, Open, Particle, QuinticSpline, Scene, Scheme, Stepper, Symmetric, WendlandC2,
+    CubicSpline, Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle, QuinticSpline,
+    Stepper, Symmetric, WendlandC2,
 };
 use std::f64::consts::TAU;
 
+use super::solid::{Bare, Material, parts};
 use base::{
     gate::{Bound, Evidence, Gate},
-    number,
-    record::{Cost, MetricKey, Record, Status},
+    record::{MetricKey, Record},
     spec::RunSpec,
 };
 use harness::{
-    case::{Planned, RunError, Variant},
-    composed::{Composed, Composition},
+    case::{Planned, RunError},
+    composed::{self, Composed, Composition, Program, Variants},
+    context::Context,
     declare::Declaration,
-    runner::{self, Context},
+    method::{Method, Parts},
+    runner,
     runs::Runs,
+    simulate,
     study::Study,
 };
-use maths::theory::lattice::SquareLattice;
 use report::{Cell, Column, Table};
 
 base::settings! {
@@ -48,7 +50,7 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
             time step is divided out. In place of a wave: a block under a little stress that begins to \
             rotate, whose stress has to rotate with it.",
     variants,
-    is_stable: |record| record.status == Status::Completed,
+    is_stable: composed::completed,
     declaration: |_| Declaration::default(),
     plan: |_| plan(),
     studies: |_, runs| vec![study(runs)],
@@ -66,230 +68,185 @@ base::metrics! {
 }
 
 fn variants() -> Vec<Composition<WaveSettings>> {
-    fn variant<K: Kernel>(about: &'static str) -> Composition<WaveSettings> {
-        Composition {
-            variant: Variant { name: K::NAME, about },
-            adjust: |_| {},
-            run: run::<K>,
-            rules: |_| Err(RunError::NoRules { case: NAME.into() }),
-            lacks: Vec::new(),
-        }
+    fn method<K: Kernel>() -> Method<Symmetric> {
+        Method::of::<Bare<Open, K>>()
     }
-    vec![
-        variant::<CubicSpline>("equations (9) to (12), leapfrog, cubic spline"),
-        variant::<QuinticSpline>("the same with the quintic spline"),
-        variant::<WendlandC2>("the same with Wendland C2"),
-    ]
+    let rules =
+        |_: &Method<Symmetric>, _: &WaveSettings| Err(RunError::NoRules { case: NAME.into() });
+    Variants::of(&Program { run, rules })
+        .with(
+            CubicSpline::NAME,
+            "equations (9) to (12), leapfrog, cubic spline",
+            method::<CubicSpline>(),
+            |_| {},
+        )
+        .with(
+            QuinticSpline::NAME,
+            "the same with the quintic spline",
+            method::<QuinticSpline>(),
+            |_| {},
+        )
+        .with(WendlandC2::NAME, "the same with Wendland C2", method::<WendlandC2>(), |_| {})
+        .all
 }
-
-/// What one run measured.
-struct Measured {
-    error: f64,
-    status: Status,
-    cost: Cost,
-    dt: f64,
-}
-
-fn run<K: Kernel>(variant: &str, s: &WaveSettings, context: &Context) -> Result<Record, RunError> {
-    let json = serde_json::to_value(s).unwrap_or_default();
-    let mut record = Record::new(NAME, variant, json, context.threads.max(1));
-    let WaveSettings { h_over_dx, transverse: is_transverse, rotation } = *s;
-    let (metric, measured) = if rotation {
-        let block = Turning { h_over_dx };
-        (TURNING_ERROR, block.measure(block.scene::<K>(), context)?)
-    } else {
-        let wave = ElasticWave { is_transverse, h_over_dx };
-        (FREQUENCY_ERROR, wave.measure(wave.scene::<K>(), context)?)
-    };
-    let Measured { error, status, cost, dt } = measured;
-    record.put(metric, error);
-    let numbers = [("h/dx", h_over_dx), ("dt [s]", dt)];
-    record.numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    record.numerics.insert("kernel".into(), K::NAME.into());
-    record.numerics.insert("integrator".into(), "leapfrog".into());
-    (record.status, record.cost) = (status, cost);
-    Ok(record)
-}
-
-/// The scheme: no more than the equations (9) to (12).
-pub type Plain<K> =
-    Compose<K, CauchyStress<Linear>, (Continuity, JaumannRate), Open, Leapfrog, Symmetric>;
 
 /// Particles along each side of the unit square.
 const N: usize = 16;
 /// Velocity amplitude \[c₀\]: what is not linear is smaller than round-off of the density.
 const AMPLITUDE: f64 = 1e-6;
-/// Shear modulus of the rubber rings \[K\].
-const SHEAR_MODULUS: f64 = 0.22;
+/// Density and K are 1, the shear modulus is that of the rubber rings.
+const RUBBER: Material = Material { density: 1.0, bulk: 1.0, shear: 0.22 };
+/// Steps of a wave.
 const STEPS: usize = 400;
+/// Stress of the block, so small that no force moves anything within a step \[K\].
+const STRESS: f64 = 1e-6;
+/// Angle of the block's one step: the error of the angle is its square.
+const ANGLE: f64 = 1e-5;
 
-/// Equation (12) at density and sound speed 1.
-fn pressure(density: f64) -> f64 {
-    density - 1.0
-}
-
-/// One wave along x.
-#[derive(Clone, Copy, Debug)]
-pub struct ElasticWave {
-    /// Whether particles move across the wave.
-    pub is_transverse: bool,
-    /// Smoothing length \[dx\].
-    pub h_over_dx: f64,
-}
-
-impl ElasticWave {
-    fn phase(&self, k: usize) -> f64 {
-        TAU * (k % N) as f64 / N as f64
-    }
-
-    fn direction(&self) -> Vector2<f64> {
-        if self.is_transverse { Vector2::y() } else { Vector2::x() }
-    }
-
-    /// The lattice with a cosine of velocity.
-    pub fn scene<K: Kernel>(&self) -> Scene<Plain<K>> {
-        let dx = 1.0 / N as f64;
-        let places = solver::lattice(Vector2::repeat(0.5 * dx), dx, N, N);
-        let particles = places.enumerate().map(|(k, place)| {
-            let velocity = self.direction() * (AMPLITUDE * self.phase(k).cos());
-            Particle::fluid(place, velocity, 1.0, dx * dx)
-        });
-        let eos = Linear { density: 1.0, sound_speed: 1.0 };
-        let drift = (Continuity, JaumannRate { shear_modulus: SHEAR_MODULUS });
-        let stress = CauchyStress { eos, tensile: () };
-        let h = self.h_over_dx * dx;
-        Scene::new(h, Domain::torus(1.0, 1.0), particles.collect(), stress, drift, Open)
-    }
-
-    /// |ω − theory|/theory of a scene of this wave; NaN for one that is no wave.
-    pub fn frequency_error<S: Scheme<Extra = Symmetric>>(&self, scene: Scene<S>) -> f64 {
-        self.measure(scene, &Context::default()).map_or(f64::NAN, |measured| measured.error)
-    }
-
-    fn measure<S: Scheme<Extra = Symmetric>>(
-        &self,
-        scene: Scene<S>,
-        context: &Context,
-    ) -> Result<Measured, RunError> {
-        let lattice = SquareLattice::<S::Kernel>::new(self.h_over_dx, 0.0);
-        let h = self.h_over_dx / N as f64;
-        let g = lattice.gradient(Vector2::new(TAU / N as f64, 0.0)).norm() / h;
-        let modulus =
-            if self.is_transverse { SHEAR_MODULUS } else { 1.0 + 4.0 / 3.0 * SHEAR_MODULUS };
-        let omega = g * modulus.sqrt();
-        let dt = 0.02 / omega * TAU;
-        let mut watch = Watch { wave: *self, amplitudes: Vec::new() };
-        let mut simulation = scene.build()?;
-        let end = [dt * STEPS as f64];
-        let (status, cost) = runner::drive(
-            &mut simulation,
-            dt,
-            &end,
-            context,
-            &mut watch,
-            &pressure,
-            &mut |_, _| {},
-        )?;
-        let (mut forward, mut square) = (0.0, 0.0);
-        for a in watch.amplitudes[..watch.amplitudes.len().saturating_sub(1)].windows(3) {
-            forward += a[1] * (a[0] + a[2]);
-            square += a[1] * a[1];
-        }
-        let theta = (0.5 * forward / square).acos();
-        let error = (2.0 * (0.5 * theta).sin() / (omega * dt) - 1.0).abs();
-        Ok(Measured { error, status, cost, dt })
-    }
-}
-
-/// A block of rubber under a little stress, S = s (1, -1), that begins to turn with ω: its stress has to
-/// turn with it, dSˣʸ/dt = 2 ω s, times the factor of gradients on the lattice.
-#[derive(Clone, Copy, Debug)]
-pub struct Turning {
-    /// Smoothing length \[dx\].
-    pub h_over_dx: f64,
-}
-
-impl Turning {
-    /// So small that no force moves anything within a step \[K\].
-    const STRESS: f64 = 1e-6;
-    /// ω dt of the one step: the error of the angle is its square.
-    const ANGLE: f64 = 1e-5;
-
-    /// The block about the origin, ω = 1.
-    pub fn scene<K: Kernel>(&self) -> Scene<Plain<K>> {
-        let side = N + 1;
+impl WaveSettings {
+    /// The scene: a lattice with a cosine of velocity; or a block of rubber under a little stress,
+    /// S = s (1, -1), that begins to rotate about the origin with ω = 1. Its stress has to rotate with it,
+    /// dSˣʸ/dt = 2 ω s, times the factor of gradients on the lattice.
+    pub fn parts(&self, method: &Method<Symmetric>, context: &Context) -> Parts<Symmetric> {
+        let side = if self.rotation { N + 1 } else { N };
         let dx = 1.0 / side as f64;
-        let deviator = Symmetric { xx: Self::STRESS, yy: -Self::STRESS, xy: 0.0 };
-        let corner = Vector2::repeat(-0.5 * dx * (side - 1) as f64);
-        let particles = solver::lattice(corner, dx, side, side).map(|place| {
-            let velocity = Vector2::new(-place.y, place.x);
-            Particle { extra: deviator, ..Particle::fluid(place, velocity, 1.0, dx * dx) }
-        });
-        let eos = Linear { density: 1.0, sound_speed: 1.0 };
-        let drift = (Continuity, JaumannRate { shear_modulus: SHEAR_MODULUS });
-        let stress = CauchyStress { eos, tensile: () };
-        let h = self.h_over_dx * dx;
-        Scene::new(h, Domain::open(), particles.collect(), stress, drift, Open)
+        let at = |place, velocity| Particle::fluid(place, velocity, RUBBER.density, dx * dx);
+        let (domain, particles) = if self.rotation {
+            let deviator = Symmetric { xx: STRESS, yy: -STRESS, xy: 0.0 };
+            let corner = Vector2::repeat(-0.5 * dx * (side - 1) as f64);
+            let block = solver::lattice(corner, dx, side, side).map(|place| Particle {
+                extra: deviator,
+                ..at(place, Vector2::new(-place.y, place.x))
+            });
+            (Domain::open(), block.collect())
+        } else {
+            let places = solver::lattice(Vector2::repeat(0.5 * dx), dx, side, side).enumerate();
+            let wave = places.map(|(k, x)| at(x, self.direction() * (AMPLITUDE * phase(k).cos())));
+            (Domain::torus(1.0, 1.0), wave.collect())
+        };
+        parts(RUBBER.medium(method, [dx, self.h_over_dx * dx]), domain, particles, context)
     }
 
-    /// |turn of the stress in the middle − theory|/theory after one step.
-    pub fn error<S: Scheme<Extra = Symmetric>>(&self, scene: Scene<S>) -> f64 {
-        self.measure(scene, &Context::default()).map_or(f64::NAN, |measured| measured.error)
+    /// Of the particles' motion in a wave along x.
+    fn direction(&self) -> Vector2<f64> {
+        if self.transverse { Vector2::y() } else { Vector2::x() }
     }
 
-    fn measure<S: Scheme<Extra = Symmetric>>(
-        &self,
-        scene: Scene<S>,
-        context: &Context,
-    ) -> Result<Measured, RunError> {
-        let factor = SquareLattice::<S::Kernel>::new(self.h_over_dx, 0.0).gradient_factor();
-        let middle = scene.particles.len() / 2;
-        let mut simulation = scene.build()?;
-        let dt = Self::ANGLE;
-        let (status, cost) =
-            runner::drive(&mut simulation, dt, &[dt], context, &mut (), &pressure, &mut |_, _| {})?;
-        let shear = simulation.particles()[middle].extra.xy;
-        let error = (shear / (2.0 * Self::STRESS * Self::ANGLE * factor) - 1.0).abs();
-        Ok(Measured { error, status, cost, dt })
+    /// ω of the wave, from the gradient symbol.
+    fn frequency(&self, method: &Method<Symmetric>) -> f64 {
+        let h = self.h_over_dx / N as f64;
+        let g = method.gradient(self.h_over_dx, Vector2::new(TAU / N as f64, 0.0)).norm() / h;
+        let Material { bulk, shear, .. } = RUBBER;
+        let modulus = if self.transverse { shear } else { bulk + 4.0 / 3.0 * shear };
+        g * modulus.sqrt()
     }
 
-    /// The gate on it.
-    pub fn gate(&self) -> Gate {
-        let id = format!("elastic_waves.cubic.h{}.turning", self.h_over_dx);
-        let because = "the Jaumann rate turns the stress with the body, by the factor of gradients on a \
-                       lattice; one step of 1e-5 leaves 1e-10, and round-off of the strain 1e-7";
-        Gate::new(id, TURNING_ERROR, Bound::Below(1e-6), Evidence::Theory, because)
+    fn metric(&self) -> MetricKey {
+        if self.rotation { TURNING_ERROR } else { FREQUENCY_ERROR }
     }
+
+    /// The gate on a run with this kernel.
+    pub fn gate(&self, kernel: &str) -> Gate {
+        let (kind, because) = if self.rotation {
+            let because = "the Jaumann rate turns the stress with the body, by the factor of gradients on a \
+                           lattice; one step of 1e-5 leaves 1e-10, and round-off of the strain 1e-7";
+            ("turning", because)
+        } else {
+            let because = "the gradient symbol is exact on a stress-free lattice; at amplitude 1e-6 what is \
+                           not linear is of order 1e-12, and the fit over 400 steps leaves 1e-9 or less";
+            (if self.transverse { "transverse" } else { "longitudinal" }, because)
+        };
+        let id = format!("elastic_waves.{kernel}.h{}.{kind}", self.h_over_dx);
+        Gate::new(id, self.metric(), Bound::Below(1e-6), Evidence::Theory, because)
+    }
+}
+
+/// Phase of particle `k` in the wave \[rad\].
+fn phase(k: usize) -> f64 {
+    TAU * (k % N) as f64 / N as f64
+}
+
+fn run(
+    method: &Method<Symmetric>,
+    variant: &str,
+    settings: &WaveSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let simulation = (method.build)(settings.parts(method, context))?;
+    measured(settings, method, variant, simulation, context)
+}
+
+/// Steps a simulation and measures it against theory: the same measuring for one that is not what its
+/// settings say.
+///
+/// # Errors
+/// If a frame cannot be written.
+pub fn measured(
+    settings: &WaveSettings,
+    method: &Method<Symmetric>,
+    variant: &str,
+    mut simulation: Box<dyn Stepper<Symmetric>>,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let (omega, h_over_dx) = (settings.frequency(method), settings.h_over_dx);
+    let (dt, steps) = match settings.rotation {
+        true => (ANGLE, 1),
+        false => (0.02 / omega * TAU, STEPS),
+    };
+    let numbers = [("h/dx", h_over_dx), ("dt [s]", dt)];
+    let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
+    let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
+    (record.status, record.cost) = runner::drive(
+        &mut *simulation,
+        dt,
+        &[dt * steps as f64],
+        context,
+        &mut watch,
+        &|density| RUBBER.eos().pressure(density),
+        &mut |_, _| {},
+    )?;
+    let error = if settings.rotation {
+        let particles = simulation.particles();
+        let shear = particles[particles.len() / 2].extra.xy;
+        let factor = method.gradient_factor(h_over_dx);
+        (shear / (2.0 * STRESS * ANGLE * factor) - 1.0).abs()
+    } else {
+        (2.0 * (0.5 * watch.angle()).sin() / (omega * dt) - 1.0).abs()
+    };
+    record.put(settings.metric(), error);
+    Ok(record)
 }
 
 /// Projections of the velocities on the wave.
 struct Watch {
-    wave: ElasticWave,
+    direction: Vector2<f64>,
     amplitudes: Vec<f64>,
+}
+
+impl Watch {
+    /// θ of a step, from a fit to all steps.
+    fn angle(&self) -> f64 {
+        let (mut forward, mut square) = (0.0, 0.0);
+        for a in self.amplitudes[..self.amplitudes.len().saturating_sub(1)].windows(3) {
+            forward += a[1] * (a[0] + a[2]);
+            square += a[1] * a[1];
+        }
+        (0.5 * forward / square).acos()
+    }
 }
 
 impl Observer<Symmetric> for Watch {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
-        let direction = self.wave.direction();
         let particles = simulation.particles();
         let part = |(k, p): (usize, &Particle<Symmetric>)| {
-            p.velocity.dot(&direction) * self.wave.phase(k).cos()
+            p.velocity.dot(&self.direction) * phase(k).cos()
         };
         self.amplitudes.push(particles.iter().enumerate().map(part).sum());
         Flow::Continue
     }
 }
 
-/// The gate on the frequency of a wave.
-pub fn gate(kernel: &str, wave: &ElasticWave) -> Gate {
-    let kind = if wave.is_transverse { "transverse" } else { "longitudinal" };
-    let id = format!("elastic_waves.{kernel}.h{}.{kind}", wave.h_over_dx);
-    let because = "the gradient symbol is exact on a stress-free lattice; at amplitude 1e-6 what is not \
-                   linear is of order 1e-12, and the fit over 400 steps leaves 1e-9 or less";
-    Gate::new(id, FREQUENCY_ERROR, Bound::Below(1e-6), Evidence::Theory, because)
-}
-
-/// The waves, each along and across, in the order of the table.
+/// Kernels and h/dx of the waves, each along and across, in the order of the table.
 const WAVES: [(&str, f64); 4] = [
     (CubicSpline::NAME, 1.5),
     (CubicSpline::NAME, 1.2),
@@ -297,59 +254,52 @@ const WAVES: [(&str, f64); 4] = [
     (WendlandC2::NAME, 1.5),
 ];
 
-fn waves() -> impl Iterator<Item = (&'static str, ElasticWave)> {
-    [false, true].into_iter().flat_map(|is_transverse| {
-        WAVES.map(|(kernel, h_over_dx)| (kernel, ElasticWave { is_transverse, h_over_dx }))
-    })
+/// Kernel and settings of a run.
+type Run = (&'static str, WaveSettings);
+
+/// Every run: the waves, then the rotating block.
+fn runs() -> impl Iterator<Item = Run> {
+    let waves = [false, true].into_iter().flat_map(|transverse| {
+        WAVES.map(|(kernel, h_over_dx)| {
+            (kernel, WaveSettings { h_over_dx, transverse, rotation: false })
+        })
+    });
+    let block = WaveSettings { h_over_dx: 1.5, transverse: false, rotation: true };
+    waves.chain([(CubicSpline::NAME, block)])
 }
 
-/// The rotating block.
-const BLOCK: Turning = Turning { h_over_dx: 1.5 };
-
-fn wave_spec(kernel: &str, wave: &ElasticWave) -> RunSpec {
-    let ElasticWave { is_transverse, h_over_dx } = *wave;
-    ELASTIC_WAVE.spec(kernel, |s| (s.transverse, s.h_over_dx) = (is_transverse, h_over_dx))
-}
-
-fn block_spec() -> RunSpec {
-    let h_over_dx = BLOCK.h_over_dx;
-    ELASTIC_WAVE.spec(CubicSpline::NAME, |s| (s.rotation, s.h_over_dx) = (true, h_over_dx))
+fn spec((kernel, settings): &Run) -> RunSpec {
+    ELASTIC_WAVE.spec(kernel, |s| s.clone_from(settings))
 }
 
 fn plan() -> Vec<Planned> {
-    let planned = |(kernel, wave): (&str, ElasticWave)| {
-        Planned::new(wave_spec(kernel, &wave)).judged(vec![gate(kernel, &wave)])
-    };
-    let mut plan: Vec<Planned> = waves().map(planned).collect();
-    plan.push(Planned::new(block_spec()).judged(vec![BLOCK.gate()]));
-    plan
+    runs().map(|run| Planned::new(spec(&run)).judged(vec![run.1.gate(run.0)])).collect()
 }
 
 /// The errors in a table.
 fn study(runs: &Runs) -> Study {
-    let columns = vec![
-        Column::text("kernel"),
-        Column::num("h/dx", "-"),
-        Column::text("wave"),
-        Column::num("relative error", "-"),
-    ];
-    let caption = "Waves of rubber (shear modulus 0.22 K) along a stress-free lattice of 16 particles, with \
-                   the time step divided out: frequency against the gradient symbol. Last: how far the \
-                   stress of a block rotates with it.";
-    let row = |kernel: &str, what: &str, h_over_dx: f64, spec: &RunSpec, metric: MetricKey| {
-        let error = runs.record(spec).and_then(|record| record.value(metric));
-        let error = Cell::sci(error.unwrap_or(f64::NAN), 2);
-        vec![Cell::text(kernel), Cell::num(h_over_dx, 2), Cell::text(what), error]
+    let what = |settings: &WaveSettings| match (settings.rotation, settings.transverse) {
+        (true, _) => "stress of a rotating block",
+        (false, true) => "transverse",
+        (false, false) => "longitudinal",
     };
-    let mut table = Table::new(caption, columns);
-    for (kernel, wave) in waves() {
-        let what = if wave.is_transverse { "transverse" } else { "longitudinal" };
-        let spec = wave_spec(kernel, &wave);
-        table = table.row(row(kernel, what, wave.h_over_dx, &spec, FREQUENCY_ERROR));
-    }
-    let what = "stress of a rotating block";
-    let last = row(CubicSpline::NAME, what, BLOCK.h_over_dx, &block_spec(), TURNING_ERROR);
-    Study::new("elastic-waves", "Elastic waves on a lattice").block(table.row(last))
+    let error = |run: &Run| {
+        let record = runs.record(&spec(run));
+        record.and_then(|record| record.value(run.1.metric())).unwrap_or(f64::NAN)
+    };
+    let table = Table::of(
+        "Waves of rubber (shear modulus 0.22 K) along a stress-free lattice of 16 particles, with the time \
+         step divided out: frequency against the gradient symbol. Last: how far the stress of a block \
+         rotates with it.",
+        &[
+            (Column::text("kernel"), &|(kernel, _): &Run| Cell::text(*kernel)),
+            (Column::num("h/dx", "-"), &|(_, settings)| Cell::num(settings.h_over_dx, 2)),
+            (Column::text("wave"), &|(_, settings)| Cell::text(what(settings))),
+            (Column::num("relative error", "-"), &|run| Cell::sci(error(run), 2)),
+        ],
+        &self::runs().collect::<Vec<_>>(),
+    );
+    Study::new("elastic-waves", "Elastic waves on a lattice").block(table)
 }
 
 #[cfg(test)]

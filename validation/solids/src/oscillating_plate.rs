@@ -1,22 +1,20 @@
 //! A cantilever that swings in its first mode, against the theory of thin plates.
 
 use nalgebra::Vector2;
-use solver::{Domain, Flow, Observer, Particle, Role, Scene, Stepper, Symmetric};
+use solver::{Flow, Observer, Particle, Role, Stepper, Symmetric};
+use std::f64::consts::TAU;
 
-use super::solid::{
-    self, Clamp, Energy, Finished, Method, Problem, Scheme, SharedSettings, begin, digest, run_to,
-};
+use super::solid::{self, Clamp, Energy, Material, Problem, SharedSettings, Watch};
 use base::{
-    gate::{Bound, Evidence, Gate},
-    record::{Profile, Record, Status},
+    gate::{Bound, Evidence},
+    record::{Profile, Record},
     spec::RunSpec,
 };
 use harness::{
-    case::{self, Case, Planned, RunError, Tier},
-    composed::Composed,
+    case::{self, Case, Planned, Tier},
+    composed::{self, Composed},
     declare::{Accuracy, Declaration, ErrorOf},
     extremes::{self, Entry},
-    runner::Context,
     runs::Runs,
     study::Study,
 };
@@ -44,8 +42,8 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
     about: "An elastic plate, held at one end by particles that continue it and stand still, starts flat \
             with the velocity of its first mode (Landau & Lifshitz; Gray, Monaghan & Swift 2001). Its period \
             against that of a thin plate, 0.254 s.",
-    variants: solid::variants,
-    is_stable: |record| record.status == Status::Completed,
+    variants: solid::variants::<_, Clamp>,
+    is_stable: composed::completed,
     declaration,
     plan,
     studies: |tier, runs| vec![study(tier, runs), extremes(runs)],
@@ -73,7 +71,7 @@ const EVERY: u64 = 8;
 fn thin_plate_period(s: &PlateSettings) -> f64 {
     let k = FIRST_MODE / s.length;
     let stiffness = s.young * s.thickness * s.thickness / (12.0 * (1.0 - s.poisson * s.poisson));
-    std::f64::consts::TAU / (k * k * (stiffness / s.rho).sqrt())
+    TAU / (k * k * (stiffness / s.rho).sqrt())
 }
 
 /// The first mode at x/L, 1 at the tip.
@@ -86,26 +84,62 @@ fn mode(x: f64) -> f64 {
     f(x) / f(1.0)
 }
 
-/// Free particles, column by column from the clamp, then those of the clamp.
-fn particles(s: &PlateSettings) -> Vec<Particle<Symmetric>> {
-    let dx = s.dx();
-    let columns = (s.length / dx).round() as usize;
-    let held = (2.0 * s.h_over_dx).ceil() as usize;
-    let speed = s.speed();
-    let first =
-        |columns: usize| Vector2::new((0.5 - columns as f64) * dx, 0.5 * (dx - s.thickness));
-    let at = |x, v| Particle::fluid(x, Vector2::new(0.0, v), s.rho, dx * dx);
-    let free = solver::lattice(first(0), dx, columns, s.n);
-    let held = solver::lattice(first(held), dx, held, s.n);
-    let free = free.map(|x| at(x, speed * mode(x.x / s.length)));
-    free.chain(held.map(|x| at(x, 0.0).with_role(Role::Wall))).collect()
+impl Problem for PlateSettings {
+    const NAME: &'static str = "oscillating_plate";
+    type Watch = Tip;
+
+    fn dx(&self) -> f64 {
+        self.thickness / self.n as f64
+    }
+
+    fn speed(&self) -> f64 {
+        self.speed * self.material().sound_speed()
+    }
+
+    fn end(&self) -> f64 {
+        self.end * thin_plate_period(self)
+    }
+
+    fn count(&self) -> f64 {
+        self.length / self.dx() * self.n as f64
+    }
+
+    /// Free particles, column by column from the clamp, then those of the clamp.
+    fn particles(&self) -> Vec<Particle<Symmetric>> {
+        let (dx, speed) = (self.dx(), self.speed());
+        let columns = (self.length / dx).round() as usize;
+        let held = (2.0 * self.h_over_dx).ceil() as usize;
+        let first =
+            |columns: usize| Vector2::new((0.5 - columns as f64) * dx, 0.5 * (dx - self.thickness));
+        let at = |x, v| Particle::fluid(x, Vector2::new(0.0, v), self.rho, dx * dx);
+        let free = solver::lattice(first(0), dx, columns, self.n);
+        let held = solver::lattice(first(held), dx, held, self.n);
+        let free = free.map(|x| at(x, speed * mode(x.x / self.length)));
+        free.chain(held.map(|x| at(x, 0.0).with_role(Role::Wall))).collect()
+    }
+
+    fn watch(&self, start: &[Particle<Symmetric>]) -> Tip {
+        let free = start.iter().filter(|p| p.role == Role::Fluid).count();
+        let material = self.material();
+        Tip {
+            settings: self.clone(),
+            material,
+            columns: free / self.n,
+            until: 0,
+            energy: Energy::of_all(start, &material).kinetic,
+            series: vec![[0.0; 2]],
+        }
+    }
 }
 
 /// The motion of the tip.
-struct Tip {
+pub struct Tip {
+    settings: PlateSettings,
+    material: Material,
     columns: usize,
-    rows: usize,
     until: u64,
+    /// Energy at the start \[J/m\].
+    energy: f64,
     /// t \[s\], height of the tip \[m\].
     series: Vec<[f64; 2]>,
 }
@@ -118,8 +152,8 @@ impl Observer<Symmetric> for Tip {
         }
         self.until = EVERY - 1;
         let all = simulation.particles();
-        let tip = (1..=self.rows).map(|row| all[row * self.columns - 1].position.y);
-        let mean = tip.fold(0.0, |sum, y| sum + y) / self.rows as f64;
+        let tip = (1..=self.settings.n).map(|row| all[row * self.columns - 1].position.y);
+        let mean = tip.fold(0.0, |sum, y| sum + y) / self.settings.n as f64;
         self.series.push([simulation.time(), mean]);
         Flow::Continue
     }
@@ -134,68 +168,26 @@ impl Tip {
         };
         self.series.windows(2).filter_map(passes).collect()
     }
+}
 
-    fn metrics(&self, s: &PlateSettings, record: &mut Record) {
+impl Watch for Tip {
+    fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
         let passes = self.passes();
         let period = match passes[..] {
             [half] => 2.0 * half,
             [_, whole, ..] => whole,
             [] => f64::NAN,
         };
-        let theory = thin_plate_period(s);
+        let theory = thin_plate_period(&self.settings);
         let highest = self.series.iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max);
+        let speed = self.settings.speed();
         record.put(PERIOD, period);
         record.put(PERIOD_EXCESS, period / theory - 1.0);
-        record.put(AMPLITUDE_RATIO, highest * std::f64::consts::TAU / (theory * s.speed()));
-    }
-}
-
-impl Problem for PlateSettings {
-    const NAME: &'static str = "oscillating_plate";
-
-    fn dx(&self) -> f64 {
-        self.thickness / self.n as f64
-    }
-
-    fn speed(&self) -> f64 {
-        self.speed * self.solid().material.sound_speed()
-    }
-
-    fn run<M: Method>(variant: &str, s: &Self, context: &Context) -> Result<Record, RunError> {
-        let (solid, dx) = (s.solid(), s.dx());
-        let material = solid.material;
-        let (value, most) = (s.length / dx * s.n as f64, 1e6);
-        if value > most {
-            let setting = "n, length or thickness";
-            return Err(RunError::TooMuch { what: "the particles", value, most, setting });
-        }
-        let (mut record, dt) = begin::<Self, M>(variant, s, context)?;
-        let walls = Clamp { shear_modulus: material.shear };
-        let (forces, drift) = (M::forces(&solid, dx), M::drift(&solid));
-        let scene = Scene::<Scheme<M, Clamp>>::new(
-            solid.h(dx),
-            Domain::open(),
-            particles(s),
-            forces,
-            drift,
-            walls,
-        );
-        let kinetic = |p: &Particle<Symmetric>| 0.5 * p.mass * p.velocity.norm_squared();
-        let before = scene.particles.iter().map(kinetic).fold(0.0, |sum, one| sum + one);
-        let free = scene.particles.iter().filter(|p| p.role == Role::Fluid).count();
-        let mut tip = Tip { columns: free / s.n, rows: s.n, until: 0, series: vec![[0.0; 2]] };
-        let end = s.end * thin_plate_period(s);
-        let Finished { simulation, status, cost } =
-            run_to(scene, [dt, end], material.eos(), context, &mut tip)?;
-        tip.metrics(s, &mut record);
-        let after = Energy::of(&simulation, &material).total();
-        record.put(ENERGY_CHANGE, after / before - 1.0);
-        let column = |k: usize| tip.series.iter().map(|row| row[k]).collect();
-        let profile = Profile::default().with("t", "s", column(0)).with("tip", "m", column(1));
+        record.put(AMPLITUDE_RATIO, highest * TAU / (theory * speed));
+        let after = Energy::of(simulation, &self.material).total();
+        record.put(ENERGY_CHANGE, after / self.energy - 1.0);
+        let profile = Profile::of_rows(&[("t", "s"), ("tip", "m")], &self.series);
         record.profiles.insert("tip".into(), profile);
-        record.state = Some(digest(&simulation));
-        (record.status, record.cost) = (status, cost);
-        Ok(record)
     }
 }
 
@@ -222,9 +214,9 @@ fn swing_spec(variant: &str, n: usize) -> RunSpec {
 
 /// The same, judged.
 fn swing(variant: &str, n: usize) -> Planned {
-    let id = format!("oscillating_plate.{variant}.{n}");
-    let period = Gate::new(
-        format!("{id}.period_excess"),
+    let id = format!("{variant}.{n}");
+    let period = OSCILLATING_PLATE.gate(
+        &id,
         PERIOD_EXCESS,
         Bound::Within(0.0, 0.15),
         Evidence::Reference,
@@ -236,8 +228,8 @@ fn swing(variant: &str, n: usize) -> Planned {
         ("bare", _) => period.with_limitation(BARE),
         _ => period.with_limitation(FACES),
     };
-    let amplitude = Gate::new(
-        format!("{id}.amplitude_ratio"),
+    let amplitude = OSCILLATING_PLATE.gate(
+        &id,
         AMPLITUDE_RATIO,
         Bound::Within(0.85, 1.5),
         Evidence::Theory,
@@ -245,8 +237,8 @@ fn swing(variant: &str, n: usize) -> Planned {
          1.5 here, and smaller by what viscosity takes in a quarter of a period",
     );
     let amplitude = if variant == "bare" { amplitude.reported() } else { amplitude };
-    let energy = Gate::new(
-        format!("{id}.energy_change"),
+    let energy = OSCILLATING_PLATE.gate(
+        &id,
         ENERGY_CHANGE,
         Bound::Below(0.01),
         Evidence::Invariant,
@@ -306,31 +298,25 @@ fn declaration(tier: Tier) -> Declaration {
 }
 
 fn study(tier: Tier, runs: &Runs) -> Study {
-    let columns = vec![
-        Column::text("variant"),
-        Column::text("settings"),
-        Column::num("period", "s"),
-        Column::num("longer than theory", ""),
-        Column::num("amplitude over that of theory", ""),
-        Column::num("energy, change", ""),
-        Column::num("time", "s"),
-    ];
     let theory = thin_plate_period(&PlateSettings::default());
-    let caption = format!("Period of the cantilever; {theory:.4} s in the theory of thin plates.");
-    let mut table = Table::new(caption, columns);
-    for spec in swings(tier).iter().map(|planned| &planned.spec) {
-        let Some(record) = runs.record(spec) else { continue };
-        let metric = |key| record.value(key).unwrap_or(f64::NAN);
-        table = table.row(vec![
-            Cell::text(&record.variant),
-            Cell::text(case::changed(&OSCILLATING_PLATE, spec).join(", ")),
-            Cell::num(metric(PERIOD), 4),
-            Cell::percent(metric(PERIOD_EXCESS), 3),
-            Cell::num(metric(AMPLITUDE_RATIO), 3),
-            Cell::percent(metric(ENERGY_CHANGE), 2),
-            Cell::seconds(record.cost.cpu_s),
-        ]);
-    }
+    let swings = swings(tier);
+    let metric = |r: &Record, key| r.value(key).unwrap_or(f64::NAN);
+    let changed = |r: &Record| Cell::text(case::changed(&OSCILLATING_PLATE, &r.spec()).join(", "));
+    let excess = |r: &Record| Cell::percent(metric(r, PERIOD_EXCESS), 3);
+    let amplitude = |r: &Record| Cell::num(metric(r, AMPLITUDE_RATIO), 3);
+    let table = Table::of(
+        format!("Period of the cantilever; {theory:.4} s in the theory of thin plates."),
+        &[
+            (Column::text("variant"), &|r: &Record| Cell::text(&r.variant)),
+            (Column::text("settings"), &changed),
+            (Column::num("period", "s"), &|r| Cell::num(metric(r, PERIOD), 4)),
+            (Column::num("longer than theory", ""), &excess),
+            (Column::num("amplitude over that of theory", ""), &amplitude),
+            (Column::num("energy, change", ""), &|r| Cell::percent(metric(r, ENERGY_CHANGE), 2)),
+            (Column::num("time", "s"), &|r| Cell::seconds(r.cost.cpu_s)),
+        ],
+        swings.iter().filter_map(|planned| runs.record(&planned.spec)),
+    );
     let stress = "Energy: viscosity takes it, and artificial stress gives some back. It weakens the pull of \
                   particles in tension without a store of its own, so that (kinetic + strain) energy rises \
                   with the deflection; the run with xi = 0 in the full tier shows the difference.";
@@ -413,6 +399,7 @@ fn extremes(runs: &Runs) -> Study {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use harness::case::RunError;
 
     #[test]
     fn thin_plate_theory_is_that_of_the_literature() {
@@ -435,7 +422,7 @@ mod tests {
     #[test]
     fn the_clamp_stands_still_and_goes_on_as_the_plate_does() {
         let s = PlateSettings::default();
-        let all = particles(&s);
+        let all = s.particles();
         let held: Vec<_> = all.iter().filter(|p| p.role == Role::Wall).collect();
         assert_eq!((all.len() - held.len(), held.len()), (100 * 10, 3 * 10));
         assert!(held.iter().all(|p| p.position.x < 0.0 && p.velocity.norm() == 0.0));
@@ -446,10 +433,7 @@ mod tests {
 
     #[test]
     fn a_plate_that_makes_no_sense_is_refused() {
-        let refused = |set: &str| {
-            let spec = case::spec(&OSCILLATING_PLATE, "plain", &[set.into()]);
-            spec.and_then(|spec| OSCILLATING_PLATE.run(&spec, &Context::default())).err()
-        };
+        let refused = |set| solid::refused(&OSCILLATING_PLATE, "plain", set);
         assert!(matches!(refused("n=1"), Some(RunError::Setting(_))));
         assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));
         assert!(matches!(refused("thickness=1e-9"), Some(RunError::TooMuch { .. })));

@@ -1,23 +1,21 @@
 //! A free elastic disk that spins: is a rotation a rotation to the method?
 
 use nalgebra::Vector2;
-use solver::Symmetric;
-use solver::{Domain, Flow, Observer, Open, Particle, Scene, Stepper};
+use solver::{Flow, Observer, Open, Particle, Stepper, Symmetric};
+use std::f64::consts::TAU;
 
 use super::solid::{
-    self, Energy, Finished, Material, Method, Problem, Scheme, SharedSettings, angular_momentum,
-    begin, digest, norm_squared, run_to,
+    self, Energy, Material, Problem, SharedSettings, Watch, angular_momentum, norm_squared,
 };
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricKey, Profile, Record, Status},
+    record::{Profile, Record},
     spec::RunSpec,
 };
 use harness::{
-    case::{self, Planned, RunError, Tier},
-    composed::Composed,
+    case::{self, Planned, Tier},
+    composed::{self, Composed},
     declare::{Accuracy, Declaration, ErrorOf},
-    runner::Context,
     runs::Runs,
     study::Study,
 };
@@ -43,8 +41,8 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     about: "A free elastic disk spins, at the start without stress. Angular momentum stays, and the stress \
             stays of the order rho U^2 of the speed U of the rim: what else appears is rotation that the \
             method mistook for strain.",
-    variants: solid::variants,
-    is_stable: |record| record.status == Status::Completed,
+    variants: solid::variants::<_, Open>,
+    is_stable: composed::completed,
     declaration,
     plan,
     studies: |tier, runs| vec![study(tier, runs)],
@@ -67,19 +65,55 @@ base::metrics! {
 /// Samples of the series.
 const SAMPLES: f64 = 200.0;
 
-/// Particles around the origin that spin without stress.
-fn particles(s: &DiskSettings, material: &Material) -> Vec<Particle<Symmetric>> {
-    let (dx, side) = (s.dx(), 2 * s.n + 1);
-    let spin = s.speed() / s.radius;
-    solver::lattice(Vector2::repeat(-s.radius), dx, side, side)
-        .filter(|x| x.norm() <= s.radius * (1.0 + 1e-9))
-        .map(|x| Particle::fluid(x, Vector2::new(-x.y, x.x) * spin, material.density, dx * dx))
-        .collect()
+impl Problem for DiskSettings {
+    const NAME: &'static str = "spinning_disk";
+    type Watch = History;
+
+    fn dx(&self) -> f64 {
+        self.radius / self.n as f64
+    }
+
+    fn speed(&self) -> f64 {
+        self.speed * self.material().sound_speed()
+    }
+
+    fn end(&self) -> f64 {
+        self.end * TAU * self.radius / self.speed()
+    }
+
+    /// Around the origin, without stress.
+    fn particles(&self) -> Vec<Particle<Symmetric>> {
+        let (dx, side) = (self.dx(), 2 * self.n + 1);
+        let (spin, density) = (self.speed() / self.radius, self.material().density);
+        solver::lattice(Vector2::repeat(-self.radius), dx, side, side)
+            .filter(|x| x.norm() <= self.radius * (1.0 + 1e-9))
+            .map(|x| Particle::fluid(x, Vector2::new(-x.y, x.x) * spin, density, dx * dx))
+            .collect()
+    }
+
+    fn watch(&self, start: &[Particle<Symmetric>]) -> History {
+        let (row, mass) = first_row(start);
+        let (dx, every) = (self.dx(), self.end() / SAMPLES);
+        History {
+            settings: self.clone(),
+            material: self.material(),
+            mass,
+            until: every,
+            every,
+            series: vec![row],
+            // One support for the gradient, one for the neighbours that XSPH has moved before it.
+            interior: self.radius - 4.0 * (self.h_over_dx * dx) - dx,
+            first: None,
+        }
+    }
 }
 
 /// What happens to the disk through time.
-struct History {
+pub struct History {
+    settings: DiskSettings,
     material: Material,
+    /// \[kg/m\].
+    mass: f64,
     until: f64,
     every: f64,
     /// t \[s\], angular momentum, energy, mean square of the deviator, mean square radius.
@@ -134,55 +168,22 @@ impl Observer<Symmetric> for History {
     }
 }
 
-impl Problem for DiskSettings {
-    const NAME: &'static str = "spinning_disk";
-
-    fn dx(&self) -> f64 {
-        self.radius / self.n as f64
-    }
-
-    fn speed(&self) -> f64 {
-        self.speed * self.solid().material.sound_speed()
-    }
-
-    fn run<M: Method>(variant: &str, s: &Self, context: &Context) -> Result<Record, RunError> {
-        let (solid, dx, speed) = (s.solid(), s.dx(), s.speed());
-        let material = solid.material;
-        let (mut record, dt) = begin::<Self, M>(variant, s, context)?;
-        let (forces, drift) = (M::forces(&solid, dx), M::drift(&solid));
-        let scene = Scene::<Scheme<M, Open>>::new(
-            solid.h(dx),
-            Domain::open(),
-            particles(s, &material),
-            forces,
-            drift,
-            Open,
-        );
-        let end = s.end * std::f64::consts::TAU * s.radius / speed;
-        let every = end / SAMPLES;
-        // One support for the gradient, one for the neighbours that XSPH has moved before it.
-        let interior = s.radius - 4.0 * solid.h(dx) - dx;
-        let (start, mass) = start(&scene.particles);
-        let (series, first) = (vec![start], None);
-        let mut history = History { material, until: every, every, series, interior, first };
-        let Finished { simulation, status, cost } =
-            run_to(scene, [dt, end], material.eos(), context, &mut history)?;
-        history.sample(&simulation);
+impl Watch for History {
+    fn measure(mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+        self.sample(simulation);
+        let (material, speed) = (self.material, self.settings.speed());
         let scale = material.density * speed * speed;
-        metrics(&history.series, s.end, scale, &mut record);
-        let ([inside, rim], dt) = history.first.unwrap_or(([f64::NAN; 2], 1.0));
-        let scale = 2.0 * material.shear * speed / s.radius;
+        metrics(&self.series, self.settings.end, scale, record);
+        let ([inside, rim], dt) = self.first.unwrap_or(([f64::NAN; 2], 1.0));
+        let scale = 2.0 * material.shear * speed / self.settings.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
         record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
-        record.put(MOMENTUM_ERROR, simulation.momentum().norm() / (mass * speed));
-        record.state = Some(digest(&simulation));
-        (record.status, record.cost) = (status, cost);
-        Ok(record)
+        record.put(MOMENTUM_ERROR, simulation.momentum().norm() / (self.mass * speed));
     }
 }
 
 /// The first row of the series, and the mass.
-fn start(particles: &[Particle<Symmetric>]) -> ([f64; 5], f64) {
+fn first_row(particles: &[Particle<Symmetric>]) -> ([f64; 5], f64) {
     let [spin, energy, mass, radius] =
         particles.iter().fold([0.0; 4], |[spin, energy, mass, radius], p| {
             [
@@ -204,19 +205,21 @@ fn metrics(series: &[[f64; 5]], revolutions: f64, scale: f64, record: &mut Recor
     record.put(LARGEST_STRESS, largest / scale);
     record.put(ENERGY_DRIFT, (last[2] / first[2] - 1.0) / revolutions);
     record.put(RADIUS, (last[4] / first[4]).sqrt());
-    let column = |k: usize, of: f64| -> Vec<f64> { series.iter().map(|row| row[k] / of).collect() };
-    let stress = series.iter().map(|row| row[3].sqrt() / scale).collect();
-    let profile = Profile::default()
-        .with("t", "s", column(0, 1.0))
-        .with("angular momentum", "of the start", column(1, first[1]))
-        .with("energy", "of the start", column(2, first[2]))
-        .with("stress", "rho U^2", stress)
-        .with("mean square radius", "m^2", column(4, 1.0));
+    let columns = [
+        ("t", "s"),
+        ("angular momentum", "of the start"),
+        ("energy", "of the start"),
+        ("stress", "rho U^2"),
+        ("mean square radius", "m^2"),
+    ];
+    let rows: Vec<[f64; 5]> = series
+        .iter()
+        .map(|[t, spin, energy, stress, radius]| {
+            [*t, spin / first[1], energy / first[2], stress.sqrt() / scale, *radius]
+        })
+        .collect();
+    let profile = Profile::of_rows(&columns, &rows);
     record.profiles.insert("spin".into(), profile);
-}
-
-fn gate(id: String, metric: MetricKey, bound: Bound, because: &str) -> Gate {
-    Gate::new(format!("spinning_disk.{id}"), metric, bound, Evidence::Invariant, because)
 }
 
 /// Why drift is what it is; measured beside it: `rim_strain`, and no dependence on dt.
@@ -234,31 +237,32 @@ fn spin_spec(variant: &str, n: usize) -> RunSpec {
 
 /// The same, judged.
 fn spin(variant: &str, n: usize) -> Planned {
-    let id = |metric: &str| format!("{variant}.{n}.{metric}");
+    let run = format!("{variant}.{n}");
+    let gate = |metric, bound, because| {
+        SPINNING_DISK.gate(&run, metric, bound, Evidence::Invariant, because)
+    };
     let gates = vec![
         gate(
-            id("momentum_error"),
             MOMENTUM_ERROR,
             Bound::Below(1e-12),
             "forces of pairs are equal and opposite, central or not: what is left is round-off of some \
              thousand steps",
         ),
         gate(
-            id("interior_strain"),
             INTERIOR_STRAIN,
             Bound::Below(1e-10),
             "on a lattice whose neighbours are all there M is a number times the unit matrix, so a \
              rotation has no strain: round-off of a sum of 28 neighbours over the phase W dt of 1e-3",
         ),
-        gate(
-            id("angular_momentum_bounded"),
+        Gate::new(
+            format!("spinning_disk.{run}.angular_momentum_bounded"),
             ANGULAR_MOMENTUM_DRIFT,
             Bound::Below(2.2),
+            Evidence::Invariant,
             "L^2 is at most 2 I T, and neither the radius nor the energy can grow by more than some per \
              cent: between -1.1 and 1.1 of the start, a change by 2.1; more is energy from nowhere",
         ),
         gate(
-            id("angular_momentum_drift"),
             ANGULAR_MOMENTUM_DRIFT,
             Bound::Below(0.01),
             "a free body keeps its angular momentum; 1 % a revolution is what two rings that collide and \
@@ -266,7 +270,6 @@ fn spin(variant: &str, n: usize) -> Planned {
         )
         .with_limitation(RIM),
         gate(
-            id("stress_drift"),
             STRESS_DRIFT,
             Bound::Below(0.4),
             "a spinning disk of plane strain has (mean S:S)^(1/2) of about 0.1 rho U^2 (nu/(1 - nu) = \
@@ -318,31 +321,25 @@ fn declaration(tier: Tier) -> Declaration {
 }
 
 fn study(tier: Tier, runs: &Runs) -> Study {
-    let columns = vec![
-        Column::text("variant"),
-        Column::text("settings"),
-        Column::num("revolutions", ""),
-        Column::num("angular momentum, change a revolution", ""),
-        Column::num("stress a revolution", "rho U^2"),
-        Column::num("strain in the rim", "spin"),
-        Column::num("energy, change a revolution", ""),
-    ];
-    let caption = "A disk without stress that begins to spin, rim at 0.05 c0. What is 0 in a perfect \
-                   method: the change of angular momentum, and the strain that one step sees in the rim.";
-    let mut table = Table::new(caption, columns);
-    for spec in plan(tier).iter().map(|planned| &planned.spec) {
-        let Some(record) = runs.record(spec) else { continue };
-        let number = |metric| Cell::num(record.value(metric).unwrap_or(f64::NAN), 3);
-        table = table.row(vec![
-            Cell::text(&record.variant),
-            Cell::text(case::changed(&SPINNING_DISK, spec).join(", ")),
-            Cell::num(record.settings_as::<DiskSettings>().end, 2),
-            number(ANGULAR_MOMENTUM_DRIFT),
-            number(STRESS_DRIFT),
-            number(RIM_STRAIN),
-            number(ENERGY_DRIFT),
-        ]);
-    }
+    let planned = plan(tier);
+    let number = |r: &Record, metric| Cell::num(r.value(metric).unwrap_or(f64::NAN), 3);
+    let changed = |r: &Record| Cell::text(case::changed(&SPINNING_DISK, &r.spec()).join(", "));
+    let revolutions = |r: &Record| Cell::num(r.settings_as::<DiskSettings>().end, 2);
+    let spin = "angular momentum, change a revolution";
+    let table = Table::of(
+        "A disk without stress that begins to spin, rim at 0.05 c0. What is 0 in a perfect method: the \
+         change of angular momentum, and the strain that one step sees in the rim.",
+        &[
+            (Column::text("variant"), &|r: &Record| Cell::text(&r.variant)),
+            (Column::text("settings"), &changed),
+            (Column::num("revolutions", ""), &revolutions),
+            (Column::num(spin, ""), &|r| number(r, ANGULAR_MOMENTUM_DRIFT)),
+            (Column::num("stress a revolution", "rho U^2"), &|r| number(r, STRESS_DRIFT)),
+            (Column::num("strain in the rim", "spin"), &|r| number(r, RIM_STRAIN)),
+            (Column::num("energy, change a revolution", ""), &|r| number(r, ENERGY_DRIFT)),
+        ],
+        planned.iter().filter_map(|planned| runs.record(&planned.spec)),
+    );
     let drift = |courant: f64| {
         let record = runs.record(&steps(courant));
         record.and_then(|record| record.value(ANGULAR_MOMENTUM_DRIFT)).unwrap_or(f64::NAN)
@@ -370,7 +367,10 @@ fn study(tier: Tier, runs: &Runs) -> Study {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::case::Case;
+    use harness::{
+        case::{Case, RunError},
+        context::Context,
+    };
 
     #[test]
     fn a_rotation_is_no_strain_where_no_neighbour_is_missing() {
@@ -386,10 +386,7 @@ mod tests {
 
     #[test]
     fn a_disk_that_makes_no_sense_is_refused() {
-        let refused = |set: &str| {
-            let spec = case::spec(&SPINNING_DISK, "plain", &[set.into()]);
-            spec.and_then(|spec| SPINNING_DISK.run(&spec, &Context::default())).err()
-        };
+        let refused = |set| solid::refused(&SPINNING_DISK, "plain", set);
         assert!(matches!(refused("n=2"), Some(RunError::Setting(_))));
         assert!(matches!(refused("speed=0.9"), Some(RunError::Setting(_))));
         assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));

@@ -163,7 +163,7 @@ fn shares() -> Result<(), Failure> {
                 format!("{case} {variant}"),
                 report::seconds(share.step),
                 report::seconds(share.sweeps),
-                report::percent(share.of_row_loop(), 3),
+                report::percent(share.of_sweeps(), 3),
             ]
         })
         .collect();

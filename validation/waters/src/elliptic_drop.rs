@@ -1,32 +1,31 @@
 //! A free drop that a uniform strain pulls into an ellipse (Monaghan 1994): free surface, no walls, and
 //! an exact solution.
 
-use harness::composed::{Composed, Composition, completed};
 use nalgebra::Vector2;
 use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, Domain, EquationOfState, Integrator, Kernel, Leapfrog, Open, Particle,
-    PredictorCorrector, Pressure, Scene, Stepper, Tait, WendlandC2, Xsph,
+    BodyForce, Compose, Continuity, DensityDiffusion, EquationOfState, Leapfrog, Open, Particle,
+    Pressure, Stepper, Tait, WendlandC2,
 };
 
-use super::water::{self, Ingredient, Ledger, Medium, WaterScheme, ledger};
+use super::water::{self, Ledger, Modern, Seed, WaterMethod, gate, ledger, method};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricKey, Profile, Record},
     spec::RunSpec,
 };
 use harness::{
-    case::{Planned, Rules, RunError, Tier, Variant},
+    case::{Planned, Rules, RunError, Tier},
+    columns::Columns,
+    composed::{Composed, Composition, Program, Variants, completed},
     declare::{Accuracy, Declaration, ErrorOf, Ladder, Level},
+    method::Medium,
     runner::{self, Context},
     runs::{Judged, Runs},
-    simulate::state,
+    simulate,
     study::Study,
 };
 use maths::exact::EllipticDrop as Exact;
-use report::{
-    self, Axis, Cell, Colour, ColourMap, Column, Figure, ParticleMap, Plot, Series, Table, sig,
-};
+use report::{self, Axis, Cell, Colour, ColourMap, Figure, ParticleMap, Plot, Series, Table, sig};
 
 crate::water_settings! {
     /// Settings of a drop that is cut from a square lattice.
@@ -65,26 +64,10 @@ base::metrics! {
 /// Samples of a run.
 const SAMPLES: usize = 80;
 
-type Water<R = ()> = (Pressure<Tait, R>, ArtificialViscosity<Tait>, BodyForce);
-type Seed =
-    Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), Open, PredictorCorrector>;
-type Modern = Compose<WendlandC2, Water, (Continuity, DensityDiffusion), Open, Leapfrog>;
-type Plain = Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
+/// More steps or particles than anyone waits for, and the settings that decide on them.
+const MOST: [(f64, &str); 2] = [(1e9, "end, dt, courant, c0 or n"), (2e7, "n")];
 
-fn variant<S: WaterScheme<Walls = Open>>(
-    name: &'static str,
-    about: &'static str,
-    adjust: fn(&mut DropSettings),
-) -> Composition<DropSettings> {
-    let lacks = S::lacks();
-    Composition {
-        variant: Variant { name, about },
-        adjust,
-        run: run::<S>,
-        rules: rules::<S>,
-        lacks,
-    }
-}
+type Plain = Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
 
 /// The strain moves rows apart to two spacings, and the Wendland kernel needs h/dx of 1.2 at least for
 /// its sums to be those of a continuum: 2.5 leaves 1.25 at the end.
@@ -93,37 +76,45 @@ fn modern(s: &mut DropSettings) {
 }
 
 fn variants() -> Vec<Composition<DropSettings>> {
-    vec![
-        variant::<Seed>(
+    Variants::of(&PROGRAM)
+        .with(
             "seed",
             "the paper's terms: cubic spline, predictor-corrector, artificial viscosity and stress, XSPH",
+            method::<Seed<Open>>(),
             |_| {},
-        ),
-        variant::<Modern>(
+        )
+        .with(
             "modern",
             "Wendland C2, h/dx 2.5, leapfrog, density diffusion, little artificial viscosity",
+            method::<Modern<(Continuity, DensityDiffusion), Open>>(),
             modern,
-        ),
-        variant::<Plain>("plain", "modern without dissipation: (3), (5) and (7) alone", modern),
-    ]
+        )
+        .with(
+            "plain",
+            "modern without dissipation: (3), (5) and (7) alone",
+            method::<Plain>(),
+            modern,
+        )
+        .all
 }
 
 /// A drop as particles, and the exact one of the same second moment.
 struct Drop {
     medium: Medium,
+    rules: Rules,
     exact: Exact,
     particles: Vec<Particle>,
 }
 
 impl Drop {
-    fn new(s: &DropSettings) -> Self {
+    fn new(s: &DropSettings, method: &WaterMethod) -> Self {
         let (dx, rate) = (2.0 * s.radius / s.n as f64, s.strain * s.radius);
         let circle = Exact::circle(s.radius, s.strain);
         let tip = circle.after(s.end / s.strain);
-        let gravity = Vector2::new(0.0, -s.gravity * s.strain * rate);
-        let fall = gravity.norm() * s.end / s.strain;
+        let gravity = s.gravity * s.strain * rate;
+        let fall = gravity * s.end / s.strain;
         let speed = (tip.strain * tip.b).max(rate) + fall;
-        let medium = Medium::new(s.numerics(), dx, s.c0 * rate, gravity, speed);
+        let (medium, rules) = s.medium(method, [dx, s.c0 * rate, gravity, speed]);
         let corner = Vector2::repeat(0.5 * dx - s.radius);
         let particles: Vec<Particle> = solver::lattice(corner, dx, s.n, s.n)
             .filter(|x| x.norm() <= s.radius)
@@ -135,7 +126,7 @@ impl Drop {
             })
             .collect();
         let exact = Exact::circle(shape(particles.iter().map(evolved)).axes[0], s.strain);
-        Self { medium, exact, particles }
+        Self { medium, rules, exact, particles }
     }
 }
 
@@ -181,7 +172,7 @@ struct History {
 
 impl History {
     fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {
-        let (t, g) = (simulation.time(), drop.medium.gravity);
+        let (t, g) = (simulation.time(), drop.medium.acceleration);
         let particles = simulation.particles();
         let now = shape(particles.iter().map(evolved));
         let exact = drop.exact.after(t);
@@ -213,49 +204,36 @@ impl History {
     }
 }
 
-fn rules<S: WaterScheme>(s: &DropSettings) -> Result<Rules, RunError> {
-    let medium = Drop::new(s).medium;
-    let [dt, dt_limit] = medium.time_step::<S>(true)?;
-    Ok(Rules { dt, dt_limit, sound_speed: medium.eos.sound_speed })
-}
+const PROGRAM: Program<DropSettings, WaterMethod> =
+    Program { run, rules: |method, settings| Ok(Drop::new(settings, method).rules) };
 
-fn run<S: WaterScheme<Walls = Open>>(
+fn run(
+    method: &WaterMethod,
     variant: &str,
     s: &DropSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let drop = Drop::new(s);
-    let medium = &drop.medium;
-    let [dt, limit] = medium.time_step::<S>(context.allow_unstable)?;
-    let (forces, drift) = (S::Forces::new::<S::Kernel>(medium), S::Drift::new::<S::Kernel>(medium));
-    let mut ledger = Ledger::new(medium.water(), &forces, &drift);
-    let particles = drop.particles.clone();
-    let mut scene = Scene::<S>::new(medium.h, Domain::open(), particles, forces, drift, Open);
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
-    }
-    let mut simulation = scene.build()?;
-    let numbers = [
-        ("dx [m]", medium.dx),
-        ("c0 [m/s]", medium.eos.sound_speed),
-        ("dt [s]", dt),
-        ("dt/limit", dt / limit),
-    ];
-    let words = [("kernel", S::Kernel::NAME), ("integrator", S::Integrator::NAME)];
-    let mut record = water::begin((NAME, variant), s, numbers, words, context);
+    let drop = Drop::new(s, method);
+    let (medium, end) = (&drop.medium, s.end / s.strain);
+    let count = drop.particles.len() as f64;
+    simulate::check(method.integrator, drop.rules, end, count, MOST, context)?;
+    let parts = water::parts(medium, drop.particles.clone(), Vec::new(), context);
+    let mut simulation = (method.build)(parts)?;
+    let [_, numbers @ ..] = water::numbers(s.h_over_dx, medium, drop.rules);
+    let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
+    let mut ledger = Ledger::new(medium);
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
-    let times: Vec<f64> =
-        (0..=SAMPLES).map(|k| s.end / s.strain * k as f64 / SAMPLES as f64).collect();
+    let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let pressure = |density| medium.eos.pressure(density);
     (record.status, record.cost) = runner::drive(
-        &mut simulation,
-        dt,
+        &mut *simulation,
+        drop.rules.dt,
         &times,
         context,
         &mut (),
         &pressure,
         &mut |simulation, _| {
-            history.sample(&drop, simulation);
+            history.sample(&drop, &*simulation);
             ledger.sample(simulation);
         },
     )?;
@@ -263,7 +241,7 @@ fn run<S: WaterScheme<Walls = Open>>(
     let start = shape(drop.particles.iter().map(evolved));
     let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;
     ledger.measure(kinetic, "initial kinetic energy", &mut record);
-    finish(&drop, &simulation, context, &mut record);
+    finish(&drop, &*simulation, context, &mut record);
     Ok(record)
 }
 
@@ -274,7 +252,7 @@ fn finish(drop: &Drop, simulation: &dyn Stepper<()>, context: &Context, record: 
     let half = particles.iter().map(|p| (p.position - centre).y.abs()).fold(0.0, f64::max);
     let exact = drop.exact.after(simulation.time());
     record.put(TIP_END, (half + 0.5 * drop.medium.dx) / exact.b);
-    record.state = Some(state(&particles));
+    record.state = Some(simulate::state(&particles));
     if context.keep_particles {
         let column = |f: &dyn Fn(&Particle) -> f64| particles.iter().map(f).collect();
         let profile = Profile::default()
@@ -376,18 +354,13 @@ fn plan(tier: Tier) -> Vec<Planned> {
 /// Gravity of the falling drop \[A² R\].
 const FALL: f64 = 1.0;
 
-fn gate(id: &str, metric: MetricKey, bound: Bound, evidence: Evidence, because: &str) -> Gate {
-    let metric = String::from(metric);
-    Gate::new(format!("{NAME}.{id}.{metric}"), &metric, bound, evidence, because)
-}
-
 fn gates(id: &str, n: usize) -> Vec<Gate> {
     let axes = "semi-axes within 1 % at 40 particles across; the surface is known to a share of the \
                 spacing, so of first order in it";
     let bound = Bound::Below(0.01 * (40.0 / n as f64).max(0.5));
     let mut gates = invariants(id);
     gates.extend([A_ERROR, B_ERROR].map(|m| {
-        let gate = gate(id, m, bound, Evidence::Analytic, axes);
+        let gate = gate(&format!("{NAME}.{id}"), m, bound, Evidence::Analytic, axes);
         if id.starts_with("seed") { gate.with_limitation(STRINGS) } else { gate }
     }));
     gates
@@ -402,6 +375,7 @@ fn invariants(id: &str) -> Vec<Gate> {
                      both integrators integrate exactly: round-off of some thousand steps";
     let closes = "pressure and (3) exchange energy exactly and every other term is accounted for: 0.1 % is \
                   for the time step and for sampling the powers";
+    let id = &format!("{NAME}.{id}");
     vec![
         gate(id, MOMENTUM_ERROR, Bound::Below(1e-11), Evidence::Invariant, round_off),
         gate(id, CENTRE_ERROR, Bound::Below(1e-11), Evidence::Invariant, round_off),
@@ -422,13 +396,8 @@ fn study(tier: Tier, runs: &Runs) -> Study {
         let because = "gravity acts on all particles alike, so a drop that falls deforms like one that \
                        does not; round-off of its places, in a flow that is smooth";
         let id = format!("{NAME}.{variant}.falls-in-shape");
-        let gate = Gate::new(
-            id,
-            "difference of a_end and b_end",
-            Bound::Below(1e-9),
-            Evidence::Invariant,
-            because,
-        );
+        let (what, bound) = ("difference of a_end and b_end", Bound::Below(1e-9));
+        let gate = Gate::new(id, what, bound, Evidence::Invariant, because);
         let largest = change(A_END).zip(change(B_END)).map(|(a, b)| a.max(b));
         study.judged.push(Judged::new(gate, largest));
     }
@@ -484,42 +453,24 @@ fn picture(record: &Record) -> ParticleMap {
 }
 
 fn table(runs: &Runs) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("particles across", "1"),
-        Column::num("h/dx", "-"),
-        Column::num("gravity", "A^2 R"),
-        Column::num("error of a", "-"),
-        Column::num("error of b", "-"),
-        Column::num("tip over b", "-"),
-        Column::num("energy that viscosity took", "-"),
-        Column::num("that artificial stress gave", "-"),
-        Column::num("energy not accounted for", "-"),
-        Column::num("steps", "1"),
-    ];
     let caption = "Largest errors of the semi-axes until A t = 0.8, where the drop is four times as long \
                    as wide and its rows of particles are two spacings apart: a kernel that does not reach \
                    across them has an error that no spacing takes away. Energies in units of the initial \
                    kinetic one.";
-    let mut table = Table::new(caption, columns);
-    let percent = |value| Cell::percent(value, 2);
-    for record in runs.all().iter().map(|run| &run.record) {
-        let s = record.settings_as::<DropSettings>();
-        table = table.row(vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::num(s.n as f64, 3),
-            Cell::num(s.h_over_dx, 2),
-            Cell::num(s.gravity, 2),
-            water::cell(record, A_ERROR, percent),
-            water::cell(record, B_ERROR, percent),
-            water::cell(record, TIP_END, |tip| Cell::num(tip, 4)),
-            water::cell(record, ledger::WORK_VISCOSITY, |work| percent(-work)),
-            water::cell(record, ledger::WORK_STRESS, percent),
-            water::cell(record, ledger::ENERGY_GAP, |gap| Cell::sci(gap, 2)),
-            Cell::count(record.cost.steps),
-        ]);
-    }
-    table
+    let s = |record: &Record| record.settings_as::<DropSettings>();
+    let digits = |digits| move |value| Cell::num(value, digits);
+    Columns::of_variants()
+        .of(["particles across", "1"], |record| s(record).n as f64, digits(3))
+        .of(["h/dx", "-"], |record| s(record).h_over_dx, digits(2))
+        .of(["gravity", "A^2 R"], |record| s(record).gravity, digits(2))
+        .percent("error of a", "-", A_ERROR, 1.0)
+        .percent("error of b", "-", B_ERROR, 1.0)
+        .metric(["tip over b", "-"], TIP_END, digits(4))
+        .percent("energy that viscosity took", "-", ledger::WORK_VISCOSITY, -1.0)
+        .percent("that artificial stress gave", "-", ledger::WORK_STRESS, 1.0)
+        .metric(["energy not accounted for", "-"], ledger::ENERGY_GAP, |gap| Cell::sci(gap, 2))
+        .steps()
+        .table(caption, runs.all().iter().map(|run| &run.record))
 }
 
 #[cfg(test)]
@@ -533,7 +484,7 @@ mod tests {
 
     #[test]
     fn the_particles_of_the_start_are_the_exact_drop() {
-        let drop = Drop::new(&DropSettings::default());
+        let drop = Drop::new(&DropSettings::default(), &method::<Plain>());
         let start = shape(drop.particles.iter().map(evolved));
         assert!(
             (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12

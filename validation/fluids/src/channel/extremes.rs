@@ -6,20 +6,20 @@ use solver::{CubicSpline, Kernel, QuinticSpline};
 
 use super::{ChannelCase, ChannelSettings, TIMES, measure::L2};
 use base::{
-    gate::{Bound, Evidence, Gate},
+    gate::{Bound, Evidence},
     record::Record,
     spec::RunSpec,
 };
 use harness::{
     case::{Case, Tier},
-    runs::{Judged, Runs},
+    extremes::{self, Entry},
+    runs::Runs,
     study::Study,
 };
 use maths::{
     exact::couette::Couette,
     theory::channel::{Alignment, Channel, RowModel, WallRule},
 };
-use report::{Cell, Column, Table};
 
 /// νt/L² of the end and of the comparison, if nothing else is said.
 const END: f64 = 0.1;
@@ -35,39 +35,12 @@ pub fn specs(case: &ChannelCase, tier: Tier) -> Vec<RunSpec> {
 
 /// The study.
 pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
-    let columns = vec![
-        Column::text("setting"),
-        Column::text("what must come"),
-        Column::text("what came"),
-        Column::num("judged value", "-"),
-    ];
-    let mut table = Table::new("Extreme Couette flows.", columns);
-    let mut study = Study::new("couette-extremes", "Extreme settings").prose(LEAD);
-    let mut entries = slow(case, tier, runs);
-    entries.extend(sound(case, tier, runs));
-    entries.extend(smoothing(case, tier, runs));
-    for Entry { setting, found, value, gate } in entries {
-        table = table.row(vec![
-            Cell::text(setting),
-            Cell::text(format!("{} {}: {}", gate.metric, gate.bound, gate.because)),
-            Cell::text(found),
-            value.map_or(Cell::text("not measured"), |value| Cell::num(value, 4)),
-        ]);
-        study.judged.push(Judged::new(gate, value));
-    }
-    study.block(table)
+    let entries = [slow(case, tier, runs), sound(case, tier, runs), smoothing(case, tier, runs)];
+    extremes::study("couette-extremes", "Extreme settings", LEAD, entries.concat())
 }
 
 const LEAD: &str = "What breaks a naive program: a vanishing Reynolds number, sound a thousand times too \
     fast, smoothing lengths that are too short or too long.";
-
-/// One setting, what must come, and what came.
-struct Entry {
-    setting: String,
-    found: String,
-    value: Option<f64>,
-    gate: Gate,
-}
 
 /// The error of a run that completed.
 fn error(runs: &Runs, spec: &RunSpec) -> Option<f64> {
@@ -146,20 +119,15 @@ fn slow(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
             "quintic-pc" => matrix_error::<QuinticSpline>(rows, 1.0, 1e-6),
             _ => case.rules(&spec).ok().and_then(|rules| stepped_error(rows, rules.dt)),
         };
-        let gate = Gate::new(
-            format!("extremes.slow.{variant}.{rows}"),
-            "error/matrix",
-            Bound::Within(0.9, 1.1),
-            Evidence::Theory,
-            "the row-reduced matrix is the exact answer of the sums, for `modern` with its own steps; \
-             10 % for the time step",
-        );
-        Entry {
-            setting: format!("Couette flow that creeps: Re 10⁻⁴, {rows} rows, `{variant}`"),
-            found: format!("{}, matrix {}", text(found), text(matrix)),
-            value: found.zip(matrix).map(|(found, matrix)| found / matrix),
-            gate,
-        }
+        let because = "the row-reduced matrix is the exact answer of the sums, for `modern` with its own \
+                       steps; 10 % for the time step";
+        let what =
+            ["Couette flow that creeps".into(), format!("Re 10⁻⁴, {rows} rows, `{variant}`")];
+        let (name, bound) = (format!("slow.{variant}.{rows}"), Bound::Within(0.9, 1.1));
+        let ratio = found.zip(matrix).map_or(f64::NAN, |(found, matrix)| found / matrix);
+        Entry::new(&name, what, "error/matrix", bound)
+            .because(Evidence::Theory, because)
+            .found(ratio, format!("{}, matrix {}", text(found), text(matrix)))
     };
     slow_settings(tier).into_iter().map(entry).collect()
 }
@@ -194,19 +162,18 @@ fn sound(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
         let specs = sound_specs(case, *re, tier);
         let [usual, fast] = specs.each_ref().map(|spec| error(runs, spec));
         let slides = *re > 1e-3;
-        let (id, bound) = (format!("extremes.sound.couette.{re}"), Bound::Within(0.95, 1.05));
+        let (name, bound) = (format!("sound.couette.{re}"), Bound::Within(0.95, 1.05));
         let because = if slides { sliding } else { still };
-        let gate = Gate::new(id, "error/usual error", bound, Evidence::Theory, because);
+        let what = ["c₀ a thousand times too fast".into(), format!("Re {re}, `seed`")];
         let ended = |spec: &RunSpec, error: Option<f64>| match runs.record(spec) {
             Some(Record { status, .. }) if error.is_none() => format!("{status:?}"),
             _ => text(error),
         };
-        Entry {
-            setting: format!("c₀ a thousand times too fast: Re {re}, `seed`"),
-            found: format!("error {} becomes {}", ended(&specs[0], usual), ended(&specs[1], fast)),
-            value: fast.zip(usual).map(|(fast, usual)| fast / usual),
-            gate: if slides { gate.reported() } else { gate },
-        }
+        let found = format!("error {} becomes {}", ended(&specs[0], usual), ended(&specs[1], fast));
+        let entry = Entry::new(&name, what, "error/usual error", bound)
+            .because(Evidence::Theory, because)
+            .found(fast.zip(usual).map_or(f64::NAN, |(fast, usual)| fast / usual), found);
+        if slides { entry.reported() } else { entry }
     };
     sound_settings(tier).iter().map(entry).collect()
 }
@@ -231,14 +198,15 @@ fn smoothing(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
     let entry = |of: (&str, f64)| {
         let (variant, ratio) = of;
         let found = error(runs, &smoothed_spec(case, of));
-        let (id, bound) =
-            (format!("extremes.smoothing.couette.{variant}.{ratio}"), Bound::Below(1.0));
-        Entry {
-            setting: format!("smoothing length: `{variant}`, h/dx = {ratio}"),
-            found: format!("error {}", text(found)),
-            value: found,
-            gate: Gate::new(id, "error", bound, Evidence::Invariant, because),
-        }
+        let what = ["smoothing length".into(), format!("`{variant}`, h/dx = {ratio}")];
+        Entry::new(
+            &format!("smoothing.couette.{variant}.{ratio}"),
+            what,
+            "error",
+            Bound::Below(1.0),
+        )
+        .because(Evidence::Invariant, because)
+        .found(found.unwrap_or(f64::NAN), format!("error {}", text(found)))
     };
     smoothing_lengths(tier).into_iter().map(entry).collect()
 }

@@ -8,13 +8,13 @@ use super::{
     Channel, ChannelSettings, Flow,
     declaration::{at_rows, compared_at, ladder, levels},
     measure::L2,
-    run::KERNEL,
 };
 use base::record::Record;
 use harness::{
     case::Tier,
     convergence::{Level, convergence},
     runs::Runs,
+    simulate::KERNEL,
     study::Study,
 };
 use maths::{

@@ -1,9 +1,7 @@
 //! What is measured in a channel flow, each norm with its formula.
 
 use nalgebra::Vector2;
-use solver::{
-    EquationOfState, Flow as Going, Observer, Particle, Role, Scheme, Simulation, Stepper,
-};
+use solver::{EquationOfState, Flow as Going, Observer, Particle, Role, Stepper};
 
 use super::Setup;
 use base::record::{MetricKey, Profile, Record};
@@ -66,15 +64,15 @@ pub struct Sample {
 
 impl Sample {
     /// Reads a simulation.
-    pub fn of<S: Scheme<Extra = ()>>(setup: &Setup, simulation: &Simulation<S>) -> Self {
+    pub fn of(setup: &Setup, simulation: &dyn Stepper<()>) -> Self {
         let all = simulation.particles();
         let fluid = all.iter().filter(|p| p.role == Role::Fluid).copied().collect();
-        let columns = simulation.columns();
+        let columns = simulation.plain_columns();
         let positions: Vec<_> = columns.iter().map(|c| c.position).collect();
         let volumes: Vec<_> = columns.iter().map(|c| c.common.volume).collect();
         let values: Vec<_> = columns.iter().map(|c| c.velocity.x).collect();
         let field = Field { positions: &positions, volumes: &volumes, values: &values };
-        let field = interpolate(simulation.kernel(), field, &stations(setup)).ok();
+        let field = interpolate(|r2| simulation.weight(r2), field, &stations(setup)).ok();
         Self { all, fluid, field }
     }
 }
@@ -118,7 +116,8 @@ pub fn at_the_end(setup: &Setup, sample: &Sample, record: &mut Record) {
     let rms = |f: &dyn Fn(&Particle) -> f64| mean(&|p| f(p) * f(p)).sqrt();
     let (s, v) = (&setup.settings, setup.v);
     record.put(V_RMS, rms(&|p| p.velocity.y) / v);
-    let pressure = |p: &Particle| setup.eos.pressure(p.density) - setup.eos.background;
+    let pressure =
+        |p: &Particle| setup.medium.eos.pressure(p.density) - setup.medium.eos.background;
     let mean_pressure = mean(&pressure);
     record.put(P_RMS, rms(&|p| pressure(p) - mean_pressure) / (s.rho * v * v));
     let volume: f64 = fluid.iter().map(|p| p.mass / p.density).sum();
@@ -130,13 +129,6 @@ pub fn at_the_end(setup: &Setup, sample: &Sample, record: &mut Record) {
     record.put(OUTSIDE, outside as f64);
 }
 
-/// All of the state, in the order of the scene.
-pub fn state(particles: &[Particle]) -> Vec<f64> {
-    let numbers =
-        |p: &Particle| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
-    particles.iter().flat_map(numbers).collect()
-}
-
 /// The particles themselves: x, y, u, v, p.
 pub fn particles(setup: &Setup, sample: &Sample) -> Profile {
     let all = &sample.all;
@@ -146,7 +138,7 @@ pub fn particles(setup: &Setup, sample: &Sample) -> Profile {
         .with("y", "m", column(&|p| p.position.y))
         .with("u", "m/s", column(&|p| p.velocity.x))
         .with("v", "m/s", column(&|p| p.velocity.y))
-        .with("p", "Pa", column(&|p| setup.eos.pressure(p.density)))
+        .with("p", "Pa", column(&|p| setup.medium.eos.pressure(p.density)))
 }
 
 /// Means over the rows of the initial lattice: y, u, the exact u there, v, p.
@@ -160,7 +152,7 @@ fn row_profile(setup: &Setup, fluid: &[Particle], t: f64) -> Profile {
         .with("u", "m/s", mean(&|p| p.velocity.x))
         .with("u_exact", "m/s", mean(&|p| setup.exact(p.position.y, t)))
         .with("v", "m/s", mean(&|p| p.velocity.y))
-        .with("p", "Pa", mean(&|p| setup.eos.pressure(p.density)))
+        .with("p", "Pa", mean(&|p| setup.medium.eos.pressure(p.density)))
 }
 
 /// Stations across the middle of the section.
@@ -182,7 +174,7 @@ fn shear_error(setup: &Setup, fluid: &[Particle], wall: usize, t: f64) -> f64 {
     let s = &setup.settings;
     let speed = if wall == 1 { setup.plate_speed() } else { 0.0 };
     let depth = |p: &Particle| if wall == 1 { s.width - p.position.y } else { p.position.y };
-    let near: Vec<&Particle> = fluid.iter().filter(|p| depth(p) < 3.0 * setup.dx).collect();
+    let near: Vec<&Particle> = fluid.iter().filter(|p| depth(p) < 3.0 * setup.medium.dx).collect();
     let slope = |velocity: &dyn Fn(&Particle) -> f64| {
         let (mut d2, mut d3, mut d4, mut du, mut d2u) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for p in &near {
@@ -271,7 +263,7 @@ impl Series {
             next: every,
             speed: setup.v,
             pressure,
-            eos: setup.eos,
+            eos: setup.medium.eos,
             rows: Vec::new(),
             count: particles as f64,
             width: setup.settings.width,
@@ -341,18 +333,23 @@ impl Observer<()> for Series {
 
 #[cfg(test)]
 mod tests {
-    use solver::{CubicSpline, PredictorCorrector};
+    use harness::{context::Context, method::Method};
+    use solver::Continuity;
 
     use super::{Setup, depends_on_viscosity};
-    use crate::channel::{ChannelSettings, Flow};
+    use crate::channel::{
+        ChannelSettings, Flow,
+        variants::{Fluid, Seed},
+    };
 
     #[test]
     fn steady_couette_flow_does_not_show_its_viscosity() {
         let shows = |flow, tau| {
             let settings = ChannelSettings::default();
-            let setup = Setup::new::<CubicSpline, PredictorCorrector>(flow, &settings, &[], true);
+            let method = Method::of::<Seed<Fluid<()>, Continuity>>();
+            let setup = Setup::new(flow, &settings, &method, &Context::default());
             let setup = setup.expect("the defaults are valid");
-            let fluid = setup.rows(0.5 * setup.dx, 20);
+            let fluid = setup.rows(0.5 * setup.medium.dx, 20);
             depends_on_viscosity(&setup, &fluid, setup.time(tau))
         };
         assert_eq!(

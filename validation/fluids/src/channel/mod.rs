@@ -5,7 +5,6 @@ mod cures;
 mod declaration;
 mod extremes;
 mod floor;
-mod ingredients;
 mod limits;
 mod map;
 mod measure;
@@ -19,23 +18,27 @@ mod variants;
 mod waves;
 
 pub use declaration::{declaration, ladder};
-pub use ingredients::{Arrangement, Ingredient};
 pub use limits::is_stable;
-pub use measure::state;
 pub use plan::plan;
-pub use run::{ChannelScheme, run, run_scene, scene, uses};
+pub use run::{COUETTE, POISEUILLE, measured};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};
 pub use studies::studies;
-pub use variants::{Drive, variants};
+pub use variants::{Drive, Fluid, Modern, Seed, Stabilised, variants};
 
-use harness::composed::Composed;
+use harness::{
+    composed::{Composed, Program},
+    method::Method,
+};
 
 /// νt/L² at which profiles are compared.
 pub const TIMES: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5];
 
 /// A case of a channel flow.
 pub type ChannelCase = Composed<ChannelSettings>;
+
+/// What runs the variants of a channel flow.
+pub type ChannelProgram = Program<ChannelSettings, Method>;
 
 /// A flow and its case.
 #[derive(Clone, Copy)]

@@ -50,14 +50,14 @@ base::settings! {
         /// artificial stress, strength ξ
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,
         /// artificial stress, exponent n
-        stress_exponent: usize ["-"] in 1..=16 = 4,
+        exponent: usize ["-"] in 1..=16 = 4,
         /// density diffusion δ
         diffusion: f64 ["-"] in 0.0..=10.0 = 0.1,
         /// particle shifting, amplitude
         shift: f64 ["-"] in 0.0..=10.0 = 0.5,
         /// random displacement of the initial lattice, standard deviation
         jitter: f64 ["dx"] in 0.0..=0.5 = 0.0,
-        /// reach of neighbour rows beyond the support
+        /// Verlet skin: reach of neighbour lists beyond the support radius
         skin: f64 ["h"] in 0.0..=2.0 = 0.15,
         /// keep the lowest pressure mode of the last 60 L/c0; profiles are compared at the end alone
         watch_mode: bool = false,

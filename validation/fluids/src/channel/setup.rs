@@ -1,18 +1,17 @@
 //! From settings to numbers: the rules for sound speed, time step and arrangement, each stated once.
 
 use nalgebra::Vector2;
-use solver::{Kernel, Particle, Role, Smoothing, Tait};
+use solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
 
 use super::ChannelSettings;
-use harness::case::RunError;
-use maths::theory::Stepping;
-use maths::{
-    exact::{couette::Couette, poiseuille::Poiseuille},
-    theory::{
-        lattice::SquareLattice,
-        time_step::{self, Medium},
-    },
+use base::random::Random;
+use harness::{
+    case::{Rules, RunError},
+    context::Context,
+    method::{FirstRow, Medium, Method, Parts},
+    simulate,
 };
+use maths::exact::{couette::Couette, poiseuille::Poiseuille};
 
 /// What drives the fluid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,16 +52,10 @@ pub struct Setup {
     pub v: f64,
     /// Body force along the channel \[m/s²\].
     pub force: f64,
-    /// Spacing \[m\].
-    pub dx: f64,
-    /// Smoothing length \[m\].
-    pub h: f64,
+    /// What terms are made from.
+    pub medium: Medium,
     /// Particles along the channel.
     pub columns: usize,
-    /// Equation of state, with c0.
-    pub eos: Tait,
-    /// W(dx) \[1/m²\].
-    pub w_at_spacing: f64,
     /// Time step \[s\].
     pub dt: f64,
     /// Its theoretical limit for sound, viscosity and what else damps \[s\].
@@ -71,21 +64,21 @@ pub struct Setup {
 
 /// More steps than this are refused.
 const MOST_STEPS: f64 = 1e9;
+/// Settings that decide on the number of steps, and on that of particles.
+const DECISIVE: [&str; 2] = ["end, dt, c0 or rows", "rows or columns"];
 /// A sound speed above the range of the setting is refused, whatever it follows from \[m/s\].
 const MOST_SOUND: f64 = 1e6;
 /// More particles than this are refused.
 const MOST_PARTICLES: f64 = 2e7;
 
 impl Setup {
-    /// Follows the rules for the kernel `K`, the integrator `I` and terms that read the optional settings
-    /// `uses`.
-    pub fn new<K: Kernel, I: Stepping>(
+    /// Follows the rules for a method.
+    pub fn new(
         flow: Flow,
-        settings: &ChannelSettings,
-        uses: &[&str],
-        allow_unstable: bool,
+        s: &ChannelSettings,
+        method: &Method,
+        context: &Context,
     ) -> Result<Self, RunError> {
-        let s = settings;
         let v = s.speed();
         let force = match flow {
             Flow::Couette => 0.0,
@@ -93,7 +86,8 @@ impl Setup {
         };
         let dx = s.width / s.rows as f64;
         let h = s.h_over_dx * dx;
-        let columns = if s.columns == 0 { fewest_columns::<K>(s.h_over_dx) } else { s.columns };
+        let fewest = fewest_columns(method.support, s.h_over_dx);
+        let columns = if s.columns == 0 { fewest } else { s.columns };
         let sound_speed = s.c0.unwrap_or_else(|| sound_speed(s, v, force, h));
         let eos = Tait {
             density: s.rho,
@@ -101,60 +95,98 @@ impl Setup {
             gamma: s.gamma as i32,
             background: s.background * s.rho * sound_speed * sound_speed,
         };
+        let along = Vector2::new(force, 0.0);
+        let medium = Medium {
+            nu: s.nu,
+            acceleration: along,
+            wall_acceleration: along,
+            eta2_over_h2: s.eta2_over_h2,
+            alpha: s.alpha,
+            beta: s.beta,
+            xsph: s.xsph,
+            xi: s.xi,
+            exponent: s.exponent as u32,
+            diffusion: s.diffusion,
+            shift: s.shift,
+            ..method.medium(eos, [dx, h])
+        };
         let courant = s.courant * h / (sound_speed + v);
         let viscous = s.viscous * h * h / s.nu;
         let forced = if force > 0.0 { 0.25 * (h / force).sqrt() } else { f64::INFINITY };
         let dt = s.dt.unwrap_or(courant.min(viscous).min(forced));
-        let used = |key: &str, value: f64| if uses.contains(&key) { value } else { 0.0 };
-        let (alpha, delta) = (used("alpha", s.alpha), used("diffusion", s.diffusion));
-        let medium = Medium { c0: sound_speed, h, nu: s.nu, alpha, delta };
-        let lattice = SquareLattice::<K>::new(s.h_over_dx, s.eta2_over_h2);
-        let dt_limit =
-            time_step::time_step_limit(&time_step::modes(&lattice, LIMIT_BOX, &medium), I::THEORY);
-        let w_at_spacing = Smoothing::<K>::new(h).w(dx * dx);
-        let setup = Self {
-            settings: s.clone(),
-            flow,
-            v,
-            force,
-            dx,
-            h,
-            columns,
-            eos,
-            w_at_spacing,
-            dt,
-            dt_limit,
-        };
-        setup.check::<I>(allow_unstable)?;
+        let waves = medium.waves(&method.uses);
+        let dt_limit = method.step_limit([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let settings = s.clone();
+        let setup = Self { settings, flow, v, force, medium, columns, dt, dt_limit };
+        setup.check(method, context)?;
         Ok(setup)
     }
 
-    fn check<I: Stepping>(&self, allow_unstable: bool) -> Result<(), RunError> {
-        let c0 = self.eos.sound_speed;
-        if c0 > MOST_SOUND {
+    fn check(&self, method: &Method, context: &Context) -> Result<(), RunError> {
+        let Rules { sound_speed: value, .. } = self.rules();
+        if value > MOST_SOUND {
             let (what, setting) = ("the sound speed", "c0, re, nu or width");
-            return Err(RunError::TooMuch { what, value: c0, most: MOST_SOUND, setting });
+            return Err(RunError::TooMuch { what, value, most: MOST_SOUND, setting });
         }
-        let (dt, limit) = (self.dt, self.dt_limit);
-        if dt > limit && !allow_unstable {
-            return Err(RunError::TimeStep { dt, limit, integrator: I::NAME });
-        }
-        let steps = self.time(self.settings.end) / dt;
-        if steps > MOST_STEPS {
-            let (what, setting) = ("the number of time steps", "end, dt, c0 or rows");
-            return Err(RunError::TooMuch { what, value: steps, most: MOST_STEPS, setting });
-        }
+        let end = self.time(self.settings.end);
         let particles = self.settings.rows as f64 * self.columns as f64;
-        if particles > MOST_PARTICLES {
-            let (what, setting) = ("the number of particles", "rows or columns");
-            return Err(RunError::TooMuch {
-                what,
-                value: particles,
-                most: MOST_PARTICLES,
-                setting,
-            });
+        let most = [(MOST_STEPS, DECISIVE[0]), (MOST_PARTICLES, DECISIVE[1])];
+        simulate::check(method.integrator, self.rules(), end, particles, most, context)
+    }
+
+    /// What the rules chose.
+    pub fn rules(&self) -> Rules {
+        let Self { dt, dt_limit, .. } = *self;
+        Rules { dt, dt_limit, sound_speed: self.medium.eos.sound_speed }
+    }
+
+    /// The scene.
+    pub fn parts(&self, method: &Method, context: &Context) -> Parts {
+        let (s, Medium { dx, h, eos, .. }) = (&self.settings, &self.medium);
+        let mut particles = self.particles(method);
+        let mut random = Random::new(1);
+        for p in particles.iter_mut().filter(|p| p.role == Role::Fluid && s.jitter > 0.0) {
+            let offset = Vector2::new(random.normal(), random.normal());
+            p.position += offset * (s.jitter * dx);
+            // Gaussian tails must not put a particle behind a wall.
+            p.position.y = p.position.y.clamp(0.1 * dx, s.width - 0.1 * dx);
         }
-        Ok(())
+        // Half a period at most; one that is shorter than two supports is refused by the scene itself.
+        let skin = (s.skin * h).min(self.length() - method.support * h).max(0.0);
+        // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
+        let speed = 2.0 * (eos.sound_speed + self.v);
+        Parts {
+            mirrors: self.mirrors(),
+            skin: Some(skin),
+            limits: Limits { density: [0.7 * s.rho, 1.3 * s.rho], speed },
+            ..Parts::new(self.medium.clone(), Domain::channel(self.length()), particles, context)
+        }
+    }
+
+    /// Fluid, then wall particles. Rows of the fluid at (j + 1/2) dx, mirrored by the walls into themselves,
+    /// or at j dx between interface rows on the plates, which are rows of the same lattice.
+    fn particles(&self, method: &Method) -> Vec<Particle> {
+        let (dx, rows) = (self.medium.dx, self.settings.rows);
+        let (mut particles, behind) = match method.first_row {
+            FirstRow::Nowhere => return self.rows(0.5 * dx, rows),
+            FirstRow::OnSurface => (self.rows(dx, rows - 1), 0.0),
+            FirstRow::Behind => (self.rows(0.5 * dx, rows), 0.5),
+        };
+        particles.extend(self.wall_rows(behind, method.support * self.medium.h));
+        particles
+    }
+
+    fn mirrors(&self) -> Vec<PlaneWall> {
+        let s = &self.settings;
+        let along = |speed| Vector2::new(speed, 0.0);
+        let mut lower = PlaneWall::new(Vector2::zeros(), Vector2::y(), along(0.0));
+        let top = Vector2::new(0.0, s.width);
+        let mut upper = PlaneWall::new(top, -Vector2::y(), along(self.plate_speed()));
+        if s.wall_curvature {
+            lower.curvature = along(-self.force / s.nu);
+            upper.curvature = lower.curvature;
+        }
+        vec![lower, upper]
     }
 
     /// t \[s\] of νt/L² = `tau`.
@@ -164,7 +196,7 @@ impl Setup {
 
     /// Length of the channel section \[m\].
     pub fn length(&self) -> f64 {
-        self.columns as f64 * self.dx
+        self.columns as f64 * self.medium.dx
     }
 
     /// Speed of the upper plate \[m/s\].
@@ -191,15 +223,15 @@ impl Setup {
 
     /// Particles of the section, `count` rows from height `first` \[m\] up, at rest.
     pub fn rows(&self, first: f64, count: usize) -> Vec<Particle> {
-        let corner = Vector2::new(0.5 * self.dx, first);
-        solver::lattice(corner, self.dx, self.columns, count)
-            .map(|x| Particle::fluid(x, Vector2::zeros(), self.settings.rho, self.dx * self.dx))
+        let dx = self.medium.dx;
+        solver::lattice(Vector2::new(0.5 * dx, first), dx, self.columns, count)
+            .map(|x| Particle::fluid(x, Vector2::zeros(), self.settings.rho, dx * dx))
             .collect()
     }
 
     /// Particles of both plates: rows out to the support, the first one `first` dx behind the surface,
     /// all with the velocity of the plate. On the surface, at 0, they are of the interface.
-    pub fn wall_rows(&self, first: f64, support: f64) -> Vec<Particle> {
+    fn wall_rows(&self, first: f64, support: f64) -> Vec<Particle> {
         let mut particles = self.rows_behind([0.0, -1.0], 0.0, first, support);
         let (top, speed) = (self.settings.width, self.plate_speed());
         particles.extend(self.rows_behind([top, 1.0], speed, first, support));
@@ -214,11 +246,11 @@ impl Setup {
         first: f64,
         support: f64,
     ) -> Vec<Particle> {
-        let last = (support / self.dx - first - 1e-9).floor() as usize;
+        let last = (support / self.medium.dx - first - 1e-9).floor() as usize;
         let mut particles = Vec::new();
         for behind in (0..=last).map(|k| first + k as f64) {
             let role = if behind == 0.0 { Role::Interface } else { Role::Wall };
-            for p in self.rows(y + outwards * behind * self.dx, 1) {
+            for p in self.rows(y + outwards * behind * self.medium.dx, 1) {
                 let velocity = Vector2::new(speed, 0.0);
                 particles.push(Particle { velocity, ..p }.with_role(role));
             }
@@ -240,6 +272,6 @@ fn sound_speed(s: &ChannelSettings, v: f64, force: f64, h: f64) -> f64 {
 }
 
 /// The fewest particles along a period of at least two supports and the skin.
-fn fewest_columns<K: Kernel>(h_over_dx: f64) -> usize {
-    (2.0 * K::SUPPORT * h_over_dx - 1e-9).floor() as usize + 1
+fn fewest_columns(support: f64, h_over_dx: f64) -> usize {
+    (2.0 * support * h_over_dx - 1e-9).floor() as usize + 1
 }

@@ -1,23 +1,35 @@
 //! The force that holds the flux: a controller that acts between stretches of a few steps.
 
 use nalgebra::Vector2;
-use solver::BodyForce;
+use solver::{BodyForce, Scheme, Simulation, Stepper};
 
 /// Forces with a body force that can be set.
 pub trait Driven {
-    /// Sets the body force \[m/s²\] along x.
-    fn drive(&mut self, force: f64);
+    /// The body force.
+    fn body_force(&mut self) -> &mut BodyForce;
 }
 
 impl<A, B> Driven for (A, B, BodyForce) {
-    fn drive(&mut self, force: f64) {
-        self.2 = BodyForce(Vector2::new(force, 0.0));
+    fn body_force(&mut self) -> &mut BodyForce {
+        &mut self.2
     }
 }
 
 impl<A, B, C> Driven for (A, B, BodyForce, C) {
+    fn body_force(&mut self) -> &mut BodyForce {
+        &mut self.2
+    }
+}
+
+/// A simulation with a body force that can be set.
+pub trait Driving: Stepper<()> {
+    /// Sets the body force \[m/s²\] along x.
+    fn drive(&mut self, force: f64);
+}
+
+impl<S: Scheme<Extra = (), Forces: Driven>> Driving for Simulation<S> {
     fn drive(&mut self, force: f64) {
-        self.2 = BodyForce(Vector2::new(force, 0.0));
+        *self.terms_mut().0.body_force() = BodyForce(Vector2::new(force, 0.0));
     }
 }
 

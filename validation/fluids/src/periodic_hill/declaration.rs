@@ -4,12 +4,11 @@
 use nalgebra::Vector2;
 
 use super::{
-    HillSettings, NAME,
+    BEST, HillSettings, NAME, VARIANTS,
     measure::{L2_U, POINTS, STATIONS},
-    plan::{BEST, HillRun, REYNOLDS, Start, VARIANTS, best},
-    reference::Reference,
+    plan::{HillRun, REYNOLDS, best},
+    reference::{Reference, floor, reference},
     stability,
-    studies::floor,
 };
 use base::{
     gate::{Bound, Evidence},
@@ -28,19 +27,14 @@ const ERROR: &str = "rms error of u [U_b]";
 
 /// The declaration of a tier.
 pub fn declaration(tier: Tier) -> Declaration {
+    let accuracy = accuracy(tier);
     Declaration {
         curves: vec![profiles(tier), shear(tier)],
-        accuracy: vec![accuracy(tier)],
-        budgets: Some(budgets(tier)),
+        budgets: Some(budgets(tier, &accuracy)),
+        accuracy: vec![accuracy],
         limits: Some(stability::limits(tier)),
         maps: Vec::new(),
     }
-}
-
-/// What finite elements have at this Reynolds number. A reference that cannot be read makes every run
-/// fail: there is no need to say it once more.
-pub fn reference(re: f64) -> Option<Reference> {
-    Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
 }
 
 /// A run of the quick tier's ladder and budget: at Re 10 the decay is the fastest.
@@ -48,14 +42,13 @@ fn quick(variant: &'static str, n: usize) -> HillRun {
     HillRun { re: 10.0, end: 10.0, ..HillRun::rest(variant, n) }
 }
 
-fn ladder(runs: Vec<HillRun>) -> Ladder {
-    let level = |run: &HillRun| Level {
+fn ladder<const N: usize>(runs: [HillRun; N]) -> Ladder {
+    let level = |run: HillRun| Level {
         run: run.planned(),
         spacing: 1.0 / run.n as f64,
         label: format!("H/dx = {}", run.n),
     };
-    let variant = runs.first().map_or(BEST, |run| run.variant);
-    Ladder { variant, note: String::new(), levels: runs.iter().map(level).collect(), order: None }
+    Ladder::new(runs[0].variant, runs.map(level))
 }
 
 fn accuracy(tier: Tier) -> Accuracy {
@@ -64,7 +57,7 @@ fn accuracy(tier: Tier) -> Accuracy {
             "Re 10, from rest to 10 H/U_b, where about 0.3 % of U_b is left of the start: rms over ten \
              stations against finite elements.",
             ["interface-wall", "modern", BEST]
-                .map(|variant| ladder([4, 5, 7].map(|n| quick(variant, n)).into()))
+                .map(|variant| ladder([4, 5, 7].map(|n| quick(variant, n))))
                 .into(),
         ),
         Tier::Full => (
@@ -73,33 +66,24 @@ fn accuracy(tier: Tier) -> Accuracy {
             VARIANTS.map(full_ladder).into(),
         ),
     };
-    Accuracy {
-        id: "periodic-hill".into(),
-        error: ErrorOf::Metric(L2_U.into()),
-        label: ERROR.into(),
-        about: about.into(),
-        spacing: "dx/H [-]",
-        slope: Some(1.0),
-        ladders,
-        more: Vec::new(),
-        peers: Vec::new(),
-    }
+    let accuracy = Accuracy::new("periodic-hill", ErrorOf::Metric(L2_U.into()), ERROR);
+    Accuracy { about: about.into(), spacing: "dx/H [-]", slope: Some(1.0), ladders, ..accuracy }
 }
 
 /// Runs from rest alone: those from the reference end before they could leave it.
 fn full_ladder(variant: &'static str) -> Ladder {
-    let finest = if variant == BEST { Some(20) } else { None };
-    let sides = [4, 5, 7, 10].into_iter().chain(finest);
-    let ladder = ladder(sides.map(|n| HillRun::rest(variant, n)).collect());
-    let order = (variant == BEST).then(|| OrderGate {
+    if variant != BEST {
+        return ladder([4, 5, 7, 10].map(|n| HillRun::rest(variant, n)));
+    }
+    let order = OrderGate {
         id: format!("{NAME}.{BEST}.50.order"),
         bound: Bound::Above(1.0),
         evidence: Evidence::Theory,
         because: "the walls are of first order on disordered particles, their sums of second: the goal of 2 \
                   % at 20 spacings and 1 % at 40 is first order"
             .into(),
-    });
-    Ladder { order, ..ladder }
+    };
+    Ladder { order: Some(order), ..ladder([4, 5, 7, 10, 20].map(|n| HillRun::rest(BEST, n))) }
 }
 
 /// Changes a setting.
@@ -115,7 +99,7 @@ const CHANGES: [(&str, &str, Set); 5] = [
     ("shift=1.5", "shifting", |s| s.shift = 1.5),
 ];
 
-fn budgets(tier: Tier) -> Budgets {
+fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
     let (about, base, finer, settings) = match tier {
         Tier::Quick => {
             let about = "Re 10, H/dx = 5 and 7, from rest to 10 H/U_b.";
@@ -131,13 +115,11 @@ fn budgets(tier: Tier) -> Budgets {
     };
     let change = |what, part, run: HillRun| Change::new(what, part, run.spec());
     let mut changes = vec![change("none", "none", base), change("finer spacing", "spacing", finer)];
-    let changed = |(what, part, set): &(&str, &'static str, Set)| {
-        Change::new(*what, part, base.changed(*set))
-    };
-    changes.extend(settings.iter().map(changed));
+    let changed = settings.iter().map(|&(what, part, set)| (what, part, base.changed(set)));
+    changes.extend(changed.map(|(what, part, spec)| Change::new(what, part, spec)));
     if tier == Tier::Full {
         let other = |variant| HillRun { variant, ..base };
-        let from_reference = HillRun { start: Start::Reference, ..base };
+        let from_reference = HillRun { from_reference: true, ..base };
         changes.extend([
             change("from the reference", "start", from_reference),
             change("`mixed`: consistent pressure and continuity", "sums", other("mixed")),
@@ -148,13 +130,8 @@ fn budgets(tier: Tier) -> Budgets {
         let wall = change("`interface-wall` over `modern`", "wall", other("interface-wall"));
         changes.push(Change { against, ..wall });
     }
-    Budgets {
-        id: "periodic-hill-error-budget".into(),
-        error: ErrorOf::Metric(L2_U.into()),
-        label: ERROR.into(),
-        about: about.into(),
-        of: vec![Budget { variant: BEST, changes }],
-    }
+    let budget = Budget { variant: BEST, changes };
+    Budgets { about: about.into(), ..Budgets::of(accuracy, vec![budget]) }
 }
 
 /// Profiles at their stations, symbols on lines.

@@ -1,7 +1,7 @@
 //! What is measured: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
-use solver::{EquationOfState, Kernel, Role, Scheme, Simulation, Smoothing, Stepper};
+use solver::{EquationOfState, Role, Stepper};
 
 use super::{Setup, setup::FLUX as FLUX_WANTED};
 use base::record::{MetricKey, Profile, Record};
@@ -50,25 +50,22 @@ pub const DRAGS: [MetricKey; 3] = [HILL_SHEAR_DRAG, LID_SHEAR_DRAG, HILL_PRESSUR
 
 /// Velocity and pressure where it is asked for: a linear field fitted to the particles in reach, walls
 /// included, with the weights V W (moving least squares).
-struct Field<'a, K> {
-    kernel: &'a Smoothing<K>,
+struct Field<'a> {
+    /// W \[1/m²\] of r² \[m²\], and where it ends \[m\].
+    weight: &'a dyn Fn(f64) -> f64,
+    reach: f64,
     /// x, y, V, u, v, p in the order of x, in bands as high as the kernel reaches.
     bands: Vec<Vec<[f64; 6]>>,
 }
 
-impl<'a, K: Kernel> Field<'a, K> {
-    fn of<S: Scheme<Extra = (), Kernel = K>>(setup: &Setup, s: &'a Simulation<S>) -> Self {
-        let eos = setup.fluid.eos;
-        let point = |c: &solver::particles::Column<_>| {
-            let p = eos.pressure(c.common.density) - eos.background;
-            [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
-        };
-        Self::new(s.kernel(), s.columns().iter().map(point).collect(), setup.hill.lid())
-    }
-
-    fn new(kernel: &'a Smoothing<K>, mut points: Vec<[f64; 6]>, lid: f64) -> Self {
+impl<'a> Field<'a> {
+    fn new(
+        (weight, reach): (&'a dyn Fn(f64) -> f64, f64),
+        mut points: Vec<[f64; 6]>,
+        lid: f64,
+    ) -> Self {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut field = Self { kernel, bands: Vec::new() };
+        let mut field = Self { weight, reach, bands: Vec::new() };
         // One more than holds the lid: what is farther out is in the first and the last.
         field.bands.resize(field.band(lid) + 2, Vec::new());
         for point in points {
@@ -80,12 +77,12 @@ impl<'a, K: Kernel> Field<'a, K> {
 
     /// The band of a height; the second begins at 0. A float below 0 becomes 0.
     fn band(&self, y: f64) -> usize {
-        (y / self.kernel.support() + 1.0) as usize
+        (y / self.reach + 1.0) as usize
     }
 
     /// Particles that may be in reach of a place.
     fn near(&self, x: f64, y: f64) -> impl Iterator<Item = &[f64; 6]> {
-        let (reach, band, last) = (self.kernel.support(), self.band(y), self.bands.len() - 1);
+        let (reach, band, last) = (self.reach, self.band(y), self.bands.len() - 1);
         let bands = &self.bands[band.saturating_sub(1).min(last)..=(band + 1).min(last)];
         bands.iter().flat_map(move |band| {
             let first = band.partition_point(|p| p[0] < x - reach);
@@ -95,11 +92,11 @@ impl<'a, K: Kernel> Field<'a, K> {
 
     /// u, v, p at a place.
     fn at(&self, x: f64, y: f64) -> [f64; 3] {
-        let reach = self.kernel.support();
+        let reach = self.reach;
         let (mut moments, mut sums) = (Matrix3::zeros(), [Vector3::zeros(); 3]);
         for p in self.near(x, y) {
             let r = Vector2::new(p[0] - x, p[1] - y);
-            let weight = p[2] * self.kernel.w(r.norm_squared());
+            let weight = p[2] * (self.weight)(r.norm_squared());
             if weight > 0.0 {
                 let basis = Vector3::new(1.0, r.x / reach, r.y / reach);
                 moments += Matrix3::from_fn(|i, j| basis[i] * basis[j] * weight);
@@ -154,8 +151,15 @@ fn add<const N: usize>(sums: &mut Vec<[f64; N]>, values: impl Iterator<Item = [f
 
 impl Window {
     /// Adds a sample.
-    pub fn sample<S: Scheme<Extra = ()>>(&mut self, setup: &Setup, s: &Simulation<S>) {
-        let field = Field::of(setup, s);
+    pub fn sample(&mut self, setup: &Setup, s: &dyn Stepper<()>) {
+        let eos = setup.flow.medium.eos;
+        let point = |c: &solver::particles::Column| {
+            let p = eos.pressure(c.common.density) - eos.background;
+            [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
+        };
+        let points = s.plain_columns().iter().map(point).collect();
+        let weight = |r2: f64| s.weight(r2);
+        let field = Field::new((&weight, setup.flow.support), points, setup.hill.lid());
         add(
             &mut self.sections,
             places(setup).iter().map(|p| field.at(p[0], p[1])).map(|[u, v, _]| [u, v]),
@@ -176,8 +180,8 @@ impl Window {
 
 /// Shear stress on the hill (along its tangent) and on the lid, pressure on the hill, at x. The slope of
 /// the velocity is that of the parabola through 0 at the wall and the field one and two spacings away.
-fn wall<K: Kernel>(setup: &Setup, field: &Field<K>, x: f64) -> [f64; 3] {
-    let (d, nu, lid) = (setup.fluid.dx, setup.fluid.nu, setup.hill.lid());
+fn wall(setup: &Setup, field: &Field, x: f64) -> [f64; 3] {
+    let (d, nu, lid) = (setup.flow.medium.dx, setup.flow.medium.nu, setup.hill.lid());
     let slope = setup.slope(x);
     let tangent = Vector2::new(1.0, slope) / (1.0 + slope * slope).sqrt();
     let normal = Vector2::new(-tangent.y, tangent.x);
@@ -198,7 +202,8 @@ pub fn mean_velocity(s: &dyn Stepper<()>, area: f64) -> f64 {
     s.fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
 }
 
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
+/// Root mean square.
+pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(s, n), x| (s + x * x, n + 1.0));
     (sum / count).sqrt()
 }
@@ -312,8 +317,8 @@ fn profiles(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mu
 
 /// How far wall particles are from where they belong \[dx\]: over the places along floor and lid, the
 /// largest difference between the depth of the nearest one and that of their first row.
-pub fn wall_offset(setup: &Setup, s: &dyn Stepper<()>, first: f64) -> f64 {
-    let (dx, lid, period) = (setup.fluid.dx, setup.hill.lid(), setup.hill.period());
+pub fn wall_offset(setup: &Setup, s: &dyn Stepper<()>) -> f64 {
+    let (dx, lid, period) = (setup.flow.medium.dx, setup.hill.lid(), setup.hill.period());
     let all = s.particles();
     let walls = || all.iter().filter(|p| p.role != Role::Fluid).map(|p| p.position);
     let distance = |from: Vector2<f64>, to: &Vector2<f64>| {
@@ -323,7 +328,7 @@ pub fn wall_offset(setup: &Setup, s: &dyn Stepper<()>, first: f64) -> f64 {
     let off = |place: Vector2<f64>, depth: &dyn Fn(Vector2<f64>) -> f64| {
         let nearest =
             walls().min_by(|a, b| distance(place, a).total_cmp(&distance(place, b))).map(depth);
-        (nearest.unwrap_or(f64::INFINITY) / dx - first).abs()
+        (nearest.unwrap_or(f64::INFINITY) / dx - setup.first).abs()
     };
     let floor = |p: Vector2<f64>| behind_floor(setup, p);
     let ceiling = |p: Vector2<f64>| p.y - lid;
@@ -367,7 +372,7 @@ pub fn particles(setup: &Setup, s: &dyn Stepper<()>) -> (Profile, usize) {
 mod tests {
     use super::*;
     use base::random::Random;
-    use solver::QuinticSpline;
+    use solver::{QuinticSpline, Smoothing};
 
     #[test]
     fn a_field_misses_no_particle_in_reach() {
@@ -379,9 +384,11 @@ mod tests {
                 [x, y, 0.01, number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)]
             })
             .collect();
-        let field = Field::new(&kernel, points.clone(), lid);
+        let weight = |r2: f64| kernel.w(r2);
+        let reach = kernel.support();
+        let field = Field::new((&weight, reach), points.clone(), lid);
         assert!(field.bands.len() > 10);
-        let mut all = Field { kernel: &kernel, bands: vec![points] };
+        let mut all = Field { weight: &weight, reach, bands: vec![points] };
         all.bands[0].sort_by(|a, b| a[0].total_cmp(&b[0]));
         for y in [-0.05, 0.0, 1e-9, 0.299, 0.3, 0.301, 1.5, lid - 0.1, lid, lid + 0.05] {
             for (some, every) in field.at(1.0, y).into_iter().zip(all.at(1.0, y)) {

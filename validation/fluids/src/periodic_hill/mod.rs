@@ -14,22 +14,23 @@ mod setup;
 mod stability;
 mod studies;
 
-use harness::composed::{Composed, Composition, lacking};
-use maths::theory::Stepping;
+use harness::{
+    case::Case,
+    composed::{Composed, Composition, Variants},
+    method::{self, Method, Standard},
+};
 use solver::{
-    BodyForce, Compose, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
-    DensityDiffusion, ExtrapolatingWall, InterfaceWall, Leapfrog, NoSlip, Pressure, QuinticSpline,
-    Scheme, ShiftAdvection, Shifting, Tait, Viscosity,
+    BodyForce, ConsistentPressure, ConsistentViscosity, Continuity, ExtrapolatingWall,
+    InterfaceWall, NoSlip, Pressure, ShiftAdvection, Tait, Viscosity,
 };
 
-pub use control::Driven;
-pub use run::{run_scene, scene};
-pub use setup::{HillWall, Setup};
+use crate::unit_flow::{self, ConsistentDrift, Stabilised, unit_settings};
 
-use super::fluid::{Ingredient, OPTIONAL};
-use harness::case::{Case, RunError, Variant};
+pub use control::{Driven, Driving};
+pub use run::measured;
+pub use setup::Setup;
 
-base::settings! {
+unit_settings! {
     /// Settings of the flow over hills. H = U_b = ρ = 1.
     pub struct HillSettings {
         /// Reynolds number U_b H/ν
@@ -52,42 +53,17 @@ base::settings! {
         average: f64 ["of the run"] in 0.01..=0.3 = 0.2,
         /// smoothing length over spacing
         h_over_dx: f64 ["-"] in 0.9..=3.0 = 1.0,
-        /// guard against 0/0 in the viscous term
-        eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 1e-6,
         /// sound speed; the largest speed of the flow is 1.6 U_b at most
         c0: f64 ["U_b"] in 2.0..=1e4 = 15.0,
-        /// exponent of the Tait equation
-        gamma: usize ["-"] in 1..=20 = 7,
-        /// background pressure 0p
-        background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
-        /// Courant number of the time step: two thirds of the theoretical limit
-        courant: f64 ["-"] in 1e-6..=100.0 = 1.5,
-        /// viscous number of the time step
-        viscous: f64 ["-"] in 1e-6..=100.0 = 0.25,
-        /// density diffusion δ
-        diffusion: f64 ["-"] in 0.0..=10.0 = 0.1,
-        /// particle shifting, amplitude
-        shift: f64 ["-"] in 0.0..=10.0 = 0.5,
-        /// reach of neighbour rows beyond the support
-        skin: f64 ["h"] in 0.0..=2.0 = 0.15,
     }
 }
 
-fn variant<S>(
-    name: &'static str,
-    about: &'static str,
-    adjust: fn(&mut HillSettings),
-) -> Composition<HillSettings>
-where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient + Driven,
-    S::Drift: Ingredient,
-    S::Walls: HillWall,
-    S::Integrator: Stepping,
-{
-    let lacks = lacking(OPTIONAL, &[S::Forces::uses(), S::Drift::uses()].concat());
-    let (variant, rules) = (Variant { name, about }, |s: &_| Ok(Setup::new::<S>(s, true)?.rules()));
-    Composition { variant, adjust, run: run::run::<S>, rules, lacks }
+/// A method whose force can be set.
+pub type HillMethod = Method<(), dyn Driving>;
+
+/// The method of a scheme.
+pub fn method<S: Standard<Extra = (), Forces: Driven>>() -> HillMethod {
+    Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
 }
 
 type Extrapolating = ExtrapolatingWall<Tait, NoSlip>;
@@ -95,9 +71,7 @@ type Pairs = (Pressure<Tait>, Viscosity, BodyForce);
 type Carried = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Mixed = (ConsistentPressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
-type Stabilised = (Continuity, DensityDiffusion, Shifting);
-type ConsistentDrift = (ConsistentContinuity, DensityDiffusion, Shifting);
-type Quintic<F, D, W = Extrapolating> = Compose<QuinticSpline, F, D, W, Leapfrog>;
+type Quintic<F, D, W = Extrapolating> = unit_flow::Quintic<F, D, W>;
 
 /// The amplitude of the vortices' `strong`, for the same reason.
 fn strong(s: &mut HillSettings) {
@@ -105,46 +79,53 @@ fn strong(s: &mut HillSettings) {
 }
 
 fn variants() -> Vec<Composition<HillSettings>> {
-    vec![
-        variant::<Quintic<Pairs, Continuity>>(
+    Variants::of(&run::PROGRAM)
+        .with(
             "plain",
             "quintic spline, h/dx 1, leapfrog, extrapolating walls, no stabiliser",
+            method::<Quintic<Pairs, Continuity>>(),
             |_| {},
-        ),
-        variant::<Quintic<Pairs, Stabilised, InterfaceWall>>(
+        )
+        .with(
             "interface-wall",
             "modern with interface and wall particles (4.2)",
+            method::<Quintic<Pairs, Stabilised, InterfaceWall>>(),
             |_| {},
-        ),
-        variant::<Quintic<Pairs, Stabilised>>(
+        )
+        .with(
             "modern",
             "plain with density diffusion and shifting, as in the channels",
+            method::<Quintic<Pairs, Stabilised>>(),
             |_| {},
-        ),
-        variant::<Quintic<Carried, Stabilised>>(
+        )
+        .with(
             "carried",
             "modern with stronger shifting, and a shifted particle takes the velocity of its new place",
+            method::<Quintic<Carried, Stabilised>>(),
             strong,
-        ),
-        variant::<Quintic<Mixed, ConsistentDrift>>(
+        )
+        .with(
             "mixed",
             "carried, with pressure and continuity that are exact for linear fields",
+            method::<Quintic<Mixed, ConsistentDrift>>(),
             strong,
-        ),
-        variant::<Quintic<Consistent, ConsistentDrift>>(
+        )
+        .with(
             "consistent",
             "mixed, with a viscosity that is exact for linear fields too",
+            method::<Quintic<Consistent, ConsistentDrift>>(),
             strong,
-        ),
-    ]
+        )
+        .all
 }
 
 const NAME: &str = "periodic_hill";
 
-/// The settings of a variant with `key=value` texts applied.
-pub fn settings(variant: &str, set: &[String]) -> Result<HillSettings, RunError> {
-    CASE.settings_of(variant, set)
-}
+/// Variants.
+const VARIANTS: [&str; 6] = ["plain", "interface-wall", "modern", "carried", "mixed", "consistent"];
+
+/// The variant that is held to the goals.
+const BEST: &str = "carried";
 
 static CASE: Composed<HillSettings> = Composed {
     name: NAME,

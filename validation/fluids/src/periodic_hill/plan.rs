@@ -1,7 +1,7 @@
 //! The judged runs and their gates.
 
 use super::{
-    CASE, HillSettings,
+    BEST, CASE, HillSettings, VARIANTS,
     measure::{
         DRAG_BALANCE, FLUX, FORCE, FORCE_ERROR, L2_U, OUTSIDE, REATTACHMENT_ERROR, SECTION_FLUX,
         SEPARATION_ERROR, UNSTEADY, WALL_OFFSET,
@@ -16,9 +16,6 @@ use base::{
 };
 use harness::case::{Planned, Tier};
 
-/// The variant that is held to the goals.
-pub const BEST: &str = "carried";
-
 /// Spacings along the height of the hill in the finest runs. From rest they would take six minutes (Re 10)
 /// to twenty and more, so they start from the reference, within 0.04 % of U_b of it. What they show is
 /// whether the flow stays there, and `unsteady` how far it would still go; that coarser runs reach the same
@@ -32,22 +29,9 @@ const OPEN: &str = "windows of a fifth of the run, 1.2 H/U_b, which is all that 
                     more. By hand this one was run to 40, in twelve minutes: 0.12 % is left, the error of u \
                     is 0.07 %, of the force 0.04 %, reattachment is 0.005 H off";
 
-/// Variants.
-pub const VARIANTS: [&str; 6] =
-    ["plain", "interface-wall", "modern", "carried", "mixed", "consistent"];
-
 /// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50: at 30 the error of u at 20
 /// spacings is 0.8 % instead of 0.3 %, and the gate on what is left of the decay fails.
 pub const END: f64 = 40.0;
-
-/// What a run starts from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
-    /// Fluid at rest.
-    Rest,
-    /// The reference, interpolated between its stations.
-    Reference,
-}
 
 /// What distinguishes the runs of the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,23 +44,18 @@ pub struct HillRun {
     pub n: usize,
     /// End \[H/U_b\].
     pub end: f64,
-    /// The start.
-    pub start: Start,
+    /// Does it start from an interpolation of the reference? From rest otherwise.
+    pub from_reference: bool,
 }
 
 /// The run of the quick tier: three quarters of the time, which the goal at ten spacings allows and finer
 /// ones do not.
-pub const QUICK: HillRun = HillRun { end: 30.0, ..HillRun::rest(BEST, 10) };
+pub const QUICK: HillRun = HillRun { end: 30.0, ..rest(10) };
 
 impl HillRun {
     /// A run at Re 50 from rest.
     pub const fn rest(variant: &'static str, n: usize) -> Self {
-        Self { variant, re: 50.0, n, end: END, start: Start::Rest }
-    }
-
-    /// A run of the best variant.
-    const fn best(re: f64, n: usize, end: f64, start: Start) -> Self {
-        Self { variant: BEST, re, n, end, start }
+        Self { variant, re: 50.0, n, end: END, from_reference: false }
     }
 
     /// The run with its settings. Pictures need the particles of the finest runs of a tier.
@@ -88,8 +67,7 @@ impl HillRun {
     /// The run with some setting changed.
     pub fn changed(&self, set: fn(&mut HillSettings)) -> RunSpec {
         CASE.spec(self.variant, |s| {
-            (s.re, s.n, s.end) = (self.re, self.n, self.end);
-            s.from_reference = self.start == Start::Reference;
+            (s.re, s.n, s.end, s.from_reference) = (self.re, self.n, self.end, self.from_reference);
             set(s);
         })
     }
@@ -101,7 +79,7 @@ impl HillRun {
 
     /// `H/dx = 10, from rest`.
     pub fn name(&self) -> String {
-        let start = if self.start == Start::Reference { "the reference" } else { "rest" };
+        let start = if self.from_reference { "the reference" } else { "rest" };
         format!("H/dx = {}, from {start}", self.n)
     }
 }
@@ -109,24 +87,27 @@ impl HillRun {
 /// The best variant at a Reynolds number, coarse to fine: what figures show. The ends of the finest runs
 /// are what the full tier can afford.
 pub fn best(tier: Tier, re: f64) -> Vec<HillRun> {
-    use Start::{Reference, Rest};
-    let of = |runs: &[(usize, f64, Start)]| {
-        runs.iter().map(|&(n, end, start)| HillRun::best(re, n, end, start)).collect()
+    let of = |runs: &[(usize, f64, bool)]| {
+        let run = |&(n, end, from_reference): &_| HillRun { re, end, from_reference, ..rest(n) };
+        runs.iter().map(run).collect()
     };
     match (tier, re as usize) {
         (Tier::Quick, 50) => vec![QUICK],
         (Tier::Quick, _) => Vec::new(),
         // At Re 10 the slowest decay is five times as fast, and yet it leaves 0.3 % of U_b at 10 H/U_b, as
         // much as the error at H/dx = 20; at 15 it leaves 0.06 % (H/dx = 10).
-        (Tier::Full, 10) => of(&[(10, 15.0, Rest), (20, 15.0, Rest), (FINEST, 5.0, Reference)]),
+        (Tier::Full, 10) => of(&[(10, 15.0, false), (20, 15.0, false), (FINEST, 5.0, true)]),
         (Tier::Full, 50) => {
-            of(&[(5, END, Rest), (10, END, Rest), (20, END, Rest), (FINEST, 6.0, Reference)])
+            of(&[(5, END, false), (10, END, false), (20, END, false), (FINEST, 6.0, true)])
         }
         // At Re 100 the bubble fills slowly: from rest twice as long, or from near the answer.
-        (Tier::Full, _) => {
-            of(&[(10, 2.0 * END, Rest), (20, 20.0, Reference), (FINEST, 6.0, Reference)])
-        }
+        (Tier::Full, _) => of(&[(10, 2.0 * END, false), (20, 20.0, true), (FINEST, 6.0, true)]),
     }
+}
+
+/// A run of the best variant at Re 50 from rest.
+const fn rest(n: usize) -> HillRun {
+    HillRun::rest(BEST, n)
 }
 
 /// Reynolds numbers that have a reference.
@@ -134,11 +115,11 @@ pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];
 
 /// Runs from rest, and from the interpolated reference: the same steady flow.
 pub fn starts() -> [[HillRun; 2]; 3] {
-    let pair = |re, rest, end| {
-        let run = |end, start| HillRun::best(re, 10, end, start);
-        [run(rest, Start::Rest), run(end, Start::Reference)]
+    let pair = |re, ends: [f64; 2]| {
+        let run = |k: usize| HillRun { re, end: ends[k], from_reference: k == 1, ..rest(10) };
+        [run(0), run(1)]
     };
-    [pair(10.0, 15.0, 15.0), pair(50.0, END, END), pair(100.0, 2.0 * END, END)]
+    [pair(10.0, [15.0; 2]), pair(50.0, [END; 2]), pair(100.0, [2.0 * END, END])]
 }
 
 /// The runs of a tier, beside those of the declaration: first the ladder at Re 50, variant by variant.
@@ -167,12 +148,12 @@ fn seconds(n: usize, end: f64) -> f64 {
 
 /// A run with its gates.
 fn judged(run: HillRun) -> Planned {
-    let mut gates = gates(run);
-    if run.n == FINEST && run.re == 100.0 {
-        let unsteady = gates.iter_mut().filter(|gate| gate.metric == String::from(UNSTEADY));
-        unsteady.for_each(|gate| *gate = gate.clone().with_limitation(OPEN));
-    }
-    run.planned().judged(gates)
+    let is_open = run.n == FINEST && run.re == 100.0;
+    let limited = |gate: Gate| match gate.metric == String::from(UNSTEADY) && is_open {
+        true => gate.with_limitation(OPEN),
+        false => gate,
+    };
+    run.planned().judged(gates(run).into_iter().map(limited).collect())
 }
 
 /// Without the hill the flow between floor and lid is a parabola.
@@ -187,12 +168,12 @@ fn flat() -> Planned {
         "plane Poiseuille flow: 12 nu Q/D^3; the walls stand within 1 % of a spacing, which is 0.1 % of the \
          force, and 30 spacings across a parabola are good for 0.5 %",
     );
-    let flat = HillRun::rest(BEST, 10).changed(|s| s.crest = 0.0);
+    let flat = rest(10).changed(|s| s.crest = 0.0);
     Planned::new(flat).judged(vec![force]).taking(seconds(10, END))
 }
 
-fn gates(HillRun { variant, re, n, start, .. }: HillRun) -> Vec<Gate> {
-    let more = if start == Start::Reference { "reference." } else { "" };
+fn gates(HillRun { variant, re, n, from_reference, .. }: HillRun) -> Vec<Gate> {
+    let more = if from_reference { "reference." } else { "" };
     let gate = |metric: MetricKey, bound: Bound, evidence: Evidence, because: &str| {
         let metric = String::from(metric);
         let id = format!("periodic_hill.{more}{variant}.{re}.{n}.{metric}");

@@ -39,8 +39,8 @@ pub struct Reference {
     pub wall: Vec<[f64; 3]>,
     /// The line between bubble and stream \[H\]; empty where the flow does not separate.
     pub line: Vec<(f64, f64)>,
-    /// (name, value, uncertainty).
-    numbers: Vec<(String, f64, f64)>,
+    /// Name and value.
+    numbers: Vec<(String, f64)>,
 }
 
 impl Reference {
@@ -77,11 +77,9 @@ impl Reference {
             return Ok(None);
         }
         let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
-        let doubt = summary.numbers("uncertainty")?;
-        let numbers = kept.iter().map(|&k| (names[k].to_string(), values[k], doubt[k])).collect();
+        let numbers = kept.iter().map(|&k| (names[k].to_string(), values[k])).collect();
         let wall = package.table("wall")?;
-        let columns = ["x", "hill_shear", "lid_shear"].map(|name| wall.numbers(name));
-        let [x, hill, lid] = columns;
+        let [x, hill, lid] = ["x", "hill_shear", "lid_shear"].map(|name| wall.numbers(name));
         let (x, hill, lid) = (x?, hill?, lid?);
         let wall = rows(wall)?.into_iter().map(|k| [x[k], hill[k], lid[k]]).collect();
         let line = package.table("line")?;
@@ -118,7 +116,7 @@ impl Reference {
     /// What the summary has for a metric.
     pub fn number(&self, metric: MetricKey) -> Option<f64> {
         let name = String::from(metric);
-        self.numbers.iter().find(|(n, ..)| *n == name).map(|(_, value, _)| *value)
+        self.numbers.iter().find(|(n, _)| *n == name).map(|(_, value)| *value)
     }
 
     /// The velocity at x, at the share s of a section `gap` \[H\] high: a start that is near the flow, within
@@ -146,6 +144,18 @@ impl Reference {
         };
         near.iter().enumerate().map(|(k, station)| at(station) * weight(k)).sum()
     }
+}
+
+/// What finite elements have at this Reynolds number. A reference that cannot be read makes every run
+/// fail: there is no need to say it once more.
+pub fn reference(re: f64) -> Option<Reference> {
+    Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
+}
+
+/// The floor as a line.
+pub fn floor() -> Vec<(f64, f64)> {
+    let Ok(hill) = Hill::new(1.0) else { return Vec::new() };
+    (0..=360).map(|k| 0.025 * f64::from(k)).map(|x| (x, hill.wall(x))).collect()
 }
 
 impl Station {

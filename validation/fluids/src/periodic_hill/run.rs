@@ -1,51 +1,28 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
-use solver::{EquationOfState, Integrator, Kernel, Limits, Scene, Scheme, Simulation};
+use solver::EquationOfState;
 
 use super::{
-    HillSettings,
-    control::{Controller, Driven},
+    HillMethod, HillSettings, NAME, Setup,
+    control::{Controller, Driving},
     measure::{self, Window},
-    setup::{HillWall, Setup},
 };
-use crate::fluid::{self, Ingredient};
 use base::record::{Profile, Record, Status};
-use harness::{
-    case::RunError,
-    runner::{self, Context},
-};
-use maths::theory::Stepping;
+use harness::{case::RunError, composed::Program, context::Context, runner, simulate};
 
-/// The scene of a setup, in the scheme `S`.
-pub fn scene<S>(setup: &Setup) -> Scene<S>
-where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Walls: HillWall,
-{
-    let fluid = &setup.fluid;
-    let particles = setup.particles::<S::Kernel, S::Walls>();
-    let (forces, drift) = (S::Forces::new(fluid), S::Drift::new(fluid));
-    let mut scene =
-        Scene::new(fluid.h, setup.domain(), particles, forces, drift, S::Walls::walls(setup));
-    scene.skin = setup.settings.skin * fluid.h;
-    // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
-    scene.limits = Limits { density: [0.7, 1.3], speed: 2.0 * (1.6 + fluid.eos.sound_speed) };
-    scene
-}
+/// Runs of the flow over hills.
+pub const PROGRAM: Program<HillSettings, HillMethod> =
+    Program { run, rules: |method, s| Ok(Setup::new(s, method, &Context::of_rules())?.flow.rules) };
 
-/// Runs the scheme `S` and measures.
-pub fn run<S>(variant: &str, settings: &HillSettings, context: &Context) -> Result<Record, RunError>
-where
-    S: Scheme<Extra = ()>,
-    S::Forces: Ingredient + Driven,
-    S::Drift: Ingredient,
-    S::Walls: HillWall,
-    S::Integrator: Stepping,
-{
-    let setup = Setup::new::<S>(settings, context.allow_unstable)?;
-    run_scene(&setup, variant, scene::<S>(&setup), context)
+fn run(
+    method: &HillMethod,
+    variant: &str,
+    settings: &HillSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let setup = Setup::new(settings, method, context)?;
+    let simulation = (method.build)(setup.parts(context))?;
+    measured(&setup, method, variant, simulation, context)
 }
 
 /// Steps between looks of the controller.
@@ -96,11 +73,7 @@ impl Monitor<'_> {
     }
 
     /// After a stretch: the controller acts, and the flow is sampled if it is time.
-    fn look<S>(&mut self, simulation: &mut Simulation<S>, stretch: f64)
-    where
-        S: Scheme<Extra = ()>,
-        S::Forces: Driven,
-    {
+    fn look(&mut self, simulation: &mut dyn Driving, stretch: f64) {
         let time = simulation.time();
         let mean = measure::mean_velocity(simulation, self.area);
         let flux = mean * self.area / self.setup.hill.period();
@@ -109,7 +82,7 @@ impl Monitor<'_> {
             window.force(force, flux);
         }
         self.controller.look(mean, stretch);
-        simulation.forces_mut().drive(self.controller.force);
+        simulation.drive(self.controller.force);
         if self.entry.has_come(time) {
             let energy: f64 =
                 simulation.fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum();
@@ -124,69 +97,52 @@ impl Monitor<'_> {
     }
 }
 
-/// Runs a scene and measures it against the setup: the same measuring for a scene that is not what
-/// its settings say.
-pub fn run_scene<S>(
+/// Steps a simulation and measures it against the setup: the same measuring for one that is not what its
+/// settings say.
+///
+/// # Errors
+/// If a frame cannot be written.
+pub fn measured(
     setup: &Setup,
+    method: &HillMethod,
     variant: &str,
-    mut scene: Scene<S>,
+    mut simulation: Box<dyn Driving>,
     context: &Context,
-) -> Result<Record, RunError>
-where
-    S: Scheme<Extra = ()>,
-    S::Forces: Driven,
-    S::Walls: HillWall,
-{
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
-    }
-    let mut simulation = scene.build()?;
-    let s = &setup.settings;
-    let json = serde_json::to_value(s).unwrap_or_default();
-    let mut record = Record::new(super::NAME, variant, json, context.threads.max(1));
-    describe(setup, [S::Kernel::NAME, S::Integrator::NAME, S::Walls::NAME], &mut record);
-    let stretches = (s.end / (STRETCH * setup.dt)).ceil().max(1.0) as usize;
+) -> Result<Record, RunError> {
+    let (s, flow) = (&setup.settings, &setup.flow);
+    let mut record = simulate::begin((NAME, variant), s, method, &flow.numbers(), context);
+    let stretches = (s.end / (STRETCH * flow.rules.dt)).ceil().max(1.0) as usize;
     let stretch = s.end / stretches as f64;
     let times: Vec<f64> = (1..=stretches).map(|k| stretch * k as f64).collect();
     let area = setup.area();
     let wanted = setup.flux() * setup.hill.period() / area;
-    let last = measure::mean_velocity(&simulation, area);
+    let last = measure::mean_velocity(&*simulation, area);
     let controller = Controller { wanted, response: s.response, force: s.force, last };
     let (windows, series) = (Default::default(), Vec::new());
     let entry = Schedule { next: 0.0, every: ENTRY };
     let sample = Schedule { next: 0.0, every: s.average * s.end / SAMPLES };
     let mut monitor = Monitor { setup, area, controller, windows, entry, sample, series };
-    let pressure = |density| setup.fluid.eos.pressure(density);
-    let mut look = |simulation: &mut Simulation<S>, _| monitor.look(simulation, stretch);
-    let (status, cost) =
-        runner::drive(&mut simulation, setup.dt, &times, context, &mut (), &pressure, &mut look)?;
-    if status == Status::Completed {
+    (record.status, record.cost) = runner::drive(
+        &mut *simulation,
+        flow.rules.dt,
+        &times,
+        context,
+        &mut (),
+        &|density| flow.medium.eos.pressure(density),
+        &mut |simulation, _| monitor.look(simulation, stretch),
+    )?;
+    if record.status == Status::Completed {
         measure::measure(setup, &monitor.windows, area, &mut record);
-        let (particles, outside) = measure::particles(setup, &simulation);
+        let (particles, outside) = measure::particles(setup, &*simulation);
         record.put(measure::OUTSIDE, outside as f64);
-        record.put(measure::WALL_OFFSET, measure::wall_offset(setup, &simulation, S::Walls::FIRST));
+        record.put(measure::WALL_OFFSET, measure::wall_offset(setup, &*simulation));
         if context.keep_particles {
             record.profiles.insert("particles".into(), particles);
         }
     }
     record.profiles.insert("series".into(), profile(&monitor.series));
-    record.state = Some(harness::simulate::state(&simulation.particles()));
-    (record.status, record.cost) = (status, cost);
+    record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
-}
-
-/// What the run chose.
-fn describe(setup: &Setup, [kernel, integrator, walls]: [&str; 3], record: &mut Record) {
-    let fluid = &setup.fluid;
-    let numbers = [
-        ("h/dx", fluid.h / fluid.dx),
-        ("dx [m]", fluid.dx),
-        ("c0 [m/s]", fluid.eos.sound_speed),
-        ("dt [s]", setup.dt),
-        ("dt/limit", setup.dt / setup.dt_limit),
-    ];
-    let words = [("kernel", kernel), ("integrator", integrator), ("walls", walls)];
-    fluid::describe(&numbers, &words, record);
 }
 
 fn profile(series: &[[f64; 4]]) -> Profile {

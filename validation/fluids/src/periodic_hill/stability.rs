@@ -1,16 +1,14 @@
 //! How far the flow over hills can be pushed: the time step against theory, and the Reynolds number.
 
 use super::{
-    CASE, NAME,
+    BEST, CASE, HillSettings, NAME,
     measure::{DRIFT, FORCE, FORCE_RIPPLE, OUTSIDE, SECTION_FLUX},
-    plan::BEST,
-    studies::ended,
 };
-use crate::fluid::{MetricColumns, cells, heads};
+use crate::runs_table::{self, MetricColumns, ended};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{Record, Status},
-    spec::{Bisect, RunSpec},
+    spec::RunSpec,
 };
 use harness::{
     case::{Case, Tier},
@@ -18,7 +16,7 @@ use harness::{
     runs::Runs,
     study::Study,
 };
-use report::{Cell, Column, Table};
+use report::{Cell, Column};
 
 /// Spacings along the height of the hill in the runs of the full tier.
 const N: usize = 10;
@@ -29,7 +27,7 @@ const QUICK_N: usize = 5;
 /// truth, but the margin must not shrink unnoticed.
 const MARGINS: [(&str, f64); 3] = [("modern", 1.577), (BEST, 1.577), ("consistent", 1.577)];
 
-/// Resolution of the bisection, relative to the theoretical limit.
+/// Resolution of the bisection, relative to the theoretical limit: that of [`StepLimit::proportional`].
 const RESOLUTION: f64 = 0.02;
 
 /// Variant and the Reynolds number it is tried at. 1000 is the most that the setting allows, and all but
@@ -64,7 +62,7 @@ pub fn limits(tier: Tier) -> StepLimits {
         ),
     };
     let of = match tier {
-        Tier::Quick => [limit(BEST, n)].into_iter().flatten().collect(),
+        Tier::Quick => limit(BEST, n).into_iter().collect::<Vec<_>>(),
         Tier::Full => MARGINS
             .into_iter()
             .filter_map(|(variant, margin)| Some(judged(limit(variant, n)?, margin)))
@@ -76,28 +74,17 @@ pub fn limits(tier: Tier) -> StepLimits {
          the limit of linear theory for a periodic lattice at rest. Walls, curvature and particles in \
          disorder are not in that theory. {tried}"
     );
-    StepLimits { id: "periodic-hill-time-step".into(), about, of }
+    StepLimits::new("periodic-hill", &about, of)
 }
 
 /// The bisection of a variant; none if its settings make no run.
 fn limit(variant: &'static str, n: usize) -> Option<StepLimit> {
     let spec = CASE.spec(variant, |s| (s.n, s.from_reference, s.end) = (n, true, 3.0));
     let rules = CASE.rules(&spec).ok()?;
-    let default = rules.dt / rules.dt_limit;
     // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
-    let unit = CASE.settings_of(variant, &[]).ok()?.courant / default;
-    let bisect =
-        Bisect { setting: "courant".into(), guess: 1.0, unit, resolution: RESOLUTION, end: None };
-    Some(StepLimit {
-        variant,
-        scene: format!("Re 50, H/dx = {n}"),
-        spec: spec.allow_unstable().bisect(bisect),
-        theory_at: 1.0,
-        theory: rules.dt_limit,
-        default_at: default,
-        of_theory: Vec::new(),
-        of_default: Vec::new(),
-    })
+    let at_limit = HillSettings::default().courant / (rules.dt / rules.dt_limit);
+    let scene = format!("Re 50, H/dx = {n}");
+    Some(StepLimit::proportional(variant, &scene, spec, ("courant", at_limit), &rules))
 }
 
 /// The same with its gates.
@@ -139,13 +126,12 @@ pub fn tried() -> [(RunSpec, f64); 6] {
 
 /// A Reynolds number that variants hold.
 pub fn reynolds(runs: &Runs) -> Study {
-    let mut columns = vec![
+    let first = vec![
         Column::text("variant"),
         Column::num("Re", "-"),
         Column::num("U_b dx/ν", "-"),
         Column::text("ended"),
     ];
-    columns.extend(heads(COLUMNS));
     let caption = format!(
         "Every variant at the highest Reynolds number that the setting allows, 1000, a lower bound of what \
          it holds, and `plain` at 10, the lowest tried: H/dx = 10, from rest to {TRIED_TO} H/U_b. A variant \
@@ -155,7 +141,7 @@ pub fn reynolds(runs: &Runs) -> Study {
          then, and these numbers say nothing of its accuracy.",
         window = TRIED_TO / 5.0,
     );
-    let mut table = Table::new(caption, columns);
+    let mut table = runs_table::table(&caption, first, COLUMNS);
     let mut study = Study::new("periodic-hill-reynolds", "Highest Reynolds number");
     for (spec, re) in tried() {
         let (variant, record) = (spec.variant.as_str(), runs.record(&spec));
@@ -185,12 +171,11 @@ const COLUMNS: &MetricColumns = &[
 ];
 
 fn row(re: f64, record: &Record) -> Vec<Cell> {
-    let mut row = vec![
+    let first = [
         Cell::text(format!("`{}`", record.variant)),
         Cell::exact(re),
         Cell::num(re / N as f64, 2),
         Cell::text(ended(record)),
     ];
-    row.extend(cells(COLUMNS, |metric| record.value(metric)));
-    row
+    runs_table::row(first, COLUMNS, |metric| record.value(metric))
 }

@@ -2,29 +2,22 @@
 //! number, what the gates are worth.
 
 use super::{
-    CASE,
-    declaration::reference,
+    BEST, CASE, VARIANTS,
     measure::{
         DRAG_BALANCE, DRAGS, FORCE, FORCE_ERROR, FORCE_RIPPLE, L2_U, L2_V, REATTACHMENT,
-        SECTION_FLUX, SEPARATION, SHEAR_ERROR, UNSTEADY,
+        SECTION_FLUX, SEPARATION, SHEAR_ERROR, UNSTEADY, rms,
     },
-    plan::{self, BEST, HillRun, QUICK, REYNOLDS, VARIANTS, best},
+    plan::{self, HillRun, QUICK, REYNOLDS, best},
+    reference::{floor, reference},
     stability,
 };
-use crate::fluid::{MetricColumns, cells, heads};
+use crate::runs_table::{self, MetricColumns, points, row, table};
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{Record, Status},
-    spec::Task,
+    record::Record,
 };
-use harness::{
-    case::{self, Tier},
-    gate_power,
-    runs::{JudgedRun, Runs},
-    study::Study,
-};
-use maths::geometry::Hill;
-use report::{Axis, Cell, ColourMap, Column, Figure, ParticleMap, Table, percent, sig};
+use harness::{case::Tier, gate_power, runs::Runs, study::Study};
+use report::{Axis, Cell, ColourMap, Column, Figure, ParticleMap, percent, sig};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
@@ -33,12 +26,6 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         studies.extend([starts(runs), reasons(runs), stability::reynolds(runs)]);
     }
     studies
-}
-
-/// The floor as a line.
-pub fn floor() -> Vec<(f64, f64)> {
-    let Ok(hill) = Hill::new(1.0) else { return Vec::new() };
-    (0..=360).map(|k| 0.025 * f64::from(k)).map(|x| (x, hill.wall(x))).collect()
 }
 
 const COLUMNS: &MetricColumns = &[
@@ -65,32 +52,14 @@ fn all(tier: Tier, runs: &Runs) -> Study {
                    bubble, or no finite elements to compare with. Runs from the reference start within 0.04 \
                    % of U_b of it: their error says that the flow stays there, and unsteady how far it \
                    would still go.";
-    let texts = ["variant", "settings", "ended"].map(Column::text);
-    let mut table = Table::new(caption, texts.into_iter().chain(heads(COLUMNS)).collect());
+    let mut table = table(caption, runs_table::ABOUT.map(Column::text).into(), COLUMNS);
     let shown = REYNOLDS.into_iter().filter(|&re| !best(tier, re).is_empty());
     for (re, reference) in shown.filter_map(|re| Some((re, reference(re)?))) {
         let texts = ["finite elements", &format!("re={re}"), "–"].map(Cell::text);
-        let found = cells(COLUMNS, |metric| reference.number(metric));
-        table = table.row(texts.into_iter().chain(found).collect());
+        table = table.row(row(texts, COLUMNS, |metric| reference.number(metric)));
     }
-    let simulated = runs.all().iter().filter(|run| run.planned.spec.task == Task::Simulate);
-    let row = |JudgedRun { planned, record, .. }: &JudgedRun| {
-        let settings = case::changed(&CASE, &planned.spec).join(", ");
-        let texts = [format!("`{}`", record.variant), settings, ended(record)].map(Cell::text);
-        texts.into_iter().chain(cells(COLUMNS, |metric| record.value(metric))).collect()
-    };
-    let table = simulated.map(row).fold(table, Table::row);
+    let table = runs_table::all(table, &CASE, COLUMNS, runs);
     Study::new("periodic-hill-runs", "All runs").block(table)
-}
-
-/// How a run ended.
-pub fn ended(record: &Record) -> String {
-    match &record.status {
-        Status::Completed => "completed".into(),
-        Status::Diverged { time, field, .. } => format!("diverged at {time:.2} H/U_b: {field}"),
-        Status::Refused { reason } => reason.clone(),
-        Status::Interrupted { .. } => "interrupted".into(),
-    }
 }
 
 /// Particles by their velocity, with the line between bubble and stream of the reference.
@@ -103,16 +72,14 @@ fn pictures(tier: Tier, runs: &Runs) -> Study {
         let shown = best(tier, re).last().copied().zip(reference(re));
         let Some((run, reference)) = shown else { continue };
         let Some(record) = runs.completed(&run.spec()) else { continue };
-        let (x, y) = (record.column("particles", "x"), record.column("particles", "y"));
-        let values = record.column("particles", "u").iter();
-        let points = x.iter().zip(y).zip(values).map(|((x, y), u)| (*x, *y, *u)).collect();
         let title = format!("Re {re}, {}", run.name());
         let axes = (Axis::linear("x [H]"), Axis::linear("y [H]"));
-        let map = ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points)
-            .values(-0.5, 0.5)
-            .diameter(1.0 / run.n as f64)
-            .line(floor())
-            .line(reference.line);
+        let map =
+            ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points(record, "u"))
+                .values(-0.5, 0.5)
+                .diameter(1.0 / run.n as f64)
+                .line(floor())
+                .line(reference.line);
         figure = figure.panel(map);
     }
     Study::new("periodic-hill-pictures", "Pictures").block(figure.panel_size(640.0, 230.0))
@@ -133,29 +100,26 @@ fn drags(tier: Tier, runs: &Runs) -> Study {
                    the force that holds the flux, and so the drag that the particles feel, is within 4 % of \
                    finite elements, but the pressure that the field has at the wall is not the one of the \
                    sums that move particles.";
-    let head = [Column::text("variant")].into_iter();
-    let mut table = Table::new(caption, head.chain(heads(DRAG_COLUMNS)).collect());
+    let mut table = table(caption, vec![Column::text("variant")], DRAG_COLUMNS);
     if let Some(reference) = reference(50.0) {
-        let found = cells(DRAG_COLUMNS, |metric| reference.number(metric));
-        table = table.row([Cell::text("finite elements")].into_iter().chain(found).collect());
+        let name = [Cell::text("finite elements")];
+        table = table.row(row(name, DRAG_COLUMNS, |metric| reference.number(metric)));
     }
     let of_tier = match tier {
         Tier::Quick => vec![QUICK],
         Tier::Full => VARIANTS.map(|variant| HillRun::rest(variant, 10)).into(),
     };
     for record in of_tier.iter().filter_map(|run| runs.completed(&run.spec())) {
-        let variant = Cell::text(format!("`{}`", record.variant));
-        let found = cells(DRAG_COLUMNS, |metric| record.value(metric));
-        table = table.row([variant].into_iter().chain(found).collect());
+        let variant = [Cell::text(format!("`{}`", record.variant))];
+        table = table.row(row(variant, DRAG_COLUMNS, |metric| record.value(metric)));
     }
     Study::new("periodic-hill-drag", "What the drag is made of").block(table)
 }
 
 /// rms over stations of the difference of u of two runs \[U_b\].
 fn difference(a: &Record, b: &Record) -> f64 {
-    let (a, b) = (a.column("stations", "u"), b.column("stations", "u"));
-    let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
-    (square / a.len().min(b.len()) as f64).sqrt()
+    let [a, b] = [a, b].map(|record| record.column("stations", "u"));
+    rms(a.iter().zip(b).map(|(a, b)| a - b))
 }
 
 /// From rest and from near the answer.

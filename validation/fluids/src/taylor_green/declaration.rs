@@ -25,17 +25,17 @@ const ERROR: &str = "relative L2 error of the velocity [-]";
 /// The declaration of a tier.
 pub fn declaration(tier: Tier) -> Declaration {
     let curves = vec![histories(tier)];
-    match tier {
-        Tier::Quick => {
-            Declaration { curves, accuracy: vec![quick_accuracy()], ..Declaration::default() }
-        }
-        Tier::Full => Declaration {
-            curves,
-            accuracy: vec![disturbed_accuracy(), lattice_accuracy()],
-            budgets: Some(budgets()),
-            ..Declaration::default()
-        },
+    if tier == Tier::Quick {
+        // Coarse levels, which take little time.
+        let ladders = ["modern", "carried", BEST].map(|v| ladder(v, &[12, 17, 24], STARTS[1]));
+        let accuracy = vec![accuracy("taylor-green", STARTS[1], ladders.into())];
+        return Declaration { curves, accuracy, ..Declaration::default() };
     }
+    let disturbed = disturbed_accuracy();
+    let budgets = Some(budgets(&disturbed));
+    let ladders = vec![best_ladder(STARTS[0])];
+    let accuracy = vec![disturbed, accuracy("taylor-green-lattice", STARTS[0], ladders)];
+    Declaration { curves, accuracy, budgets, ..Declaration::default() }
 }
 
 /// In words.
@@ -49,7 +49,7 @@ fn ladder(variant: &'static str, sides: &[usize], start: f64) -> Ladder {
         spacing: 1.0 / n as f64,
         label: format!("{n} x {n}"),
     };
-    Ladder { variant, note: String::new(), levels: sides.iter().map(level).collect(), order: None }
+    Ladder::new(variant, sides.iter().map(level))
 }
 
 /// The ladder of the best variant, whose order is judged.
@@ -68,26 +68,13 @@ fn best_ladder(start: f64) -> Ladder {
 }
 
 fn accuracy(id: &str, start: f64, ladders: Vec<Ladder>) -> Accuracy {
+    let from = start_of(start);
     Accuracy {
-        id: id.into(),
-        error: ErrorOf::Metric(L2.into()),
-        label: ERROR.into(),
-        about: format!(
-            "Velocity vector over the particles at t = 2 L/U, Re 100, from the {}.",
-            start_of(start)
-        ),
+        about: format!("Velocity vector over the particles at t = 2 L/U, Re 100, from the {from}."),
         spacing: "dx/L [-]",
-        slope: Some(2.0),
         ladders,
-        more: Vec::new(),
-        peers: Vec::new(),
+        ..Accuracy::new(id, ErrorOf::Metric(L2.into()), ERROR)
     }
-}
-
-/// Coarse levels, which take little time.
-fn quick_accuracy() -> Accuracy {
-    let ladders = ["modern", "carried", BEST].map(|variant| ladder(variant, &[12, 17, 24], 0.2));
-    accuracy("taylor-green", 0.2, ladders.into())
 }
 
 /// Every variant from the disturbed lattice, with the results of other codes for the same start.
@@ -99,11 +86,6 @@ fn disturbed_accuracy() -> Accuracy {
     // Codes whose numbers cannot be read are missing from the figure; the reference has a test of its own.
     let peers = peers().unwrap_or_default();
     Accuracy { peers, ..accuracy("taylor-green", STARTS[1], ladders) }
-}
-
-/// The best variant from the lattice.
-fn lattice_accuracy() -> Accuracy {
-    accuracy("taylor-green-lattice", STARTS[0], vec![best_ladder(STARTS[0])])
 }
 
 /// Codes whose time was measured.
@@ -127,7 +109,7 @@ fn peers() -> Result<Vec<Peer>, ReferenceError> {
 }
 
 /// One thing changed at a time, over the best variant at 50 x 50 from the disturbed lattice.
-fn budgets() -> Budgets {
+fn budgets(accuracy: &Accuracy) -> Budgets {
     let changed = |what: &str, part, set: fn(&mut VortexSettings)| {
         Change::new(what, part, plan::changed(set))
     };
@@ -142,15 +124,12 @@ fn budgets() -> Budgets {
         changed("seed=2", "disorder", |s| s.seed = 2),
     ];
     Budgets {
-        id: "taylor-green-error-budget".into(),
-        error: ErrorOf::Metric(L2.into()),
-        label: ERROR.into(),
         about: "50 x 50 particles from the disturbed lattice, Re 100, at t = 2 L/U. Another disturbance \
                 (last row) says what is chance. A shorter step, faster sound and less diffusion all raise \
                 the error: their parts have the sign opposite to that of the spacing and cancel some of \
                 it, so that the error as it is says less than the parts do."
             .into(),
-        of: vec![Budget { variant: BEST, changes }],
+        ..Budgets::of(accuracy, vec![Budget { variant: BEST, changes }])
     }
 }
 

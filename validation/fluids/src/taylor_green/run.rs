@@ -1,36 +1,28 @@
 //! One run of the vortices: scene, stepping, record.
 
 use nalgebra::Vector2;
-use solver::{
-    Domain, EquationOfState, Integrator, Kernel, Limits, Open, Particle, Scene, Scheme, Simulation,
-    Stepper, Tait,
-};
+use solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
-use crate::fluid::{self, Fluid, Ingredient, MOST_STEPS, at_most};
+use crate::unit_flow::{Scales, UnitFlow};
 use base::{
     random::Random,
     record::{Profile, Record, Status},
 };
 use harness::{
-    case::{Rules, RunError},
-    runner::{self, Context},
+    case::RunError, composed::Program, context::Context, method::Method, runner, simulate,
 };
-use maths::{exact::TaylorGreen, theory::Stepping};
+use maths::exact::TaylorGreen;
+
+/// Runs of the vortices.
+pub const PROGRAM: Program<VortexSettings, Method> =
+    Program { run, rules: |method, s| Ok(Setup::new(s, method, &Context::of_rules())?.flow.rules) };
 
 /// The numbers of one run, L = U = ρ = 1.
-#[derive(Clone, Debug)]
-pub struct Setup {
-    /// The settings they follow from.
-    pub settings: VortexSettings,
-    /// The flow.
-    pub exact: TaylorGreen,
-    /// What terms are made from.
-    pub fluid: Fluid,
-    /// Time step \[s\].
-    pub dt: f64,
-    /// Its theoretical limit on a lattice at rest \[s\].
-    pub dt_limit: f64,
+struct Setup {
+    settings: VortexSettings,
+    exact: TaylorGreen,
+    flow: UnitFlow,
 }
 
 base::metrics! {
@@ -48,152 +40,65 @@ base::metrics! {
 }
 
 impl Setup {
-    /// Follows the rules for the scheme `S`.
-    pub fn new<S>(settings: &VortexSettings, allow_unstable: bool) -> Result<Self, RunError>
-    where
-        S: Scheme<Extra = ()>,
-        S::Drift: Ingredient,
-        S::Integrator: Stepping,
-    {
-        let s = settings;
-        let (dx, nu) = (1.0 / s.n as f64, 1.0 / s.re);
-        let h = s.h_over_dx * dx;
-        let eos = Tait {
-            gamma: s.gamma as i32,
-            background: s.background * s.c0 * s.c0,
-            ..Tait::new(1.0, s.c0)
-        };
-        let w_at_spacing = Fluid::w_at_spacing::<S::Kernel>(h, dx);
-        let fluid = Fluid {
-            nu,
-            eos,
-            dx,
-            h,
-            eta2_over_h2: s.eta2_over_h2,
-            diffusion: s.diffusion,
-            shift: s.shift,
-            force: 0.0,
-            w_at_spacing,
-        };
-        let dt = s.dt.unwrap_or((s.courant * h / (s.c0 + 1.0)).min(s.viscous * h * h / nu));
-        let is_diffused = S::Drift::uses().contains(&"diffusion");
-        let dt_limit = fluid.time_step_limit::<S::Kernel, S::Integrator>(is_diffused);
-        if dt > dt_limit && !allow_unstable {
-            let (limit, integrator) = (dt_limit, S::Integrator::NAME);
-            return Err(RunError::TimeStep { dt, limit, integrator });
-        }
-        let setting = "end, dt, c0 or n";
-        at_most("the number of time steps", s.end / dt, MOST_STEPS, setting)?;
-        let exact = TaylorGreen { speed: 1.0, length: 1.0, nu, rho: 1.0 };
-        Ok(Self { settings: s.clone(), exact, fluid, dt, dt_limit })
-    }
-
-    /// What the rules chose.
-    pub fn rules(&self) -> Rules {
-        let Self { dt, dt_limit, .. } = *self;
-        Rules { dt, dt_limit, sound_speed: self.fluid.eos.sound_speed }
+    /// Follows the rules for a method.
+    fn new(s: &VortexSettings, method: &Method, context: &Context) -> Result<Self, RunError> {
+        let flow =
+            s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt }, context)?;
+        let exact = TaylorGreen { speed: 1.0, length: 1.0, nu: flow.medium.nu, rho: 1.0 };
+        Ok(Self { settings: s.clone(), exact, flow })
     }
 
     /// Particles of equal volume with the velocity and the pressure of the flow at their places.
     fn particles(&self) -> Vec<Particle> {
-        let (s, dx) = (&self.settings, self.fluid.dx);
+        let (s, dx, eos) = (&self.settings, self.flow.medium.dx, self.flow.medium.eos);
         let mut random = Random::new(s.seed as u64);
         let mut shake = || s.perturb * dx * (2.0 * random.uniform() - 1.0);
         solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n)
             .map(|x| x + Vector2::new(shake(), shake()))
             .map(|x| {
-                let pressure = self.exact.pressure(x, 0.0) + self.fluid.eos.background;
-                let density = self.fluid.eos.density(pressure);
+                let density = eos.density(self.exact.pressure(x, 0.0) + eos.background);
                 Particle::fluid(x, self.exact.velocity(x, 0.0), density, dx * dx)
             })
             .collect()
     }
 }
 
-/// The scene of a setup, in the scheme `S`.
-pub fn scene<S>(setup: &Setup) -> Scene<S>
-where
-    S: Scheme<Extra = (), Walls = Open>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-{
-    let fluid = &setup.fluid;
-    let (forces, drift) = (S::Forces::new(fluid), S::Drift::new(fluid));
-    let domain = Domain::torus(1.0, 1.0);
-    let mut scene = Scene::new(fluid.h, domain, setup.particles(), forces, drift, Open);
-    scene.skin = setup.settings.skin * fluid.h;
-    // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
-    scene.limits = Limits { density: [0.7, 1.3], speed: 2.0 * (1.0 + fluid.eos.sound_speed) };
-    scene
-}
-
-/// Runs the scheme `S` and measures.
-pub fn run<S>(
-    variant: &str,
-    settings: &VortexSettings,
-    context: &Context,
-) -> Result<Record, RunError>
-where
-    S: Scheme<Extra = (), Walls = Open>,
-    S::Forces: Ingredient,
-    S::Drift: Ingredient,
-    S::Integrator: Stepping,
-{
-    let setup = Setup::new::<S>(settings, context.allow_unstable)?;
-    run_scene(&setup, variant, scene::<S>(&setup), context)
-}
-
 /// Samples of the series.
 const SAMPLES: usize = 40;
 
-/// Runs a scene and measures it against the setup: the same measuring for a scene that is not what
-/// its settings say.
-pub fn run_scene<S: Scheme<Extra = ()>>(
-    setup: &Setup,
+fn run(
+    method: &Method,
     variant: &str,
-    mut scene: Scene<S>,
+    settings: &VortexSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
-    }
-    let mut simulation = scene.build()?;
-    let json = serde_json::to_value(&setup.settings).unwrap_or_default();
-    let mut record = Record::new(super::NAME, variant, json, context.threads.max(1));
-    describe(setup, [S::Kernel::NAME, S::Integrator::NAME], &mut record);
-    let end = setup.settings.end;
+    let setup = Setup::new(settings, method, context)?;
+    let flow = &setup.flow;
+    let parts = flow.parts(Domain::torus(1.0, 1.0), setup.particles(), context);
+    let mut simulation = (method.build)(parts)?;
+    let name = (super::NAME, variant);
+    let mut record = simulate::begin(name, settings, method, &flow.numbers(), context);
+    let end = settings.end;
     let times: Vec<f64> = (1..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
-    let mut series = vec![Sample::of(setup, &simulation)];
-    let pressure = |density| setup.fluid.eos.pressure(density);
-    let mut sample = |simulation: &mut Simulation<S>, _| {
-        series.push(Sample::of(setup, simulation));
-    };
-    let (status, cost) =
-        runner::drive(&mut simulation, setup.dt, &times, context, &mut (), &pressure, &mut sample)?;
-    if status == Status::Completed {
-        measure(setup, &simulation, &series, &mut record);
+    let mut series = vec![Sample::of(&setup, &*simulation)];
+    (record.status, record.cost) = runner::drive(
+        &mut *simulation,
+        flow.rules.dt,
+        &times,
+        context,
+        &mut (),
+        &|density| flow.medium.eos.pressure(density),
+        &mut |simulation, _| series.push(Sample::of(&setup, simulation)),
+    )?;
+    if record.status == Status::Completed {
+        measure(&setup, &*simulation, &series, &mut record);
         if context.keep_particles {
-            record.profiles.insert("particles".into(), particles(setup, &simulation));
+            record.profiles.insert("particles".into(), particles(&setup, &*simulation));
         }
     }
     record.profiles.insert("series".into(), profile(&series));
-    record.state = Some(harness::simulate::state(&simulation.particles()));
-    (record.status, record.cost) = (status, cost);
+    record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
-}
-
-/// What the run chose.
-fn describe(setup: &Setup, [kernel, integrator]: [&str; 2], record: &mut Record) {
-    let Fluid { dx, h, eos, .. } = setup.fluid;
-    let numbers = [
-        ("h/dx", h / dx),
-        ("dx [m]", dx),
-        ("c0 [m/s]", eos.sound_speed),
-        ("dt [s]", setup.dt),
-        ("dt/limit", setup.dt / setup.dt_limit),
-    ];
-    let words = [("kernel", kernel), ("integrator", integrator)];
-    fluid::describe(&numbers, &words, record);
 }
 
 /// The flow at one time.
@@ -246,8 +151,8 @@ fn measure(setup: &Setup, simulation: &dyn Stepper<()>, series: &[Sample], recor
     record.put(MOMENTUM, last.momentum.norm());
     record.put(MOMENTUM_ADDED, (last.momentum - first.momentum).norm());
     let particles = simulation.particles();
-    let fluid = setup.fluid;
-    let pressure = |p: &Particle| fluid.eos.pressure(p.density) - fluid.eos.background;
+    let (dx, eos) = (setup.flow.medium.dx, setup.flow.medium.eos);
+    let pressure = |p: &Particle| eos.pressure(p.density) - eos.background;
     let mean = particles.iter().map(pressure).sum::<f64>() / particles.len() as f64;
     let (mut difference, mut scale) = (0.0, 0.0);
     for p in &particles {
@@ -258,7 +163,7 @@ fn measure(setup: &Setup, simulation: &dyn Stepper<()>, series: &[Sample], recor
     record.put(PRESSURE_L2, (difference / scale).sqrt());
     let volume: f64 = particles.iter().map(|p| p.mass / p.density).sum();
     record.put(VOLUME_DRIFT, volume - 1.0);
-    record.put(NEAREST, nearest(&particles) / fluid.dx);
+    record.put(NEAREST, nearest(&particles) / dx);
 }
 
 /// The least distance of two particles, those across an edge left out \[m\].

@@ -6,12 +6,8 @@ use super::{
     plan::{self, PICTURED, spec},
     run::{ENERGY, L2, MOMENTUM_ADDED, NEAREST, NU_EFF, PRESSURE_L2},
 };
-use crate::fluid::{MetricColumns, cells, heads};
-use harness::{
-    case::{self, Tier},
-    runs::{JudgedRun, Runs},
-    study::Study,
-};
+use crate::runs_table::{self, MetricColumns, points};
+use harness::{case::Tier, runs::Runs, study::Study};
 use report::{Axis, Cell, ColourMap, Column, Figure, ParticleMap, Table};
 
 /// All of them.
@@ -34,14 +30,8 @@ fn table(runs: &Runs) -> Table {
     let caption = "All runs at their end, t = 2 L/U where the settings say no other. Viscosity found: from \
                    the fall of kinetic energy. Momentum added: the change of the total one from start to end \
                    over the total mass, exactly 0; that of a disturbed start does not count.";
-    let texts = ["variant", "settings"].map(Column::text);
-    let table = Table::new(caption, texts.into_iter().chain(heads(COLUMNS)).collect());
-    let row = |JudgedRun { planned, record, .. }: &JudgedRun| {
-        let settings = case::changed(&CASE, &planned.spec).join(", ");
-        let texts = [Cell::text(format!("`{}`", record.variant)), Cell::text(settings)];
-        texts.into_iter().chain(cells(COLUMNS, |metric| record.value(metric))).collect()
-    };
-    runs.all().iter().map(row).fold(table, Table::row)
+    let first = runs_table::ABOUT.map(Column::text).into();
+    runs_table::all(runs_table::table(caption, first, COLUMNS), &CASE, COLUMNS, runs)
 }
 
 /// Particles at the end, by speed and by error.
@@ -53,16 +43,13 @@ fn pictures(tier: Tier, runs: &Runs) -> Study {
     let of_tier = plan::judged(tier);
     for (variant, n, start) in PICTURED.into_iter().filter(|run| of_tier.contains(run)) {
         let Some(record) = runs.completed(&spec(variant, n, start)) else { continue };
-        let Some(particles) = record.profiles.get("particles") else { continue };
-        let (x, y) = (particles.column("x"), particles.column("y"));
         for (name, label, most) in
             [("speed", "|v| [U exp(bt)]", 1.0), ("error", "|v - exact| [U exp(bt)]", 0.01)]
         {
-            let values = particles.column(name).iter();
-            let points = x.iter().zip(y).zip(values).map(|((x, y), v)| (*x, *y, *v)).collect();
             let title = format!("{variant}, {n} x {n}, from the {}", start_of(start));
             let axes = (Axis::linear("x [L]"), Axis::linear("y [L]"));
-            let map = ParticleMap::new(title, axes, label, ColourMap::Sequential, points);
+            let map =
+                ParticleMap::new(title, axes, label, ColourMap::Sequential, points(record, name));
             figure = figure.panel(map.values(0.0, most).diameter(1.0 / n as f64));
         }
     }

@@ -11,21 +11,19 @@ mod vortex;
 
 pub use experiment::{Experiment, in_words, plan, study};
 
-use solver::{
-    CubicSpline, EquationOfState, Integrator, Kernel, QuinticSpline, Scheme, Simulation, Tait,
-    WendlandC2,
-};
+use solver::{CubicSpline, EquationOfState, Leapfrog, QuinticSpline, Stepper, Tait, WendlandC2};
 
-use base::{
-    record::{Record, Status},
-    settings::Settings,
-};
+use crate::wave::plain;
+use base::{record::Record, settings::Settings};
 use harness::{
-    case::{RunError, Tier, Variant},
-    composed::{Composed, Composition, lacking},
+    case::{RunError, Tier},
+    composed::{self, Composed, Composition},
+    context::Context,
     declare::Declaration,
-    runner::{self, Context},
+    method::Method,
+    runner,
     runs::Runs,
+    simulate,
     study::Study,
 };
 
@@ -67,27 +65,25 @@ pub static EXTREMES: Composed<ExtremeSettings> = Composed {
             vortices with sound too slow and too fast and on disturbed lattices, smoothing lengths from too \
             short to too long. Each variant is an experiment of its own.",
     variants,
-    is_stable: |record| record.status == Status::Completed,
+    is_stable: composed::completed,
     declaration: |_| Declaration::default(),
     plan: |tier| plan(experiments(tier)),
     studies,
 };
 
-type Run = fn(&str, &ExtremeSettings, &Context) -> Result<Record, RunError>;
-
 type Adjust = fn(&mut ExtremeSettings);
 
 /// A variant that uses some of the settings.
 fn variant(
-    [name, about]: [&'static str; 2],
+    name: [&'static str; 2],
     uses: &[&str],
     adjust: Adjust,
-    run: Run,
+    run: impl Fn(&str, &ExtremeSettings, &Context) -> Result<Record, RunError> + 'static,
 ) -> Composition<ExtremeSettings> {
-    let all: Vec<&'static str> = ExtremeSettings::FIELDS.iter().map(|field| field.name).collect();
     let rules = |_: &ExtremeSettings| Err(RunError::NoRules { case: EXTREMES.name.into() });
-    let variant = Variant { name, about };
-    Composition { variant, adjust, run, rules, lacks: lacking(&all, uses) }
+    let fields = ExtremeSettings::FIELDS.iter().map(|field| field.name);
+    let lacks = fields.filter(|name| !uses.contains(name)).collect();
+    Composition::new(name.into(), adjust, run, rules, lacks)
 }
 
 fn variants() -> Vec<Composition<ExtremeSettings>> {
@@ -99,19 +95,25 @@ fn variants() -> Vec<Composition<ExtremeSettings>> {
     let pressed: Adjust = |s| {
         (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
     };
-    let long: Adjust = |s| s.n = 20;
+    let rest = |name, adjust, method: Method| {
+        variant(name, AT_REST, adjust, move |v, s, context| odd::rest(&method, v, s, context))
+    };
+    let smoothing = |name, method: Method| {
+        let run = move |v: &str, s: &ExtremeSettings, context: &Context| {
+            smoothing::run(&method, v, s, context)
+        };
+        variant(name, SMOOTHING, |s| s.n = 20, run)
+    };
     vec![
-        variant(
+        rest(
             ["rest", "a lattice at rest, cubic spline"],
-            AT_REST,
             at_rest,
-            odd::rest::<CubicSpline>,
+            plain::<CubicSpline, Leapfrog>(),
         ),
-        variant(
+        rest(
             ["pressed", "a lattice at rest under pressure, Wendland function"],
-            AT_REST,
             pressed,
-            odd::rest::<WendlandC2>,
+            plain::<WendlandC2, Leapfrog>(),
         ),
         variant(
             ["coincident", "two particles at one place in a lattice stirred at 0.05 c0"],
@@ -138,23 +140,17 @@ fn variants() -> Vec<Composition<ExtremeSettings>> {
             |s| (s.n, s.h_over_dx) = (32, 1.0),
             vortex::run,
         ),
-        variant(
+        smoothing(
             ["smoothing-cubic", "long waves, cubic spline"],
-            SMOOTHING,
-            long,
-            smoothing::run::<CubicSpline>,
+            plain::<CubicSpline, Leapfrog>(),
         ),
-        variant(
+        smoothing(
             ["smoothing-quintic", "long waves, quintic spline"],
-            SMOOTHING,
-            long,
-            smoothing::run::<QuinticSpline>,
+            plain::<QuinticSpline, Leapfrog>(),
         ),
-        variant(
+        smoothing(
             ["smoothing-wendland", "long waves, Wendland function"],
-            SMOOTHING,
-            long,
-            smoothing::run::<WendlandC2>,
+            plain::<WendlandC2, Leapfrog>(),
         ),
     ]
 }
@@ -192,22 +188,23 @@ fn record_of(variant: &str, settings: &ExtremeSettings) -> Record {
     Record::new(EXTREMES.name, variant, serde_json::to_value(settings).unwrap_or_default(), 1)
 }
 
-/// Steps a simulation through `times`, at which `at` looks, to its end.
-fn drive<S: Scheme<Extra = ()>>(
-    (variant, settings): (&str, &ExtremeSettings),
-    simulation: &mut Simulation<S>,
+/// A simulation of any experiment.
+type Simulation = dyn Stepper<()>;
+
+/// Steps a simulation through `times` \[s\], at which `at` looks, to its end.
+fn drive(
+    (method, variant, settings): (&Method, &str, &ExtremeSettings),
+    simulation: &mut Simulation,
     (dt, times, eos): (f64, &[f64], Tait),
     context: &Context,
-    at: &mut dyn FnMut(&mut Simulation<S>, usize),
+    at: &mut dyn FnMut(&mut Simulation, usize),
 ) -> Result<Record, RunError> {
-    let mut record = record_of(variant, settings);
+    let (name, serial) = ((EXTREMES.name, variant), Context::default());
+    let mut record = simulate::begin(name, settings, method, &[("dt [s]", dt)], &serial);
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) =
         runner::drive(simulation, dt, times, context, &mut (), &pressure, at)?;
-    record.numerics.insert("dt [s]".into(), dt.into());
-    record.numerics.insert("kernel".into(), S::Kernel::NAME.into());
-    record.numerics.insert("integrator".into(), <S::Integrator as Integrator<()>>::NAME.into());
-    record.state = Some(harness::simulate::state(&simulation.particles()));
+    record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
 }
 

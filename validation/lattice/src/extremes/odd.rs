@@ -2,16 +2,14 @@
 //! particles at all.
 
 use nalgebra::Vector2;
-use solver::{
-    Compose, Continuity, CubicSpline, Domain, Kernel, Leapfrog, Open, Particle, Pressure, Scene,
-    SceneError, Simulation, Tait, Viscosity, WendlandC2,
-};
+use solver::{CubicSpline, Domain, Kernel, Leapfrog, Particle, SceneError, Tait, WendlandC2};
 
 use super::{
-    EXTREMES, Experiment, ExtremeSettings, drive,
+    EXTREMES, Experiment, ExtremeSettings, Simulation, drive,
     experiment::{completed, in_words, measured, sci},
     record_of,
 };
+use crate::wave::plain;
 use base::{
     gate::{Bound, Evidence},
     random::Random,
@@ -21,9 +19,8 @@ use harness::{
     case::{RunError, Tier},
     context::Context,
     extremes::Entry,
+    method::{Medium, Method, Parts},
 };
-
-type Plain<K> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
 
 const HEAT: MetricKey = MetricKey::new("heat", "c0^2", "largest v^2/2 of a particle at the end");
 const CLOCK_ERROR: MetricKey = MetricKey::new(
@@ -49,16 +46,15 @@ fn fluid(background: f64) -> Tait {
 }
 
 /// ν = 0.1.
-fn scene<K: Kernel>(
+fn parts(
+    method: &Method,
     h: f64,
-    domain: Domain,
     background: f64,
-    particles: Vec<Particle>,
-) -> Scene<Plain<K>> {
-    let forces = (Pressure::new(fluid(background)), Viscosity { mu: 0.1, eta2: 1e-6 * h * h });
-    let mut scene = Scene::new(h, domain, particles, forces, Continuity, Open);
-    scene.parallel_from = usize::MAX;
-    scene
+    (domain, particles): (Domain, Vec<Particle>),
+) -> Parts {
+    let medium = method.medium(fluid(background), [1.0, h]);
+    let medium = Medium { nu: 0.1, eta2_over_h2: 1e-6, ..medium };
+    Parts::new(medium, domain, particles, &Context::default())
 }
 
 fn resting(place: Vector2<f64>) -> Particle {
@@ -83,36 +79,38 @@ fn momentum(particles: &[Particle]) -> Vector2<f64> {
 
 /// Steps a scene of a cubic spline by all steps.
 fn drive_to_end(
-    run: (&str, &ExtremeSettings),
-    (domain, particles): (Domain, Vec<Particle>),
+    (variant, settings): (&str, &ExtremeSettings),
+    particles: (Domain, Vec<Particle>),
     context: &Context,
-) -> Result<(Record, Simulation<Plain<CubicSpline>>), RunError> {
-    let mut simulation = scene(1.2, domain, 0.0, particles).build()?;
-    let ExtremeSettings { dt, steps, .. } = *run.1;
-    let times = [dt * steps as f64];
-    let record = drive(run, &mut simulation, (dt, &times, fluid(0.0)), context, &mut |_, _| ())?;
+) -> Result<(Record, Box<Simulation>), RunError> {
+    let method = plain::<CubicSpline, Leapfrog>();
+    let ExtremeSettings { dt, steps, .. } = *settings;
+    let (run, times) = ((&method, variant, settings), [dt * steps as f64]);
+    let mut simulation = (method.build)(parts(&method, 1.2, 0.0, particles))?;
+    let stepping = (dt, &times[..], fluid(0.0));
+    let record = drive(run, &mut *simulation, stepping, context, &mut |_, _| ())?;
     Ok((record, simulation))
 }
 
 /// A lattice at rest for very many steps.
-pub fn rest<K: Kernel>(
+pub fn rest(
+    method: &Method,
     variant: &str,
     settings: &ExtremeSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
     let ExtremeSettings { n, h_over_dx, steps, dt, background, .. } = *settings;
-    let (domain, particles) = torus(n);
-    let mut simulation = scene::<K>(h_over_dx, domain, background, particles).build()?;
     let done = |k: usize| (k + 1) * steps / 10;
     let times: Vec<f64> = (0..10).map(|k| done(k) as f64 * dt).collect();
     let mut late = 0.0f64;
-    let mut look = |simulation: &mut Simulation<Plain<K>>, k: usize| {
+    let mut look = |simulation: &mut Simulation, k: usize| {
         let is_on_time = simulation.work().steps == done(k) as u64;
         let off = (simulation.time() - times[k]).abs();
         late = late.max(if is_on_time { off } else { f64::INFINITY });
     };
-    let stepping = (dt, &times[..], fluid(background));
-    let mut record = drive((variant, settings), &mut simulation, stepping, context, &mut look)?;
+    let (run, eos) = ((method, variant, settings), fluid(background));
+    let mut simulation = (method.build)(parts(method, h_over_dx, background, torus(n)))?;
+    let mut record = drive(run, &mut *simulation, (dt, &times, eos), context, &mut look)?;
     record.put(HEAT, fastest(&simulation.particles()));
     record.put(CLOCK_ERROR, late);
     Ok(record)
@@ -293,8 +291,9 @@ pub fn refused(
     settings: &ExtremeSettings,
     _context: &Context,
 ) -> Result<Record, RunError> {
+    let method = plain::<CubicSpline, Leapfrog>();
     let build = |particles: Vec<Particle>, domain| {
-        scene::<CubicSpline>(1.2, domain, 0.0, particles).build().err()
+        (method.build)(parts(&method, 1.2, 0.0, (domain, particles))).err()
     };
     let odd = |change: fn(&mut Particle)| {
         let (domain, mut particles) = torus(10);

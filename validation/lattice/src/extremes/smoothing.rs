@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use solver::{CubicSpline, Kernel, Leapfrog, QuinticSpline, WendlandC2};
+use solver::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
 use super::{EXTREMES, Experiment, ExtremeSettings, experiment::sci, in_words, record_of};
 use crate::wave::{Polarisation, Wave, WaveSettings, fit, measure};
@@ -15,6 +15,8 @@ use harness::{
     case::{RunError, Tier},
     context::Context,
     extremes::Entry,
+    method::Method,
+    simulate::KERNEL,
 };
 use maths::theory::time_step::Integrator;
 
@@ -29,7 +31,8 @@ const DISTANCE: MetricKey = MetricKey::new(
 );
 
 /// Runs a sound wave and a shear wave.
-pub fn run<K: Kernel>(
+pub fn run(
+    method: &Method,
     variant: &str,
     settings: &ExtremeSettings,
     context: &Context,
@@ -40,11 +43,11 @@ pub fn run<K: Kernel>(
     let [mut found, mut theory] = [[f64::NAN; 2]; 2];
     let mut amplitudes = Vec::new();
     for (k, polarisation) in [Polarisation::Sound, Polarisation::Shear].into_iter().enumerate() {
-        let wave = Wave::new::<K>(polarisation, &waves, context.allow_unstable)?;
+        let wave = Wave::new(polarisation, &waves, method, context)?;
         // Both would write their frames into one folder.
         let context =
             if k == 0 { context.clone() } else { Context { frames: None, ..context.clone() } };
-        let measured = measure::<K, Leapfrog>(&wave, &context)?;
+        let measured = measure(&wave, method, &context)?;
         let (series, unit) = (&measured.series, waves.nu * TAU * TAU);
         if k == 0 {
             let mode = fit::mode_of(series, Integrator::Leapfrog, wave.dt);
@@ -67,7 +70,7 @@ pub fn run<K: Kernel>(
     record.put(VISCOUS, found[1]);
     // NaN must stay: max() would drop it.
     record.put(DISTANCE, if sound < viscous || viscous.is_nan() { viscous } else { sound });
-    record.numerics.insert("kernel".into(), K::NAME.into());
+    record.numerics.insert(KERNEL.into(), method.kernel.into());
     record.state = Some(digest(&amplitudes));
     Ok(record)
 }
@@ -76,21 +79,20 @@ pub fn run<K: Kernel>(
 pub fn lengths(tier: Tier) -> Vec<Experiment> {
     let all = [0.9, 1.0, 1.1, 1.2, 1.3, 1.5, 2.0, 2.5, 3.0];
     let ratios: &[f64] = if tier == Tier::Full { &all } else { &[0.9, 1.5, 3.0] };
-    let at = |&ratio: &f64| {
-        [
-            smoothed::<CubicSpline>("smoothing-cubic", ratio),
-            smoothed::<QuinticSpline>("smoothing-quintic", ratio),
-            smoothed::<WendlandC2>("smoothing-wendland", ratio),
-        ]
-    };
+    let kernels = [
+        ("smoothing-cubic", CubicSpline::NAME),
+        ("smoothing-quintic", QuinticSpline::NAME),
+        ("smoothing-wendland", WendlandC2::NAME),
+    ];
+    let at = |ratio: &f64| kernels.map(|(variant, kernel)| smoothed(variant, kernel, *ratio));
     ratios.iter().flat_map(at).collect()
 }
 
-fn smoothed<K: Kernel>(variant: &str, ratio: f64) -> Experiment {
+fn smoothed(variant: &str, kernel: &'static str, ratio: f64) -> Experiment {
     let spec = EXTREMES.spec(variant, |s| s.h_over_dx = ratio);
     Experiment::of(spec, 0.2, move |record| {
-        let what = ["smoothing length".to_string(), format!("{}, h/dx = {ratio}", K::NAME)];
-        let name = format!("smoothing.{}.{ratio}", K::NAME);
+        let what = ["smoothing length".to_string(), format!("{}, h/dx = {ratio}", kernel)];
+        let name = format!("smoothing.{}.{ratio}", kernel);
         let entry = Entry::new(&name, what, "distance from the symbols", Bound::Below(1e-3))
             .because(Evidence::Theory, "symbols of the lattice are exact");
         let [sound, viscous, distance] = [SOUND, VISCOUS, DISTANCE].map(|key| record.value(key));

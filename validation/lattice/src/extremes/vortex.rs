@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, DensityDiffusion, Domain, Leapfrog, Limits, Open, Particle, Pressure,
-    QuinticSpline, Scene, Shifting, Simulation, Smoothing, Tait, Viscosity,
+    QuinticSpline, Shifting, Tait, Viscosity,
 };
 
 use super::{
-    EXTREMES, Experiment, ExtremeSettings, drive,
+    EXTREMES, Experiment, ExtremeSettings, Simulation, drive,
     experiment::{completed, in_words, measured, sci},
 };
 use base::{
@@ -22,6 +22,7 @@ use harness::{
     case::{RunError, Tier},
     context::Context,
     extremes::Entry,
+    method::{Medium, Method, Parts},
 };
 use report::percent;
 
@@ -64,23 +65,21 @@ impl Vortex {
         Vector2::new(-x.cos() * y.sin(), x.sin() * y.cos()) * decay
     }
 
-    fn scene(&self) -> Scene<Modern> {
+    fn parts(&self, method: &Method) -> Parts {
         let &Self { dx, h, eos, .. } = self;
         let ExtremeSettings { n, re, jitter, mach, .. } = self.settings;
-        let c0 = 1.0 / mach;
         let mut random = Random::new(3);
         let mut shake = || Vector2::new(random.normal(), random.normal()) * (jitter * dx);
         let particles = solver::lattice(Vector2::repeat(0.5 * dx), dx, n, n)
             .map(|x| x + shake())
             .map(|x| Particle::fluid(x, self.exact(x, 0.0), 1.0, dx * dx))
             .collect();
-        let forces = (Pressure::new(eos), Viscosity { mu: 1.0 / re, eta2: 1e-6 * h * h });
-        let w = Smoothing::<QuinticSpline>::new(h).w(dx * dx);
-        let drift = (Continuity, DensityDiffusion::new(0.1 * h * c0), Shifting::new(0.5, h, w));
-        let mut scene = Scene::new(h, Domain::torus(1.0, 1.0), particles, forces, drift, Open);
-        scene.parallel_from = usize::MAX;
-        scene.limits = Limits { density: [0.1, 10.0], speed: 10.0 * (1.0 + c0) };
-        scene
+        let medium = method.medium(eos, [dx, h]);
+        let medium =
+            Medium { nu: 1.0 / re, eta2_over_h2: 1e-6, diffusion: 0.1, shift: 0.5, ..medium };
+        let limits = Limits { density: [0.1, 10.0], speed: 10.0 * (1.0 + 1.0 / mach) };
+        let torus = Domain::torus(1.0, 1.0);
+        Parts { limits, ..Parts::new(medium, torus, particles, &Context::default()) }
     }
 }
 
@@ -90,18 +89,19 @@ pub fn run(
     settings: &ExtremeSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let vortex = Vortex::new(settings);
+    let (vortex, method) = (Vortex::new(settings), Method::of::<Modern>());
     let ExtremeSettings { mach, re, end, .. } = *settings;
-    let mut simulation = vortex.scene().build()?;
     let h = vortex.h;
     let dt = (h / (1.0 + 1.0 / mach)).min(0.25 * h * h * re);
     let times: Vec<f64> = (1..=20).map(|k| end * f64::from(k) / 20.0).collect();
-    let (start, mut peak) = (kinetic(&simulation), 1.0f64);
-    let mut look = |simulation: &mut Simulation<Modern>, _: usize| {
+    let mut simulation = (method.build)(vortex.parts(&method))?;
+    let (start, mut peak) = (kinetic(&*simulation), 1.0f64);
+    let mut look = |simulation: &mut Simulation, _: usize| {
         peak = peak.max(kinetic(simulation) / start);
     };
+    let run = (&method, variant, settings);
     let stepping = (dt, &times[..], vortex.eos);
-    let mut record = drive((variant, settings), &mut simulation, stepping, context, &mut look)?;
+    let mut record = drive(run, &mut *simulation, stepping, context, &mut look)?;
     if record.status == Status::Completed {
         let (mut difference, mut scale) = (0.0, 0.0);
         for particle in simulation.particles() {
@@ -112,12 +112,12 @@ pub fn run(
         let decay = (-4.0 * TAU * TAU / re * simulation.time()).exp();
         record.put(VELOCITY_ERROR, (difference / scale).sqrt());
         record.put(PEAK_ENERGY, peak);
-        record.put(ENERGY_RATIO, kinetic(&simulation) / (start * decay));
+        record.put(ENERGY_RATIO, kinetic(&*simulation) / (start * decay));
     }
     Ok(record)
 }
 
-fn kinetic(simulation: &Simulation<Modern>) -> f64 {
+fn kinetic(simulation: &Simulation) -> f64 {
     simulation.fluid().map(|(mass, e)| 0.5 * mass * e.velocity.norm_squared()).sum()
 }
 

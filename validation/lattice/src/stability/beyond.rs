@@ -1,15 +1,13 @@
 //! Steps beyond the limit: they diverge, and as soon as theory says.
 
-use solver::{CubicSpline, Integrator, Leapfrog, PredictorCorrector};
-
-use super::{BoxSettings, NoisyBox, RESTING_BOX, name_of, noisy_box::NOISE};
+use super::{BoxSettings, NoisyBox, Pair, RESTING_BOX, noisy_box::NOISE};
 use crate::extremes::{Experiment, in_words};
 use base::{
     gate::{Bound, Evidence},
     record::{Record, Status},
 };
 use harness::extremes::Entry;
-use maths::theory::{Stepping, time_step};
+use maths::theory::time_step;
 
 pub const TITLE: [&str; 2] = ["steps-beyond-the-limit", "Steps beyond the limit"];
 pub const LEAD: &str = "A box of 20 × 20 particles at a step beyond its limit must not hide it: it diverges \
@@ -20,28 +18,28 @@ pub const LEAD: &str = "A box of 20 × 20 particles at a step beyond its limit m
 pub fn experiments() -> Vec<Experiment> {
     let at = |factor: f64| {
         [
-            beyond::<Leapfrog>(None, factor),
-            beyond::<Leapfrog>(Some(1.0), factor),
-            beyond::<PredictorCorrector>(Some(1.0), factor),
+            beyond(Pair::cubic_leapfrog(), None, factor),
+            beyond(Pair::cubic_leapfrog(), Some(1.0), factor),
+            beyond(Pair::cubic_pc(), Some(1.0), factor),
         ]
     };
     [1.05, 2.0].into_iter().flat_map(at).collect()
 }
 
-fn beyond<I: Stepping>(stiffness: Option<f64>, factor: f64) -> Experiment {
+fn beyond(pair: Pair, stiffness: Option<f64>, factor: f64) -> Experiment {
     let settings = BoxSettings { n: 20, h_over_dx: 1.3, stiffness, ..Default::default() };
-    let modes = NoisyBox::<CubicSpline>::new(&settings).modes();
-    let courant = factor * time_step::time_step_limit(&modes, I::THEORY);
-    let growth = time_step::growth_per_step(&modes, I::THEORY, courant);
+    let (theory, integrator) = (pair.plain().theory, pair.plain().integrator);
+    let modes = NoisyBox::new(&settings).modes(pair.plain());
+    let courant = factor * time_step::time_step_limit(&modes, theory);
+    let growth = time_step::growth_per_step(&modes, theory, courant);
     // From the noise to the speed of sound.
     let expected = (1.0 / NOISE).ln() / growth;
     let steps = (3.0 * expected + 20.0).ceil() as usize;
     let set = |s: &mut BoxSettings| {
         *s = BoxSettings { courant, steps, to_the_end: true, ..settings };
     };
-    let spec = RESTING_BOX.spec(name_of::<CubicSpline, I>(), set).allow_unstable();
+    let spec = RESTING_BOX.spec(pair.name, set).allow_unstable();
     Experiment::of(spec, 1e-4 * steps as f64, move |record: &Record| {
-        let integrator = <I as Integrator<()>>::NAME;
         let sound = if stiffness.is_some() { "c₀h/ν = 1" } else { "no viscosity" };
         let what =
             ["step beyond the limit".into(), format!("{factor} limits, {integrator}, {sound}")];

@@ -11,13 +11,9 @@ mod beyond;
 mod noisy_box;
 mod studies;
 
-pub use noisy_box::{Limit, NoisyBox, Theory};
+pub use noisy_box::{Limit, NoisyBox, Pair, Plain, Theory};
 
-use std::marker::PhantomData;
-
-use solver::{
-    CubicSpline, Integrator, Kernel, Leapfrog, PredictorCorrector, QuinticSpline, WendlandC2,
-};
+use std::rc::Rc;
 
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -26,12 +22,12 @@ use base::{
 };
 use harness::{
     bisect::{Bracket, STABLE, UNSTABLE},
-    case::{Planned, Tier, Variant},
+    case::{Planned, Tier},
     composed::{Composed, Composition},
     declare::Declaration,
     runs::Runs,
 };
-use maths::theory::{Stepping, time_step};
+use maths::theory::time_step;
 
 use crate::extremes;
 
@@ -97,38 +93,24 @@ fn is_stable(record: &Record) -> bool {
 }
 
 fn variants() -> Vec<Composition<BoxSettings>> {
-    fn variant<K: Kernel, I: Stepping>(adjust: fn(&mut BoxSettings)) -> Composition<BoxSettings> {
-        let about = "one kernel and one integrator; the equations, and damping if it is set";
-        Composition {
-            variant: Variant { name: name_of::<K, I>(), about },
+    let about = "one kernel and one integrator; the equations, and damping if it is set";
+    let variant = |pair: Pair| {
+        let (name, pair) = (pair.name, Rc::new(pair));
+        let ruled = Rc::clone(&pair);
+        let adjust: fn(&mut BoxSettings) = match pair.h_over_dx {
+            1.0 => |s| s.h_over_dx = 1.0,
+            2.0 => |s| s.h_over_dx = 2.0,
+            _ => |_| (),
+        };
+        Composition::new(
+            (name, about),
             adjust,
-            run: noisy_box::run::<K, I>,
-            rules: noisy_box::rules::<K, I>,
-            lacks: Vec::new(),
-        }
-    }
-    vec![
-        variant::<CubicSpline, Leapfrog>(|_| ()),
-        variant::<CubicSpline, PredictorCorrector>(|_| ()),
-        variant::<QuinticSpline, Leapfrog>(|s| s.h_over_dx = 1.0),
-        variant::<QuinticSpline, PredictorCorrector>(|s| s.h_over_dx = 1.0),
-        variant::<WendlandC2, Leapfrog>(|s| s.h_over_dx = 2.0),
-        variant::<WendlandC2, PredictorCorrector>(|s| s.h_over_dx = 2.0),
-    ]
-}
-
-/// Name of the variant with this kernel and this integrator.
-fn name_of<K: Kernel, I: Stepping>() -> &'static str {
-    use time_step::Integrator::{Leapfrog, PredictorCorrector};
-    match (K::NAME, I::THEORY) {
-        (CubicSpline::NAME, Leapfrog) => "cubic-leapfrog",
-        (CubicSpline::NAME, PredictorCorrector) => "cubic-pc",
-        (QuinticSpline::NAME, Leapfrog) => "quintic-leapfrog",
-        (QuinticSpline::NAME, PredictorCorrector) => "quintic-pc",
-        (WendlandC2::NAME, Leapfrog) => "wendland-leapfrog",
-        (WendlandC2::NAME, PredictorCorrector) => "wendland-pc",
-        _ => "none",
-    }
+            move |variant, settings, context| noisy_box::run(&pair, variant, settings, context),
+            move |settings| noisy_box::rules(&ruled, settings),
+            Vec::new(),
+        )
+    };
+    Pair::all().map(variant).collect()
 }
 
 /// Particles along each side of the box: three supports of the widest kernel. Theory is that of the same
@@ -149,21 +131,18 @@ pub struct Point {
 
 impl Point {
     /// Kernel and integrator at h/dx, c₀h/ν, α and δ.
-    pub fn new<K: Kernel, I: Stepping>(
-        h_over_dx: f64,
-        [stiffness, alpha, delta]: [f64; 3],
-    ) -> Self {
+    pub fn new(pair: &Pair, h_over_dx: f64, [stiffness, alpha, delta]: [f64; 3]) -> Self {
         let stiffness = stiffness.is_finite().then_some(stiffness);
         let mut settings =
             BoxSettings { n: SIDE, h_over_dx, stiffness, alpha, delta, ..Default::default() };
-        let theory = NoisyBox::<K>::new(&settings).theory(I::THEORY);
+        let theory = NoisyBox::new(&settings).theory(pair.plain());
         (settings.courant, settings.steps) = (theory.limit, theory.steps);
-        let (kernel, integrator) = (K::NAME, <I as Integrator<()>>::NAME);
-        Self { variant: name_of::<K, I>(), kernel, integrator, settings, theory }
+        let (kernel, integrator) = (pair.plain().kernel, pair.plain().integrator);
+        Self { variant: pair.name, kernel, integrator, settings, theory }
     }
 
-    /// The box of this point, seen through its kernel.
-    pub fn noisy_box<K: Kernel>(&self) -> NoisyBox<K> {
+    /// The box of this point.
+    pub fn noisy_box(&self) -> NoisyBox {
         NoisyBox::new(&self.settings)
     }
 
@@ -225,37 +204,38 @@ impl Point {
 /// All points of one kernel. In the quick tier: of the seed's kernel the leapfrog at every stiffness and the
 /// predictor-corrector up to 10, for beyond that weak growth needs thousands of steps to show; of another
 /// one the leapfrog at the ends and in the middle.
-fn points_of<K: Kernel>(h_over_dx: f64, tier: Tier) -> Vec<Point> {
+fn points_of([leapfrog, midpoint]: &[Pair; 2], h_over_dx: f64, tier: Tier) -> Vec<Point> {
     let mut points = Vec::new();
     let (every, weakest) = match tier {
         Tier::Full => (1, f64::INFINITY),
-        Tier::Quick if K::NAME == CubicSpline::NAME => (1, 10.0),
+        Tier::Quick if leapfrog.name == "cubic-leapfrog" => (1, 10.0),
         Tier::Quick => (2, 0.0),
     };
+    let mut add = |pair, damping| points.push(Point::new(pair, h_over_dx, damping));
     for stiffness in STIFFNESS.into_iter().step_by(every) {
-        points.push(Point::new::<K, Leapfrog>(h_over_dx, [stiffness, 0.0, 0.0]));
+        add(leapfrog, [stiffness, 0.0, 0.0]);
         if stiffness <= weakest {
-            points.push(Point::new::<K, PredictorCorrector>(h_over_dx, [stiffness, 0.0, 0.0]));
+            add(midpoint, [stiffness, 0.0, 0.0]);
         }
     }
-    points.push(Point::new::<K, Leapfrog>(h_over_dx, [f64::INFINITY, 0.0, 0.0]));
-    for (alpha, delta) in [(1.0, 0.0), (0.0, 1.0)] {
-        points.push(Point::new::<K, Leapfrog>(h_over_dx, [f64::INFINITY, alpha, delta]));
-    }
+    add(leapfrog, [f64::INFINITY, 0.0, 0.0]);
+    add(leapfrog, [f64::INFINITY, 1.0, 0.0]);
+    add(leapfrog, [f64::INFINITY, 0.0, 1.0]);
     if tier == Tier::Full {
-        points.push(Point::new::<K, PredictorCorrector>(h_over_dx, [f64::INFINITY, 1.0, 0.0]));
-        points.push(Point::new::<K, Leapfrog>(h_over_dx, [30.0, 0.1, 0.1]));
-        points.push(Point::new::<K, Leapfrog>(h_over_dx, [f64::INFINITY, 0.1, 0.0]));
+        add(midpoint, [f64::INFINITY, 1.0, 0.0]);
+        add(leapfrog, [30.0, 0.1, 0.1]);
+        add(leapfrog, [f64::INFINITY, 0.1, 0.0]);
     }
     points
 }
 
 fn points(tier: Tier) -> Vec<Point> {
-    let mut points = points_of::<CubicSpline>(1.3, tier);
-    points.extend(points_of::<QuinticSpline>(1.0, tier));
+    let cubic = [Pair::cubic_leapfrog(), Pair::cubic_pc()];
+    let mut points = points_of(&cubic, 1.3, tier);
+    points.extend(points_of(&Pair::quintic(), 1.0, tier));
     if tier == Tier::Full {
-        points.extend(points_of::<CubicSpline>(1.2, tier));
-        points.extend(points_of::<WendlandC2>(2.0, tier));
+        points.extend(points_of(&cubic, 1.2, tier));
+        points.extend(points_of(&Pair::wendland(), 2.0, tier));
     }
     points
 }
@@ -266,10 +246,8 @@ const WEAK: [f64; 5] = [0.2, 0.3, 0.4, 0.5, 0.7];
 pub const WEAK_STEPS: usize = 300;
 
 /// The box of that measurement.
-pub fn undamped_box() -> NoisyBox<CubicSpline> {
-    let kernel = PhantomData;
-    let stiffness = f64::INFINITY;
-    NoisyBox { n: SIDE, h_over_dx: 1.3, stiffness, alpha: 0.0, delta: 0.0, kernel }
+pub fn undamped_box() -> NoisyBox {
+    NoisyBox { n: SIDE, h_over_dx: 1.3, stiffness: f64::INFINITY, alpha: 0.0, delta: 0.0 }
 }
 
 /// Measures the growth of the stiffest wave at one Courant number.
@@ -283,7 +261,7 @@ fn weak_growth(variant: &str, courant: f64) -> RunSpec {
 
 /// The same of the predictor-corrector.
 fn weak(courant: f64) -> RunSpec {
-    weak_growth(name_of::<CubicSpline, PredictorCorrector>(), courant)
+    weak_growth("cubic-pc", courant)
 }
 
 fn plan(tier: Tier) -> Vec<Planned> {
@@ -329,19 +307,20 @@ mod tests {
     use base::gate::check_all;
     use harness::{case::Case, context::Context};
 
-    fn limit<I: Stepping>(stiffness: f64) -> Limit {
-        let point = Point::new::<CubicSpline, I>(1.3, [stiffness, 0.0, 0.0]);
-        let fluid = point.noisy_box::<CubicSpline>();
-        fluid.limit_of(|| fluid.plain::<I>())
+    fn limit(pair: &Pair, stiffness: f64) -> Limit {
+        let fluid = Point::new(pair, 1.3, [stiffness, 0.0, 0.0]).noisy_box();
+        let method = pair.plain();
+        fluid.limit_of(method, || (method.build)(fluid.parts(method)))
     }
 
     #[test]
     fn boxes_have_the_limits_of_theory() {
+        let (leapfrog, midpoint) = (Pair::cubic_leapfrog(), Pair::cubic_pc());
         for limit in [
-            limit::<Leapfrog>(1.0),
-            limit::<Leapfrog>(f64::INFINITY),
-            limit::<PredictorCorrector>(1.0),
-            limit::<PredictorCorrector>(10.0),
+            limit(&leapfrog, 1.0),
+            limit(&leapfrog, f64::INFINITY),
+            limit(&midpoint, 1.0),
+            limit(&midpoint, 10.0),
         ] {
             assert!((limit.ratio() - 1.0).abs() < 0.03, "{limit:?}");
         }
@@ -362,11 +341,11 @@ mod tests {
     /// What the plan bisects is what the limit of a scene is bisected by.
     #[test]
     fn a_planned_limit_is_that_of_its_scene() {
-        let point = Point::new::<CubicSpline, Leapfrog>(1.3, [1.0, 0.0, 0.0]);
+        let point = Point::new(&Pair::cubic_leapfrog(), 1.3, [1.0, 0.0, 0.0]);
         let spec = point.spec();
         let record =
             harness::make::run(&RESTING_BOX, &spec, &Context::default()).expect("a record");
-        let found = limit::<Leapfrog>(1.0).measured.expect("a limit");
+        let found = limit(&Pair::cubic_leapfrog(), 1.0).measured.expect("a limit");
         assert_eq!(record.metric(STABLE), Some(found.stable));
         assert_eq!(record.metric(UNSTABLE), Some(found.unstable));
     }

@@ -1,31 +1,29 @@
 //! One run of a periodic lattice with velocity noise of 1e-8 c₀: every wave of the box at once, too small
 //! to be anything but linear.
 
-use std::marker::PhantomData;
-
 use nalgebra::{Complex, Vector2};
-use solver::terms::Always;
 use solver::{
-    ArtificialViscosity, Compose, Continuity, DensityDiffusion, Domain, EquationOfState, Flow,
-    Integrator, Kernel, Limits, Numbers, Observer, Open, Particle, Pressure, Scene, Scheme,
-    Stepper, Tait, Viscosity,
+    ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion, Domain,
+    EquationOfState, Flow, Kernel, Leapfrog, Limits, Observer, Open, Particle, PredictorCorrector,
+    Pressure, QuinticSpline, SceneError, Stepper, Tait, Viscosity, WendlandC2, terms::Always,
 };
 
 use super::{BoxSettings, ENERGY, GREW, RESTING_BOX, WAVE_ANGLE, WAVE_GROWTH};
 use base::{
-    number,
     random::Random,
     record::{Cost, Record, Status},
 };
 use harness::{
     bisect::{Bracket, Growth, largest_stable},
     case::{Rules, RunError},
-    runner::{self, Context},
+    context::Context,
+    method::{Medium, Method, Parts},
+    runner, simulate,
 };
 use maths::theory::{
     Stepping,
-    lattice::{SquareLattice, wave_vectors},
-    time_step::{self, Medium, Mode},
+    lattice::wave_vectors,
+    time_step::{self, Mode},
 };
 
 /// The guard of the viscous and the artificial term, as the seed has it.
@@ -40,14 +38,79 @@ const SEEN_FROM: f64 = 1.005;
 /// Fewest and most steps of a run.
 const STEPS: [f64; 2] = [300.0, 12_000.0];
 
-type Plain<K, I> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
-type Damping = ArtificialViscosity<Tait, Always>;
-type Damped<K, I> =
-    Compose<K, (Pressure<Tait>, Viscosity, Damping), (Continuity, DensityDiffusion), Open, I>;
+/// With viscosity alone.
+pub type Plain<K, I> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
+/// With artificial viscosity and density diffusion too.
+type Damped<K, I> = Compose<
+    K,
+    (Pressure<Tait>, Viscosity, ArtificialViscosity<Tait, Always>),
+    (Continuity, DensityDiffusion),
+    Open,
+    I,
+>;
+
+/// A kernel and an integrator: a variant, with and without what damps beside viscosity.
+pub struct Pair {
+    /// Name of the variant.
+    pub name: &'static str,
+    /// h/dx unless set.
+    pub h_over_dx: f64,
+    plain: Method,
+    damped: Method,
+}
+
+impl Pair {
+    fn of<K: Kernel, I: Stepping>(name: &'static str, h_over_dx: f64) -> Self {
+        let (plain, damped) = (Method::of::<Plain<K, I>>(), Method::of::<Damped<K, I>>());
+        Self { name, h_over_dx, plain, damped }
+    }
+
+    /// The cubic spline and the leapfrog.
+    pub fn cubic_leapfrog() -> Self {
+        Self::of::<CubicSpline, Leapfrog>("cubic-leapfrog", 1.3)
+    }
+
+    /// The cubic spline and the predictor-corrector.
+    pub fn cubic_pc() -> Self {
+        Self::of::<CubicSpline, PredictorCorrector>("cubic-pc", 1.3)
+    }
+
+    /// The quintic spline with both.
+    pub fn quintic() -> [Self; 2] {
+        [
+            Self::of::<QuinticSpline, Leapfrog>("quintic-leapfrog", 1.0),
+            Self::of::<QuinticSpline, PredictorCorrector>("quintic-pc", 1.0),
+        ]
+    }
+
+    /// Wendland's function with both.
+    pub fn wendland() -> [Self; 2] {
+        [
+            Self::of::<WendlandC2, Leapfrog>("wendland-leapfrog", 2.0),
+            Self::of::<WendlandC2, PredictorCorrector>("wendland-pc", 2.0),
+        ]
+    }
+
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let cubic = [Self::cubic_leapfrog(), Self::cubic_pc()];
+        cubic.into_iter().chain(Self::quintic()).chain(Self::wendland())
+    }
+
+    /// Without artificial viscosity and density diffusion; theory is the same for both.
+    pub fn plain(&self) -> &Method {
+        &self.plain
+    }
+
+    /// The method of a box: what it lacks is not in its types.
+    fn method(&self, fluid: &NoisyBox) -> &Method {
+        if fluid.alpha == 0.0 && fluid.delta == 0.0 { &self.plain } else { &self.damped }
+    }
+}
 
 /// A box of `n` × `n` particles, side 1 m, ρ₀ = 1 kg/m³, c₀ = 1 m/s.
 #[derive(Clone, Copy, Debug)]
-pub struct NoisyBox<K> {
+pub struct NoisyBox {
     /// Particles along each side.
     pub n: usize,
     /// h/dx.
@@ -58,8 +121,6 @@ pub struct NoisyBox<K> {
     pub alpha: f64,
     /// δ of the density diffusion.
     pub delta: f64,
-    /// The kernel.
-    pub kernel: PhantomData<K>,
 }
 
 /// What theory says of a box and an integrator.
@@ -115,15 +176,15 @@ struct Watch {
 }
 
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
-fn energy<X: Numbers>(simulation: &dyn Stepper<X>) -> f64 {
-    let of = |(mass, e): (f64, &solver::Evolved<X>)| {
+fn energy(simulation: &dyn Stepper<()>) -> f64 {
+    let of = |(mass, e): (f64, &solver::Evolved<()>)| {
         0.5 * mass * (e.velocity.norm_squared() + (e.density - 1.0) * (e.density - 1.0))
     };
     simulation.fluid().map(of).sum()
 }
 
-impl<X: Numbers> Observer<X> for Watch {
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
+impl Observer<()> for Watch {
+    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
         self.stopped = self.growth.see(energy(simulation)) && !self.to_the_end;
         if self.stopped { Flow::Stop } else { Flow::Continue }
     }
@@ -142,13 +203,14 @@ struct StiffestWave {
 }
 
 impl StiffestWave {
-    fn of<K: Kernel>(fluid: &NoisyBox<K>) -> Self {
-        let lattice = fluid.lattice();
-        let omega = |theta: &Vector2<f64>| Mode::new(&lattice, *theta, &fluid.medium()).omega;
-        let stiffest = wave_vectors(fluid.n).max_by(|a, b| omega(a).total_cmp(&omega(b)));
-        let theta = stiffest.unwrap_or_else(Vector2::zeros);
-        let along = lattice.gradient(theta).normalize();
-        Self { n: fluid.n, theta, along, omega: omega(&theta) }
+    fn of(fluid: &NoisyBox, method: &Method) -> Self {
+        let modes = fluid.modes(method).into_iter().zip(wave_vectors(fluid.n));
+        let stiffest = modes.max_by(|(a, _), (b, _)| a.omega.total_cmp(&b.omega));
+        let (along, omega, theta) = stiffest
+            .map_or((Vector2::x(), 0.0, Vector2::zeros()), |(mode, theta)| {
+                (mode.along, mode.omega, theta)
+            });
+        Self { n: fluid.n, theta, along, omega }
     }
 
     /// Its energy, which is the same at every phase of the wave, so that two looks are enough.
@@ -164,12 +226,11 @@ impl StiffestWave {
     }
 }
 
-impl<K: Kernel> NoisyBox<K> {
-    /// The box of these settings, seen through its kernel.
+impl NoisyBox {
+    /// The box of these settings.
     pub fn new(settings: &BoxSettings) -> Self {
         let BoxSettings { n, h_over_dx, stiffness, alpha, delta, .. } = *settings;
-        let stiffness = stiffness.unwrap_or(f64::INFINITY);
-        Self { n, h_over_dx, stiffness, alpha, delta, kernel: PhantomData }
+        Self { n, h_over_dx, stiffness: stiffness.unwrap_or(f64::INFINITY), alpha, delta }
     }
 
     /// Smoothing length \[m\].
@@ -177,86 +238,59 @@ impl<K: Kernel> NoisyBox<K> {
         self.h_over_dx / self.n as f64
     }
 
-    /// The lattice of the theory.
-    pub fn lattice(&self) -> SquareLattice<K> {
-        SquareLattice::new(self.h_over_dx, ETA2)
+    /// The waves of the box in the lattice of a method, in units of c₀ and h.
+    pub fn modes(&self, method: &Method) -> Vec<Mode> {
+        let Self { n, h_over_dx, alpha, delta, stiffness } = *self;
+        let medium = time_step::Medium { c0: 1.0, h: 1.0, nu: 1.0 / stiffness, alpha, delta };
+        method.modes([h_over_dx, ETA2], n, &medium)
     }
 
-    /// The fluid of the theory, in units of c₀ and h.
-    pub fn medium(&self) -> Medium {
-        let Self { alpha, delta, stiffness, .. } = *self;
-        Medium { c0: 1.0, h: 1.0, nu: 1.0 / stiffness, alpha, delta }
-    }
-
-    /// The waves of the box, in units of c₀ and h.
-    pub fn modes(&self) -> Vec<Mode> {
-        time_step::modes(&self.lattice(), self.n, &self.medium())
-    }
-
-    /// The limit of an integrator, and how many steps show growth beyond it.
-    pub fn theory(&self, integrator: time_step::Integrator) -> Theory {
-        let modes = self.modes();
-        let limit = time_step::time_step_limit(&modes, integrator);
-        let growth = time_step::growth_per_step(&modes, integrator, SEEN_FROM * limit);
+    /// The limit of a method, and how many steps show growth beyond it.
+    pub fn theory(&self, method: &Method) -> Theory {
+        let modes = self.modes(method);
+        let limit = time_step::time_step_limit(&modes, method.theory);
+        let growth = time_step::growth_per_step(&modes, method.theory, SEEN_FROM * limit);
         Theory { limit, steps: (0.5 / growth).clamp(STEPS[0], STEPS[1]) as usize }
     }
 
-    fn scene<S: Scheme<Kernel = K>>(
-        &self,
-        forces: S::Forces,
-        drift: S::Drift,
-        walls: S::Walls,
-    ) -> Scene<S> {
-        let dx = 1.0 / self.n as f64;
+    /// The scene.
+    pub fn parts(&self, method: &Method) -> Parts {
+        let (dx, h) = (1.0 / self.n as f64, self.h());
         let mut random = Random::new(7);
         let mut noise = || NOISE * random.normal();
         let particles = solver::lattice(Vector2::repeat(0.5 * dx), dx, self.n, self.n)
             .map(|x| Particle::fluid(x, Vector2::new(noise(), noise()), 1.0, dx * dx))
             .collect();
-        let mut scene =
-            Scene::new(self.h(), Domain::torus(1.0, 1.0), particles, forces, drift, walls);
-        scene.parallel_from = usize::MAX;
-        scene.limits = Limits { density: [0.7, 1.3], speed: 2.0 };
-        scene
+        let medium = Medium {
+            nu: h / self.stiffness,
+            eta2_over_h2: ETA2,
+            alpha: self.alpha,
+            diffusion: self.delta,
+            ..method.medium(Tait::new(1.0, 1.0), [dx, h])
+        };
+        Parts {
+            limits: Limits { density: [0.7, 1.3], speed: 2.0 },
+            ..Parts::new(medium, Domain::torus(1.0, 1.0), particles, &Context::default())
+        }
     }
 
-    fn viscosity(&self) -> Viscosity {
-        let h = self.h();
-        Viscosity { mu: h / self.stiffness, eta2: ETA2 * h * h }
-    }
-
-    /// The scene with viscosity alone; [`NoisyBox::alpha`] and [`NoisyBox::delta`] are ignored.
-    pub fn plain<I: Stepping>(&self) -> Scene<Plain<K, I>> {
-        let forces = (Pressure::new(Tait::new(1.0, 1.0)), self.viscosity());
-        self.scene(forces, Continuity, Open)
-    }
-
-    /// The scene with artificial viscosity and density diffusion too.
-    pub fn damped<I: Stepping>(&self) -> Scene<Damped<K, I>> {
-        let (eos, h) = (Tait::new(1.0, 1.0), self.h());
-        let damping = Damping::new(self.alpha, 0.0, h, eos);
-        let diffusion = DensityDiffusion::new(self.delta * h);
-        let forces = (Pressure::new(eos), self.viscosity(), damping);
-        self.scene(forces, (Continuity, diffusion), Open)
-    }
-
-    /// Runs a scene of this box for its number of steps of `courant` h/c₀.
-    fn run_scene<S: Scheme<Extra = ()>>(
+    /// Runs a simulation of this box for its number of steps of `courant` h/c₀.
+    fn run(
         &self,
-        scene: Scene<S>,
+        method: &Method,
+        mut simulation: Box<dyn Stepper<()>>,
         (courant, steps): (f64, usize),
         to_the_end: bool,
         context: &Context,
     ) -> Result<Measured, RunError> {
-        let mut simulation = scene.build()?;
         let dt = courant * self.h();
-        let wave = StiffestWave::of(self);
-        let (start, wave_start) = (energy(&simulation), wave.energy(&simulation.particles()));
+        let wave = StiffestWave::of(self, method);
+        let (start, wave_start) = (energy(&*simulation), wave.energy(&simulation.particles()));
         let growth = Growth::new(start, steps as u64);
         let mut watch = Watch { growth, to_the_end, stopped: false };
         let mut wave_growth = None;
         let (mut status, cost) = runner::drive(
-            &mut simulation,
+            &mut *simulation,
             dt,
             &[dt * steps as f64],
             context,
@@ -271,58 +305,58 @@ impl<K: Kernel> NoisyBox<K> {
             status = Status::Completed;
         }
         let grew = matches!(status, Status::Diverged { .. }) || watch.growth.grew();
-        let (energy, state) =
-            (energy(&simulation) / start, harness::simulate::state(&simulation.particles()));
+        let energy = energy(&*simulation) / start;
+        let state = simulate::state(&simulation.particles());
         Ok(Measured { status, cost, grew, energy, wave_growth, state })
     }
 
-    /// The limit of any scene of this box, beside the theory of the box: how the bisection of the plan goes
-    /// for a scene that is not what its settings say.
-    pub fn limit_of<S: Scheme<Extra = ()>>(&self, scene: impl Fn() -> Scene<S>) -> Limit
-    where
-        S::Integrator: Stepping,
-    {
-        let theory = self.theory(S::Integrator::THEORY);
+    /// The limit of any simulation of this box, beside the theory of the box: how the bisection of the plan
+    /// goes for one that is not what its settings say.
+    pub fn limit_of(
+        &self,
+        method: &Method,
+        build: impl Fn() -> Result<Box<dyn Stepper<()>>, SceneError>,
+    ) -> Limit {
+        let theory = self.theory(method);
         let is_stable = |courant| {
-            let run = self.run_scene(scene(), (courant, theory.steps), false, &Context::default());
-            run.is_ok_and(|run| !run.grew)
+            let stepping = (courant, theory.steps);
+            let run =
+                |simulation| self.run(method, simulation, stepping, false, &Context::default());
+            build().is_ok_and(|simulation| run(simulation).is_ok_and(|run| !run.grew))
         };
         Limit { measured: largest_stable(theory.limit, RESOLUTION, is_stable), theory }
     }
 
-    /// Growth a step of the amplitude of the stiffest wave of any scene of this box, and ω dt of theory.
-    pub fn stiffest_wave_of<S: Scheme<Extra = ()>>(
+    /// Growth a step of the amplitude of the stiffest wave of any simulation of this box, and ω dt of theory.
+    pub fn stiffest_wave_of(
         &self,
-        scene: Scene<S>,
+        method: &Method,
+        simulation: Box<dyn Stepper<()>>,
         courant: f64,
         steps: usize,
     ) -> [f64; 2] {
-        let run = self.run_scene(scene, (courant, steps), true, &Context::default());
+        let run = self.run(method, simulation, (courant, steps), true, &Context::default());
         let growth = run.ok().and_then(|run| run.wave_growth).unwrap_or(f64::NAN);
-        [growth, StiffestWave::of(self).omega * courant]
+        [growth, StiffestWave::of(self, method).omega * courant]
     }
 }
 
 /// One run of the case.
-pub fn run<K: Kernel, I: Stepping>(
+pub fn run(
+    pair: &Pair,
     variant: &str,
     settings: &BoxSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let fluid = NoisyBox::<K>::new(settings);
+    let fluid = NoisyBox::new(settings);
+    let method = pair.method(&fluid);
     let &BoxSettings { courant, steps, to_the_end, .. } = settings;
-    let Rules { dt, dt_limit, sound_speed } = rules::<K, I>(settings)?;
-    let integrator = <I as Integrator<()>>::NAME;
+    let Rules { dt, dt_limit, sound_speed } = rules(pair, settings)?;
     if dt > dt_limit && !context.allow_unstable {
-        return Err(RunError::TimeStep { dt, limit: dt_limit, integrator });
+        return Err(RunError::TimeStep { dt, limit: dt_limit, integrator: method.integrator });
     }
-    let measured = if fluid.alpha == 0.0 && fluid.delta == 0.0 {
-        fluid.run_scene(fluid.plain::<I>(), (courant, steps), to_the_end, context)?
-    } else {
-        fluid.run_scene(fluid.damped::<I>(), (courant, steps), to_the_end, context)?
-    };
-    let json = serde_json::to_value(settings).unwrap_or_default();
-    let mut record = Record::new(RESTING_BOX.name, variant, json, 1);
+    let simulation = (method.build)(fluid.parts(method))?;
+    let measured = fluid.run(method, simulation, (courant, steps), to_the_end, context)?;
     let numbers = [
         ("h/dx", fluid.h_over_dx),
         ("c0 [m/s]", sound_speed),
@@ -330,12 +364,12 @@ pub fn run<K: Kernel, I: Stepping>(
         ("dt [s]", dt),
         ("dt/limit", dt / dt_limit),
     ];
-    record.numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    record.numerics.insert("kernel".into(), K::NAME.into());
-    record.numerics.insert("integrator".into(), integrator.into());
+    let serial = Context::default();
+    let mut record =
+        simulate::begin((RESTING_BOX.name, variant), settings, method, &numbers, &serial);
     record.put(GREW, f64::from(u8::from(measured.grew)));
     record.put(ENERGY, measured.energy);
-    record.put(WAVE_ANGLE, StiffestWave::of(&fluid).omega * courant);
+    record.put(WAVE_ANGLE, StiffestWave::of(&fluid, method).omega * courant);
     if let Some(growth) = measured.wave_growth {
         record.put(WAVE_GROWTH, growth);
     }
@@ -345,9 +379,10 @@ pub fn run<K: Kernel, I: Stepping>(
 }
 
 /// What the settings say, and theory.
-pub fn rules<K: Kernel, I: Stepping>(settings: &BoxSettings) -> Result<Rules, RunError> {
-    let fluid = NoisyBox::<K>::new(settings);
-    let limit = time_step::time_step_limit(&fluid.modes(), I::THEORY);
+pub fn rules(pair: &Pair, settings: &BoxSettings) -> Result<Rules, RunError> {
+    let fluid = NoisyBox::new(settings);
+    let method = pair.plain();
+    let limit = time_step::time_step_limit(&fluid.modes(method), method.theory);
     let (dt, dt_limit) = (settings.courant * fluid.h(), limit * fluid.h());
     Ok(Rules { dt, dt_limit, sound_speed: 1.0 })
 }

@@ -14,21 +14,22 @@
 pub mod fit;
 mod run;
 
-pub use run::{Diffusive, Wave, measure, run_scene};
+pub use run::{Wave, measure, measured};
 
 use solver::{
-    Compose, Continuity, CubicSpline, Kernel, Leapfrog, Open, PredictorCorrector, Pressure,
-    QuinticSpline, Tait, Viscosity, WendlandC2,
+    Compose, Continuity, CubicSpline, DensityDiffusion, Kernel, Leapfrog, Open, PredictorCorrector,
+    Pressure, QuinticSpline, Tait, Viscosity, WendlandC2,
 };
 
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricKey, Status},
+    record::MetricKey,
 };
 use harness::{
-    case::{Planned, Tier, Variant},
-    composed::{Composed, Composition},
+    case::{Planned, Tier},
+    composed::{self, Composed, Composition, Program, Variants},
     declare::Declaration,
+    method::Method,
 };
 use maths::theory::Stepping;
 
@@ -136,10 +137,10 @@ pub const MOMENTUM_ERROR: MetricKey = MetricKey::new(
 );
 
 /// The scheme of a wave: no more than the equations.
-pub type Scheme<K, I> = SchemeWith<K, Continuity, I>;
-
-/// The same with the density following `D`.
-pub type SchemeWith<K, D, I> = Compose<K, (Pressure<Tait>, Viscosity), D, Open, I>;
+pub type Scheme<K, I> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
+/// The same with density diffusion.
+pub type Diffusive<K, I> =
+    Compose<K, (Pressure<Tait>, Viscosity), (Continuity, DensityDiffusion), Open, I>;
 
 /// Gates allow this relative error. Measured at amplitudes 1e-3 to 1e-8: the error of γ is
 /// 1.3e3 amplitude² for sound and 6e4 amplitude² for shear at ν = 1e-3 (rows slide by amplitude
@@ -178,32 +179,28 @@ const PLANNED: [(&str, Ratios); 6] = [
 ];
 
 fn variants<P: Kind>() -> Vec<Composition<WaveSettings>> {
-    fn variant<P: Kind, K: Kernel, I: Stepping>(name: &'static str) -> Composition<WaveSettings> {
-        let about = "one kernel and one integrator; the equations and nothing else";
-        Composition {
-            variant: Variant { name, about },
-            adjust: |_| (),
-            run: run::run::<P, K, I>,
-            rules: run::rules::<P, K>,
-            lacks: vec!["diffusion"],
-        }
-    }
-    let about = "the cubic spline and the leapfrog, with density diffusion";
-    vec![
-        variant::<P, CubicSpline, Leapfrog>("cubic-leapfrog"),
-        variant::<P, CubicSpline, PredictorCorrector>("cubic-pc"),
-        variant::<P, QuinticSpline, Leapfrog>("quintic-leapfrog"),
-        variant::<P, QuinticSpline, PredictorCorrector>("quintic-pc"),
-        variant::<P, WendlandC2, Leapfrog>("wendland-leapfrog"),
-        variant::<P, WendlandC2, PredictorCorrector>("wendland-pc"),
-        Composition {
-            variant: Variant { name: DIFFUSIVE.0, about },
-            adjust: |settings| settings.diffusion = DIFFUSION,
-            run: run::run_diffusive::<P, CubicSpline, Leapfrog>,
-            rules: run::rules::<P, CubicSpline>,
-            lacks: Vec::new(),
-        },
-    ]
+    let program = Program {
+        run: |method, variant, s, context| run::run(P::CASE, method, variant, s, context),
+        rules: |method, s| run::rules(P::CASE.polarisation, method, s),
+    };
+    let about = "one kernel and one integrator; the equations and nothing else";
+    let diffusive = "the cubic spline and the leapfrog, with density diffusion";
+    Variants::of(&program)
+        .with("cubic-leapfrog", about, plain::<CubicSpline, Leapfrog>(), |_| ())
+        .with("cubic-pc", about, plain::<CubicSpline, PredictorCorrector>(), |_| ())
+        .with("quintic-leapfrog", about, plain::<QuinticSpline, Leapfrog>(), |_| ())
+        .with("quintic-pc", about, plain::<QuinticSpline, PredictorCorrector>(), |_| ())
+        .with("wendland-leapfrog", about, plain::<WendlandC2, Leapfrog>(), |_| ())
+        .with("wendland-pc", about, plain::<WendlandC2, PredictorCorrector>(), |_| ())
+        .with(DIFFUSIVE.0, diffusive, Method::of::<Diffusive<CubicSpline, Leapfrog>>(), |s| {
+            s.diffusion = DIFFUSION;
+        })
+        .all
+}
+
+/// The equations and nothing else.
+pub fn plain<K: Kernel, I: Stepping>() -> Method {
+    Method::of::<Scheme<K, I>>()
 }
 
 /// The case of a kind of wave.
@@ -212,10 +209,10 @@ pub const fn case<P: Kind>() -> Composed<WaveSettings> {
         name: P::CASE.name,
         about: P::CASE.about,
         variants: variants::<P>,
-        is_stable: |record| record.status == Status::Completed,
+        is_stable: composed::completed,
         declaration: |_| Declaration::default(),
         plan: plan::<P>,
-        studies: |_, _| Vec::new(),
+        studies: composed::no_studies,
     }
 }
 

@@ -1,32 +1,23 @@
 //! One run of a mode: scene, stepping, projection, record.
 
 use nalgebra::Vector2;
-use solver::{
-    Continuity, DensityDiffusion, Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle,
-    Pressure, Scene, Stepper, Tait, Term, Viscosity,
-};
+use solver::{Domain, EquationOfState, Flow, Observer, Particle, Stepper, Tait};
 
 use super::{
-    DECAY_ERROR, FREQUENCY_ERROR, Kind, MOMENTUM_ERROR, Polarisation, SHEAR_DECAY_ERROR, Scheme,
-    SchemeWith, TRAJECTORY_ERROR, WaveCase, WaveSettings, fit,
+    DECAY_ERROR, FREQUENCY_ERROR, MOMENTUM_ERROR, Polarisation, SHEAR_DECAY_ERROR,
+    TRAJECTORY_ERROR, WaveCase, WaveSettings, fit,
 };
 use base::{
-    number,
     random::Random,
     record::{self, Cost, MetricKey, Profile, Record, Status},
 };
 use harness::{
     case::{Rules, RunError},
-    runner::{self, Context},
+    context::Context,
+    method::{Medium, Method, Parts},
+    runner, simulate,
 };
-use maths::{
-    exact::damped_mode::DampedMode,
-    theory::{
-        Stepping,
-        lattice::SquareLattice,
-        time_step::{self, Medium, Mode},
-    },
-};
+use maths::{exact::damped_mode::DampedMode, theory::time_step};
 
 /// The numbers of one run, SI units.
 #[derive(Clone, Debug)]
@@ -38,13 +29,8 @@ pub struct Wave {
     theta: Vector2<f64>,
     /// Unit vector along the gradient symbol.
     along: Vector2<f64>,
-    /// Density at rest \[kg/m³\].
-    density: f64,
-    /// Sound speed at that density \[m/s\].
-    sound_speed: f64,
-    /// Smoothing length \[m\].
-    pub h: f64,
-    eos: Tait,
+    /// What terms are made from.
+    medium: Medium,
     /// Frequency and damping that theory gives to sound.
     pub sound: DampedMode,
     /// Damping that theory gives to shear \[1/s\].
@@ -58,9 +44,6 @@ pub struct Wave {
     /// End of the run \[s\].
     end: f64,
 }
-
-/// What density follows where it diffuses.
-pub type Diffusive = (Continuity, DensityDiffusion);
 
 /// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
 struct Projection<'a> {
@@ -85,36 +68,48 @@ pub struct Measured {
 }
 
 impl Wave {
-    /// A wave of these settings seen through the kernel `K`, stepped by `I`.
-    pub fn new<K: Kernel>(
+    /// A wave of these settings in the lattice of a method.
+    ///
+    /// # Errors
+    /// If the lattice does not carry it, or the step is beyond its limit.
+    pub fn new(
         polarisation: Polarisation,
-        settings: &WaveSettings,
-        allow_unstable: bool,
+        s: &WaveSettings,
+        method: &Method,
+        context: &Context,
     ) -> Result<Self, RunError> {
-        let s = settings;
         for (what, k) in [("the wave number kx", s.kx), ("the wave number ky", s.ky)] {
             let (value, most) = (k as f64, ((s.n - 1) / 2) as f64);
             if value > most {
                 return Err(RunError::TooMuch { what, value, most, setting: "n, kx or ky" });
             }
         }
-        let h = s.h_over_dx * s.length / s.n as f64;
+        let (dx, h) = (s.length / s.n as f64, s.h_over_dx * s.length / s.n as f64);
         let turn = std::f64::consts::TAU / s.n as f64;
         let theta = Vector2::new(s.kx as f64, s.ky as f64) * turn;
-        let lattice = SquareLattice::<K>::new(s.h_over_dx, s.eta2_over_h2);
+        let lattice = [s.h_over_dx, s.eta2_over_h2];
         let density = s.rho * (1.0 + s.compression);
         let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
-        let medium = Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
-        let mode = Mode::new(&lattice, theta, &medium);
+        let eos = without_pressure_at(density, Tait::new(s.rho, s.c0));
+        let medium = Medium {
+            density,
+            sound_speed,
+            nu: s.nu,
+            eta2_over_h2: s.eta2_over_h2,
+            diffusion: s.diffusion,
+            ..method.medium(eos, [dx, h])
+        };
+        let waves =
+            time_step::Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
+        let mode = method.mode(lattice, theta, &waves);
         let sound = DampedMode { omega: mode.omega, gamma: mode.longitudinal };
         let viscous = if s.nu > 0.0 { s.viscous * h * h / s.nu } else { f64::INFINITY };
         let dt = s.dt.unwrap_or((s.courant * h / sound_speed).min(viscous));
-        let modes = time_step::modes(&lattice, s.n, &medium);
         // The predictor-corrector amplifies sound at every dt, which is part of what is compared.
         let theory = time_step::Integrator::Leapfrog;
-        let limit = time_step::time_step_limit(&modes, theory);
-        if dt > limit && !allow_unstable {
-            return Err(RunError::TimeStep { dt, limit, integrator: "leapfrog" });
+        let dt_limit = time_step::time_step_limit(&method.modes(lattice, s.n, &waves), theory);
+        if dt > dt_limit && !context.allow_unstable {
+            return Err(RunError::TimeStep { dt, limit: dt_limit, integrator: "leapfrog" });
         }
         let period = std::f64::consts::TAU / sound.omega;
         let time = match polarisation {
@@ -127,16 +122,13 @@ impl Wave {
             settings: s.clone(),
             polarisation,
             theta,
-            along: lattice.gradient(theta).normalize(),
-            density,
-            sound_speed,
-            h,
-            eos: without_pressure_at(density, Tait::new(s.rho, s.c0)),
+            along: mode.along,
+            medium,
             sound,
             shear: mode.transverse,
             diffusion: mode.density,
             dt,
-            dt_limit: limit,
+            dt_limit,
             end,
         })
     }
@@ -152,22 +144,8 @@ impl Wave {
     }
 
     /// The scene: a cosine of velocity at uniform density.
-    pub fn scene<K: Kernel, I: Stepping>(&self) -> Scene<Scheme<K, I>> {
-        self.scene_with(Continuity)
-    }
-
-    /// The same with density diffusion.
-    pub fn diffusive_scene<K: Kernel, I: Stepping>(&self) -> Scene<SchemeWith<K, Diffusive, I>> {
-        let diffusivity = self.settings.diffusion * self.h * self.sound_speed;
-        self.scene_with((Continuity, DensityDiffusion::new(diffusivity)))
-    }
-
-    fn scene_with<K: Kernel, D: Term<()>, I: Stepping>(
-        &self,
-        drift: D,
-    ) -> Scene<SchemeWith<K, D, I>> {
-        let s = &self.settings;
-        let dx = s.length / s.n as f64;
+    pub fn parts(&self, context: &Context) -> Parts {
+        let (s, Medium { dx, density, sound_speed, .. }) = (&self.settings, self.medium);
         let direction = match self.polarisation {
             Polarisation::Sound => self.along,
             Polarisation::Shear => self.across(),
@@ -176,15 +154,12 @@ impl Wave {
         let mut random = Random::new(1);
         let mut offset = || Vector2::new(random.normal(), random.normal()) * (s.jitter * dx);
         let particles = places.zip(self.phases()).map(|(place, phase)| {
-            let velocity = direction * (s.amplitude * self.sound_speed * phase.cos());
+            let velocity = direction * (s.amplitude * sound_speed * phase.cos());
             let place = if s.jitter > 0.0 { place + offset() } else { place };
-            Particle::fluid(place, velocity, self.density, dx * dx)
+            Particle::fluid(place, velocity, density, dx * dx)
         });
-        let viscosity =
-            Viscosity { mu: self.density * s.nu, eta2: s.eta2_over_h2 * self.h * self.h };
-        let forces = (Pressure::new(self.eos), viscosity);
-        let domain = Domain::torus(s.length, s.length);
-        Scene::new(self.h, domain, particles.collect(), forces, drift, Open)
+        let (domain, particles) = (Domain::torus(s.length, s.length), particles.collect());
+        Parts::new(self.medium.clone(), domain, particles, context)
     }
 
     /// What theory gives for the amplitudes after each of `steps` steps, exactly.
@@ -221,7 +196,7 @@ impl<'a> Projection<'a> {
 
 impl Observer<()> for Projection<'_> {
     fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
-        let Wave { density, sound_speed, along, .. } = self.wave;
+        let Wave { along, medium: Medium { density, sound_speed, .. }, .. } = self.wave;
         let across = self.wave.across();
         let mut sums = [0.0; 3];
         for (particle, [cos, sin]) in simulation.particles().iter().zip(&self.basis) {
@@ -245,33 +220,25 @@ fn without_pressure_at(density: f64, eos: Tait) -> Tait {
     Tait { background: -eos.pressure(density), ..eos }
 }
 
-/// Runs a wave.
+/// Runs a wave and projects it on itself.
 ///
 /// # Errors
 /// If its scene is impossible or a frame cannot be written.
-pub fn measure<K: Kernel, I: Stepping>(
-    wave: &Wave,
-    context: &Context,
-) -> Result<Measured, RunError> {
-    measure_scene(wave, context, Wave::scene::<K, I>)
+pub fn measure(wave: &Wave, method: &Method, context: &Context) -> Result<Measured, RunError> {
+    project(wave, (method.build)(wave.parts(context))?, context)
 }
 
-/// Runs the scene that `scene` makes of a wave and projects it on the wave.
-fn measure_scene<S: solver::Scheme<Extra = ()>>(
+/// Runs a simulation and projects it on a wave.
+fn project(
     wave: &Wave,
+    mut simulation: Box<dyn Stepper<()>>,
     context: &Context,
-    scene: impl FnOnce(&Wave) -> Scene<S>,
 ) -> Result<Measured, RunError> {
-    let mut scene = scene(wave);
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
-    }
-    let mut simulation = scene.build()?;
     let mut projection = Projection::new(wave);
-    let pressure = |density: f64| wave.eos.pressure(density);
+    let pressure = |density: f64| wave.medium.eos.pressure(density);
     // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
     let (status, cost) = runner::drive(
-        &mut simulation,
+        &mut *simulation,
         wave.dt,
         &[wave.end],
         context,
@@ -288,52 +255,54 @@ fn measure_scene<S: solver::Scheme<Extra = ()>>(
 }
 
 /// What the rules choose.
-pub(super) fn rules<P: Kind, K: Kernel>(settings: &WaveSettings) -> Result<Rules, RunError> {
-    let Wave { dt, dt_limit, sound_speed, .. } =
-        Wave::new::<K>(P::CASE.polarisation, settings, true)?;
-    Ok(Rules { dt, dt_limit, sound_speed })
+pub(super) fn rules(
+    polarisation: Polarisation,
+    method: &Method,
+    settings: &WaveSettings,
+) -> Result<Rules, RunError> {
+    let Wave { dt, dt_limit, medium, .. } =
+        Wave::new(polarisation, settings, method, &Context::of_rules())?;
+    Ok(Rules { dt, dt_limit, sound_speed: medium.sound_speed })
 }
 
 /// Runs a wave and compares it with theory.
-pub(super) fn run<P: Kind, K: Kernel, I: Stepping>(
-    variant: &str,
-    settings: &WaveSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    run_scene(P::CASE, variant, settings, context, Wave::scene::<K, I>)
-}
-
-/// The same with density diffusion.
-pub(super) fn run_diffusive<P: Kind, K: Kernel, I: Stepping>(
-    variant: &str,
-    settings: &WaveSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    run_scene(P::CASE, variant, settings, context, Wave::diffusive_scene::<K, I>)
-}
-
-/// Runs the scene that `scene` makes of a wave and compares it with the theory of the wave: the same
-/// measuring for a scene that is not what its settings say.
-pub fn run_scene<S>(
+pub(super) fn run(
     case: &WaveCase,
+    method: &Method,
     variant: &str,
     settings: &WaveSettings,
     context: &Context,
-    scene: impl FnOnce(&Wave) -> Scene<S>,
-) -> Result<Record, RunError>
-where
-    S: solver::Scheme<Extra = ()>,
-    S::Integrator: Stepping,
-{
-    let wave = Wave::new::<S::Kernel>(case.polarisation, settings, context.allow_unstable)?;
-    let measured = measure_scene(&wave, context, scene)?;
-    let json = serde_json::to_value(settings).unwrap_or_default();
-    let mut record = Record::new(case.name, variant, json, context.threads.max(1));
-    describe::<S::Kernel, S::Integrator>(&wave, &mut record);
-    compare(&wave, S::Integrator::THEORY, &measured.series, &mut record);
-    let s = settings;
-    let mass = wave.density * s.length * s.length;
-    let scale = mass * s.amplitude * wave.sound_speed;
+) -> Result<Record, RunError> {
+    let wave = Wave::new(case.polarisation, settings, method, context)?;
+    let simulation = (method.build)(wave.parts(context))?;
+    measured(case, &wave, method, variant, simulation, context)
+}
+
+/// Steps a simulation and compares it with the theory of the wave: the same measuring for one that is not
+/// what its settings say.
+///
+/// # Errors
+/// If a frame cannot be written.
+pub fn measured(
+    case: &WaveCase,
+    wave: &Wave,
+    method: &Method,
+    variant: &str,
+    simulation: Box<dyn Stepper<()>>,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let (s, Medium { density, sound_speed, h, .. }) = (&wave.settings, wave.medium);
+    let measured = project(wave, simulation, context)?;
+    let numbers = [
+        ("h/dx", s.h_over_dx),
+        ("c0 [m/s]", sound_speed),
+        ("c0 h/nu", sound_speed * h / s.nu),
+        ("dt [s]", wave.dt),
+        ("omega dt", wave.sound.omega * wave.dt),
+    ];
+    let mut record = simulate::begin((case.name, variant), s, method, &numbers, context);
+    compare(wave, method.theory, &measured.series, &mut record);
+    let scale = density * s.length * s.length * s.amplitude * sound_speed;
     record.put(MOMENTUM_ERROR, measured.momentum_change / scale);
     let column = |k: usize| measured.series.iter().map(|a| a[k]).collect();
     let times = (1..=measured.series.len()).map(|k| k as f64 * wave.dt).collect();
@@ -374,8 +343,8 @@ fn compare(
         record.put(DECAY_ERROR, relative(found.gamma, expected.gamma, scale));
         record.put(FREQUENCY, found.frequency());
         record.put(DECAY, 0.5 * found.gamma);
-        let sound =
-            wave.sound_speed * wave.theta.norm() * wave.settings.n as f64 / wave.settings.length;
+        let sound = wave.medium.sound_speed * wave.theta.norm() * wave.settings.n as f64
+            / wave.settings.length;
         record.put(SOUND_FACTOR, found.omega / sound);
     } else {
         let found = fit::decay_of(series, integrator, wave.dt).unwrap_or(f64::NAN);
@@ -393,20 +362,4 @@ fn compare(
     };
     let error = largest(&|n, k| (series[n][k] - predicted[n][k]).abs());
     record.put(TRAJECTORY_ERROR, error / wave.settings.amplitude);
-}
-
-/// What the run chose.
-fn describe<K: Kernel, I: Stepping>(wave: &Wave, record: &mut Record) {
-    let s = &wave.settings;
-    let numbers = [
-        ("h/dx", s.h_over_dx),
-        ("c0 [m/s]", wave.sound_speed),
-        ("c0 h/nu", wave.sound_speed * wave.h / s.nu),
-        ("dt [s]", wave.dt),
-        ("omega dt", wave.sound.omega * wave.dt),
-    ];
-    let numerics = &mut record.numerics;
-    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    numerics.insert("kernel".into(), K::NAME.into());
-    numerics.insert("integrator".into(), I::NAME.into());
 }

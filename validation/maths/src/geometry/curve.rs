@@ -1,6 +1,7 @@
 //! Rows of particles along a smooth curve and beside it, each spaced evenly by its own arc length.
 
 use nalgebra::Vector2;
+use solver::{Particle, Role};
 
 type Point = Vector2<f64>;
 
@@ -30,6 +31,27 @@ pub struct Row {
     pub spacing: f64,
     /// The particles, in the direction of the curve.
     pub points: Vec<Point>,
+}
+
+impl Row {
+    /// Its particles, each with its share of the area of a row that is `dx` \[m\] wide: fluid before the
+    /// curve, interface on it, wall behind it.
+    pub fn particles(
+        &self,
+        dx: f64,
+        density: f64,
+        velocity: impl Fn(Point) -> Vector2<f64>,
+    ) -> impl Iterator<Item = Particle> {
+        let volume = self.spacing * dx;
+        let role = match self.depth {
+            0.0 => Role::Interface,
+            depth if depth < 0.0 => Role::Fluid,
+            _ => Role::Wall,
+        };
+        self.points
+            .iter()
+            .map(move |&x| Particle::fluid(x, velocity(x), density, volume).with_role(role))
+    }
 }
 
 impl Curve {

@@ -9,8 +9,7 @@
 
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion,
-    EquationOfState, Evolved, Pressure, Rate, Scheme, Simulation, Stepper as _, Term, Viscosity,
-    Xsph,
+    EquationOfState, Evolved, Pressure, Rate, Scheme, Simulation, Stepper, Term, Viscosity, Xsph,
     terms::{Rest, Switch},
 };
 
@@ -120,6 +119,26 @@ macro_rules! tuple_of_items {
 tuple_of_items!(A 0, B 1);
 tuple_of_items!(A 0, B 1, C 2);
 tuple_of_items!(A 0, B 1, C 2, D 3);
+
+/// A simulation that can say what each of its terms does to the energy.
+pub trait Metered<X>: Stepper<X> {
+    /// The powers of its forces, its drift and its walls' own terms, after [`Stepper::advance`] reached a time.
+    fn powers(&mut self, slope: Slope<X>) -> Items;
+}
+
+impl<S: Scheme> Metered<S::Extra> for Simulation<S>
+where
+    S::Forces: Itemised<S::Extra>,
+    S::Drift: Itemised<S::Extra>,
+{
+    fn powers(&mut self, slope: Slope<S::Extra>) -> Items {
+        let (forces, drift) = self.terms_mut().clone();
+        let meter = Meter::new(self, slope);
+        let mut powers = [forces.powers(&meter), drift.powers(&meter)].concat();
+        powers.push((WALLS, meter.wall_power()));
+        powers
+    }
+}
 
 /// Works since the first sample, by the trapezoidal rule over the powers of each sample.
 #[derive(Clone, Debug, Default)]

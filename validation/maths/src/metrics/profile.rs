@@ -1,7 +1,6 @@
 //! A particle field at stations: SPH interpolation (1) with Shepard's normalisation.
 
 use nalgebra::Vector2;
-use solver::kernel::{Kernel, Smoothing};
 use thiserror::Error;
 
 /// Particles as an interpolation sees them; slices of one length. Images across a periodic boundary
@@ -43,14 +42,15 @@ pub enum ProfileError {
     },
 }
 
+/// `kernel` is W \[1/m²\] of r² \[m²\].
 /// f(x) = Σⱼ Vⱼ fⱼ W(|x - xⱼ|) / Σⱼ Vⱼ W(|x - xⱼ|) at every station, in order. Constant fields are
 /// exact everywhere, linear ones only where the particles lie symmetrically about the station; in
 /// general the error is of second order in h. Every station looks at every particle.
 ///
 /// # Errors
 /// [`ProfileError`] for slices of different lengths and for stations out of reach of all particles.
-pub fn interpolate<K: Kernel>(
-    kernel: &Smoothing<K>,
+pub fn interpolate(
+    kernel: impl Fn(f64) -> f64,
     field: Field,
     stations: &[Vector2<f64>],
 ) -> Result<Vec<f64>, ProfileError> {
@@ -62,7 +62,7 @@ pub fn interpolate<K: Kernel>(
     let at = |(station, x): (usize, &Vector2<f64>)| {
         let (mut sum, mut weight) = (0.0, 0.0);
         for j in 0..positions.len() {
-            let vw = volumes[j] * kernel.w((x - positions[j]).norm_squared());
+            let vw = volumes[j] * kernel((x - positions[j]).norm_squared());
             // A NaN must be seen, a far-away particle must not turn 0 × ∞ into one.
             if vw != 0.0 {
                 sum += vw * values[j];
@@ -81,7 +81,7 @@ pub fn interpolate<K: Kernel>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use solver::kernel::{CubicSpline, QuinticSpline};
+    use solver::kernel::{CubicSpline, QuinticSpline, Smoothing};
 
     const DX: f64 = 0.1;
 
@@ -95,7 +95,8 @@ mod tests {
         let values: Vec<_> = positions.iter().map(f).collect();
         let volumes = vec![DX * DX; positions.len()];
         let field = Field { positions: &positions, volumes: &volumes, values: &values };
-        interpolate(&Smoothing::<QuinticSpline>::new(DX), field, stations).expect("in reach")
+        let kernel = Smoothing::<QuinticSpline>::new(DX);
+        interpolate(|r2| kernel.w(r2), field, stations).expect("in reach")
     }
 
     #[test]
@@ -121,15 +122,15 @@ mod tests {
 
     #[test]
     fn stations_out_of_reach_and_broken_fields_are_errors() {
-        let kernel = Smoothing::<CubicSpline>::new(DX);
+        let kernel = |r2: f64| Smoothing::<CubicSpline>::new(DX).w(r2);
         let (positions, station) = ([Vector2::zeros()], [Vector2::new(1.0, 0.0)]);
         let field = Field { positions: &positions, volumes: &[0.01], values: &[1.0] };
-        let lonely = interpolate(&kernel, field, &station);
+        let lonely = interpolate(kernel, field, &station);
         let expected = ProfileError::Station { station: 0, x: 1.0, y: 0.0, weight: 0.0 };
         assert_eq!(lonely, Err(expected));
-        let nan = interpolate(&kernel, Field { values: &[f64::NAN], ..field }, &positions);
+        let nan = interpolate(kernel, Field { values: &[f64::NAN], ..field }, &positions);
         assert!(matches!(nan, Err(ProfileError::Station { .. })));
-        let short = interpolate(&kernel, Field { values: &[], ..field }, &positions);
+        let short = interpolate(kernel, Field { values: &[], ..field }, &positions);
         assert_eq!(short, Err(ProfileError::Lengths { positions: 1, volumes: 1, values: 0 }));
     }
 }

@@ -46,6 +46,8 @@ pub enum Integrator {
 /// One wave: the coefficients of its equations, resolved along and across ĝ.
 #[derive(Clone, Copy, Debug)]
 pub struct Mode {
+    /// ĝ, the unit vector along the gradient symbol.
+    pub along: Vector2<f64>,
     /// ω = c₀|g| \[1/s\].
     pub omega: f64,
     /// ĝ·Γĝ \[1/s\].
@@ -142,6 +144,7 @@ impl Mode {
         let p = lattice.artificial(theta) * (alpha * c0 / h);
         let viscous = nu * lattice.laplacian(theta) / (h * h);
         Self {
+            along,
             omega: c0 * g.norm() / h,
             longitudinal: viscous + along.dot(&(p * along)),
             coupling: across.dot(&(p * along)),
@@ -193,7 +196,7 @@ impl Mode {
 
     /// The symmetric matrix whose largest eigenvalue limits the leapfrog.
     fn stiffness(&self) -> Matrix3<f64> {
-        let Self { omega, longitudinal, coupling, transverse, density } = *self;
+        let Self { omega, longitudinal, coupling, transverse, density, .. } = *self;
         Matrix3::new(
             density,
             omega,
@@ -209,7 +212,7 @@ impl Mode {
 
     /// One step of the leapfrog: v with the old v and p, then p with the new v.
     fn leapfrog_step(&self, dt: f64) -> Matrix3<f64> {
-        let Self { omega, longitudinal, coupling, transverse, density } = *self;
+        let Self { omega, longitudinal, coupling, transverse, density, .. } = *self;
         let kick = Matrix3::new(
             1.0,
             0.0,
@@ -238,7 +241,7 @@ impl Mode {
     /// Eigenvalues of (p, v_l, v_t)' \[1/s\]: in closed form without coupling, for then zero and
     /// undamped waves keep an exact real part.
     fn eigenvalues(&self) -> [Complex<f64>; 3] {
-        let Self { omega, longitudinal, coupling, transverse, density } = *self;
+        let Self { omega, longitudinal, coupling, transverse, density, .. } = *self;
         if coupling.abs() > 1e-12 * (longitudinal + transverse) {
             let spectrum = Matrix3::new(
                 -density,
@@ -339,7 +342,8 @@ mod tests {
     use Integrator::{Euler, Leapfrog, PredictorCorrector};
 
     fn oscillator(omega: f64, gamma: f64) -> Mode {
-        Mode { omega, longitudinal: gamma, coupling: 0.0, transverse: 0.0, density: 0.0 }
+        let along = Vector2::x();
+        Mode { along, omega, longitudinal: gamma, coupling: 0.0, transverse: 0.0, density: 0.0 }
     }
 
     /// Table 2.1: leapfrog limit of sound c₀ dt/h and limit of viscosity ν dt/h² at η² = 0.01 h².

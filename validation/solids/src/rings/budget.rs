@@ -1,12 +1,14 @@
 //! Where the energy of the rings goes: kinetic and elastic energy through time, and the work of each
 //! term that is not elastic.
 
+use harness::method::FromMedium;
 use solver::{
-    ArtificialViscosity, CauchyStress, Continuity, JaumannRate, Scheme, Simulation, Symmetric,
+    ArtificialViscosity, CauchyStress, Continuity, JaumannRate, Linear, Scheme, Simulation,
+    Stepper, Symmetric, Term, terms::TensileStress,
 };
 
 use super::{
-    Rings, Tensile,
+    Rings,
     metrics::{ENERGY_GAP, WORK_ELASTIC, WORK_STRESS, WORK_VISCOSITY},
 };
 use crate::solid::{Energy, solid_slope};
@@ -21,24 +23,44 @@ const ELASTIC: &str = "elastic law";
 const ITEMS: [(&str, MetricKey); 3] =
     [(VISCOSITY, WORK_VISCOSITY), (STRESS, WORK_STRESS), (ELASTIC, WORK_ELASTIC)];
 
-/// The powers of the terms of a scene with the artificial stress `R` \[W/m\]. XSPH moves particles and
-/// changes neither velocity, density nor stress: it has no power of its own.
-pub fn powers<R: Tensile, S: Scheme<Extra = Symmetric>>(
-    rings: &Rings,
-    simulation: &Simulation<S>,
-) -> Items {
-    let slope = solid_slope(&rings.material());
-    let meter = Meter::new(simulation, &slope);
-    let (eos, s) = (rings.eos, &rings.settings);
-    let elastic = meter.power(&CauchyStress { eos, tensile: () });
-    let stressed = meter.power(&CauchyStress { eos, tensile: R::of(rings) });
-    let strained = meter.power(&(Continuity, JaumannRate { shear_modulus: rings.mu }));
-    let viscosity: ArtificialViscosity<_> = ArtificialViscosity::new(s.alpha, s.beta, rings.h, eos);
-    vec![
-        (ELASTIC, elastic + strained),
-        (STRESS, stressed - elastic),
-        (VISCOSITY, meter.power(&viscosity)),
-    ]
+/// Forces with an artificial stress, or with none, `()`.
+pub trait Stressed {
+    /// The artificial stress.
+    type Tensile: TensileStress + FromMedium;
+}
+
+impl<R: TensileStress + FromMedium> Stressed for CauchyStress<Linear, R> {
+    type Tensile = R;
+}
+
+impl<A: Stressed, B> Stressed for (A, B) {
+    type Tensile = A::Tensile;
+}
+
+/// A simulation of rubber that can say what its terms do to the energy.
+pub trait Metered: Stepper<Symmetric> {
+    /// The powers of the terms \[W/m\]. XSPH moves particles and changes neither velocity, density nor
+    /// stress: it has no power of its own.
+    fn powers(&self, rings: &Rings) -> Items;
+}
+
+impl<S: Scheme<Extra = Symmetric, Forces: Stressed>> Metered for Simulation<S> {
+    fn powers(&self, rings: &Rings) -> Items {
+        fn power<S: Scheme<Extra = Symmetric>, T: Term<Symmetric> + FromMedium>(
+            meter: &Meter<S>,
+            rings: &Rings,
+        ) -> f64 {
+            meter.power(&T::new(&rings.medium))
+        }
+        let slope = solid_slope(&rings.material);
+        let meter = Meter::new(self, &slope);
+        let elastic = power::<S, CauchyStress<Linear>>(&meter, rings);
+        let stressed =
+            power::<S, CauchyStress<Linear, <S::Forces as Stressed>::Tensile>>(&meter, rings);
+        let strained = power::<S, (Continuity, JaumannRate)>(&meter, rings);
+        let viscosity = power::<S, ArtificialViscosity<Linear>>(&meter, rings);
+        vec![(ELASTIC, elastic + strained), (STRESS, stressed - elastic), (VISCOSITY, viscosity)]
+    }
 }
 
 /// The budget of a run.
@@ -51,14 +73,9 @@ pub struct Budget {
 
 impl Budget {
     /// Takes a sample of a simulation that has been brought to a time.
-    pub fn sample<S: Scheme<Extra = Symmetric>>(
-        &mut self,
-        rings: &Rings,
-        simulation: &Simulation<S>,
-        powers: &Items,
-    ) {
-        self.account.add(simulation.time(), powers);
-        let Energy { kinetic, compression, shear } = Energy::of(simulation, &rings.material());
+    pub fn sample(&mut self, rings: &Rings, simulation: &dyn Metered) {
+        self.account.add(simulation.time(), &simulation.powers(rings));
+        let Energy { kinetic, compression, shear } = Energy::of(simulation, &rings.material);
         let [a, b, c] = ITEMS.map(|(name, _)| self.account.work(name));
         self.rows.push([simulation.time(), kinetic, compression, shear, a, b, c]);
     }

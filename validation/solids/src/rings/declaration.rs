@@ -229,34 +229,18 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     }
 }
 
-fn texts<T: ToString>(values: &[T]) -> Vec<String> {
-    values.iter().map(T::to_string).collect()
-}
-
 /// Claim M2: pieces over speed and spacing.
 fn fracture_map(tier: Tier) -> Map {
     let mut speeds = [plan::speeds(tier), &[SPEED]].concat();
     speeds.sort_by(f64::total_cmp);
     let spacings = [0.05, 0.1, FIVE_LAYERS];
+    let planned: Vec<RunSpec> =
+        plan::collisions(tier).into_iter().map(|planned| planned.spec).collect();
     let panel = |variant: &str| {
-        let is_run = |spacing: f64, speed: f64| {
-            let spacings = match speed {
-                SPEED => plan::spacings(variant, tier),
-                _ => plan::spacings_at(variant, speed, tier),
-            };
-            spacings.contains(&spacing)
-        };
-        let cell = |spacing: f64, speed: f64| match is_run(spacing, speed) {
-            true => vec![collision(variant, spacing, speed)],
-            false => Vec::new(),
-        };
-        let row = |spacing: &f64| speeds.iter().map(|speed| cell(*spacing, *speed)).collect();
-        MapPanel {
-            title: variant.into(),
-            x: texts(&speeds),
-            y: texts(&spacings),
-            cells: spacings.iter().map(row).collect(),
-        }
+        MapPanel::over(variant, &speeds, &spacings, |speed, spacing| {
+            let spec = collision(variant, spacing, speed);
+            if planned.contains(&spec) { vec![spec] } else { Vec::new() }
+        })
     };
     Map {
         id: "rubber-rings-fracture-map".into(),
@@ -285,8 +269,7 @@ fn cell(set: impl FnOnce(&mut RingSettings)) -> Vec<RunSpec> {
 fn stress_map() -> Map {
     const XI: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.5];
     const N: [usize; 3] = [2, 4, 6];
-    let row = |n: usize| XI.map(|xi| cell(|s| (s.xi, s.stress_exponent) = (xi, n))).into();
-    let cells = N.map(row).into();
+    let cell = |xi, n| cell(|s| (s.xi, s.exponent) = (xi, n));
     Map {
         id: "rubber-rings-stress-map".into(),
         title: "Stability over the artificial stress".into(),
@@ -296,7 +279,7 @@ fn stress_map() -> Map {
         x: "ξ [-]".into(),
         y: "n [-]".into(),
         outcomes: outcomes(),
-        panels: vec![MapPanel { title: String::new(), x: texts(&XI), y: texts(&N), cells }],
+        panels: vec![MapPanel::over("", &XI, &N, cell)],
         outcome,
     }
 }
@@ -304,13 +287,7 @@ fn stress_map() -> Map {
 /// Pieces over α.
 fn viscosity_map() -> Map {
     const ALPHA: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
-    let row = ALPHA.map(|alpha| cell(|s| (s.alpha, s.beta) = (alpha, 2.0 * alpha))).into();
-    let panel = MapPanel {
-        title: String::new(),
-        x: texts(&ALPHA),
-        y: vec![String::new()],
-        cells: vec![row],
-    };
+    let cell = |alpha, _| cell(|s| (s.alpha, s.beta) = (alpha, 2.0 * alpha));
     Map {
         id: "rubber-rings-viscosity-map".into(),
         title: "Stability over the artificial viscosity".into(),
@@ -318,7 +295,7 @@ fn viscosity_map() -> Map {
         x: "α [-]".into(),
         y: String::new(),
         outcomes: outcomes(),
-        panels: vec![panel],
+        panels: vec![MapPanel::over("", &ALPHA, &[""], cell)],
         outcome,
     }
 }

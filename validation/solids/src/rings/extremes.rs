@@ -36,10 +36,6 @@ pub fn study(tier: Tier, runs: &Runs) -> Study {
     extremes::study("rubber-rings-extremes", "Extremes of rubber", lead, entries)
 }
 
-fn words(what: &str, setting: &str) -> [String; 2] {
-    [what.to_string(), setting.to_string()]
-}
-
 fn of_stiffness(bulk_modulus: f64) -> RunSpec {
     let set = |s: &mut RingSettings| {
         (s.spacing, s.end, s.bulk_modulus) = (0.33, 80.0, bulk_modulus);
@@ -51,7 +47,7 @@ fn of_stiffness(bulk_modulus: f64) -> RunSpec {
 fn stiffer(runs: &Runs) -> Entry {
     let entry = Entry::new(
         "rings.stiffer",
-        words("rings a hundred times stiffer", "K = 1 and K = 100, 3 layers, t = 80 L/c0"),
+        ["rings a hundred times stiffer", "K = 1 and K = 100, 3 layers, t = 80 L/c0"].map(String::from),
         "distance [L, c0]",
         Bound::Below(1e-10),
     )
@@ -85,7 +81,7 @@ fn fast_spec() -> RunSpec {
 fn fast(runs: &Runs) -> Entry {
     let entry = Entry::new(
         "rings.fast",
-        words("rings at half the speed of sound each", "0.5 c0, spacing 0.2 L, variant seed"),
+        ["rings at half the speed of sound each", "0.5 c0, spacing 0.2 L, variant seed"].map(String::from),
         "|Σ m v|/m V, or 0 for a typed failure",
         Bound::Below(1e-12),
     )
@@ -160,9 +156,9 @@ impl Still {
         let Self { name, what, speed, because, .. } = *self;
         let steps = self.steps(tier);
         let setting = format!("at least {steps} steps at {speed} c0, 2 layers, spacing 0.5 L");
-        let what = words(what, &setting);
-        let entry = Entry::new(name, what, "change of extents [L]", Bound::Below(1e-9))
-            .because(Evidence::Invariant, because);
+        let entry =
+            Entry::new(name, [what.into(), setting], "change of extents [L]", Bound::Below(1e-9))
+                .because(Evidence::Invariant, because);
         let Some(record) = runs.completed(&self.spec(tier)) else { return entry };
         let first = |name: &str| record.column("series", name).first().copied();
         let change = |name: &str, extreme| {
@@ -183,7 +179,8 @@ fn overlapping_spec() -> RunSpec {
 fn overlapping(runs: &Runs) -> Entry {
     let entry = Entry::new(
         "rings.overlap",
-        words("rings that overlap at t = 0", "outer radius 4 L, centres 3.9 L from the plane"),
+        ["rings that overlap at t = 0", "outer radius 4 L, centres 3.9 L from the plane"]
+            .map(String::from),
         "1 if refused",
         Bound::Equals(1.0),
     )

@@ -1,7 +1,7 @@
 //! What is measured of the rings, sample by sample and at the end.
 
 use nalgebra::Vector2;
-use solver::{Evolved, Flow as Going, Observer, Particle, Stepper, Symmetric};
+use solver::{Flow as Going, Observer, Particle, Stepper, Symmetric};
 use std::collections::HashMap;
 
 use super::{Rings, metrics::*};
@@ -25,15 +25,6 @@ pub struct Side {
     pub width: f64,
     /// Extent across it \[m\].
     pub height: f64,
-}
-
-/// Energies of these particles.
-fn energy(rings: &Rings, particles: &[Particle<Symmetric>]) -> Energy {
-    let material = rings.material();
-    particles.iter().fold(Energy::default(), |sum, p| {
-        let Particle { position, velocity, density, extra, .. } = *p;
-        sum + Energy::of_one(p.mass, &Evolved { position, velocity, density, extra }, &material)
-    })
 }
 
 /// The particles in the frame whose x axis is the line of flight, as the scene orders them.
@@ -130,7 +121,7 @@ impl<'a> Series<'a> {
 
     /// Takes a sample: the ring on the right, whose centre has x > 0.
     pub fn sample(&mut self, time: f64, particles: &[Particle<Symmetric>]) {
-        let (rings, dx) = (self.rings, self.rings.dx);
+        let (rings, dx) = (self.rings, self.rings.medium.dx);
         let (left, right) = particles.split_at(particles.len() / 2);
         if self.samples.is_multiple_of(FRAGMENTS_EVERY) {
             self.pieces = fragments(left, dx) + fragments(right, dx);
@@ -138,7 +129,7 @@ impl<'a> Series<'a> {
         }
         self.samples += 1;
         let ring = side(right, dx);
-        let energies = energy(rings, particles);
+        let energies = Energy::of_all(particles, &rings.material);
         let mirror = mirror_error(left, right) / dx;
         self.rows.push([
             time * rings.c0,
@@ -154,10 +145,6 @@ impl<'a> Series<'a> {
         ]);
     }
 
-    fn column(&self, k: usize) -> Vec<f64> {
-        self.rows.iter().map(|row| row[k]).collect()
-    }
-
     /// (t \[L/c0\], column number `k`) of every sample.
     pub fn points(&self, k: usize) -> Vec<(f64, f64)> {
         self.rows.iter().map(|row| (row[0], row[k])).collect()
@@ -165,10 +152,7 @@ impl<'a> Series<'a> {
 
     /// The series as columns.
     pub fn profile(&self) -> Profile {
-        let add = |profile: Profile, (k, (name, unit)): (usize, &(&str, &str))| {
-            profile.with(name, unit, self.column(k))
-        };
-        NAMES.iter().enumerate().fold(Profile::default(), add)
+        Profile::of_rows(&NAMES, &self.rows)
     }
 
     /// Metrics of the whole run.
@@ -281,18 +265,24 @@ impl Observer<Symmetric> for Series<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rings::RingSettings;
+    use crate::{rings::RingSettings, solid::Rubber};
+    use harness::{context::Context, method::Method};
     use solver::Leapfrog;
+
+    fn rings() -> Rings {
+        let method = Method::of::<Rubber<(), Leapfrog>>();
+        Rings::new(&RingSettings::default(), &method, &Context::default()).unwrap()
+    }
 
     #[test]
     fn a_ring_is_one_piece_and_a_cut_one_is_two() {
-        let rings = Rings::new::<Leapfrog>(&RingSettings::default(), false).unwrap();
+        let rings = rings();
         let particles = rings.particles();
         let (left, _) = particles.split_at(particles.len() / 2);
-        assert_eq!(fragments(left, rings.dx), 1);
+        assert_eq!(fragments(left, rings.medium.dx), 1);
         let cut: Vec<_> = left.iter().filter(|p| p.position.y.abs() > 0.3).copied().collect();
-        assert_eq!(fragments(&cut, rings.dx), 2);
-        let side = side(left, rings.dx);
+        assert_eq!(fragments(&cut, rings.medium.dx), 2);
+        let side = side(left, rings.medium.dx);
         assert!((side.centre.x + 5.0).abs() < 1e-12 && side.centre.y.abs() < 1e-12);
         assert!((side.width - 8.0).abs() < 1e-3 && (side.height - 8.0).abs() < 1e-3);
         assert!((side.velocity.x - 0.059).abs() < 1e-12);
@@ -300,13 +290,13 @@ mod tests {
 
     #[test]
     fn energies_are_those_of_simple_states() {
-        let rings = Rings::new::<Leapfrog>(&RingSettings::default(), false).unwrap();
+        let material = rings().material;
         let mut p = Particle::fluid(Vector2::zeros(), Vector2::new(0.6, 0.8), 1.0, 0.01);
-        let at_rest = energy(&rings, &[p]);
+        let at_rest = Energy::of_all(&[p], &material);
         assert!((at_rest.kinetic - 0.005).abs() < 1e-15 && at_rest.compression.abs() < 1e-15);
         // Small compression: K e²/2 an area; pure shear: tau²/(2 mu) an area.
         (p.density, p.extra.xy) = (1.0 + 1e-4, 1e-4);
-        let strained = energy(&rings, &[p]);
+        let strained = Energy::of_all(&[p], &material);
         assert!((strained.compression / (0.01 * 0.5e-8) - 1.0).abs() < 1e-3);
         assert!((strained.shear / (0.01 * 1e-8 / (2.0 * 0.22)) - 1.0).abs() < 1e-3);
     }

@@ -17,17 +17,18 @@ mod studies;
 
 use base::record::{Record, Status};
 use harness::{
-    case::Variant,
-    composed::{Composed, Composition, lacking},
+    composed::{Composed, Composition, Program, Variants},
+    method::{self, FromMedium, Method},
 };
 use maths::theory::Stepping;
 use solver::{
     ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Symmetric, terms::TensileStress,
 };
 
-pub use budget::powers;
-pub use run::{Rubber, run_scene};
-pub use setup::{Rings, Tensile};
+use crate::solid::Rubber;
+pub use budget::{Metered, Stressed};
+pub use run::measured;
+pub use setup::Rings;
 
 base::settings! {
     /// Settings of the collision of two rings; L is 1 m.
@@ -67,27 +68,24 @@ base::settings! {
         /// strength of the artificial stress
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,
         /// exponent of the artificial stress
-        stress_exponent: usize ["-"] in 1..=16 = 4,
+        exponent: usize ["-"] in 1..=16 = 4,
         /// samples of the energy budget; no time step is longer than what is between them
         samples: usize ["-"] in 1..=100000 = 200,
     }
 }
 
-/// Settings of the artificial stress.
-const OPTIONAL: &[&str] = &["xi", "stress_exponent"];
+/// A method without its type, whose simulations can say where their energy goes.
+pub type RingMethod = Method<Symmetric, dyn Metered>;
 
-fn variant<R, I>(
-    name: &'static str,
-    about: &'static str,
-    adjust: fn(&mut RingSettings),
-) -> Composition<RingSettings>
+/// The paper's terms with the artificial stress `R`, stepped by `I`.
+pub fn method<R, I>() -> RingMethod
 where
-    R: Tensile + TensileStress,
+    R: TensileStress + FromMedium,
     I: Stepping<Symmetric>,
 {
-    let lacks = lacking(OPTIONAL, R::USES);
-    let rules = run::rules::<I>;
-    Composition { variant: Variant { name, about }, adjust, run: run::run::<R, I>, rules, lacks }
+    Method::with::<Rubber<R, I>>(|parts| {
+        Ok(Box::new(method::scene::<Rubber<R, I>>(parts).build()?))
+    })
 }
 
 /// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
@@ -96,29 +94,33 @@ const LONG_STEPS: f64 = 0.8;
 
 fn variants() -> Vec<Composition<RingSettings>> {
     type Midpoint = PredictorCorrector<Symmetric>;
-    vec![
-        variant::<PrincipalStress, Midpoint>(
+    Variants::of(&Program { run: run::run, rules: run::rules })
+        .with(
             "seed",
             "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \
              stress in principal axes",
+            method::<PrincipalStress, Midpoint>(),
             |_| {},
-        ),
-        variant::<(), Midpoint>(
+        )
+        .with(
             "no-artificial-stress",
             "the seed without artificial stress",
+            method::<(), Midpoint>(),
             |_| {},
-        ),
-        variant::<ComponentStress, Midpoint>(
+        )
+        .with(
             "componentwise",
             "the seed with artificial stress component by component, as the paper writes it",
+            method::<ComponentStress, Midpoint>(),
             |_| {},
-        ),
-        variant::<PrincipalStress, Leapfrog>(
+        )
+        .with(
             "leapfrog",
             "the seed with the staggered leapfrog: one right-hand side a step, and longer steps",
+            method::<PrincipalStress, Leapfrog>(),
             |s| s.courant = LONG_STEPS,
-        ),
-    ]
+        )
+        .all
 }
 
 /// Colliding rubber rings.

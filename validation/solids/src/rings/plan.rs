@@ -3,7 +3,7 @@
 use super::{LONG_STEPS, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings, extremes, metrics::*};
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::MetricName,
+    record::{MetricKey, MetricName},
     spec::RunSpec,
 };
 use harness::case::{Planned, Tier};
@@ -123,24 +123,23 @@ fn seconds(spacing: f64) -> f64 {
     12.0 * (0.1 / spacing).powi(3)
 }
 
-fn gate(
-    id: String,
-    metric: impl Into<MetricName>,
-    bound: Bound,
-    evidence: Evidence,
-    because: &str,
-) -> Gate {
-    let metric = String::from(metric.into());
-    Gate::new(format!("rubber_rings.{id}.{metric}"), metric, bound, evidence, because)
+/// A gate on what holds whatever the settings.
+fn invariant(id: &str, metric: MetricKey, bound: Bound, because: &str) -> Gate {
+    RUBBER_RINGS.gate(id, metric, bound, Evidence::Invariant, because)
+}
+
+/// A gate on what finite elements say.
+fn reference(id: &str, metric: impl Into<MetricName>, bound: Bound, because: &str) -> Gate {
+    RUBBER_RINGS.gate(id, metric, bound, Evidence::Reference, because)
 }
 
 /// Gates of a run at the paper's speed.
 fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
-    let id = || format!("{variant}.s{spacing}");
-    let mut gates = invariants(variant, &id());
+    let id = &format!("{variant}.s{spacing}");
+    let mut gates = invariants(variant, id);
     let whole =
         "a ring is one piece: rubber does not break, and finite elements find no strain near that";
-    let pieces = gate(id(), PIECES_MOST, Bound::Equals(2.0), Evidence::Reference, whole);
+    let pieces = reference(id, PIECES_MOST, Bound::Equals(2.0), whole);
     match (variant, spacing) {
         // M2 at the paper's speed; at spacing 0.2 L the rings hold all the same.
         ("no-artificial-stress", 0.1) => gates.push(pieces.expected_to_fail()),
@@ -153,8 +152,8 @@ fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
     let free = "rings that have parted fly freely: what goes on inside a ring moves no centre of mass. The \
                 momentum of both would not show it, for one is the mirror image of the other";
     let bound = Bound::Below(1e-10);
-    gates.push(gate(id(), PUSHED_BY_ITSELF, bound, Evidence::Invariant, free));
-    let mirror = gate(id(), MIRROR, Bound::Below(1e-6), Evidence::Invariant, EXACT_MIRROR);
+    gates.push(invariant(id, PUSHED_BY_ITSELF, bound, free));
+    let mirror = invariant(id, MIRROR, Bound::Below(1e-6), EXACT_MIRROR);
     gates.push(if spacing < 0.1 {
         mirror.with_limitation(
             "round-off grows faster in finer rings: 1e-13 dx at spacing 0.2, 1e-11 at 0.1, and beyond 1e-6 \
@@ -163,7 +162,7 @@ fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
     } else {
         mirror
     });
-    gates.extend(reference_gates(&id(), spacing));
+    gates.extend(reference_gates(id, spacing));
     gates
 }
 
@@ -174,18 +173,12 @@ fn reference_gates(id: &str, spacing: f64) -> Vec<Gate> {
                        neighbours there: first order in dx/thickness, with a factor of a half";
     let allowed = 0.5 * spacing;
     for metric in [RESTITUTION_ERROR, HEIGHT_MAX_ERROR] {
-        gates.push(gate(
-            id.into(),
-            metric,
-            Bound::Below(allowed),
-            Evidence::Reference,
-            first_order,
-        ));
+        gates.push(reference(id, metric, Bound::Below(allowed), first_order));
     }
     gates.extend(phase_gates(id, spacing, allowed));
     let soft = "the same; a ring of few layers is too soft in bending, as published SPH beams are by 7 \
                 to 12 %, and is flattened more";
-    let width = gate(id.into(), WIDTH_MIN_ERROR, Bound::Below(allowed), Evidence::Reference, soft);
+    let width = reference(id, WIDTH_MIN_ERROR, Bound::Below(allowed), soft);
     gates.push(width.with_limitation(
         "rings of 5 and 10 layers are flattened further than finite elements by more than that; it falls \
          with the spacing",
@@ -195,11 +188,8 @@ fn reference_gates(id: &str, spacing: f64) -> Vec<Gate> {
 
 /// Gates on the phases of contact.
 fn phase_gates(id: &str, spacing: f64, allowed: f64) -> Vec<Gate> {
-    let gate = |metric: MetricName, bound: Bound, because: &str| {
-        gate(id.to_string(), metric, bound, Evidence::Reference, because)
-    };
     let because = "finite elements touch twice, and fly free for 15 L/c0 in between";
-    let phases = gate(PHASES.into(), Bound::Equals(2.0), because);
+    let phases = reference(id, PHASES, Bound::Equals(2.0), because);
     if spacing > 0.1 {
         return vec![phases.with_limitation(
             "kernels of 5 layers reach 0.6 L across the gap that opens in between: the rings never let go",
@@ -208,7 +198,7 @@ fn phase_gates(id: &str, spacing: f64, allowed: f64) -> Vec<Gate> {
     let because = "the impulse of a phase is momentum given and taken while rings are in touch; particles \
                    touch from 3 dx on, first order in dx";
     let impulse = |k: usize| {
-        gate(IMPULSE_ERROR.at(phase(k)), Bound::Below(allowed), because).with_limitation(
+        reference(id, IMPULSE_ERROR.at(phase(k)), Bound::Below(allowed), because).with_limitation(
             "rings of 10 and 20 layers share the impulse otherwise: 5 to 6 % less in the first phase, 6 to \
              7 % more in the second, at 0.03 c0 7 and 12 %. One error seen twice, for the sum goes with \
              the restitution. Viscosity has a part in it (a quarter leaves 4 and 6 %), XSPH has none; the \
@@ -232,26 +222,20 @@ fn invariants(variant: &str, id: &str) -> Vec<Gate> {
                    or two thirds";
     let most = if variant == "leapfrog" { LONG_STEPS } else { 0.6 };
     vec![
-        gate(id.into(), MOMENTUM, Bound::Below(1e-12), Evidence::Invariant, momentum),
-        gate(id.into(), COURANT, Bound::Below(most + 1e-7), Evidence::Invariant, courant),
-        gate(
-            id.into(),
-            ENERGY_GAINED,
-            Bound::Below(MOST_ENERGY_GAINED),
-            Evidence::Invariant,
-            gained,
-        ),
-        gate(id.into(), ENERGY_GAP, Bound::Below(0.02), Evidence::Invariant, budget),
+        invariant(id, MOMENTUM, Bound::Below(1e-12), momentum),
+        invariant(id, COURANT, Bound::Below(most + 1e-7), courant),
+        invariant(id, ENERGY_GAINED, Bound::Below(MOST_ENERGY_GAINED), gained),
+        invariant(id, ENERGY_GAP, Bound::Below(0.02), budget),
     ]
 }
 
 /// Gates at another speed.
 fn fast_gates(variant: &str, spacing: f64, speed: f64) -> Vec<Gate> {
-    let id = || format!("{variant}.s{spacing}.v{speed}");
-    let mut gates = invariants(variant, &id());
+    let id = &format!("{variant}.s{spacing}.v{speed}");
+    let mut gates = invariants(variant, id);
     let whole =
         "M2: with artificial stress rings stay in one piece at any speed below a fifth of sound";
-    let pieces = gate(id(), PIECES_MOST, Bound::Equals(2.0), Evidence::Reference, whole);
+    let pieces = reference(id, PIECES_MOST, Bound::Equals(2.0), whole);
     gates.push(match variant {
         // M2 fails here: a ring of ten layers loses a piece of each.
         "seed" if (speed, spacing) == (0.2, 0.1) => pieces.with_limitation(
@@ -264,7 +248,7 @@ fn fast_gates(variant: &str, spacing: f64, speed: f64) -> Vec<Gate> {
         _ => pieces.reported(),
     });
     if variant == "seed" && speed == 0.03 {
-        gates.extend(reference_gates(&id(), spacing));
+        gates.extend(reference_gates(id, spacing));
     }
     gates
 }

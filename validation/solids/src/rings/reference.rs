@@ -7,12 +7,24 @@ use super::{
 };
 use base::{
     record::{MetricKey, Record},
-    reference::{Reference as Package, ReferenceError},
+    reference::{Reference as Package, ReferenceError, Table},
 };
 
 /// The law whose numbers are compared: logarithmic strain and p = K (ρ/⁰ρ − 1), the fair partner of
 /// (11) and (12).
 const LAW: &str = "hencky";
+
+/// The rows of a table that are of this speed.
+fn rows(table: &Table, speed: f64) -> Result<Vec<usize>, ReferenceError> {
+    let (speeds, laws) = (table.numbers("speed")?, table.texts("law")?);
+    Ok((0..table.len()).filter(|&k| speeds[k] == speed && laws[k] == LAW).collect())
+}
+
+/// The values of a column at this speed, with their uncertainties.
+fn column(table: &Table, name: &str, speed: f64) -> Result<Vec<(f64, f64)>, ReferenceError> {
+    let (values, spread) = (table.numbers(name)?, table.numbers(&format!("{name}_uncertainty"))?);
+    Ok(rows(table, speed)?.into_iter().map(|k| (values[k], spread[k])).collect())
+}
 
 /// What finite elements say of one speed.
 #[derive(Clone, Debug)]
@@ -45,43 +57,25 @@ impl Reference {
     fn at(speed: f64) -> Result<Option<Self>, ReferenceError> {
         let package = Package::load("rubber_rings")?;
         let table = package.table("summary")?;
-        let (speeds, laws) = (table.numbers("speed")?, table.texts("law")?);
-        let (names, values) = (table.texts("quantity")?, table.numbers("value")?);
-        let spread = table.numbers("uncertainty")?;
-        let of_run = |k: &usize| speeds[*k] == speed && laws[*k] == LAW;
-        let summary: Vec<_> = (0..speeds.len())
-            .filter(of_run)
-            .map(|k| (names[k].to_string(), values[k], spread[k]))
-            .collect();
-        if summary.is_empty() {
+        let rows = rows(table, speed)?;
+        if rows.is_empty() {
             return Ok(None);
         }
+        let (names, values) = (table.texts("quantity")?, table.numbers("value")?);
+        let spread = table.numbers("uncertainty")?;
+        let summary = rows.iter().map(|&k| (names[k].to_string(), values[k], spread[k])).collect();
         let series = package.table("series")?;
-        let (speeds, laws, t) =
-            (series.numbers("speed")?, series.texts("law")?, series.numbers("t")?);
-        let rows: Vec<usize> =
-            (0..t.len()).filter(|&k| speeds[k] == speed && laws[k] == LAW).collect();
-        let mut columns = Vec::new();
-        for name in Self::COLUMNS {
-            let values = series.numbers(name)?;
-            let spread = series.numbers(&format!("{name}_uncertainty"))?;
-            columns.push(rows.iter().map(|&k| (values[k], spread[k])).collect());
-        }
-        let times = rows.iter().map(|&k| t[k]).collect();
-        let phases = Self::phases_at(&package, speed)?;
+        let columns = Self::COLUMNS.map(|name| column(series, name, speed));
+        let columns = columns.into_iter().collect::<Result<_, _>>()?;
+        let t = series.numbers("t")?;
+        let times = self::rows(series, speed)?.into_iter().map(|k| t[k]).collect();
+        let phases = package.table("phases")?;
+        let [impulse, early, half, late] = ["impulse", "impulse_1", "impulse_50", "impulse_99"]
+            .map(|of| column(phases, of, speed));
+        let (impulse, early, half, late) = (impulse?, early?, half?, late?);
+        let phase = |k: usize| [impulse[k], early[k], half[k], late[k]];
+        let phases = (0..impulse.len()).map(phase).collect();
         Ok(Some(Self { summary, phases, times, columns }))
-    }
-
-    fn phases_at(package: &Package, speed: f64) -> Result<Vec<[(f64, f64); 4]>, ReferenceError> {
-        let table = package.table("phases")?;
-        let (speeds, laws) = (table.numbers("speed")?, table.texts("law")?);
-        let mut columns = Vec::new();
-        for name in ["impulse", "impulse_1", "impulse_50", "impulse_99"] {
-            columns.push((table.numbers(name)?, table.numbers(&format!("{name}_uncertainty"))?));
-        }
-        let of_run = |k: &usize| speeds[*k] == speed && laws[*k] == LAW;
-        let row = |k: usize| [0, 1, 2, 3].map(|c: usize| (columns[c].0[k], columns[c].1[k]));
-        Ok((0..speeds.len()).filter(of_run).map(row).collect())
     }
 
     /// A number of the summary with its uncertainty.

@@ -1,36 +1,21 @@
 //! One run of the rings: scene, stepping, record.
 
-use solver::{
-    ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, EquationOfState,
-    JaumannRate, Linear, Open, Particle, Scene, Scheme, Simulation, Stepper, Symmetric, Xsph,
-};
+use solver::{EquationOfState, Particle, Stepper, Symmetric};
 
 use super::{
-    RingSettings, Rings, Tensile,
-    budget::{self, Budget},
+    Metered, RingMethod, RingSettings, Rings,
+    budget::Budget,
     measure::{self, Series},
     metrics::{COURANT, MOMENTUM},
     reference::Reference,
 };
-use base::{
-    number,
-    record::{self, Profile, Record, Status},
-};
+use crate::solid::digest;
+use base::record::{Profile, Record, Status};
 use harness::{
     case::{Rules, RunError},
-    runner::{self, Context},
+    context::Context,
+    runner, simulate,
 };
-use maths::{metrics::budget::Items, theory::Stepping};
-
-/// Stress and artificial viscosity; density, deviator and XSPH; nothing else.
-pub type Rubber<R, I> = Compose<
-    CubicSpline,
-    (CauchyStress<Linear, R>, ArtificialViscosity<Linear>),
-    (Continuity, JaumannRate, Xsph),
-    Open,
-    I,
-    Symmetric,
->;
 
 /// Times at which particles are kept for pictures, shares of the run.
 pub const PICTURES: [f64; 6] = [0.0, 0.16, 0.3, 0.4, 0.6, 1.0];
@@ -44,66 +29,60 @@ fn pictures(context: &Context) -> Vec<f64> {
 }
 
 /// Runs and measures.
-pub fn run<R, I>(
+pub fn run(
+    method: &RingMethod,
     variant: &str,
     settings: &RingSettings,
     context: &Context,
-) -> Result<Record, RunError>
-where
-    R: Tensile,
-    I: Stepping<Symmetric>,
-{
-    let rings = Rings::new::<I>(settings, context.allow_unstable)?;
-    run_scene(&rings, variant, I::NAME, rings.scene::<R, I>(), &budget::powers::<R, _>, context)
+) -> Result<Record, RunError> {
+    let rings = Rings::new(settings, method, context)?;
+    let simulation = (method.build)(rings.parts(context))?;
+    measured(&rings, method, variant, simulation, context)
 }
 
 /// What the rules choose.
-pub fn rules<I: Stepping<Symmetric>>(settings: &RingSettings) -> Result<Rules, RunError> {
-    let Rings { dt, dt_limit, c0: sound_speed, .. } = Rings::new::<I>(settings, true)?;
-    Ok(Rules { dt, dt_limit, sound_speed })
+pub fn rules(method: &RingMethod, settings: &RingSettings) -> Result<Rules, RunError> {
+    let context = Context { allow_unstable: true, ..Context::default() };
+    Ok(Rings::new(settings, method, &context)?.rules())
 }
 
-/// What the terms of a scene do to its energy \[W/m\].
-pub type Powers<'a, S> = &'a dyn Fn(&Rings, &Simulation<S>) -> Items;
-
-/// Runs a scene and measures it against the setup: the same measuring for a scene that is not what
+/// Steps a simulation and measures it against the setup: the same measuring for one that is not what
 /// its settings say.
-pub fn run_scene<S: Scheme<Extra = Symmetric>>(
+///
+/// # Errors
+/// If a frame cannot be written.
+pub fn measured(
     rings: &Rings,
+    method: &RingMethod,
     variant: &str,
-    integrator: &str,
-    mut scene: Scene<S>,
-    powers: Powers<S>,
+    mut simulation: Box<dyn Metered>,
     context: &Context,
 ) -> Result<Record, RunError> {
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
-    }
-    let mut simulation = scene.build()?;
-    let mut record = begin(rings, variant, integrator, context);
+    let name = (super::NAME, variant);
+    let mut record = simulate::begin(name, &rings.settings, method, &numbers(rings), context);
     let mut series = Series::new(rings);
     let mut budget = Budget::default();
     simulation.advance(0.0, rings.dt, &mut ());
-    budget.sample(rings, &simulation, &powers(rings, &simulation));
-    keep(rings, &simulation, 0.0, context, &mut record);
+    budget.sample(rings, &*simulation);
+    keep(rings, &*simulation, 0.0, context, &mut record);
     let stops = stops(rings, context);
     let times: Vec<f64> = stops.iter().map(|stop| stop.time).collect();
-    let pressure = |density| rings.eos.pressure(density);
+    let eos = rings.material.eos();
     let (status, cost) = runner::drive(
-        &mut simulation,
+        &mut *simulation,
         rings.dt,
         &times,
         context,
         &mut series,
-        &pressure,
+        &|density| eos.pressure(density),
         &mut |s, k| {
             if stops[k].is_sample {
-                budget.sample(rings, s, &powers(rings, s));
+                budget.sample(rings, s);
             }
             keep(rings, s, times[k], context, &mut record);
         },
     )?;
-    let particles = measure::along_flight(rings, &simulation);
+    let particles = measure::along_flight(rings, &*simulation);
     if status == Status::Completed {
         series.sample(simulation.time(), &particles);
         series.measure(&mut record);
@@ -112,32 +91,25 @@ pub fn run_scene<S: Scheme<Extra = Symmetric>>(
             reference.compare(&series, &mut record);
         }
         record.put(MOMENTUM, measure::momentum_error(rings, &particles));
-        record.put(COURANT, rings.dt * (rings.cp + rings.v) / rings.h);
+        record.put(COURANT, rings.dt * (rings.cp + rings.v) / rings.medium.h);
     }
     record.profiles.insert("series".into(), series.profile());
-    record.state = Some(record::digest(&state(&simulation.particles())));
+    record.state = Some(digest(&simulation.particles()));
     (record.status, record.cost) = (status, cost);
     Ok(record)
 }
 
-/// A record with what the run chose.
-fn begin(rings: &Rings, variant: &str, integrator: &str, context: &Context) -> Record {
-    let json = serde_json::to_value(&rings.settings).unwrap_or_default();
-    let mut record = Record::new(super::NAME, variant, json, context.threads.max(1));
-    let numbers = [
+/// What the run chose.
+fn numbers(rings: &Rings) -> [(&'static str, f64); 7] {
+    [
         ("h/dx", rings.settings.h_over_dx),
-        ("dx [m]", rings.dx),
+        ("dx [m]", rings.medium.dx),
         ("V [m/s]", rings.v),
         ("c0 [m/s]", rings.c0),
         ("c_p [m/s]", rings.cp),
         ("dt [s]", rings.dt),
         ("dt/limit", rings.dt / rings.dt_limit),
-    ];
-    let numerics = &mut record.numerics;
-    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    numerics.insert("kernel".into(), "cubic spline".into());
-    numerics.insert("integrator".into(), integrator.into());
-    record
+    ]
 }
 
 /// A stop of a run: for a picture, or for a sample of the energy budget.
@@ -183,13 +155,4 @@ fn keep(
         .with("y", "m", column(&|p| p.position.y))
         .with("stress", "Pa", column(&largest));
     record.profiles.insert(format!("particles@{share}"), profile);
-}
-
-/// All of the state, in the order of the scene.
-fn state(particles: &[Particle<Symmetric>]) -> Vec<f64> {
-    let numbers = |p: &Particle<Symmetric>| {
-        let (x, v, s) = (p.position, p.velocity, p.extra);
-        [x.x, x.y, v.x, v.y, p.density, s.xx, s.yy, s.xy]
-    };
-    particles.iter().flat_map(numbers).collect()
 }

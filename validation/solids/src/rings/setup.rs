@@ -1,25 +1,21 @@
 //! From settings to a scene: spacing, moduli, time step, particles.
 
 use nalgebra::{Rotation2, Vector2};
-use solver::{
-    ArtificialViscosity, CauchyStress, Continuity, CubicSpline, Domain, Integrator, JaumannRate,
-    Limits, Linear, Open, Particle, Scene, Smoothing, Symmetric, Xsph,
-    terms::{Axes, InTension, TensileStress},
-};
+use solver::{Domain, Limits, Particle, Symmetric};
 use std::f64::consts::TAU;
 
-use super::{RingSettings, run::Rubber};
-use crate::solid::Material;
-use harness::case::RunError;
-use maths::theory::{
-    Stepping,
-    lattice::SquareLattice,
-    time_step::{self, Medium},
+use super::RingSettings;
+use crate::solid::{self, Material};
+use harness::{
+    case::{Rules, RunError},
+    context::Context,
+    method::{Medium, Method, Parts},
+    simulate,
 };
+use maths::theory::time_step;
 
-/// More steps or particles than anyone waits for.
-const MOST_STEPS: f64 = 1e7;
-const MOST_PARTICLES: f64 = 2e6;
+/// More steps or particles than anyone waits for, and the settings that decide on them.
+const MOST: [(f64, &str); 2] = [(1e7, "end, dt, courant or spacing"), (2e6, "spacing or outer")];
 /// Side of the periodic box whose waves give the limit of the time step.
 const LIMIT_BOX: usize = 24;
 
@@ -28,99 +24,66 @@ const LIMIT_BOX: usize = 24;
 pub struct Rings {
     /// As given.
     pub settings: RingSettings,
+    /// What the rings are made of.
+    pub material: Material,
+    /// What terms are made from.
+    pub medium: Medium,
     /// Bulk sound speed c₀ \[m/s\].
     pub c0: f64,
     /// Speed of longitudinal waves c_p \[m/s\].
     pub cp: f64,
-    /// Shear modulus μ \[Pa\].
-    pub mu: f64,
     /// Speed of each ring V \[m/s\].
     pub v: f64,
-    /// Distance of the layers of particles \[m\].
-    pub dx: f64,
-    /// Smoothing length \[m\].
-    pub h: f64,
-    /// Equation of state.
-    pub eos: Linear,
     /// Time step \[s\].
     pub dt: f64,
     /// Its theoretical limit in a stress-free lattice with artificial viscosity always on \[s\].
     pub dt_limit: f64,
 }
 
-/// An artificial stress that settings can make.
-pub trait Tensile: TensileStress {
-    /// Settings that it reads.
-    const USES: &'static [&'static str];
-    /// The artificial stress of a setup.
-    fn of(rings: &Rings) -> Self;
-}
-
-impl Tensile for () {
-    const USES: &'static [&'static str] = &[];
-    fn of(_: &Rings) -> Self {}
-}
-
-impl<A: Axes> Tensile for InTension<A> {
-    const USES: &'static [&'static str] = super::OPTIONAL;
-    fn of(rings: &Rings) -> Self {
-        Self::new(rings.settings.xi, rings.settings.stress_exponent as u32, rings.w_at_spacing())
-    }
-}
-
 impl Rings {
-    /// Checks the settings and derives the rest; `I` steps the run.
-    pub fn new<I: Stepping<Symmetric>>(
+    /// Checks the settings and derives the rest.
+    pub fn new<D: ?Sized>(
         s: &RingSettings,
-        allow_unstable: bool,
+        method: &Method<Symmetric, D>,
+        context: &Context,
     ) -> Result<Self, RunError> {
         let too_much =
-            |what, value, most, setting| RunError::TooMuch { what, value, most, setting };
+            |what, value, most, setting| Err(RunError::TooMuch { what, value, most, setting });
         let layers = ((s.outer - s.inner) / s.spacing).round().max(1.0);
         let dx = (s.outer - s.inner) / layers;
         if s.inner > s.outer - 2.0 * s.spacing {
             let most = s.outer - 2.0 * s.spacing;
-            return Err(too_much("the inner radius", s.inner, most, "inner, outer or spacing"));
+            return too_much("the inner radius", s.inner, most, "inner, outer or spacing");
         }
         if s.outer > s.centre {
             // The rings would overlap before the first step.
-            return Err(too_much("the outer radius", s.outer, s.centre, "outer or centre"));
+            return too_much("the outer radius", s.outer, s.centre, "outer or centre");
         }
-        let c0 = (s.bulk_modulus / s.rho).sqrt();
-        let mu = s.shear_modulus * s.bulk_modulus;
-        let cp = Material { density: s.rho, bulk: s.bulk_modulus, shear: mu }.p_wave_speed();
+        let shear = s.shear_modulus * s.bulk_modulus;
+        let material = Material { density: s.rho, bulk: s.bulk_modulus, shear };
+        let (c0, cp) = (material.sound_speed(), material.p_wave_speed());
         let (v, h) = (s.speed * c0, s.h_over_dx * dx);
-        let lattice = SquareLattice::<CubicSpline>::new(s.h_over_dx, 0.01);
-        let medium = Medium { c0: cp, h, nu: 0.0, alpha: s.alpha * c0 / cp, delta: 0.0 };
-        let modes = time_step::modes(&lattice, LIMIT_BOX, &medium);
-        let dt_limit = time_step::time_step_limit(&modes, I::THEORY);
+        let medium = Medium {
+            alpha: s.alpha,
+            beta: s.beta,
+            xsph: s.xsph,
+            xi: s.xi,
+            exponent: s.exponent as u32,
+            ..material.medium(method, [dx, h])
+        };
+        let alpha = s.alpha * c0 / cp;
+        let waves = time_step::Medium { c0: cp, h, nu: 0.0, alpha, delta: 0.0 };
+        let dt_limit = method.step_limit([s.h_over_dx, 0.01], LIMIT_BOX, &waves);
         let dt = s.dt.unwrap_or(s.courant * h / (cp + v));
-        if dt > dt_limit && !allow_unstable {
-            return Err(RunError::TimeStep { dt, limit: dt_limit, integrator: I::NAME });
-        }
-        let steps = s.end / c0 / dt;
-        if steps > MOST_STEPS {
-            let setting = "end, dt, courant or spacing";
-            return Err(too_much("the number of time steps", steps, MOST_STEPS, setting));
-        }
-        let area = TAU * (s.outer * s.outer - s.inner * s.inner);
-        let particles = area / (dx * dx);
-        if particles > MOST_PARTICLES {
-            let setting = "spacing or outer";
-            return Err(too_much("the number of particles", particles, MOST_PARTICLES, setting));
-        }
-        let eos = Linear { density: s.rho, sound_speed: c0 };
-        Ok(Self { settings: s.clone(), c0, cp, mu, v, dx, h, eos, dt, dt_limit })
+        let rings = Self { settings: s.clone(), material, medium, c0, cp, v, dt, dt_limit };
+        let particles = TAU * (s.outer * s.outer - s.inner * s.inner) / (dx * dx);
+        simulate::check(method.integrator, rings.rules(), s.end / c0, particles, MOST, context)?;
+        Ok(rings)
     }
 
-    /// What the rings are made of.
-    pub fn material(&self) -> Material {
-        let RingSettings { rho: density, bulk_modulus: bulk, .. } = self.settings;
-        Material { density, bulk, shear: self.mu }
-    }
-
-    fn w_at_spacing(&self) -> f64 {
-        Smoothing::<CubicSpline>::new(self.h).w(self.dx * self.dx)
+    /// What the rules chose.
+    pub fn rules(&self) -> Rules {
+        Rules { dt: self.dt, dt_limit: self.dt_limit, sound_speed: self.c0 }
     }
 
     /// Rotates the line of flight to the x axis.
@@ -132,15 +95,15 @@ impl Rings {
     /// edge is smooth, and each ring is its own mirror image. The ring on the right is the mirror
     /// image of the one on the left, in the same order.
     pub fn particles(&self) -> Vec<Particle<Symmetric>> {
-        let s = &self.settings;
+        let (s, dx) = (&self.settings, self.medium.dx);
         let rotation = self.to_flight().inverse();
         let (mut left, mut right) = (Vec::new(), Vec::new());
-        let layers = ((s.outer - s.inner) / self.dx).round() as usize;
+        let layers = ((s.outer - s.inner) / dx).round() as usize;
         for k in 0..layers {
-            let r = s.inner + (k as f64 + 0.5) * self.dx;
-            let quarter = (TAU * r / (4.0 * self.dx)).round().max(1.0) as usize;
+            let r = s.inner + (k as f64 + 0.5) * dx;
+            let quarter = (TAU * r / (4.0 * dx)).round().max(1.0) as usize;
             let count = 4 * quarter;
-            let volume = TAU * r * self.dx / count as f64;
+            let volume = TAU * r * dx / count as f64;
             for j in 0..count {
                 let place = r * quadrant_point(j, quarter);
                 let put = |side: f64, ring: &mut Vec<_>| {
@@ -163,17 +126,13 @@ impl Rings {
     }
 
     /// The scene.
-    pub fn scene<R: Tensile, I: Integrator<Symmetric>>(&self) -> Scene<Rubber<R, I>> {
-        let s = &self.settings;
-        let stress = CauchyStress { eos: self.eos, tensile: R::of(self) };
-        let forces = (stress, ArtificialViscosity::new(s.alpha, s.beta, self.h, self.eos));
-        let drift = (Continuity, JaumannRate { shear_modulus: self.mu }, Xsph { epsilon: s.xsph });
-        let domain = Domain::open();
-        let mut scene = Scene::new(self.h, domain, self.particles(), forces, drift, Open);
+    pub fn parts(&self, context: &Context) -> Parts<Symmetric> {
+        let density = self.material.density;
         // Twice the density or twice the speed of sound is no rubber any more.
         let speed = 2.0 * (self.cp + self.v);
-        scene.limits = Limits { density: [0.5 * s.rho, 2.0 * s.rho], speed };
-        scene
+        let limits = Limits { density: [0.5 * density, 2.0 * density], speed };
+        let (medium, particles) = (self.medium.clone(), self.particles());
+        Parts { limits, ..solid::parts(medium, Domain::open(), particles, context) }
     }
 }
 
@@ -190,10 +149,11 @@ fn quadrant_point(j: usize, quarter: usize) -> Vector2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solid::Rubber;
     use solver::Leapfrog;
 
     fn rings(settings: &RingSettings) -> Result<Rings, RunError> {
-        Rings::new::<Leapfrog>(settings, false)
+        Rings::new(settings, &Method::of::<Rubber<(), Leapfrog>>(), &Context::default())
     }
 
     #[test]
@@ -211,7 +171,7 @@ mod tests {
             left.iter().any(|q| q.position == Vector2::new(p.position.x, -p.position.y))
         };
         assert!(left.iter().all(mirrored));
-        assert_eq!(rings.dx, 0.1);
+        assert_eq!(rings.medium.dx, 0.1);
     }
 
     #[test]

@@ -45,6 +45,11 @@ fn measured(record: &Record, metric: impl Into<MetricName>, show: impl Fn(f64) -
     record.value(metric).map_or(Cell::text("–"), show)
 }
 
+/// The name of a variant for a table.
+fn variant(record: &Record) -> Cell {
+    Cell::text(format!("`{}`", record.variant))
+}
+
 fn settings(record: &Record) -> RingSettings {
     record.settings_as()
 }
@@ -177,7 +182,7 @@ fn reference_phases(speed: f64, reference: &Reference) -> Vec<Cell> {
 fn found_phases(record: &Record) -> Vec<Cell> {
     let RingSettings { speed, spacing, .. } = settings(record);
     let mut row = vec![
-        Cell::text(format!("`{}`", record.variant)),
+        variant(record),
         Cell::num(speed, 3),
         Cell::num(spacing, 3),
         measured(record, PHASES, |n| Cell::num(n, 1)),
@@ -312,79 +317,67 @@ fn fracture(tier: Tier, runs: &Runs) -> Study {
 
 /// Every collision of the plan, with its distances from the reference where there is one.
 fn collisions_table(tier: Tier, runs: &Runs) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::text("changed"),
-        Column::num("most pieces", "1"),
-        Column::num("pieces at the end", "1"),
-        Column::num("restitution", "-"),
-        Column::text("finite elements"),
-        Column::num("error of restitution", "-"),
-        Column::num("of least width", "-"),
-        Column::num("of largest height", "-"),
-        Column::num("rms of centre", "L"),
-        Column::num("energy lost", "-"),
-        Column::num("distance from mirror image", "dx"),
-        Column::text("ended"),
-    ];
-    let caption = "Every collision; unless changed the spacing is 0.1 L and the speed 0.059 c0. Pieces: \
-                   particles within 1.5 spacings of each other hold together, so two whole rings are 2. \
-                   Restitution: speed of the centre of mass at t = 200 L/c0 over the initial one, with the \
-                   uncertainty of finite elements. A ring keeps part of its energy as vibration, which no \
-                   dissipation has taken; energy lost is what stabilisation took.";
-    let mut table = Table::new(caption, columns);
-    for record in collisions(tier, runs) {
-        let exact = Reference::of(&settings(record)).and_then(|of| of.number(RESTITUTION));
+    let number = |r: &Record, metric| measured(r, metric, |x| Cell::num(x, 3));
+    let share = |r: &Record, metric| measured(r, metric, |x| Cell::percent(x, 2));
+    let restitution = |r: &Record| measured(r, RESTITUTION, |x| Cell::num(x, 4));
+    let changed = |r: &Record| Cell::text(case::changed(&RUBBER_RINGS, &r.spec()).join(", "));
+    let exact = |r: &Record| {
+        let exact = Reference::of(&settings(r)).and_then(|of| of.number(RESTITUTION));
         let exact = exact.map(|(value, spread)| format!("{} ± {}", sig(value, 4), sig(spread, 1)));
-        let number = |metric| measured(record, metric, |x| Cell::num(x, 3));
-        let share = |metric| measured(record, metric, |x| Cell::percent(x, 2));
-        table = table.row(vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::text(case::changed(&RUBBER_RINGS, &record.spec()).join(", ")),
-            number(PIECES_MOST),
-            number(PIECES),
-            measured(record, RESTITUTION, |x| Cell::num(x, 4)),
-            Cell::text(exact.unwrap_or("–".into())),
-            share(RESTITUTION_ERROR),
-            share(WIDTH_MIN_ERROR),
-            share(HEIGHT_MAX_ERROR),
-            number(X_C_RMS),
-            share(ENERGY_LOST),
-            measured(record, MIRROR, |x| Cell::sci(x, 2)),
-            Cell::text(if record.status == Status::Completed { "completed" } else { "diverged" }),
-        ]);
-    }
-    table
+        Cell::text(exact.unwrap_or("–".into()))
+    };
+    let mirror = |r: &Record| measured(r, MIRROR, |x| Cell::sci(x, 2));
+    let ended = |r: &Record| match r.status {
+        Status::Completed => Cell::text("completed"),
+        _ => Cell::text("diverged"),
+    };
+    Table::of(
+        "Every collision; unless changed the spacing is 0.1 L and the speed 0.059 c0. Pieces: particles \
+         within 1.5 spacings of each other hold together, so two whole rings are 2. Restitution: speed of \
+         the centre of mass at t = 200 L/c0 over the initial one, with the uncertainty of finite elements. \
+         A ring keeps part of its energy as vibration, which no dissipation has taken; energy lost is what \
+         stabilisation took.",
+        &[
+            (Column::text("variant"), &variant),
+            (Column::text("changed"), &changed),
+            (Column::num("most pieces", "1"), &|r| number(r, PIECES_MOST)),
+            (Column::num("pieces at the end", "1"), &|r| number(r, PIECES)),
+            (Column::num("restitution", "-"), &restitution),
+            (Column::text("finite elements"), &exact),
+            (Column::num("error of restitution", "-"), &|r| share(r, RESTITUTION_ERROR)),
+            (Column::num("of least width", "-"), &|r| share(r, WIDTH_MIN_ERROR)),
+            (Column::num("of largest height", "-"), &|r| share(r, HEIGHT_MAX_ERROR)),
+            (Column::num("rms of centre", "L"), &|r| number(r, X_C_RMS)),
+            (Column::num("energy lost", "-"), &|r| share(r, ENERGY_LOST)),
+            (Column::num("distance from mirror image", "dx"), &mirror),
+            (Column::text("ended"), &ended),
+        ],
+        collisions(tier, runs),
+    )
 }
 
 /// What a particle of rubber costs.
 fn rates(tier: Tier, runs: &Runs) -> Study {
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("spacing", "L"),
-        Column::num("particles", "1"),
-        Column::num("steps", "1"),
-        Column::num("neighbours", "1"),
-        Column::num("right-hand side of a particle", "ns"),
-        Column::num("solver memory of a particle", "B"),
-    ];
-    let caption = "What a particle of rubber costs: one right-hand side (stress, artificial viscosity, \
-                   density, stress rate, XSPH), timed with nothing else at work.";
-    let mut table = Table::new(caption, columns);
-    for record in records(declaration::specs_of_ladders(tier), runs) {
-        let cost = &record.cost;
-        let (rhs, pairs) = (cost.particle_rhs as f64, cost.pair_interactions as f64);
-        let sweeps = if record.variant == "leapfrog" { 2.0 } else { 1.0 };
-        table = table.row(vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::num(settings(record).spacing, 3),
-            Cell::count(cost.particles as u64),
-            Cell::count(cost.steps),
-            Cell::num(pairs / rhs / sweeps, 3),
-            Cell::num(1e9 * cost.cpu_s / rhs, 3),
-            Cell::num(cost.solver_bytes as f64 / cost.particles as f64, 3),
-        ]);
-    }
+    let neighbours = |r: &Record| {
+        let sweeps = if r.variant == "leapfrog" { 2.0 } else { 1.0 };
+        r.cost.pair_interactions as f64 / r.cost.particle_rhs as f64 / sweeps
+    };
+    let rhs = |r: &Record| Cell::num(1e9 * r.cost.cpu_s / r.cost.particle_rhs as f64, 3);
+    let memory = |r: &Record| Cell::num(r.cost.solver_bytes as f64 / r.cost.particles as f64, 3);
+    let table = Table::of(
+        "What a particle of rubber costs: one right-hand side (stress, artificial viscosity, density, \
+         stress rate, XSPH), timed with nothing else at work.",
+        &[
+            (Column::text("variant"), &variant),
+            (Column::num("spacing", "L"), &|r| Cell::num(settings(r).spacing, 3)),
+            (Column::num("particles", "1"), &|r| Cell::count(r.cost.particles as u64)),
+            (Column::num("steps", "1"), &|r| Cell::count(r.cost.steps)),
+            (Column::num("neighbours", "1"), &|r| Cell::num(neighbours(r), 3)),
+            (Column::num("right-hand side of a particle", "ns"), &rhs),
+            (Column::num("solver memory of a particle", "B"), &memory),
+        ],
+        records(declaration::specs_of_ladders(tier), runs),
+    );
     Study::new("rubber-rings-rates", "What a particle of rubber costs").block(table)
 }
 

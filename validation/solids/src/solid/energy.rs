@@ -1,7 +1,7 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
 use nalgebra::Vector2;
-use solver::{Evolved, Numbers, Rate, Stepper, Symmetric};
+use solver::{Evolved, Numbers, Particle, Rate, Stepper, Symmetric};
 
 use super::Material;
 
@@ -20,6 +20,14 @@ impl Energy {
     /// Of all fluid particles of a simulation.
     pub fn of(simulation: &dyn Stepper<Symmetric>, of: &Material) -> Self {
         simulation.fluid().fold(Self::default(), |sum, (mass, p)| sum + Self::of_one(mass, p, of))
+    }
+
+    /// Of all of these particles.
+    pub fn of_all(particles: &[Particle<Symmetric>], of: &Material) -> Self {
+        particles.iter().fold(Self::default(), |sum, p| {
+            let Particle { position, velocity, density, extra, .. } = *p;
+            sum + Self::of_one(p.mass, &Evolved { position, velocity, density, extra }, of)
+        })
     }
 
     /// Of one particle of this mass \[kg/m\].

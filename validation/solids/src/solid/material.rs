@@ -1,15 +1,7 @@
-//! The elastic material, and what a particle method makes of it: spacing, smoothing length, step.
+//! The elastic material, and the medium that it is at a spacing.
 
-use solver::{CubicSpline, Kernel, Linear, Smoothing};
-
-use harness::{
-    case::{Rules, RunError},
-    runner::Context,
-};
-use maths::theory::{
-    lattice::SquareLattice,
-    time_step::{self, Medium},
-};
+use harness::method::{Medium, Method};
+use solver::{Linear, Symmetric, Tait};
 
 /// An isotropic elastic solid: small-strain moduli, plane strain with the 1/3 of three dimensions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,65 +36,12 @@ impl Material {
     pub fn eos(&self) -> Linear {
         Linear { density: self.density, sound_speed: self.sound_speed() }
     }
-}
 
-/// The settings that every solid case has, as numbers: what [`super::Method`] makes its terms from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solid {
-    /// The material.
-    pub material: Material,
-    /// h/dx.
-    pub h_over_dx: f64,
-    /// α and β of the artificial viscosity.
-    pub viscosity: [f64; 2],
-    /// ξ of the artificial stress.
-    pub xi: f64,
-    /// Its exponent.
-    pub exponent: u32,
-    /// ε of XSPH.
-    pub xsph: f64,
-    /// dt \[s\], if it is given.
-    pub dt: Option<f64>,
-    /// Courant number dt (c_p + V)/h, if it is given.
-    pub courant: Option<f64>,
-}
-
-impl Solid {
-    /// Smoothing length \[m\] at this spacing \[m\].
-    pub fn h(&self, dx: f64) -> f64 {
-        self.h_over_dx * dx
-    }
-
-    /// W at the initial spacing \[1/m²\], for (18).
-    pub fn w_at_spacing(&self, dx: f64) -> f64 {
-        Smoothing::<CubicSpline>::new(self.h(dx)).w(dx * dx)
-    }
-
-    /// The time step courant h/(c_p + V) \[s\] for speeds of V \[m/s\] unless it is given, and the limit of
-    /// the undamped leapfrog on a lattice, about 1.87 h/c_p, and that of the artificial viscosity.
-    pub fn rules(&self, dx: f64, speed: f64, courant: f64) -> Rules {
-        let (h, c0) = (self.h(dx), self.material.p_wave_speed());
-        let dt = self.dt.unwrap_or(self.courant.unwrap_or(courant) * h / (c0 + speed));
-        let lattice = SquareLattice::<CubicSpline>::new(self.h_over_dx, 0.01);
-        let medium = Medium { c0, h, nu: 0.0, alpha: self.viscosity[0], delta: 0.0 };
-        let modes = time_step::modes(&lattice, 24, &medium);
-        // The predictor-corrector amplifies undamped sound at every dt: what it does is measured.
-        let dt_limit = time_step::time_step_limit(&modes, time_step::Integrator::Leapfrog);
-        Rules { dt, dt_limit, sound_speed: self.material.sound_speed() }
-    }
-
-    /// The time step of these rules \[s\]; refused beyond their limit.
-    pub fn time_step(&self, rules: Rules, context: &Context) -> Result<f64, RunError> {
-        let Rules { dt, dt_limit: limit, .. } = rules;
-        if dt > limit && !context.allow_unstable {
-            return Err(RunError::TimeStep { dt, limit, integrator: "leapfrog" });
-        }
-        Ok(dt)
-    }
-
-    /// Rows of particles in a period that every support fits into twice.
-    pub fn rows_of_a_period(&self) -> usize {
-        (2.0 * CubicSpline::SUPPORT * self.h_over_dx - 1e-9).ceil() as usize
+    /// The medium of a method at this spacing \[m\] and smoothing length \[m\], without any stabilisation.
+    pub fn medium<D: ?Sized>(&self, method: &Method<Symmetric, D>, lengths: [f64; 2]) -> Medium {
+        let Linear { density, sound_speed } = self.eos();
+        let eos = Tait { density, sound_speed, gamma: 7, background: 0.0 };
+        Medium { shear_modulus: self.shear, ..method.medium(eos, lengths) }
     }
 }
 

@@ -1,107 +1,25 @@
-//! The methods that solid cases compare: a line of types each.
+//! The schemes of the elastic solid, a line of types each.
 
+use harness::method::{Boundary, FirstRow, Medium};
 use solver::{
-    ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, Integrator, JaumannRate,
-    Leapfrog, Linear, PredictorCorrector, PrincipalStress, Symmetric, Term, Xsph, walls::Walls,
+    ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, JaumannRate, Leapfrog,
+    Linear, Open, PlaneWall, Symmetric, Xsph, walls::Walls,
 };
 
-use super::Solid;
+/// (9), (10) and (12) with the artificial stress `R`, and (15) with (16) and (17).
+type Stabilised<R> = (CauchyStress<Linear, R>, ArtificialViscosity<Linear>);
 
-/// The scheme of a method with these walls.
-pub type Scheme<M, W> = Compose<
-    CubicSpline,
-    <M as Method>::Forces,
-    <M as Method>::Drift,
-    W,
-    <M as Method>::Integrator,
-    Symmetric,
->;
-
-/// A composition of terms and integrator for the elastic solid.
-pub trait Method: 'static {
-    /// Terms of dv/dt.
-    type Forces: Term<Symmetric>;
-    /// Terms of dx/dt, dρ/dt and dS/dt.
-    type Drift: Term<Symmetric>;
-    /// Time integration.
-    type Integrator: Integrator<Symmetric>;
-    /// Settings that only other methods read.
-    const UNUSED: &'static [&'static str];
-    /// Courant number dt (c_p + V)/h unless given. Theory allows 1.87 to the undamped leapfrog, and
-    /// 1.03 with α = 1.
-    const COURANT: f64;
-
-    /// The forces for this spacing \[m\].
-    fn forces(solid: &Solid, dx: f64) -> Self::Forces;
-    /// The drift.
-    fn drift(solid: &Solid) -> Self::Drift;
-}
-
-/// The seed paper's method: predictor-corrector, (15) with (16)–(18), (20) in principal axes, (22).
-pub struct Seed;
+/// The paper's terms: artificial viscosity, the artificial stress `R`, XSPH (22).
+pub type Rubber<R, I, W = Open> =
+    Compose<CubicSpline, Stabilised<R>, (Continuity, JaumannRate, Xsph), W, I, Symmetric>;
 
 /// The same terms without XSPH, stepped by the leapfrog.
-pub struct Plain;
+pub type Plain<R, W = Open> =
+    Compose<CubicSpline, Stabilised<R>, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
 
 /// (3), (9)–(12) alone, stepped by the leapfrog: nothing stabilises, and nothing dissipates.
-pub struct Bare;
-
-type Stabilised = (CauchyStress<Linear, PrincipalStress>, ArtificialViscosity<Linear>);
-
-fn stabilised(solid: &Solid, dx: f64) -> Stabilised {
-    let (eos, [alpha, beta]) = (solid.material.eos(), solid.viscosity);
-    let tensile = PrincipalStress::new(solid.xi, solid.exponent, solid.w_at_spacing(dx));
-    (CauchyStress { eos, tensile }, ArtificialViscosity::new(alpha, beta, solid.h(dx), eos))
-}
-
-fn jaumann(solid: &Solid) -> JaumannRate {
-    JaumannRate { shear_modulus: solid.material.shear }
-}
-
-impl Method for Seed {
-    type Forces = Stabilised;
-    type Drift = (Continuity, JaumannRate, Xsph);
-    type Integrator = PredictorCorrector<Symmetric>;
-    const UNUSED: &'static [&'static str] = &[];
-    const COURANT: f64 = 0.25;
-
-    fn forces(solid: &Solid, dx: f64) -> Stabilised {
-        stabilised(solid, dx)
-    }
-    fn drift(solid: &Solid) -> Self::Drift {
-        (Continuity, jaumann(solid), Xsph { epsilon: solid.xsph })
-    }
-}
-
-impl Method for Plain {
-    type Forces = Stabilised;
-    type Drift = (Continuity, JaumannRate);
-    type Integrator = Leapfrog;
-    const UNUSED: &'static [&'static str] = &["xsph"];
-    const COURANT: f64 = 0.4;
-
-    fn forces(solid: &Solid, dx: f64) -> Stabilised {
-        stabilised(solid, dx)
-    }
-    fn drift(solid: &Solid) -> Self::Drift {
-        (Continuity, jaumann(solid))
-    }
-}
-
-impl Method for Bare {
-    type Forces = CauchyStress<Linear>;
-    type Drift = (Continuity, JaumannRate);
-    type Integrator = Leapfrog;
-    const UNUSED: &'static [&'static str] = &["alpha", "beta", "xi", "exponent", "xsph"];
-    const COURANT: f64 = 0.4;
-
-    fn forces(solid: &Solid, _: f64) -> Self::Forces {
-        CauchyStress { eos: solid.material.eos(), tensile: () }
-    }
-    fn drift(solid: &Solid) -> Self::Drift {
-        (Continuity, jaumann(solid))
-    }
-}
+pub type Bare<W = Open, K = CubicSpline> =
+    Compose<K, CauchyStress<Linear>, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
 
 /// Walls of an elastic body: particles of [`solver::Role::Wall`] that stand still and continue the
 /// body, so that it is held where they begin. Their density and their stress follow the motion of the
@@ -119,5 +37,13 @@ impl Walls<Symmetric> for Clamp {
     type Terms = (Continuity, JaumannRate);
     fn terms(&self) -> Self::Terms {
         (Continuity, JaumannRate { shear_modulus: self.shear_modulus })
+    }
+}
+
+impl Boundary for Clamp {
+    const NAME: &'static str = "clamp";
+    const FIRST_ROW: FirstRow = FirstRow::Behind;
+    fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self { shear_modulus: medium.shear_modulus }
     }
 }

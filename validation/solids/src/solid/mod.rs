@@ -6,10 +6,16 @@ mod material;
 mod method;
 mod problem;
 
+#[cfg(test)]
+use harness::{
+    case::{self, Case, RunError},
+    context::Context,
+};
+
 pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
-pub use material::{Material, Solid};
-pub use method::{Bare, Clamp, Method, Plain, Scheme, Seed};
-pub use problem::{Finished, Problem, SharedSettings, begin, digest, run_to, variants};
+pub use material::Material;
+pub use method::{Bare, Clamp, Plain, Rubber};
+pub use problem::{Problem, SharedSettings, Watch, digest, parts, variants};
 
 /// The largest of these numbers, none of which is negative; NaN if one is NaN, for what was not measured must
 /// not pass.
@@ -17,8 +23,15 @@ pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
 }
 
-/// Declares the settings of a solid case: its own, then those that every solid case has, and turns
-/// the latter into a [`Solid`] by [`SharedSettings`].
+/// Why a run with this assignment is refused, if it is.
+#[cfg(test)]
+pub fn refused(case: &dyn Case, variant: &str, set: &str) -> Option<RunError> {
+    let spec = case::spec(case, variant, &[set.into()]);
+    spec.and_then(|spec| case.run(&spec, &Context::default())).err()
+}
+
+/// Declares the settings of a solid case: its own, then those that every solid case has, which are its
+/// [`SharedSettings`].
 #[macro_export]
 macro_rules! solid_settings {
     (
@@ -56,18 +69,29 @@ macro_rules! solid_settings {
         }
 
         impl $crate::solid::SharedSettings for $Struct {
-            fn solid(&self) -> $crate::solid::Solid {
-                let Self { rho, young, poisson, h_over_dx, xi, xsph, dt, courant, .. } = *self;
-                $crate::solid::Solid {
-                    material: $crate::solid::Material::from_young(rho, young, poisson),
-                    h_over_dx,
-                    viscosity: [self.alpha, self.beta],
+            fn material(&self) -> $crate::solid::Material {
+                $crate::solid::Material::from_young(self.rho, self.young, self.poisson)
+            }
+            fn medium(
+                &self,
+                method: &harness::method::Method<solver::Symmetric>,
+                dx: f64,
+            ) -> harness::method::Medium {
+                let Self { h_over_dx, alpha, beta, xi, exponent, xsph, .. } = *self;
+                harness::method::Medium {
+                    alpha,
+                    beta,
                     xi,
-                    exponent: self.exponent as u32,
+                    exponent: exponent as u32,
                     xsph,
-                    dt,
-                    courant,
+                    ..self.material().medium(method, [dx, h_over_dx * dx])
                 }
+            }
+            fn h_over_dx(&self) -> f64 {
+                self.h_over_dx
+            }
+            fn given_step(&self) -> [Option<f64>; 2] {
+                [self.dt, self.courant]
             }
         }
     };

@@ -1,147 +1,174 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
 use solver::{
-    CubicSpline, EquationOfState, Integrator, Kernel, Linear, Observer, Scene, Scheme, Simulation,
-    Stepper, Symmetric,
+    Domain, EquationOfState, Limits, Observer, Particle, PredictorCorrector, PrincipalStress,
+    Stepper, Symmetric, walls::Walls,
 };
 
-use super::{Bare, Method, Plain, Seed, Solid};
+use super::{Bare, Material, Plain, Rubber};
 use base::{
-    number,
-    record::{self, Cost, Record, Status},
-    settings::{Settings, Value},
+    record::{self, Record},
+    settings::Settings,
 };
 use harness::{
-    case::{RunError, Variant},
-    composed::Composition,
-    runner::{self, Context},
+    case::{Rules, RunError},
+    composed::{Composition, Program, Variants},
+    context::Context,
+    method::{Boundary, Medium, Method, Parts},
+    runner, simulate,
 };
+use maths::theory::time_step::{self, Integrator};
 
 /// Settings by [`solid_settings!`](crate::solid_settings!).
-pub trait SharedSettings: Settings {
-    /// What all solid cases share.
-    fn solid(&self) -> Solid;
+pub trait SharedSettings: Settings + 'static {
+    /// The material.
+    fn material(&self) -> Material;
+    /// What terms are made from, at this spacing \[m\].
+    fn medium(&self, method: &Method<Symmetric>, dx: f64) -> Medium;
+    /// h/dx.
+    fn h_over_dx(&self) -> f64;
+    /// Time step \[s\] and Courant number dt (c_p + V)/h, if they are given.
+    fn given_step(&self) -> [Option<f64>; 2];
 }
 
 /// A problem of elasticity, stated by its settings: what differs between solid cases.
 pub trait Problem: SharedSettings {
     /// Name of the case.
     const NAME: &'static str;
+    /// What sees every step.
+    type Watch: Watch;
 
     /// Spacing \[m\].
     fn dx(&self) -> f64;
     /// Largest speed at the start \[m/s\].
     fn speed(&self) -> f64;
-    /// One run with a method.
-    fn run<M: Method>(
-        variant: &str,
-        settings: &Self,
-        context: &Context,
-    ) -> Result<Record, RunError>;
+    /// End of the run \[s\].
+    fn end(&self) -> f64;
+    /// The particles at the start.
+    fn particles(&self) -> Vec<Particle<Symmetric>>;
+    /// What measures a run with these particles at the start.
+    fn watch(&self, start: &[Particle<Symmetric>]) -> Self::Watch;
+    /// Open, unless a case has a period.
+    fn domain(&self) -> Domain {
+        Domain::open()
+    }
+    /// How many particles there are, where the ranges of the settings do not bound it.
+    fn count(&self) -> f64 {
+        0.0
+    }
 }
 
-/// The methods as variants of a problem.
-pub fn variants<P: Problem>() -> Vec<Composition<P>> {
-    fn entry<P: Problem, M: Method>(name: &'static str, about: &'static str) -> Composition<P> {
-        Composition {
-            variant: Variant { name, about },
-            adjust: leave_out::<P, M>,
-            run: P::run::<M>,
-            rules: |s| Ok(s.solid().rules(s.dx(), s.speed(), M::COURANT)),
-            lacks: M::UNUSED.to_vec(),
-        }
-    }
-    vec![
-        entry::<P, Seed>(
+/// Sees every step of a run and measures it.
+pub trait Watch: Observer<Symmetric> {
+    /// Puts metrics and profiles; `simulation` is at its end.
+    fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
+}
+
+/// The variants of a problem whose particles these walls hold.
+pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition<P>> {
+    let program = Program { run: run::<P>, rules: |method, s| Ok(rules(method, s)) };
+    Variants::of(&program)
+        .with(
             "seed",
             "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
              principal axes, XSPH",
-        ),
-        entry::<P, Plain>("plain", "the same terms without XSPH, stepped by the leapfrog"),
-        entry::<P, Bare>(
+            Method::of::<Rubber<PrincipalStress, PredictorCorrector<Symmetric>, W>>(),
+            |_| {},
+        )
+        .with(
+            "plain",
+            "the same terms without XSPH, stepped by the leapfrog",
+            Method::of::<Plain<PrincipalStress, W>>(),
+            |s| leave_out(s, &["xsph"]),
+        )
+        .with(
             "bare",
             "the equations (3), (9)-(12) and nothing that stabilises, stepped by the leapfrog",
-        ),
-    ]
+            Method::of::<Bare<W>>(),
+            |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
+        )
+        .all
 }
 
-/// Settings of terms that a method lacks are 0, or stay what they are where that is out of range.
-fn leave_out<P: Problem, M: Method>(settings: &mut P) {
-    for name in M::UNUSED {
-        if let Some(Value::Real(_)) = settings.get(name) {
-            let _out_of_range = settings.set(name, "0");
-        }
+/// Sets the strengths of terms that a method lacks to 0.
+fn leave_out(settings: &mut impl Settings, names: &[&str]) {
+    for name in names {
+        let _is_in_range = settings.set(name, "0");
     }
 }
 
-/// A record of a run of the method `M`, with what it chose, and the time step \[s\].
-pub fn begin<P: Problem, M: Method>(
+/// The time step C h/(c_p + V) for speeds of V unless it is given, and the limit of the leapfrog on a
+/// lattice: about 1.87 h/c_p without artificial viscosity, and 1.03 h/c_p with α = 1.
+fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
+    let (material, medium) = (settings.material(), settings.medium(method, settings.dx()));
+    let (h, c0) = (medium.h, material.p_wave_speed());
+    let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
+    let [dt, courant] = settings.given_step();
+    let dt = dt.unwrap_or(courant.unwrap_or(usual) * h / (c0 + settings.speed()));
+    let waves = time_step::Medium { c0, h, nu: 0.0, alpha: medium.alpha, delta: 0.0 };
+    let modes = method.modes([settings.h_over_dx(), 0.01], 24, &waves);
+    // The predictor-corrector amplifies undamped sound at every dt: what it does is measured.
+    let dt_limit = time_step::time_step_limit(&modes, Integrator::Leapfrog);
+    Rules { dt, dt_limit, sound_speed: material.sound_speed() }
+}
+
+/// One run with a method.
+fn run<P: Problem>(
+    method: &Method<Symmetric>,
     variant: &str,
     settings: &P,
     context: &Context,
-) -> Result<(Record, f64), RunError> {
-    let (solid, dx) = (settings.solid(), settings.dx());
-    let dt = solid.time_step(solid.rules(dx, settings.speed(), M::COURANT), context)?;
-    let json = serde_json::to_value(settings).unwrap_or_default();
-    let mut record = Record::new(P::NAME, variant, json, context.threads.max(1));
-    let material = &solid.material;
+) -> Result<Record, RunError> {
+    let (rules, end) = (rules(method, settings), settings.end());
+    let most = [(1e7, "end or dt"), (1e6, "n, length or thickness")];
+    simulate::check("leapfrog", rules, end, settings.count(), most, context)?;
+    let medium = settings.medium(method, settings.dx());
+    let (dt, material) = (rules.dt, settings.material());
     let numbers = [
-        ("h/dx", solid.h_over_dx),
-        ("dx [m]", dx),
+        ("h/dx", settings.h_over_dx()),
+        ("dx [m]", medium.dx),
         ("K [Pa]", material.bulk),
         ("mu [Pa]", material.shear),
         ("c0 [m/s]", material.sound_speed()),
         ("c_p [m/s]", material.p_wave_speed()),
         ("dt [s]", dt),
-        ("dt c_p/h", dt * material.p_wave_speed() / solid.h(dx)),
+        ("dt c_p/h", dt * material.p_wave_speed() / medium.h),
     ];
-    let numerics = &mut record.numerics;
-    numerics.extend(numbers.map(|(name, value)| (name.to_string(), number::json(value))));
-    numerics.insert("kernel".into(), CubicSpline::NAME.into());
-    numerics.insert("integrator".into(), M::Integrator::NAME.into());
-    Ok((record, dt))
-}
-
-/// A run that has ended.
-pub struct Finished<S: Scheme> {
-    /// The simulation at its end.
-    pub simulation: Simulation<S>,
-    /// How it ended.
-    pub status: Status,
-    /// What it took.
-    pub cost: Cost,
-}
-
-/// Steps a scene to its end \[s\] with an observer; refused where more than ten million steps would be
-/// needed.
-pub fn run_to<S: Scheme<Extra = Symmetric>>(
-    mut scene: Scene<S>,
-    [dt, end]: [f64; 2],
-    eos: Linear,
-    context: &Context,
-    observer: &mut dyn Observer<S::Extra>,
-) -> Result<Finished<S>, RunError> {
-    let (value, most) = (end / dt, 1e7);
-    if value > most {
-        return Err(RunError::TooMuch { what: "the steps", value, most, setting: "end or dt" });
-    }
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
-    }
-    let mut simulation = scene.build()?;
-    let pressure = |density| eos.pressure(density);
+    let mut record = simulate::begin((P::NAME, variant), settings, method, &numbers, context);
+    let (eos, particles) = (material.eos(), settings.particles());
+    let mut watch = settings.watch(&particles);
+    let mut simulation = (method.build)(parts(medium, settings.domain(), particles, context))?;
     // No stop but the end: one would bring the leapfrog's velocities to a whole step.
-    let (status, cost) =
-        runner::drive(&mut simulation, dt, &[end], context, observer, &pressure, &mut |_, _| {})?;
-    Ok(Finished { simulation, status, cost })
+    (record.status, record.cost) = runner::drive(
+        &mut *simulation,
+        dt,
+        &[end],
+        context,
+        &mut watch,
+        &|density| eos.pressure(density),
+        &mut |_, _| {},
+    )?;
+    record.state = Some(digest(&simulation.particles()));
+    watch.measure(&*simulation, &mut record);
+    Ok(record)
 }
 
-/// A digest of the state at the end.
-pub fn digest(simulation: &dyn Stepper<Symmetric>) -> String {
-    let numbers = |p: solver::Particle<Symmetric>| {
+/// The parts of a scene without mirrors and with the usual limits.
+pub fn parts(
+    medium: Medium,
+    domain: Domain,
+    particles: Vec<Particle<Symmetric>>,
+    context: &Context,
+) -> Parts<Symmetric> {
+    let (mirrors, limits, threads) = (Vec::new(), Limits::default(), context.threads);
+    Parts { medium, domain, particles, mirrors, skin: None, limits, threads }
+}
+
+/// A digest of a state, stress included, in the order of the scene.
+pub fn digest(particles: &[Particle<Symmetric>]) -> String {
+    let numbers = |p: &Particle<Symmetric>| {
         let Symmetric { xx, yy, xy } = p.extra;
         [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density, xx, yy, xy]
     };
-    let all: Vec<[f64; 8]> = simulation.particles().into_iter().map(numbers).collect();
-    record::digest(all.as_flattened())
+    record::digest(&particles.iter().flat_map(numbers).collect::<Vec<f64>>())
 }

@@ -4,75 +4,61 @@
 use super::{
     DAM_BREAK, DamSettings, lobovsky,
     metrics::{DENSITY_LEAST, DENSITY_MOST, FRONT, IMPULSE, LEVELS, NOISE, OUTSIDE_END},
-    studies::{number, share},
 };
 use crate::water::ledger::{WORK_STRESS, WORK_VISCOSITY, WORK_WALLS};
 use base::{
     record::{MetricKey, Record, Status},
     spec::RunSpec,
 };
-use harness::{runs::Runs, study::Study};
-use report::{Cell, Column, Table, percent, sig};
+use harness::{columns::Columns, runs::Runs, study::Study};
+use report::{Cell, Table, percent, sig};
 
-/// The one setting that a row changes.
-#[derive(Clone, Copy)]
-enum Change {
-    Nothing,
-    Alpha(f64),
-    Xsph(f64),
-    HOverDx(f64),
+/// The one setting that a row changes, if it does: name, value, how it is set.
+type Change = Option<(&'static str, f64, fn(&mut DamSettings, f64))>;
+
+const NOTHING: Change = None;
+
+const fn alpha(value: f64) -> Change {
+    Some(("alpha", value, |s, value| s.alpha = value))
 }
-use Change::{Alpha, HOverDx, Nothing, Xsph};
 
-impl Change {
-    fn apply(self, s: &mut DamSettings) {
-        match self {
-            Nothing => {}
-            Alpha(alpha) => s.alpha = alpha,
-            Xsph(xsph) => s.xsph = xsph,
-            HOverDx(ratio) => s.h_over_dx = ratio,
-        }
-    }
+const fn xsph(value: f64) -> Change {
+    Some(("xsph", value, |s, value| s.xsph = value))
+}
 
-    fn in_words(self) -> String {
-        match self {
-            Nothing => String::new(),
-            Alpha(alpha) => format!("alpha={alpha}"),
-            Xsph(xsph) => format!("xsph={xsph}"),
-            HOverDx(ratio) => format!("h_over_dx={ratio}"),
-        }
-    }
+const fn h_over_dx(value: f64) -> Change {
+    Some(("h_over_dx", value, |s, value| s.h_over_dx = value))
 }
 
 /// The seed and what of it is changed, the same of its other wall, and of the modern variant.
 const ROWS: [(&str, Change); 27] = [
-    ("seed", Nothing),
-    ("seed", Alpha(0.0)),
-    ("seed", Alpha(0.01)),
-    ("seed", Alpha(0.05)),
-    ("seed", Alpha(0.2)),
-    ("seed", Xsph(0.0)),
-    ("seed", Xsph(0.25)),
-    ("seed", Xsph(0.9)),
-    ("seed", HOverDx(1.2)),
-    ("seed-no-stress", Nothing),
-    ("seed-diffusion", Nothing),
-    ("seed-extrapolating", Nothing),
-    ("seed-wendland", Nothing),
-    ("seed-leapfrog", Nothing),
-    ("ghosts", Nothing),
-    ("ghosts", Xsph(0.0)),
-    ("ghosts-slip", Nothing),
-    ("ghosts-slip", Xsph(0.0)),
-    ("modern", Nothing),
-    ("modern", Alpha(0.0)),
-    ("modern", Alpha(0.1)),
-    ("modern", HOverDx(2.0)),
-    ("modern-bare", Nothing),
-    ("modern-plain-diffusion", Nothing),
-    ("modern-interface", Nothing),
-    ("modern-ghosts", Nothing),
-    ("modern-ghosts-slip", Nothing),
+    ("seed", NOTHING),
+    ("seed", alpha(0.0)),
+    ("seed", alpha(0.01)),
+    ("seed", alpha(0.05)),
+    ("seed", alpha(0.2)),
+    ("seed", xsph(0.0)),
+    ("seed", xsph(0.25)),
+    ("seed", xsph(0.9)),
+    ("seed", h_over_dx(1.2)),
+    ("seed-no-stress", NOTHING),
+    ("seed-diffusion", NOTHING),
+    ("seed-extrapolating", NOTHING),
+    ("seed-wendland", NOTHING),
+    ("seed-leapfrog", NOTHING),
+    ("ghosts", NOTHING),
+    ("ghosts", xsph(0.0)),
+    ("ghosts-slip", NOTHING),
+    ("ghosts-slip", xsph(0.0)),
+    ("modern", NOTHING),
+    ("modern", alpha(0.0)),
+    ("modern", alpha(0.1)),
+    ("modern", h_over_dx(2.0)),
+    ("modern-bare", NOTHING),
+    ("modern-plain-diffusion", NOTHING),
+    ("modern-interface", NOTHING),
+    ("modern-ghosts", NOTHING),
+    ("modern-ghosts-slip", NOTHING),
 ];
 
 /// Spacings along the height, and the end: after the impact, before the wave breaks.
@@ -94,7 +80,9 @@ fn spec(variant: &str, change: Change) -> RunSpec {
     let set = |s: &mut DamSettings| {
         lobovsky(s);
         (s.n, s.end) = (N, END);
-        change.apply(s);
+        if let Some((_, value, set)) = change {
+            set(s, value);
+        }
     };
     DAM_BREAK.spec(variant, set).allow_unstable()
 }
@@ -122,66 +110,44 @@ fn pairs(record: &Record) -> f64 {
 }
 
 fn table(runs: &Runs) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::text("changed"),
-        Column::text("ended"),
-        Column::num("error of front", "H"),
-        Column::num("error of levels", "H"),
-        Column::num("error of impulse", "-"),
-        Column::num("viscosity took", "M g H/2"),
-        Column::num("stress gave", "M g H/2"),
-        Column::num("walls gave", "M g H/2"),
-        Column::num("noise of P2", "ρ g H"),
-        Column::num("density from", "-"),
-        Column::num("to", "-"),
-        Column::num("lost particles", "1"),
-        Column::num("pairs a particle and step", "1"),
-    ];
     let caption = format!(
         "One thing changed at a time, in the tank of Lobovsky et al. at H/dx = {N}, until t √(g/H) = {END}. \
          Errors of front and levels: rms after the best shift; of the impulse: mean over P1 to P3, for one \
          √(H/g) from the arrival. Noise: rms distance of P2 from its running mean after that. Pairs: \
          neighbours visited, exact.",
     );
-    let mut table = Table::new(caption, columns);
-    for (variant, change) in ROWS {
-        let Some(record) = runs.record(&spec(variant, change)) else { continue };
-        let ended = match &record.status {
-            Status::Diverged { time, .. } => format!("diverged at {} s", sig(*time, 2)),
-            Status::Refused { reason } => reason.clone(),
-            _ => "completed".into(),
-        };
-        table = table.row(vec![
-            Cell::text(format!("`{variant}`")),
-            Cell::text(change.in_words()),
-            Cell::text(ended),
-            number(record, FRONT.rms_shifted),
-            number(record, LEVELS.rms_shifted),
-            Cell::or_dash(impulse(record), |error| Cell::percent(error, 2)),
-            share(record, WORK_VISCOSITY, -1.0),
-            share(record, WORK_STRESS, 1.0),
-            share(record, WORK_WALLS, 1.0),
-            number(record, NOISE),
-            share(record, DENSITY_LEAST, 1.0),
-            share(record, DENSITY_MOST, 1.0),
-            number(record, OUTSIDE_END),
-            Cell::or_dash(pairs(record), |pairs| Cell::num(pairs, 3)),
-        ]);
-    }
-    table
+    let changed = |record: &Record| {
+        let is_it = |row: &&(&str, Change)| spec(row.0, row.1).key() == record.key();
+        let change = ROWS.iter().find(is_it).and_then(|(_, change)| *change);
+        change.map_or(String::new(), |(name, value, _)| format!("{name}={value}"))
+    };
+    Columns::of_variants()
+        .text("changed", changed)
+        .ended()
+        .number("error of front", "H", FRONT.rms_shifted)
+        .number("error of levels", "H", LEVELS.rms_shifted)
+        .of(["error of impulse", "-"], impulse, |error| Cell::percent(error, 2))
+        .percent("viscosity took", "M g H/2", WORK_VISCOSITY, -1.0)
+        .percent("stress gave", "M g H/2", WORK_STRESS, 1.0)
+        .percent("walls gave", "M g H/2", WORK_WALLS, 1.0)
+        .number("noise of P2", "ρ g H", NOISE)
+        .percent("density from", "-", DENSITY_LEAST, 1.0)
+        .percent("to", "-", DENSITY_MOST, 1.0)
+        .number("lost particles", "1", OUTSIDE_END)
+        .of(["pairs a particle and step", "1"], pairs, |pairs| Cell::num(pairs, 3))
+        .table(caption, runs.records(specs()))
 }
 
 /// Changes of the seed over α and over ε, ascending, each with its value.
 type Ladder = [(f64, Change)];
 const ALPHAS: &Ladder = &[
-    (0.0, Alpha(0.0)),
-    (0.01, Alpha(0.01)),
-    (0.05, Alpha(0.05)),
-    (0.1, Nothing),
-    (0.2, Alpha(0.2)),
+    (0.0, alpha(0.0)),
+    (0.01, alpha(0.01)),
+    (0.05, alpha(0.05)),
+    (0.1, NOTHING),
+    (0.2, alpha(0.2)),
 ];
-const EPSILONS: &Ladder = &[(0.0, Xsph(0.0)), (0.25, Xsph(0.25)), (0.5, Nothing), (0.9, Xsph(0.9))];
+const EPSILONS: &Ladder = &[(0.0, xsph(0.0)), (0.25, xsph(0.25)), (0.5, NOTHING), (0.9, xsph(0.9))];
 
 /// A metric of a row in words.
 fn quoted(
@@ -229,7 +195,7 @@ fn claims(runs: &Runs) -> String {
              no evidence"
         ),
     };
-    let seed = ("seed", Nothing);
+    let seed = ("seed", NOTHING);
     let m1 = format!(
         "M1, artificial viscosity damps unphysical oscillation: **{}**{}; noise of P2 in ρ g H over α is \
          {}, and viscosity adds {} to the energy.",
@@ -243,7 +209,7 @@ fn claims(runs: &Runs) -> String {
          without.",
         quoted(runs, seed, WORK_STRESS, percent),
         quoted(runs, seed, NOISE, sig),
-        quoted(runs, ("seed-no-stress", Nothing), NOISE, sig),
+        quoted(runs, ("seed-no-stress", NOTHING), NOISE, sig),
     );
     let m3 = format!(
         "M3, XSPH prevents unphysical motion: **{}**{}; noise over ε is {}, and the least excursion of the \
@@ -259,7 +225,7 @@ fn claims(runs: &Runs) -> String {
 /// The claim that both walls work: one does if the run ends, no particle is lost, and it does no work
 /// beyond the 5 % that the gates allow.
 fn walls(runs: &Runs) -> String {
-    let of = |variant: &str| runs.record(&spec(variant, Nothing));
+    let of = |variant: &str| runs.record(&spec(variant, NOTHING));
     let works = |variant: &str| {
         let good = |r: &Record| {
             r.status == Status::Completed

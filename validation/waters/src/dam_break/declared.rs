@@ -1,7 +1,7 @@
 //! What the studies that every case has are made of: the front of the column of Martin & Moyce over
 //! resolutions, what its error is made of, and the longest stable time steps in both scenes.
 
-use super::{DAM_BREAK, DamSettings, NAME, front, lobovsky, plan};
+use super::{DAM_BREAK, DamSettings, NAME, front, lobovsky, specs};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
@@ -46,10 +46,10 @@ pub fn ladders(tier: Tier) -> Vec<(&'static str, &'static [usize])> {
 
 fn accuracy(tier: Tier) -> Accuracy {
     // The finest run of `modern`.
-    let n = plan::martin_moyce("modern", tier).last().copied().unwrap_or_default();
-    let error = ErrorOf::Distance { finest: plan::free(tier, "modern", n), between };
+    let n = specs::martin_moyce("modern", tier).last().copied().unwrap_or_default();
+    let error = ErrorOf::Distance { finest: specs::free(tier, "modern", n), between };
     let level = |variant: &str, n: usize| Level {
-        run: plan::planned_free(tier, variant, n),
+        run: specs::planned_free(tier, variant, n),
         spacing: 1.0 / n as f64,
         label: format!("a/dx {n}"),
     };
@@ -88,9 +88,9 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
             DAM_BREAK.spec(variant, change).allow_unstable()
         };
         let mut changes = vec![
-            Change::new("none", "all", plan::free(tier, variant, n)),
+            Change::new("none", "all", specs::free(tier, variant, n)),
             Change::new("dt/2", "time", changed(|s| s.courant *= 0.5)),
-            Change::new("dx/2", "spacing", plan::free(tier, variant, 2 * n)),
+            Change::new("dx/2", "spacing", specs::free(tier, variant, 2 * n)),
             Change::new("2 c0", "compressibility", changed(|s| s.c0 *= 2.0)),
             Change::new("alpha/2", "artificial viscosity", changed(|s| s.alpha *= 0.5)),
             Change::new("h/dx 2", "smoothing", changed(|s| s.h_over_dx = 2.0)),
@@ -113,28 +113,22 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
 }
 
 fn limits(tier: Tier) -> StepLimits {
-    let free = |s: &mut DamSettings| s.n = 15;
-    let tank = |s: &mut DamSettings| {
-        lobovsky(s);
-        (s.n, s.end) = (15, 4.0);
-    };
-    let both = |variant| {
-        let of = [
-            ("Martin & Moyce", DAM_BREAK.spec(variant, free)),
-            ("Lobovsky", DAM_BREAK.spec(variant, tank)),
-        ];
-        of.map(|(scene, spec)| (variant, scene, spec))
-    };
-    let mut all: Vec<_> =
-        ["modern", "modern-bare", "seed-leapfrog", "seed"].into_iter().flat_map(both).collect();
-    if tier == Tier::Quick {
-        all.truncate(1);
-    }
+    let scenes: [(&str, Set); 2] = [
+        ("Martin & Moyce", |s| s.n = 15),
+        ("Lobovsky", |s| {
+            lobovsky(s);
+            (s.n, s.end) = (15, 4.0);
+        }),
+    ];
+    let of =
+        |variant| scenes.map(|(scene, set)| limit(variant, scene, DAM_BREAK.spec(variant, set)));
+    let most = if tier == Tier::Quick { 1 } else { usize::MAX };
+    let all =
+        ["modern", "modern-bare", "seed-leapfrog", "seed"].into_iter().flat_map(of).take(most);
     let about = "Stable is a collapse that ends with its energy accounted for within 2 %. Theory is the \
                  limit of a resting lattice. Water that moves, is compressed and loses its lattice is \
                  expected at 0.7 to 1.0 of it.";
-    let limit = |(variant, scene, spec)| limit(variant, scene, spec);
-    StepLimits::new("dam-break", about, all.into_iter().filter_map(limit))
+    StepLimits::new("dam-break", about, all.flatten())
 }
 
 /// The theoretical limit of the time step as the record's dt and dt/limit state it \[s\].

@@ -3,8 +3,8 @@
 
 use super::{
     DamSettings, metrics,
-    plan::{self, PEERS},
-    reference::{Curve, value},
+    reference::{self, Curve, PEERS, value},
+    specs,
 };
 use crate::water;
 use base::{
@@ -27,8 +27,8 @@ pub fn front(record: &Record) -> Curve {
 pub fn rms(one: &Curve, other: &Curve, [from, to]: [f64; 2]) -> f64 {
     const POINTS: usize = 100;
     let at = |k: usize| from + (to - from) * (k as f64 + 0.5) / POINTS as f64;
-    let square = |k: usize| (value(one, at(k)) - value(other, at(k))).powi(2);
-    ((0..POINTS).map(square).sum::<f64>() / POINTS as f64).sqrt()
+    let points: Curve = (0..POINTS).map(at).map(|t| (t, value(other, t))).collect();
+    reference::rms(one, &points, 0.0)
 }
 
 /// The observed order of three curves, each at half the spacing of the one before: log2 of the rms of
@@ -61,8 +61,8 @@ pub fn orders(tier: Tier, runs: &Runs) -> Study {
     let mut table = Table::new(caption, columns);
     let mut study = Study::new("dam-break-front-order", "Order of the front");
     for variant in ["seed", "modern"] {
-        let Some(&n) = plan::martin_moyce(variant, tier).last_chunk::<3>() else { continue };
-        let records = n.map(|n| runs.record(&plan::free(tier, variant, n)));
+        let Some(&n) = specs::martin_moyce(variant, tier).last_chunk::<3>() else { continue };
+        let records = n.map(|n| runs.record(&specs::free(tier, variant, n)));
         let [Some(a), Some(b), Some(c)] = records else { continue };
         let [p, least, most] = order([&front(a), &front(b), &front(c)]);
         let z = |record: &Record| record.value(metrics::Z.at(3)).unwrap_or(f64::NAN);

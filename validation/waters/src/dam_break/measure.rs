@@ -1,10 +1,7 @@
 //! What is measured of the water: front, heights, levels, momentum, and pressure on the far wall.
 
 use nalgebra::Vector2;
-use solver::{
-    EquationOfState, Evolved, Flow, Kernel, Observer, Scheme, Simulation, Smoothing, Stepper, Tait,
-    Term,
-};
+use solver::{EquationOfState, Evolved, Flow, Observer, Stepper, Tait};
 
 use super::{Dam, metrics};
 use base::record::{Profile, Record};
@@ -63,9 +60,8 @@ struct Sample {
 }
 
 /// Samples of a run.
-pub struct Samples<'a, F> {
+pub struct Samples<'a> {
     dam: &'a Dam,
-    forces: F,
     /// x of the foremost particle at the start \[m\].
     start: f64,
     samples: Vec<Sample>,
@@ -83,15 +79,14 @@ struct Balance {
     gap: f64,
 }
 
-impl<'a, F: Term<()>> Samples<'a, F> {
-    /// For a scene with these forces.
-    pub fn new(dam: &'a Dam, forces: &F) -> Self {
-        let (samples, balance) = (Vec::new(), None);
-        Self { dam, forces: forces.clone(), start: f64::NAN, samples, balance }
+impl<'a> Samples<'a> {
+    /// None yet.
+    pub fn new(dam: &'a Dam) -> Self {
+        Self { dam, start: f64::NAN, samples: Vec::new(), balance: None }
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
-    pub fn sample<S: Scheme<Extra = ()>>(&mut self, simulation: &Simulation<S>) {
+    pub fn sample(&mut self, simulation: &dyn Stepper<()>) {
         let (s, dx) = (&self.dam.settings, self.dam.medium.dx);
         let counts = |place| (self.dam.is_front)(place, s.height);
         let foremost = foremost(simulation.fluid(), counts);
@@ -124,8 +119,8 @@ impl<'a, F: Term<()>> Samples<'a, F> {
     }
 
     /// Momentum against the impulse of walls and gravity, by the trapezoidal rule.
-    fn balance<S: Scheme<Extra = ()>>(&mut self, simulation: &Simulation<S>) {
-        let rates = simulation.rates(&self.forces);
+    fn balance(&mut self, simulation: &dyn Stepper<()>) {
+        let rates = simulation.total_rates();
         let (mut momentum, mut force) = (Vector2::zeros(), Vector2::zeros());
         for ((mass, p), rate) in simulation.fluid().zip(&rates) {
             momentum += p.velocity * mass;
@@ -196,35 +191,36 @@ struct Spot {
 /// At a point of the wall p = Σ V p W/max(Σ V W, φ/2), φ the part of the kernel inside of the tank:
 /// the mean of the water that is near, falling to 0 where less than half of the place is wet. A sensor is
 /// the mean over its disk.
-pub struct Gauge<K> {
-    kernel: Smoothing<K>,
+pub struct Gauge {
     eos: Tait,
-    wall: f64,
+    /// x beyond which water is in reach of the wall \[m\].
+    reach: f64,
     sensors: Vec<Vec<Spot>>,
     rows: Vec<[f64; 5]>,
 }
 
-impl<K: Kernel> Gauge<K> {
+/// The kernel W(r) \[1/m²\] of r² \[m²\].
+type Weight<'a> = &'a dyn Fn(f64) -> f64;
+
+impl Gauge {
     /// Sensors on the far wall of a tank; none where the wall is not that of the experiment.
-    pub fn new(dam: &Dam) -> Self {
-        let kernel = Smoothing::new(dam.medium.h);
+    pub fn new(dam: &Dam, support: f64, weight: Weight) -> Self {
         let wall = dam.tank.width();
         let sensors = if dam.is_lobovsky() { &SENSORS[..] } else { &[] };
-        let sensors = sensors.iter().map(|height| spots(&kernel, wall, *height)).collect();
-        Self { kernel, eos: dam.medium.eos, wall, sensors, rows: Vec::new() }
+        let sensors = sensors.iter().map(|y| spots((support, weight), wall, *y)).collect();
+        Self { eos: dam.medium.eos, reach: wall - support, sensors, rows: Vec::new() }
     }
 
     fn read(&self, simulation: &dyn Stepper<()>) -> Vec<f64> {
-        let reach = self.wall - self.kernel.support();
         let near: Vec<(Vector2<f64>, f64, f64)> = simulation
             .fluid()
-            .filter(|(_, p)| p.position.x > reach)
+            .filter(|(_, p)| p.position.x > self.reach)
             .map(|(mass, p)| (p.position, mass / p.density, self.eos.pressure(p.density)))
             .collect();
         let at = |spot: &Spot| {
             let (mut wet, mut sum) = (0.0, 0.0);
             for (place, volume, pressure) in &near {
-                let w = volume * self.kernel.w((place - spot.place).norm_squared());
+                let w = volume * simulation.weight((place - spot.place).norm_squared());
                 wet += w;
                 sum += w * pressure;
             }
@@ -247,15 +243,10 @@ impl<K: Kernel> Gauge<K> {
         }
         blocks.into_iter().map(|(n, sum, count)| ((n + 0.5) * block, sum / count)).collect()
     }
-
-    /// Whether there are sensors.
-    pub fn is_there(&self) -> bool {
-        !self.sensors.is_empty()
-    }
 }
 
 /// The points of a sensor on the wall x = `wall` at a height \[m\], weighted by the chords of its disk.
-fn spots<K: Kernel>(kernel: &Smoothing<K>, wall: f64, height: f64) -> Vec<Spot> {
+fn spots(kernel: (f64, Weight), wall: f64, height: f64) -> Vec<Spot> {
     const POINTS: usize = 5;
     let offset = |k: usize| (k as f64 + 0.5) / POINTS as f64 * 2.0 - 1.0;
     let chord = |k: usize| (1.0 - offset(k) * offset(k)).sqrt();
@@ -268,21 +259,22 @@ fn spots<K: Kernel>(kernel: &Smoothing<K>, wall: f64, height: f64) -> Vec<Spot> 
     (0..POINTS).map(spot).collect()
 }
 
-/// The integral of the kernel about a point of a wall at this height over the quarter-plane of water.
-fn inside<K: Kernel>(kernel: &Smoothing<K>, height: f64) -> f64 {
+/// The integral of a kernel, of which the support \[m\] is given too, about a point of a wall at this height
+/// over the quarter-plane of water.
+fn inside((support, weight): (f64, Weight), height: f64) -> f64 {
     const CELLS: i32 = 40;
-    let cell = kernel.support() / f64::from(CELLS);
+    let cell = support / f64::from(CELLS);
     let middle = |k: i32| (f64::from(k) + 0.5) * cell;
     let columns = (0..CELLS).map(middle);
     columns
         .flat_map(|x| (-CELLS..CELLS).map(move |j| (x, middle(j))))
         .filter(|(_, y)| height + y > 0.0)
-        .fold(0.0, |sum, (x, y)| sum + cell * cell * kernel.w(x * x + y * y))
+        .fold(0.0, |sum, (x, y)| sum + cell * cell * weight(x * x + y * y))
 }
 
-impl<K: Kernel> Observer<()> for Gauge<K> {
+impl Observer<()> for Gauge {
     fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
-        if self.is_there() {
+        if !self.sensors.is_empty() {
             let p = self.read(simulation);
             self.rows.push([simulation.time(), p[0], p[1], p[2], p[3]]);
         }
@@ -294,7 +286,7 @@ impl<K: Kernel> Observer<()> for Gauge<K> {
 mod tests {
     use super::*;
     use crate::dam_break::setup::near_the_floor;
-    use solver::WendlandC2;
+    use solver::{Smoothing, WendlandC2};
 
     fn still(x: f64, y: f64) -> Evolved<()> {
         let (position, velocity) = (Vector2::new(x, y), Vector2::zeros());
@@ -321,12 +313,14 @@ mod tests {
 
     #[test]
     fn half_of_a_kernel_is_in_front_of_a_wall_and_a_quarter_in_a_corner() {
-        let kernel = Smoothing::<WendlandC2>::new(0.1);
+        let smoothing = Smoothing::<WendlandC2>::new(0.1);
+        let weight = |r2| smoothing.w(r2);
+        let kernel: (f64, Weight) = (smoothing.support(), &weight);
         for (height, expected) in [(0.5, 0.5), (0.0, 0.25)] {
-            let part = inside(&kernel, height);
+            let part = inside(kernel, height);
             assert!((part - expected).abs() < 1e-3, "{height}: {part}");
         }
-        let all: f64 = spots(&kernel, 1.0, 0.3).iter().map(|s| s.share).sum();
+        let all: f64 = spots(kernel, 1.0, 0.3).iter().map(|s| s.share).sum();
         assert!((all - 1.0).abs() < 1e-12);
     }
 }

@@ -61,31 +61,28 @@ base::metrics! {
     NOISE_MEASURED = "pressure_noise_measured" ["-"] "the same of the experiment, sampled at 2 kHz";
 }
 
-macro_rules! four {
-    ($formula:expr, $($name:literal),+) => { [$(MetricKey::new($name, "-", $formula)),+] };
+/// A metric of each of four probes or sensors.
+const fn four(formula: &'static str, [a, b, c, d]: [&'static str; 4]) -> [MetricKey; 4] {
+    [
+        MetricKey::new(a, "-", formula),
+        MetricKey::new(b, "-", formula),
+        MetricKey::new(c, "-", formula),
+        MetricKey::new(d, "-", formula),
+    ]
 }
 
 /// Distance of each level.
-pub const LEVEL_RMS: [MetricKey; 4] = four!(
+pub const LEVEL_RMS: [MetricKey; 4] = four(
     "rms distance of the level/H from the mean of the series, as released",
-    "H1_rms",
-    "H2_rms",
-    "H3_rms",
-    "H4_rms"
+    ["H1_rms", "H2_rms", "H3_rms", "H4_rms"],
 );
 /// Impulse on each sensor, at the end of its window.
-pub const IMPULSE: [MetricKey; 4] = four!(
+pub const IMPULSE: [MetricKey; 4] = four(
     "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured one, less 1",
-    "impulse_P1",
-    "impulse_P2",
-    "impulse_P3",
-    "impulse_P4"
+    ["impulse_P1", "impulse_P2", "impulse_P3", "impulse_P4"],
 );
 /// Peak of each sensor.
-pub const PEAK: [MetricKey; 4] = four!(
+pub const PEAK: [MetricKey; 4] = four(
     "largest pressure/(rho g H), means over 0.01",
-    "peak_P1",
-    "peak_P2",
-    "peak_P3",
-    "peak_P4"
+    ["peak_P1", "peak_P2", "peak_P3", "peak_P4"],
 );

@@ -13,23 +13,20 @@ mod plan;
 mod reference;
 mod run;
 mod setup;
+mod specs;
 mod stability;
 mod studies;
 
-use harness::{
-    case::Variant,
-    composed::{Composed, Composition},
-};
+use harness::composed::{Composed, Composition, Variants};
 use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, PredictorCorrector,
-    Pressure, SlipGhosts, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+    ArtificialStress, Compose, Continuity, CubicSpline, DensityDiffusion, ExtrapolatingWall,
+    Ghosts, InterfaceWall, Leapfrog, PredictorCorrector, SlipGhosts, Tait, WendlandC2, Xsph,
 };
 
-pub use run::{Watched, run_scene};
-pub use setup::{Dam, Vessel};
+pub use run::measured;
+pub use setup::Dam;
 
-use super::water::WaterScheme;
+use crate::water::{Diffusion, Modern, Seed, Water, WaterMethod, method};
 
 crate::water_settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
@@ -51,7 +48,14 @@ crate::water_settings! {
         /// end of the run
         end: f64 ["(H/g)^(1/2)"] in 1e-6..=100.0 = 1.8,
         /// the column starts this far to the left of its place and below it, with the densities of its place
-        shift: f64 ["dx"] in 0.0..=0.5 = 0.0,
+        offset: f64 ["dx"] in 0.0..=0.5 = 0.0,
+    }
+}
+
+impl DamSettings {
+    /// (H/g)^(1/2) \[s\], the unit of time.
+    pub fn unit_time(&self) -> f64 {
+        (self.height / self.gravity).sqrt()
     }
 }
 
@@ -63,32 +67,6 @@ pub fn lobovsky(s: &mut DamSettings) {
 
 /// The name of the case.
 pub const NAME: &str = "dam_break";
-
-/// (14) with (7), (16), (17), and gravity; `R` is the artificial stress (18), (19).
-pub type Water<R = ()> = (Pressure<Tait, R>, ArtificialViscosity<Tait>, BodyForce);
-/// What the paper describes.
-pub type Seed<W, I = PredictorCorrector> =
-    Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), W, I>;
-/// Density diffusion that leaves a column at rest alone.
-pub type Diffusion = DensityDiffusion<Hydrostatic>;
-/// The best known settings.
-pub type Modern<D = (Continuity, Diffusion), W = ExtrapolatingWall<Tait>> =
-    Compose<WendlandC2, Water, D, W, Leapfrog>;
-
-fn variant<S: WaterScheme<Walls: Vessel>>(
-    name: &'static str,
-    about: &'static str,
-    adjust: fn(&mut DamSettings),
-) -> Composition<DamSettings> {
-    let lacks = S::lacks();
-    Composition {
-        variant: Variant { name, about },
-        adjust,
-        run: run::run::<S>,
-        rules: run::rules::<S>,
-        lacks,
-    }
-}
 
 /// The seed's step: at Courant number 0.4 the predictor-corrector needs α = 0.03 on every pair, and
 /// α = 0.1 on approaching ones is more than that.
@@ -103,91 +81,96 @@ fn modern(s: &mut DamSettings) {
 
 /// The variants that are judged, then those of the ablation.
 fn variants() -> Vec<Composition<DamSettings>> {
-    let mut all = vec![
-        variant::<Seed<InterfaceWall>>(
+    let judged = Variants::of(&run::PROGRAM)
+        .with(
             "seed",
             "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
              stress, predictor-corrector",
+            method::<Seed<InterfaceWall>>(),
             seed,
-        ),
-        variant::<Seed<Ghosts>>(
+        )
+        .with(
             "ghosts",
             "the seed with ghosts; in a corner a particle has a third one, turned by half a turn about \
              it, with its own velocity",
+            method::<Seed<Ghosts>>(),
             seed,
-        ),
-        variant::<Modern>(
+        )
+        .with(
             "modern",
             "Wendland C2, density diffusion that keeps a column at rest, leapfrog, walls that \
              extrapolate the pressure, not below 0, so that they cannot suck, little artificial \
              viscosity",
+            method::<Modern>(),
             modern,
-        ),
-    ];
-    all.extend(ablations());
-    all
+        );
+    modern_ablations(seed_ablations(judged)).all
 }
 
-/// The seed, and the modern variant, with one part changed.
-fn ablations() -> Vec<Composition<DamSettings>> {
-    type Midpoint = PredictorCorrector;
-    vec![
-        variant::<Seed<InterfaceWall, Leapfrog>>("seed-leapfrog", "the seed, leapfrog", seed),
-        variant::<Seed<ExtrapolatingWall<Tait>>>(
+type All<'a> = Variants<'a, DamSettings, WaterMethod>;
+/// The seed with other kernels, terms and drift.
+type Changed<K, F = Water<ArtificialStress>, D = (Continuity, Xsph)> =
+    Compose<K, F, D, InterfaceWall, PredictorCorrector>;
+
+/// The seed with one part changed.
+fn seed_ablations(all: All) -> All {
+    all.with("seed-leapfrog", "the seed, leapfrog", method::<Seed<InterfaceWall, Leapfrog>>(), seed)
+        .with(
             "seed-extrapolating",
             "the seed with walls that extrapolate the pressure",
+            method::<Seed<ExtrapolatingWall<Tait>>>(),
             seed,
-        ),
-        variant::<Compose<CubicSpline, Water, (Continuity, Xsph), InterfaceWall, Midpoint>>(
+        )
+        .with(
             "seed-no-stress",
             "the seed without artificial stress",
+            method::<Changed<CubicSpline, Water>>(),
             seed,
-        ),
-        variant::<
-            Compose<
-                CubicSpline,
-                Water<ArtificialStress>,
-                (Continuity, Xsph, Diffusion),
-                InterfaceWall,
-                Midpoint,
-            >,
-        >("seed-diffusion", "the seed with density diffusion", seed),
-        variant::<
-            Compose<
-                WendlandC2,
-                Water<ArtificialStress>,
-                (Continuity, Xsph),
-                InterfaceWall,
-                Midpoint,
-            >,
-        >("seed-wendland", "the seed with Wendland C2", seed),
-        variant::<Seed<SlipGhosts>>(
+        )
+        .with(
+            "seed-diffusion",
+            "the seed with density diffusion",
+            method::<Changed<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph, Diffusion)>>(
+            ),
+            seed,
+        )
+        .with("seed-wendland", "the seed with Wendland C2", method::<Changed<WendlandC2>>(), seed)
+        .with(
             "ghosts-slip",
             "the seed with ghosts that keep the velocity along the wall",
+            method::<Seed<SlipGhosts>>(),
             seed,
-        ),
-        variant::<Modern<Continuity>>("modern-bare", "modern without density diffusion", modern),
-        variant::<Modern<(Continuity, DensityDiffusion)>>(
-            "modern-plain-diffusion",
-            "modern with density diffusion that levels out a column at rest",
-            modern,
-        ),
-        variant::<Modern<(Continuity, Diffusion), InterfaceWall>>(
-            "modern-interface",
-            "modern with interface and wall particles",
-            modern,
-        ),
-        variant::<Modern<(Continuity, Diffusion), Ghosts>>(
-            "modern-ghosts",
-            "modern with ghosts",
-            modern,
-        ),
-        variant::<Modern<(Continuity, Diffusion), SlipGhosts>>(
-            "modern-ghosts-slip",
-            "modern with ghosts that keep the velocity along the wall",
-            modern,
-        ),
-    ]
+        )
+}
+
+/// The modern variant with one part changed.
+fn modern_ablations(all: All) -> All {
+    type Walled<W> = Modern<(Continuity, Diffusion), W>;
+    all.with(
+        "modern-bare",
+        "modern without density diffusion",
+        method::<Modern<Continuity>>(),
+        modern,
+    )
+    .with(
+        "modern-plain-diffusion",
+        "modern with density diffusion that levels out a column at rest",
+        method::<Modern<(Continuity, DensityDiffusion)>>(),
+        modern,
+    )
+    .with(
+        "modern-interface",
+        "modern with interface and wall particles",
+        method::<Walled<InterfaceWall>>(),
+        modern,
+    )
+    .with("modern-ghosts", "modern with ghosts", method::<Walled<Ghosts>>(), modern)
+    .with(
+        "modern-ghosts-slip",
+        "modern with ghosts that keep the velocity along the wall",
+        method::<Walled<SlipGhosts>>(),
+        modern,
+    )
 }
 
 /// Collapsing columns.

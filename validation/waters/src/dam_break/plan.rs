@@ -1,95 +1,15 @@
 //! The runs: both experiments over resolutions and variants with their gates, and what single studies need.
 
 use super::{
-    DAM_BREAK, NAME, ablation, lobovsky,
+    NAME, ablation,
     metrics::{self, FRONT, HEIGHT, IMPULSE, LEVELS},
+    reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS},
+    specs::{JUDGED, film, in_tank, martin_moyce, planned_free, planned_tank},
     stability,
 };
-use crate::water::ledger;
-use base::{
-    gate::{Bound, Evidence, Gate, Purpose},
-    record::MetricName,
-    spec::RunSpec,
-};
+use crate::water::{gate, ledger};
+use base::gate::{Bound, Evidence, Gate, Purpose};
 use harness::case::{Planned, Tier};
-
-/// The variants that are judged.
-pub const JUDGED: [&str; 3] = ["seed", "ghosts", "modern"];
-
-/// Spacings along the width of the column of Martin & Moyce. At 80 the seed would take as long as half
-/// of all other runs of this case; three resolutions of it are 10, 20 and 40.
-pub fn martin_moyce(variant: &str, tier: Tier) -> &'static [usize] {
-    match (tier, variant) {
-        (Tier::Quick, "modern") => &[20, 40],
-        (Tier::Quick, _) | (Tier::Full, "ghosts") => &[20],
-        (Tier::Full, "modern") => &[10, 20, 40, 80],
-        (Tier::Full, _) => &[10, 20, 40],
-    }
-}
-
-/// Spacings along the height of the column of Lobovsky et al.
-pub fn in_tank(variant: &str, tier: Tier) -> &'static [usize] {
-    match (tier, variant) {
-        (Tier::Quick, "modern") => &[30],
-        (Tier::Quick, _) => &[],
-        (Tier::Full, "modern") => &[30, 60, 120],
-        (Tier::Full, _) => &[30],
-    }
-}
-
-/// Roughly what a run takes \[s\], `whole` being what `modern` takes at the spacing of `n`: particles times
-/// steps, and two right-hand sides a step where the seed's integrator is.
-fn seconds(variant: &str, whole: f64, n: usize, of: usize) -> f64 {
-    let dear = if variant.starts_with("modern") { 1.0 } else { 2.5 };
-    whole * dear * (n as f64 / of as f64).powi(3)
-}
-
-/// The same run with the particles of its pictures, if there are pictures of it: of the finest of `modern`.
-fn pictured(spec: RunSpec, n: usize, ladder: &[usize]) -> RunSpec {
-    let is_finest = spec.variant == "modern" && ladder.last() == Some(&n);
-    if is_finest { spec.keep_particles() } else { spec }
-}
-
-/// The column of Martin & Moyce.
-pub fn free(tier: Tier, variant: &str, n: usize) -> RunSpec {
-    pictured(DAM_BREAK.spec(variant, |s| s.n = n), n, martin_moyce(variant, tier))
-}
-
-/// The same as a run of a plan, without gates.
-pub fn planned_free(tier: Tier, variant: &str, n: usize) -> Planned {
-    Planned::new(free(tier, variant, n)).taking(seconds(variant, 6.0, n, 40))
-}
-
-/// The tank of Lobovsky et al.
-pub fn tank(tier: Tier, variant: &str, n: usize) -> RunSpec {
-    let spec = DAM_BREAK.spec(variant, |s| {
-        lobovsky(s);
-        s.n = n;
-    });
-    pictured(spec, n, in_tank(variant, tier))
-}
-
-/// The judged runs of the column of Martin & Moyce.
-pub fn all_free(tier: Tier) -> impl Iterator<Item = RunSpec> {
-    let of =
-        move |variant| martin_moyce(variant, tier).iter().map(move |n| free(tier, variant, *n));
-    JUDGED.into_iter().flat_map(of)
-}
-
-/// The judged runs of the tank of Lobovsky et al.
-pub fn all_in_tank(tier: Tier) -> impl Iterator<Item = RunSpec> {
-    let of = move |variant| in_tank(variant, tier).iter().map(move |n| tank(tier, variant, *n));
-    JUDGED.into_iter().flat_map(of)
-}
-
-/// Pictures of the film, and spacings along the height of its column.
-pub const FRAMES: usize = 21;
-pub const FILM_ROWS: usize = 15;
-
-/// The tank as a film: `modern` with a picture every quarter of √(H/g).
-pub fn film(tier: Tier) -> RunSpec {
-    tank(tier, "modern", FILM_ROWS).keep_pictures(FRAMES)
-}
 
 /// The runs: Martin & Moyce variant by variant, then Lobovsky et al., then those of single studies.
 pub fn plan(tier: Tier) -> Vec<Planned> {
@@ -101,8 +21,7 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
     }
     for variant in JUDGED {
         for &n in in_tank(variant, tier) {
-            let run = Planned::new(tank(tier, variant, n)).taking(seconds(variant, 5.0, n, 30));
-            runs.push(run.judged(tank_gates(variant, n)));
+            runs.push(planned_tank(tier, variant, n).judged(tank_gates(variant, n)));
         }
     }
     runs.push(Planned::new(film(tier)));
@@ -113,17 +32,6 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
         runs.extend(stability::SPEEDS.map(|c0| Planned::new(stability::at_speed(c0)).taking(2.0)));
     }
     runs
-}
-
-fn gate(
-    id: &str,
-    metric: impl Into<MetricName>,
-    bound: Bound,
-    evidence: Evidence,
-    because: &str,
-) -> Gate {
-    let metric = metric.into();
-    Gate::new(format!("{NAME}.{id}.{}", metric.name()), metric.name(), bound, evidence, because)
 }
 
 /// What holds whatever the water does.
@@ -184,17 +92,9 @@ const LAYER: &str = "particles next to the back wall lag, in a layer of a few sp
                      run each at 20: alpha 0.05 instead of 0.1 halves the shift, -0.09 to -0.05, so \
                      artificial viscosity has a part in it; without artificial stress it stays";
 
-/// Spread of digitised curves of the front of Martin & Moyce \[a\].
-pub const FRONT_SPREAD: f64 = 0.1;
-/// By which the impulse on P2L differs from that on P2, for one (H/g)^(1/2) from the arrival at P1.
-pub const IMPULSE_SPREAD: f64 = 0.06;
-/// What three other codes of particles give for Z at T = 2 and 3, see the reference `peers` of the
-/// report: SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
-pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
-
 /// Gates of a column that runs out freely.
 fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
-    let id = format!("martin-moyce.{variant}.{n}");
+    let id = format!("{NAME}.martin-moyce.{variant}.{n}");
     let mut gates = invariants(variant, &id);
     if n < 20 {
         return gates; // for the order and the cost alone
@@ -232,7 +132,7 @@ fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
 
 /// Gates of a column in the tank.
 fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
-    let id = format!("lobovsky.{variant}.{n}");
+    let id = format!("{NAME}.lobovsky.{variant}.{n}");
     let mut gates = invariants(variant, &id);
     let front = "3 % of the way to the far wall; what the gate adds is not known, and a shift of the clock \
                  takes out only a part of it";

@@ -2,21 +2,32 @@
 
 use std::collections::BTreeMap;
 
-use solver::{EquationOfState, Integrator, Kernel, Particle, Role, Scene, Scheme, Stepper};
+use solver::{EquationOfState, Particle, Role, Stepper};
 
 use super::{
-    Dam, DamSettings, NAME, Vessel,
+    Dam, DamSettings, NAME,
     measure::{Gauge, Samples},
     metrics, reference,
 };
-use crate::water::{self, Ledger, WaterScheme};
+use crate::water::{self, Ledger, WaterMethod};
 use base::record::{Profile, Record, Status};
 use harness::{
-    case::{Rules, RunError},
+    case::RunError,
+    composed::Program,
     runner::{self, Context},
-    simulate::state,
+    simulate,
 };
-use maths::metrics::budget::Itemised;
+use maths::metrics::budget::Metered;
+
+/// Runs of the variants.
+pub const PROGRAM: Program<DamSettings, WaterMethod> = Program {
+    run: |method, variant, settings, context| {
+        let dam = Dam::new(settings, method, context)?;
+        let simulation = (method.build)(dam.parts(method, context))?;
+        measured(&dam, method, variant, simulation, context)
+    },
+    rules: |method, settings| Ok(Dam::new(settings, method, &water::of_rules())?.rules),
+};
 
 /// Times at which particles are kept for pictures, shares of the run.
 pub const PICTURES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -42,57 +53,39 @@ const SAMPLE: f64 = 4.0;
 /// At most so many samples.
 const MOST_SAMPLES: f64 = 2e4;
 
-/// The observers of a run, for a scene that has the types of a variant or of a spoiled one.
-pub trait Watched: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>> {}
-impl<S: Scheme<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>>> Watched for S {}
-
-/// What the rules choose.
-pub fn rules<S: WaterScheme>(settings: &DamSettings) -> Result<Rules, RunError> {
-    let Dam { dt, dt_limit, medium, .. } = Dam::new::<S>(settings, true)?;
-    Ok(Rules { dt, dt_limit, sound_speed: medium.eos.sound_speed })
-}
-
-/// Runs and measures.
-pub fn run<S>(variant: &str, settings: &DamSettings, context: &Context) -> Result<Record, RunError>
-where
-    S: WaterScheme<Walls: Vessel>,
-{
-    let dam = Dam::new::<S>(settings, context.allow_unstable)?;
-    run_scene::<S>(&dam, variant, S::Walls::NAME, dam.scene::<S>(), context)
-}
-
-/// Runs a scene and measures it against the setup: the same measuring for a scene that is not what
-/// its settings say.
-pub fn run_scene<S: Watched>(
+/// Steps a simulation and measures it against the setup: the same measuring for one that is not what its
+/// settings say.
+///
+/// # Errors
+/// If a frame cannot be written.
+pub fn measured(
     dam: &Dam,
+    method: &WaterMethod,
     variant: &str,
-    walls: &str,
-    mut scene: Scene<S>,
+    mut simulation: Box<dyn Metered<()>>,
     context: &Context,
 ) -> Result<Record, RunError> {
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
-    }
-    let mut record = begin::<S>(dam, variant, walls, context);
-    let mut ledger = Ledger::new(dam.medium.water(), &scene.forces, &scene.drift);
-    let mut samples = Samples::new(dam, &scene.forces);
-    let mut gauge = Gauge::<S::Kernel>::new(dam);
-    let filled = water_mass(&scene.particles);
-    let mut simulation = scene.build()?;
+    let Dam { settings, medium, rules, .. } = dam;
+    let numbers = water::numbers(settings.h_over_dx, medium, *rules);
+    let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
+    let mut ledger = Ledger::new(medium);
+    let mut samples = Samples::new(dam);
+    let mut gauge = Gauge::new(dam, method.support * medium.h, &|r2| simulation.weight(r2));
+    let filled = water_mass(&simulation.particles());
     let (times, pictures) = stops(dam, context);
-    let pressure = |density| dam.medium.eos.pressure(density);
-    let (status, cost) = runner::drive(
-        &mut simulation,
-        dam.dt,
+    let pressure = |density| medium.eos.pressure(density);
+    (record.status, record.cost) = runner::drive(
+        &mut *simulation,
+        rules.dt,
         &times,
         context,
         &mut gauge,
         &pressure,
         &mut |s, k| {
-            samples.sample(s);
+            samples.sample(&*s);
             ledger.sample(s);
             if let Some(share) = pictures.get(&k) {
-                record.profiles.insert(format!("particles@{share}"), picture(dam, s));
+                record.profiles.insert(format!("particles@{share}"), picture(dam, &*s));
             }
         },
     )?;
@@ -100,16 +93,15 @@ pub fn run_scene<S: Watched>(
     let mass = water_mass(&particles);
     samples.measure(mass, &mut record);
     record.put(metrics::MASS_ERROR, (mass / filled - 1.0).abs());
-    let fall = 0.5 * mass * dam.settings.gravity * dam.settings.height;
+    let fall = 0.5 * mass * settings.gravity * settings.height;
     ledger.measure(fall, "M g H/2, the potential energy of the column", &mut record);
-    if status == Status::Completed
+    if record.status == Status::Completed
         && let Err(error) = reference::compare(dam, &samples, &gauge, &mut record)
     {
         // Packages are embedded and checked by a test.
         record.numerics.insert("reference".into(), error.to_string().into());
     }
-    record.state = Some(state(&particles));
-    (record.status, record.cost) = (status, cost);
+    record.state = Some(simulate::state(&particles));
     Ok(record)
 }
 
@@ -119,26 +111,12 @@ fn water_mass(particles: &[Particle]) -> f64 {
     particles.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum()
 }
 
-/// A record with what the run chose.
-fn begin<S: Scheme>(dam: &Dam, variant: &str, walls: &str, context: &Context) -> Record {
-    let numbers = [
-        ("h/dx", dam.settings.h_over_dx),
-        ("dx [m]", dam.medium.dx),
-        ("c0 [m/s]", dam.medium.eos.sound_speed),
-        ("dt [s]", dam.dt),
-        ("dt/limit", dam.dt / dam.dt_limit),
-    ];
-    let words =
-        [("kernel", S::Kernel::NAME), ("integrator", S::Integrator::NAME), ("walls", walls)];
-    water::begin((NAME, variant), &dam.settings, numbers, words, context)
-}
-
 /// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and the
 /// samples that are pictures, by their share of the run.
 fn stops(dam: &Dam, context: &Context) -> (Vec<f64>, BTreeMap<usize, f64>) {
-    let (end, dt) = (dam.settings.end * dam.unit_time(), dam.dt);
+    let (end, dt) = (dam.settings.end * dam.settings.unit_time(), dam.rules.dt);
     let (h, eos) = (dam.medium.h, dam.medium.eos);
-    let crossing = SAMPLE * h / (eos.sound_speed + dam.medium.speed);
+    let crossing = SAMPLE * h / (eos.sound_speed + dam.speed);
     let every = (crossing.max(end / MOST_SAMPLES) / dt).round().max(1.0) * dt;
     let count = (end / every - 0.5).floor().max(0.0) as usize;
     let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();

@@ -4,8 +4,7 @@
 use super::{
     DAM_BREAK, DamSettings, NAME, declared,
     metrics::{DENSITY_LEAST, DENSITY_MOST, FRONT, MACH, OUTSIDE_END, Z},
-    plan,
-    studies::{number, share},
+    specs,
 };
 use crate::water::ledger::{ENERGY_GAP, WORK_VISCOSITY};
 use base::{
@@ -15,10 +14,11 @@ use base::{
 };
 use harness::{
     case::{self, Case, Tier},
+    columns::Columns,
     runs::Runs,
     study::Study,
 };
-use report::{Cell, Column, Table, sig};
+use report::{Cell, sig};
 
 /// A run that ended, with the energy that it began with.
 pub fn is_stable(record: &Record) -> bool {
@@ -36,44 +36,21 @@ pub fn at_speed(c0: f64) -> RunSpec {
 
 /// The sound speed: Mach number, excursion of the density, front.
 pub fn sound(runs: &Runs) -> Study {
-    let columns = vec![
-        Column::num("c0", "√(g H)"),
-        Column::text("ended"),
-        Column::num("Mach number", "-"),
-        Column::num("density from", "-"),
-        Column::num("to", "-"),
-        Column::num("Z at T = 3", "a"),
-        Column::num("rms of front after shift", "a"),
-        Column::num("viscosity took", "M g H/2"),
-        Column::num("steps", "1"),
-    ];
     let caption = "The column of Martin & Moyce at a/dx = 20, variant `modern`, over the sound speed. \
                    Artificial viscosity is proportional to it.";
-    let mut table = Table::new(caption, columns);
-    for c0 in SPEEDS {
-        let Some(record) = runs.record(&at_speed(c0)) else { continue };
-        table = table.row(vec![
-            Cell::num(c0, 3),
-            Cell::text(ended(record)),
-            number(record, MACH),
-            share(record, DENSITY_LEAST, 1.0),
-            share(record, DENSITY_MOST, 1.0),
-            number(record, Z.at(3)),
-            number(record, FRONT.rms_shifted),
-            share(record, WORK_VISCOSITY, -1.0),
-            Cell::count(record.cost.steps),
-        ]);
-    }
+    let c0 = |record: &Record| record.settings_as::<DamSettings>().c0;
+    let table = Columns::default()
+        .of(["c0", "√(g H)"], c0, |value| Cell::num(value, 3))
+        .ended()
+        .number("Mach number", "-", MACH)
+        .percent("density from", "-", DENSITY_LEAST, 1.0)
+        .percent("to", "-", DENSITY_MOST, 1.0)
+        .number("Z at T = 3", "a", Z.at(3))
+        .number("rms of front after shift", "a", FRONT.rms_shifted)
+        .percent("viscosity took", "M g H/2", WORK_VISCOSITY, -1.0)
+        .steps()
+        .table(caption, runs.records(SPEEDS.map(at_speed)));
     Study::new("dam-break-sound", "Sound speed").block(table)
-}
-
-fn ended(record: &Record) -> String {
-    match &record.status {
-        Status::Completed => "completed".into(),
-        Status::Diverged { step, field, .. } => format!("diverged at step {step}: {field}"),
-        Status::Refused { reason } => reason.clone(),
-        Status::Interrupted { .. } => "interrupted".into(),
-    }
 }
 
 /// Settings far outside of the usual.
@@ -101,14 +78,14 @@ pub fn extremes(tier: Tier) -> impl Iterator<Item = Extreme> {
         ("impact on a dry corner near by", |s| {
             (s.width, s.height, s.tank, s.n) = (0.1, 0.2, 0.13, 10);
         }),
-        ("water that starts on the surface of the walls", |s| (s.n, s.shift) = (10, 0.5)),
+        ("water that starts on the surface of the walls", |s| (s.n, s.offset) = (10, 0.5)),
     ];
     let mild = rows.into_iter().map(|(name, set)| {
         let spec = DAM_BREAK.spec("modern", set);
         let is_crowded = name.starts_with("water that starts");
         Extreme { name, spec, holds: true, limitation: is_crowded.then_some(CROWDED) }
     });
-    let rules = DAM_BREAK.rules(&plan::free(tier, "modern", USUAL));
+    let rules = DAM_BREAK.rules(&specs::free(tier, "modern", USUAL));
     let limit = rules.ok().map(|rules| 2.0 * declared::theory(rules));
     let spec = DAM_BREAK.spec("modern", |s| (s.n, s.dt) = (USUAL, limit)).allow_unstable();
     let beyond = Extreme { name: "dt at twice the limit", spec, holds: false, limitation: None };
@@ -121,41 +98,36 @@ const CROWDED: &str = "(3) knows how the density changes, not what it is: water 
 
 /// What came of them.
 pub fn extreme_settings(tier: Tier, runs: &Runs) -> Study {
-    let columns = vec![
-        Column::text("extreme"),
-        Column::text("settings"),
-        Column::text("must"),
-        Column::text("ended"),
-        Column::num("lost particles", "1"),
-        Column::num("energy not accounted for", "-"),
-    ];
     let caption = "The collapse, variant `modern`, with settings far outside of the usual.";
-    let mut table = Table::new(caption, columns);
+    let all: Vec<Extreme> = extremes(tier).collect();
+    let of = |record: &Record| all.iter().find(|extreme| extreme.spec.key() == record.key());
+    let must = |holds: bool| if holds { "keep water and energy" } else { "end as diverged" };
+    let table = Columns::default()
+        .text("extreme", |record| of(record).map_or(String::new(), |of| of.name.into()))
+        .text("settings", |record| case::changed(&DAM_BREAK, &record.spec()).join(", "))
+        .text("must", |record| of(record).map_or(String::new(), |of| must(of.holds).into()))
+        .ended()
+        .number("lost particles", "1", OUTSIDE_END)
+        .metric(["energy not accounted for", "-"], ENERGY_GAP, |gap| Cell::sci(gap, 2))
+        .table(caption, runs.records(all.iter().map(|extreme| extreme.spec.clone())));
     let mut study = Study::new("dam-break-extremes", "Extremes");
-    let stable = "it is water in a tank: it stays there, and its energy is accounted for";
-    let typed =
-        "twice the limit grows without bound, which is a typed failure with step and particle";
-    for Extreme { name, spec, holds, limitation } in extremes(tier) {
-        let Some(record) = runs.record(&spec) else { continue };
+    for Extreme { name, spec, holds, limitation } in &all {
+        let Some(record) = runs.record(spec) else { continue };
         let (lost, gap) = (record.value(OUTSIDE_END), record.value(ENERGY_GAP));
-        table = table.row(vec![
-            Cell::text(name),
-            Cell::text(case::changed(&DAM_BREAK, &spec).join(", ")),
-            Cell::text(if holds { "keep water and energy" } else { "end as diverged" }),
-            Cell::text(ended(record)),
-            number(record, OUTSIDE_END),
-            crate::water::cell(record, ENERGY_GAP, |gap| Cell::sci(gap, 2)),
-        ]);
         let is_good = match (holds, &record.status) {
             (true, Status::Completed) => lost == Some(0.0) && gap.is_some_and(|gap| gap < 0.01),
             (false, Status::Diverged { .. }) => true,
             _ => false,
         };
-        let because = if holds { stable } else { typed };
+        let because = if *holds {
+            "it is water in a tank: it stays there, and its energy is accounted for"
+        } else {
+            "twice the limit grows without bound, which is a typed failure with step and particle"
+        };
         let id = format!("{NAME}.extreme.{}", name.replace(' ', "-"));
         let gate =
             Gate::new(id, "as it must (1)", Bound::Equals(1.0), Evidence::Invariant, because);
-        let gate = limitation.into_iter().fold(gate, Gate::with_limitation);
+        let gate = limitation.iter().fold(gate, |gate, reason| gate.with_limitation(*reason));
         study = study.judge(gate, f64::from(u8::from(is_good)));
     }
     study.block(table).prose(scaling(tier, runs))
@@ -165,7 +137,7 @@ pub fn extreme_settings(tier: Tier, runs: &Runs) -> Study {
 fn scaling(tier: Tier, runs: &Runs) -> String {
     let z = |spec: &RunSpec| runs.record(spec).and_then(|record| record.value(Z.at(3)));
     let thousand = extremes(tier).next().and_then(|extreme| z(&extreme.spec));
-    match z(&plan::free(tier, "modern", USUAL)).zip(thousand) {
+    match z(&specs::free(tier, "modern", USUAL)).zip(thousand) {
         Some((one, thousand)) => format!(
             "Z at T = 3 is {} with g and {} with 1000 g: a relative difference of {}, which round-off makes.",
             sig(one, 6),

@@ -5,20 +5,20 @@ use super::{
     DamSettings, ablation, front,
     measure::{PROBES, SENSORS},
     metrics::{self, FRONT, HEIGHT, LEVELS},
-    plan::{self, FILM_ROWS, FRAMES, FRONT_SPREAD, PEERS},
-    reference::{self, Curve, Lobovsky},
+    reference::{self, Curve, FRONT_SPREAD, Lobovsky, PEERS},
     run::{self, PICTURES},
+    specs::{self, FILM_ROWS, FRAMES},
     stability,
 };
-use crate::water::{self, curve, ledger};
+use crate::water::{curve, ledger};
 use base::{
     record::{MetricName, Record},
     reference::ReferenceError,
 };
-use harness::{case::Tier, gate_power, runs::Runs, study::Study};
+use harness::{case::Tier, columns::Columns, gate_power, runs::Runs, study::Study};
 use report::{
-    Axis, Cell, Colour, ColourMap, Column, Dash, Figure, Film, Layer, Legend, ParticleMap, Plot,
-    Series, Shape, Table, percent, sig,
+    Axis, Cell, Colour, ColourMap, Dash, Figure, Film, Layer, Legend, ParticleMap, Plot, Series,
+    Shape, Table, percent, sig,
 };
 
 /// All of them.
@@ -56,16 +56,6 @@ fn power() -> Study {
     ))
 }
 
-/// A metric, or a dash where there is none because the run ended early.
-pub(super) fn number(record: &Record, metric: impl Into<MetricName>) -> Cell {
-    water::cell(record, metric, |value| Cell::num(value, 3))
-}
-
-/// The same as a percentage, times a sign.
-pub(super) fn share(record: &Record, metric: impl Into<MetricName>, sign: f64) -> Cell {
-    water::cell(record, metric, |value| Cell::percent(sign * value, 2))
-}
-
 fn settings(record: &Record) -> DamSettings {
     record.settings_as()
 }
@@ -75,42 +65,50 @@ fn n(record: &Record) -> usize {
     settings(record).n
 }
 
+/// Columns of a table of runs: the variant, and its resolution.
+fn columns<'a>(side: &str) -> Columns<'a> {
+    let n = |record: &Record| n(record) as f64;
+    Columns::of_variants().of([side, "1"], n, |n| Cell::num(n, 3))
+}
+
 /// Is it a run of the column of Martin & Moyce?
 fn is_free(record: &Record) -> bool {
     let s = settings(record);
     s.height > s.width
 }
 
-/// The judged runs of the column of Martin & Moyce, in the order of the plan.
-fn all_free(tier: Tier, runs: &Runs) -> Vec<&Record> {
-    plan::all_free(tier).filter_map(|spec| runs.record(&spec)).collect()
-}
-
-/// Those of the tank of Lobovsky et al.
-fn all_in_tank(tier: Tier, runs: &Runs) -> Vec<&Record> {
-    plan::all_in_tank(tier).filter_map(|spec| runs.record(&spec)).collect()
-}
-
 fn name_of(record: &Record, side: &str) -> String {
     format!("{}, {side}/dx = {}", record.variant, n(record))
 }
 
-/// A line of one of these runs: its variant has a colour, its finest resolution is solid.
-fn line(records: &[&Record], record: &Record, side: &str, points: Curve) -> Layer {
-    let colour = plan::JUDGED.iter().position(|variant| *variant == record.variant);
-    let is_finer = |r: &&&Record| r.variant == record.variant && n(r) > n(record);
-    let dash = match records.iter().filter(is_finer).count() {
-        0 => Dash::Solid,
-        1 => Dash::Dashed,
-        _ => Dash::Dotted,
-    };
-    let series = Series::line(name_of(record, side), points).dash(dash);
-    series.colour(Colour::cycle(colour.unwrap_or_default())).into()
+/// A plot with a line a run: its variant has a colour, its finest resolution is solid. A run without points
+/// has none.
+fn with_runs(
+    plot: Plot,
+    records: &[&Record],
+    side: &str,
+    points: impl Fn(&Record) -> Curve,
+) -> Plot {
+    records.iter().fold(plot, |plot, record| {
+        let points = points(record);
+        if points.is_empty() {
+            return plot;
+        }
+        let colour = specs::JUDGED.iter().position(|variant| *variant == record.variant);
+        let is_finer = |r: &&&Record| r.variant == record.variant && n(r) > n(record);
+        let dash = match records.iter().filter(is_finer).count() {
+            0 => Dash::Solid,
+            1 => Dash::Dashed,
+            _ => Dash::Dotted,
+        };
+        let series = Series::line(name_of(record, side), points).dash(dash);
+        plot.layer(series.colour(Colour::cycle(colour.unwrap_or_default())))
+    })
 }
 
 /// Martin & Moyce.
 fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
-    let records = all_free(tier, runs);
+    let records = runs.records(specs::all_free(tier));
     let shown: Vec<&Record> = records.iter().copied().filter(|record| n(record) >= 20).collect();
     let [front, height] = reference::martin_moyce()?;
     let band = |curve: &Curve, by: f64| curve.iter().map(|(t, y)| (*t, y - by, y + by)).collect();
@@ -131,15 +129,13 @@ fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
         let mut plot = Plot::new("", x, Axis::linear(labels[k][1])).legend(legend[k]);
         let until: Curve = measured.iter().filter(|(t, _)| *t <= end).copied().collect();
         plot = plot.layer(Layer::band("", band(&until, spreads[k]), Colour::GREY));
-        for record in &shown {
+        plot = with_runs(plot, &shown, "a", |record| {
             let DamSettings { width: a, gravity: g, .. } = settings(record);
-            let (name, unit, of) = match k {
-                0 => ("front", (0.5 * a / g).sqrt(), a),
-                _ => ("height", (a / g).sqrt(), 2.0 * a),
-            };
-            let points = curve(record, "series", ["t", name], [unit, of]);
-            plot = plot.layer(line(&shown, record, "a", points));
-        }
+            match k {
+                0 => front::front(record),
+                _ => curve(record, "series", ["t", "height"], [(a / g).sqrt(), 2.0 * a]),
+            }
+        });
         if k == 0 {
             let peers = PEERS.map(|(t, low, high)| (t, 0.5 * (low + high)));
             let peers = Series::markers("three other codes", peers.to_vec());
@@ -161,19 +157,6 @@ fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
 }
 
 fn free_table(records: &[&Record]) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("a/dx", "1"),
-        Column::num("Z at T = 2", "a"),
-        Column::num("Z at T = 3", "a"),
-        Column::num("rms of front", "a"),
-        Column::num("after shift", "a"),
-        Column::num("front shift", "T"),
-        Column::num("rms of height", "2a"),
-        Column::num("after shift", "2a"),
-        Column::num("height shift", "τ"),
-        Column::num("steps", "1"),
-    ];
     let caption = "Distance from Martin & Moyce, as released and after the best shift of the clock; the \
                    computation's clock is put forward by it. Front and height are on one clock, on which a \
                    shift of 1 τ is one of √2 T: where the two differ, a late diaphragm alone does not \
@@ -181,29 +164,22 @@ fn free_table(records: &[&Record]) -> Table {
                    a/dx = 80, where it would take half as long as all other runs of this case. The \
                    experiment has Z = 2.36 at T = 2 and 3.70 at T = 3; three other SPH \
                    codes have 2.62 to 2.66 and 3.97 to 4.00.";
-    let mut table = Table::new(caption, columns);
-    for record in records {
-        let number = |metric| number(record, metric);
-        table = table.row(vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::num(n(record) as f64, 3),
-            number(metrics::Z.at(2)),
-            number(metrics::Z.at(3)),
-            number(FRONT.rms.into()),
-            number(FRONT.rms_shifted.into()),
-            number(FRONT.shift.into()),
-            number(HEIGHT.rms.into()),
-            number(HEIGHT.rms_shifted.into()),
-            number(HEIGHT.shift.into()),
-            Cell::count(record.cost.steps),
-        ]);
-    }
-    table
+    columns("a/dx")
+        .number("Z at T = 2", "a", metrics::Z.at(2))
+        .number("Z at T = 3", "a", metrics::Z.at(3))
+        .number("rms of front", "a", FRONT.rms)
+        .number("after shift", "a", FRONT.rms_shifted)
+        .number("front shift", "T", FRONT.shift)
+        .number("rms of height", "2a", HEIGHT.rms)
+        .number("after shift", "2a", HEIGHT.rms_shifted)
+        .number("height shift", "τ", HEIGHT.shift)
+        .steps()
+        .table(caption, records.iter().copied())
 }
 
 /// Lobovsky et al.
 fn tank(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
-    let (records, lobovsky) = (all_in_tank(tier, runs), Lobovsky::load()?);
+    let (records, lobovsky) = (runs.records(specs::all_in_tank(tier)), Lobovsky::load()?);
     let mut study =
         Study::new("dam-break-lobovsky", "Lobovsky et al. 2014: front, levels, pressures")
             .block(levels(&records, &lobovsky));
@@ -224,11 +200,6 @@ fn tank(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
     })
 }
 
-/// (H/g)^(1/2) \[s\].
-fn unit_time(s: &DamSettings) -> f64 {
-    (s.height / s.gravity).sqrt()
-}
-
 fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let caption = "Water 300 mm deep and 600 mm long in a tank of 1610 mm. Front of the water, and depth at \
                    four stations from the back wall, over the experiment of Lobovsky et al. (black; two \
@@ -239,13 +210,12 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let end = 6.0;
     let axis = |label: String| (Axis::linear("t √(g/H) [-]"), Axis::linear(label));
     let (x, y) = axis("front from the gate [H]".into());
-    let mut plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::Auto);
-    for record in records {
+    let plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::Auto);
+    let plot = with_runs(plot, records, "H", |record| {
         let s = settings(record);
-        let points = curve(record, "series", ["t", "front"], [unit_time(&s), s.height]);
-        let points = points.into_iter().map(|(t, x)| (t, x - s.width / s.height)).collect();
-        plot = plot.layer(line(records, record, "H", points));
-    }
+        let points = curve(record, "series", ["t", "front"], [s.unit_time(), s.height]);
+        points.into_iter().map(|(t, x)| (t, x - s.width / s.height)).collect()
+    });
     let measured = Series::line("experiment", lobovsky.front.clone()).colour(Colour::BLACK);
     figure = figure.panel(plot.layer(measured));
     for (k, place) in PROBES.iter().enumerate() {
@@ -262,13 +232,11 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
         for one in series {
             plot = plot.layer(Series::line("", one).colour(Colour::BLACK).width(1.0));
         }
-        for record in records {
+        figure = figure.panel(with_runs(plot, records, "H", |record| {
             let s = settings(record);
             let level = format!("H{}", k + 1);
-            let points = curve(record, "series", ["t", &level], [unit_time(&s), s.height]);
-            plot = plot.layer(line(records, record, "H", points));
-        }
-        figure = figure.panel(plot);
+            curve(record, "series", ["t", &level], [s.unit_time(), s.height])
+        }));
     }
     figure.panel_size(300.0, 220.0)
 }
@@ -345,15 +313,10 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
         let measured = so_far(&lobovsky.pressure[k], at);
         let spread = two.iter().zip(&aside).map(|((_, a), (_, b))| (a - b).abs());
         let band = measured.iter().zip(spread).map(|((t, y), by)| (*t, y - by, y + by)).collect();
-        let mut plot = Plot::new(title, x, y).legend(legend);
-        plot = plot.layer(Layer::band("", band, Colour::GREY));
-        for record in records {
-            let points = so_far(&pressure(record, k), arrival(record));
-            if points.is_empty() {
-                continue;
-            }
-            plot = plot.layer(line(records, record, "H", points));
-        }
+        let plot = Plot::new(title, x, y).legend(legend);
+        let plot = plot.layer(Layer::band("", band, Colour::GREY));
+        let plot =
+            with_runs(plot, records, "H", |record| so_far(&pressure(record, k), arrival(record)));
         let measured = Series::line("experiment", measured).colour(Colour::BLACK);
         figure = figure.panel(plot.layer(measured));
     }
@@ -361,19 +324,6 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
 }
 
 fn tank_table(records: &[&Record]) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("H/dx", "1"),
-        Column::num("rms of front", "H"),
-        Column::num("after shift", "H"),
-        Column::num("front shift", "√(H/g)"),
-        Column::num("front speed", "√(g H)"),
-        Column::num("measured", "√(g H)"),
-        Column::num("rms of levels", "H"),
-        Column::num("after shift", "H"),
-        Column::num("levels shift", "√(H/g)"),
-        Column::num("tongue at H4", "-"),
-    ];
     let caption = "Distance from Lobovsky et al., as released and after the best shift of the clock; the \
                    computation's clock is put forward by it. Front and levels share one clock in the \
                    experiment, yet their best shifts differ: no one delay explains both distances. Speed \
@@ -381,24 +331,17 @@ fn tank_table(records: &[&Record]) -> Table {
                    shift of the clock hides. Tongue: relative error of the mean level at H4 for one \
                    √(H/g) from its arrival. `seed` is not run at 60 and 120, where it would take 2.5 times \
                    as long as `modern`, whose run at 120 is the longest of this case.";
-    let mut table = Table::new(caption.to_string() + &away(records), columns);
-    for record in records {
-        let number = |metric| number(record, metric);
-        table = table.row(vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::num(n(record) as f64, 3),
-            number(FRONT.rms),
-            number(FRONT.rms_shifted),
-            number(FRONT.shift),
-            number(metrics::FRONT_SPEED),
-            number(metrics::FRONT_SPEED_MEASURED),
-            number(LEVELS.rms),
-            number(LEVELS.rms_shifted),
-            number(LEVELS.shift),
-            share(record, metrics::TONGUE, 1.0),
-        ]);
-    }
-    table
+    columns("H/dx")
+        .number("rms of front", "H", FRONT.rms)
+        .number("after shift", "H", FRONT.rms_shifted)
+        .number("front shift", "√(H/g)", FRONT.shift)
+        .number("front speed", "√(g H)", metrics::FRONT_SPEED)
+        .number("measured", "√(g H)", metrics::FRONT_SPEED_MEASURED)
+        .number("rms of levels", "H", LEVELS.rms)
+        .number("after shift", "H", LEVELS.rms_shifted)
+        .number("levels shift", "√(H/g)", LEVELS.shift)
+        .percent("tongue at H4", "-", metrics::TONGUE, 1.0)
+        .table(caption.to_string() + &away(records), records.iter().copied())
 }
 
 /// That finer runs are farther from the experiment, if they are.
@@ -428,40 +371,23 @@ fn away(records: &[&Record]) -> String {
 
 /// What strikes the far wall.
 fn impact_table(records: &[&Record]) -> Table {
-    let mut columns = vec![
-        Column::text("variant"),
-        Column::num("H/dx", "1"),
-        Column::num("arrival at P1", "√(H/g)"),
-    ];
-    let windows =
-        reference::WINDOWS.into_iter().flat_map(|window| (0..4).map(move |k| (k, window)));
-    columns.extend(
-        windows.clone().map(|(k, window)| {
-            Column::num(format!("impulse P{} to {}", k + 1, sig(window, 2)), "-")
-        }),
-    );
-    columns.extend([Column::num("noise of P2", "ρ g H"), Column::num("largest P1", "ρ g H")]);
     let caption = "Impulses on the far wall: relative error against Lobovsky et al. from the arrival at P1 \
                    on, for 1 and for 2.5 √(H/g); two sensors of the experiment at the height of P2 differ by \
                    6.0 % and 13.5 % in them. Only those to 1, when the jet has risen, are judged. The wave \
                    arrives at P1 at 2.44 on the clock of the measured pressures, and would at about 2.6 by \
                    the measured front. Noise of P2 in the experiment: 0.020. A negative pressure is \
                    tension, and an error below −100 % a negative impulse.";
-    let mut table = Table::new(caption, columns);
-    for record in records {
-        let number = |metric| number(record, metric);
-        let mut cells = vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::num(n(record) as f64, 3),
-            number(metrics::ARRIVAL),
-        ];
-        let impulses = windows.clone();
-        cells
-            .extend(impulses.map(|(k, window)| share(record, metrics::IMPULSE[k].at(window), 1.0)));
-        cells.extend([number(metrics::NOISE), number(metrics::PEAK[0])]);
-        table = table.row(cells);
+    let mut table = columns("H/dx").number("arrival at P1", "√(H/g)", metrics::ARRIVAL);
+    for window in reference::WINDOWS {
+        for (k, impulse) in metrics::IMPULSE.into_iter().enumerate() {
+            let head = format!("impulse P{} to {}", k + 1, sig(window, 2));
+            table = table.percent(&head, "-", impulse.at(window), 1.0);
+        }
     }
     table
+        .number("noise of P2", "ρ g H", metrics::NOISE)
+        .number("largest P1", "ρ g H", metrics::PEAK[0])
+        .table(caption, records.iter().copied())
 }
 
 /// Six times of a run, on the same axes.
@@ -498,7 +424,7 @@ fn picture(record: &Record, share: f64, (width, height): (f64, f64)) -> Particle
 
 /// The tank as a film.
 fn film(tier: Tier, runs: &Runs) -> Result<Film, String> {
-    let record = runs.record(&plan::film(tier)).ok_or("The film was not run.")?;
+    let record = runs.record(&specs::film(tier)).ok_or("The film was not run.")?;
     let frame = |k: usize| {
         let map = picture(record, run::share(k, FRAMES), (1.61 / 0.3, 2.0));
         Figure::new("frame", "").panel(map).panel_size(380.0, 145.0)
@@ -521,7 +447,7 @@ fn energies(tier: Tier, runs: &Runs) -> Study {
                    stay at its first value.";
     let mut figure = Figure::new("dam-break-energy", caption).columns(2);
     for variant in ["seed", "modern"] {
-        if let Some(record) = runs.record(&plan::free(tier, variant, 20)) {
+        if let Some(record) = runs.record(&specs::free(tier, variant, 20)) {
             figure = figure.panel(energy_plot(record));
         }
     }
@@ -533,7 +459,7 @@ fn energies(tier: Tier, runs: &Runs) -> Study {
 fn energy_plot(record: &Record) -> Plot {
     let s = settings(record);
     let mass = s.rho * s.width * s.height;
-    let [time, energy] = [unit_time(&s), 0.5 * mass * s.gravity * s.height];
+    let [time, energy] = [s.unit_time(), 0.5 * mass * s.gravity * s.height];
     let of = |name: &str, sign: f64| curve(record, "energy", ["t", name], [time, sign * energy]);
     let mut plot = Plot::new(
         record.variant.as_str(),
@@ -564,26 +490,21 @@ fn energy_plot(record: &Record) -> Plot {
 }
 
 fn energy_table(tier: Tier, runs: &Runs) -> Table {
-    let mut columns = vec![Column::text("variant"), Column::text("case"), Column::num("n", "1")];
-    columns.extend(ledger::ITEMS.map(|(name, _)| Column::num(name, "-")));
-    columns.push(Column::num("not accounted for", "-"));
-    columns.push(Column::num("momentum not accounted for", "-"));
     let caption = "What each term has added to the energy until the end, over M g H/2 at the start; below \
                    0 it took energy. The work of the walls is what their pressure does beyond what they \
                    store. Momentum over M √(g H).";
-    let mut table = Table::new(caption, columns);
-    for record in all_free(tier, runs).into_iter().chain(all_in_tank(tier, runs)) {
-        let mut cells = vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::text(if is_free(record) { "Martin & Moyce" } else { "Lobovsky" }),
-            Cell::num(n(record) as f64, 3),
-        ];
-        let percent = |value| Cell::percent(value, 3);
-        cells.extend(ledger::ITEMS.map(|(_, work)| water::cell(record, work, percent)));
-        let sci = |value| Cell::sci(value, 2);
-        cells.push(water::cell(record, ledger::ENERGY_GAP, sci));
-        cells.push(water::cell(record, metrics::MOMENTUM_GAP, sci));
-        table = table.row(cells);
+    let scene = |record: &Record| if is_free(record) { "Martin & Moyce" } else { "Lobovsky" };
+    let sci = |value| Cell::sci(value, 2);
+    let mut columns = Columns::of_variants().text("case", move |record| scene(record).into()).of(
+        ["n", "1"],
+        |record| n(record) as f64,
+        |n| Cell::num(n, 3),
+    );
+    for (name, work) in ledger::ITEMS {
+        columns = columns.metric([name, "-"], work, |value| Cell::percent(value, 3));
     }
-    table
+    columns
+        .metric(["not accounted for", "-"], ledger::ENERGY_GAP, sci)
+        .metric(["momentum not accounted for", "-"], metrics::MOMENTUM_GAP, sci)
+        .table(caption, runs.records(specs::all_free(tier).chain(specs::all_in_tank(tier))))
 }

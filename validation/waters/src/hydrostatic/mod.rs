@@ -6,13 +6,13 @@ mod plan;
 mod run;
 mod studies;
 
-use harness::composed::{Composed, Composition, completed};
-use solver::{
-    ArtificialStress, CubicSpline, DensityDiffusion, ExtrapolatingWall, Ghosts, Hydrostatic,
-    InterfaceWall, Leapfrog, PredictorCorrector, Tait, WendlandC2, Xsph,
+use harness::{
+    composed::{Composed, Composition, Variants, completed},
+    method::Method,
 };
+use solver::{Continuity, DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Tait};
 
-pub use column::Column;
+use crate::water::{Diffusion, Modern, Seed};
 
 base::settings! {
     /// Settings of water at rest in an open tank.
@@ -50,7 +50,7 @@ base::settings! {
         /// strength of the artificial stress
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,
         /// exponent of the artificial stress
-        stress_exponent: usize ["-"] in 1..=16 = 4,
+        exponent: usize ["-"] in 1..=16 = 4,
         /// density diffusion delta
         diffusion: f64 ["-"] in 0.0..=1.0 = 0.1,
         /// share of gravity that an extrapolating wall knows of; 1, unless to see what it is for
@@ -65,38 +65,34 @@ fn modern(s: &mut HydrostaticSettings) {
 }
 
 type Extrapolating = ExtrapolatingWall<Tait>;
-type Kept = DensityDiffusion<Hydrostatic>;
+/// The modern method with this in its drift, and these walls.
+type With<D, W> = Modern<(Continuity, D), W>;
 
-#[rustfmt::skip] // one line a variant: a table
+#[rustfmt::skip] // two lines a variant: a table
 fn variants() -> Vec<Composition<HydrostaticSettings>> {
-    type Midpoint = PredictorCorrector;
-    let seed = |_: &mut HydrostaticSettings| {};
-    vec![
-        column::variant::<CubicSpline, ArtificialStress, Xsph, InterfaceWall, Midpoint>("seed",
-            "as in the paper: cubic spline, interface and wall particles, artificial viscosity and \
-             stress, XSPH, predictor-corrector", seed),
-        column::variant::<CubicSpline, ArtificialStress, Xsph, Ghosts, Midpoint>("ghosts",
-            "seed with ghosts for walls", seed),
-        column::variant::<WendlandC2, (), Kept, Extrapolating, Leapfrog>("modern",
-            "Wendland C2, h/dx 1.5, walls that extrapolate pressure, density diffusion that keeps a \
-             hydrostatic column, leapfrog", modern),
-        column::variant::<WendlandC2, (), (), Extrapolating, Leapfrog>("extrapolating-none",
-            "modern without density diffusion", modern),
-        column::variant::<WendlandC2, (), DensityDiffusion, Extrapolating, Leapfrog>(
-            "extrapolating-molteni", "modern with the diffusion of Molteni and Colagrossi", modern),
-        column::variant::<WendlandC2, (), (), InterfaceWall, Leapfrog>("interface-none",
-            "modern with interface and wall particles, without density diffusion", modern),
-        column::variant::<WendlandC2, (), DensityDiffusion, InterfaceWall, Leapfrog>(
-            "interface-molteni", "the same with that of Molteni and Colagrossi", modern),
-        column::variant::<WendlandC2, (), Kept, InterfaceWall, Leapfrog>("interface-hydrostatic",
-            "the same with the diffusion that keeps a hydrostatic column", modern),
-        column::variant::<WendlandC2, (), (), Ghosts, Leapfrog>("ghosts-none",
-            "modern with ghosts, without density diffusion", modern),
-        column::variant::<WendlandC2, (), DensityDiffusion, Ghosts, Leapfrog>("ghosts-molteni",
-            "the same with that of Molteni and Colagrossi", modern),
-        column::variant::<WendlandC2, (), Kept, Ghosts, Leapfrog>("ghosts-hydrostatic",
-            "the same with the diffusion that keeps a hydrostatic column", modern),
-    ]
+    Variants::of(&run::PROGRAM)
+        .with("seed", "as in the paper: cubic spline, interface and wall particles, artificial viscosity and \
+             stress, XSPH, predictor-corrector", Method::of::<Seed<InterfaceWall>>(), |_| {})
+        .with("ghosts", "seed with ghosts for walls", Method::of::<Seed<Ghosts>>(), |_| {})
+        .with("modern", "Wendland C2, h/dx 1.5, walls that extrapolate pressure, density diffusion that keeps \
+             a hydrostatic column, leapfrog", Method::of::<With<Diffusion, Extrapolating>>(), modern)
+        .with("extrapolating-none", "modern without density diffusion",
+            Method::of::<With<(), Extrapolating>>(), modern)
+        .with("extrapolating-molteni", "modern with the diffusion of Molteni and Colagrossi",
+            Method::of::<With<DensityDiffusion, Extrapolating>>(), modern)
+        .with("interface-none", "modern with interface and wall particles, without density diffusion",
+            Method::of::<With<(), InterfaceWall>>(), modern)
+        .with("interface-molteni", "the same with that of Molteni and Colagrossi",
+            Method::of::<With<DensityDiffusion, InterfaceWall>>(), modern)
+        .with("interface-hydrostatic", "the same with the diffusion that keeps a hydrostatic column",
+            Method::of::<With<Diffusion, InterfaceWall>>(), modern)
+        .with("ghosts-none", "modern with ghosts, without density diffusion",
+            Method::of::<With<(), Ghosts>>(), modern)
+        .with("ghosts-molteni", "the same with that of Molteni and Colagrossi",
+            Method::of::<With<DensityDiffusion, Ghosts>>(), modern)
+        .with("ghosts-hydrostatic", "the same with the diffusion that keeps a hydrostatic column",
+            Method::of::<With<Diffusion, Ghosts>>(), modern)
+        .all
 }
 
 const NAME: &str = "hydrostatic";

@@ -5,9 +5,9 @@ use super::{
     HYDROSTATIC, HydrostaticSettings, NAME,
     run::{GAP, KINETIC, LEVEL_DRIFT, OUTSIDE, P_L2},
 };
+use crate::water::gate;
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::MetricKey,
     spec::RunSpec,
 };
 use harness::{
@@ -102,54 +102,25 @@ pub fn declaration(tier: Tier) -> Declaration {
     Declaration { accuracy: vec![accuracy], ..Declaration::default() }
 }
 
-fn gate(id: &str, metric: MetricKey, bound: Bound, evidence: Evidence, because: &str) -> Gate {
-    let metric = String::from(metric);
-    Gate::new(format!("{NAME}.{id}.{metric}"), &metric, bound, evidence, because)
-}
-
 fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
-    let id = format!("{variant}.{compressibility}");
-    let pressure = gate(
-        &id,
-        P_L2,
-        Bound::Below(0.02),
-        Evidence::Analytic,
-        "the pressure of water at rest is known exactly; 2 % of its rms is a fifth of the weight of one of \
-         20 rows",
-    );
-    let pressure = match variant {
-        "ghosts" => pressure.with_limitation(
-            "a mirror repeats the pressure of the water before the bottom where it should go on rising by \
-             rho g: over the half spacing to the bottom that is 2.5 % of rho g H at 20 rows",
-        ),
-        _ => pressure,
-    };
+    let id = format!("{NAME}.{variant}.{compressibility}");
+    let known = "the pressure of water at rest is known exactly; 2 % of its rms is a fifth of the weight of \
+                 one of 20 rows";
+    let mirrored = "a mirror repeats the pressure of the water before the bottom where it should go on \
+                    rising by rho g: over the half spacing to the bottom that is 2.5 % of rho g H at 20 rows";
+    let stays = "the level of water at rest stays: a tenth of one of 20 spacings is what the surface may \
+                 settle by, as the kernel sees no water above it";
+    let lowest = "the lowest row starts where it belongs: a wall that pushes it away by a quarter of a \
+                  spacing leaves a gap that is seen";
+    let still = "nothing moves: less than the energy that raises the surface by a tenth of a spacing, (0.1 \
+                 dx/H)^2 of M g H at 20 rows";
+    let exact = |metric, bound, because| gate(&id, metric, bound, Evidence::Analytic, because);
+    let pressure = exact(P_L2, Bound::Below(0.02), known);
     vec![
-        pressure,
-        gate(
-            &id,
-            LEVEL_DRIFT,
-            Bound::Within(-0.005, 0.005),
-            Evidence::Analytic,
-            "the level of water at rest stays: a tenth of one of 20 spacings is what the surface may \
-             settle by, as the kernel sees no water above it",
-        ),
-        gate(
-            &id,
-            GAP,
-            Bound::Within(-0.25, 0.25),
-            Evidence::Analytic,
-            "the lowest row starts where it belongs: a wall that pushes it away by a quarter of a spacing \
-             leaves a gap that is seen",
-        ),
-        gate(
-            &id,
-            KINETIC,
-            Bound::Below(2.5e-5),
-            Evidence::Analytic,
-            "nothing moves: less than the energy that raises the surface by a tenth of a spacing, (0.1 \
-             dx/H)^2 of M g H at 20 rows",
-        ),
+        if variant == "ghosts" { pressure.with_limitation(mirrored) } else { pressure },
+        exact(LEVEL_DRIFT, Bound::Within(-0.005, 0.005), stays),
+        exact(GAP, Bound::Within(-0.25, 0.25), lowest),
+        exact(KINETIC, Bound::Below(2.5e-5), still),
         gate(&id, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, "no particle passes a wall"),
     ]
 }
@@ -158,6 +129,6 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
 fn control() -> Gate {
     let because = "control: without g in the extrapolation the bottom bears the mean pressure of the water \
                    before it instead of that at its own depth, and the water sinks";
-    gate("modern.no-wall-gravity", P_L2, Bound::Below(0.02), Evidence::Analytic, because)
-        .expected_to_fail()
+    let id = format!("{NAME}.modern.no-wall-gravity");
+    gate(&id, P_L2, Bound::Below(0.02), Evidence::Analytic, because).expected_to_fail()
 }

@@ -1,22 +1,18 @@
 //! One run: scene, stepping, what is measured.
 
-use solver::{EquationOfState, Integrator, Kernel, Particle, Role, Scheme, Simulation, Stepper};
+use solver::{EquationOfState, Particle, Role, Stepper};
 
-use super::{
-    Column, HydrostaticSettings, NAME,
-    column::{Part, TankWall, TensilePart},
-};
+use super::{HydrostaticSettings, NAME, column::Column};
 use crate::water;
 use base::record::{Profile, Record, Status};
 use harness::{
-    case::{Rules, RunError},
+    case::RunError,
+    composed::Program,
+    method::Method,
     runner::{self, Context},
-    simulate::state,
+    simulate,
 };
-use maths::{
-    metrics::norms::{Scale, l2},
-    theory::Stepping,
-};
+use maths::metrics::norms::{Scale, l2};
 
 base::metrics! {
     P_L2 = "p_l2" ["-"]
@@ -30,59 +26,41 @@ base::metrics! {
     OUTSIDE = "outside" ["-"] "most particles beyond bottom or sides, once a period";
 }
 
-/// What the rules choose.
-pub fn rules<K: Kernel, D: Part, I: Stepping>(s: &HydrostaticSettings) -> Result<Rules, RunError> {
-    let Column { dt, dt_limit, eos, .. } = Column::new::<K, D, I>(s, true)?;
-    Ok(Rules { dt, dt_limit, sound_speed: eos.sound_speed })
-}
+/// Runs of the variants.
+pub const PROGRAM: Program<HydrostaticSettings, Method> = Program {
+    run,
+    rules: |method, settings| Ok(Column::new(settings, method, &water::of_rules())?.rules),
+};
 
-/// One run of a composition.
-pub fn run<K, R, D, W, I>(
+fn run(
+    method: &Method,
     variant: &str,
     settings: &HydrostaticSettings,
     context: &Context,
-) -> Result<Record, RunError>
-where
-    K: Kernel,
-    R: TensilePart,
-    D: Part,
-    W: TankWall,
-    I: Stepping,
-{
-    let column = Column::new::<K, D, I>(settings, context.allow_unstable)?;
-    let mut scene = column.scene::<K, R, D, W, I>();
-    if context.threads <= 1 {
-        scene.parallel_from = usize::MAX;
-    }
-    let mut simulation = scene.build()?;
-    let numbers = [
-        ("h/dx", column.settings.h_over_dx),
-        ("dx [m]", column.dx),
-        ("c0 [m/s]", column.eos.sound_speed),
-        ("dt [s]", column.dt),
-        ("dt/limit", column.dt / column.dt_limit),
-    ];
-    let integrator = <I as Integrator<()>>::NAME;
-    let words = [("kernel", K::NAME), ("integrator", integrator), ("walls", W::NAME)];
-    let mut record = water::begin((NAME, variant), settings, numbers, words, context);
-    let mut history = History::new::<_, W>(&column, &simulation);
-    let pressure = |density| column.eos.pressure(density);
-    let (status, cost) = runner::drive(
-        &mut simulation,
-        column.dt,
+) -> Result<Record, RunError> {
+    let column = Column::new(settings, method, context)?;
+    let Column { medium, rules, .. } = &column;
+    let mut simulation = (method.build)(column.parts(method, context))?;
+    let numbers = water::numbers(settings.h_over_dx, medium, *rules);
+    let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
+    let start = ends(&column, &fluid(&*simulation));
+    let mut history = History { column: &column, start, moments: Vec::new() };
+    let pressure = |density| medium.eos.pressure(density);
+    (record.status, record.cost) = runner::drive(
+        &mut *simulation,
+        rules.dt,
         &times(&column),
         context,
         &mut (),
         &pressure,
-        &mut |simulation, _| history.sample(&column, simulation),
+        &mut |simulation, _| history.sample(&*simulation),
     )?;
-    if status == Status::Completed {
+    if record.status == Status::Completed {
         history.metrics(&mut record);
-        record.profiles.insert("pressure".into(), profile(&column, &history, &fluid(&simulation)));
+        record.profiles.insert("pressure".into(), profile(&column, fluid(&*simulation)));
     }
     record.profiles.insert("history".into(), history.profile());
-    record.state = Some(state(&simulation.particles()));
-    (record.status, record.cost) = (status, cost);
+    record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
 }
 
@@ -112,33 +90,19 @@ struct Moment {
     outside: usize,
 }
 
-struct History {
-    /// Height of the surface \[m\].
-    surface: f64,
+struct History<'a> {
+    column: &'a Column,
     /// Mean heights of the lowest and of the highest particles at the start \[m\].
     start: [f64; 2],
     moments: Vec<Moment>,
 }
 
-impl History {
-    fn new<S: Scheme<Extra = ()>, W: TankWall>(
-        column: &Column,
-        simulation: &Simulation<S>,
-    ) -> Self {
-        let surface = column.level::<W>();
-        Self { surface, start: ends(column, &fluid(simulation)), moments: Vec::new() }
-    }
-
-    /// The exact pressure at the place of a particle \[Pa\].
-    fn exact(&self, column: &Column, p: &Particle) -> f64 {
-        column.exact.pressure(self.surface - p.position.y)
-    }
-
-    fn sample(&mut self, column: &Column, simulation: &dyn Stepper<()>) {
-        let water = fluid(simulation);
-        let (s, tank) = (&column.settings, column.tank());
-        let pressure: Vec<f64> = water.iter().map(|p| column.eos.pressure(p.density)).collect();
-        let exact: Vec<f64> = water.iter().map(|p| self.exact(column, p)).collect();
+impl History<'_> {
+    fn sample(&mut self, simulation: &dyn Stepper<()>) {
+        let (water, column) = (fluid(simulation), self.column);
+        let (s, medium, tank) = (&column.settings, &column.medium, column.tank());
+        let pressure: Vec<f64> = water.iter().map(|p| medium.eos.pressure(p.density)).collect();
+        let exact: Vec<f64> = water.iter().map(|p| column.exact_pressure(p)).collect();
         let error = Scale::rms(&exact).and_then(|scale| l2(&pressure, &exact, scale));
         let [low, high] = ends(column, &water);
         let (mass, kinetic) = water.iter().fold((0.0, 0.0), |(mass, kinetic), p| {
@@ -152,7 +116,7 @@ impl History {
             time: simulation.time() / column.period(),
             pressure: error.unwrap_or(f64::NAN),
             level: (high - self.start[1]) / s.depth,
-            gap: (low - self.start[0]) / column.dx,
+            gap: (low - self.start[0]) / medium.dx,
             kinetic: kinetic / (mass * s.g * s.depth),
             outside: water.iter().filter(is_outside).count(),
         });
@@ -187,7 +151,7 @@ fn ends(column: &Column, water: &[Particle]) -> [f64; 2] {
     let last = strips.len() - 1;
     for Particle { position, .. } in water {
         // Columns start at whole or half spacings; a float below 0 becomes 0.
-        let strip = &mut strips[((position.x / column.dx + 0.25) as usize).min(last)];
+        let strip = &mut strips[((position.x / column.medium.dx + 0.25) as usize).min(last)];
         *strip = [strip[0].min(position.y), strip[1].max(position.y)];
     }
     let filled: Vec<_> = strips.into_iter().filter(|s| s[0].is_finite()).collect();
@@ -195,14 +159,13 @@ fn ends(column: &Column, water: &[Particle]) -> [f64; 2] {
 }
 
 /// Height, pressure and exact pressure of every particle, the lowest first.
-fn profile(column: &Column, history: &History, water: &[Particle]) -> Profile {
-    let mut water = water.to_vec();
+fn profile(column: &Column, mut water: Vec<Particle>) -> Profile {
     water.sort_by(|a, b| a.position.y.total_cmp(&b.position.y));
     let s = &column.settings;
     let scale = s.rho * s.g * s.depth;
     let numbers = |of: &dyn Fn(&Particle) -> f64| water.iter().map(of).collect();
     Profile::default()
         .with("y", "H", numbers(&|p| p.position.y / s.depth))
-        .with("p", "rho0 g H", numbers(&|p| column.eos.pressure(p.density) / scale))
-        .with("p_exact", "rho0 g H", numbers(&|p| history.exact(column, p) / scale))
+        .with("p", "rho0 g H", numbers(&|p| column.medium.eos.pressure(p.density) / scale))
+        .with("p_exact", "rho0 g H", numbers(&|p| column.exact_pressure(p) / scale))
 }

@@ -5,9 +5,8 @@ use super::{
     plan::{self, COMPRESSIBILITIES, SHOWN, TABLE},
     run::{GAP, KINETIC, LEVEL_DRIFT, OUTSIDE, P_L2},
 };
-use crate::water::cell;
 use base::record::{Record, Status};
-use harness::{case::Tier, runs::Runs, study::Study};
+use harness::{case::Tier, columns::Columns, runs::Runs, study::Study};
 use report::{Axis, Cell, Colour, Column, Figure, Legend, Plot, Series, Shape, Table};
 
 /// All of them.
@@ -21,8 +20,7 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let mut studies = vec![pressures];
     if tier == Tier::Full {
         let of = |variant: &'static str| {
-            let specs = COMPRESSIBILITIES.map(|(c, _)| plan::plain(variant, c));
-            specs.into_iter().filter_map(|spec| runs.record(&spec))
+            runs.records(COMPRESSIBILITIES.map(|(c, _)| plan::plain(variant, c)))
         };
         let caption =
             "Every wall with every density treatment, Wendland C2, h/dx 1.5, leapfrog, 20 rows.";
@@ -65,38 +63,24 @@ fn pressures(runs: &Runs) -> Figure {
 }
 
 fn table<'a>(caption: &str, records: impl Iterator<Item = &'a Record>) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("g H/c0^2", "-"),
-        Column::num("rows", "-"),
-        Column::text("other settings"),
-        Column::num("error of p", "-"),
-        Column::num("drift of the level", "H"),
-        Column::num("gap at the bottom", "dx"),
-        Column::num("kinetic energy", "M g H"),
-        Column::num("outside", "-"),
-    ];
-    let mut table = Table::new(caption, columns);
-    for record in records {
-        let s = record.settings_as::<HydrostaticSettings>();
-        let percent = |value| Cell::percent(value, 2);
-        let outside = match &record.status {
-            Status::Completed => cell(record, OUTSIDE, |count| Cell::num(count, 3)),
-            _ => Cell::text("did not finish"),
-        };
-        table = table.row(vec![
-            Cell::text(format!("`{}`", record.variant)),
-            Cell::num(s.compressibility, 2),
-            Cell::num(s.rows as f64, 3),
-            Cell::text(others(&s)),
-            cell(record, P_L2, percent),
-            cell(record, LEVEL_DRIFT, percent),
-            cell(record, GAP, |gap| Cell::num(gap, 2)),
-            cell(record, KINETIC, |energy| Cell::sci(energy, 2)),
-            outside,
-        ]);
-    }
-    table
+    let s = |record: &Record| record.settings_as::<HydrostaticSettings>();
+    let outside = |record: &Record| match &record.status {
+        Status::Completed => {
+            let count = record.value(OUTSIDE).unwrap_or(f64::NAN);
+            Cell::or_dash(count, |count| Cell::num(count, 3))
+        }
+        _ => Cell::text("did not finish"),
+    };
+    Columns::of_variants()
+        .of(["g H/c0^2", "-"], |record| s(record).compressibility, |value| Cell::num(value, 2))
+        .of(["rows", "-"], |record| s(record).rows as f64, |rows| Cell::num(rows, 3))
+        .text("other settings", |record| others(&s(record)))
+        .percent("error of p", "-", P_L2, 1.0)
+        .percent("drift of the level", "H", LEVEL_DRIFT, 1.0)
+        .metric(["gap at the bottom", "dx"], GAP, |gap| Cell::num(gap, 2))
+        .metric(["kinetic energy", "M g H"], KINETIC, |energy| Cell::sci(energy, 2))
+        .with(Column::num("outside", "-"), outside)
+        .table(caption, records)
 }
 
 /// What else is not the default.

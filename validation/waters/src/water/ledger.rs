@@ -1,10 +1,9 @@
 //! The energy of a run of water through time, and what each term has done to it.
 
-use solver::{Scheme, Simulation};
-
 use base::record::{MetricKey, Profile, Record};
+use harness::method::Medium;
 use maths::metrics::{
-    budget::{Account, DIFFUSION, Itemised, Meter, STRESS, VISCOSITY, WALLS, XSPH},
+    budget::{Account, DIFFUSION, Metered, STRESS, VISCOSITY, WALLS, XSPH},
     energy::{Energy, Water, water_slope},
 };
 
@@ -28,32 +27,28 @@ pub const ITEMS: [(&str, MetricKey); 5] = [
     (WALLS, WORK_WALLS),
 ];
 
-/// Keeps the budget of a scene with these terms.
-pub struct Ledger<F, D> {
+/// Keeps the budget of a run.
+pub struct Ledger {
     water: Water,
-    forces: F,
-    drift: D,
     account: Account,
     /// t \[s\], kinetic, potential and compression energy, then the works of [`ITEMS`] \[J/m\].
     rows: Vec<[f64; 9]>,
 }
 
-impl<F: Itemised<()>, D: Itemised<()>> Ledger<F, D> {
-    /// A ledger for the terms of a scene.
-    pub fn new(water: Water, forces: &F, drift: &D) -> Self {
-        let (account, rows) = (Account::default(), Vec::new());
-        Self { water, forces: forces.clone(), drift: drift.clone(), account, rows }
+impl Ledger {
+    /// An empty ledger of water of this medium.
+    pub fn new(medium: &Medium) -> Self {
+        let water = Water { eos: medium.eos, gravity: medium.acceleration };
+        Self { water, account: Account::default(), rows: Vec::new() }
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
-    pub fn sample<S: Scheme<Extra = ()>>(&mut self, simulation: &Simulation<S>) {
-        let (slope, time) = (water_slope(&self.water), simulation.time());
-        let meter = Meter::new(simulation, &slope);
-        let mut powers = [self.forces.powers(&meter), self.drift.powers(&meter)].concat();
-        powers.push((WALLS, meter.wall_power()));
-        self.account.add(time, &powers);
-        let Energy { kinetic, potential, compression } = self.water.energy(simulation);
+    pub fn sample(&mut self, simulation: &mut dyn Metered<()>) {
+        let powers = simulation.powers(&water_slope(&self.water));
+        self.account.add(simulation.time(), &powers);
+        let Energy { kinetic, potential, compression } = self.water.energy(&*simulation);
         let [a, b, c, d, e] = ITEMS.map(|(name, _)| self.account.work(name));
+        let time = simulation.time();
         self.rows.push([time, kinetic, potential, compression, a, b, c, d, e]);
     }
 

@@ -1,66 +1,128 @@
-//! What cases of water with a free surface have in common: settings, terms made from them, and the
-//! rule of the time step.
+//! What cases of water with a free surface have in common: schemes, settings, the rule of the time step, and
+//! the particles of a tank's walls.
 //!
 //! A free surface is nothing to the method: density follows (3), which knows no surface, and there is
 //! neither Morris viscosity nor a search for the surface.
 
-mod ingredients;
 pub mod ledger;
-mod medium;
 
 use base::{
-    number,
+    gate::{Bound, Evidence, Gate},
     record::{MetricName, Record},
-    settings::Settings,
 };
-use harness::{composed::lacking, context::Context};
-use maths::theory::Stepping;
-use report::Cell;
-use solver::Scheme;
+use harness::{
+    case::Rules,
+    context::Context,
+    method::{self, FirstRow, Medium, Method, Parts, Standard},
+};
+use maths::{
+    geometry::Tank,
+    metrics::budget::{Itemised, Metered},
+};
+use nalgebra::Vector2;
+use solver::{
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
+    DensityDiffusion, Domain, ExtrapolatingWall, Leapfrog, Limits, Particle, PlaneWall,
+    PredictorCorrector, Pressure, Role, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+};
 
-pub use ingredients::{Ingredient, TensileIngredient};
 pub use ledger::Ledger;
-pub use medium::{Medium, Numerics};
 
-/// A scheme whose terms can be made from the settings of water.
-pub trait WaterScheme:
-    Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Integrator: Stepping>
+/// (14) with (7), (16), (17), and gravity; `R` is the artificial stress (18), (19).
+pub type Water<R = ()> = (Pressure<Tait, R>, ArtificialViscosity<Tait>, BodyForce);
+/// What the paper describes.
+pub type Seed<W, I = PredictorCorrector> =
+    Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), W, I>;
+/// Density diffusion that leaves a column at rest alone.
+pub type Diffusion = DensityDiffusion<Hydrostatic>;
+/// The best known settings.
+pub type Modern<D = (Continuity, Diffusion), W = ExtrapolatingWall<Tait>> =
+    Compose<WendlandC2, Water, D, W, Leapfrog>;
+
+/// A method whose simulations can say what each term does to the energy.
+pub type WaterMethod = Method<(), dyn Metered<()>>;
+
+/// The method of a scheme whose terms account for their energy.
+pub fn method<S>() -> WaterMethod
+where
+    S: Standard<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>>,
 {
-    /// Settings that its terms read and others do not have.
-    fn uses() -> Vec<&'static str> {
-        [Self::Forces::uses(), Self::Drift::uses()].concat()
-    }
-
-    /// Those of other terms.
-    fn lacks() -> Vec<&'static str> {
-        lacking(ingredients::OPTIONAL, &Self::uses())
-    }
+    Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
 }
 
-impl<S> WaterScheme for S where
-    S: Scheme<Extra = (), Forces: Ingredient, Drift: Ingredient, Integrator: Stepping>
-{
+/// η²/h² of the lattice whose waves give the limit of the time step.
+const ETA2: f64 = 0.01;
+
+/// The time step that a resting lattice of n × n particles with artificial viscosity on every pair and the
+/// terms of the method allows \[s\]. `c0` is the largest sound speed \[m/s\].
+pub fn step_limit<D: ?Sized>(
+    method: &Method<(), D>,
+    medium: &Medium,
+    [h_over_dx, c0]: [f64; 2],
+    n: usize,
+) -> f64 {
+    let waves = maths::theory::time_step::Medium { c0, ..medium.waves(&method.uses) };
+    method.step_limit([h_over_dx, ETA2], n, &waves)
 }
 
-/// A record of a case and variant with what the rules chose: numbers, then words.
-pub fn begin<const N: usize, const M: usize>(
-    (case, variant): (&str, &str),
-    settings: &impl Settings,
-    numbers: [(&str, f64); N],
-    words: [(&str, &str); M],
+/// What the rules chose, as records state it.
+pub fn numbers(h_over_dx: f64, medium: &Medium, rules: Rules) -> [(&'static str, f64); 5] {
+    let Rules { dt, dt_limit, sound_speed } = rules;
+    [
+        ("h/dx", h_over_dx),
+        ("dx [m]", medium.dx),
+        ("c0 [m/s]", sound_speed),
+        ("dt [s]", dt),
+        ("dt/limit", dt / dt_limit),
+    ]
+}
+
+/// The context in which rules are asked for: no step is refused.
+pub fn of_rules() -> Context<'static> {
+    Context { allow_unstable: true, ..Context::default() }
+}
+
+/// A scene of this water, with the usual skin and limits.
+pub fn parts(
+    medium: &Medium,
+    particles: Vec<Particle>,
+    mirrors: Vec<PlaneWall>,
     context: &Context,
-) -> Record {
-    let json = serde_json::to_value(settings).unwrap_or_default();
-    let mut record = Record::new(case, variant, json, context.threads.max(1));
-    let numbers = numbers.map(|(name, value)| (name.to_string(), number::json(value)));
-    record.numerics.extend(numbers);
-    record.numerics.extend(words.map(|(name, word)| (name.to_string(), word.into())));
-    record
+) -> Parts {
+    let (domain, limits) = (Domain::open(), Limits::default());
+    let (medium, threads) = (medium.clone(), context.threads);
+    Parts { medium, domain, particles, mirrors, skin: None, limits, threads }
 }
 
-/// A metric in a table; a dash if it was not measured.
-pub fn cell(record: &Record, metric: impl Into<MetricName>, show: impl Fn(f64) -> Cell) -> Cell {
-    Cell::or_dash(record.value(metric).unwrap_or(f64::NAN), show)
+/// Where the first row of water is, from the surface of a wall \[dx\].
+pub fn first_water(walls: FirstRow) -> f64 {
+    if walls == FirstRow::OnSurface { 1.0 } else { 0.5 }
+}
+
+/// Places and roles of the particles of a tank's walls, out to the support \[m\].
+pub fn wall_particles(walls: FirstRow, tank: &Tank, support: f64) -> Vec<(Vector2<f64>, Role)> {
+    let of =
+        |places: Vec<Vector2<f64>>, role: Role| places.into_iter().map(move |place| (place, role));
+    match walls {
+        FirstRow::Nowhere => Vec::new(),
+        FirstRow::OnSurface => {
+            let rows = tank.interface_walls(support);
+            of(rows.interface, Role::Interface).chain(of(rows.wall, Role::Wall)).collect()
+        }
+        FirstRow::Behind => of(tank.rows_behind(support), Role::Wall).collect(),
+    }
+}
+
+/// A gate on a metric, named after it.
+pub fn gate(
+    id: &str,
+    metric: impl Into<MetricName>,
+    bound: Bound,
+    evidence: Evidence,
+    because: &str,
+) -> Gate {
+    let metric = metric.into();
+    Gate::new(format!("{id}.{}", metric.name()), metric.name(), bound, evidence, because)
 }
 
 /// A column of a profile over another one, each in a unit.
@@ -74,8 +136,8 @@ pub fn curve(
     points.map(|(x, y)| (x / units[0], y / units[1])).collect()
 }
 
-/// Declares the settings of a case of water: its own, then those that every such case has, and turns
-/// the latter into [`Numerics`] by a method `numerics`.
+/// Declares the settings of a case of water: its own, then those that every such case has, and what follows
+/// from the latter.
 #[macro_export]
 macro_rules! water_settings {
     (
@@ -111,13 +173,29 @@ macro_rules! water_settings {
         }
 
         impl $Struct {
-            /// What all cases of water share.
-            pub fn numerics(&self) -> $crate::water::Numerics {
-                let Self { rho, h_over_dx, alpha, beta, xsph, xi, diffusion, courant, dt, .. } = *self;
-                let exponent = self.exponent as u32;
-                $crate::water::Numerics {
-                    rho, h_over_dx, alpha, beta, xsph, xi, exponent, diffusion, courant, dt,
-                }
+            /// Water with this spacing \[m\], sound speed \[m/s\] and gravity \[m/s²\], and what the rules
+            /// choose; `speed` is the largest speed expected \[m/s\].
+            pub fn medium(
+                &self,
+                method: &$crate::water::WaterMethod,
+                [dx, c0, gravity, speed]: [f64; 4],
+            ) -> (harness::method::Medium, harness::case::Rules) {
+                let (h, eos) = (self.h_over_dx * dx, solver::Tait::new(self.rho, c0));
+                let down = nalgebra::Vector2::new(0.0, -gravity);
+                let medium = harness::method::Medium {
+                    acceleration: down,
+                    wall_acceleration: down,
+                    alpha: self.alpha,
+                    beta: self.beta,
+                    xsph: self.xsph,
+                    xi: self.xi,
+                    exponent: self.exponent as u32,
+                    diffusion: self.diffusion,
+                    ..method.medium(eos, [dx, h])
+                };
+                let dt = self.dt.unwrap_or(self.courant * h / (c0 + speed));
+                let dt_limit = $crate::water::step_limit(method, &medium, [self.h_over_dx, c0], 24);
+                (medium, harness::case::Rules { dt, dt_limit, sound_speed: c0 })
             }
         }
     };

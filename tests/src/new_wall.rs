@@ -1,0 +1,19 @@
+//! A wall of its own in one file: boundary particles whose density is smoothed.
+
+use solver::{Continuity, DensityDiffusion, walls::Walls};
+
+/// Interface and wall particles as in section 4.2, whose density is smoothed as well.
+#[derive(Clone, Copy, Debug)]
+pub struct SmoothedWall {
+    /// Of the density of wall particles.
+    pub diffusion: DensityDiffusion,
+}
+
+impl<X> Walls<X> for SmoothedWall {
+    type Terms = (Continuity, DensityDiffusion); // how particles of Role::Wall evolve
+
+    fn terms(&self) -> Self::Terms {
+        (Continuity, self.diffusion)
+    }
+    // fn mirrors(&self) -> &[PlaneWall]: straight walls that mirror the fluid; none by default
+}

@@ -1,0 +1,163 @@
+//! Flows whose length, velocity and density are 1: the settings, methods and rules that the flow over hills
+//! and the vortices have in common.
+
+use nalgebra::Vector2;
+use solver::{
+    Compose, ConsistentContinuity, Continuity, DensityDiffusion, Domain, Leapfrog, Limits, Open,
+    Particle, QuinticSpline, Shifting, Tait,
+};
+
+use harness::{
+    case::{Rules, RunError},
+    context::Context,
+    method::{Medium, Method, Parts},
+    simulate,
+};
+
+/// Quintic spline and leapfrog.
+pub type Quintic<F, D, W = Open> = Compose<QuinticSpline, F, D, W, Leapfrog>;
+/// Density diffusion and shifting.
+pub type Stabilised = (Continuity, DensityDiffusion, Shifting);
+/// The same with a continuity that is exact for linear fields.
+pub type ConsistentDrift = (ConsistentContinuity, DensityDiffusion, Shifting);
+
+/// What a case adds to its settings.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales {
+    /// Largest speed of the flow \[m/s\].
+    pub speed: f64,
+    /// Body force along x \[m/s²\].
+    pub force: f64,
+    /// Area of the flow, of which the number of particles follows \[m²\].
+    pub area: f64,
+    /// Time step, unless it follows from the settings \[s\].
+    pub dt: Option<f64>,
+}
+
+/// The numbers of one run.
+#[derive(Clone, Debug)]
+pub struct UnitFlow {
+    /// What terms are made from.
+    pub medium: Medium,
+    /// Support radius \[m\].
+    pub support: f64,
+    /// Time step, its theoretical limit on a lattice at rest, sound speed.
+    pub rules: Rules,
+    speed: f64,
+    skin: f64,
+}
+
+/// More time steps than this are refused.
+const MOST_STEPS: f64 = 1e8;
+/// More particles than this are refused.
+const MOST_PARTICLES: f64 = 1e7;
+/// Particles of the box whose waves give the limit of dt: even, so that it has the stiffest ones.
+pub const LIMIT_BOX: usize = 32;
+
+impl UnitFlow {
+    /// A medium with Courant and viscous number of the time step, skin \[h\] and end \[s\].
+    ///
+    /// # Errors
+    /// If the step is not stable, or the run takes too long.
+    pub fn new<D: ?Sized>(
+        method: &Method<(), D>,
+        medium: Medium,
+        [courant, viscous, skin, end]: [f64; 4],
+        Scales { speed, force, area, dt }: Scales,
+        context: &Context,
+    ) -> Result<Self, RunError> {
+        let Medium { h, dx, nu, eta2_over_h2, eos: Tait { sound_speed, .. }, .. } = medium;
+        let dt = dt.unwrap_or((courant * h / (sound_speed + speed)).min(viscous * h * h / nu));
+        let waves = medium.waves(&method.uses);
+        let dt_limit = method.step_limit([h / dx, eta2_over_h2], LIMIT_BOX, &waves);
+        let rules = Rules { dt, dt_limit, sound_speed };
+        let most = [(MOST_STEPS, "end, courant, c0 or n"), (MOST_PARTICLES, "n")];
+        simulate::check(method.integrator, rules, end, area / (dx * dx), most, context)?;
+        let medium = Medium { acceleration: Vector2::new(force, 0.0), ..medium };
+        Ok(Self { medium, support: method.support * h, rules, speed, skin: skin * h })
+    }
+
+    /// The scene of these particles.
+    pub fn parts(&self, domain: Domain, particles: Vec<Particle>, context: &Context) -> Parts {
+        // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
+        let speed = 2.0 * (self.speed + self.rules.sound_speed);
+        Parts {
+            medium: self.medium.clone(),
+            domain,
+            particles,
+            mirrors: Vec::new(),
+            skin: Some(self.skin),
+            limits: Limits { density: [0.7, 1.3], speed },
+            threads: context.threads,
+        }
+    }
+
+    /// What a run chose, for its record.
+    pub fn numbers(&self) -> [(&'static str, f64); 5] {
+        let Rules { dt, dt_limit, sound_speed } = self.rules;
+        [
+            ("h/dx", self.medium.h / self.medium.dx),
+            ("dx [m]", self.medium.dx),
+            ("c0 [m/s]", sound_speed),
+            ("dt [s]", dt),
+            ("dt/limit", dt / dt_limit),
+        ]
+    }
+}
+
+/// Declares the settings of a case: its own, among them `re`, `n`, `end`, `h_over_dx` and `c0`, and those
+/// that all these flows have.
+macro_rules! unit_settings {
+    ($(#[doc = $doc:literal])+ pub struct $Struct:ident { $($own:tt)+ }) => {
+        base::settings! {
+            $(#[doc = $doc])+
+            pub struct $Struct {
+                $($own)+
+                /// guard against 0/0 in the viscous term
+                eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 1e-6,
+                /// exponent of the Tait equation
+                gamma: usize ["-"] in 1..=20 = 7,
+                /// background pressure 0p
+                background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
+                /// Courant number of the time step: two thirds of the theoretical limit
+                courant: f64 ["-"] in 1e-6..=100.0 = 1.5,
+                /// viscous number of the time step
+                viscous: f64 ["-"] in 1e-6..=100.0 = 0.25,
+                /// density diffusion δ
+                diffusion: f64 ["-"] in 0.0..=10.0 = 0.1,
+                /// particle shifting, amplitude
+                shift: f64 ["-"] in 0.0..=10.0 = 0.5,
+                /// reach of neighbour rows beyond the support
+                skin: f64 ["h"] in 0.0..=2.0 = 0.15,
+            }
+        }
+
+        impl $Struct {
+            /// Follows the rules for a method.
+            fn flow<D: ?Sized>(
+                &self,
+                method: &harness::method::Method<(), D>,
+                scales: $crate::unit_flow::Scales,
+                context: &harness::context::Context,
+            ) -> Result<$crate::unit_flow::UnitFlow, harness::case::RunError> {
+                let (dx, nu) = (1.0 / self.n as f64, 1.0 / self.re);
+                let h = self.h_over_dx * dx;
+                let eos = solver::Tait {
+                    gamma: self.gamma as i32,
+                    background: self.background * self.c0 * self.c0,
+                    ..solver::Tait::new(1.0, self.c0)
+                };
+                let medium = harness::method::Medium {
+                    nu,
+                    eta2_over_h2: self.eta2_over_h2,
+                    diffusion: self.diffusion,
+                    shift: self.shift,
+                    ..method.medium(eos, [dx, h])
+                };
+                let numbers = [self.courant, self.viscous, self.skin, self.end];
+                $crate::unit_flow::UnitFlow::new(method, medium, numbers, scales, context)
+            }
+        }
+    };
+}
+pub(crate) use unit_settings;

@@ -1,0 +1,126 @@
+//! The numbers that terms and walls are made from.
+
+use maths::theory::time_step;
+use nalgebra::Vector2;
+use solver::{Linear, Tait};
+
+/// A material at a spacing. What a case does not have stays 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Medium {
+    /// Equation of state, with density at rest and sound speed; a solid takes these two of it.
+    pub eos: Tait,
+    /// Density of the start \[kg/m³\], that of the equation of state unless it is compressed.
+    pub density: f64,
+    /// Sound speed at that density \[m/s\].
+    pub sound_speed: f64,
+    /// Spacing \[m\].
+    pub dx: f64,
+    /// Smoothing length \[m\].
+    pub h: f64,
+    /// W(dx) \[1/m²\].
+    pub w_at_spacing: f64,
+    /// Kinematic viscosity ν \[m²/s\].
+    pub nu: f64,
+    /// Shear modulus μ of (11) \[Pa\].
+    pub shear_modulus: f64,
+    /// Body force \[m/s²\].
+    pub acceleration: Vector2<f64>,
+    /// By which walls extrapolate the pressure \[m/s²\].
+    pub wall_acceleration: Vector2<f64>,
+    /// η² \[h²\].
+    pub eta2_over_h2: f64,
+    /// α of (16).
+    pub alpha: f64,
+    /// β of (16).
+    pub beta: f64,
+    /// ε of (22).
+    pub xsph: f64,
+    /// ξ of (19).
+    pub xi: f64,
+    /// n of (14) and (18).
+    pub exponent: u32,
+    /// δ of the density diffusion.
+    pub diffusion: f64,
+    /// Amplitude of the shifting.
+    pub shift: f64,
+}
+
+impl Medium {
+    /// δ h c0 of the density diffusion \[m²/s\].
+    pub fn diffusivity(&self) -> f64 {
+        self.diffusion * self.h * self.sound_speed
+    }
+
+    /// (12).
+    pub fn linear(&self) -> Linear {
+        Linear { density: self.eos.density, sound_speed: self.eos.sound_speed }
+    }
+
+    /// What waves in it depend on, for terms that read these settings.
+    pub fn waves(&self, uses: &[Knob]) -> time_step::Medium {
+        let used = |knob, value| if uses.contains(&knob) { value } else { 0.0 };
+        let (alpha, delta) = (used(Knob::Alpha, self.alpha), used(Knob::Diffusion, self.diffusion));
+        time_step::Medium { c0: self.sound_speed, h: self.h, nu: self.nu, alpha, delta }
+    }
+}
+
+/// A setting that some terms or walls read, and others do not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Knob {
+    /// η² of the viscous term.
+    Eta2,
+    /// α of the artificial viscosity.
+    Alpha,
+    /// Its β.
+    Beta,
+    /// ε of XSPH.
+    Xsph,
+    /// ξ of the artificial stress.
+    Xi,
+    /// Its exponent.
+    Exponent,
+    /// δ of the density diffusion.
+    Diffusion,
+    /// Amplitude of the shifting.
+    Shift,
+    /// Whether ghosts know the curvature of the velocity at their wall.
+    WallCurvature,
+    /// Share of gravity that an extrapolating wall knows of.
+    WallGravity,
+}
+
+impl Knob {
+    const ALL: [Self; 10] = [
+        Self::Eta2,
+        Self::Alpha,
+        Self::Beta,
+        Self::Xsph,
+        Self::Xi,
+        Self::Exponent,
+        Self::Diffusion,
+        Self::Shift,
+        Self::WallCurvature,
+        Self::WallGravity,
+    ];
+
+    /// The name of the setting, in every case that has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Eta2 => "eta2_over_h2",
+            Self::Alpha => "alpha",
+            Self::Beta => "beta",
+            Self::Xsph => "xsph",
+            Self::Xi => "xi",
+            Self::Exponent => "exponent",
+            Self::Diffusion => "diffusion",
+            Self::Shift => "shift",
+            Self::WallCurvature => "wall_curvature",
+            Self::WallGravity => "wall_gravity",
+        }
+    }
+
+    /// The names of all settings but these.
+    pub fn others(uses: &[Self]) -> impl Iterator<Item = &'static str> {
+        Self::ALL.into_iter().filter(|knob| !uses.contains(knob)).map(Self::name)
+    }
+}

@@ -1,0 +1,202 @@
+//! A method: a scheme of the solver without its type, so that what a case does with it is compiled once.
+//!
+//! The type parameters of a scheme say which terms there are; [`FromMedium`] and [`Boundary`] make their
+//! values from the numbers of a [`Medium`]. [`Method::of`] is all that is compiled for each scheme.
+
+mod medium;
+mod terms;
+
+use maths::theory::{
+    Stepping,
+    lattice::SquareLattice,
+    time_step::{self, Mode},
+};
+use nalgebra::Vector2;
+use solver::{
+    Domain, Integrator as _, Kernel, Limits, Numbers, Particle, Physics, PlaneWall, Scene,
+    SceneError, Scheme, Smoothing, Stepper, Tait,
+};
+
+use crate::context::Context;
+pub use medium::{Knob, Medium};
+pub use terms::{Boundary, FirstRow, FromMedium};
+
+/// A scheme that can be made from a medium.
+pub trait Standard:
+    Scheme<
+        Forces: FromMedium,
+        Drift: FromMedium,
+        Walls: Boundary,
+        Integrator: Stepping<<Self as Physics>::Extra>,
+    >
+{
+}
+
+impl<S> Standard for S where
+    S: Scheme<
+            Forces: FromMedium,
+            Drift: FromMedium,
+            Walls: Boundary,
+            Integrator: Stepping<<S as Physics>::Extra>,
+        >
+{
+}
+
+/// What a scene has beside the types of its scheme.
+pub struct Parts<X = ()> {
+    /// What its terms and walls are made from.
+    pub medium: Medium,
+    /// Periodic or open.
+    pub domain: Domain,
+    /// The particles; results keep their order.
+    pub particles: Vec<Particle<X>>,
+    /// Planes that mirror the fluid, where the walls are mirrors.
+    pub mirrors: Vec<PlaneWall>,
+    /// Verlet skin \[m\], if not the usual one.
+    pub skin: Option<f64>,
+    /// Bounds beyond which the run counts as diverged.
+    pub limits: Limits,
+    /// Threads inside the run.
+    pub threads: usize,
+}
+
+impl<X> Parts<X> {
+    /// Parts without walls, with the usual skin and limits and the threads of a context.
+    pub fn new(
+        medium: Medium,
+        domain: Domain,
+        particles: Vec<Particle<X>>,
+        context: &Context,
+    ) -> Self {
+        let (mirrors, skin, limits, threads) =
+            (Vec::new(), None, Limits::default(), context.threads);
+        Self { medium, domain, particles, mirrors, skin, limits, threads }
+    }
+}
+
+/// The scene of a scheme with these parts.
+pub fn scene<S>(parts: Parts<S::Extra>) -> Scene<S>
+where
+    S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
+{
+    let Parts { medium, domain, particles, mirrors, skin, limits, threads } = parts;
+    let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
+    let walls = S::Walls::new(&medium, mirrors);
+    let mut scene = Scene::new(medium.h, domain, particles, forces, drift, walls);
+    scene.skin = skin.unwrap_or(scene.skin);
+    scene.limits = limits;
+    if threads <= 1 {
+        scene.parallel_from = usize::MAX;
+    }
+    scene
+}
+
+/// h/dx and η²/h².
+type Lattice = [f64; 2];
+
+/// A scheme without its type. `D` is what a case needs of a simulation beyond [`Stepper`].
+pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
+    /// Name of the kernel.
+    pub kernel: &'static str,
+    /// Name of the integrator.
+    pub integrator: &'static str,
+    /// Name of the walls.
+    pub walls: &'static str,
+    /// Where boundary particles stand.
+    pub first_row: FirstRow,
+    /// Support radius \[h\].
+    pub support: f64,
+    /// The theory of its time step.
+    pub theory: time_step::Integrator,
+    /// The settings that its terms and walls read and others do not.
+    pub uses: Vec<Knob>,
+    /// The simulation of a scene with these parts.
+    pub build: fn(Parts<X>) -> Result<Box<D>, SceneError>,
+    weight: fn(f64, f64) -> f64,
+    mode: fn(Lattice, Vector2<f64>, &time_step::Medium) -> Mode,
+    gradient: fn(f64, Vector2<f64>) -> Vector2<f64>,
+    gradient_factor: fn(f64) -> f64,
+    modes: fn(Lattice, usize, &time_step::Medium) -> Vec<Mode>,
+}
+
+impl<X: Numbers, D: ?Sized> Method<X, D> {
+    /// The method of a scheme; `build` is `|parts| Ok(Box::new(scene::<S>(parts).build()?))`.
+    pub fn with<S: Standard<Extra = X>>(build: fn(Parts<X>) -> Result<Box<D>, SceneError>) -> Self {
+        Self {
+            kernel: S::Kernel::NAME,
+            integrator: S::Integrator::NAME,
+            walls: S::Walls::NAME,
+            first_row: S::Walls::FIRST_ROW,
+            support: S::Kernel::SUPPORT,
+            theory: S::Integrator::THEORY,
+            uses: [S::Forces::uses(), S::Drift::uses(), S::Walls::uses()].concat(),
+            build,
+            weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
+            mode: |[ratio, eta2], theta, medium| {
+                Mode::new(&SquareLattice::<S::Kernel>::new(ratio, eta2), theta, medium)
+            },
+            gradient: |ratio, phase| SquareLattice::<S::Kernel>::new(ratio, 0.0).gradient(phase),
+            gradient_factor: |ratio| SquareLattice::<S::Kernel>::new(ratio, 0.0).gradient_factor(),
+            modes: |[ratio, eta2], n, medium| {
+                time_step::modes(&SquareLattice::<S::Kernel>::new(ratio, eta2), n, medium)
+            },
+        }
+    }
+
+    /// A medium with this equation of state, spacing \[m\] and smoothing length \[m\], and nothing else.
+    pub fn medium(&self, eos: Tait, [dx, h]: [f64; 2]) -> Medium {
+        Medium {
+            eos,
+            density: eos.density,
+            sound_speed: eos.sound_speed,
+            dx,
+            h,
+            w_at_spacing: (self.weight)(h, dx * dx),
+            nu: 0.0,
+            shear_modulus: 0.0,
+            acceleration: Vector2::zeros(),
+            wall_acceleration: Vector2::zeros(),
+            eta2_over_h2: 0.0,
+            alpha: 0.0,
+            beta: 0.0,
+            xsph: 0.0,
+            xi: 0.0,
+            exponent: 1,
+            diffusion: 0.0,
+            shift: 0.0,
+        }
+    }
+
+    /// The wave with this phase from one particle to the next \[rad\], on a square lattice with these h/dx and
+    /// η²/h².
+    pub fn mode(&self, lattice: Lattice, theta: Vector2<f64>, medium: &time_step::Medium) -> Mode {
+        (self.mode)(lattice, theta, medium)
+    }
+
+    /// g(k) h of the gradient on a square lattice with this h/dx, for a wave of phase k dx \[rad\].
+    pub fn gradient(&self, h_over_dx: f64, phase: Vector2<f64>) -> Vector2<f64> {
+        (self.gradient)(h_over_dx, phase)
+    }
+
+    /// What a uniform gradient is multiplied by on a square lattice with this h/dx: G₁ = Σ V F x².
+    pub fn gradient_factor(&self, h_over_dx: f64) -> f64 {
+        (self.gradient_factor)(h_over_dx)
+    }
+
+    /// The waves of a periodic square lattice of n × n particles with these h/dx and η²/h².
+    pub fn modes(&self, lattice: Lattice, n: usize, medium: &time_step::Medium) -> Vec<Mode> {
+        (self.modes)(lattice, n, medium)
+    }
+
+    /// The largest step at which none of these waves grows \[s\].
+    pub fn step_limit(&self, lattice: Lattice, n: usize, medium: &time_step::Medium) -> f64 {
+        time_step::time_step_limit(&self.modes(lattice, n, medium), self.theory)
+    }
+}
+
+impl<X: Numbers> Method<X> {
+    /// The method of a scheme, for cases that need no more of a simulation than [`Stepper`].
+    pub fn of<S: Standard<Extra = X>>() -> Self {
+        Self::with::<S>(|parts| Ok(Box::new(scene::<S>(parts).build()?)))
+    }
+}

@@ -1,0 +1,182 @@
+//! How each term and each wall is made from the numbers of a medium, and which settings it reads.
+
+use solver::{
+    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConsistentContinuity,
+    ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion, ExtrapolatingWall,
+    Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, Open, PlaneWall, Pressure, ShiftAdvection,
+    Shifting, SlipGhosts, Tait, Viscosity, Xsph,
+    terms::{Axes, Hydrostatic, InTension, Switch},
+};
+
+use super::medium::{Knob, Medium};
+
+/// What can be made from a medium.
+pub trait FromMedium: Sized {
+    /// Its value.
+    fn new(medium: &Medium) -> Self;
+    /// The settings that it reads and other terms do not, those of the terms inside it too.
+    fn uses() -> Vec<Knob> {
+        Vec::new()
+    }
+}
+
+/// `Type [generics] (settings that it reads) = |medium| value`.
+macro_rules! from_medium {
+    ($($type:ty [$($generics:tt)*] ($($knob:ident),*) = $new:expr;)+) => {$(
+        impl<$($generics)*> FromMedium for $type {
+            fn new(medium: &Medium) -> Self {
+                let new: fn(&Medium) -> Self = $new;
+                new(medium)
+            }
+            fn uses() -> Vec<Knob> {
+                vec![$(Knob::$knob),*]
+            }
+        }
+    )+};
+}
+
+from_medium! {
+    () [] () = |_| ();
+    Tait [] () = |m| m.eos;
+    Linear [] () = |m| m.linear();
+    Continuity [] () = |_| Continuity;
+    ConsistentContinuity [] () = |_| ConsistentContinuity;
+    ConsistentPressure<Tait> [] () = |m| ConsistentPressure { eos: m.eos };
+    ConsistentViscosity [] () = |m| ConsistentViscosity { nu: m.nu };
+    Viscosity [] (Eta2) =
+        |m| Viscosity { mu: m.density * m.nu, eta2: m.eta2_over_h2 * m.h * m.h };
+    BodyForce [] () = |m| BodyForce(m.acceleration);
+    ArtificialStress [] (Xi, Exponent) = |m| Self::new(m.xi, m.exponent, m.w_at_spacing);
+    InTension<A> [A: Axes] (Xi, Exponent) = |m| Self::new(m.xi, m.exponent, m.w_at_spacing);
+    ArtificialViscosity<E, S> [E: FromMedium + Copy, S: Switch] (Alpha, Beta) =
+        |m| Self::new(m.alpha, m.beta, m.h, E::new(m));
+    Xsph [] (Xsph) = |m| Xsph { epsilon: m.xsph };
+    DensityDiffusion [] (Diffusion) = |m| Self::new(m.diffusivity());
+    DensityDiffusion<Hydrostatic> [] (Diffusion) =
+        |m| DensityDiffusion::hydrostatic(m.diffusivity(), m.eos, m.acceleration);
+    Shifting [] (Shift) = |m| Shifting::new(m.shift, m.h, m.w_at_spacing);
+    ShiftAdvection [] (Shift) = |m| ShiftAdvection(Shifting::new(m.shift, m.h, m.w_at_spacing));
+    JaumannRate [] () = |m| JaumannRate { shear_modulus: m.shear_modulus };
+}
+
+impl<E: FromMedium, R: FromMedium> FromMedium for Pressure<E, R> {
+    fn new(medium: &Medium) -> Self {
+        Self { eos: E::new(medium), tensile: R::new(medium) }
+    }
+    fn uses() -> Vec<Knob> {
+        R::uses()
+    }
+}
+
+impl<E: FromMedium, R: FromMedium> FromMedium for CauchyStress<E, R> {
+    fn new(medium: &Medium) -> Self {
+        Self { eos: E::new(medium), tensile: R::new(medium) }
+    }
+    fn uses() -> Vec<Knob> {
+        R::uses()
+    }
+}
+
+macro_rules! tuples_from_medium {
+    ($(($($member:ident),+))+) => {$(
+        impl<$($member: FromMedium),+> FromMedium for ($($member,)+) {
+            fn new(medium: &Medium) -> Self {
+                ($($member::new(medium),)+)
+            }
+            fn uses() -> Vec<Knob> {
+                [$($member::uses()),+].concat()
+            }
+        }
+    )+};
+}
+
+tuples_from_medium! { (A, B) (A, B, C) (A, B, C, D) }
+
+/// Where the first row of boundary particles stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FirstRow {
+    /// There are none: mirrors, or no wall.
+    Nowhere,
+    /// On the surface: they are of the interface.
+    OnSurface,
+    /// Half a spacing behind it.
+    Behind,
+}
+
+impl FirstRow {
+    /// How far behind the surface it stands \[dx\]; half a spacing also where there is none, for the fluid
+    /// begins as far before a mirror.
+    pub fn depth(self) -> f64 {
+        if self == Self::OnSurface { 0.0 } else { 0.5 }
+    }
+}
+
+/// Walls that can be made from a medium and the planes that mirror the fluid.
+pub trait Boundary: Sized {
+    /// The name in reports.
+    const NAME: &'static str;
+    /// Its boundary particles.
+    const FIRST_ROW: FirstRow;
+    /// The walls.
+    fn new(medium: &Medium, mirrors: Vec<PlaneWall>) -> Self;
+    /// The settings that they read and other walls do not.
+    fn uses() -> Vec<Knob> {
+        Vec::new()
+    }
+}
+
+impl Boundary for Open {
+    const NAME: &'static str = "none";
+    const FIRST_ROW: FirstRow = FirstRow::Nowhere;
+    fn new(_: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self
+    }
+}
+
+impl Boundary for Ghosts {
+    const NAME: &'static str = "ghosts";
+    const FIRST_ROW: FirstRow = FirstRow::Nowhere;
+    fn new(_: &Medium, walls: Vec<PlaneWall>) -> Self {
+        Self { walls }
+    }
+    fn uses() -> Vec<Knob> {
+        vec![Knob::WallCurvature]
+    }
+}
+
+impl Boundary for SlipGhosts {
+    const NAME: &'static str = "ghosts along which water slips";
+    const FIRST_ROW: FirstRow = FirstRow::Nowhere;
+    fn new(_: &Medium, walls: Vec<PlaneWall>) -> Self {
+        Self { walls }
+    }
+}
+
+impl Boundary for InterfaceWall {
+    const NAME: &'static str = "interface-wall";
+    const FIRST_ROW: FirstRow = FirstRow::OnSurface;
+    fn new(_: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self
+    }
+}
+
+impl Boundary for ExtrapolatingWall<Tait, NoSlip> {
+    const NAME: &'static str = "extrapolating-wall";
+    const FIRST_ROW: FirstRow = FirstRow::Behind;
+    fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self::no_slip(medium.eos, medium.wall_acceleration)
+    }
+}
+
+/// Along walls of standing velocity; their pressure is not below 0: above a free surface a wall must not
+/// suck the water up.
+impl Boundary for ExtrapolatingWall<Tait> {
+    const NAME: &'static str = "extrapolating-wall";
+    const FIRST_ROW: FirstRow = FirstRow::Behind;
+    fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self::new(medium.eos, medium.wall_acceleration).not_below(0.0)
+    }
+    fn uses() -> Vec<Knob> {
+        vec![Knob::WallGravity]
+    }
+}
