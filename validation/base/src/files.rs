@@ -1,8 +1,9 @@
 //! Output files: whole or absent, never half written, never with a NaN inside.
 //!
 //! Everything is written beside its place under a temporary name and renamed when complete.
-//! The temporary names are registered, so that a handler of ctrl-c can call
-//! [`remove_unfinished`] before the process ends.
+//! The temporary names are random, so that no other process and no file that an earlier one left behind is in
+//! the way, and they are registered, so that a handler of ctrl-c can call [`remove_unfinished`] before the
+//! process ends. What a process that was killed left behind is removed by a later one.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), base::files::FileError> {
@@ -19,10 +20,10 @@ use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::process;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, SystemTime};
 
+use tempfile::{Builder, TempPath};
 use thiserror::Error;
 
 /// Why a file was not written.
@@ -92,36 +93,76 @@ pub fn remove_unfinished() -> usize {
     removed
 }
 
+/// Begins the name of every temporary file; random letters and digits, a hyphen and the final name follow.
+const PREFIX: &str = ".unfinished-";
+/// Letters and digits that are random.
+const RANDOM: usize = 12;
+/// A temporary file that nobody has written to for so long was left behind: writing one takes seconds.
+const ORPHANED_AFTER: Duration = Duration::from_secs(3600);
+
+/// Is this the name of a temporary file of this program, of whatever version?
+fn is_temporary(name: &str) -> bool {
+    let rest = name.strip_prefix(PREFIX).and_then(|rest| rest.split_once('-'));
+    let is_random =
+        |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_alphanumeric());
+    rest.is_some_and(|(random, of)| is_random(random) && !of.is_empty())
+}
+
+/// Removes temporary files that processes which were killed left in a folder. What cannot be looked at or
+/// removed stays: it is in nobody's way.
+fn remove_orphans(folder: &Path) {
+    let now = SystemTime::now();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_old = |file: fs::Metadata| {
+            let age = file.modified().ok().and_then(|written| now.duration_since(written).ok());
+            file.is_file() && age.is_some_and(|age| age > ORPHANED_AFTER)
+        };
+        if entry.file_name().to_str().is_some_and(is_temporary)
+            && entry.metadata().is_ok_and(is_old)
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// An entry of [`UNFINISHED`].
+struct Registered(PathBuf);
+
+impl Drop for Registered {
+    fn drop(&mut self) {
+        unfinished().remove(&self.0);
+    }
+}
+
 /// A temporary file that goes away unless it is renamed to its final name.
 struct Temporary {
-    path: PathBuf,
+    path: TempPath, // dropped, and so removed, before it is taken from the register
+    _registered: Registered,
 }
 
 impl Temporary {
-    /// A new file beside `path`, with a name that no other thread or process uses.
+    /// A new file beside `path`. If its random name is taken, another one is tried.
     fn beside(path: &Path) -> io::Result<(Self, File)> {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
         let no_name = || io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name");
         let name = path.file_name().ok_or_else(no_name)?.to_string_lossy();
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         // The end of the name stays: some writers choose the format by it.
-        let path = path.with_file_name(format!(".unfinished-{}-{count}-{name}", process::id()));
-        let mut paths = unfinished(); // held, so that no interruption comes in between
-        let file = OpenOptions::new().write(true).create_new(true).open(&path)?;
-        paths.insert(path.clone());
-        Ok((Temporary { path }, file))
+        let suffix = format!("-{name}");
+        let mut names = Builder::new();
+        names.prefix(PREFIX).suffix(&suffix).rand_bytes(RANDOM);
+        let open = |path: &Path| {
+            let mut paths = unfinished(); // held, so that no interruption comes in between
+            let file = OpenOptions::new().write(true).create_new(true).open(path)?;
+            paths.insert(path.into());
+            Ok(file)
+        };
+        let (file, path) = names.make_in(folder.unwrap_or(Path::new(".")), open)?.into_parts();
+        let _registered = Registered(path.to_path_buf());
+        Ok((Temporary { path, _registered }, file))
     }
 
     fn rename(self, path: &Path) -> io::Result<()> {
-        fs::rename(&self.path, path)
-    }
-}
-
-impl Drop for Temporary {
-    /// Removes the file if it was not renamed: then there is nothing to remove.
-    fn drop(&mut self) {
-        let _ = fs::remove_file(&self.path);
-        unfinished().remove(&self.path);
+        self.path.persist(path).map_err(|refused| refused.error)
     }
 }
 
@@ -156,6 +197,13 @@ pub fn write_atomically_by<E: Into<io::Error>>(
     written().map_err(|reason| FileError::File { path: path.into(), reason })
 }
 
+/// Writes a probe into a folder, which is removed again.
+fn probe(folder: &Path) -> io::Result<()> {
+    let (_removed_on_return, mut file) = Temporary::beside(&folder.join("probe"))?;
+    file.write_all(b"touchstone")?;
+    file.sync_all()
+}
+
 /// A folder that was found writable before the first result was computed.
 #[derive(Debug, Clone)]
 pub struct OutputFolder {
@@ -163,16 +211,23 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Makes the folder if need be and writes a probe into it, which is removed again.
+    /// Makes the folder if need be and writes a probe into it, which is removed again. So is what processes
+    /// that were killed left there.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        let probe = || -> io::Result<()> {
-            fs::create_dir_all(path)?;
-            let (_removed_on_return, mut file) = Temporary::beside(&path.join("probe"))?;
-            file.write_all(b"touchstone")?;
-            file.sync_all()
-        };
-        probe().map_err(|reason| FileError::Folder { path: path.into(), reason })?;
+        fs::create_dir_all(path)
+            .and_then(|()| probe(path))
+            .map_err(|reason| FileError::Folder { path: path.into(), reason })?;
+        remove_orphans(path);
         Ok(OutputFolder { path: path.into() })
+    }
+
+    /// Says whether [`OutputFolder::create`] would succeed, and makes no folder: where there is none, the
+    /// nearest one above it must be writable.
+    pub fn check(path: &Path) -> Result<(), FileError> {
+        // The folder above a relative path is the empty path, which is the current folder.
+        let exists = |path: &&Path| path.as_os_str().is_empty() || path.symlink_metadata().is_ok();
+        let nearest = path.ancestors().find(exists).unwrap_or(path);
+        probe(nearest).map_err(|reason| FileError::Folder { path: path.into(), reason })
     }
 
     /// Where the folder is.
@@ -329,6 +384,63 @@ mod tests {
         assert!(write_atomically(&folder.path().join("no/such/folder"), b"").is_err());
         assert!(write_atomically(Path::new("/"), b"").is_err());
         assert!(unfinished().is_empty());
+    }
+
+    /// A process id repeats, in containers always: what a process that was killed left behind is in the way
+    /// of none that comes later, whatever their ids and counts.
+    #[test]
+    fn a_temporary_file_left_behind_does_not_block_its_folder() {
+        let _turn = turn();
+        let folder = tempfile::tempdir().unwrap();
+        let left_behind: Vec<String> = (0..100)
+            .map(|k| format!(".unfinished-{}-{k}-record.json", std::process::id()))
+            .collect();
+        for name in &left_behind {
+            fs::write(folder.path().join(name), b"half a rec").unwrap();
+        }
+        let output = OutputFolder::create(folder.path()).unwrap();
+        let path = output.write("record.json", b"whole").unwrap();
+        assert_eq!(fs::read(path).unwrap(), b"whole");
+        assert_eq!(names(folder.path()).len(), left_behind.len() + 1, "they may be of others");
+    }
+
+    #[test]
+    fn what_killed_processes_left_behind_is_removed_after_an_hour_and_nothing_else() {
+        let _turn = turn();
+        let folder = tempfile::tempdir().unwrap();
+        let long_ago = SystemTime::now() - 2 * ORPHANED_AFTER;
+        let make = |name: &str, time: SystemTime| {
+            let file = File::create(folder.path().join(name)).unwrap();
+            file.set_modified(time).unwrap();
+        };
+        make(".unfinished-1-0-record.json", long_ago); // as earlier versions named them
+        make(".unfinished-a8Zk29xYb01q-dam-break.json", long_ago);
+        make(".unfinished-a8Zk29xYb01r-series.csv", SystemTime::now());
+        let foreign = [".unfinished-", ".unfinished-notes.txt", ".unfinished-a.b-c", "record.json"];
+        for name in foreign {
+            make(name, long_ago);
+        }
+        fs::create_dir(folder.path().join(".unfinished-1-folder")).unwrap();
+        OutputFolder::create(folder.path()).unwrap();
+        let mut expected = foreign.to_vec();
+        expected.extend([".unfinished-1-folder", ".unfinished-a8Zk29xYb01r-series.csv"]);
+        expected.sort();
+        assert_eq!(names(folder.path()), expected);
+    }
+
+    #[test]
+    fn a_check_makes_no_folder() {
+        let _turn = turn();
+        let folder = tempfile::tempdir().unwrap();
+        OutputFolder::check(&folder.path().join("a/b/c")).unwrap();
+        OutputFolder::check(folder.path()).unwrap();
+        assert!(names(folder.path()).is_empty());
+        fs::write(folder.path().join("file"), b"in the way").unwrap();
+        for path in ["file", "file/below/it"] {
+            let error = OutputFolder::check(&folder.path().join(path)).unwrap_err();
+            assert!(matches!(error, FileError::Folder { .. }), "{error}");
+        }
+        assert_eq!(names(folder.path()), ["file"]);
     }
 
     #[test]

@@ -237,6 +237,14 @@ pub fn nearest<'a>(names: &[&'a str], written: &str) -> Option<&'a str> {
     names.iter().filter(is_close).min_by_key(|name| distance(name)).copied()
 }
 
+/// All names, the most similar to what was written first: those that contain it, then those that differ from
+/// it by the fewest letters.
+pub fn by_similarity<'a>(names: &[&'a str], written: &str) -> Vec<&'a str> {
+    let mut sorted = names.to_vec();
+    sorted.sort_by_cached_key(|name| (!name.contains(written), edit_distance(name, written)));
+    sorted
+}
+
 /// Levenshtein distance: insertions, deletions and replacements between two words.
 fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().take(100).collect();
