@@ -10,7 +10,6 @@ use base::{
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
-use thiserror::Error;
 
 use crate::{
     bisect,
@@ -29,7 +28,7 @@ pub struct Job {
     pub planned: Planned,
 }
 
-/// Told after each run: how many are done, how many there are, the name.
+/// Told before the first run and after each: how many are done, how many there are, the name of the last.
 pub type Progress<'a> = dyn Fn(usize, usize, &str) + Sync + 'a;
 
 /// How runs are made.
@@ -42,7 +41,7 @@ pub struct Making<'a> {
     pub sources: &'a (dyn Fn(&str) -> String + Sync),
     /// Are records of other sources good enough?
     pub reuse_other: bool,
-    /// Told after each run.
+    /// Told before the first run and after each.
     pub progress: Option<&'a Progress<'a>>,
     /// Set from outside to stop.
     pub interrupt: Option<&'a AtomicBool>,
@@ -57,19 +56,11 @@ pub struct Made {
     pub reused: usize,
     /// Those of them that other sources made.
     pub of_other_sources: usize,
+    /// Why the store could not keep some of the records, which are among `records` all the same: what was
+    /// computed is not lost with a disk that is full.
+    pub not_kept: BTreeMap<RunKey, StoreError>,
     /// Was it stopped from outside?
     pub interrupted: bool,
-}
-
-/// Why making runs ended early. A run that is refused or diverges is no such reason: it has a record.
-#[derive(Debug, Error)]
-pub enum MakeError {
-    /// A record could not be kept.
-    #[error(transparent)]
-    Store(#[from] StoreError),
-    /// A file of a run could not be written, or a reference could not be read.
-    #[error(transparent)]
-    Run(#[from] RunError),
 }
 
 /// Timings of a run that is cheap enough to be timed again: the fewest that have a median.
@@ -86,8 +77,9 @@ fn timed_again_below(tier: Tier) -> f64 {
 /// Makes every run of the jobs that the store lacks.
 ///
 /// # Errors
-/// If a record or a file cannot be written; what was made before is in the store.
-pub fn make(jobs: &[Job], making: &Making) -> Result<Made, MakeError> {
+/// Those of [`run`]; what was made before is in the store. A run that is refused or diverges is no error: it
+/// has a record. Neither is a record that the store cannot keep, see [`Made::not_kept`].
+pub fn make(jobs: &[Job], making: &Making) -> Result<Made, RunError> {
     let mut made = Made::default();
     let mut missing = Vec::new();
     for job in jobs {
@@ -116,7 +108,11 @@ pub fn make(jobs: &[Job], making: &Making) -> Result<Made, MakeError> {
     let (timed, mut rest): (Vec<&Job>, Vec<&Job>) =
         missing.into_iter().partition(|job| job.planned.timed);
     rest.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
-    let batch = Batch { making, all: timed.len() + rest.len(), done: AtomicUsize::new(0) };
+    let (all, done) = (timed.len() + rest.len(), AtomicUsize::new(0));
+    let batch = Batch { making, all, done, not_kept: Mutex::default() };
+    if let Some(progress) = making.progress {
+        progress(0, all, "");
+    }
     for record in side_by_side(&rest, &batch)? {
         made.records.insert(record.key(), record);
     }
@@ -124,6 +120,7 @@ pub fn make(jobs: &[Job], making: &Making) -> Result<Made, MakeError> {
         made.records.insert(record.key(), record);
     }
     made.interrupted = batch.is_interrupted();
+    made.not_kept = batch.not_kept.into_inner().unwrap_or_else(PoisonError::into_inner);
     Ok(made)
 }
 
@@ -132,6 +129,7 @@ struct Batch<'a> {
     making: &'a Making<'a>,
     all: usize,
     done: AtomicUsize,
+    not_kept: Mutex<BTreeMap<RunKey, StoreError>>,
 }
 
 impl Batch<'_> {
@@ -139,22 +137,28 @@ impl Batch<'_> {
         self.making.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
+    /// Writes a record into the store, if there is one, or notes why it could not be written.
+    fn keep(&self, record: &Record) {
+        if let Some(Err(error)) = self.making.store.map(|store| store.write(record)) {
+            let mut not_kept = self.not_kept.lock().unwrap_or_else(PoisonError::into_inner);
+            not_kept.insert(record.key(), error);
+        }
+    }
+
     /// Keeps a record and says that it is there; one that was interrupted is dropped.
-    fn done(&self, job: &Job, record: Record) -> Result<Option<Record>, MakeError> {
+    fn done(&self, job: &Job, record: Record) -> Option<Record> {
         if matches!(record.status, Status::Interrupted { .. }) {
-            return Ok(None);
+            return None;
         }
-        if let Some(store) = self.making.store {
-            store.write(&record)?;
-        }
+        self.keep(&record);
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         if let Some(progress) = self.making.progress {
             progress(done, self.all, &format!("{} {}", job.case.name(), job.planned.spec.variant));
         }
-        Ok(Some(record))
+        Some(record)
     }
 
-    fn run(&self, job: &Job) -> Result<Record, MakeError> {
+    fn run(&self, job: &Job) -> Result<Record, RunError> {
         let interrupt = self.making.interrupt;
         let context = Context { threads: 1, interrupt, ..Context::default() };
         let mut record = run(job.case, &job.planned.spec, &context)?;
@@ -164,15 +168,15 @@ impl Batch<'_> {
 }
 
 /// Each thread takes the longest run that is left.
-fn side_by_side(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, MakeError> {
+fn side_by_side(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
     let (next, made) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let work = || -> Result<Vec<Record>, MakeError> {
+    let work = || -> Result<Vec<Record>, RunError> {
         let mut mine = Vec::new();
         while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
             if batch.is_interrupted() {
                 break;
             }
-            mine.extend(batch.done(job, batch.run(job)?)?);
+            mine.extend(batch.done(job, batch.run(job)?));
         }
         Ok(mine)
     };
@@ -191,7 +195,7 @@ fn side_by_side(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, MakeError> 
 
 /// One run at a time; cheap ones again in further rounds. A record is kept as soon as it is there, and
 /// again with the timings of a later round.
-fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, MakeError> {
+fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
     let again_below = timed_again_below(batch.making.tier);
     let mut records: Vec<Record> = Vec::new();
     for job in jobs {
@@ -200,7 +204,7 @@ fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, MakeError> {
         }
         let mut record = batch.run(job)?;
         record.cost.alone_s = vec![record.cost.cpu_s];
-        records.extend(batch.done(job, record)?);
+        records.extend(batch.done(job, record));
     }
     for _ in 1..REPETITIONS {
         for (job, record) in jobs.iter().zip(&mut records) {
@@ -212,10 +216,7 @@ fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, MakeError> {
             }
         }
     }
-    let again = records.iter().filter(|record| record.cost.alone_s.len() > 1);
-    again
-        .filter_map(|record| batch.making.store.map(|store| store.write(record)))
-        .collect::<Result<Vec<_>, _>>()?;
+    records.iter().filter(|record| record.cost.alone_s.len() > 1).for_each(|r| batch.keep(r));
     Ok(records)
 }
 
@@ -240,4 +241,102 @@ pub fn run(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record,
 pub fn jobs(plans: Vec<(&'static dyn Case, Vec<Planned>)>) -> Vec<Job> {
     let job = |case| move |planned| Job { case, planned };
     plans.into_iter().flat_map(|(case, plan)| plan.into_iter().map(job(case))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use base::{record::MetricKey, settings::Field};
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::{
+        case::{Variant, spec},
+        runs::Runs,
+        study::Study,
+        suite,
+    };
+
+    /// Every run of it completes at once.
+    struct Quick;
+
+    const ERROR: MetricKey = MetricKey::new("error", "-", "as staged");
+
+    impl Case for Quick {
+        fn name(&self) -> &'static str {
+            "quick"
+        }
+        fn about(&self) -> &'static str {
+            "Nothing moves."
+        }
+        fn variants(&self) -> Vec<Variant> {
+            vec![Variant { name: "v", about: "the only one" }]
+        }
+        fn fields(&self) -> &'static [Field] {
+            &[]
+        }
+        fn settings(&self, _: &str, set: &[String]) -> Result<Value, RunError> {
+            Ok(json!({ "set": set }))
+        }
+        fn run(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
+            let mut record = Record::new(self.name(), &spec.variant, spec.settings.clone(), 1);
+            record.put(ERROR, 1.0);
+            Ok(record)
+        }
+        fn plan(&self, _: Tier) -> Vec<Planned> {
+            let planned = |k: i32| Planned::new(spec(self, "v", &[format!("k={k}")]).unwrap());
+            vec![planned(1), planned(2), planned(3).timed()]
+        }
+        fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
+            Vec::new()
+        }
+    }
+
+    /// A full disk, a folder that is read-only: here a file stands in place of the folder.
+    #[test]
+    fn records_that_cannot_be_kept_are_judged_and_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("records");
+        let store = Store::open(&path).unwrap();
+        std::fs::remove_dir(&path).unwrap();
+        std::fs::write(&path, "in the way").unwrap();
+        let shown = Mutex::new(Vec::new());
+        let show = |done: usize, all: usize, _: &str| shown.lock().unwrap().push((done, all));
+        let making = Making {
+            tier: Tier::Quick,
+            store: Some(&store),
+            sources: &|_| "abc".into(),
+            reuse_other: false,
+            progress: Some(&show),
+            interrupt: None,
+        };
+        let suite = suite::run(&[&Quick], &making).unwrap();
+        let values = suite.cases[0].runs.all().iter().map(|run| run.record.value(ERROR));
+        assert_eq!(values.collect::<Vec<_>>(), [Some(1.0); 3]);
+        assert_eq!(suite.not_kept.len(), 3);
+        for error in suite.not_kept.values() {
+            let words = error.to_string();
+            assert!(words.contains("cannot write") && words.contains("records"), "{words}");
+        }
+        assert_eq!(shown.lock().unwrap()[0], (0, 3), "shown before the first run ends");
+    }
+
+    /// The folder is made again if it is removed while runs are made.
+    #[test]
+    fn a_store_that_is_removed_while_runs_are_made_is_there_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(&folder.path().join("records")).unwrap();
+        std::fs::remove_dir(store.path()).unwrap();
+        let jobs = jobs(suite::plans(&[&Quick], Tier::Quick));
+        let making = Making {
+            tier: Tier::Quick,
+            store: Some(&store),
+            sources: &|_| "abc".into(),
+            reuse_other: false,
+            progress: None,
+            interrupt: None,
+        };
+        let made = make(&jobs, &making).unwrap();
+        assert_eq!((made.records.len(), made.not_kept.len()), (3, 0));
+        assert_eq!(Store::all(store.path()).unwrap().len(), 3);
+    }
 }

@@ -1,9 +1,8 @@
 //! Steps a simulation through the times of interest: the only main loop of the program. It measures
 //! cost, shows progress, writes frames and obeys an interrupt; cases hold only what differs.
 
-use std::cell::Cell;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use base::record::{Cost, Status};
 use cpu_time::{ProcessTime, ThreadTime};
@@ -12,29 +11,31 @@ use solver::{Flow, Numbers, Observer, Outcome, Stepper};
 pub use crate::context::{Context, Progress};
 use crate::{error::RunError, frames::Frames};
 
-/// Steps between looks at the interrupt and the progress bar.
-const LOOK_EVERY: u64 = 64;
+/// Wall time after which it is shown again how far a run is.
+const SHOW_EVERY: Duration = Duration::from_millis(200);
 
-/// Shows how far a run is and obeys an interrupt.
+/// Obeys an interrupt after every step, however long steps take, and shows how far a run is.
 struct Watch<'a> {
     context: &'a Context<'a>,
     end: f64,
-    until_look: Cell<u64>,
+    shown: Instant,
+}
+
+impl Watch<'_> {
+    fn show<X: Numbers>(&mut self, simulation: &(impl Stepper<X> + ?Sized), dt: f64) {
+        if let Some(show) = self.context.progress {
+            let particle_steps = simulation.work().steps * simulation.fluid_count() as u64;
+            show(Progress { time: simulation.time(), end: self.end, dt, particle_steps });
+            self.shown = Instant::now();
+        }
+    }
 }
 
 impl<X: Numbers> Observer<X> for Watch<'_> {
     #[inline]
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        let left = self.until_look.get();
-        if left > 0 {
-            self.until_look.set(left - 1);
-            return Flow::Continue;
-        }
-        self.until_look.set(LOOK_EVERY - 1);
-        if let Some(show) = self.context.progress {
-            let (time, dt) = (simulation.time(), simulation.dt());
-            let particle_steps = simulation.work().steps * simulation.fluid_count() as u64;
-            show(Progress { time, end: self.end, dt, particle_steps });
+        if self.context.progress.is_some() && self.shown.elapsed() >= SHOW_EVERY {
+            self.show(simulation, simulation.dt());
         }
         match self.context.interrupt {
             Some(flag) if flag.load(Ordering::Relaxed) => Flow::Stop,
@@ -145,7 +146,8 @@ pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
     at: &mut dyn FnMut(&mut D, usize),
 ) -> Result<(Status, Cost), RunError> {
     let end = times.last().copied().unwrap_or_default();
-    let watch = Watch { context, end, until_look: Cell::new(LOOK_EVERY) };
+    let mut watch = Watch { context, end, shown: Instant::now() };
+    watch.show(simulation, dt);
     let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
     let cost = Cost { threads: context.threads.max(1), ..Cost::default() };
     let mut run = Run { context, dt, watch, observer, frames: frames.transpose()?, cost };
@@ -161,4 +163,87 @@ pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
     }
     let cost = run.finish(simulation, &status)?;
     Ok((status, cost))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{Mutex, atomic::AtomicBool};
+
+    use nalgebra::Vector2;
+    use solver::{
+        Compose, Continuity, CubicSpline, Domain, Leapfrog, Open, Particle, Pressure, Tait, lattice,
+    };
+
+    use super::*;
+    use crate::{
+        method::{Method, Parts},
+        simulate::state,
+    };
+
+    const DT: f64 = 1e-3;
+
+    type Sound = Compose<CubicSpline, Pressure<Tait>, Continuity, Open, Leapfrog>;
+
+    /// A sound wave in a periodic box.
+    fn wave() -> Box<dyn Stepper<()>> {
+        let method = Method::<()>::of::<Sound>();
+        let (n, dx) = (12, 1.0 / 12.0);
+        let medium = method.medium(Tait::new(1.0, 1.0), [dx, 1.3 * dx]);
+        let speed = |x: Vector2<f64>| Vector2::new(0.01 * (std::f64::consts::TAU * x.x).sin(), 0.0);
+        let places = lattice(Vector2::repeat(0.5 * dx), dx, n, n);
+        let particles = places.map(|x| Particle::fluid(x, speed(x), 1.0, dx * dx)).collect();
+        let domain = Domain::torus(1.0, 1.0);
+        (method.build)(Parts::new(medium, domain, particles, &Context::default())).unwrap()
+    }
+
+    /// Takes so long over each step, and does something at one of them.
+    struct Slow<F> {
+        each: Duration,
+        steps: u64,
+        at: (u64, F),
+    }
+
+    impl<F: Fn()> Observer<()> for Slow<F> {
+        fn after_step(&mut self, _: &dyn Stepper<()>) -> Flow {
+            std::thread::sleep(self.each);
+            self.steps += 1;
+            if self.steps == self.at.0 {
+                (self.at.1)();
+            }
+            Flow::Continue
+        }
+    }
+
+    /// Steps of a large disk take a second: an interrupt was looked at after 64 of them.
+    #[test]
+    fn an_interrupt_is_obeyed_after_the_next_step() {
+        let flag = AtomicBool::new(false);
+        let context = Context { interrupt: Some(&flag), ..Context::default() };
+        let set = || flag.store(true, Ordering::Relaxed);
+        let mut slow = Slow { each: Duration::ZERO, steps: 0, at: (3, set) };
+        let (times, mut wave) = ([1000.0 * DT], wave());
+        let (status, cost) =
+            drive(&mut *wave, DT, &times, &context, &mut slow, &|_| 0.0, &mut |_, _| {}).unwrap();
+        assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
+        assert!(cost.steps <= 4, "{} steps", cost.steps);
+    }
+
+    #[test]
+    fn progress_is_shown_at_once_and_by_wall_time_and_changes_nothing() {
+        let shown: Mutex<Vec<(Instant, f64)>> = Mutex::default();
+        let show = |p: Progress| shown.lock().unwrap().push((Instant::now(), p.time));
+        let watched = Context { progress: Some(&show), ..Context::default() };
+        let mut states = Vec::new();
+        for context in [Context::default(), watched] {
+            let mut slow = Slow { each: Duration::from_millis(25), steps: 0, at: (0, || ()) };
+            let (times, mut wave) = ([10.0 * DT, 40.0 * DT], wave());
+            drive(&mut *wave, DT, &times, &context, &mut slow, &|_| 0.0, &mut |_, _| {}).unwrap();
+            states.push((state(&wave.particles()), wave.work().steps));
+        }
+        assert_eq!(states[0], states[1]);
+        let shown = shown.into_inner().unwrap();
+        assert!(shown.len() >= 4, "in 40 steps of 25 ms: {shown:?}");
+        assert_eq!(shown[0].1, 0.0, "before the first step, which may take long");
+        assert!(shown.windows(2).all(|pair| pair[1].0 - pair[0].0 >= SHOW_EVERY), "{shown:?}");
+    }
 }

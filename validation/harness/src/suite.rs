@@ -1,16 +1,20 @@
 //! Plans, makes, judges: what `verify` and `report` share.
 
+use std::collections::BTreeMap;
+
 use base::{
     gate::{Bound, Evidence, Gate, Verdict},
     record::Record,
+    spec::RunKey,
 };
 use rayon::prelude::*;
 
 use crate::{
-    case::{Case, Planned, Tier},
-    make::{self, Made, MakeError, Making},
+    case::{Case, Planned, RunError, Tier},
+    make::{self, Made, Making},
     plan,
     runs::{Judged, JudgedRun, Runs},
+    store::StoreError,
     studies,
     study::Study,
 };
@@ -37,6 +41,8 @@ pub struct Suite {
     pub reused: usize,
     /// Those of them that other sources made.
     pub of_other_sources: usize,
+    /// Why the store could not keep some of the records, which are judged all the same.
+    pub not_kept: BTreeMap<RunKey, StoreError>,
     /// Was it stopped from outside? Then nothing is judged.
     pub interrupted: bool,
 }
@@ -70,8 +76,8 @@ pub fn plans(cases: &[&'static dyn Case], tier: Tier) -> Vec<(&'static dyn Case,
 /// Plans the cases, makes what the store lacks, judges.
 ///
 /// # Errors
-/// If a record cannot be kept or a file of a run cannot be written.
-pub fn run(cases: &[&'static dyn Case], making: &Making) -> Result<Suite, MakeError> {
+/// Those of [`make::make`].
+pub fn run(cases: &[&'static dyn Case], making: &Making) -> Result<Suite, RunError> {
     let plans = plans(cases, making.tier);
     let made = make::make(&make::jobs(plans.clone()), making)?;
     Ok(judge(plans, making.tier, made))
@@ -79,10 +85,15 @@ pub fn run(cases: &[&'static dyn Case], making: &Making) -> Result<Suite, MakeEr
 
 /// Judges the records of plans: gates run by run, then studies. A pure function of the records.
 pub fn judge(plans: Vec<(&'static dyn Case, Vec<Planned>)>, tier: Tier, mut made: Made) -> Suite {
-    let (reused, of_other_sources) = (made.reused, made.of_other_sources);
-    let interrupted = made.interrupted;
-    let (cases, own) = (Vec::new(), Vec::new());
-    let mut suite = Suite { tier, cases, studies: own, reused, of_other_sources, interrupted };
+    let mut suite = Suite {
+        tier,
+        cases: Vec::new(),
+        studies: Vec::new(),
+        reused: made.reused,
+        of_other_sources: made.of_other_sources,
+        not_kept: std::mem::take(&mut made.not_kept),
+        interrupted: made.interrupted,
+    };
     if suite.interrupted {
         return suite; // nothing can be said of runs that were cut short
     }
