@@ -312,6 +312,52 @@ fn a_folder_that_cannot_be_written_is_refused_before_the_run() {
     assert!(!new.exists());
 }
 
+#[test]
+fn rows_that_are_given_twice_are_refused() {
+    refused(&short("couette", &["--set", "rows=10"]), &["--rows 8", "--set rows=10"]);
+}
+
+#[test]
+fn a_folder_with_the_record_of_another_case_is_not_mixed_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let into = |case, rest: &[&'static str]| {
+        let all = short(case, &[&["--out", "here"][..], rest].concat());
+        touchstone_in(folder.path(), &all)
+    };
+    assert_eq!(into("couette", &[]).status.code(), Some(0));
+    assert_eq!(into("couette", &[]).status.code(), Some(0), "its own record is replaced");
+    let output = into("poiseuille", &[]);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    for word in ["couette", "poiseuille", "--overwrite"] {
+        assert!(message.contains(word), "{word}: {message}");
+    }
+    assert_eq!(into("poiseuille", &["--overwrite"]).status.code(), Some(0));
+    let text = fs::read_to_string(folder.path().join("here/record.json")).unwrap();
+    assert_eq!(Record::from_json(&text).unwrap().case, "poiseuille");
+}
+
+/// The folder was found writable before the run, and then its disk was full.
+#[test]
+fn a_record_that_cannot_be_written_is_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("here/record.json/child")).unwrap();
+    let output = touchstone_in(folder.path(), &short("couette", &["--out", "here"]));
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("cannot write the file \"here/record.json\""));
+    let record = Record::from_json(&stdout(&output)).unwrap();
+    assert_eq!((record.case.as_str(), record.status), ("couette", Status::Completed));
+}
+
+#[test]
+fn an_unknown_gate_is_answered_by_a_few_names() {
+    let output = touchstone(&["explain", "couette.l2wrst"]);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("the nearest of"), "{message}");
+    assert!(message.len() < 600, "{} bytes: {message}", message.len());
+}
+
 /// Starts a long run, sends it a signal once it is under way, and returns what it said.
 #[cfg(unix)]
 fn interrupted(out: &Path, signal: &str) -> Output {
@@ -359,6 +405,39 @@ fn doctor_finds_this_program_sound() {
     for word in ["commit", "references  ok", "writing     ok", "self-check  ok", "sha256:"] {
         assert!(stdout(&output).contains(word), "{word}: {}", stdout(&output));
     }
+}
+
+#[test]
+fn doctor_makes_no_folder_and_fails_where_it_cannot_write() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = touchstone_in(folder.path(), &["doctor", "--out", "a/b/c"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    fs::write(folder.path().join("file"), "in the way").unwrap();
+    let output = touchstone_in(folder.path(), &["doctor", "--out", "file/below"]);
+    assert!(stdout(&output).contains("writing     FAIL"), "{}", stdout(&output));
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+}
+
+#[test]
+fn a_hundred_thousand_threads_are_clamped() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
+    command.env("RAYON_NUM_THREADS", "100000").args(short("couette", &["--json"]));
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("RAYON_NUM_THREADS is more than 1024"));
+    assert_eq!(Record::from_json(&stdout(&output)).unwrap().cost.threads, 1024);
+}
+
+/// A program that reads half a document must not take it for a whole one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_document_that_nobody_reads_to_its_end_is_an_error() {
+    let program = env!("CARGO_BIN_EXE_touchstone");
+    let line = format!("set -o pipefail; (sleep 1; '{program}' list couette --json) | true");
+    let output = Command::new("bash").args(["-c", &line]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("cannot write to standard output"));
 }
 
 #[cfg(target_os = "linux")]
@@ -415,9 +494,17 @@ fn no_settings_make_a_run_panic() {
         let variants = case.variants();
         let variant = variants[variant.index(variants.len())].name;
         set.extend(small(case, variant)); // whatever came before
-        let stop = AtomicBool::new(true);
+        let stop = AtomicBool::new(false);
         let context = Context { interrupt: Some(&stop), ..Context::default() };
-        let run = |spec: RunSpec| case.run(&RunSpec { allow_unstable, ..spec }, &context);
+        let run = |spec: RunSpec| {
+            std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    sleep(Duration::from_millis(5));
+                    stop.store(true, Ordering::Relaxed);
+                });
+                case.run(&RunSpec { allow_unstable, ..spec }, &context)
+            })
+        };
         match spec(case, variant, &set).and_then(run) {
             Err(error) => prop_assert!(error.to_string().len() > 10),
             Ok(record) => {

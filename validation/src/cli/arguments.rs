@@ -51,14 +51,16 @@ pub struct List {
     pub json: bool,
 }
 
-/// Threads: within bounds that no machine of today exceeds.
+/// Threads: more than machines of today have cores.
+pub const MOST_THREADS: u16 = 1024;
+
 fn threads() -> clap::builder::RangedI64ValueParser<u16> {
-    clap::value_parser!(u16).range(1..=1024)
+    clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS))
 }
 
 /// What `run` has for one run, and `run --specs` has not.
-const OF_ONE_RUN: [&str; 8] =
-    ["case", "variant", "set", "rows", "out", "vtk", "json", "allow_unstable"];
+const OF_ONE_RUN: [&str; 9] =
+    ["case", "variant", "set", "rows", "out", "overwrite", "vtk", "json", "allow_unstable"];
 
 #[derive(Debug, Args)]
 pub struct Run {
@@ -71,13 +73,16 @@ pub struct Run {
     /// Set a setting (repeatable), as in `--set re=0.1 --set end=0.5`
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Short for `--set rows=N`
+    /// Short for `--set rows=N`, and not to be given beside it
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rows: Option<String>,
     /// Write record.json, profile.csv, series.csv and profile.png into this folder; without --out
     /// and --vtk no file is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Write into the folder even if it holds the record of another case, whose files it then mixes with
+    #[arg(long)]
+    pub overwrite: bool,
     /// Write N frames for ParaView as well (default folder: reports/run-CASE-VARIANT)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=9999))]
     pub vtk: Option<u16>,
@@ -253,10 +258,31 @@ pub struct Stability {
 #[derive(Debug, Args)]
 pub struct Explain {
     /// Name of the gate, or how it begins
-    pub gate: String,
+    #[arg(required_unless_present = "status")]
+    pub gate: Option<String>,
+    /// List the gates on which the last report has this verdict, a line each
+    #[arg(long, value_enum, value_name = "VERDICT")]
+    pub status: Option<Status>,
     /// Folder of the last report: its verdicts are shown, and gates on many runs are found in it
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub reports: PathBuf,
+}
+
+/// A verdict by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Status {
+    /// Inside its bound
+    Pass,
+    /// Outside, or missing
+    Fail,
+    /// Outside for a known reason
+    Limitation,
+    /// A control that lies outside, as it must
+    ExpectedFailure,
+    /// Shown, not judged
+    Reported,
+    /// May be missing, and is
+    NotMeasured,
 }
 
 #[derive(Debug, Args)]

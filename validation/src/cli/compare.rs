@@ -78,7 +78,7 @@ pub fn compare(arguments: &arguments::Compare) -> Outcome {
             .iter()
             .map(|c| json!({"kind": c.kind, "name": c.name, "change": c.words}))
             .collect();
-        output::print(&format!("{:#}\n", json!({"new_failures": failures, "changes": all})))?;
+        output::print_whole(&format!("{:#}\n", json!({"new_failures": failures, "changes": all})))?;
     } else {
         output::print(&in_words(&changes, &before, &after))?;
     }

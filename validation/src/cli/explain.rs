@@ -1,11 +1,12 @@
 //! `explain`: what a gate checks and why.
 
+use std::collections::BTreeSet;
 use std::fs;
 
 use ::report;
-use base::gate::{Evidence, Gate, Purpose};
+use base::gate::{Evidence, Gate, Purpose, Verdict};
 use base::record;
-use base::settings::nearest;
+use base::settings::by_similarity;
 use harness::case::{Tier, changed};
 use harness::plan;
 
@@ -28,8 +29,17 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Outcome {
     let path = arguments.reports.join("verdicts.json");
     let text = fs::read_to_string(&path).unwrap_or_default();
     let verdicts: Option<Verdicts> = serde_json::from_str(&text).ok(); // of another version: none
+    let asked = arguments.gate.as_deref().unwrap_or_default();
+    if let Some(status) = arguments.status {
+        let Some(verdicts) = verdicts else {
+            let words =
+                format!("{} holds no verdicts; touchstone report writes them", path.display());
+            return Err(Failure::usage(anyhow::anyhow!(words)));
+        };
+        output::print(&listed(&verdicts, status, asked))?;
+        return Ok(Exit::Pass);
+    }
     let gates = all(world, verdicts.as_ref());
-    let asked = arguments.gate.as_str();
     let mut chosen: Vec<&Known> = gates.iter().filter(|known| known.gate.id == asked).collect();
     if chosen.is_empty() {
         chosen.extend(gates.iter().filter(|known| known.gate.id.starts_with(asked)));
@@ -93,15 +103,43 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     gates
 }
 
+/// The gates whose name begins so and that have this verdict, a line each.
+fn listed(verdicts: &Verdicts, status: arguments::Status, begins: &str) -> String {
+    let of_runs = verdicts.runs.iter().flat_map(|run| &run.judged);
+    let all = of_runs.chain(verdicts.studies.iter().flat_map(|study| &study.judged));
+    let chosen = all.filter(|judged| {
+        judged.gate.id.starts_with(begins) && is(&judged.judgement.verdict, status)
+    });
+    let row = |judged: &Judged| {
+        let value = judged.judgement.value.map_or("-".into(), |value| report::sig(value, 5));
+        vec![judged.gate.id.clone(), value, judged.gate.bound.to_string()]
+    };
+    output::table(&["gate", "value", "bound"], &chosen.map(row).collect::<Vec<_>>())
+}
+
+fn is(verdict: &Verdict, status: arguments::Status) -> bool {
+    use arguments::Status;
+    let of_verdict = match verdict {
+        Verdict::Pass => Status::Pass,
+        Verdict::Fail => Status::Fail,
+        Verdict::Limitation(_) => Status::Limitation,
+        Verdict::ExpectedFailure => Status::ExpectedFailure,
+        Verdict::Reported => Status::Reported,
+        Verdict::NotMeasured => Status::NotMeasured,
+    };
+    of_verdict == status
+}
+
+/// Names that an error suggests, at most.
+const SUGGESTED: usize = 5;
+
 fn unknown(asked: &str, gates: &[Known]) -> Failure {
-    let ids: Vec<&str> = gates.iter().map(|known| known.gate.id.as_str()).collect();
-    let mut near: Vec<&str> = ids.iter().copied().filter(|id| id.contains(asked)).collect();
-    near.extend(nearest(&ids, asked).filter(|id| !id.contains(asked)));
-    let hint = match (near.as_slice(), ids.as_slice()) {
-        ([], []) => "there are none in the plans".to_string(),
-        ([], [_]) => format!("there is only {}", ids[0]),
-        ([], _) => format!("there are {}", ids.join(", ")),
-        (near, _) => format!("similar are {}", near.join(", ")),
+    let ids: BTreeSet<&str> = gates.iter().map(|known| known.gate.id.as_str()).collect();
+    let mut near = by_similarity(&ids.iter().copied().collect::<Vec<_>>(), asked);
+    near.truncate(SUGGESTED);
+    let hint = match near.as_slice() {
+        [] => "there are none in the plans".to_string(),
+        near => format!("the nearest of {} names: {}", ids.len(), near.join(", ")),
     };
     Failure::usage(anyhow::anyhow!(
         "no gate is called {asked:?} or begins so; {hint} (gates of studies are known after \

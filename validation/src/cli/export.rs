@@ -9,17 +9,18 @@ use harness::suite::Suite;
 
 use super::{Failure, arguments, judged};
 
-/// Writes the files that were asked for.
+/// Writes the files that were asked for; if the first one cannot be written, the other one is all the same.
 pub fn write(suite: &Suite, export: &arguments::Export) -> Result<(), Failure> {
+    let mut written = Ok(());
     for (path, text) in [
         (&export.junit, junit as fn(&Suite) -> String),
         (&export.markdown, markdown as fn(&Suite) -> String),
     ] {
         if let Some(path) = path {
-            write_atomically(path, text(suite).as_bytes())?;
+            written = written.and(write_atomically(path, text(suite).as_bytes()));
         }
     }
-    Ok(())
+    Ok(written?)
 }
 
 fn value(judgement: &Judgement) -> String {

@@ -24,7 +24,11 @@ pub fn list(arguments: &arguments::List, world: &World) -> Outcome {
             if arguments.json { pretty(&json(case)) } else { details(case) }
         }
     };
-    output::print(&text)?;
+    if arguments.json {
+        output::print_whole(&text)?;
+    } else {
+        output::print(&text)?;
+    }
     Ok(Exit::Pass)
 }
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | 0 | done, and every gate that was judged passed |
 //! | 1 | a gate failed |
-//! | 2 | usage, invalid settings, or a file that cannot be written |
+//! | 2 | usage, invalid settings, or a file that cannot be written, whatever the gates say |
 //! | 3 | the simulation of `run` diverged |
 //! | 4 | a bug of ours |
 //! | 130 | interrupted; whole files may have been written, no partial one |
@@ -39,7 +39,7 @@ use base::manifest::{Known, Source, UNKNOWN, tell_source};
 use base::record::RecordError;
 use clap::{CommandFactory, Parser};
 use harness::case::{Case, RunError, Tier};
-use harness::make::{self, Job, Made, MakeError, Making};
+use harness::make::{self, Job, Made, Making};
 use harness::store::{Store, StoreError};
 use validation::cases;
 
@@ -107,15 +107,6 @@ impl From<StoreError> for Failure {
     }
 }
 
-impl From<MakeError> for Failure {
-    fn from(error: MakeError) -> Self {
-        match error {
-            MakeError::Store(error) => error.into(),
-            MakeError::Run(error) => error.into(),
-        }
-    }
-}
-
 impl From<RecordError> for Failure {
     fn from(error: RecordError) -> Self {
         Failure::bug(error)
@@ -158,7 +149,8 @@ impl World {
         Ok(chosen)
     }
 
-    /// Makes the runs that a store lacks, on a pool of so many threads, with a bar.
+    /// Makes the runs that a store lacks, on a pool of so many threads, with a bar, and says which records
+    /// could not be kept.
     fn make(
         &self,
         jobs: &[Job],
@@ -179,7 +171,14 @@ impl World {
         };
         let made = on_threads(threads, || Ok(make::make(jobs, &making)?));
         bar.clear();
-        made
+        let made = made?;
+        if let Some(reason) = made.not_kept.values().next() {
+            let count = made.not_kept.len();
+            output::say(&format!(
+                "touchstone: {count} records could not be kept; the first: {reason}"
+            ));
+        }
+        Ok(made)
     }
 
     fn is_interrupted(&self) -> bool {
@@ -221,6 +220,14 @@ pub fn main() -> ExitCode {
         }
     };
     let world = World { cases: cases::CASES, sources, interrupt: interrupt::flag() };
+    let threads = default_threads();
+    if threads > 0 {
+        output::say(&format!(
+            "note: RAYON_NUM_THREADS is more than {threads}, the most threads that are used"
+        ));
+        // The only other error is that the pool is there already.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    }
     if let Err(error) = interrupt::listen() {
         output::say(&format!("note: an interrupt will end the program at once ({error})"));
     }
@@ -270,11 +277,27 @@ fn completions(arguments: &arguments::Completions) -> Outcome {
     Ok(Exit::Pass)
 }
 
+/// What to ask rayon for where no number of threads is given: 0, which is one a core or what
+/// `RAYON_NUM_THREADS` says, unless that is more than `--threads` may be.
+fn default_threads() -> usize {
+    threads_of(std::env::var("RAYON_NUM_THREADS").ok().as_deref())
+}
+
+fn threads_of(variable: Option<&str>) -> usize {
+    let most = usize::from(arguments::MOST_THREADS);
+    // A number that is too long for its type is too large as well.
+    let is_number =
+        |text: &&str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let asked = variable.filter(is_number).map(|text| text.parse().unwrap_or(usize::MAX));
+    if asked.is_some_and(|asked| asked > most) { most } else { 0 }
+}
+
 /// Does the work on a pool of so many threads, by default one a core.
 fn on_threads<T: Send>(
     threads: Option<u16>,
     work: impl FnOnce() -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
+    let threads = threads.map_or_else(default_threads, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(Failure::usage)?.install(work)
 }

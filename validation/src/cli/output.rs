@@ -16,13 +16,25 @@ pub fn say(text: &str) {
 
 /// A result, on standard output. A reader that has had enough (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
-    let mut stdout = io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::usage(anyhow::anyhow!("cannot write to standard output: {error}")))
-        }
+    match write(text) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(refused(&error)),
         _ => Ok(()),
     }
+}
+
+/// A document for a program, on standard output. A reader that goes away before its end has no document, which
+/// is an error.
+pub fn print_whole(document: &str) -> Result<(), Failure> {
+    write(document).map_err(|error| refused(&error))
+}
+
+fn write(text: &str) -> io::Result<()> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush())
+}
+
+fn refused(error: &io::Error) -> Failure {
+    Failure::usage(anyhow::anyhow!("cannot write to standard output: {error}"))
 }
 
 /// The hook of a panic.

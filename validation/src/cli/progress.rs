@@ -18,6 +18,9 @@ pub struct Bar {
 
 /// Between two looks.
 const EVERY: Duration = Duration::from_millis(100);
+/// Part of the runs that must be done before it is said how long the others will take: the longest start
+/// first.
+const FIRST_ESTIMATE: f64 = 0.1;
 /// Parts that a run is divided into.
 const PARTS: u64 = 1000;
 
@@ -29,8 +32,12 @@ impl Bar {
         } else {
             ProgressBar::hidden()
         };
-        if let Ok(style) = ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}") {
+        let template = "{bar:24} {percent:>3} %  {elapsed}  {msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("━╸ "));
+        }
+        if !bar.is_hidden() {
+            bar.enable_steady_tick(2 * EVERY); // time goes on while a long run does
         }
         let start = Instant::now();
         Bar { bar, start, next: Mutex::new(start) }
@@ -50,21 +57,30 @@ impl Bar {
         let elapsed = self.start.elapsed().as_secs_f64();
         let done = (time / end).clamp(0.0, 1.0);
         let rate = particle_steps as f64 / elapsed / 1e6;
-        let left = elapsed * (1.0 - done) / done;
+        let left = match done > 0.0 {
+            true => format!(", {} left", report::seconds(elapsed * (1.0 - done) / done)),
+            false => String::new(),
+        };
         self.bar.set_position((done * PARTS as f64) as u64);
         self.bar.set_message(format!(
-            "t {time:.3e} of {end:.3e} s, dt {dt:.2e} s, {rate:.2} M particle steps/s, {} left",
-            report::seconds(left)
+            "t {time:.3e} of {end:.3e} s, dt {dt:.2e} s, {rate:.2} M particle steps/s{left}"
         ));
     }
 
-    /// Shows that `done` of `all` runs are done.
+    /// Shows that `done` of `all` runs are done, the last one of this name.
     pub fn show_runs(&self, done: usize, all: usize, name: &str) {
-        let left = self.start.elapsed().as_secs_f64() * (all - done) as f64 / done as f64;
+        let mut words = format!("{done} of {all} runs");
+        if done > 0 {
+            words += &format!(", last {name}");
+        }
+        if done > 0 && done as f64 >= FIRST_ESTIMATE * all as f64 {
+            let elapsed = self.start.elapsed().as_secs_f64();
+            let left = elapsed * all.saturating_sub(done) as f64 / done as f64;
+            words += &format!(", {} left", report::seconds(left));
+        }
         self.bar.set_length(all as u64);
         self.bar.set_position(done as u64);
-        let left = report::seconds(left);
-        self.bar.set_message(format!("{done} of {all} runs, last {name}, {left} left"));
+        self.bar.set_message(words);
     }
 
     /// Wipes the bar away.

@@ -27,17 +27,28 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         }
     };
     verify::add_method(&mut suite, &[]);
-    export::write(&suite, &arguments.export)?;
+    // A file that cannot be written keeps none of the others from being written: the runs took minutes.
+    let exported = export::write(&suite, &arguments.export);
     let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";
-    folder.write("verdicts.json", verdicts.as_bytes())?;
+    let written = folder.write("verdicts.json", verdicts.as_bytes()).map_err(Failure::from);
     let path = folder.path().join("index.html");
     let page = page::assemble(&suite);
     let html = page.html();
     let sound = check_page(&html);
     // The page last: once it is there, everything that it speaks of is. It is kept even if it is found to
-    // be unsound: the runs took minutes.
-    page.write_html(&path, &html)
-        .map_err(|reason| FileError::File { path: path.clone(), reason })?;
+    // be unsound.
+    let page_written = page
+        .write_html(&path, &html)
+        .map_err(|reason| Failure::from(FileError::File { path: path.clone(), reason }));
+    let failures: Vec<Failure> =
+        [exported, written.map(drop), page_written].into_iter().filter_map(Result::err).collect();
+    if !failures.is_empty() {
+        output::say(&judged::table(suite.judged()));
+        output::say(&judged::in_words(&suite));
+        let reasons: Vec<String> =
+            failures.iter().map(|failure| failure.reason.to_string()).collect();
+        return Err(Failure::usage(anyhow::anyhow!(reasons.join("\n"))));
+    }
     let took = report::seconds(start.elapsed().as_secs_f64());
     let records: usize = suite.cases.iter().map(|results| results.runs.all().len()).sum();
     output::say(&format!(

@@ -30,9 +30,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     }
     let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
-    let mut set = arguments.set.clone();
-    set.extend(arguments.rows.iter().map(|rows| format!("rows={rows}")));
-    let mut spec = case::spec(case, variant, &set)?;
+    let mut spec = case::spec(case, variant, &set(arguments)?)?;
     spec.allow_unstable = arguments.allow_unstable;
     let folder = Folder::of(arguments, case.name(), variant)?;
     let record = match on_threads(arguments.threads, || {
@@ -50,7 +48,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         let what = format!("after {step} steps, at t = {time:.4e} s; no record is written{kept}");
         return Err(Failure::interrupted(what));
     }
-    let written = folder.as_ref().map(|folder| write(&record, folder)).transpose()?;
+    let written = folder.as_ref().map(|folder| write(&record, folder)).transpose();
     let verdicts: Vec<Judged> = gates_of(case, &spec)
         .into_iter()
         .map(|gate| {
@@ -58,18 +56,37 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
             Judged::new(gate, value)
         })
         .collect();
-    if arguments.json {
-        output::print(&record.to_json()?)?;
-    } else {
+    // What was computed is not lost with a file that cannot be written: then the record is printed, and where
+    // that is refused, too, its numbers are told.
+    let is_printed = arguments.json || written.is_err();
+    let printed = if is_printed { output::print_whole(&record.to_json()?) } else { Ok(()) };
+    if !arguments.json || printed.is_err() {
         output::say(&summary(&record));
         if !verdicts.is_empty() {
             output::say(&format!("\n{}", judged::table(&verdicts)));
         }
     }
-    if let (Some(folder), Some(names)) = (&folder, written) {
+    let exit = conclude(&record, &verdicts);
+    if let (Some(folder), Some(names)) = (&folder, written?) {
         output::say(&format!("{}: {}", folder.output.path().display(), names.join(", ")));
     }
-    Ok(conclude(&record, &verdicts))
+    printed?;
+    Ok(exit)
+}
+
+/// The settings that were given, `--rows` among them.
+fn set(arguments: &arguments::Run) -> Result<Vec<String>, Failure> {
+    let mut set = arguments.set.clone();
+    if let Some(rows) = &arguments.rows {
+        let is_rows = |text: &&String| text.split('=').next().map(str::trim) == Some("rows");
+        if let Some(other) = set.iter().find(is_rows) {
+            let words =
+                format!("--rows {rows} and --set {other} set the same setting; give one of them");
+            return Err(Failure::usage(anyhow::anyhow!(words)));
+        }
+        set.push(format!("rows={rows}"));
+    }
+    Ok(set)
 }
 
 /// The exit code, and the words for one that is not 0.
@@ -134,16 +151,18 @@ struct Folder {
 
 impl Folder {
     /// None unless files were asked for; found writable before anything is computed.
-    fn of(
-        arguments: &arguments::Run,
-        case: &str,
-        variant: &str,
-    ) -> Result<Option<Self>, FileError> {
+    fn of(arguments: &arguments::Run, case: &str, variant: &str) -> Result<Option<Self>, Failure> {
         let path = match (&arguments.out, arguments.vtk) {
             (Some(path), _) => path.clone(),
             (None, Some(_)) => Path::new("reports").join(format!("run-{case}-{variant}")),
             (None, None) => return Ok(None),
         };
+        if let Some(other) = case_in(&path).filter(|other| other != case && !arguments.overwrite) {
+            return Err(Failure::usage(anyhow::anyhow!(
+                "the folder {path:?} holds a record of the case {other}, and files of {case} would mix with \
+                 it; name another folder by --out, or give --overwrite"
+            )));
+        }
         let is_new = !path.exists();
         Ok(Some(Folder { output: OutputFolder::create(&path)?, is_new }))
     }
@@ -161,11 +180,21 @@ impl Folder {
     }
 }
 
+/// The case of the record that an earlier run left in a folder, of whatever version.
+fn case_in(folder: &Path) -> Option<String> {
+    let text = fs::read_to_string(folder.join(RECORD)).ok()?;
+    let record: Value = serde_json::from_str(&text).ok()?;
+    record["case"].as_str().map(String::from)
+}
+
+/// Name of the file of the record.
+const RECORD: &str = "record.json";
+
 /// Writes the record and what can be drawn from it; returns the names.
 fn write(record: &Record, folder: &Folder) -> Result<Vec<String>, Failure> {
     let Folder { output, .. } = folder;
-    output.write("record.json", record.to_json()?.as_bytes())?;
-    let mut names = vec!["record.json".to_string()];
+    output.write(RECORD, record.to_json()?.as_bytes())?;
+    let mut names = vec![RECORD.to_string()];
     let curves = curves(record);
     if !curves.is_empty() {
         output.write("profile.csv", &profile_csv(&curves)?)?;

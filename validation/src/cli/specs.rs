@@ -37,12 +37,16 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
         ended(|status| matches!(status, Status::Refused { .. })),
         made.reused
     );
+    // What the store could not keep is not lost.
+    for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
+        output::print_whole(&record.to_json()?)?;
+    }
     if made.interrupted {
         let rest = "the same command makes those that are missing";
         return Err(Failure::interrupted(format!("{words}; {rest}")));
     }
     output::say(&format!("{words}; {}", store.path().display()));
-    Ok(Exit::Pass)
+    Ok(if made.not_kept.is_empty() { Exit::Pass } else { Exit::Usage })
 }
 
 /// Reads JSON lines; empty lines are skipped.

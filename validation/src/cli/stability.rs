@@ -47,7 +47,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     let runs = Runs::new(found.collect());
     if arguments.json {
         let all = declared.iter().map(|declared| json(declared, &runs)).collect();
-        output::print(&format!("{:#}\n", Value::Array(all)))?;
+        output::print_whole(&format!("{:#}\n", Value::Array(all)))?;
     } else {
         output::say(&table(&declared, &runs));
     }

@@ -240,6 +240,83 @@ fn a_plan_is_run_line_by_line() {
     assert_eq!((go(""), count()), (Exit::Pass, 2));
 }
 
+/// Puts a folder that is not empty where a file is to be written: the folder that holds it is writable, and the
+/// file is not, whoever asks.
+fn block(path: &Path) {
+    std::fs::create_dir_all(path.join("child")).expect("a folder in the way");
+}
+
+/// A full disk took the computation of a whole report with it.
+#[test]
+fn a_record_that_cannot_be_kept_is_reported_all_the_same() {
+    static GOOD: [&dyn Case; 1] = [&RIGHT];
+    let world = World { cases: &GOOD, sources, interrupt: &NEVER };
+    let folder = tempfile::tempdir().expect("a folder");
+    let in_folder = |line: &str| {
+        let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
+        let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
+        conclude(|| dispatch(&arguments.command, &world))
+    };
+    let spec = case::spec(&RIGHT, "right", &["re=1".to_string()]).expect("staged settings");
+    let record = format!("records/right-right-{}.json", spec.key());
+    block(&folder.path().join(&record));
+    assert_eq!(in_folder("touchstone report --out OUT"), Exit::Usage);
+    let page = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
+    check_page(&page).expect("a page that opens");
+    let verdicts = std::fs::read_to_string(folder.path().join("verdicts.json")).expect("verdicts");
+    let verdicts: Verdicts = serde_json::from_str(&verdicts).expect("verdicts");
+    assert_eq!((verdicts.counts["pass"], verdicts.counts.get("fail")), (2, None));
+    assert_eq!(in_folder("touchstone verify --store OUT/records"), Exit::Usage);
+}
+
+#[test]
+fn a_file_of_a_report_that_cannot_be_written_keeps_no_other_from_being_written() {
+    static GOOD: [&dyn Case; 1] = [&RIGHT];
+    let world = World { cases: &GOOD, sources, interrupt: &NEVER };
+    let folder = tempfile::tempdir().expect("a folder");
+    block(&folder.path().join("verdicts.json"));
+    block(&folder.path().join("junit.xml"));
+    let line = "touchstone report --out OUT --junit OUT/junit.xml --markdown OUT/verdicts.md";
+    let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
+    let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
+    assert_eq!(conclude(|| dispatch(&arguments.command, &world)), Exit::Usage);
+    for name in ["index.html", "verdicts.md"] {
+        assert!(folder.path().join(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn gates_are_listed_by_their_last_verdict() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let world = World { cases: &SOUND, sources, interrupt: &NEVER };
+    let in_folder = |line: &str| {
+        let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
+        let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
+        conclude(|| dispatch(&arguments.command, &world))
+    };
+    let line = "touchstone explain --status fail --reports OUT";
+    assert_eq!(in_folder(line), Exit::Usage, "there is no report yet");
+    assert_eq!(in_folder("touchstone report --out OUT"), Exit::GateFailed);
+    assert_eq!(in_folder(line), Exit::Pass);
+    assert_eq!(in_folder("touchstone explain staged.e --status pass --reports OUT"), Exit::Pass);
+}
+
+#[test]
+fn more_threads_than_can_be_asked_for_are_clamped() {
+    for (variable, expected) in [
+        (None, 0),
+        (Some("2"), 0),
+        (Some("1024"), 0),
+        (Some("many"), 0),
+        (Some(""), 0),
+        (Some("1025"), 1024),
+        (Some("100000"), 1024),
+        (Some("100000000000000000000000"), 1024),
+    ] {
+        assert_eq!(super::threads_of(variable), expected, "{variable:?}");
+    }
+}
+
 #[test]
 fn notes_tell_each_reason_once() {
     let limited = |id: &str, reason: &str| {

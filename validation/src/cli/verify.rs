@@ -45,15 +45,19 @@ pub fn add_method(suite: &mut Suite, named: &[String]) {
 }
 
 fn show(suite: &Suite, json: bool, export: &arguments::Export, start: Instant) -> Outcome {
-    export::write(suite, export)?;
-    if json {
-        output::print(&(serde_json::to_string_pretty(&Verdicts::of(suite))? + "\n"))?;
-    } else {
+    let exported = export::write(suite, export);
+    let printed = match json {
+        true => output::print_whole(&(serde_json::to_string_pretty(&Verdicts::of(suite))? + "\n")),
+        false => Ok(()),
+    };
+    if !json || printed.is_err() {
         output::say(&judged::table(suite.judged()));
     }
     let took = report::seconds(start.elapsed().as_secs_f64());
     output::say(&format!("{}{}, in {took}", judged::in_words(suite), reused(suite)));
     output::say(&reasons(suite));
+    exported?;
+    printed?;
     Ok(exit(suite))
 }
 
@@ -70,9 +74,13 @@ pub fn reused(suite: &Suite) -> String {
     }
 }
 
-/// 1 if a gate failed.
+/// 2 if a record could not be kept, 1 if a gate failed.
 pub fn exit(suite: &Suite) -> Exit {
-    if suite.failures() > 0 { Exit::GateFailed } else { Exit::Pass }
+    match suite.failures() {
+        _ if !suite.not_kept.is_empty() => Exit::Usage,
+        0 => Exit::Pass,
+        _ => Exit::GateFailed,
+    }
 }
 
 /// Makes what the store lacks, on a pool, with a bar, and refuses to judge what was interrupted.
@@ -93,9 +101,11 @@ pub fn run(
     let jobs = make::jobs(plans.clone());
     let made = world.make(&jobs, tier, Some(store), reuse.any_build, threads)?;
     if world.is_interrupted() {
-        return Err(Failure::interrupted(
-            "nothing is judged; what was run is kept, and the same command goes on with the rest",
-        ));
+        return Err(Failure::interrupted(format!(
+            "nothing is judged; {} of {} records are kept, and the same command goes on with the rest",
+            made.records.len() - made.not_kept.len(),
+            jobs.len()
+        )));
     }
     Ok(suite::judge(plans, tier, made))
 }
