@@ -175,7 +175,9 @@ impl World {
         if let Some(reason) = made.not_kept.values().next() {
             let count = made.not_kept.len();
             output::say(&format!(
-                "touchstone: {count} records could not be kept; the first: {reason}"
+                "touchstone: {count} of {} records could not be kept: {reason}{}",
+                made.records.len(),
+                if count > 1 { ", and so on" } else { "" }
             ));
         }
         Ok(made)

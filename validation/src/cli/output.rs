@@ -22,8 +22,8 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// A document for a program, on standard output. A reader that goes away before its end has no document, which
-/// is an error.
+/// A document for a program, on standard output. A reader that goes away before its end has no document,
+/// which is an error.
 pub fn print_whole(document: &str) -> Result<(), Failure> {
     write(document).map_err(|error| refused(&error))
 }

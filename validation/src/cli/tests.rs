@@ -240,8 +240,8 @@ fn a_plan_is_run_line_by_line() {
     assert_eq!((go(""), count()), (Exit::Pass, 2));
 }
 
-/// Puts a folder that is not empty where a file is to be written: the folder that holds it is writable, and the
-/// file is not, whoever asks.
+/// Puts a folder that is not empty where a file is to be written: the folder that holds it is writable, and
+/// the file is not, whoever asks.
 fn block(path: &Path) {
     std::fs::create_dir_all(path.join("child")).expect("a folder in the way");
 }
