@@ -1,4 +1,4 @@
-//! Scenes for measuring speed, shared by the benches and by `touchstone doctor --bench`.
+//! Scenes for measuring speed: what `touchstone doctor --bench` times.
 //!
 //! The scene is a torus of particles on a square lattice in a slow shear, cubic spline with
 //! h/dx = 1.2, so 20 neighbours within the support; continuity, pressure and Morris viscosity. Steps
