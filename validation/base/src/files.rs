@@ -204,7 +204,7 @@ fn probe(folder: &Path) -> io::Result<()> {
     file.sync_all()
 }
 
-/// A folder that was found writable before the first result was computed.
+/// A folder to write into, as a rule found writable before the first result was computed.
 #[derive(Debug, Clone)]
 pub struct OutputFolder {
     path: PathBuf,
@@ -218,7 +218,12 @@ impl OutputFolder {
             .and_then(|()| probe(path))
             .map_err(|reason| FileError::Folder { path: path.into(), reason })?;
         remove_orphans(path);
-        Ok(OutputFolder { path: path.into() })
+        Ok(Self::unchecked(path))
+    }
+
+    /// The folder at a path, without a look at it.
+    pub fn unchecked(path: &Path) -> Self {
+        OutputFolder { path: path.into() }
     }
 
     /// Says whether [`OutputFolder::create`] would succeed, and makes no folder: where there is none, the

@@ -54,6 +54,11 @@ impl Store {
         Ok(Self { folder: OutputFolder::create(path)? })
     }
 
+    /// The store in a folder that is read, and need not be writable.
+    pub fn to_read(path: &Path) -> Self {
+        Self { folder: OutputFolder::unchecked(path) }
+    }
+
     /// The folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
@@ -154,6 +159,17 @@ mod tests {
         let finer = whole.spec().with_setting("rows", 40);
         assert!(matches!(store.find(&finer, "abc"), Found::Nothing));
         assert_eq!(Store::all(store.path()).unwrap(), [whole]);
+    }
+
+    #[test]
+    fn a_store_that_is_only_read_is_not_written_to() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::to_read(&folder.path().join("records"));
+        let whole = record(Status::Completed);
+        assert!(matches!(store.find(&whole.spec(), "abc"), Found::Nothing));
+        assert!(!store.path().exists());
+        Store::open(store.path()).unwrap().write(&whole).unwrap();
+        assert!(matches!(store.find(&whole.spec(), "abc"), Found::Same(_)));
     }
 
     #[test]
