@@ -160,7 +160,7 @@ fn run(
     let cylinders = Cylinders::new(settings, method, context)?;
     let numbers = cylinders.numbers();
     let parts = Parts {
-        medium: cylinders.medium.clone(),
+        medium: cylinders.medium,
         domain: Domain::open(),
         particles: cylinders.particles(method),
         mirrors: Vec::new(),

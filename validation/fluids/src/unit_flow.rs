@@ -82,7 +82,7 @@ impl UnitFlow {
         // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
         let speed = 2.0 * (self.speed + self.rules.sound_speed);
         Parts {
-            medium: self.medium.clone(),
+            medium: self.medium,
             domain,
             particles,
             mirrors: Vec::new(),

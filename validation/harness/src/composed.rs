@@ -81,8 +81,8 @@ impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T,
 }
 
 impl<T: Settings + 'static> Composition<T> {
-    /// A variant of that name and description: what it changes of the default settings, what runs it, what its
-    /// rules choose, and the settings that it does not read.
+    /// A variant of that name and description: what it changes of the default settings, what runs it, what
+    /// its rules choose, and the settings that it does not read.
     pub fn new(
         (name, about): (&'static str, &'static str),
         adjust: fn(&mut T),

@@ -159,7 +159,7 @@ impl Setup {
             mirrors: self.mirrors(),
             skin: Some(skin),
             limits: Limits { density: [0.7 * s.rho, 1.3 * s.rho], speed },
-            ..Parts::new(self.medium.clone(), Domain::channel(self.length()), particles, context)
+            ..Parts::new(self.medium, Domain::channel(self.length()), particles, context)
         }
     }
 

@@ -167,8 +167,8 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
         }
     }
 
-    /// The wave with this phase from one particle to the next \[rad\], on a square lattice with these h/dx and
-    /// η²/h².
+    /// The wave with this phase from one particle to the next \[rad\], on a square lattice with these h/dx
+    /// and η²/h².
     pub fn mode(&self, lattice: Lattice, theta: Vector2<f64>, medium: &time_step::Medium) -> Mode {
         (self.mode)(lattice, theta, medium)
     }

@@ -159,7 +159,7 @@ impl Wave {
             Particle::fluid(place, velocity, density, dx * dx)
         });
         let (domain, particles) = (Domain::torus(s.length, s.length), particles.collect());
-        Parts::new(self.medium.clone(), domain, particles, context)
+        Parts::new(self.medium, domain, particles, context)
     }
 
     /// What theory gives for the amplitudes after each of `steps` steps, exactly.

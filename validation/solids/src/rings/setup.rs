@@ -131,7 +131,7 @@ impl Rings {
         // Twice the density or twice the speed of sound is no rubber any more.
         let speed = 2.0 * (self.cp + self.v);
         let limits = Limits { density: [0.5 * density, 2.0 * density], speed };
-        let (medium, particles) = (self.medium.clone(), self.particles());
+        let (medium, particles) = (self.medium, self.particles());
         Parts { limits, ..solid::parts(medium, Domain::open(), particles, context) }
     }
 }

@@ -68,30 +68,71 @@ type Extrapolating = ExtrapolatingWall<Tait>;
 /// The modern method with this in its drift, and these walls.
 type With<D, W> = Modern<(Continuity, D), W>;
 
-#[rustfmt::skip] // two lines a variant: a table
 fn variants() -> Vec<Composition<HydrostaticSettings>> {
     Variants::of(&run::PROGRAM)
-        .with("seed", "as in the paper: cubic spline, interface and wall particles, artificial viscosity and \
-             stress, XSPH, predictor-corrector", Method::of::<Seed<InterfaceWall>>(), |_| {})
+        .with(
+            "seed",
+            "as in the paper: cubic spline, interface and wall particles, artificial viscosity and \
+             stress, XSPH, predictor-corrector",
+            Method::of::<Seed<InterfaceWall>>(),
+            |_| {},
+        )
         .with("ghosts", "seed with ghosts for walls", Method::of::<Seed<Ghosts>>(), |_| {})
-        .with("modern", "Wendland C2, h/dx 1.5, walls that extrapolate pressure, density diffusion that keeps \
-             a hydrostatic column, leapfrog", Method::of::<With<Diffusion, Extrapolating>>(), modern)
-        .with("extrapolating-none", "modern without density diffusion",
-            Method::of::<With<(), Extrapolating>>(), modern)
-        .with("extrapolating-molteni", "modern with the diffusion of Molteni and Colagrossi",
-            Method::of::<With<DensityDiffusion, Extrapolating>>(), modern)
-        .with("interface-none", "modern with interface and wall particles, without density diffusion",
-            Method::of::<With<(), InterfaceWall>>(), modern)
-        .with("interface-molteni", "the same with that of Molteni and Colagrossi",
-            Method::of::<With<DensityDiffusion, InterfaceWall>>(), modern)
-        .with("interface-hydrostatic", "the same with the diffusion that keeps a hydrostatic column",
-            Method::of::<With<Diffusion, InterfaceWall>>(), modern)
-        .with("ghosts-none", "modern with ghosts, without density diffusion",
-            Method::of::<With<(), Ghosts>>(), modern)
-        .with("ghosts-molteni", "the same with that of Molteni and Colagrossi",
-            Method::of::<With<DensityDiffusion, Ghosts>>(), modern)
-        .with("ghosts-hydrostatic", "the same with the diffusion that keeps a hydrostatic column",
-            Method::of::<With<Diffusion, Ghosts>>(), modern)
+        .with(
+            "modern",
+            "Wendland C2, h/dx 1.5, walls that extrapolate pressure, density diffusion that keeps \
+             a hydrostatic column, leapfrog",
+            Method::of::<With<Diffusion, Extrapolating>>(),
+            modern,
+        )
+        .with(
+            "extrapolating-none",
+            "modern without density diffusion",
+            Method::of::<With<(), Extrapolating>>(),
+            modern,
+        )
+        .with(
+            "extrapolating-molteni",
+            "modern with the diffusion of Molteni and Colagrossi",
+            Method::of::<With<DensityDiffusion, Extrapolating>>(),
+            modern,
+        )
+        .with(
+            "interface-none",
+            "modern with interface and wall particles, without density diffusion",
+            Method::of::<With<(), InterfaceWall>>(),
+            modern,
+        )
+        .with(
+            "interface-molteni",
+            "the same with that of Molteni and Colagrossi",
+            Method::of::<With<DensityDiffusion, InterfaceWall>>(),
+            modern,
+        )
+        .with(
+            "interface-hydrostatic",
+            "the same with the diffusion that keeps a hydrostatic column",
+            Method::of::<With<Diffusion, InterfaceWall>>(),
+            modern,
+        )
+        .with(
+            "ghosts-none",
+            "modern with ghosts, without density diffusion",
+            Method::of::<With<(), Ghosts>>(),
+            modern,
+        )
+        .with(
+            "ghosts-molteni",
+            "the same with that of Molteni and Colagrossi",
+            Method::of::<With<DensityDiffusion, Ghosts>>(),
+            modern,
+        )
+        .with(
+            "ghosts-hydrostatic",
+            "the same with the diffusion that keeps a hydrostatic column",
+            Method::of::<With<Diffusion, Ghosts>>(),
+            modern,
+        )
         .all
 }
 
