@@ -1,4 +1,4 @@
-//! Time integration, and what it makes of a physics: a scheme.
+//! Time integration. A physics together with an integrator is a scheme.
 
 use crate::{
     engine::Engine,
@@ -8,11 +8,11 @@ use crate::{
     physics::{Compose, Physics},
 };
 
-/// An explicit scheme for d(x, v, ρ)/dt. Its value is what it must remember from step to step.
+/// An explicit time integration of (x, v, ρ). A value of the type holds what is needed from step to step.
 pub trait Integrator<X: Numbers>: Default + Send + Sync + 'static {
-    /// The name in settings and reports.
+    /// Its name in settings and reports.
     const NAME: &'static str;
-    /// Observed order in dt without and with forces that depend on the velocity.
+    /// Order in dt for forces that do not depend on the velocity, and for forces that do.
     const ORDER: [u32; 2];
 
     /// Advances the state by dt \[s\].
@@ -32,29 +32,30 @@ pub trait Integrator<X: Numbers>: Default + Send + Sync + 'static {
         Ok(())
     }
 
-    /// d/dt of each fluid particle in the state that was synchronised last, dx/dt without v, from the pair
-    /// sweeps that a step has anyway.
+    /// Rates of each fluid particle in the state that was synchronised last, where dx/dt does not include v.
+    /// They are computed by the same pair sweeps that a step uses.
     fn rates<P: Physics<Extra = X>>(engine: &Engine<P>) -> Vec<Rate<X>> {
         engine.rates_in_one_sweep()
     }
 
-    /// How far the velocities are behind the rest \[s\]: all that is remembered between steps.
+    /// The time by which the velocities lag behind the other quantities \[s\]. Nothing else is kept between
+    /// steps.
     fn lag(&self) -> f64 {
         0.0
     }
 
-    /// One that remembers this lag \[s\].
+    /// An integrator with this lag \[s\].
     fn with_lag(_lag: f64) -> Self {
         Self::default()
     }
 
-    /// Memory held beside the state \[bytes\].
+    /// Memory in addition to the state \[bytes\].
     fn bytes(&self) -> usize {
         0
     }
 }
 
-/// A physics and how it is integrated in time: the whole method. [`Compose`] writes one in a line.
+/// A physics with its time integration: the complete method. [`Compose`] names one in a line of types.
 pub trait Scheme: Physics {
     /// Time integration.
     type Integrator: Integrator<Self::Extra>;
@@ -67,7 +68,7 @@ where
     type Integrator = I;
 }
 
-/// The physics of the scheme `S` by itself: one type for all schemes that differ in their integrator.
+/// The physics of the scheme `S`, the same type for all schemes that differ only in their integrator.
 pub type PhysicsOf<S> = Compose<
     <S as Physics>::Kernel,
     <S as Physics>::Forces,
@@ -77,11 +78,11 @@ pub type PhysicsOf<S> = Compose<
     <S as Physics>::Extra,
 >;
 
-/// The seed's predictor-corrector, read as the explicit midpoint rule (the paper does not specify
-/// it): y' = yⁿ + dt/2 f(yⁿ), yⁿ⁺¹ = yⁿ + dt f(y').
+/// The predictor-corrector of the paper, taken to be the explicit midpoint rule (inferred; the paper does
+/// not specify it): y' = yⁿ + dt/2 f(yⁿ), yⁿ⁺¹ = yⁿ + dt f(y').
 ///
-/// Two right-hand sides a step. Weakly unstable for undamped sound: an amplitude grows by about
-/// (ω dt)⁴/8 a step.
+/// Two right-hand sides per step. Weakly unstable for undamped sound: the amplitude grows by a factor of
+/// about 1 + (ω dt)⁴/8 per step.
 #[derive(Debug, Default)]
 pub struct PredictorCorrector<X = ()> {
     midpoint: Vec<Evolved<X>>,
@@ -116,14 +117,14 @@ impl<X: Numbers> Integrator<X> for PredictorCorrector<X> {
 /// Staggered leapfrog: vⁿ⁺½ = vⁿ⁻½ + dt a(xⁿ, ρⁿ, vⁿ⁻½), then with the **new** velocities
 /// xⁿ⁺¹ = xⁿ + dt vⁿ⁺½, ρⁿ⁺¹ = ρⁿ + dt D(xⁿ + dt/2 vⁿ⁺½, vⁿ⁺½).
 ///
-/// The drift is summed half-way: with D(xⁿ, vⁿ⁺½) the density would be of first order in dt and not
-/// reversible, because D depends on where the particles are. Two pair sweeps, each with its own terms
-/// only, make one right-hand side. Sound is neither damped nor amplified up to ω dt = 2. With both sums
-/// at the old velocity it would be forward Euler on sound, and unstable at every dt. Forces that
-/// depend on the velocity see it half a step late: first order in dt.
+/// The drift D is summed at the midpoint: with D(xⁿ, vⁿ⁺½) the density would be of first order in dt and
+/// not reversible in time, because D depends on the positions. Each of the two pair sweeps evaluates only
+/// its own terms, so together they make one right-hand side. Sound is neither damped nor amplified up to
+/// ω dt = 2. With both sums at the old velocity the scheme would be forward Euler for sound, and unstable
+/// at every dt. Forces that depend on the velocity use that of half a step earlier: first order in dt.
 #[derive(Debug, Default)]
 pub struct Leapfrog {
-    /// How far the velocities are behind the positions \[s\].
+    /// The time by which the velocities lag behind the positions \[s\].
     lag: f64,
 }
 
@@ -144,7 +145,7 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
             evolved.position += evolved.velocity * half;
         });
         engine.refresh(state)?;
-        // Wall particles have a velocity too, but stay where they are.
+        // Wall particles have a velocity too, but do not move.
         let fluid = engine.data.fluid_count();
         engine.sweep_drift(state, |i, evolved, rate| {
             evolved.drift(dt, rate);
@@ -183,7 +184,7 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
     }
 }
 
-/// Forward Euler: yⁿ⁺¹ = yⁿ + dt f(yⁿ). Unstable for sound at every dt; for tests.
+/// Forward Euler: yⁿ⁺¹ = yⁿ + dt f(yⁿ). Unstable for sound at every dt; used only in tests.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Euler;
 

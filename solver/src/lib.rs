@@ -1,29 +1,29 @@
-//! A compact engine for weakly compressible SPH in two dimensions, composed at compile time.
+//! A compact solver for weakly compressible SPH in two dimensions, composed at compile time.
 //!
-//! The model is that of a paper on fluids and elastic solids by SPH; equation numbers in
-//! parentheses are the paper's. SI units throughout, per unit depth where a mass or volume is meant.
+//! The model is that of a paper on fluids and elastic solids by SPH; equation numbers in parentheses are
+//! those of the paper. All quantities are in SI units; masses and volumes are per unit depth.
 //!
 //! | Symbol | Meaning |
 //! |---|---|
 //! | i, j | a particle and its neighbour |
-//! | rᵢⱼ = rᵢ − rⱼ, vᵢⱼ = vᵢ − vⱼ, dᵢⱼ = \|rᵢⱼ\| | differences of place \[m\] and velocity \[m/s\] |
+//! | rᵢⱼ = rᵢ − rⱼ, vᵢⱼ = vᵢ − vⱼ, dᵢⱼ = \|rᵢⱼ\| | differences of position \[m\] and velocity \[m/s\] |
 //! | W, F = −W'/r | kernel \[1/m²\] and its gradient factor \[1/m⁴\]: ∇ᵢWᵢⱼ = −F rᵢⱼ |
 //! | h, η², ⁰r | smoothing length \[m\], guard against 0/0 \[m²\], initial spacing \[m\] |
 //! | m, ρ, V = m/ρ, p, c | mass, density, volume, pressure, sound speed |
 //! | σ = −p δ + S, μ | stress and its deviator \[Pa\], shear modulus \[Pa\] |
 //!
-//! Reading order: [`kernel`] and [`lane`] (numbers of the pair sweep), [`terms`] (the equations),
-//! [`physics`] (terms, kernel and walls as one type), [`scene`] (what a simulation starts from),
-//! [`integrator`], then [`simulation`]. The pair sweep is in `sweep.rs`; `engine.rs` is the right-hand
-//! side that integrators use. Modules import each other in one direction:
+//! Reading order: [`kernel`] and [`lane`] (number types of the pair sweep), [`terms`] (the equations),
+//! [`physics`] (terms, kernel and walls as one type), [`scene`] (the initial state),
+//! [`integrator`], then [`simulation`]. `sweep.rs` contains the pair sweep, `engine.rs` the right-hand side
+//! that integrators evaluate. Imports between modules go in one direction:
 //!
 //! ```text
 //! lane, numbers, kernel, eos, domain <- particles <- terms <- walls <- neighbours
 //!     <- physics, sweep, particle_data <- engine <- integrator <- simulation <- scene
 //! ```
 //!
-//! The crate does no I/O, knows no reference and cannot fail after [`Scene::build`], except by
-//! divergence, which is a value: [`Outcome::Diverged`].
+//! The crate does no I/O and contains no reference data. After [`Scene::build`] it returns no error; a
+//! divergence is the regular result [`Outcome::Diverged`].
 
 mod dispatch;
 pub mod domain;

@@ -32,7 +32,7 @@ pub(crate) struct Image {
 /// The lists of up to [`BLOCK`] particles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Block {
-    /// Row k is `chunks[starts[k]..starts[k + 1]]`.
+    /// The list of particle k of the block is `chunks[starts[k]..starts[k + 1]]`.
     starts: Vec<u32>,
     chunks: Vec<[u32; LANES]>,
     /// Scratch: the neighbours of one list.

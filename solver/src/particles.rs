@@ -1,6 +1,6 @@
-//! Particle data in three kinds: fixed, evolved, and the column that a pair sweep reads.
+//! Particle data in three kinds: fixed, evolved, and derived (the column that a pair sweep reads).
 //!
-//! The integrator has [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
+//! The integrator accesses [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
 //! laid out for the pair sweep: for a fluid it is one cache line.
 
 use nalgebra::Vector2;

@@ -1,4 +1,4 @@
-//! A scene: everything that a simulation starts from, checked before the first step.
+//! A scene: the complete initial state and method of a simulation, checked before the first step.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -19,11 +19,11 @@ use crate::{
 /// Why a scene cannot be simulated.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SceneError {
-    /// No particle that moves.
+    /// The scene has no particle that moves.
     #[error("the scene has no fluid particle")]
     Empty,
-    /// More particles than a neighbour list can number.
-    #[error("{count} particles are more than the {most} that fit")]
+    /// There are more particles than the indices of neighbour lists allow.
+    #[error("the scene has {count} particles, but at most {most} are allowed")]
     TooMany {
         /// Particles given.
         count: usize,
@@ -41,7 +41,7 @@ pub enum SceneError {
         range: &'static str,
     },
     /// A particle that no simulation may start from.
-    #[error("particle {particle} has {field} {value}, but must have {range}")]
+    #[error("the {field} of particle {particle} is {value}, but must be {range}")]
     Particle {
         /// Its number.
         particle: usize,
@@ -52,7 +52,7 @@ pub enum SceneError {
         /// What is allowed.
         range: &'static str,
     },
-    /// A mirror that is not one.
+    /// A mirroring wall whose normal, velocity or numbers are not valid.
     #[error("wall {wall} has {field} {value}, but must have {range}")]
     Wall {
         /// Its number.
@@ -64,16 +64,16 @@ pub enum SceneError {
         /// What is allowed.
         range: &'static str,
     },
-    /// A checkpoint that no simulation of the scene can have made.
+    /// A checkpoint that no simulation of this scene can have written.
     #[error("the checkpoint has {reason}")]
     Checkpoint {
         /// What is wrong with it.
         reason: &'static str,
     },
-    /// A period in which two particles would be neighbours twice.
+    /// A period so short that two particles would be neighbours twice, once directly and once as an image.
     #[error(
         "the period along {axis} is {period} m, but must be at least {least} m, \
-         two supports or a support and the skin"
+         the larger of two support radii and one support radius plus the Verlet skin"
     )]
     PeriodTooShort {
         /// `x` or `y`.
@@ -85,29 +85,29 @@ pub enum SceneError {
     },
 }
 
-/// A scene of the scheme `S`.
+/// A scene whose method is the scheme `S`.
 pub struct Scene<S: Scheme> {
     /// Smoothing length h \[m\].
     pub h: f64,
-    /// Periodic or open.
+    /// The domain, periodic or open in each direction.
     pub domain: Domain,
-    /// The particles; results keep their order.
+    /// The particles. Results list them in the same order.
     pub particles: Vec<Particle<S::Extra>>,
     /// Terms of dv/dt.
     pub forces: S::Forces,
     /// Terms of dx/dt, dρ/dt and the extra fields.
     pub drift: S::Drift,
-    /// Walls.
+    /// The walls.
     pub walls: S::Walls,
-    /// Verlet skin: how far neighbour lists reach beyond the support radius \[m\]. With a larger one they are
-    /// longer and built less often.
+    /// Verlet skin: how far neighbour lists reach beyond the support radius \[m\]. With a larger skin the
+    /// lists are longer and are rebuilt less often.
     pub skin: f64,
-    /// A particle may move by this share of the skin before neighbour lists are rebuilt. 0.5 is exact; more
-    /// is wrong, and serves to show that tests notice.
+    /// Neighbour lists are rebuilt before a particle has moved by more than this share of the skin. Up to
+    /// 0.5 no neighbour is missed; larger values are wrong and exist so that tests can detect the error.
     pub skin_share: f64,
     /// Bounds beyond which the run counts as diverged.
     pub limits: Limits,
-    /// Particles from which sums are worth spreading over threads.
+    /// Number of particles from which pair sweeps are distributed over threads.
     pub parallel_from: usize,
 }
 
@@ -122,12 +122,12 @@ impl<S: Scheme> Scene<S> {
         walls: S::Walls,
     ) -> Self {
         let (skin, skin_share, limits) = (0.12 * h, 0.5, Limits::default());
-        // Below this a fork-join is taken to cost more than it saves; a default, to be measured.
+        // For fewer particles, distributing the work is assumed to cost more than it saves; not measured.
         let parallel_from = 10_000;
         Self { h, domain, particles, forces, drift, walls, skin, skin_share, limits, parallel_from }
     }
 
-    /// Checks the scene and makes it ready to step.
+    /// Checks the scene, and builds a simulation that is ready to step.
     pub fn build(self) -> Result<Simulation<S>, SceneError> {
         self.check()?;
         let particles = by_role(&self.particles);
@@ -139,8 +139,8 @@ impl<S: Scheme> Scene<S> {
         Ok(Simulation { engine, integrator: S::Integrator::default() })
     }
 
-    /// Goes on from a checkpoint of a simulation of this scene: its particles take the place of
-    /// those of the scene, everything else has to be as it was.
+    /// Continues from a checkpoint of a simulation of this scene. The particles of the checkpoint replace
+    /// those of the scene; everything else must be the same as in that simulation.
     pub fn resume(mut self, from: &Checkpoint<S::Extra>) -> Result<Simulation<S>, SceneError> {
         self.particles = from.particles.iter().map(|(_, p)| *p).collect();
         self.check()?;
@@ -151,7 +151,7 @@ impl<S: Scheme> Scene<S> {
         Ok(Simulation { engine, integrator: S::Integrator::with_lag(from.lag) })
     }
 
-    /// The engine for particles in this order, without neighbour lists.
+    /// The engine for the particles in the given order, without neighbour lists.
     fn engine(self, particles: &[(u32, Particle<S::Extra>)]) -> Engine<PhysicsOf<S>> {
         let kernel = Smoothing::new(self.h);
         let radius = kernel.support() + self.skin;
@@ -176,7 +176,7 @@ impl<S: Scheme> Scene<S> {
     }
 }
 
-/// Particles as they are stored at first, with their numbers.
+/// The particles in the order of their storage at the start (by role), with their numbers in the scene.
 fn by_role<X: Copy>(all: &[Particle<X>]) -> Vec<(u32, Particle<X>)> {
     let of = |role| (0..).zip(all.iter().copied()).filter(move |(_, p)| p.role == role);
     [Role::Fluid, Role::Wall, Role::Interface].into_iter().flat_map(of).collect()
@@ -189,11 +189,11 @@ fn check_length(name: &'static str, value: f64, valid: bool, range: &'static str
     if valid && value.is_finite() { Ok(()) } else { Err(error) }
 }
 
-/// A period has to leave room for one copy on either side.
+/// A period must be long enough that one periodic copy on either side suffices.
 fn check_domain(domain: &Domain, support: f64, skin: f64) -> Checked {
     for (axis, name) in [(0, 'x'), (1, 'y')] {
         let Some(period) = domain.period[axis] else { continue };
-        // Neighbour lists reach a skin farther, and one copy on either side must be enough.
+        // Neighbour lists reach farther than the support by the skin; one copy on either side must suffice.
         let least = (2.0 * support).max(support + skin);
         if !(period >= least && period.is_finite()) {
             return Err(SceneError::PeriodTooShort { axis: name, period, least });
@@ -203,16 +203,16 @@ fn check_domain(domain: &Domain, support: f64, skin: f64) -> Checked {
     Ok(())
 }
 
-/// |cos| of the angle between the last of these mirrors and one before it, if it is neither 0, for which
-/// there are images across the corner, nor 1.
+/// |cos| of the angle between the last of these mirroring walls and an earlier one, if it is neither 0 (a
+/// corner, for which there are images across both walls) nor 1 (parallel walls).
 fn oblique_cosine(mirrors: &[PlaneWall]) -> Option<f64> {
     let (last, before) = mirrors.split_last()?;
     let mut cosines = before.iter().map(|m| m.normal.dot(&last.normal).abs());
     cosines.find(|c| *c > RIGHT_ANGLE && (c - 1.0).abs() > 1e-12)
 }
 
-/// A mirror with another normal would stretch its image, and one that moves along its normal
-/// would have to take its plane with it.
+/// A normal that is not of length 1 would stretch the images, and a wall with a velocity along its normal
+/// would have to move its plane, which is not implemented.
 fn check_walls(mirrors: &[PlaneWall]) -> Checked {
     for (wall, mirror) in mirrors.iter().enumerate() {
         let PlaneWall { point, normal, velocity, curvature } = mirror;
@@ -223,9 +223,9 @@ fn check_walls(mirrors: &[PlaneWall]) -> Checked {
         } else if !(across.abs() <= 1e-12 * velocity.norm()) {
             ("a velocity along its normal of", across, "0")
         } else if !sum.is_finite() {
-            ("a sum of its numbers of", sum, "a finite one")
+            ("components whose sum is", sum, "finite ones")
         } else if let Some(cosine) = oblique_cosine(&mirrors[..=wall]) {
-            ("a cosine with another wall of", cosine, "0, a corner, or 1, beside it")
+            ("a cosine between its normal and another one of", cosine, "0 (corner) or 1")
         } else {
             continue;
         };
@@ -235,7 +235,7 @@ fn check_walls(mirrors: &[PlaneWall]) -> Checked {
 }
 
 fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
-    // Images and the sentinel are numbered too: at most eight a particle.
+    // Images and the sentinel have indices too; there are at most eight images per particle.
     let (count, most) = (particles.len(), (u32::MAX / 16) as usize);
     if count > most {
         return Err(SceneError::TooMany { count, most });
@@ -246,15 +246,15 @@ fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
     for (particle, p) in particles.iter().enumerate() {
         let finite = |v: &Vector2<f64>| v.x.is_finite() && v.y.is_finite();
         let (field, value, range) = if !finite(&p.position) {
-            ("position", p.position.x + p.position.y, "a finite one")
+            ("position", p.position.x + p.position.y, "finite")
         } else if !finite(&p.velocity) {
-            ("velocity", p.velocity.x + p.velocity.y, "a finite one")
+            ("velocity", p.velocity.x + p.velocity.y, "finite")
         } else if !(p.density > 0.0 && p.density.is_finite()) {
-            ("density", p.density, "a finite one above 0")
+            ("density", p.density, "finite and above 0")
         } else if !(p.mass > 0.0 && p.mass.is_finite()) {
-            ("mass", p.mass, "a finite one above 0")
+            ("mass", p.mass, "finite and above 0")
         } else if !p.extra.is_finite() {
-            ("extra field", f64::NAN, "a finite one")
+            ("extra field", f64::NAN, "finite")
         } else {
             continue;
         };
@@ -263,7 +263,7 @@ fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
     Ok(())
 }
 
-/// Whether particles of a checkpoint are stored as a simulation stores them.
+/// Checks that the particles of a checkpoint are stored in the way in which a simulation stores them.
 fn check_order<X>(checkpoint: &Checkpoint<X>) -> Checked {
     let Checkpoint { particles, built_at, .. } = checkpoint;
     let mut ids: Vec<u32> = particles.iter().map(|(id, _)| *id).collect();
@@ -271,13 +271,13 @@ fn check_order<X>(checkpoint: &Checkpoint<X>) -> Checked {
     let reason = if !(checkpoint.progress.time.is_finite() && checkpoint.lag.is_finite()) {
         "a time or a lag that is not finite"
     } else if built_at.len() != particles.len() {
-        "another number of places than of particles"
+        "a number of places that differs from the number of particles"
     } else if !built_at.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
         "a place that is not finite"
     } else if !particles.is_sorted_by_key(|(_, p)| p.role) {
-        "roles out of order"
+        "particles that are not sorted by their roles"
     } else if !ids.into_iter().eq(0..particles.len() as u32) {
-        "numbers that are not those of a scene"
+        "particle numbers that are not those of a scene"
     } else {
         return Ok(());
     };

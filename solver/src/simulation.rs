@@ -1,4 +1,4 @@
-//! A running simulation: stepping to a time, observers, and what a run can end with.
+//! A running simulation: stepping to a given time, observers, and the possible outcomes of a run.
 
 use std::{mem::take, ops::Deref};
 
@@ -17,16 +17,16 @@ use crate::{
 pub enum Outcome {
     /// The time asked for was reached.
     Reached,
-    /// A particle left the bounds of the scene; the state is the last one and of no use.
+    /// A particle exceeded [`Scene::limits`](crate::Scene::limits); the state that is left cannot be used.
     Diverged(Divergence),
     /// The observer asked to stop.
     Stopped,
 }
 
-/// Where a run left its bounds.
+/// When a run diverged, and at which particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Divergence {
-    /// Steps done.
+    /// Number of steps completed.
     pub step: u64,
     /// Simulated time \[s\].
     pub time: f64,
@@ -45,16 +45,16 @@ impl std::fmt::Display for Divergence {
     }
 }
 
-/// Whether to go on.
+/// Whether the run continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
-    /// Next step.
+    /// Make the next step.
     Continue,
     /// Stop after this step.
     Stop,
 }
 
-/// Watches a run. `()` watches nothing, and a pair of observers is one.
+/// Observes a run. `()` is an observer that does nothing, and a pair of observers is an observer too.
 pub trait Observer<X> {
     /// Called after every step.
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow;
@@ -79,27 +79,27 @@ impl<X, O: Observer<X> + ?Sized> Observer<X> for &mut O {
     }
 }
 
-/// A simulation as a harness knows it, without its scheme: `&dyn Stepper<X>` is any simulation whose
-/// particles integrate the extra fields `X`. Time, work and particles are those of [`ParticleData`], to
-/// which it dereferences.
+/// A simulation without the type of its scheme, as a harness uses it: `&dyn Stepper<X>` is any simulation
+/// whose particles integrate the extra fields `X`. It dereferences to [`ParticleData`], which gives time,
+/// work and particles.
 pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
-    /// Steps to a time \[s\], see [`Simulation::advance`].
+    /// Steps to the time `until` \[s\], see [`Simulation::advance`].
     fn advance(&mut self, until: f64, dt_max: f64, observer: &mut dyn Observer<X>) -> Outcome;
-    /// What it takes to go on from here with the same bits.
+    /// Everything that is needed to continue from here with bitwise equal results.
     fn checkpoint(&self) -> Checkpoint<X>;
     /// The kernel W(r) \[1/m²\] from r² \[m²\].
     fn weight(&self, r2: f64) -> f64;
-    /// Particles and their images as pair sweeps read them, after [`Stepper::advance`] reached a time: with
-    /// [`Stepper::weight`] what it takes to interpolate a field.
+    /// The derived data of particles and of their images, as pair sweeps read them, after
+    /// [`Stepper::advance`] reached a time. With [`Stepper::weight`] they serve to interpolate a field.
     fn plain_columns(&self) -> Vec<Column>;
-    /// d/dt of each particle of [`ParticleData::fluid`] by all terms of the scene, after
-    /// [`Stepper::advance`] reached a time: dv/dt by the forces, the rest by the drift; dx/dt is
-    /// without v.
+    /// Rates of each particle of [`ParticleData::fluid`] by all terms of the scene, after
+    /// [`Stepper::advance`] reached a time: dv/dt by the forces, the other rates by the drift. dx/dt does
+    /// not include v.
     fn total_rates(&self) -> Vec<Rate<X>>;
-    /// d/dt of each particle of [`ParticleData::walls`] by the walls' own terms, likewise; empty where
-    /// walls extrapolate.
+    /// Rates of each particle of [`ParticleData::walls`] by the terms of the walls, likewise after
+    /// [`Stepper::advance`] reached a time; empty if the walls extrapolate.
     fn wall_rates(&self) -> Vec<Rate<X>>;
-    /// Memory that the simulation holds \[bytes\].
+    /// Memory that the simulation occupies \[bytes\].
     fn bytes(&self) -> usize;
 }
 
@@ -127,7 +127,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     }
 }
 
-/// A scene in time. Time, work and particles are those of [`ParticleData`], to which it dereferences.
+/// A scene that advances in time. It dereferences to [`ParticleData`], which gives time, work and particles.
 pub struct Simulation<S: Scheme> {
     pub(crate) engine: Engine<PhysicsOf<S>>,
     pub(crate) integrator: S::Integrator,
@@ -141,10 +141,10 @@ impl<S: Scheme> Deref for Simulation<S> {
     }
 }
 
-/// The number of equal steps of at most `dt_max` from one time to another \[s\].
+/// The number of equal steps of at most `dt_max` \[s\] from `start` to `until` \[s\].
 fn count_steps(start: f64, until: f64, dt_max: f64) -> u64 {
     let span = until - start;
-    // A step more for the last bit of a quotient would be a step of another length.
+    // A rounding error of the quotient must not add a step, which would change the length of every step.
     let steps = (span / dt_max * (1.0 - 1e-12)).ceil();
     assert!(span >= 0.0 && span.is_finite(), "from {start} s a run cannot reach {until} s");
     assert!(dt_max > 0.0 && steps < 1e15, "steps of {dt_max} s never reach {until} s");
@@ -155,11 +155,11 @@ impl<S: Scheme> Simulation<S> {
     /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then brings every
     /// quantity to that time.
     ///
-    /// The time is counted in whole steps from where it started, so that it does not drift.
+    /// The time is computed from the start and the number of steps, so rounding errors do not accumulate.
     ///
     /// # Panics
-    /// If `until` is not a time from now on, or `dt_max` is not above 0, or so small that steps
-    /// cannot be counted: nothing sensible could be returned, and a loop would never end.
+    /// If `until` is earlier than the present time or not finite, or if `dt_max` is not above 0 or is so
+    /// small that the number of steps is 10¹⁵ or more: the run would never end.
     pub fn advance(
         &mut self,
         until: f64,
@@ -187,7 +187,7 @@ impl<S: Scheme> Simulation<S> {
         self.synchronise()
     }
 
-    /// Brings every quantity to the same time, and the columns up to date.
+    /// Brings every quantity to the same time, and refreshes the derived data.
     fn synchronise(&mut self) -> Outcome {
         let Self { engine, integrator } = self;
         let mut state = take(&mut engine.data.state);
@@ -206,22 +206,23 @@ impl<S: Scheme> Simulation<S> {
         &self.engine.kernel
     }
 
-    /// The forces and the drift, to be changed between stretches: a force that drives the flow, say. They are
-    /// no part of a checkpoint.
+    /// The forces and the drift, which may be changed between two calls of [`Simulation::advance`], for
+    /// example a body force that drives the flow. They are not part of a checkpoint.
     pub fn terms_mut(&mut self) -> &mut (S::Forces, S::Drift) {
         &mut self.engine.terms
     }
 
-    /// What these terms by themselves do to each particle of [`ParticleData::fluid`] now, after
-    /// [`Simulation::advance`] reached a time: one term of the scene, or one that it does not have.
-    /// dx/dt is without v. A scene that never asks has none of this in its program.
+    /// Rates of each particle of [`ParticleData::fluid`] by the given terms alone, after
+    /// [`Simulation::advance`] reached a time. The terms may belong to the scene or not. dx/dt does not
+    /// include v. A program that never calls this function contains none of its code.
     ///
-    /// Terms that depend on the largest speed take it as it was given to them last.
+    /// Terms that depend on the largest speed use the value that [`Term::prepare`] received last.
     pub fn rates<T: Term<S::Extra>>(&self, terms: &T) -> Vec<Rate<S::Extra>> {
         self.engine.rates(terms)
     }
 
-    /// Particles and their images as pair sweeps read them, after [`Simulation::advance`].
+    /// The derived data of particles and of their images, as pair sweeps read them, after
+    /// [`Simulation::advance`].
     pub fn columns(&self) -> &[Column<Derived<S>>] {
         self.engine.columns()
     }

@@ -1,10 +1,11 @@
-//! The pair sweep, the only hot code: each particle sums over its neighbour list in a fixed order, and
-//! its rates are handed to the integrator. Gather only: no locks, no atomics, and the same bits for any
-//! number of threads.
+//! The pair sweep, which takes most of the time of a run: each particle sums over its neighbour list in a
+//! fixed order, and its rates are passed to the integrator. Each particle only gathers: there are no locks
+//! and no atomics, and results are bitwise equal for any number of threads.
 //!
-//! A sweep writes the rates of a few particles into a buffer, over which the update then runs. So the hot
-//! loop depends on the kernel, the terms and the columns alone, is compiled once for these, and is called
-//! through [`PairSweep`] by code that is compiled once.
+//! A sweep writes the rates of a few particles into a buffer, from which the integrator then updates them.
+//! So the loop over pairs depends only on the kernel, the terms and the columns (derived data), and is
+//! compiled once for each combination of these. Code that is compiled only once calls it through
+//! [`PairSweep`].
 
 use nalgebra::Vector2;
 

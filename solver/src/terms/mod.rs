@@ -1,8 +1,8 @@
 //! Terms: the pair sums of the equations, one file each.
 //!
-//! A term is written once, generic over the lane. A physics is a tuple of terms: `()` is nothing
-//! and costs nothing, and a term that is not in the tuple is not in the program. The pair sweep in
-//! `sweep.rs` knows nothing but this trait.
+//! A term is written once, generic over the lane: the type for one neighbour or for four at a time. A
+//! physics contains tuples of terms. The empty tuple `()` costs nothing, and a term that is not in a tuple
+//! is not in the program. The pair sweep in `sweep.rs` uses terms only through the trait [`Term`].
 
 mod artificial_stress;
 mod artificial_viscosity;
@@ -47,7 +47,7 @@ use crate::{
     particles::{Common, Rate},
 };
 
-/// A particle i and its neighbours j, one a lane.
+/// A particle i and its neighbours j, one neighbour per lane.
 pub struct Pair<'k, V, K> {
     /// rᵢⱼ = rᵢ − rⱼ \[m\].
     pub r: Vector2<V>,
@@ -79,24 +79,24 @@ impl<V: Lane, K: Kernel> Pair<'_, V, K> {
     }
 }
 
-/// One term of the equations. `X` is what a particle integrates beyond x, v and ρ.
+/// One term of the equations. `X` holds the extra fields that a particle integrates besides x, v and ρ.
 pub trait Term<X>: Clone + Send + Sync + 'static {
-    /// Derived numbers of a particle that its neighbours read.
+    /// The derived data of a particle that its neighbours read for this term.
     type Derived: Numbers;
     /// What a particle sums over its neighbours.
     type Sum: Numbers;
-    /// Whether there is no term at all, so that no pair has to be visited.
+    /// Whether this is the empty tuple, so that no pair sweep is needed.
     const IS_EMPTY: bool = false;
 
-    /// Takes over the largest speed of the scene \[m/s\], before each step.
+    /// Receives the largest speed of the scene \[m/s\], before each step.
     fn prepare(&mut self, _max_speed: f64) {}
-    /// Those numbers. Only a term that has none may leave this out.
+    /// Computes the derived data [`Term::Derived`]. A term without any need not implement this.
     #[inline(always)]
     fn derived(&self, _own: &Common<f64>, _extra: &X) -> Self::Derived {
         const { assert!(size_of::<Self::Derived>() == 0, "a term with derived numbers derives them") };
         Self::Derived::default()
     }
-    /// Adds the neighbours of one pair to the sum.
+    /// Adds the contributions of the neighbours of `pair` to the sum.
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
@@ -104,7 +104,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
         other: <Self::Derived as Numbers>::In<V>,
         sum: &mut <Self::Sum as Numbers>::In<V>,
     );
-    /// Turns the sum into rates.
+    /// Adds the rates that follow from the sum to `rate`.
     fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>);
 }
 

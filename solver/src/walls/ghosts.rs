@@ -13,10 +13,10 @@ pub struct PlaneWall {
     pub normal: Vector2<f64>,
     /// Velocity U of the wall, along itself \[m/s\].
     pub velocity: Vector2<f64>,
-    /// ∂²v/∂n² at the wall \[1/(m s)\], 0 for the plain mirror.
+    /// ∂²v/∂n² at the wall \[1/(m s)\], 0 for plain mirroring.
     ///
     /// From the momentum equation at a no-slip wall, 0 = f + ν ∂²v/∂n² for a parallel flow driven
-    /// by f (Basa, Quinlan & Lastiwka 2009): −f/ν. The mirror alone has it 0.
+    /// by f (Basa, Quinlan & Lastiwka 2009): −f/ν. Mirroring alone implies 0.
     pub curvature: Vector2<f64>,
 }
 
@@ -47,8 +47,8 @@ pub(crate) fn corners(walls: &[PlaneWall]) -> impl Iterator<Item = [&PlaneWall; 
 /// + d² ∂²v/∂n².
 ///
 /// Where two walls meet at a right angle, the fluid between them, a particle within that radius of both
-/// has an image across both as well: the mirror of its mirror, turned by half a turn about the corner,
-/// with the velocity v. (One wall after the other gives v ± 2(U₁ − U₂), by the order; v is the mean.)
+/// has an image across both as well: the mirror particle of its mirror particle, half a turn about the
+/// corner, with the velocity v. (One wall after the other gives v ± 2(U₁ − U₂), by the order; v is the mean.)
 /// Other angles are refused, because their images of images never end. Walls are of infinite length: a
 /// tank has a bottom and two sides, and is open at the top because there is no wall.
 #[derive(Clone, Debug, Default)]

@@ -1,25 +1,26 @@
-//! Images: extra columns copied from an earlier column before each sweep, mirrored at a wall or
-//! shifted by a period, so that no pair pays for a wrap or a wall.
+//! Images (mirror particles and periodic copies): extra columns, each computed before each sweep from an
+//! earlier column, mirrored at a wall or shifted by a period. So the loop over pairs treats neither walls nor
+//! periodicity.
 
 use nalgebra::Vector2;
 
 use super::PlaneWall;
 use crate::{numbers::Numbers, particles::Column};
 
-/// What turns a particle, or an image of it, into an image.
+/// The map from a particle, or from an image of it, to an image.
 #[derive(Clone, Copy, Debug)]
 pub enum Map {
-    /// The ghost across a wall: x' = x − 2dn, v' = 2U − v + d² ∂²v/∂n², at the depth d of the source
-    /// in the fluid; where the fluid slips v' = v − 2(v·n)n.
+    /// The mirror particle across a wall: x' = x − 2dn, v' = 2U − v + d² ∂²v/∂n², with the depth d of the
+    /// source in the fluid; where the fluid slips v' = v − 2(v·n)n.
     Mirror(PlaneWall),
-    /// The ghost across both walls of a corner there \[m\]: x' = 2c − x, v' = v; where it slips −v.
+    /// The mirror particle across both walls of a corner at c \[m\]: x' = 2c − x, v' = v; with slip −v.
     Corner(Vector2<f64>),
     /// The copy a period away: x' = x + s \[m\].
     Shift(Vector2<f64>),
 }
 
 impl Map {
-    /// The ghost across two walls at a right angle: half a turn about their corner.
+    /// The mirror particle across two walls at a right angle: half a turn about their corner.
     pub fn corner([a, b]: [&PlaneWall; 2]) -> Self {
         Self::Corner(a.point - b.normal * b.depth(a.point))
     }

@@ -1,5 +1,6 @@
-//! Walls: the two representations of the paper's section 4, one that extrapolates from the fluid, and
-//! what mirror particles have in common with periodic edges: images.
+//! Walls: the two representations of section 4 of the paper (mirror particles; interface and wall
+//! particles), boundary particles that extrapolate from the fluid, and images, which implement both mirror
+//! particles and periodic copies.
 
 mod extrapolating;
 mod ghosts;
@@ -16,18 +17,18 @@ use crate::terms::Term;
 
 /// How a scene treats its walls.
 pub trait Walls<X>: Clone + Send + Sync + 'static {
-    /// The terms by which wall particles evolve; where there are none, `()`, and then no pair sweep over
-    /// wall particles is compiled.
+    /// The terms by which wall particles evolve, or `()` if there are none; then no pair sweep over wall
+    /// particles is compiled.
     type Terms: Term<X>;
-    /// Whether [`Walls::Terms`] extrapolate: summed over the fluid alone, before each sweep, they give
-    /// a wall particle the density of its column, and what it has there beyond its velocity, where others
-    /// give rates.
+    /// Whether [`Walls::Terms`] extrapolate from the fluid. They are then summed over fluid particles only,
+    /// before each pair sweep, and their result is not a rate: it is the density of the wall particle, and
+    /// what is added to its velocity, in the derived data.
     const EXTRAPOLATES: bool = false;
-    /// Those terms.
+    /// The values of [`Walls::Terms`].
     fn terms(&self) -> Self::Terms;
-    /// Whether images in [`Walls::mirrors`] keep the velocity along the wall.
+    /// Whether mirror particles behind [`Walls::mirrors`] keep the tangential velocity (free slip).
     const SLIPS: bool = false;
-    /// Walls that mirror the fluid.
+    /// The straight walls that mirror the fluid.
     fn mirrors(&self) -> &[PlaneWall] {
         &[]
     }

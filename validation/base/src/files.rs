@@ -1,9 +1,10 @@
-//! Output files: whole or absent, never half written, never with a NaN inside.
+//! Output files, each either complete or absent; tables without NaN.
 //!
-//! Everything is written beside its place under a temporary name and renamed when complete.
-//! The temporary names are random, so that no other process and no file that an earlier one left behind is in
-//! the way, and they are registered, so that a handler of ctrl-c can call [`remove_unfinished`] before the
-//! process ends. What a process that was killed left behind is removed by a later one.
+//! A file is written under a temporary name in the folder of its final place, and renamed when complete.
+//! Temporary names are random, so they do not collide with those of another process or with files left by an
+//! earlier one. They are registered, so that the handler of an interrupt can call
+//! [`remove_unfinished`] before the process ends. Temporary files left by a process that was killed are
+//! removed by a later one.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), base::files::FileError> {
@@ -58,7 +59,7 @@ pub enum FileError {
         value: String,
     },
     /// A row has not as many cells as the header.
-    #[error("row {row} has {found} cells, the header has {expected}")]
+    #[error("row {row} has {found} cells, but the header has {expected}")]
     Width {
         /// row, counted from 0 after the header
         row: usize,
@@ -68,7 +69,7 @@ pub enum FileError {
         found: usize,
     },
     /// A column header without its unit.
-    #[error("the column header {column:?} lacks a unit: write it as name[unit], name[-] for none")]
+    #[error("the column header {column:?} lacks a unit: write name[unit], or name[-] for none")]
     NoUnit {
         /// the header
         column: String,
@@ -499,7 +500,7 @@ mod tests {
             assert_eq!(error, format!("column u[m/s] of row 1 is {text}, which is not finite"));
         }
         let error = table.numbers(&[0.1]).unwrap_err().to_string();
-        assert_eq!(error, "row 1 has 1 cells, the header has 2");
+        assert_eq!(error, "row 1 has 1 cells, but the header has 2");
         assert_eq!(table.into_bytes(), b"t[s],u[m/s]\n0.0,1.0\n");
         assert!(matches!(CsvTable::new(&["t[s]", "u"]), Err(FileError::NoUnit { .. })));
     }

@@ -1,7 +1,7 @@
-//! Gates: a metric, a bound, the kind of evidence behind it, and why the bound is where it is.
+//! Gates: a metric, a bound, the kind of evidence behind the bound, and the reason for the bound.
 //!
-//! A gate passes on a finite number inside its bound and on nothing else: NaN, infinity and a
-//! metric that was not measured fail. What is not judged says so.
+//! A gate passes only if the metric is a finite number inside the bound: NaN, infinity and a metric
+//! that was not measured fail. A number that is shown without being judged is marked so.
 //!
 //! ```
 //! use base::gate::{Bound, Evidence, Gate, Verdict};
@@ -149,13 +149,15 @@ pub struct Gate {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GateError {
     /// No reason, so nobody can tell whether the bound is right.
-    #[error("gate {id} does not say why its bound is where it is")]
+    #[error("gate {id} does not say why its bound has this value")]
     NoReason {
         /// the gate
         id: String,
     },
     /// Name or metric is empty.
-    #[error("a gate needs a name and a metric: {id:?}, {metric:?}")]
+    #[error(
+        "a gate must have a name and a metric, but has the name {id:?} and the metric {metric:?}"
+    )]
     NoName {
         /// the gate
         id: String,
@@ -163,7 +165,9 @@ pub enum GateError {
         metric: String,
     },
     /// Ends that are not finite or not in order.
-    #[error("the bound of gate {id} is {bound}; its ends must be finite and in order")]
+    #[error(
+        "the bound of gate {id} is {bound}, but its ends must be finite and in ascending order"
+    )]
     Bound {
         /// the gate
         id: String,
@@ -452,7 +456,7 @@ mod tests {
         let silent = Gate { because: " ".into(), ..sound.clone() };
         assert_eq!(
             refused(silent).to_string(),
-            "gate case.metric does not say why its bound is where it is"
+            "gate case.metric does not say why its bound has this value"
         );
         assert!(matches!(refused(sound.clone().with_limitation("")), GateError::NoReason { .. }));
         let nameless = Gate { metric: String::new(), ..sound.clone() };

@@ -1,4 +1,4 @@
-//! What every other part stands on: settings, numbers, files, gates, records, references.
+//! The types that all crates of the harness use: settings, numbers, files, gates, records, references.
 
 pub mod files;
 pub mod gate;

@@ -1,4 +1,4 @@
-//! What a result was computed by: program, compiler, machine. What is not known is `unknown`.
+//! The manifest: the program, compiler and machine that computed a result. An unknown entry is `unknown`.
 //!
 //! Nothing here names a person, a host or a folder, so that a record can be published as it is.
 

@@ -1,5 +1,6 @@
-//! Random numbers that are the same on every machine and for ever: SplitMix64 (Steele, Lea &
-//! Flood 2014). Jittered lattices are part of published numbers, so no library may change them.
+//! Random numbers that are the same on every machine and in every version: SplitMix64 (Steele, Lea &
+//! Flood 2014). Published results depend on randomly disturbed lattices, so an update of a library must not
+//! change the numbers.
 
 /// A stream of random numbers.
 #[derive(Clone, Debug)]

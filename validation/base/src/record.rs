@@ -1,8 +1,8 @@
-//! One run is one JSON document: settings, outcome, metrics, cost, numerics, manifest.
+//! The record of a run, one JSON document: settings, outcome, metrics, cost, numerics, manifest.
 //!
-//! The document states its [`SCHEMA`]; a reader refuses any other. Floats keep their bits, and
-//! there is no `null` anywhere: a number that is not finite is `{"not_finite": "NaN"}` (see
-//! [`number`](crate::number)), a value that does not exist is a key that does not exist.
+//! The document states its [`SCHEMA`]; a reader refuses any other. Floats are stored without loss.
+//! There is no `null`: a number that is not finite is written as `{"not_finite": "NaN"}` (see
+//! [`number`](crate::number)), and the key of a value that does not exist is omitted.
 //!
 //! ```
 //! use base::record::{Metric, Record};
@@ -36,13 +36,13 @@ pub enum RecordError {
     #[error("the record cannot be read: {0}")]
     Unreadable(#[from] serde_json::Error),
     /// The document has another version.
-    #[error("the record has schema {found}, this program reads schema {SCHEMA}")]
+    #[error("the record has schema {found}, but this program reads only schema {SCHEMA}")]
     Schema {
         /// what the document states
         found: String,
     },
     /// Somewhere there is a `null`, which says neither what is missing nor why.
-    #[error("{path} of the record is null; leave it out or say what it is")]
+    #[error("{path} of the record is null; omit the key or give a value")]
     Null {
         /// keys from the root, as in `/numerics/dt`
         path: String,
@@ -511,7 +511,7 @@ mod tests {
 
         record.numerics.insert("dt".into(), Value::from(f64::NAN)); // what serde_json does
         let error = record.to_json().unwrap_err().to_string();
-        assert_eq!(error, "/numerics/dt of the record is null; leave it out or say what it is");
+        assert_eq!(error, "/numerics/dt of the record is null; omit the key or give a value");
         let with_null = text.replace("\"quintic\"", "null");
         let error = Record::from_json(&with_null).unwrap_err();
         assert!(matches!(error, RecordError::Null { path } if path == "/numerics/kernel"));
@@ -521,7 +521,10 @@ mod tests {
     fn another_schema_and_unknown_keys_are_refused() {
         let text = record().to_json().unwrap();
         let error = Record::from_json(&text.replace("\"schema\": 2", "\"schema\": 3")).unwrap_err();
-        assert_eq!(error.to_string(), "the record has schema 3, this program reads schema 2");
+        assert_eq!(
+            error.to_string(),
+            "the record has schema 3, but this program reads only schema 2"
+        );
         assert!(matches!(Record::from_json("{}"), Err(RecordError::Schema { .. })));
         let error = Record::from_json(&text.replace("\"wall_s\"", "\"wall\"")).unwrap_err();
         assert!(error.to_string().contains("wall"), "{error}");

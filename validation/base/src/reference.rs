@@ -1,8 +1,8 @@
 //! References: published or independently computed numbers, with provenance.
 //!
 //! The packages of `references/` (CSV tables beside a Frictionless `datapackage.json`; the format
-//! is described in its README) are embedded at compile time, so the program needs no folder.
-//! A package without provenance or with a table that is not the one it describes is refused.
+//! is described in its README) are embedded at compile time, so the program does not read them from disk.
+//! A package is refused if it states no provenance, or if a table differs from its description.
 //!
 //! ```
 //! use base::reference::Reference;
@@ -80,13 +80,13 @@ pub enum ReferenceError {
         missing: String,
     },
     /// The package describes a table that is not there.
-    #[error("there is no file {file} of a reference")]
+    #[error("the file {file}, which a reference describes, does not exist")]
     NoFile {
         /// package and table
         file: String,
     },
     /// The table is not the one that was described.
-    #[error("the hash of reference {file} is {found}, stated is {stated}")]
+    #[error("the hash of reference {file} is {found}, but its package states {stated}")]
     Hash {
         /// package and table
         file: String,
@@ -96,7 +96,7 @@ pub enum ReferenceError {
         found: String,
     },
     /// The header differs from the description, or a row from the header.
-    #[error("reference {file} has the columns {found}, stated are {stated}")]
+    #[error("reference {file} has the columns {found}, but its package states {stated}")]
     Columns {
         /// package and table
         file: String,
@@ -120,7 +120,7 @@ pub enum ReferenceError {
         kind: FieldKind,
     },
     /// A correction that does not fit the table.
-    #[error("the erratum for row {row}, column {column} of reference {table}: {reason}")]
+    #[error("the erratum for row {row}, column {column} of reference {table} is refused: {reason}")]
     Erratum {
         /// package and table
         table: String,

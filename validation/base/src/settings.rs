@@ -1,8 +1,8 @@
 //! Settings of a case: named, documented numbers with a unit, an allowed range and a default.
 //!
 //! [`settings!`](crate::settings!) declares the struct once; the command line
-//! (`--set key=value`), the JSON record, the listing and the report's table all follow from it.
-//! No way in (text, JSON) leaves a struct with a value outside its range.
+//! (`--set key=value`), the JSON record, the listing and the report's table are derived from it.
+//! Neither text nor JSON input can give a struct a value outside its range.
 //!
 //! ```
 //! use base::settings::{self, Settings};

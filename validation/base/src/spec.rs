@@ -1,7 +1,7 @@
-//! A run as data: everything that decides what comes out of it, and nothing else.
+//! The specification of a run as data: everything that determines its result, and nothing else.
 //!
 //! A [`RunSpec`] has a canonical JSON form, one line with sorted keys, and a [`RunKey`], the first 16
-//! hexadecimal digits of the SHA-256 of that line. Equal keys mean the same run, whoever planned it.
+//! hexadecimal digits of the SHA-256 of that line. Equal keys mean the same run, whichever study planned it.
 //!
 //! ```
 //! use base::spec::RunSpec;

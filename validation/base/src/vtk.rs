@@ -1,10 +1,10 @@
 //! ParaView files: particles as `PolyData` (`.vtp`), a run as a collection (`.pvd`).
 //!
-//! Arrays are base64 in place, so floats keep their bits. `Verts` are always written: without
+//! Arrays are base64 in the file, so floats are stored without loss. `Verts` are always written: without
 //! them ParaView opens the file and shows nothing. The plane is z = 0, and vectors get a third
 //! component that is zero, because the filters of ParaView expect three.
 //! Positions must be finite. Fields may hold a NaN: ParaView draws it in a colour of its own,
-//! and a state that diverged is exactly what one wants to look at.
+//! and a state that diverged is worth inspecting.
 //!
 //! ```
 //! use base::vtk::{Collection, Particles};

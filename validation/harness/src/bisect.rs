@@ -1,4 +1,4 @@
-//! The largest stable value of a setting by bisection, and when a run counts as growing.
+//! The largest stable value of a setting by bisection, and the criterion by which a run counts as growing.
 
 use base::{
     record::{Cost, Metric, Record, Status},

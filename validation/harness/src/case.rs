@@ -1,4 +1,5 @@
-//! What a benchmark is: a problem in words, settings, variants to compare, a plan of judged runs.
+//! The interface of a benchmark case: description of the problem, settings, variants to compare, and a plan
+//! of judged runs.
 
 use base::{
     record::{Record, Status},
@@ -19,7 +20,7 @@ pub use crate::{
 pub struct Variant {
     /// Name on the command line.
     pub name: &'static str,
-    /// What it stands for, one line.
+    /// Description of the variant, one line.
     pub about: &'static str,
 }
 
@@ -29,7 +30,7 @@ pub trait Case: Sync {
     fn name(&self) -> &'static str;
     /// The problem in words, a paragraph.
     fn about(&self) -> &'static str;
-    /// Compositions to compare.
+    /// The variants to compare.
     fn variants(&self) -> Vec<Variant>;
     /// The settings.
     fn fields(&self) -> &'static [Field];
@@ -37,26 +38,26 @@ pub trait Case: Sync {
     fn settings(&self, variant: &str, set: &[String]) -> Result<Value, RunError>;
     /// One simulation with resolved settings.
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError>;
-    /// What the rules choose from the settings of a run, without stepping.
+    /// Time step and sound speed that follow from the settings of a run, without making any step.
     fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
         let setting = spec.case.clone();
         Err(RunError::NoRules { case: setting })
     }
-    /// Did this run stay as a stable one does? The criterion of bisections.
+    /// Was this run stable? The criterion of bisections.
     fn is_stable(&self, record: &Record) -> bool {
         record.status == Status::Completed
     }
-    /// What the studies that every case has are made of.
+    /// The declaration from which the studies common to all cases are made.
     fn declaration(&self, _tier: Tier) -> Declaration {
         Declaration::default()
     }
     /// The runs of a tier and their gates, beside those of the declaration.
     fn plan(&self, tier: Tier) -> Vec<Planned>;
-    /// What only this case has to say, a pure function of the records of its plan.
+    /// Studies of this case alone, a pure function of the records of its plan.
     fn studies(&self, tier: Tier, runs: &Runs) -> Vec<Study>;
 }
 
-/// The run of a case that `key=value` texts describe.
+/// The run of a case with the settings that `key=value` texts describe.
 pub fn spec(case: &dyn Case, variant: &str, set: &[String]) -> Result<RunSpec, RunError> {
     Ok(RunSpec::new(case.name(), variant, case.settings(variant, set)?))
 }

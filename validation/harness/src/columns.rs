@@ -1,4 +1,4 @@
-//! Tables with a run a row, whose columns state in one place what they are called and what they show.
+//! Tables with one row per run. The name of a column and what it shows are stated in one place.
 
 use base::record::{MetricName, Record, Status};
 use report::{Cell, Column, Table};

@@ -1,4 +1,5 @@
-//! A case that is a table of compositions with a declaration, a plan and studies of its own.
+//! A case that consists of a table of compositions (variants with their methods), a declaration, a plan, and
+//! studies of its own.
 
 use std::{fmt::Display, rc::Rc};
 
@@ -31,7 +32,7 @@ pub struct Composition<T> {
     adjust: fn(&mut T),
     run: Box<Run<T>>,
     rules: Box<Ruled<T>>,
-    /// Settings that none of its types reads: there they are refused.
+    /// Settings that none of its terms and walls reads: the variant refuses them.
     lacks: Vec<&'static str>,
 }
 
@@ -51,12 +52,12 @@ pub struct Variants<'a, T, M> {
 }
 
 impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T, Method<X, D>> {
-    /// None yet.
+    /// An empty list of variants.
     pub fn of(program: &'a Program<T, Method<X, D>>) -> Self {
         Self { program, all: Vec::new() }
     }
 
-    /// One more: name, description, method, and what it changes of the default settings.
+    /// Adds a variant: name, description, method, and a function that changes the default settings.
     #[must_use]
     pub fn with(
         mut self,
@@ -81,8 +82,8 @@ impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T,
 }
 
 impl<T: Settings + 'static> Composition<T> {
-    /// A variant of that name and description: what it changes of the default settings, what runs it, what
-    /// its rules choose, and the settings that it does not read.
+    /// A variant with this name and description. Further arguments: how it changes the default settings, what
+    /// runs it, its rules, and the settings that it does not read.
     pub fn new(
         (name, about): (&'static str, &'static str),
         adjust: fn(&mut T),
@@ -119,7 +120,7 @@ impl<T: Settings + 'static> Composition<T> {
     }
 }
 
-/// Stable is what reached its end: the criterion of a case that needs no sharper one.
+/// A run is stable if it reached its end: the criterion of a case that needs no stricter one.
 pub fn completed(record: &Record) -> bool {
     record.status == Status::Completed
 }
@@ -144,11 +145,11 @@ pub struct Composed<T> {
     pub variants: fn() -> Vec<Composition<T>>,
     /// The criterion of bisections.
     pub is_stable: fn(&Record) -> bool,
-    /// What the studies that every case has are made of.
+    /// The declaration from which the studies common to all cases are made.
     pub declaration: fn(Tier) -> Declaration,
     /// The judged runs beside those of the declaration.
     pub plan: fn(Tier) -> Vec<Planned>,
-    /// What only this case has to say.
+    /// Studies of this case alone.
     pub studies: fn(Tier, &Runs) -> Vec<Study>,
 }
 

@@ -1,4 +1,4 @@
-//! How a run is to be done, apart from what it computes.
+//! How a run is executed, apart from what it computes.
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -18,7 +18,7 @@ pub struct Progress {
     pub particle_steps: u64,
 }
 
-/// How a run is to be done, apart from what it computes.
+/// How a run is executed, apart from what it computes.
 #[derive(Clone, Default)]
 pub struct Context<'a> {
     /// Run even with a time step beyond the theoretical limit.
@@ -31,19 +31,19 @@ pub struct Context<'a> {
     pub keep_particles: bool,
     /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
     pub pictures: Option<usize>,
-    /// Told how far the run is.
+    /// Called with the progress of the run.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
-    /// Set from outside to stop.
+    /// Set by another thread to stop the run.
     pub interrupt: Option<&'a AtomicBool>,
 }
 
 impl Context<'_> {
-    /// For rules, which say what the step is and not whether it is stable.
+    /// The context for computing rules, which give the time step whether or not it is stable.
     pub fn of_rules() -> Self {
         Self { allow_unstable: true, ..Self::default() }
     }
 
-    /// The same for this run: what its spec says of the step and of what is kept.
+    /// The same context for this run, with what its spec says about the time step and about what is kept.
     pub fn of(&self, spec: &RunSpec) -> Self {
         Self {
             allow_unstable: spec.allow_unstable,

@@ -1,4 +1,4 @@
-//! Order of accuracy: the line through log error against log spacing, and when to believe it.
+//! Order of accuracy: the slope of log error over log spacing, and whether the error converges with it.
 //!
 //! [`convergence`] is for errors against an exact solution, [`extrapolate`] for a quantity whose
 //! exact value is unknown (Richardson 1911; grid convergence index of Roache 1994).
@@ -8,8 +8,8 @@
 //!
 //! - [`Label::Asymptotic`] if p̂ > 0 and every p_k is within 15 % of p̂;
 //! - [`Label::FloorReached`] if the p_k begin with one or more that are at least half of the
-//!   largest and at least 0.5, and all after them, at least the last one, are below half of the
-//!   largest: the error fell in earnest and then stopped falling;
+//!   largest and at least 0.5, and all later ones (at least the last one) are below half of the
+//!   largest: the error first decreased with a clear order and then stopped decreasing;
 //! - [`Label::NotAsymptotic`] otherwise.
 
 use thiserror::Error;
@@ -85,14 +85,16 @@ pub struct GridConvergence {
     pub orders: Vec<f64>,
 }
 
-/// Why there is no order.
+/// Why no order can be computed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ConvergenceError {
     /// Two levels always lie on a line.
-    #[error("{0} levels, at least 3 are needed")]
+    #[error("there are {0} levels, but at least 3 are needed")]
     TooFew(usize),
     /// A spacing or error is 0, negative, infinite or NaN.
-    #[error("spacing {spacing}, value {value} cannot be used in a logarithm")]
+    #[error(
+        "a level with spacing {spacing} and value {value} cannot be used, for its logarithm is needed"
+    )]
     Unusable {
         /// Spacing of the level.
         spacing: f64,
@@ -100,10 +102,10 @@ pub enum ConvergenceError {
         value: f64,
     },
     /// Two levels have the same spacing.
-    #[error("two levels with spacing {0}")]
+    #[error("two levels have the same spacing {0}")]
     Repeated(f64),
-    /// The three finest values do not approach anything: their differences change sign or grow.
-    #[error("the finest values {0:?} do not converge")]
+    /// The values of the three finest levels do not converge: their differences change sign or grow.
+    #[error("the values {0:?} of the three finest levels do not converge")]
     Oscillating([f64; 3]),
 }
 

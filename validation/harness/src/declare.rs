@@ -1,7 +1,7 @@
-//! What a case declares so that it gets the studies that every case has, in one form: curves over their
-//! reference, order of accuracy, error against cost, cheapest settings, error budget, largest stable time
-//! step, maps. A declaration is plain data for one tier; [`crate::studies`] turns it into runs and, from
-//! their records, into statements.
+//! The declaration of a case, from which the studies common to all cases are made: curves compared with
+//! their reference, order of accuracy, error against cost, cheapest settings, error budget, largest stable
+//! time step, maps. A declaration is plain data for one tier. [`crate::studies`] turns it into runs and the
+//! records of these runs into studies.
 
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -12,14 +12,14 @@ use report::{Axis, Colour};
 
 use crate::{planned::Planned, rules::Rules, runs::Runs};
 
-/// What the studies of one case and tier are made of.
+/// The declaration of one case for one tier.
 #[derive(Default)]
 pub struct Declaration {
     /// Profiles or histories over their reference.
     pub curves: Vec<Curves>,
     /// Resolution ladders: order, error against cost, cheapest settings.
     pub accuracy: Vec<Accuracy>,
-    /// What the error is made of.
+    /// Contributions to the error.
     pub budgets: Option<Budgets>,
     /// Largest stable time steps.
     pub limits: Option<StepLimits>,
@@ -29,7 +29,8 @@ pub struct Declaration {
 
 /// Error against spacing and against cost.
 pub struct Accuracy {
-    /// Anchor of its studies: the case, in letters, digits and hyphens, and what tells several apart.
+    /// Anchor of its studies in the report: the case in letters, digits and hyphens, and a suffix if the case
+    /// has several.
     pub id: String,
     /// What an error is.
     pub error: ErrorOf,
@@ -41,7 +42,7 @@ pub struct Accuracy {
     pub spacing: &'static str,
     /// The order that the method should have, drawn as a slope; none if nothing is known.
     pub slope: Option<f64>,
-    /// A ladder of resolutions a variant, coarse to fine.
+    /// One ladder of resolutions per variant, coarse to fine.
     pub ladders: Vec<Ladder>,
     /// More points of the cost diagram and of the table of cheapest settings, beside the ladders.
     pub more: Vec<Ladder>,
@@ -85,7 +86,7 @@ impl ErrorOf {
 pub struct Ladder {
     /// Name of the variant.
     pub variant: &'static str,
-    /// What else is special about it, after the name; mostly nothing.
+    /// What else distinguishes the ladder, shown after the name of the variant; mostly empty.
     pub note: String,
     /// The runs, coarse to fine.
     pub levels: Vec<Level>,
@@ -116,7 +117,7 @@ pub struct OrderGate {
     pub because: String,
 }
 
-/// A result of somebody else.
+/// A result of another code.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Peer {
     /// Code, scheme and resolution.
@@ -141,7 +142,7 @@ pub struct Budgets {
     pub label: String,
     /// What was run, one or two sentences.
     pub about: String,
-    /// One a variant.
+    /// One per variant.
     pub of: Vec<Budget>,
 }
 
@@ -166,8 +167,8 @@ pub struct Change {
 }
 
 impl Accuracy {
-    /// Without ladders yet; id of its studies, what an error is, and the name of the error with its unit.
-    /// Spacings are in units of a length of the problem, and the method should be of second order.
+    /// No ladders yet. The arguments are the id of the studies, what an error is, and the name of the error
+    /// with its unit. Spacings are in units of a length of the problem; the expected order is 2.
     pub fn new(id: &str, error: ErrorOf, label: &str) -> Self {
         let (id, label, about) = (id.to_string(), label.to_string(), String::new());
         let (spacing, slope) = ("Δx [-]", Some(2.0));
@@ -177,8 +178,8 @@ impl Accuracy {
 }
 
 impl Accuracy {
-    /// The same with a ladder a variant, of which no order is judged. `level` gives the run of a variant at a
-    /// resolution n; its spacing is 1/n.
+    /// The same with one ladder per variant, whose order is not judged. `level` gives the run of a variant at
+    /// a resolution n; its spacing is 1/n.
     pub fn over<const N: usize>(
         mut self,
         variants: &[&'static str],
@@ -215,7 +216,7 @@ impl Budgets {
 }
 
 impl StepLimits {
-    /// StepLimits of a case whose anchors begin with `case`.
+    /// Step limits of a case whose anchors begin with `case`.
     pub fn new(case: &str, about: &str, of: impl IntoIterator<Item = StepLimit>) -> Self {
         let of = of.into_iter().collect();
         Self { id: format!("{case}-time-step"), about: about.into(), of }
@@ -248,7 +249,7 @@ impl StepLimit {
 }
 
 impl Change {
-    /// A change that is compared with no change.
+    /// A change that is compared with the unchanged run.
     pub fn new(what: impl Into<String>, part: &'static str, spec: RunSpec) -> Self {
         Self { what: what.into(), part, spec, against: 0 }
     }
@@ -260,7 +261,7 @@ pub struct StepLimits {
     pub id: String,
     /// What was run and what counts as stable, one or two sentences.
     pub about: String,
-    /// One a variant and scene.
+    /// One per variant and scene.
     pub of: Vec<StepLimit>,
 }
 
@@ -296,12 +297,12 @@ pub struct Map {
     pub x: String,
     /// Name of the vertical setting, with its unit.
     pub y: String,
-    /// What a cell can be, in the order of the legend.
+    /// The possible outcomes of a cell, in the order of the legend.
     pub outcomes: Vec<(String, Colour)>,
     /// Panels side by side.
     pub panels: Vec<MapPanel>,
-    /// Which of the outcomes the records of a cell are, and a short text. A run that was refused is a
-    /// record too.
+    /// The outcome of a cell from its records, as an index of `outcomes`, and a short text. A run that was
+    /// refused has a record too.
     pub outcome: fn(&[&Record]) -> (usize, String),
 }
 

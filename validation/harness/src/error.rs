@@ -47,7 +47,7 @@ pub enum RunError {
         /// The variant.
         variant: String,
     },
-    /// Settings of a document that are not those of the case.
+    /// The settings in a JSON document do not match those of the case.
     #[error("the settings of {case} cannot be read: {reason}")]
     Settings {
         /// The case.
@@ -55,7 +55,7 @@ pub enum RunError {
         /// What is wrong with them.
         reason: String,
     },
-    /// A case without a time step to choose.
+    /// A case that states no rules for the choice of its time step.
     #[error("case {case} states no rules for its time step")]
     NoRules {
         /// The case.
@@ -64,7 +64,7 @@ pub enum RunError {
     /// A time step beyond the theoretical limit.
     #[error(
         "dt is {dt:.4e} s, but must be at most {limit:.4e} s, the theoretical limit of {integrator} \
-         here (--allow-unstable runs it all the same)"
+         for this run (--allow-unstable permits more)"
     )]
     TimeStep {
         /// The step \[s\].
@@ -74,7 +74,7 @@ pub enum RunError {
         /// Name of the integrator.
         integrator: &'static str,
     },
-    /// More steps or particles than anyone waits for.
+    /// More steps or particles than a run may have.
     #[error("{what} would be {value:.3e}, but must be at most {most:.1e}; change {setting}")]
     TooMuch {
         /// Steps or particles.
@@ -83,14 +83,14 @@ pub enum RunError {
         value: f64,
         /// How many are allowed.
         most: f64,
-        /// The settings that decide on it.
+        /// The settings on which this number depends.
         setting: &'static str,
     },
-    /// The scene is not one.
+    /// The solver refuses the scene.
     #[error("the settings make an impossible scene: {0}")]
     Scene(#[from] solver::SceneError),
-    /// The numbers that a case is built on could not be had.
-    #[error("a reference that the case needs: {0}")]
+    /// A reference that the case needs could not be loaded.
+    #[error("a reference that the case needs cannot be loaded: {0}")]
     Reference(String),
     /// A folder or file could not be written.
     #[error(transparent)]
@@ -101,8 +101,8 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Was the run refused for what it asks? Else a file or a reference is in the way, which is no property
-    /// of the run.
+    /// Was the run refused because of its settings? Otherwise a file or a reference is the reason, which is
+    /// not a property of the run.
     pub fn is_refusal(&self) -> bool {
         !matches!(self, Self::File(_) | Self::Frame(_) | Self::Reference(_))
     }

@@ -1,19 +1,19 @@
-//! Settings far outside of the usual as a table: what is extreme, what must come, what came. Each entry has
-//! a criterion of its own; where a run cannot succeed, the criterion is that it says so.
+//! A table of settings far outside the usual range: what is extreme, the required outcome, the observed one.
+//! Each entry has its own criterion; if a run cannot succeed, the criterion is that it reports the failure.
 
 use base::gate::{Bound, Evidence, Gate};
 use report::{Cell, Column, Table};
 
 use crate::{runs::Judged, study::Study};
 
-/// One setting, what must come, and what came.
+/// One setting, the required outcome, and the observed one.
 #[derive(Clone)]
 pub struct Entry {
     /// What is extreme.
     what: String,
-    /// The numbers of it.
+    /// The values of the setting.
     setting: String,
-    /// What came, in words.
+    /// The observed outcome, in words.
     found: String,
     /// The judged value.
     value: f64,

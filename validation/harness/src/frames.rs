@@ -1,5 +1,5 @@
-//! Frames for ParaView, written while a run goes on and without stopping it: watching must not change
-//! what is watched.
+//! Frames for ParaView, written between the steps of a run. Writing them must not change the run, so no step
+//! is shortened to reach the time of a frame.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,5 @@
-//! What the gates are worth: solvers and references with one thing spoiled, and the gates that they
-//! fail. Measured by `tests/tests/gate_power.rs`, which compares what is shown here exactly.
+//! Which errors the gates detect: solvers and references with one deliberate error each, and the gates that
+//! fail. `tests/tests/gate_power.rs` measures these results and compares them exactly with those shown here.
 
 use crate::study::Study;
 use report::{Block, Cell, Column, Status, Table};

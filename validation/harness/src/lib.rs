@@ -1,11 +1,11 @@
-//! The harness: what a case declares, how its runs are planned, made, kept and judged.
+//! The harness: the declarations of cases, and the planning, making, storing and judging of their runs.
 //!
 //! ```text
 //! case declares ──▶ plan ──▶ make: spec → record ──▶ store ──▶ judge, study ──▶ page
 //! ```
 //!
-//! Between the steps is plain data: [`base::spec::RunSpec`], [`base::record::Record`], [`study::Study`]. Only
-//! making knows the solver.
+//! The steps exchange plain data: [`base::spec::RunSpec`], [`base::record::Record`], [`study::Study`]. Only
+//! the step that makes runs calls the solver.
 
 pub mod bisect;
 pub mod case;

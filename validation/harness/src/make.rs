@@ -1,6 +1,6 @@
-//! Runs what a plan asks for and a store lacks: first what is not timed, side by side and the longest first;
-//! then, with nothing else of this program at work, what is timed, one run at a time, in rounds over all of
-//! them, so that a change of the machine's pace meets every variant alike.
+//! Makes the runs of a plan whose records the store lacks: first the runs that are not timed, in parallel and
+//! the longest first; then the timed runs, one at a time while this program does nothing else, in rounds over
+//! all of them, so that a change of the machine's speed affects every variant alike.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -39,18 +39,18 @@ pub struct Making<'a> {
     pub store: Option<&'a Store>,
     /// Digest of the sources that decide what a case computes.
     pub sources: &'a (dyn Fn(&str) -> String + Sync),
-    /// Are records of other sources good enough?
+    /// May records made by other sources be reused?
     pub reuse_other: bool,
     /// Told before the first run and after each.
     pub progress: Option<&'a Progress<'a>>,
-    /// Set from outside to stop.
+    /// Set by another thread to stop.
     pub interrupt: Option<&'a AtomicBool>,
 }
 
 /// Records of a plan, and where they come from.
 #[derive(Debug, Default)]
 pub struct Made {
-    /// By run.
+    /// The records by the key of their run.
     pub records: BTreeMap<RunKey, Record>,
     /// Runs whose record the store had.
     pub reused: usize,
@@ -220,8 +220,8 @@ fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
     Ok(records)
 }
 
-/// One run of a case: a simulation, or a bisection of many. Settings that make no run are a record too,
-/// with the reason; what remains an error is a file that cannot be written.
+/// One run of a case: a simulation, or a bisection of many. Settings that are refused give a
+/// record too, with the reason; the only error is a file that cannot be written.
 ///
 /// # Errors
 /// [`RunError::File`], [`RunError::Frame`] and [`RunError::Reference`].

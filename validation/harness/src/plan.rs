@@ -1,4 +1,4 @@
-//! From what cases declare to a list of runs, each of which is there once.
+//! Turns the declarations of cases into a list of runs in which each run occurs once.
 
 use std::collections::BTreeMap;
 
@@ -9,8 +9,8 @@ use crate::{
     planned::{Planned, Tier},
 };
 
-/// The runs of a case in a tier: those of its own plan, then those of its declaration. Runs that are asked
-/// for several times are one, with the gates of all.
+/// The runs of a case in a tier: those of its own plan, then those of its declaration. Runs that occur
+/// several times are merged into one, with the gates of all.
 pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
     let mut all = case.plan(tier);
     all.extend(case.declaration(tier).runs());

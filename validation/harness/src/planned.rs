@@ -5,9 +5,9 @@ use base::{gate::Gate, spec::RunSpec};
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tier {
-    /// Under a minute on two cores.
+    /// About a minute on two cores.
     Quick,
-    /// Under twenty minutes.
+    /// About twenty minutes.
     Full,
 }
 
@@ -18,7 +18,7 @@ pub struct Planned {
     pub spec: RunSpec,
     /// Judged on the record of this run.
     pub gates: Vec<Gate>,
-    /// Are its seconds shown? Then it runs in the quiet phase, with nothing else at work.
+    /// Are its seconds shown? Then it is made in the quiet phase, while this program does nothing else.
     pub timed: bool,
     /// Roughly how long it takes \[s\]; only the order counts: long runs start first, so that no core
     /// waits for the last one.

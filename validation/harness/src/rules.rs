@@ -1,6 +1,6 @@
-//! What the rules of a case choose.
+//! The quantities that a case derives from its settings: time step, its limit, and sound speed.
 
-/// What the rules of a case choose before the first step.
+/// The quantities that the rules of a case determine before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
     /// Time step \[s\].

@@ -1,5 +1,5 @@
-//! Steps a simulation through the times of interest: the only main loop of the program. It measures
-//! cost, shows progress, writes frames and obeys an interrupt; cases hold only what differs.
+//! Steps a simulation through the times of interest: the only time loop of the program. It measures the
+//! cost, shows progress, writes frames and stops at an interrupt; cases contain only what differs.
 
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -130,9 +130,9 @@ impl<X: Numbers> Run<'_, X> {
 }
 
 /// Steps through `times` \[s\], ascending; `at(simulation, k)` is called at the k-th. Returns how the
-/// run ended, and what it cost: the stepping, and beside it the observers and `at`.
+/// run ended, and its cost: that of the stepping, and separately that of the observers and of `at`.
 ///
-/// `observer` sees every step. `pressure` \[Pa\] of a density \[kg/m³\] is what frames show.
+/// `observer` is called after every step. Frames show `pressure` \[Pa\] as a function of density \[kg/m³\].
 ///
 /// # Errors
 /// If a frame cannot be written: the run stops at once.

@@ -1,4 +1,4 @@
-//! Records of a plan, looked up by what was run.
+//! The records of a plan, looked up by the spec of the run.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
@@ -16,9 +16,9 @@ use crate::planned::Planned;
 pub struct JudgedRun {
     /// What was planned.
     pub planned: Planned,
-    /// What came out.
+    /// The result of the run.
     pub record: Record,
-    /// One judgement a gate.
+    /// One judgement per gate.
     pub judged: Vec<Judged>,
 }
 

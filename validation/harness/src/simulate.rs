@@ -1,4 +1,4 @@
-//! The plain way from a scene to a record: build, step to the end, state what it took.
+//! From a scene to a record, for cases without further needs: build, step to the end, record the cost.
 
 use base::{
     number,
@@ -69,7 +69,7 @@ pub fn check(
 /// digest of its state. The case puts its metrics.
 ///
 /// # Errors
-/// If the scene is none, or a frame cannot be written.
+/// If the scene is refused, or a frame cannot be written.
 pub fn simulate<X: Numbers>(
     method: &Method<X>,
     parts: Parts<X>,
@@ -86,7 +86,7 @@ pub fn simulate<X: Numbers>(
     Ok(simulation)
 }
 
-/// Digest of places, velocities and densities, in the order of the scene.
+/// Digest of positions, velocities and densities, in the order of the scene.
 pub fn state<X>(particles: &[Particle<X>]) -> String {
     let numbers =
         |p: &Particle<X>| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];

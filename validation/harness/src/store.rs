@@ -1,5 +1,5 @@
-//! A folder of records by key: `CASE-VARIANT-KEY.json`, each written whole or not at all. Runs need nothing
-//! of each other, so a store may be filled by several processes, on several machines, in any order.
+//! A folder of records by key: `CASE-VARIANT-KEY.json`, each written completely or not at all. Runs are
+//! independent of each other, so several processes on several machines may fill a store in any order.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,10 +34,10 @@ pub enum StoreError {
     },
 }
 
-/// What a store has of a run.
+/// What a store contains for a run.
 #[derive(Debug)]
 pub enum Found {
-    /// Nothing that can be read as a record of this run.
+    /// No file that can be read as a record of this run.
     Nothing,
     /// A record that the same sources made.
     Same(Box<Record>),
@@ -68,8 +68,8 @@ impl Store {
         format!("{}-{}-{}.json", spec.case, spec.variant, spec.key())
     }
 
-    /// The record of a run, if there is one, and whether sources of this digest made it. One that was
-    /// interrupted is none, and so is a file that is no record: it will be made again.
+    /// The record of a run, if there is one, and whether sources of this digest made it. An
+    /// interrupted record, or a file that is not a record, does not count: the run will be made again.
     pub fn find(&self, spec: &RunSpec, sources: &str) -> Found {
         let Ok(text) = fs::read_to_string(self.path().join(Self::name(spec))) else {
             return Found::Nothing;

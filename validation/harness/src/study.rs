@@ -1,11 +1,11 @@
-//! A statement from many runs.
+//! A study: a result from many runs, with what the report shows and the gates that judge it.
 
 use base::gate::Gate;
 use report::Block;
 
 use crate::runs::Judged;
 
-/// A statement from many runs: what the report shows, and the gates on it.
+/// A result from many runs: what the report shows, and the gates that judge it.
 #[derive(Clone, Debug)]
 pub struct Study {
     /// Anchor in the report: letters, digits, hyphens.

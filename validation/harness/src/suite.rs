@@ -1,4 +1,4 @@
-//! Plans, makes, judges: what `verify` and `report` share.
+//! Planning, making and judging of all runs, which `verify` and `report` share.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use crate::{
     study::Study,
 };
 
-/// Everything of one case.
+/// The runs and studies of one case.
 pub struct CaseResults {
     /// The case.
     pub case: &'static dyn Case,
@@ -29,11 +29,11 @@ pub struct CaseResults {
     pub studies: Vec<Study>,
 }
 
-/// Everything.
+/// The results of all cases.
 pub struct Suite {
     /// How much was run.
     pub tier: Tier,
-    /// One entry a case.
+    /// One entry per case.
     pub cases: Vec<CaseResults>,
     /// Studies that belong to no case.
     pub studies: Vec<Study>,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use harness::case;
 
-/// How wrong a particle method is, what being less wrong costs, and how far it can be pushed.
+/// Measures how wrong a particle method (SPH) is, what smaller errors cost, and when it breaks.
 #[derive(Debug, Parser)]
 #[command(name = "touchstone", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Arguments {
@@ -13,32 +13,33 @@ pub struct Arguments {
     pub command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 pass, 1 a gate failed, 2 usage or invalid settings, \
-                          3 the simulation diverged, 4 a bug of ours, 130 interrupted.";
+const EXIT_CODES: &str = "Exit codes: 0 pass, 1 a gate failed, 2 invalid command or setting, or a \
+                          file cannot be written, 3 the simulation diverged, 4 a bug in touchstone, \
+                          130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// List cases; or variants and settings of one
+    /// List all cases, or the variants and settings of one case
     List(List),
-    /// Run one variant of a case and measure it, or the runs of a plan
+    /// Run one variant of a case and measure its errors and cost, or make the runs of a plan
     Run(Run),
-    /// Print runs as JSON lines: those of a tier, or of a sweep over settings of one case
+    /// Print the runs of a tier, or of a sweep over settings of one case, one JSON line per run
     Plan(Plan),
-    /// Plan, run what the store lacks, and judge every gate
+    /// Make the runs whose records the store lacks, and judge every gate
     Verify(Verify),
-    /// Judge the records of a store; runs nothing
+    /// Judge the records of a store without making any run
     Judge(Judge),
-    /// Plan, run what the store lacks, judge, and write the page; with --store it only renders
+    /// Do what `verify` does and write the report; with --store, write it without making any run
     Report(Report),
-    /// Say what changed between two reports or stores
+    /// Show the differences between two reports or stores
     Compare(Compare),
-    /// Find the largest stable time steps and compare them with theory
+    /// Find the largest stable time steps by bisection and compare them with theory
     Stability(Stability),
-    /// Say what a gate checks, where its bound is and why
+    /// Show what a gate checks, its bound, and the reason for the bound
     Explain(Explain),
-    /// Say what this program was built from, and check that it works here
+    /// Show what this program was built from, and check that it works on this machine
     Doctor(Doctor),
-    /// Print a script that completes commands in a shell
+    /// Print a completion script for a shell
     Completions(Completions),
 }
 
@@ -46,66 +47,66 @@ pub enum Command {
 pub struct List {
     /// Name of the case
     pub case: Option<String>,
-    /// As JSON
+    /// Print the list as JSON
     #[arg(long)]
     pub json: bool,
 }
 
-/// Threads: more than machines of today have cores.
+/// The largest number of threads that may be asked for: more than present machines have cores.
 pub const MOST_THREADS: u16 = 1024;
 
 fn threads() -> clap::builder::RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS))
 }
 
-/// What `run` has for one run, and `run --specs` has not.
+/// The options of `run` that apply to a single run and are refused with `--specs`.
 const OF_ONE_RUN: [&str; 9] =
     ["case", "variant", "set", "rows", "out", "overwrite", "vtk", "json", "allow_unstable"];
 
 #[derive(Debug, Args)]
 pub struct Run {
-    /// Name of the case, as `touchstone list` has it
+    /// Name of the case, as `touchstone list` shows it
     #[arg(required_unless_present = "specs")]
     pub case: Option<String>,
-    /// Name of the variant; by default `modern` or else the first one listed
+    /// Name of the variant; the default is `modern` or, if the case has none, the first variant listed
     #[arg(long)]
     pub variant: Option<String>,
-    /// Set a setting (repeatable), as in `--set re=0.1 --set end=0.5`
+    /// Change a setting (repeatable), as in `--set re=0.1 --set end=0.5`
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Short for `--set rows=N`, and not to be given beside it
+    /// Short for `--set rows=N`; giving both is an error
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rows: Option<String>,
     /// Write record.json, profile.csv, series.csv and profile.png into this folder; without --out
     /// and --vtk no file is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Write into the folder even if it holds the record of another case, whose files it then mixes with
+    /// Write into the folder even if it holds the record of another case; files of both are then mixed
     #[arg(long)]
     pub overwrite: bool,
-    /// Write N frames for ParaView as well (default folder: reports/run-CASE-VARIANT)
+    /// Also write N frames for ParaView (folder without --out: reports/run-CASE-VARIANT)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=9999))]
     pub vtk: Option<u16>,
-    /// Print the record, and nothing else, on standard output
+    /// Print only the record, as JSON, on standard output
     #[arg(long)]
     pub json: bool,
-    /// Threads of the run, 1 to 1024; only sums over 10,000 particles and more are spread over them.
-    /// With --specs: runs side by side. By default one a core
+    /// Number of threads inside the run, 1 to 1024, used from 10,000 particles on; with --specs, number
+    /// of runs made in parallel. The default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
     /// Run even with a time step beyond the theoretical limit
     #[arg(long)]
     pub allow_unstable: bool,
-    /// Make the runs of this file, JSON lines as `touchstone plan` prints them; `-` is standard input
+    /// Make the runs of this file of JSON lines, as `touchstone plan` prints them; `-` is standard input
     #[arg(long, value_name = "FILE", requires = "store", conflicts_with_all = OF_ONE_RUN)]
     pub specs: Option<PathBuf>,
-    /// Folder that keeps the records of --specs; runs that it has already are not made again
+    /// Folder for the records of --specs; a run whose record is there already is not made again
     #[arg(long, value_name = "DIR", requires = "specs")]
     pub store: Option<PathBuf>,
-    /// Of --specs, only the run with this key
+    /// With --specs, make only the run with this key
     #[arg(long, value_name = "KEY", requires = "specs", conflicts_with = "index")]
     pub only: Option<String>,
-    /// Of --specs, only the run of this line, from 0: what an array job passes
+    /// With --specs, make only the run of line N, counted from 0, as an array job does
     #[arg(long, value_name = "N", requires = "specs")]
     pub index: Option<usize>,
 }
@@ -144,10 +145,10 @@ pub struct Plan {
     pub variant: Vec<String>,
 }
 
-/// Which records are good enough.
+/// Which records may be reused.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct Reuse {
-    /// Reuse records that a build of other sources made, too; the report then says so
+    /// Also reuse records made by a build of other sources; the report then says so
     #[arg(long)]
     pub any_build: bool,
     /// Reuse no record: make every run again
@@ -158,7 +159,7 @@ pub struct Reuse {
 /// Verdicts for other programs.
 #[derive(Clone, Debug, Default, Args)]
 pub struct Export {
-    /// Write the verdicts as JUnit XML, a test case a gate
+    /// Write the verdicts as JUnit XML, one test case per gate
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
     /// Write the verdicts as a Markdown table
@@ -168,12 +169,12 @@ pub struct Export {
 
 #[derive(Debug, Args)]
 pub struct Verify {
-    /// Names of the cases; by default all, and the studies that belong to none
+    /// Names of the cases; by default all cases, and the studies that belong to no case
     pub cases: Vec<String>,
     /// How much to run
     #[arg(long, value_enum, default_value = "quick")]
     pub tier: Tier,
-    /// Folder that keeps the records; runs that it has already are not made again
+    /// Folder for the records; a run whose record is there already is not made again
     #[arg(long, value_name = "DIR", default_value = "reports/records")]
     pub store: PathBuf,
     #[command(flatten)]
@@ -183,22 +184,22 @@ pub struct Verify {
     /// Print the verdicts as JSON on standard output
     #[arg(long)]
     pub json: bool,
-    /// Runs side by side, 1 to 1024; by default one a core
+    /// Number of runs made in parallel, 1 to 1024; the default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]
 pub struct Judge {
-    /// Names of the cases; by default all, and the studies that belong to none
+    /// Names of the cases; by default all cases, and the studies that belong to no case
     pub cases: Vec<String>,
-    /// The plan to judge
+    /// The tier whose plan is judged
     #[arg(long, value_enum, default_value = "quick")]
     pub tier: Tier,
     /// Folder with the records
     #[arg(long, value_name = "DIR")]
     pub store: PathBuf,
-    /// Judge records that a build of other sources made, too
+    /// Also judge records made by a build of other sources
     #[arg(long)]
     pub any_build: bool,
     #[command(flatten)]
@@ -213,57 +214,57 @@ pub struct Report {
     /// How much to run
     #[arg(long, value_enum, default_value = "quick")]
     pub tier: Tier,
-    /// Where to write the page
+    /// Folder for the report
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub out: PathBuf,
-    /// Render the records of this folder and run nothing; by default runs are made and kept in
-    /// OUT/records
+    /// Write the report from the records of this folder without making any run; by default, runs are
+    /// made and their records stored in the folder `records` inside that of --out
     #[arg(long, value_name = "DIR", conflicts_with = "fresh")]
     pub store: Option<PathBuf>,
     #[command(flatten)]
     pub reuse: Reuse,
     #[command(flatten)]
     pub export: Export,
-    /// Runs side by side, 1 to 1024; by default one a core
+    /// Number of runs made in parallel, 1 to 1024; the default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]
 pub struct Compare {
-    /// A report or a store: what was
+    /// The earlier report or store
     pub before: PathBuf,
-    /// A report or a store: what is
+    /// The later report or store
     pub after: PathBuf,
-    /// As JSON on standard output
+    /// Print the differences as JSON on standard output
     #[arg(long)]
     pub json: bool,
 }
 
 #[derive(Debug, Args)]
 pub struct Stability {
-    /// Names of the cases; by default all that declare limits
+    /// Names of the cases; by default all that declare limits of the time step
     pub cases: Vec<String>,
-    /// How many variants
+    /// How many variants to examine
     #[arg(long, value_enum, default_value = "quick")]
     pub tier: Tier,
     /// Print the limits as JSON on standard output
     #[arg(long)]
     pub json: bool,
-    /// Variants side by side, 1 to 1024; by default one a core
+    /// Number of variants examined in parallel, 1 to 1024; the default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// Name of the gate, or how it begins
+    /// Name of the gate, or the beginning of the names of several gates
     #[arg(required_unless_present = "status")]
     pub gate: Option<String>,
-    /// List the gates on which the last report has this verdict, a line each
+    /// List the gates with this verdict in the last report, one per line
     #[arg(long, value_enum, value_name = "VERDICT")]
     pub status: Option<Status>,
-    /// Folder of the last report: its verdicts are shown, and gates on many runs are found in it
+    /// Folder of the last report, which gives the verdicts and the gates of studies
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub reports: PathBuf,
 }
@@ -273,21 +274,21 @@ pub struct Explain {
 pub enum Status {
     /// Inside its bound
     Pass,
-    /// Outside, or missing
+    /// Outside its bound, not finite, or missing
     Fail,
-    /// Outside for a known reason
+    /// Outside its bound, for a known reason
     Limitation,
-    /// A control that lies outside, as it must
+    /// A control that lies outside its bound, as it must
     ExpectedFailure,
     /// Shown, not judged
     Reported,
-    /// May be missing, and is
+    /// Missing, which this gate allows
     NotMeasured,
 }
 
 #[derive(Debug, Args)]
 pub struct Doctor {
-    /// Measure the speed of the solver as well (about a minute)
+    /// Also measure the speed of the solver (about a minute)
     #[arg(long)]
     pub bench: bool,
     /// Folder that must be writable

@@ -118,8 +118,9 @@ fn bench(world: &World) -> Result<(), Failure> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     output::print(
         "\nSpeed: continuity, pressure and Morris viscosity in one sum, cubic spline, h/dx 1.2, 20 \
-         neighbours\nwithin the support; the best of four batches. Rows: particles sorted and put \
-         into rows.\n\n",
+         neighbours\nwithin the support; the best of four batches. M rhs/s: million particle \
+         right-hand sides\na second. M lists/s: million neighbour lists built a second, sorting of the \
+         particles included.\n\n",
     )?;
     let mut rows = Vec::new();
     for side in bench::SIDES {
@@ -142,7 +143,7 @@ fn bench(world: &World) -> Result<(), Failure> {
     }
     let on_all = format!("{all} threads: M rhs/s");
     let heads =
-        ["particles", "in a row", "B each", "1 thread: M rhs/s", "M rows/s", &on_all, "M rows/s"];
+        ["particles", "in list", "B each", "1 thread: M rhs/s", "M lists/s", &on_all, "M lists/s"];
     output::print(&output::table(&heads[..if all > 1 { 7 } else { 5 }], &rows))?;
     shares()
 }
@@ -168,10 +169,11 @@ fn shares() -> Result<(), Failure> {
         .collect();
     output::print(&format!(
         "\nWhere the time of a run goes, {ROWS} rows, one thread. Method: whole steps of the running \
-         flow are\ntimed, then as many bare row loops (sweeps of the same scene over columns and \
-         rows that are ready,\nwith updates over no time), {} times in turn: the pair with the median \
-         share. The rest of a step\nis filling columns, images and building rows.\n\n{}",
+         flow are\ntimed, then as many pair sweeps alone (of the same scene, over derived data and \
+         neighbour lists that are\nready, with updates over no time), {} times in turn: the pair with the \
+         median share. The rest of a\nstep is refreshing particles and images, and building neighbour \
+         lists.\n\n{}",
         bench::PAIRS,
-        output::table(&["run", "step", "its row loops", "share"], &rows)
+        output::table(&["run", "step", "its pair sweeps", "share"], &rows)
     ))
 }

@@ -103,7 +103,7 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     gates
 }
 
-/// The gates whose name begins so and that have this verdict, a line each.
+/// The gates whose name begins with `asked` and that have this verdict, one per line.
 fn listed(verdicts: &Verdicts, status: arguments::Status, begins: &str) -> String {
     let of_runs = verdicts.runs.iter().flat_map(|run| &run.judged);
     let all = of_runs.chain(verdicts.studies.iter().flat_map(|study| &study.judged));
@@ -142,8 +142,8 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
         near => format!("the nearest of {} names: {}", ids.len(), near.join(", ")),
     };
     Failure::usage(anyhow::anyhow!(
-        "no gate is called {asked:?} or begins so; {hint} (gates of studies are known after \
-         touchstone report)"
+        "no gate is called {asked:?}, and no name begins with it; {hint} (gates of studies are known \
+         only after touchstone report)"
     ))
 }
 
@@ -197,7 +197,7 @@ fn purpose(purpose: &Purpose) -> String {
     match purpose {
         Purpose::Judge => "inside passes, outside fails".into(),
         Purpose::Report => "reported, not judged".into(),
-        Purpose::Limitation(reason) => format!("lying outside is known: {reason}"),
-        Purpose::ExpectFailure => "a control that must lie outside".into(),
+        Purpose::Limitation(reason) => format!("known limitation, may lie outside: {reason}"),
+        Purpose::ExpectFailure => "a control, which must lie outside".into(),
     }
 }

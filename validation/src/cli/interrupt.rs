@@ -21,6 +21,6 @@ pub fn listen() -> Result<(), ctrlc::Error> {
             files::remove_unfinished();
             process::exit(Exit::Interrupted as i32);
         }
-        output::say("interrupting; once more to end at once");
+        output::say("interrupting; interrupt once more to end at once");
     })
 }

@@ -1,16 +1,16 @@
-//! The command line: what can be asked, and what the process ends with.
+//! The command line: its commands, and the exit codes of the process.
 //!
 //! | Exit code | Meaning |
 //! |---|---|
 //! | 0 | done, and every gate that was judged passed |
 //! | 1 | a gate failed |
-//! | 2 | usage, invalid settings, or a file that cannot be written, whatever the gates say |
+//! | 2 | invalid command or settings, or a file that cannot be written, whatever the verdicts |
 //! | 3 | the simulation of `run` diverged |
-//! | 4 | a bug of ours |
-//! | 130 | interrupted; whole files may have been written, no partial one |
+//! | 4 | a bug in touchstone |
+//! | 130 | interrupted; files may have been written, and each is complete |
 //!
-//! Results that were asked for go to standard output (`list`, `explain`, `doctor`, and all that is
-//! `--json`); what tells a person how it went goes to standard error.
+//! Results go to standard output (`list`, `plan`, `explain`, `compare`, `doctor`, and everything with
+//! `--json`); messages and all other tables go to standard error.
 
 mod arguments;
 mod compare;
@@ -56,7 +56,7 @@ pub enum Exit {
     Usage = 2,
     /// The simulation diverged.
     Diverged = 3,
-    /// A bug of ours.
+    /// A bug in touchstone.
     Bug = 4,
     /// By the user.
     Interrupted = 130,
@@ -175,7 +175,7 @@ impl World {
         if let Some(reason) = made.not_kept.values().next() {
             let count = made.not_kept.len();
             output::say(&format!(
-                "touchstone: {count} of {} records could not be kept: {reason}{}",
+                "touchstone: {count} of {} records could not be stored: {reason}{}",
                 made.records.len(),
                 if count > 1 { ", and so on" } else { "" }
             ));
@@ -225,7 +225,7 @@ pub fn main() -> ExitCode {
     let threads = default_threads();
     if threads > 0 {
         output::say(&format!(
-            "note: RAYON_NUM_THREADS is more than {threads}, the most threads that are used"
+            "note: RAYON_NUM_THREADS is more than {threads}; only {threads} threads are used"
         ));
         // The only other error is that the pool is there already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();

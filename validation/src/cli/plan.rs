@@ -16,7 +16,8 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Outcome {
         cases.iter().flat_map(of_case).map(|planned| planned.spec).collect()
     } else {
         let [case] = cases[..] else {
-            let words = "a sweep with --set or --variant is one over settings of one case; name it";
+            let words =
+                "--set and --variant ask for a sweep over the settings of one case; name one case";
             return Err(Failure::usage(anyhow::anyhow!(words)));
         };
         sweep(case, &arguments.variant, &arguments.set)?

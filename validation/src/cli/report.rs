@@ -59,8 +59,8 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     ));
     match sound {
         Ok(_) => Ok(verify::exit(&suite)),
-        Err(reason) => {
-            Err(Failure::bug(anyhow::anyhow!("the page is there, but may not open: {reason}")))
-        }
+        Err(reason) => Err(Failure::bug(anyhow::anyhow!(
+            "the page was written, but a browser may fail to open it: {reason}"
+        ))),
     }
 }

@@ -42,7 +42,7 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
         output::print_whole(&record.to_json()?)?;
     }
     if made.interrupted {
-        let rest = "the same command makes those that are missing";
+        let rest = "the same command makes the missing runs";
         return Err(Failure::interrupted(format!("{words}; {rest}")));
     }
     output::say(&format!("{words}; {}", store.path().display()));
@@ -61,7 +61,9 @@ fn read(file: &Path) -> Result<Vec<RunSpec>, Failure> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let parse = |(k, line): (usize, &str)| {
         RunSpec::from_canonical(line)
-            .with_context(|| format!("line {} of {} is no run", k + 1, file.display()))
+            .with_context(|| {
+                format!("line {} of {} does not describe a run", k + 1, file.display())
+            })
             .map_err(Failure::usage)
     };
     lines.map(parse).collect()
@@ -73,13 +75,14 @@ fn chosen(specs: Vec<RunSpec>, arguments: &arguments::Run) -> Result<Vec<RunSpec
     let (chosen, missing): (Vec<RunSpec>, String) = match (&arguments.only, arguments.index) {
         (Some(key), _) => {
             let of_key = specs.into_iter().filter(|spec| spec.key().to_string() == *key);
-            (of_key.collect(), format!("no run has the key {key}"))
+            (of_key.collect(), format!("no run of the file has the key {key}"))
         }
         (None, Some(index)) => {
-            let words = format!("there is no run {index}; the file has {count}, from 0");
+            let words =
+                format!("there is no run {index}; the file has {count} runs, counted from 0");
             (specs.into_iter().nth(index).into_iter().collect(), words)
         }
-        (None, None) => (specs, "the file has no run".into()),
+        (None, None) => (specs, "the file describes no run".into()),
     };
     match chosen.is_empty() {
         true => Err(Failure::usage(anyhow::anyhow!(missing))),

@@ -38,7 +38,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     let jobs: Vec<Job> = declared.iter().map(job).collect();
     let mut made = world.make(&jobs, arguments.tier.into(), None, false, arguments.threads)?;
     if made.interrupted {
-        return Err(Failure::interrupted("no limit is known"));
+        return Err(Failure::interrupted("no limit was determined"));
     }
     let found = jobs.into_iter().filter_map(|job| {
         let record = made.records.remove(&job.planned.spec.key())?;

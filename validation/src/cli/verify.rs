@@ -102,7 +102,7 @@ pub fn run(
     let made = world.make(&jobs, tier, Some(store), reuse.any_build, threads)?;
     if world.is_interrupted() {
         return Err(Failure::interrupted(format!(
-            "nothing is judged; {} of {} records are kept, and the same command goes on with the rest",
+            "nothing is judged; {} of {} records are stored, and the same command makes the others",
             made.records.len() - made.not_kept.len(),
             jobs.len()
         )));
@@ -119,7 +119,7 @@ pub fn of_store(
     world: &World,
 ) -> Result<Suite, Failure> {
     if !path.is_dir() {
-        return Err(Failure::usage(anyhow::anyhow!("there is no store {}", path.display())));
+        return Err(Failure::usage(anyhow::anyhow!("the store {} does not exist", path.display())));
     }
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);
@@ -146,8 +146,8 @@ pub fn of_store(
     if missing + other > 0 {
         let all = made.reused + missing + other;
         output::say(&format!(
-            "note: of {all} runs of the {} tier the store lacks {missing}, and {other} are of a build of \
-             other sources (--any-build takes them); their gates fail",
+            "note: of {all} runs of the {} tier the store lacks {missing}, and {other} were made by a build \
+             of other sources (--any-build accepts them); the gates of both fail",
             judged::tier_name(tier)
         ));
     }

@@ -1,10 +1,10 @@
-//! The numbers that terms and walls are made from.
+//! The parameters from which terms and walls are constructed.
 
 use maths::theory::time_step;
 use nalgebra::Vector2;
 use solver::{Linear, Tait};
 
-/// A material at a spacing. What a case does not have stays 0.
+/// The parameters of a material at a particle spacing. Parameters that a case does not use are 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Medium {
     /// Equation of state, with density at rest and sound speed; a solid takes these two of it.
@@ -25,7 +25,7 @@ pub struct Medium {
     pub shear_modulus: f64,
     /// Body force \[m/s²\].
     pub acceleration: Vector2<f64>,
-    /// By which walls extrapolate the pressure \[m/s²\].
+    /// The acceleration with which walls extrapolate the pressure \[m/s²\].
     pub wall_acceleration: Vector2<f64>,
     /// η² \[h²\].
     pub eta2_over_h2: f64,
@@ -56,7 +56,7 @@ impl Medium {
         Linear { density: self.eos.density, sound_speed: self.eos.sound_speed }
     }
 
-    /// What waves in it depend on, for terms that read these settings.
+    /// The parameters on which waves in the medium depend, for terms that read these settings.
     pub fn waves(&self, uses: &[Knob]) -> time_step::Medium {
         let used = |knob, value| if uses.contains(&knob) { value } else { 0.0 };
         let (alpha, delta) = (used(Knob::Alpha, self.alpha), used(Knob::Diffusion, self.diffusion));
@@ -64,28 +64,28 @@ impl Medium {
     }
 }
 
-/// A setting that some terms or walls read, and others do not have.
+/// A setting that only some terms or walls read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Knob {
     /// η² of the viscous term.
     Eta2,
     /// α of the artificial viscosity.
     Alpha,
-    /// Its β.
+    /// β of the artificial viscosity.
     Beta,
     /// ε of XSPH.
     Xsph,
     /// ξ of the artificial stress.
     Xi,
-    /// Its exponent.
+    /// Exponent of the artificial stress.
     Exponent,
     /// δ of the density diffusion.
     Diffusion,
     /// Amplitude of the shifting.
     Shift,
-    /// Whether ghosts know the curvature of the velocity at their wall.
+    /// Whether mirror particles use the curvature of the velocity profile at their wall.
     WallCurvature,
-    /// Share of gravity that an extrapolating wall knows of.
+    /// Share of gravity that an extrapolating wall uses.
     WallGravity,
 }
 

@@ -1,7 +1,8 @@
-//! A method: a scheme of the solver without its type, so that what a case does with it is compiled once.
+//! A method: a scheme of the solver without its type, so that the code of a case is compiled only once for
+//! all schemes.
 //!
-//! The type parameters of a scheme say which terms there are; [`FromMedium`] and [`Boundary`] make their
-//! values from the numbers of a [`Medium`]. [`Method::of`] is all that is compiled for each scheme.
+//! The type parameters of a scheme determine its terms and walls; [`FromMedium`] and [`Boundary`] construct
+//! their values from the parameters in a [`Medium`]. Only [`Method::of`] is compiled for each scheme.
 
 mod medium;
 mod terms;
@@ -21,7 +22,7 @@ use crate::context::Context;
 pub use medium::{Knob, Medium};
 pub use terms::{Boundary, FirstRow, FromMedium};
 
-/// A scheme that can be made from a medium.
+/// A scheme whose terms and walls can be constructed from a medium.
 pub trait Standard:
     Scheme<
         Forces: FromMedium,
@@ -42,15 +43,15 @@ impl<S> Standard for S where
 {
 }
 
-/// What a scene has beside the types of its scheme.
+/// The parts of a scene apart from the types of its scheme.
 pub struct Parts<X = ()> {
-    /// What its terms and walls are made from.
+    /// The parameters from which its terms and walls are constructed.
     pub medium: Medium,
     /// Periodic or open.
     pub domain: Domain,
     /// The particles; results keep their order.
     pub particles: Vec<Particle<X>>,
-    /// Planes that mirror the fluid, where the walls are mirrors.
+    /// Planes that mirror the fluid, if the walls are of mirror particles.
     pub mirrors: Vec<PlaneWall>,
     /// Verlet skin \[m\], if not the usual one.
     pub skin: Option<f64>,
@@ -102,13 +103,13 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     pub integrator: &'static str,
     /// Name of the walls.
     pub walls: &'static str,
-    /// Where boundary particles stand.
+    /// Where the first row of boundary particles lies.
     pub first_row: FirstRow,
     /// Support radius \[h\].
     pub support: f64,
     /// The theory of its time step.
     pub theory: time_step::Integrator,
-    /// The settings that its terms and walls read and others do not.
+    /// The settings that only its terms and walls read.
     pub uses: Vec<Knob>,
     /// The simulation of a scene with these parts.
     pub build: fn(Parts<X>) -> Result<Box<D>, SceneError>,
@@ -167,8 +168,8 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
         }
     }
 
-    /// The wave with this phase from one particle to the next \[rad\], on a square lattice with these h/dx
-    /// and η²/h².
+    /// The wave with this phase difference between neighbouring particles \[rad\], on a square lattice with
+    /// these h/dx and η²/h².
     pub fn mode(&self, lattice: Lattice, theta: Vector2<f64>, medium: &time_step::Medium) -> Mode {
         (self.mode)(lattice, theta, medium)
     }
@@ -178,7 +179,8 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
         (self.gradient)(h_over_dx, phase)
     }
 
-    /// What a uniform gradient is multiplied by on a square lattice with this h/dx: G₁ = Σ V F x².
+    /// The factor by which the method multiplies a uniform gradient on a square lattice with this
+    /// h/dx: G₁ = Σ V F x².
     pub fn gradient_factor(&self, h_over_dx: f64) -> f64 {
         (self.gradient_factor)(h_over_dx)
     }

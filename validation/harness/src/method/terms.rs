@@ -1,4 +1,4 @@
-//! How each term and each wall is made from the numbers of a medium, and which settings it reads.
+//! How each term and each wall is constructed from the parameters of a medium, and which settings it reads.
 
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConsistentContinuity,
@@ -10,11 +10,11 @@ use solver::{
 
 use super::medium::{Knob, Medium};
 
-/// What can be made from a medium.
+/// A term that can be constructed from a medium.
 pub trait FromMedium: Sized {
     /// Its value.
     fn new(medium: &Medium) -> Self;
-    /// The settings that it reads and other terms do not, those of the terms inside it too.
+    /// The settings that only some terms read and this one does, including those of the terms inside it.
     fn uses() -> Vec<Knob> {
         Vec::new()
     }
@@ -92,26 +92,26 @@ macro_rules! tuples_from_medium {
 
 tuples_from_medium! { (A, B) (A, B, C) (A, B, C, D) }
 
-/// Where the first row of boundary particles stands.
+/// Where the first row of boundary particles lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstRow {
-    /// There are none: mirrors, or no wall.
+    /// There are no boundary particles: mirror particles, or no wall.
     Nowhere,
-    /// On the surface: they are of the interface.
+    /// On the surface: interface particles.
     OnSurface,
     /// Half a spacing behind it.
     Behind,
 }
 
 impl FirstRow {
-    /// How far behind the surface it stands \[dx\]; half a spacing also where there is none, for the fluid
-    /// begins as far before a mirror.
+    /// Distance of the first row behind the surface \[dx\]; half a spacing also without boundary particles,
+    /// for the fluid begins half a spacing before a mirroring wall.
     pub fn depth(self) -> f64 {
         if self == Self::OnSurface { 0.0 } else { 0.5 }
     }
 }
 
-/// Walls that can be made from a medium and the planes that mirror the fluid.
+/// Walls that can be constructed from a medium and from the planes that mirror the fluid.
 pub trait Boundary: Sized {
     /// The name in reports.
     const NAME: &'static str;
@@ -119,7 +119,7 @@ pub trait Boundary: Sized {
     const FIRST_ROW: FirstRow;
     /// The walls.
     fn new(medium: &Medium, mirrors: Vec<PlaneWall>) -> Self;
-    /// The settings that they read and other walls do not.
+    /// The settings that only some walls read and these do.
     fn uses() -> Vec<Knob> {
         Vec::new()
     }
@@ -168,8 +168,8 @@ impl Boundary for ExtrapolatingWall<Tait, NoSlip> {
     }
 }
 
-/// Along walls of standing velocity; their pressure is not below 0: above a free surface a wall must not
-/// suck the water up.
+/// Along walls at rest. Their pressure is not below 0, because above a free surface a wall must not attract
+/// the water.
 impl Boundary for ExtrapolatingWall<Tait> {
     const NAME: &'static str = "extrapolating-wall";
     const FIRST_ROW: FirstRow = FirstRow::Behind;

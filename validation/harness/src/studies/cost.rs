@@ -1,5 +1,5 @@
-//! Error against cost: which settings reach an error with the least work, in seconds of a run that had the
-//! machine for itself, and in pair interactions, which no other program can disturb.
+//! Error against cost: which settings reach an error with the least work, in seconds of a run that was
+//! made alone, and in pair interactions, which do not depend on the machine or on other programs.
 
 use base::record::{Status, median};
 use report::{

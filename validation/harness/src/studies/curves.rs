@@ -1,4 +1,4 @@
-//! Profiles or histories over their reference.
+//! Profiles or histories, plotted together with their reference.
 
 use report::{Colour, Figure, Legend, Plot, Series, Shape};
 

@@ -1,4 +1,4 @@
-//! The largest stable time step against theory.
+//! The largest stable time step compared with theory.
 
 use report::{Cell, Column, Table};
 

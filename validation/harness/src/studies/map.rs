@@ -1,4 +1,4 @@
-//! Outcomes over two settings.
+//! Maps: the outcomes of runs as a function of two settings.
 
 use base::record::Record;
 use report::{CategoryMap, Figure};

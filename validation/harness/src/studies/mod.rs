@@ -1,4 +1,4 @@
-//! The studies that every case has: from its [`Declaration`] and the records, to statements. Pure functions.
+//! The studies common to all cases: pure functions of the [`Declaration`] of a case and of its records.
 
 mod budget;
 mod cost;

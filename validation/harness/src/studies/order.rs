@@ -1,4 +1,4 @@
-//! Order of accuracy with its interval.
+//! The observed order of accuracy with its confidence interval.
 
 use base::gate::Gate;
 use report::{Axis, Cell, Column, Figure, Layer, Legend, Plot, Series, Table, sig};

@@ -122,8 +122,8 @@ tuple_of_items!(A 0, B 1, C 2, D 3);
 
 /// A simulation that can say what each of its terms does to the energy.
 pub trait Metered<X>: Stepper<X> {
-    /// The powers of its forces, its drift and its walls' own terms, after [`Stepper::advance`] reached a
-    /// time.
+    /// The powers of its forces, of its drift and of the terms of its walls, after [`Stepper::advance`]
+    /// reached a time.
     fn powers(&mut self, slope: Slope<X>) -> Items;
 }
 

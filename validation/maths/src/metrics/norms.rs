@@ -11,10 +11,10 @@ pub struct Scale(f64);
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum NormError {
     /// The scale is 0, negative, infinite or NaN.
-    #[error("scale {0} is not positive and finite")]
+    #[error("the scale of a norm is {0}, but must be positive and finite")]
     Scale(f64),
     /// Measured and exact values do not pair up.
-    #[error("{measured} measured values against {exact} exact ones")]
+    #[error("there are {measured} measured values, but {exact} exact ones")]
     Lengths {
         /// Number of measured values.
         measured: usize,
@@ -22,10 +22,10 @@ pub enum NormError {
         exact: usize,
     },
     /// Nothing to measure.
-    #[error("no values")]
+    #[error("there are no values to compare")]
     Empty,
     /// A value is NaN or infinite.
-    #[error("measured {measured}, exact {exact} at index {index}")]
+    #[error("the values at index {index} are not finite: measured {measured}, exact {exact}")]
     NotFinite {
         /// Where.
         index: usize,

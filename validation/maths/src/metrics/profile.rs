@@ -19,7 +19,9 @@ pub struct Field<'a> {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ProfileError {
     /// The slices of the field differ in length.
-    #[error("{positions} positions, {volumes} volumes, {values} values")]
+    #[error(
+        "the field has {positions} positions, {volumes} volumes, {values} values: not equally many"
+    )]
     Lengths {
         /// Number of positions.
         positions: usize,
@@ -29,7 +31,9 @@ pub enum ProfileError {
         values: usize,
     },
     /// A station has no particle in reach, or a particle in reach is not finite.
-    #[error("station {station} at ({x}, {y}) m: sum of V W = {weight}")]
+    #[error(
+        "station {station} at ({x}, {y}) m cannot be interpolated: its Shepard sum of V W is {weight}"
+    )]
     Station {
         /// Index of the station.
         station: usize,

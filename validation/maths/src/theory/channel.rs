@@ -78,7 +78,8 @@ pub struct Channel {
 pub enum ChannelError {
     /// A ghost would mirror a row that does not exist.
     #[error(
-        "{rows} rows of fluid, but the kernel reaches {reach} rows: use as many, and at least 3"
+        "the channel has {rows} rows of fluid, but must have at least 3, and as many as the kernel reaches, \
+         which is {reach}"
     )]
     TooNarrow {
         /// Rows of fluid.
@@ -87,7 +88,7 @@ pub enum ChannelError {
         reach: usize,
     },
     /// Width or viscosity is not positive and finite.
-    #[error("{name} = {value} is not positive and finite")]
+    #[error("{name} is {value}, but must be positive and finite")]
     NotPositive {
         /// Which.
         name: &'static str,
