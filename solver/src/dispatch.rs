@@ -1,4 +1,4 @@
-//! Runs a loop that is written once for lanes of any type on the widest that the processor has.
+//! Runs a loop, written once for lanes of any type, on the widest lanes that the processor supports.
 
 use simba::simd::WideF64x4;
 

@@ -1,5 +1,5 @@
-//! The right-hand side of a scene, as integrators see it: refresh what is derived from a state, then sweep
-//! over its pairs.
+//! The engine: the right-hand side of a scene, which integrators evaluate. It refreshes the data derived from
+//! a state and then makes the pair sweeps.
 
 use nalgebra::Vector2;
 

@@ -1,5 +1,5 @@
-//! Neighbour lists (Verlet lists): particles sorted by cell, lists of column indices padded to whole lanes,
-//! kept for as long as no particle has moved by half the skin.
+//! Neighbour lists (Verlet lists): particles are sorted by cell, and lists of column indices are padded to
+//! whole lanes and kept for as long as no particle has moved by more than half the skin.
 //!
 //! Column c < n is particle c; then come images (periodic copies, mirror particles), and last the sentinel
 //! that pads lists. Two particles farther apart than support + skin when the lists were built, each
@@ -359,7 +359,7 @@ mod tests {
         }
     }
 
-    /// What a list lists: which particle, and where it or its image is.
+    /// An entry of a list: which particle, and the position of it or of its image.
     type Listed = (u32, Vector2<f64>);
 
     fn horizontal(y: f64, up: f64) -> PlaneWall {

@@ -1,8 +1,8 @@
-//! [`Numbers`]: a fixed set of numbers that a term keeps a particle, liftable to lanes.
+//! [`Numbers`]: a fixed set of numbers that a term needs per particle, and its counterpart for four lanes.
 //!
-//! What a term derives for a particle's neighbours to read, what a particle sums over them and what a
-//! term integrates are all such sets: `()`, one number, a vector, a symmetric tensor, or tuples of these.
-//! `()` takes no memory and no time, which is how a scene leaves out what it does not need.
+//! The derived data that neighbours read, the sums over neighbours, and the extra fields that a term
+//! integrates are all such sets: `()`, one number, a vector, a symmetric tensor, or tuples of these.
+//! `()` takes no memory and no time, so a scene pays nothing for what it does not need.
 
 use nalgebra::Vector2;
 

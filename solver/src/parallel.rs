@@ -1,6 +1,6 @@
-//! Work shared out to threads. What threads take is handed out one by one under a lock, so that the
-//! machinery of threads is compiled once and not for each type of item. An item is a block of particles:
-//! taking one costs nothing beside the work on it.
+//! Distribution of work to threads. Threads take items one by one under a lock, so that the code that
+//! manages threads is compiled once and not for each type of item. An item is a block of particles; the cost
+//! of taking one is negligible compared with the work on it.
 
 use std::sync::Mutex;
 

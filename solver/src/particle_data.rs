@@ -1,5 +1,5 @@
-//! Particle data: what a simulation holds of its particles whatever their equations are, so that sorting,
-//! neighbour lists, bounds, counting and checkpoints are compiled once for each set of extra fields.
+//! Particle data: the part of a simulation that does not depend on its equations. Sorting, neighbour lists,
+//! bounds, counting and checkpoints are therefore compiled only once for each set of extra fields.
 
 use nalgebra::Vector2;
 
@@ -64,7 +64,7 @@ pub struct Progress {
     pub built_inside_a_step: bool,
 }
 
-/// All that decides how a run goes on, as plain data: [`crate::Scene::resume`] continues it with the
+/// Everything that determines the rest of a run, as data: [`crate::Scene::resume`] continues it with the
 /// same bits as if it had not been interrupted.
 ///
 /// Sums are added in the order of the neighbour lists, so the order of storage belongs to it, and the
@@ -116,7 +116,7 @@ pub struct ParticleData<X = ()> {
     /// (largest displacement that keeps the neighbour lists exact)² \[m²\].
     pub(crate) slack2: f64,
     /// (displacement beyond which the step, not the flow, moved a particle)² \[m²\]: half a period,
-    /// since images stand one period away, on either side.
+    /// since images are one period away, on either side.
     pub(crate) reach2: f64,
     pub(crate) parallel: bool,
     pub(crate) progress: Progress,
@@ -198,7 +198,7 @@ impl<X: Numbers> ParticleData<X> {
         })
     }
 
-    /// What it takes to go on from here, with velocities so far behind \[s\].
+    /// Everything that is needed to continue from here; `lag` is the lag of the velocities \[s\].
     pub(crate) fn checkpoint(&self, lag: f64) -> Checkpoint<X> {
         Checkpoint {
             progress: self.progress,

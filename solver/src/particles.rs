@@ -7,14 +7,14 @@ use nalgebra::Vector2;
 
 use crate::{lane::Lane, numbers::Numbers};
 
-/// What a particle stands for.
+/// The role of a particle in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Moves by the equations of the scene.
     Fluid,
-    /// Behind a wall: stands still, its density follows the walls' own terms.
+    /// Behind a wall: does not move; its density evolves by the terms of the walls.
     Wall,
-    /// On a wall: stands still, density and pressure frozen.
+    /// On a wall: does not move; constant density and pressure.
     Interface,
 }
 

@@ -1,4 +1,4 @@
-//! Physics: the equations of a scene as one type, without the integration in time.
+//! Physics: kernel, terms and walls of a scene as one type, without the time integration.
 
 use std::marker::PhantomData;
 

@@ -1,9 +1,9 @@
 //! Four numbers in one register of a processor that has AVX2: the only unsafe code of the crate.
 //!
-//! The default build may use nothing but what every x86-64 processor has, registers for two numbers.
-//! Asked at run time, nearly all of them have registers for four, and the pair sweep and the search of
-//! neighbours are compiled a second time for these, and a third time for processors that have 32 of them
-//! (AVX-512). Measured: see `CHANGELOG.md`.
+//! The default build may use only the registers that every x86-64 processor has, which hold two numbers.
+//! Nearly all present processors have registers for four, which the program detects at run time. The pair
+//! sweep and the construction of neighbour lists are compiled a second time for these registers, and a third
+//! time for processors that have 32 of them (AVX-512). `README.md` states the measured speed.
 
 #![allow(unsafe_code)]
 

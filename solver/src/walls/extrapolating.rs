@@ -14,16 +14,16 @@ use crate::{
 };
 
 /// Walls represented by layers of boundary particles, [`crate::Role::Wall`], behind the surface, the first
-/// half a spacing behind it. They stand still and evolve nothing. Before each sweep, these are extrapolated
-/// to them from the fluid particles f within their support, and from these alone:
+/// half a spacing behind it. They do not move, and no quantity of theirs is integrated. Before each sweep,
+/// these quantities are extrapolated to them, only from the fluid particles f within their support:
 ///
 /// - p_w = Σ_f \[p_f + ρ_f (g − a_w)·r_wf\] W_wf / Σ_f W_wf, and from it the density, ρ_w = ρ(p_w);
 /// - with `U` = [`NoSlip`] u_w = 2 u_wall − Σ_f u_f W_wf / Σ_f W_wf, which all terms read in place of the
 ///   velocity of the wall particle, u_wall. With `U` = `()` the particle keeps that velocity and nothing
-///   is summed: enough where no viscosity makes the fluid stick.
+///   is summed, which suffices without viscosity.
 ///
-/// A wall particle without fluid in its support keeps the velocity and the density it was given: neighbours
-/// are mutual, so it is no neighbour of fluid either.
+/// A wall particle without fluid in its support keeps its initial velocity and density. The fluid
+/// does not read these, because the particle is not a neighbour of any fluid particle either.
 #[derive(Clone, Copy, Debug)]
 pub struct ExtrapolatingWall<E, U = ()> {
     /// Gives p(ρ) and ρ(p): that of the pressure term.

@@ -93,7 +93,7 @@ fn shown(value: f64) -> String {
     text.strip_suffix(".0").map_or(text.clone(), str::to_string)
 }
 
-/// What stands behind a bound, strongest first.
+/// The kind of evidence behind a bound, strongest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
@@ -132,7 +132,7 @@ pub struct Gate {
     pub metric: String,
     /// where it must lie
     pub bound: Bound,
-    /// what stands behind the bound
+    /// the kind of evidence behind the bound
     pub evidence: Evidence,
     /// why the bound is where it is
     pub because: String,

@@ -127,6 +127,23 @@ pub enum Status {
     },
 }
 
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Completed => f.write_str("completed"),
+            Self::Diverged { step, time, particle, field, value_text } => write!(
+                f,
+                "diverged after {step} steps, at t = {time:.4e} s: {field} of particle {particle} \
+                 is {value_text}"
+            ),
+            Self::Refused { reason } => write!(f, "refused: {reason}"),
+            Self::Interrupted { step, time } => {
+                write!(f, "interrupted after {step} steps, at t = {time:.4e} s")
+            }
+        }
+    }
+}
+
 /// One measured result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

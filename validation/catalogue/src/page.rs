@@ -3,17 +3,19 @@
 use base::{
     gate::{Evidence, Verdict},
     manifest::{Known, Manifest},
-    record::Status as Ended,
+    record::Record,
     reference::Reference,
+    settings::Field,
     spec::{RunSpec, Task},
 };
 use harness::{
     case::{self, Case, Tier},
+    columns::Columns,
     runs::{Judged, JudgedRun},
     study::Study,
     suite::{CaseResults, Suite},
 };
-use report::{Block, Cell, Column, Counts, Page, Section, Status, Table, sig};
+use report::{Block, Cell, Column, Counts, Page, Section, Status, Table};
 
 /// The whole report.
 pub fn assemble(suite: &Suite) -> Page {
@@ -80,34 +82,30 @@ fn worst<'a>(judged: impl Iterator<Item = &'a Judged>) -> Option<Status> {
 }
 
 fn summary(suite: &Suite) -> Section {
-    let columns = vec![
-        Column::text("part"),
-        Column::num("gates", "1"),
-        Column::num("failed", "1"),
-        Column::text("verdict"),
-    ];
-    let mut table = Table::new("Verdicts.", columns);
-    let mut row = |id: &str, title: &str, judged: Vec<&Judged>| {
-        let failed = judged.iter().filter(|j| j.judgement.verdict.is_failure()).count();
-        let verdict = worst(judged.iter().copied()).unwrap_or(Status::Reported);
-        table.rows.push(vec![
-            Cell::text(format!("[{title}](#{id})")),
-            Cell::count(judged.len() as u64),
-            Cell::count(failed as u64),
-            Cell::status(verdict),
-        ]);
-    };
+    let mut rows: Vec<(String, Vec<&Judged>)> = Vec::new();
+    let link = |id: &str, title: &str| format!("[{title}](#{id})");
     for results in &suite.cases {
+        let name = results.case.name();
         let runs = results.runs.all().iter().flat_map(|run| &run.judged).collect();
-        row(results.case.name(), &format!("{}: single runs", results.case.name()), runs);
+        rows.push((link(name, &format!("{name}: single runs")), runs));
         for study in &results.studies {
-            let title = format!("{}: {}", results.case.name(), study.title);
-            row(&anchor(study), &title, study.judged.iter().collect());
+            let title = format!("{name}: {}", study.title);
+            rows.push((link(&anchor(study), &title), study.judged.iter().collect()));
         }
     }
     for study in &suite.studies {
-        row(&anchor(study), &study.title, study.judged.iter().collect());
+        rows.push((link(&anchor(study), &study.title), study.judged.iter().collect()));
     }
+    let failed = |judged: &[&Judged]| {
+        judged.iter().filter(|j| j.judgement.verdict.is_failure()).count() as u64
+    };
+    let verdict = |judged: &[&Judged]| worst(judged.iter().copied()).unwrap_or(Status::Reported);
+    let table = Columns::<(String, Vec<&Judged>)>::default()
+        .text("part", |(part, _)| part.clone())
+        .num(["gates", "1"], |(_, judged)| Cell::count(judged.len() as u64))
+        .num(["failed", "1"], |(_, judged)| Cell::count(failed(judged)))
+        .with(Column::text("verdict"), |(_, judged)| Cell::status(verdict(judged)))
+        .table("Verdicts.", rows);
     Section::new("verdicts", "Verdicts").block(table)
 }
 
@@ -156,35 +154,21 @@ fn study_section(study: &Study) -> Section {
 }
 
 fn gate_table<'a>(caption: &str, judged: impl Iterator<Item = &'a Judged>) -> Table {
-    let columns = vec![
-        Column::text("gate"),
-        Column::num("value", "-"),
-        Column::text("bound"),
-        Column::num("margin", "-"),
-        Column::text("evidence"),
-        Column::text("because"),
-        Column::text("verdict"),
-    ];
-    let mut table = Table::new(caption, columns);
-    for judged in judged {
-        let Judged { gate, judgement } = judged;
-        let value = judgement.value.map_or(Cell::text("not measured"), measured);
-        let margin = judgement.margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
-        let because = match &judgement.verdict {
-            Verdict::Limitation(reason) => format!("{} — limitation: {reason}", gate.because),
-            _ => gate.because.clone(),
-        };
-        table.rows.push(vec![
-            Cell::text(format!("`{}`", gate.id)),
-            value,
-            Cell::text(gate.bound.to_string()),
-            margin,
-            Cell::text(evidence(gate.evidence)),
-            Cell::text(because),
-            Cell::status(judged.status()),
-        ]);
-    }
-    table
+    let because = |Judged { gate, judgement }: &Judged| match &judgement.verdict {
+        Verdict::Limitation(reason) => format!("{} — limitation: {reason}", gate.because),
+        _ => gate.because.clone(),
+    };
+    let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
+    let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
+    Columns::<Judged>::default()
+        .code("gate", |judged| judged.gate.id.clone())
+        .num(["value", "-"], |judged| value(judged.judgement.value))
+        .text("bound", |judged| judged.gate.bound.to_string())
+        .num(["margin", "-"], |judged| margin(judged.judgement.margin))
+        .text("evidence", |judged| evidence(judged.gate.evidence))
+        .text("because", because)
+        .with(Column::text("verdict"), |judged| Cell::status(judged.status()))
+        .table(caption, judged)
 }
 
 /// A measured value: a whole number as such, any other with four digits.
@@ -204,78 +188,34 @@ fn evidence(evidence: Evidence) -> &'static str {
 }
 
 fn settings_table(results: &CaseResults) -> Table {
-    let columns = vec![
-        Column::text("setting"),
-        Column::text("meaning"),
-        Column::text("unit"),
-        Column::text("allowed"),
-        Column::text("default"),
-    ];
-    let mut table = Table::new(
-        "Settings, reachable by `--set key=value`; variants change some defaults.",
-        columns,
-    );
-    for field in results.case.fields() {
-        table = table.row(vec![
-            Cell::text(format!("`{}`", field.name)),
-            Cell::text(field.doc),
-            Cell::text(field.unit),
-            Cell::text(field.range),
-            Cell::text(field.default().to_string()),
-        ]);
-    }
-    table
+    let caption = "Settings, reachable by `--set key=value`; variants change some defaults.";
+    Columns::<Field>::default()
+        .code("setting", |field| field.name)
+        .text("meaning", |field| field.doc)
+        .text("unit", |field| field.unit)
+        .text("allowed", |field| field.range)
+        .text("default", |field| field.default().to_string())
+        .table(caption, results.case.fields())
 }
 
 fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
-    let columns = vec![
-        Column::text("variant"),
-        Column::text("set"),
-        Column::text("ended"),
-        Column::num("particles", "1"),
-        Column::num("steps", "1"),
-        Column::num("pair interactions", "1"),
-        Column::num("right-hand sides", "1"),
-        Column::num("stepping, alone", "s"),
-        Column::num("stepping", "s"),
-        Column::num("observers", "s"),
-        Column::num("solver memory", "kB"),
-        Column::text("state"),
-    ];
     let caption = "Every run of the plan. Seconds alone are the median of timings with nothing else of this \
                    program at work; other seconds were taken side by side and are only rough. The state is a \
                    digest of the bits at the end: the same for any number of threads.";
-    let mut table = Table::new(caption, columns);
-    for run in runs {
-        let (record, cost) = (&run.record, &run.record.cost);
-        let ended = match &record.status {
-            Ended::Completed => "completed".to_string(),
-            Ended::Diverged { step, time, particle, field, .. } => {
-                format!(
-                    "diverged: step {step}, t = {} s, {field} of particle {particle}",
-                    sig(*time, 4)
-                )
-            }
-            Ended::Refused { reason } => format!("refused: {reason}"),
-            Ended::Interrupted { time, .. } => format!("interrupted at {} s", sig(*time, 4)),
-        };
-        let state: String = record.state.iter().flat_map(|s| s.chars()).take(8).collect();
-        table = table.row(vec![
-            Cell::text(format!("`{}`", run.planned.spec.variant)),
-            Cell::text(what(case, &run.planned.spec)),
-            Cell::text(ended),
-            Cell::count(cost.particles as u64),
-            Cell::count(cost.steps),
-            Cell::sci(cost.pair_interactions as f64, 2),
-            Cell::sci(cost.particle_rhs as f64, 2),
-            cost.alone_median().map_or(Cell::text("–"), Cell::seconds),
-            Cell::seconds(cost.cpu_s),
-            Cell::seconds(cost.observing_s),
-            Cell::num(cost.solver_bytes as f64 / 1e3, 4),
-            Cell::text(format!("`{state}`")),
-        ]);
-    }
-    table
+    let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
+    Columns::of_variants()
+        .text("set", |record| what(case, &record.spec()))
+        .ended()
+        .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))
+        .steps()
+        .num(["pair interactions", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))
+        .num(["right-hand sides", "1"], |r| Cell::sci(r.cost.particle_rhs as f64, 2))
+        .num(["stepping, alone", "s"], alone)
+        .num(["stepping", "s"], |record| Cell::seconds(record.cost.cpu_s))
+        .num(["observers", "s"], |record| Cell::seconds(record.cost.observing_s))
+        .num(["solver memory", "kB"], |r| Cell::num(r.cost.solver_bytes as f64 / 1e3, 4))
+        .code("state", |r| r.state.iter().flat_map(|s| s.chars()).take(8).collect::<String>())
+        .table(caption, runs.iter().map(|run| &run.record))
 }
 
 /// `key=value` of what differs from the defaults of the variant, and what is done with it.

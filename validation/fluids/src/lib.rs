@@ -5,7 +5,6 @@ pub mod channel;
 pub mod couette;
 pub mod periodic_hill;
 pub mod poiseuille;
-mod runs_table;
 pub mod taylor_couette;
 pub mod taylor_green;
 mod unit_flow;

@@ -28,7 +28,7 @@ use maths::{
 };
 use report::Axis;
 
-use crate::unit_flow::{LIMIT_BOX, Quintic};
+use crate::{channel::Modern, unit_flow::LIMIT_BOX};
 
 base::settings! {
     /// Settings of the flow between two cylinders, the inner one turning.
@@ -60,7 +60,7 @@ base::settings! {
     }
 }
 
-type With<W> = Quintic<(Pressure<Tait>, Viscosity), Continuity, W>;
+type With<W> = Modern<(Pressure<Tait>, Viscosity), Continuity, W>;
 
 const NAME: &str = "taylor_couette";
 const INTERFACE: &str = "interface-wall";

@@ -2,10 +2,7 @@
 //! and the vortices have in common.
 
 use nalgebra::Vector2;
-use solver::{
-    Compose, ConsistentContinuity, Continuity, DensityDiffusion, Domain, Leapfrog, Limits, Open,
-    Particle, QuinticSpline, Shifting, Tait,
-};
+use solver::{ConsistentContinuity, DensityDiffusion, Domain, Limits, Particle, Shifting, Tait};
 
 use harness::{
     case::{Rules, RunError},
@@ -14,11 +11,7 @@ use harness::{
     simulate,
 };
 
-/// Quintic spline and leapfrog.
-pub type Quintic<F, D, W = Open> = Compose<QuinticSpline, F, D, W, Leapfrog>;
-/// Density diffusion and shifting.
-pub type Stabilised = (Continuity, DensityDiffusion, Shifting);
-/// The same with a continuity that is exact for linear fields.
+/// What stabilises the modern variants, with a continuity that is exact for linear fields.
 pub type ConsistentDrift = (ConsistentContinuity, DensityDiffusion, Shifting);
 
 /// What a case adds to its settings.

@@ -1,27 +1,31 @@
-//! Tables with one row per run. The name of a column and what it shows are stated in one place.
+//! Tables with one row per item. The name of a column and what it shows are stated in one place.
 
-use base::record::{MetricName, Record, Status};
+use std::borrow::Borrow;
+
+use base::record::{MetricName, Record};
 use report::{Cell, Column, Table};
 
-/// What a column shows of a record.
-type Shown<'a> = dyn Fn(&Record) -> Cell + 'a;
+use crate::case::{self, Case};
 
-/// Columns of a table of runs.
-#[derive(Default)]
-pub struct Columns<'a> {
+/// What a column shows of an item.
+type Shown<'a, T> = dyn Fn(&T) -> Cell + 'a;
+
+/// Columns of a table with a row an item.
+pub struct Columns<'a, T> {
     heads: Vec<Column>,
-    cells: Vec<Box<Shown<'a>>>,
+    cells: Vec<Box<Shown<'a, T>>>,
 }
 
-impl<'a> Columns<'a> {
-    /// One column: the name of the variant.
-    pub fn of_variants() -> Self {
-        Self::default().text("variant", |record| format!("`{}`", record.variant))
+impl<T> Default for Columns<'_, T> {
+    fn default() -> Self {
+        Self { heads: Vec::new(), cells: Vec::new() }
     }
+}
 
+impl<'a, T> Columns<'a, T> {
     /// One more column.
     #[must_use]
-    pub fn with(mut self, head: Column, cell: impl Fn(&Record) -> Cell + 'a) -> Self {
+    pub fn with(mut self, head: Column, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.heads.push(head);
         self.cells.push(Box::new(cell));
         self
@@ -29,19 +33,57 @@ impl<'a> Columns<'a> {
 
     /// One more column, of text.
     #[must_use]
-    pub fn text(self, head: &str, text: impl Fn(&Record) -> String + 'a) -> Self {
-        self.with(Column::text(head), move |record| Cell::text(text(record)))
+    pub fn text<S: Into<String>>(self, head: &str, text: impl Fn(&T) -> S + 'a) -> Self {
+        self.with(Column::text(head), move |item| Cell::text(text(item)))
+    }
+
+    /// One more column, of names as they are written in a command.
+    #[must_use]
+    pub fn code<S: std::fmt::Display>(self, head: &str, name: impl Fn(&T) -> S + 'a) -> Self {
+        self.text(head, move |item| format!("`{}`", name(item)))
+    }
+
+    /// One more column, of numbers in a unit.
+    #[must_use]
+    pub fn num(self, [head, unit]: [&str; 2], cell: impl Fn(&T) -> Cell + 'a) -> Self {
+        self.with(Column::num(head, unit), cell)
     }
 
     /// One more column, of numbers in a unit; a dash where one is not finite.
     #[must_use]
     pub fn of(
         self,
-        [head, unit]: [&str; 2],
-        value: impl Fn(&Record) -> f64 + 'a,
+        head: [&str; 2],
+        value: impl Fn(&T) -> f64 + 'a,
         show: impl Fn(f64) -> Cell + 'a,
     ) -> Self {
-        self.with(Column::num(head, unit), move |record| Cell::or_dash(value(record), &show))
+        self.num(head, move |item| Cell::or_dash(value(item), &show))
+    }
+
+    /// The table of these items.
+    pub fn table(
+        self,
+        caption: impl Into<String>,
+        items: impl IntoIterator<Item: Borrow<T>>,
+    ) -> Table {
+        let mut table = Table::new(caption, self.heads);
+        for item in items {
+            table.rows.push(self.cells.iter().map(|cell| cell(item.borrow())).collect());
+        }
+        table
+    }
+}
+
+impl<'a> Columns<'a, Record> {
+    /// One column: the name of the variant.
+    pub fn of_variants() -> Self {
+        Self::default().code("variant", |record| record.variant.clone())
+    }
+
+    /// One more column: the settings that are not the defaults of the variant.
+    #[must_use]
+    pub fn changed(self, head: &str, case: &'a dyn Case) -> Self {
+        self.text(head, |record| case::changed(case, &record.spec()).join(", "))
     }
 
     /// One more column, of a metric; a dash where it was not measured.
@@ -71,28 +113,12 @@ impl<'a> Columns<'a> {
     /// One more column: how the run ended.
     #[must_use]
     pub fn ended(self) -> Self {
-        self.text("ended", |record| match &record.status {
-            Status::Completed => "completed".into(),
-            Status::Diverged { step, field, .. } => format!("diverged at step {step}: {field}"),
-            Status::Refused { reason } => reason.clone(),
-            Status::Interrupted { .. } => "interrupted".into(),
-        })
+        self.text("ended", |record| record.status.to_string())
     }
 
     /// One more column: how many time steps.
     #[must_use]
     pub fn steps(self) -> Self {
-        self.with(Column::num("steps", "1"), |record| Cell::count(record.cost.steps))
-    }
-
-    /// The table of these runs.
-    pub fn table<'r>(
-        self,
-        caption: impl Into<String>,
-        records: impl IntoIterator<Item = &'r Record>,
-    ) -> Table {
-        let row = |record: &Record| self.cells.iter().map(|cell| cell(record)).collect();
-        let rows: Vec<Vec<Cell>> = records.into_iter().map(row).collect();
-        rows.into_iter().fold(Table::new(caption, self.heads), Table::row)
+        self.num(["steps", "1"], |record| Cell::count(record.cost.steps))
     }
 }

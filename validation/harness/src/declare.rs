@@ -111,9 +111,9 @@ pub struct OrderGate {
     pub id: String,
     /// Where the order must lie.
     pub bound: Bound,
-    /// What stands behind the bound.
+    /// The kind of evidence behind the bound.
     pub evidence: Evidence,
-    /// Why it is where it is.
+    /// The reason for the bound.
     pub because: String,
 }
 

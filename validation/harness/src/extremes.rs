@@ -2,9 +2,9 @@
 //! Each entry has its own criterion; if a run cannot succeed, the criterion is that it reports the failure.
 
 use base::gate::{Bound, Evidence, Gate};
-use report::{Cell, Column, Table};
+use report::{Cell, Column};
 
-use crate::{runs::Judged, study::Study};
+use crate::{columns::Columns, runs::Judged, study::Study};
 
 /// One setting, the required outcome, and the observed one.
 #[derive(Clone)]
@@ -48,16 +48,16 @@ impl Entry {
 
 /// Entries as a study.
 pub fn study(id: &str, title: &str, lead: &str, entries: Vec<Entry>) -> Study {
-    let columns = ["what", "setting", "what must come", "what came", "verdict"].map(Column::text);
-    let mut table = Table::new(format!("{title}."), columns.to_vec());
-    let mut study = Study::new(id, title).prose(lead);
-    for Entry { what, setting, found, value, gate } in entries {
-        let expected = format!("{} {}: {}", gate.metric, gate.bound, gate.because);
-        let judged = Judged::new(gate, Some(value));
-        let [what, setting, expected, found] = [what, setting, expected, found].map(Cell::text);
-        let verdict = Cell::status(judged.status());
-        table = table.row(vec![what, setting, expected, found, verdict]);
-        study.judged.push(judged);
-    }
-    study.block(table)
+    let judge = |entry: &Entry| Judged::new(entry.gate.clone(), Some(entry.value));
+    let judged: Vec<Judged> = entries.iter().map(judge).collect();
+    let expected =
+        |Gate { metric, bound, because, .. }: &Gate| format!("{metric} {bound}: {because}");
+    let table = Columns::<(&Entry, &Judged)>::default()
+        .text("what", |(entry, _)| entry.what.clone())
+        .text("setting", |(entry, _)| entry.setting.clone())
+        .text("what must come", |(entry, _)| expected(&entry.gate))
+        .text("what came", |(entry, _)| entry.found.clone())
+        .with(Column::text("verdict"), |(_, judged)| Cell::status(judged.status()))
+        .table(format!("{title}."), entries.iter().zip(&judged));
+    Study { judged, ..Study::new(id, title).prose(lead).block(table) }
 }

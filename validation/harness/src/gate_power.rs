@@ -1,7 +1,7 @@
 //! Which errors the gates detect: solvers and references with one deliberate error each, and the gates that
 //! fail. `tests/tests/gate_power.rs` measures these results and compares them exactly with those shown here.
 
-use crate::study::Study;
+use crate::{columns::Columns, study::Study};
 use report::{Block, Cell, Column, Status, Table};
 
 /// A mutant a line: its name, what it spoils, a group of gates a column, the first gate it fails.
@@ -36,45 +36,41 @@ fn cell(text: &str) -> Cell {
 
 fn mutants() -> Table {
     let (head, rows) = rows(MUTANTS);
-    let columns = head.iter().map(|name| Column::text(*name)).collect();
     let caption = "Mutants, and how many gates of each group they fail.";
     let last = head.len().saturating_sub(1);
-    rows.iter().fold(Table::new(caption, columns), |table, row| {
-        let cells = row.iter().enumerate().map(|(k, text)| match k {
-            0 | 1 => Cell::text(*text),
-            k if k == last => Cell::text(format!("`{text}`")),
-            _ => cell(text),
+    let mut columns = Columns::<Vec<&str>>::default();
+    for (k, name) in head.into_iter().enumerate() {
+        columns = columns.with(Column::text(name), move |row| match row.get(k).copied() {
+            Some(text) if k < 2 => Cell::text(text),
+            Some(text) if k == last => Cell::text(format!("`{text}`")),
+            text => cell(text.unwrap_or_default()),
         });
-        table.row(cells.collect())
-    })
+    }
+    columns.table(caption, rows)
 }
 
 fn gates() -> Table {
-    let columns =
-        vec![Column::text("group"), Column::text("gate"), Column::num("mutants that fail it", "")];
-    let table = Table::new("Gates, and how many mutants fail them.", columns);
-    let (_, rows) = rows(GATES);
-    rows.iter().fold(table, |table, row| {
-        let count = row.get(2).and_then(|text| text.parse().ok()).unwrap_or(f64::NAN);
-        let name = Cell::text(format!("`{}`", row.get(1).unwrap_or(&"")));
-        table.row(vec![Cell::text(row[0]), name, Cell::num(count, 3)])
-    })
+    let count = |row: &Vec<&str>| row.get(2).and_then(|text| text.parse().ok());
+    Columns::<Vec<&'static str>>::default()
+        .text("group", |row| row[0])
+        .code("gate", |row| row.get(1).copied().unwrap_or_default())
+        .num(["mutants that fail it", ""], move |row| Cell::num(count(row).unwrap_or(f64::NAN), 3))
+        .table("Gates, and how many mutants fail them.", rows(GATES).1)
 }
 
 /// The mutants of one scene: a line has the mutant, how many gates it fails, of how many, and which.
 pub fn of_one_scene(what: &str, text: &str, caption: &str) -> Table {
-    let columns = vec![
-        Column::text(what),
-        Column::num("gates that it fails", "1"),
-        Column::num("of", "1"),
-        Column::text("which"),
-    ];
-    rows(text).1.iter().fold(Table::new(caption, columns), |table, row| {
-        let count = |k: usize| Cell::count(row.get(k).and_then(|n| n.parse().ok()).unwrap_or(0));
-        let which = row.get(3).unwrap_or(&"").split(' ').map(|gate| format!("`{gate}`"));
-        let which = Cell::text(which.collect::<Vec<String>>().join(" "));
-        table.row(vec![Cell::text(row[0]), count(1), count(2), which])
-    })
+    let count = |row: &Vec<&str>, k: usize| row.get(k).and_then(|n| n.parse().ok()).unwrap_or(0);
+    let which = |row: &Vec<&str>| {
+        let gates = row.get(3).unwrap_or(&"").split(' ').map(|gate| format!("`{gate}`"));
+        gates.collect::<Vec<String>>().join(" ")
+    };
+    Columns::<Vec<&str>>::default()
+        .text(what, |row| row[0])
+        .num(["gates that it fails", "1"], |row| Cell::count(count(row, 1)))
+        .num(["of", "1"], |row| Cell::count(count(row, 2)))
+        .text("which", which)
+        .table(caption, rows(text).1)
 }
 
 const OF_RUBBER: &str = "The same for the elastic solid: the rings at spacing 0.2 L, elastic waves, and a \

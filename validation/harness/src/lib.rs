@@ -20,6 +20,7 @@ pub mod frames;
 pub mod gate_power;
 pub mod make;
 pub mod method;
+pub mod pictures;
 pub mod plan;
 pub mod planned;
 pub mod rules;

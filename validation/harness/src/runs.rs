@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use base::{
     gate::{Gate, Judgement, Verdict},
     record::{Record, Status},
-    spec::{RunKey, RunSpec},
+    spec::{RunKey, RunSpec, Task},
 };
 
 use crate::planned::Planned;
@@ -100,6 +100,11 @@ impl Runs {
     /// The records of these specs, of those that were planned.
     pub fn records(&self, specs: impl IntoIterator<Item = RunSpec>) -> Vec<&Record> {
         specs.into_iter().filter_map(|spec| self.record(&spec)).collect()
+    }
+
+    /// The records of all simulations, in the order of the plan.
+    pub fn simulations(&self) -> impl Iterator<Item = &Record> {
+        self.runs.iter().map(|run| &run.record).filter(|record| record.task == Task::Simulate)
     }
 
     /// The record of a run that reached its end.

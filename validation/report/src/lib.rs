@@ -34,5 +34,5 @@ pub use film::Film;
 pub use number::{exact, percent, sci, seconds, sig};
 pub use page::{Block, Counts, Page, Section};
 pub use render::{png, svg};
-pub use table::{Cell, Column, ColumnOf, Status, Table};
+pub use table::{Cell, Column, Status, Table};
 pub use ticks::Scale;

@@ -163,9 +163,6 @@ impl Column {
     }
 }
 
-/// A column with its cell of an item.
-pub type ColumnOf<'f, T> = (Column, &'f dyn Fn(&T) -> Cell);
-
 /// A table with a caption; a click on a head sorts it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
@@ -181,17 +178,6 @@ impl Table {
     /// A table without rows.
     pub fn new(caption: impl Into<String>, columns: Vec<Column>) -> Self {
         Self { caption: caption.into(), columns, rows: Vec::new() }
-    }
-
-    /// A row for each item; a column is declared with its cell of an item.
-    pub fn of<'a, T: 'a>(
-        caption: impl Into<String>,
-        columns: &[ColumnOf<T>],
-        items: impl IntoIterator<Item = &'a T>,
-    ) -> Self {
-        let heads = columns.iter().map(|(head, _)| head.clone()).collect();
-        let row = |item: &'a T| columns.iter().map(|(_, cell)| cell(item)).collect();
-        Self { rows: items.into_iter().map(row).collect(), ..Self::new(caption, heads) }
     }
 
     /// Adds a row.

@@ -19,6 +19,7 @@ use base::{
 };
 use harness::{
     case::{Planned, RunError},
+    columns::Columns,
     composed::{self, Composed, Composition, Program, Variants},
     context::Context,
     declare::Declaration,
@@ -28,7 +29,7 @@ use harness::{
     simulate,
     study::Study,
 };
-use report::{Cell, Column, Table};
+use report::Cell;
 
 base::settings! {
     /// Settings of a wave along x on a lattice of the unit square.
@@ -287,18 +288,15 @@ fn study(runs: &Runs) -> Study {
         let record = runs.record(&spec(run));
         record.and_then(|record| record.value(run.1.metric())).unwrap_or(f64::NAN)
     };
-    let table = Table::of(
-        "Waves of rubber (shear modulus 0.22 K) along a stress-free lattice of 16 particles, with the time \
-         step divided out: frequency against the gradient symbol. Last: how far the stress of a block \
-         rotates with it.",
-        &[
-            (Column::text("kernel"), &|(kernel, _): &Run| Cell::text(*kernel)),
-            (Column::num("h/dx", "-"), &|(_, settings)| Cell::num(settings.h_over_dx, 2)),
-            (Column::text("wave"), &|(_, settings)| Cell::text(what(settings))),
-            (Column::num("relative error", "-"), &|run| Cell::sci(error(run), 2)),
-        ],
-        &self::runs().collect::<Vec<_>>(),
-    );
+    let caption = "Waves of rubber (shear modulus 0.22 K) along a stress-free lattice of 16 particles, with \
+                   the time step divided out: frequency against the gradient symbol. Last: how far the \
+                   stress of a block rotates with it.";
+    let table = Columns::<Run>::default()
+        .text("kernel", |(kernel, _)| *kernel)
+        .num(["h/dx", "-"], |(_, settings)| Cell::num(settings.h_over_dx, 2))
+        .text("wave", |(_, settings)| what(settings))
+        .num(["relative error", "-"], |run| Cell::sci(error(run), 2))
+        .table(caption, self::runs());
     Study::new("elastic-waves", "Elastic waves on a lattice").block(table)
 }
 

@@ -11,14 +11,15 @@ use base::{
     spec::RunSpec,
 };
 use harness::{
-    case::{self, Case, Planned, Tier},
+    case::{Case, Planned, Tier},
+    columns::Columns,
     composed::{self, Composed},
     declare::{Accuracy, Declaration, ErrorOf},
     extremes::{self, Entry},
     runs::Runs,
     study::Study,
 };
-use report::{Cell, Column, Table, percent, sci, sig};
+use report::{Cell, percent, sci, sig};
 
 crate::solid_settings! {
     /// Settings of a plate that is held at x = 0.
@@ -299,24 +300,16 @@ fn declaration(tier: Tier) -> Declaration {
 
 fn study(tier: Tier, runs: &Runs) -> Study {
     let theory = thin_plate_period(&PlateSettings::default());
-    let swings = swings(tier);
-    let metric = |r: &Record, key| r.value(key).unwrap_or(f64::NAN);
-    let changed = |r: &Record| Cell::text(case::changed(&OSCILLATING_PLATE, &r.spec()).join(", "));
-    let excess = |r: &Record| Cell::percent(metric(r, PERIOD_EXCESS), 3);
-    let amplitude = |r: &Record| Cell::num(metric(r, AMPLITUDE_RATIO), 3);
-    let table = Table::of(
-        format!("Period of the cantilever; {theory:.4} s in the theory of thin plates."),
-        &[
-            (Column::text("variant"), &|r: &Record| Cell::text(&r.variant)),
-            (Column::text("settings"), &changed),
-            (Column::num("period", "s"), &|r| Cell::num(metric(r, PERIOD), 4)),
-            (Column::num("longer than theory", ""), &excess),
-            (Column::num("amplitude over that of theory", ""), &amplitude),
-            (Column::num("energy, change", ""), &|r| Cell::percent(metric(r, ENERGY_CHANGE), 2)),
-            (Column::num("time", "s"), &|r| Cell::seconds(r.cost.cpu_s)),
-        ],
-        swings.iter().filter_map(|planned| runs.record(&planned.spec)),
-    );
+    let caption = format!("Period of the cantilever; {theory:.4} s in the theory of thin plates.");
+    let table = Columns::default()
+        .text("variant", |r: &Record| r.variant.clone())
+        .changed("settings", &OSCILLATING_PLATE)
+        .metric(["period", "s"], PERIOD, |period| Cell::num(period, 4))
+        .metric(["longer than theory", ""], PERIOD_EXCESS, |excess| Cell::percent(excess, 3))
+        .number("amplitude over that of theory", "", AMPLITUDE_RATIO)
+        .percent("energy, change", "", ENERGY_CHANGE, 1.0)
+        .num(["time", "s"], |r| Cell::seconds(r.cost.cpu_s))
+        .table(caption, runs.records(swings(tier).into_iter().map(|planned| planned.spec)));
     let stress = "Energy: viscosity takes it, and artificial stress gives some back. It weakens the pull of \
                   particles in tension without a store of its own, so that (kinetic + strain) energy rises \
                   with the deflection; the run with xi = 0 in the full tier shows the difference.";

@@ -13,13 +13,14 @@ use base::{
     spec::RunSpec,
 };
 use harness::{
-    case::{self, Planned, Tier},
+    case::{Planned, Tier},
+    columns::Columns,
     composed::{self, Composed},
     declare::{Accuracy, Declaration, ErrorOf},
     runs::Runs,
     study::Study,
 };
-use report::{Cell, Column, Table};
+use report::Cell;
 
 crate::solid_settings! {
     /// Settings of a disk cut from a square lattice.
@@ -321,25 +322,18 @@ fn declaration(tier: Tier) -> Declaration {
 }
 
 fn study(tier: Tier, runs: &Runs) -> Study {
-    let planned = plan(tier);
-    let number = |r: &Record, metric| Cell::num(r.value(metric).unwrap_or(f64::NAN), 3);
-    let changed = |r: &Record| Cell::text(case::changed(&SPINNING_DISK, &r.spec()).join(", "));
-    let revolutions = |r: &Record| Cell::num(r.settings_as::<DiskSettings>().end, 2);
-    let spin = "angular momentum, change a revolution";
-    let table = Table::of(
-        "A disk without stress that begins to spin, rim at 0.05 c0. What is 0 in a perfect method: the \
-         change of angular momentum, and the strain that one step sees in the rim.",
-        &[
-            (Column::text("variant"), &|r: &Record| Cell::text(&r.variant)),
-            (Column::text("settings"), &changed),
-            (Column::num("revolutions", ""), &revolutions),
-            (Column::num(spin, ""), &|r| number(r, ANGULAR_MOMENTUM_DRIFT)),
-            (Column::num("stress a revolution", "rho U^2"), &|r| number(r, STRESS_DRIFT)),
-            (Column::num("strain in the rim", "spin"), &|r| number(r, RIM_STRAIN)),
-            (Column::num("energy, change a revolution", ""), &|r| number(r, ENERGY_DRIFT)),
-        ],
-        planned.iter().filter_map(|planned| runs.record(&planned.spec)),
-    );
+    let caption = "A disk without stress that begins to spin, rim at 0.05 c0. What is 0 in a perfect \
+                   method: the change of angular momentum, and the strain that one step sees in the rim.";
+    let revolutions = |r: &Record| r.settings_as::<DiskSettings>().end;
+    let table = Columns::default()
+        .text("variant", |r: &Record| r.variant.clone())
+        .changed("settings", &SPINNING_DISK)
+        .of(["revolutions", ""], revolutions, |end| Cell::num(end, 2))
+        .number("angular momentum, change a revolution", "", ANGULAR_MOMENTUM_DRIFT)
+        .number("stress a revolution", "rho U^2", STRESS_DRIFT)
+        .number("strain in the rim", "spin", RIM_STRAIN)
+        .number("energy, change a revolution", "", ENERGY_DRIFT)
+        .table(caption, runs.records(plan(tier).into_iter().map(|planned| planned.spec)));
     let drift = |courant: f64| {
         let record = runs.record(&steps(courant));
         record.and_then(|record| record.value(ANGULAR_MOMENTUM_DRIFT)).unwrap_or(f64::NAN)

@@ -4,10 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context as _;
-use base::{
-    gate::Verdict,
-    record::{Record, Status},
-};
+use base::{gate::Verdict, record::Record};
 use harness::store::Store;
 use serde_json::{Value, json};
 
@@ -154,13 +151,8 @@ fn of_records(old: &BTreeMap<String, Record>, new: &BTreeMap<String, Record>) ->
     for (name, is) in new {
         let Some(was) = old.get(name) else { continue };
         if was.state != is.state {
-            let ended = |record: &Record| match &record.status {
-                Status::Completed => "completed".to_string(),
-                Status::Diverged { step, .. } => format!("diverged at step {step}"),
-                Status::Refused { .. } => "refused".into(),
-                Status::Interrupted { .. } => "interrupted".into(),
-            };
-            add("state", name, format!("other bits at the end ({} to {})", ended(was), ended(is)));
+            let words = format!("other bits at the end ({} to {})", was.status, is.status);
+            add("state", name, words);
         }
         let (from, to) = (&was.cost, &is.cost);
         if (from.steps, from.pair_interactions) != (to.steps, to.pair_interactions) {

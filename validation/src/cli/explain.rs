@@ -158,7 +158,7 @@ fn words(known: &Known) -> String {
         ("judged on", on.clone()),
         ("in tiers", known.tiers.join(", ")),
         ("last", last.as_ref().map(last_words).unwrap_or_default()),
-        ("that run", known.status.as_ref().map(ended).unwrap_or_default()),
+        ("that run", known.status.as_ref().map(ToString::to_string).unwrap_or_default()),
     ];
     let mut text = format!("{}\n", gate.id);
     for (head, words) in lines.iter().filter(|(_, words)| !words.is_empty()) {
@@ -172,15 +172,6 @@ fn last_words(judged: &Judged) -> String {
     let Judged { judgement, .. } = judged;
     let value = judgement.value.map_or("not measured".into(), |value| report::sig(value, 5));
     format!("{value}: {}", judgement.verdict)
-}
-
-fn ended(status: &record::Status) -> String {
-    match status {
-        record::Status::Completed => "ran to its end".into(),
-        record::Status::Diverged { step, .. } => format!("diverged after {step} steps"),
-        record::Status::Refused { reason } => format!("was refused: {reason}"),
-        record::Status::Interrupted { step, .. } => format!("was interrupted after {step} steps"),
-    }
 }
 
 fn evidence(evidence: Evidence) -> &'static str {

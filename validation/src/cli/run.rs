@@ -91,11 +91,8 @@ fn set(arguments: &arguments::Run) -> Result<Vec<String>, Failure> {
 
 /// The exit code, and the words for one that is not 0.
 fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
-    if let Status::Diverged { step, time, particle, field, value_text } = &record.status {
-        output::say(&format!(
-            "touchstone: diverged after {step} steps, at t = {time:.4e} s: {field} of particle \
-             {particle} is {value_text}"
-        ));
+    if matches!(record.status, Status::Diverged { .. }) {
+        output::say(&format!("touchstone: {}", record.status));
         return Exit::Diverged;
     }
     match verdicts.iter().any(|j| j.judgement.verdict.is_failure()) {

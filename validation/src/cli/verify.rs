@@ -162,12 +162,11 @@ fn reasons(suite: &Suite) -> String {
     }
     for results in &suite.cases {
         for run in results.runs.all().iter().filter(|run| !run.judged.is_empty()) {
-            if let Status::Diverged { step, time, .. } = run.record.status {
+            let status = &run.record.status;
+            if matches!(status, Status::Diverged { .. }) {
                 let (name, variant) = (results.case.name(), &run.planned.spec.variant);
                 let set = case::changed(results.case, &run.planned.spec).join(" ");
-                text += &format!(
-                    "{name} {variant} {set}: diverged after {step} steps, at t = {time:.3e} s\n"
-                );
+                text += &format!("{name} {variant} {set}: {status}\n");
             }
         }
     }

@@ -19,6 +19,7 @@ use harness::{
     composed::{Composed, Composition, Program, Variants, completed},
     declare::{Accuracy, Declaration, ErrorOf, Ladder, Level},
     method::Medium,
+    pictures,
     runner::{self, Context},
     runs::{Judged, Runs},
     simulate,
@@ -444,8 +445,8 @@ fn figure(tier: Tier, runs: &Runs) -> Figure {
 fn picture(record: &Record) -> ParticleMap {
     let s = record.settings_as::<DropSettings>();
     let (r, scale) = (s.radius, s.rho * Exact::circle(s.radius, s.strain).central_pressure());
-    let [x, y, p] = ["x", "y", "p"].map(|name| record.column("particles", name));
-    let points = x.iter().zip(y).zip(p).map(|((x, y), p)| (x / r, y / r, p / scale)).collect();
+    let points = pictures::points(record, "particles", "p");
+    let points = points.into_iter().map(|(x, y, p)| (x / r, y / r, p / scale)).collect();
     let axes = (Axis::linear("x [R]").range(-0.7, 0.7), Axis::linear("y [R]"));
     let title = format!("A t = {}", sig(s.end, 2));
     ParticleMap::new(&title, axes, "p/p(0) [-]", ColourMap::Sequential, points)

@@ -5,8 +5,8 @@ use super::{
     starts::{self, END, Outcome, Starts},
 };
 use base::spec::RunSpec;
-use harness::{case::Tier, runs::Runs, study::Study};
-use report::{Cell, Column, Status, Table};
+use harness::{case::Tier, columns::Columns, runs::Runs, study::Study};
+use report::{Cell, Column, Status};
 
 const CURES_ID: &str = "poiseuille-cures";
 const CURES_TITLE: &str = "What cures the instability";
@@ -57,23 +57,25 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
         (variant, what, REYNOLDS.map(|re| Starts::among(runs, &cell(case, variant, re))))
     };
     let found = CURES.map(row);
-    let mut columns =
-        vec![Column::text("seed with"), Column::num("first Re at which most fail", "-")];
-    columns.extend(REYNOLDS.map(|re| Column::text(format!("Re {re}"))));
+    type Row = (&'static str, &'static str, [Starts; REYNOLDS.len()]);
+    let first = |(_, _, row): &Row| {
+        let first = row.iter().zip(REYNOLDS).find(|(s, _)| s.mostly_fails()).map(|(_, re)| re);
+        first.map_or(Cell::text("none"), Cell::exact)
+    };
+    let mut columns = Columns::<Row>::default()
+        .text("seed with", |(_, what, _)| *what)
+        .num(["first Re at which most fail", "-"], first);
+    for (k, re) in REYNOLDS.into_iter().enumerate() {
+        let head = Column::text(format!("Re {re}"));
+        columns = columns.with(head, move |(_, _, row)| outcome(&row[k]));
+    }
     let caption = format!(
         "Cures of the instability at 20 rows, c0 by Morris' rule, to νt/L² = {END}. {} A cell \
          says how many failed, and the median outcome: worst relative L2 error from νt/L² = 0.1 on, or, \
          after a t, the νt/L² of the divergence. A run fails when it diverges or its error exceeds 5 %.",
         starts::in_words(tier),
     );
-    let mut table = Table::new(caption, columns);
-    for (_, what, row) in &found {
-        let first = row.iter().zip(REYNOLDS).find(|(s, _)| s.mostly_fails()).map(|(_, re)| re);
-        let mut cells = vec![Cell::text(*what)];
-        cells.push(first.map_or(Cell::text("none"), Cell::exact));
-        cells.extend(row.iter().map(outcome));
-        table = table.row(cells);
-    }
+    let table = columns.table(caption, &found);
     let fails = |name: &str| {
         let mut of_variant = found.iter().filter(|(variant, ..)| *variant == name);
         of_variant.any(|(_, _, row)| row.iter().any(Starts::mostly_fails))

@@ -166,7 +166,7 @@ fn sound(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
         let because = if slides { sliding } else { still };
         let what = ["c₀ a thousand times too fast".into(), format!("Re {re}, `seed`")];
         let ended = |spec: &RunSpec, error: Option<f64>| match runs.record(spec) {
-            Some(Record { status, .. }) if error.is_none() => format!("{status:?}"),
+            Some(Record { status, .. }) if error.is_none() => status.to_string(),
             _ => text(error),
         };
         let found = format!("error {} becomes {}", ended(&specs[0], usual), ended(&specs[1], fast));

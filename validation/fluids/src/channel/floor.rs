@@ -12,6 +12,7 @@ use super::{
 use base::record::Record;
 use harness::{
     case::Tier,
+    columns::Columns,
     convergence::{Level, convergence},
     runs::Runs,
     simulate::KERNEL,
@@ -21,7 +22,7 @@ use maths::{
     metrics::norms::{Scale, l2},
     theory::lattice::SquareLattice,
 };
-use report::{Cell, Column, Table, percent};
+use report::{Cell, percent};
 
 /// A guard against 0/0 that changes no sum.
 const NO_GUARD: f64 = 1e-12;
@@ -87,19 +88,11 @@ impl LatticeFloor {
 pub fn study(channel: Channel, tier: Tier, runs: &Runs) -> Study {
     let flow = channel.flow;
     let tau = compared_at(flow);
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("lattice in place makes", "-"),
-        Column::num("slid rows make", "-"),
-        Column::num("fitted floor", "-"),
-        Column::text("cause"),
-    ];
     let caption = format!(
         "Errors of u at νt/L² = {tau} that the viscosity of a square lattice makes at any spacing, in place \
          and with rows that shear has slid past each other, and the error at which a ladder stops."
     );
-    let mut table = Table::new(caption, columns);
-    for variant in ladder(flow) {
+    let row = |variant: &'static str| {
         let records = levels(tier)
             .iter()
             .map(|rows| (1.0 / *rows as f64, runs.completed(&at_rows(channel, variant, *rows))));
@@ -112,17 +105,19 @@ pub fn study(channel: Channel, tier: Tier, runs: &Runs) -> Study {
         let found = convergence(&records.iter().map(level).collect::<Vec<_>>());
         let floor = found.ok().and_then(|found| found.floor).map(|floor| floor.error);
         let finest = records.last().and_then(|(_, record)| *record);
-        let Some(lattice) = finest.and_then(|record| LatticeFloor::of(record, flow, tau)) else {
-            continue;
-        };
-        table = table.row(vec![
-            Cell::text(format!("`{variant}`")),
-            Cell::percent(lattice.in_place, 2),
-            Cell::percent(lattice.slid, 2),
-            floor.map_or(Cell::text("none reached"), |floor| Cell::percent(floor, 2)),
-            Cell::text(floor.map_or("–".into(), |floor| lattice.cause(floor))),
-        ]);
-    }
+        let lattice = finest.and_then(|record| LatticeFloor::of(record, flow, tau))?;
+        Some((variant, lattice, floor))
+    };
+    let fitted = |floor: Option<f64>| {
+        floor.map_or(Cell::text("none reached"), |floor| Cell::percent(floor, 2))
+    };
+    let table = Columns::<(&str, LatticeFloor, Option<f64>)>::default()
+        .code("variant", |(variant, ..)| *variant)
+        .num(["lattice in place makes", "-"], |(_, of, _)| Cell::percent(of.in_place, 2))
+        .num(["slid rows make", "-"], |(_, of, _)| Cell::percent(of.slid, 2))
+        .num(["fitted floor", "-"], |(.., floor)| fitted(*floor))
+        .text("cause", |(_, of, floor)| floor.map_or("–".into(), |floor| of.cause(floor)))
+        .table(caption, ladder(flow).iter().filter_map(|variant| row(variant)));
     Study::new(&format!("{}-floor", flow.name()), "The error that refinement leaves").block(table)
 }
 

@@ -9,11 +9,13 @@ use super::{
 };
 use base::record::{MetricKey, Record, Status};
 use harness::{
-    case::{Case, Tier},
+    case::{Case, Planned, Rules, Tier},
+    columns::Columns,
+    pictures,
     runs::Runs,
     study::Study,
 };
-use report::{Axis, Block, Cell, ColourMap, Column, Figure, ParticleMap, Table, percent};
+use report::{Axis, Block, Cell, ColourMap, Figure, ParticleMap, percent};
 
 /// The studies of a flow.
 pub fn studies(channel: Channel, tier: Tier, runs: &Runs) -> Vec<Study> {
@@ -93,9 +95,7 @@ fn snapshot(flow: Flow, record: &Record) -> Figure {
                    channel, and pressure, which is exactly zero in the flow. The pressure that is left \
                    is a pattern of rows that slide past each other. The section is periodic in x.";
     let map = |title: &str, field: &str, label: &str, colours| {
-        let column = |name: &str| record.column("particles", name).iter().copied();
-        let points = column("x").zip(column("y")).zip(column(field));
-        let points = points.map(|((x, y), v)| (x, y, v)).collect();
+        let points = pictures::points(record, "particles", field);
         let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
         ParticleMap::new(title, axes, label, colours, points).diameter(0.9 * dx)
     };
@@ -108,43 +108,35 @@ fn snapshot(flow: Flow, record: &Record) -> Figure {
 /// The modern variant over the Reynolds number.
 fn reynolds(channel: Channel, tier: Tier, runs: &Runs) -> Study {
     let id = format!("{}-reynolds", channel.flow.name());
-    let columns = vec![
-        Column::num("Re", "-"),
-        Column::num("c0/V", "-"),
-        Column::num("dt/limit", "-"),
-        Column::num("νt/L² reached", "-"),
-        Column::num("worst error from νt/L² = 0.1 on", "-"),
-        Column::num("rms p", "ρV²"),
-        Column::num("rms v", "V"),
-        Column::num("steps", "1"),
-    ];
     let caption = "Variant `modern` at 20 rows over the Reynolds number, all settings by one rule: quintic \
                    spline, h = dx, density diffusion 0.1, shifting 0.5, no background pressure, c0 by \
                    Morris' rule with 1 % density variation and at least 2.2 ν/h, Courant number 1 and \
                    viscous number 0.4. The quick tier leaves higher Re to the full tier.";
-    let mut table = Table::new(caption, columns);
-    for planned in plan::reynolds(channel, tier) {
-        let rules = channel.case.rules(&planned.spec);
-        let (Some(record), Ok(rules)) = (runs.record(&planned.spec), rules) else { continue };
-        let settings: ChannelSettings = record.settings_as();
-        let reached = match record.status {
-            Status::Completed => settings.end,
-            Status::Diverged { time, .. } | Status::Interrupted { time, .. } => time,
-            Status::Refused { .. } => 0.0,
-        };
-        let shown = |metric: MetricKey, cell: fn(f64, usize) -> Cell| {
+    type Row<'a> = (&'a Record, Rules, ChannelSettings);
+    let row = |planned: Planned| {
+        let record = runs.record(&planned.spec)?;
+        let rules = channel.case.rules(&planned.spec).ok()?;
+        Some((record, rules, record.settings_as::<ChannelSettings>()))
+    };
+    let reached = |(record, _, settings): &Row| match record.status {
+        Status::Completed => settings.end,
+        Status::Diverged { time, .. } | Status::Interrupted { time, .. } => time,
+        Status::Refused { .. } => 0.0,
+    };
+    let shown = |metric: MetricKey, cell: fn(f64, usize) -> Cell| {
+        move |(record, ..): &Row| {
             record.value(metric).map_or(Cell::text("–"), |value| cell(value, 2))
-        };
-        table = table.row(vec![
-            Cell::exact(settings.re),
-            Cell::num(rules.sound_speed / settings.speed(), 3),
-            Cell::num(rules.dt / rules.dt_limit, 2),
-            Cell::num(reached, 3),
-            shown(L2_WORST, Cell::percent),
-            shown(P_RMS, Cell::sci),
-            shown(V_RMS, Cell::sci),
-            Cell::count(record.cost.steps),
-        ]);
-    }
+        }
+    };
+    let table = Columns::<Row>::default()
+        .num(["Re", "-"], |(.., s)| Cell::exact(s.re))
+        .num(["c0/V", "-"], |(_, rules, s)| Cell::num(rules.sound_speed / s.speed(), 3))
+        .num(["dt/limit", "-"], |(_, rules, _)| Cell::num(rules.dt / rules.dt_limit, 2))
+        .num(["νt/L² reached", "-"], move |row| Cell::num(reached(row), 3))
+        .num(["worst error from νt/L² = 0.1 on", "-"], shown(L2_WORST, Cell::percent))
+        .num(["rms p", "ρV²"], shown(P_RMS, Cell::sci))
+        .num(["rms v", "V"], shown(V_RMS, Cell::sci))
+        .num(["steps", "1"], |(record, ..)| Cell::count(record.cost.steps))
+        .table(caption, plan::reynolds(channel, tier).into_iter().filter_map(row));
     Study::new(&id, "One rule for every Reynolds number").block(table)
 }

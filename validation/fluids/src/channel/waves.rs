@@ -11,8 +11,8 @@ use base::{
     record::Record,
     spec::RunSpec,
 };
-use harness::{case::Tier, runs::Runs, study::Study};
-use report::{Axis, Cell, Column, Figure, Layer, Legend, Plot, Series, Table, sci, sig};
+use harness::{case::Tier, columns::Columns, runs::Runs, study::Study};
+use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, Table, sci, sig};
 
 /// Reynolds numbers and sound speeds \[V\] that are watched.
 const SETTINGS: [(f64, f64); 3] = [(5.0, 10.0), (20.0, 10.0), (20.0, 20.0)];
@@ -134,15 +134,6 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
 }
 
 fn waves_table(tier: Tier, found: &[Rings]) -> Table {
-    let columns = vec![
-        Column::num("Re", "-"),
-        Column::num("c0/V", "-"),
-        Column::num("runs", "1"),
-        Column::num("amplitude", "ρV²"),
-        Column::num("growth", "1"),
-        Column::num("dominant period", "2L/c0"),
-        Column::text("all periods"),
-    ];
     let caption = format!(
         "The lowest pressure mode cos(πy/L) of the seed's Poiseuille flow over the last 60 L/c0 of a run, \
          which ends by divergence or at νt/L² = {WATCHED}: medians of runs whose initial places are \
@@ -151,20 +142,19 @@ fn waves_table(tier: Tier, found: &[Rings]) -> Table {
          period in the last 30 L/c0 over that in the 30 before.",
         disorder(wave_starts(tier))
     );
-    let mut table = Table::new(caption, columns);
-    for rings in found.iter().filter(|rings| !rings.runs.is_empty()) {
-        let periods: Vec<String> = rings.runs.iter().map(|r| sig(r.period, 3)).collect();
-        table = table.row(vec![
-            Cell::exact(rings.re),
-            Cell::exact(rings.sound),
-            Cell::count(rings.runs.len() as u64),
-            Cell::sci(rings.median(|run| run.amplitude), 2),
-            Cell::num(rings.median(|run| run.growth), 2),
-            Cell::num(rings.median(|run| run.period), 3),
-            Cell::text(periods.join(", ")),
-        ]);
-    }
-    table
+    let periods = |rings: &Rings| {
+        let periods: Vec<String> = rings.runs.iter().map(|run| sig(run.period, 3)).collect();
+        periods.join(", ")
+    };
+    Columns::<Rings>::default()
+        .num(["Re", "-"], |rings| Cell::exact(rings.re))
+        .num(["c0/V", "-"], |rings| Cell::exact(rings.sound))
+        .num(["runs", "1"], |rings| Cell::count(rings.runs.len() as u64))
+        .num(["amplitude", "ρV²"], |rings| Cell::sci(rings.median(|run| run.amplitude), 2))
+        .num(["growth", "1"], |rings| Cell::num(rings.median(|run| run.growth), 2))
+        .num(["dominant period", "2L/c0"], |rings| Cell::num(rings.median(|run| run.period), 3))
+        .text("all periods", periods)
+        .table(caption, found.iter().filter(|rings| !rings.runs.is_empty()))
 }
 
 /// What the table says about H3.

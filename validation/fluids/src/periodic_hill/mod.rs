@@ -24,7 +24,10 @@ use solver::{
     InterfaceWall, NoSlip, Pressure, ShiftAdvection, Tait, Viscosity,
 };
 
-use crate::unit_flow::{self, ConsistentDrift, Stabilised, unit_settings};
+use crate::{
+    channel::{Modern, Stabilised},
+    unit_flow::{ConsistentDrift, unit_settings},
+};
 
 pub use control::{Driven, Driving};
 pub use run::measured;
@@ -71,7 +74,7 @@ type Pairs = (Pressure<Tait>, Viscosity, BodyForce);
 type Carried = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Mixed = (ConsistentPressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
-type Quintic<F, D, W = Extrapolating> = unit_flow::Quintic<F, D, W>;
+type Quintic<F, D, W = Extrapolating> = Modern<F, D, W>;
 
 /// The amplitude of the vortices' `strong`, for the same reason.
 fn strong(s: &mut HillSettings) {

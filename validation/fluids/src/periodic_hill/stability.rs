@@ -4,7 +4,6 @@ use super::{
     BEST, CASE, HillSettings, NAME,
     measure::{DRIFT, FORCE, FORCE_RIPPLE, OUTSIDE, SECTION_FLUX},
 };
-use crate::runs_table::{self, MetricColumns, ended};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{Record, Status},
@@ -12,11 +11,12 @@ use base::{
 };
 use harness::{
     case::{Case, Tier},
+    columns::Columns,
     declare::{StepLimit, StepLimits},
     runs::Runs,
     study::Study,
 };
-use report::{Cell, Column};
+use report::Cell;
 
 /// Spacings along the height of the hill in the runs of the full tier.
 const N: usize = 10;
@@ -126,12 +126,6 @@ pub fn tried() -> [(RunSpec, f64); 6] {
 
 /// A Reynolds number that variants hold.
 pub fn reynolds(runs: &Runs) -> Study {
-    let first = vec![
-        Column::text("variant"),
-        Column::num("Re", "-"),
-        Column::num("U_b dx/ν", "-"),
-        Column::text("ended"),
-    ];
     let caption = format!(
         "Every variant at the highest Reynolds number that the setting allows, 1000, a lower bound of what \
          it holds, and `plain` at 10, the lowest tried: H/dx = 10, from rest to {TRIED_TO} H/U_b. A variant \
@@ -141,11 +135,20 @@ pub fn reynolds(runs: &Runs) -> Study {
          then, and these numbers say nothing of its accuracy.",
         window = TRIED_TO / 5.0,
     );
-    let mut table = runs_table::table(&caption, first, COLUMNS);
+    let re = |record: &Record| record.settings_as::<HillSettings>().re;
+    let table = Columns::of_variants()
+        .num(["Re", "-"], move |record| Cell::exact(re(record)))
+        .num(["U_b dx/ν", "-"], move |record| Cell::num(re(record) / N as f64, 2))
+        .ended()
+        .metric(["outside", "1"], OUTSIDE, |v| Cell::count(v as u64))
+        .number("force", "U_b^2/H", FORCE)
+        .metric(["ripple of it", "-"], FORCE_RIPPLE, |v| Cell::percent(v, 1))
+        .metric(["flux of sections", "-"], SECTION_FLUX, |v| Cell::percent(v, 1))
+        .metric(["windows differ by", "U_b"], DRIFT, |v| Cell::sci(v, 1))
+        .table(caption, runs.records(tried().map(|(spec, _)| spec)));
     let mut study = Study::new("periodic-hill-reynolds", "Highest Reynolds number");
     for (spec, re) in tried() {
         let (variant, record) = (spec.variant.as_str(), runs.record(&spec));
-        table = record.iter().fold(table, |table, record| table.row(row(re, record)));
         let held = if record.is_some_and(holds) { re } else { 0.0 };
         let gate = Gate::new(
             format!("{NAME}.highest_re.{variant}"),
@@ -160,22 +163,4 @@ pub fn reynolds(runs: &Runs) -> Study {
         study = study.judge(gate, held);
     }
     study.block(table)
-}
-
-const COLUMNS: &MetricColumns = &[
-    ("outside", "1", OUTSIDE, |v| Cell::count(v as u64)),
-    ("force", "U_b^2/H", FORCE, |v| Cell::num(v, 3)),
-    ("ripple of it", "-", FORCE_RIPPLE, |v| Cell::percent(v, 1)),
-    ("flux of sections", "-", SECTION_FLUX, |v| Cell::percent(v, 1)),
-    ("windows differ by", "U_b", DRIFT, |v| Cell::sci(v, 1)),
-];
-
-fn row(re: f64, record: &Record) -> Vec<Cell> {
-    let first = [
-        Cell::text(format!("`{}`", record.variant)),
-        Cell::exact(re),
-        Cell::num(re / N as f64, 2),
-        Cell::text(ended(record)),
-    ];
-    runs_table::row(first, COLUMNS, |metric| record.value(metric))
 }

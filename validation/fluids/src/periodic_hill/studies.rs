@@ -11,13 +11,18 @@ use super::{
     reference::{floor, reference},
     stability,
 };
-use crate::runs_table::{self, MetricColumns, points, row, table};
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::Record,
+    record::{MetricKey, Record},
 };
-use harness::{case::Tier, gate_power, runs::Runs, study::Study};
-use report::{Axis, Cell, ColourMap, Column, Figure, ParticleMap, percent, sig};
+use harness::{
+    case::{self, Tier},
+    columns::Columns,
+    gate_power, pictures,
+    runs::Runs,
+    study::Study,
+};
+use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, percent, sig};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
@@ -28,19 +33,24 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     studies
 }
 
-const COLUMNS: &MetricColumns = &[
-    ("error of u", "U_b", L2_U, |v| Cell::percent(v, 2)),
-    ("error of v", "U_b", L2_V, |v| Cell::percent(v, 2)),
-    ("force", "U_b^2/H", FORCE, |v| Cell::num(v, 4)),
-    ("error of it", "-", FORCE_ERROR, |v| Cell::percent(v, 2)),
-    ("ripple", "-", FORCE_RIPPLE, |v| Cell::percent(v, 2)),
-    ("separation", "H", SEPARATION, |v| Cell::num(v, 3)),
-    ("reattachment", "H", REATTACHMENT, |v| Cell::num(v, 4)),
-    ("error of shear", "-", SHEAR_ERROR, |v| Cell::percent(v, 2)),
-    ("flux of sections", "-", SECTION_FLUX, |v| Cell::percent(v, 2)),
-    ("drag balance", "-", DRAG_BALANCE, |v| Cell::percent(v, 2)),
-    ("unsteady", "U_b", UNSTEADY, |v| Cell::sci(v, 1)),
-];
+/// A row of finite elements or of a run: what the texts say of it, and its metrics.
+type Row<'a> = (Vec<String>, Box<dyn Fn(MetricKey) -> Option<f64> + 'a>);
+
+/// A column: head, unit, metric, and how its value is shown.
+type Shown = (&'static str, &'static str, MetricKey, fn(f64) -> Cell);
+
+/// A table of such rows with a column of text for each of these heads, then the metrics.
+fn table(caption: &str, texts: &[&str], metrics: &[Shown], rows: Vec<Row>) -> Table {
+    let mut columns = Columns::<Row>::default();
+    for (k, head) in texts.iter().enumerate() {
+        columns = columns.text(head, move |(about, _)| about[k].clone());
+    }
+    for &(head, unit, metric, show) in metrics {
+        let value = move |(_, value): &Row| value(metric).unwrap_or(f64::NAN);
+        columns = columns.of([head, unit], value, show);
+    }
+    columns.table(caption, rows)
+}
 
 /// Every run, after what finite elements have.
 fn all(tier: Tier, runs: &Runs) -> Study {
@@ -52,13 +62,31 @@ fn all(tier: Tier, runs: &Runs) -> Study {
                    bubble, or no finite elements to compare with. Runs from the reference start within 0.04 \
                    % of U_b of it: their error says that the flow stays there, and unsteady how far it \
                    would still go.";
-    let mut table = table(caption, runs_table::ABOUT.map(Column::text).into(), COLUMNS);
     let shown = REYNOLDS.into_iter().filter(|&re| !best(tier, re).is_empty());
+    let mut rows: Vec<Row> = Vec::new();
     for (re, reference) in shown.filter_map(|re| Some((re, reference(re)?))) {
-        let texts = ["finite elements", &format!("re={re}"), "–"].map(Cell::text);
-        table = table.row(row(texts, COLUMNS, |metric| reference.number(metric)));
+        let about = vec!["finite elements".into(), format!("re={re}"), "–".into()];
+        rows.push((about, Box::new(move |metric| reference.number(metric))));
     }
-    let table = runs_table::all(table, &CASE, COLUMNS, runs);
+    for record in runs.simulations() {
+        let settings = case::changed(&CASE, &record.spec()).join(", ");
+        let about = vec![format!("`{}`", record.variant), settings, record.status.to_string()];
+        rows.push((about, Box::new(|metric| record.value(metric))));
+    }
+    let metrics: &[Shown] = &[
+        ("error of u", "U_b", L2_U, |v| Cell::percent(v, 2)),
+        ("error of v", "U_b", L2_V, |v| Cell::percent(v, 2)),
+        ("force", "U_b^2/H", FORCE, |v| Cell::num(v, 4)),
+        ("error of it", "-", FORCE_ERROR, |v| Cell::percent(v, 2)),
+        ("ripple", "-", FORCE_RIPPLE, |v| Cell::percent(v, 2)),
+        ("separation", "H", SEPARATION, |v| Cell::num(v, 3)),
+        ("reattachment", "H", REATTACHMENT, |v| Cell::num(v, 4)),
+        ("error of shear", "-", SHEAR_ERROR, |v| Cell::percent(v, 2)),
+        ("flux of sections", "-", SECTION_FLUX, |v| Cell::percent(v, 2)),
+        ("drag balance", "-", DRAG_BALANCE, |v| Cell::percent(v, 2)),
+        ("unsteady", "U_b", UNSTEADY, |v| Cell::sci(v, 1)),
+    ];
+    let table = table(caption, &["variant", "settings", "ended"], metrics, rows);
     Study::new("periodic-hill-runs", "All runs").block(table)
 }
 
@@ -74,23 +102,16 @@ fn pictures(tier: Tier, runs: &Runs) -> Study {
         let Some(record) = runs.completed(&run.spec()) else { continue };
         let title = format!("Re {re}, {}", run.name());
         let axes = (Axis::linear("x [H]"), Axis::linear("y [H]"));
-        let map =
-            ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points(record, "u"))
-                .values(-0.5, 0.5)
-                .diameter(1.0 / run.n as f64)
-                .line(floor())
-                .line(reference.line);
+        let points = pictures::points(record, "particles", "u");
+        let map = ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points)
+            .values(-0.5, 0.5)
+            .diameter(1.0 / run.n as f64)
+            .line(floor())
+            .line(reference.line);
         figure = figure.panel(map);
     }
     Study::new("periodic-hill-pictures", "Pictures").block(figure.panel_size(640.0, 230.0))
 }
-
-const DRAG_COLUMNS: &MetricColumns = &[
-    ("shear on the hill", "rho U_b^2 H", DRAGS[0], |v| Cell::num(v, 3)),
-    ("shear on the lid", "rho U_b^2 H", DRAGS[1], |v| Cell::num(v, 3)),
-    ("pressure on the hill", "rho U_b^2 H", DRAGS[2], |v| Cell::num(v, 3)),
-    ("drag balance", "-", DRAG_BALANCE, |v| Cell::percent(v, 2)),
-];
 
 /// What the drag of each variant is made of.
 fn drags(tier: Tier, runs: &Runs) -> Study {
@@ -100,19 +121,26 @@ fn drags(tier: Tier, runs: &Runs) -> Study {
                    the force that holds the flux, and so the drag that the particles feel, is within 4 % of \
                    finite elements, but the pressure that the field has at the wall is not the one of the \
                    sums that move particles.";
-    let mut table = table(caption, vec![Column::text("variant")], DRAG_COLUMNS);
+    let mut rows: Vec<Row> = Vec::new();
     if let Some(reference) = reference(50.0) {
-        let name = [Cell::text("finite elements")];
-        table = table.row(row(name, DRAG_COLUMNS, |metric| reference.number(metric)));
+        let about = vec!["finite elements".into()];
+        rows.push((about, Box::new(move |metric| reference.number(metric))));
     }
     let of_tier = match tier {
         Tier::Quick => vec![QUICK],
         Tier::Full => VARIANTS.map(|variant| HillRun::rest(variant, 10)).into(),
     };
     for record in of_tier.iter().filter_map(|run| runs.completed(&run.spec())) {
-        let variant = [Cell::text(format!("`{}`", record.variant))];
-        table = table.row(row(variant, DRAG_COLUMNS, |metric| record.value(metric)));
+        let about = vec![format!("`{}`", record.variant)];
+        rows.push((about, Box::new(|metric| record.value(metric))));
     }
+    let metrics: &[Shown] = &[
+        ("shear on the hill", "rho U_b^2 H", DRAGS[0], |v| Cell::num(v, 3)),
+        ("shear on the lid", "rho U_b^2 H", DRAGS[1], |v| Cell::num(v, 3)),
+        ("pressure on the hill", "rho U_b^2 H", DRAGS[2], |v| Cell::num(v, 3)),
+        ("drag balance", "-", DRAG_BALANCE, |v| Cell::percent(v, 2)),
+    ];
+    let table = table(caption, &["variant"], metrics, rows);
     Study::new("periodic-hill-drag", "What the drag is made of").block(table)
 }
 

@@ -12,11 +12,14 @@ use harness::{
     method::Method,
 };
 use solver::{
-    ConsistentPressure, ConsistentViscosity, Continuity, Pressure, ShiftAdvection, Shifting, Tait,
-    Viscosity,
+    ConsistentPressure, ConsistentViscosity, Continuity, Open, Pressure, ShiftAdvection, Shifting,
+    Tait, Viscosity,
 };
 
-use crate::unit_flow::{ConsistentDrift, Quintic, Stabilised, unit_settings};
+use crate::{
+    channel::{Modern, Stabilised},
+    unit_flow::{ConsistentDrift, unit_settings},
+};
 
 unit_settings! {
     /// Settings of the vortices. L = U = ρ = 1.
@@ -40,6 +43,7 @@ unit_settings! {
     }
 }
 
+type Quintic<F, D> = Modern<F, D, Open>;
 type Pairs = (Pressure<Tait>, Viscosity);
 type Carried = (Pressure<Tait>, Viscosity, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, ShiftAdvection);

@@ -6,9 +6,8 @@ use super::{
     plan::{self, PICTURED, spec},
     run::{ENERGY, L2, MOMENTUM_ADDED, NEAREST, NU_EFF, PRESSURE_L2},
 };
-use crate::runs_table::{self, MetricColumns, points};
-use harness::{case::Tier, runs::Runs, study::Study};
-use report::{Axis, Cell, ColourMap, Column, Figure, ParticleMap, Table};
+use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
+use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
@@ -16,22 +15,21 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     vec![pictures(tier, runs), table]
 }
 
-const COLUMNS: &MetricColumns = &[
-    ("error of the velocity", "-", L2, |v| Cell::percent(v, 2)),
-    ("energy less exact", "-", ENERGY, |v| Cell::percent(v, 2)),
-    ("viscosity found", "nu", NU_EFF, |v| Cell::num(v, 4)),
-    ("error of the pressure", "-", PRESSURE_L2, |v| Cell::percent(v, 2)),
-    ("momentum added", "U", MOMENTUM_ADDED, |v| Cell::sci(v, 2)),
-    ("nearest pair", "dx", NEAREST, |v| Cell::num(v, 3)),
-];
-
 /// Every run.
 fn table(runs: &Runs) -> Table {
     let caption = "All runs at their end, t = 2 L/U where the settings say no other. Viscosity found: from \
                    the fall of kinetic energy. Momentum added: the change of the total one from start to end \
                    over the total mass, exactly 0; that of a disturbed start does not count.";
-    let first = runs_table::ABOUT.map(Column::text).into();
-    runs_table::all(runs_table::table(caption, first, COLUMNS), &CASE, COLUMNS, runs)
+    Columns::of_variants()
+        .changed("settings", &CASE)
+        .ended()
+        .percent("error of the velocity", "-", L2, 1.0)
+        .percent("energy less exact", "-", ENERGY, 1.0)
+        .metric(["viscosity found", "nu"], NU_EFF, |v| Cell::num(v, 4))
+        .percent("error of the pressure", "-", PRESSURE_L2, 1.0)
+        .metric(["momentum added", "U"], MOMENTUM_ADDED, |v| Cell::sci(v, 2))
+        .number("nearest pair", "dx", NEAREST)
+        .table(caption, runs.simulations())
 }
 
 /// Particles at the end, by speed and by error.
@@ -48,8 +46,8 @@ fn pictures(tier: Tier, runs: &Runs) -> Study {
         {
             let title = format!("{variant}, {n} x {n}, from the {}", start_of(start));
             let axes = (Axis::linear("x [L]"), Axis::linear("y [L]"));
-            let map =
-                ParticleMap::new(title, axes, label, ColourMap::Sequential, points(record, name));
+            let points = pictures::points(record, "particles", name);
+            let map = ParticleMap::new(title, axes, label, ColourMap::Sequential, points);
             figure = figure.panel(map.values(0.0, most).diameter(1.0 / n as f64));
         }
     }

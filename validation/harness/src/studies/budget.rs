@@ -1,29 +1,22 @@
 //! The error budget: the same run with one thing changed at a time.
 
-use report::{Block, Cell, Column, Table, percent};
+use report::{Block, Cell, percent};
 
 use crate::{
+    columns::Columns,
     declare::{Budget, Budgets, Change},
     runs::Runs,
     study::Study,
 };
 
 pub fn study(budgets: &Budgets, runs: &Runs) -> Study {
-    let columns = vec![
-        Column::text("variant"),
-        Column::text("change"),
-        Column::text("part of the error"),
-        Column::num("error", "-"),
-        Column::num("change of error", "-"),
-    ];
     let caption = format!(
         "Error budget with one thing changed at a time: {}. {} The largest fall names what to spend on. \
          Where the error rises as dt falls, errors of time and spacing cancel at the default dt, and the row \
          with the least dt is the better measure of the spacing.",
         budgets.label, budgets.about
     );
-    let mut table = Table::new(caption, columns);
-    let mut findings = Vec::new();
+    let (mut rows, mut findings) = (Vec::new(), Vec::new());
     for budget in &budgets.of {
         let error = |change: &Change| {
             let record = runs.record(&change.spec);
@@ -31,16 +24,17 @@ pub fn study(budgets: &Budgets, runs: &Runs) -> Study {
         };
         let errors: Vec<f64> = budget.changes.iter().map(error).collect();
         for (change, error) in budget.changes.iter().zip(&errors) {
-            table = table.row(vec![
-                Cell::text(format!("`{}`", budget.variant)),
-                Cell::text(&change.what),
-                Cell::text(change.part),
-                Cell::percent(*error, 3),
-                Cell::percent(error - errors[change.against], 2),
-            ]);
+            rows.push((budget.variant, change, *error, error - errors[change.against]));
         }
         findings.extend(in_words(budget, &errors));
     }
+    let table = Columns::<(&str, &Change, f64, f64)>::default()
+        .code("variant", |(variant, ..)| *variant)
+        .text("change", |(_, change, ..)| &change.what)
+        .text("part of the error", |(_, change, ..)| change.part)
+        .num(["error", "-"], |(.., error, _)| Cell::percent(*error, 3))
+        .num(["change of error", "-"], |(.., change)| Cell::percent(*change, 2))
+        .table(caption, rows);
     Study::new(&budgets.id, "Error budget").block(Block::List(findings)).block(table)
 }
 

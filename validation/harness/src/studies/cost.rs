@@ -7,6 +7,7 @@ use report::{
 };
 
 use crate::{
+    columns::Columns,
     declare::{Accuracy, Ladder, Peer},
     runs::Runs,
     study::Study,
@@ -39,6 +40,11 @@ impl Point {
         median(&self.seconds).unwrap_or(f64::NAN)
     }
 
+    /// Ladder and resolution.
+    fn setting(&self) -> String {
+        format!("`{}`, {}", self.ladder, self.label)
+    }
+
     /// Fastest and slowest \[s\].
     pub fn spread(&self) -> (f64, f64) {
         let end = |value: Option<&f64>| value.copied().unwrap_or(f64::NAN);
@@ -58,14 +64,8 @@ pub fn points<'a>(
             let Some(record) = runs.record(&level.run.spec) else { continue };
             let error = accuracy.error.value(record, runs);
             let name = format!("{}{}", ladder.variant, ladder.note);
-            let failure = match &record.status {
-                Status::Completed => None,
-                Status::Diverged { time, .. } => {
-                    Some(format!("{name}, {}: diverged at {time:.3} s", level.label))
-                }
-                Status::Refused { reason } => Some(reason.clone()),
-                Status::Interrupted { .. } => Some("interrupted".into()),
-            };
+            let has_failed = record.status != Status::Completed;
+            let failure = has_failed.then(|| format!("{name}, {}: {}", level.label, record.status));
             if error.is_none() && failure.is_none() {
                 continue; // the run that the others are compared with
             }
@@ -191,84 +191,53 @@ const CHEAPEST: &str = "Cheapest setting that reaches an error. At a single leve
     of the finest level nothing finer is known.";
 
 fn cheapest_table(points: &[Point]) -> Table {
-    let columns = vec![
-        Column::num("error wanted", "-"),
-        Column::text("cheapest setting"),
-        Column::num("error", "-"),
-        Column::num("median", "s"),
-        Column::text("fastest – slowest (runs)"),
-        Column::num("steps", "1"),
-        Column::num("pair interactions", "1"),
-    ];
-    let mut table = Table::new(CHEAPEST, columns);
-    for goal in [1e-2, 3e-3, 1e-3, 3e-4] {
-        let wanted = Cell::percent(goal, 1);
-        let Some(p) = cheapest(points, goal) else {
-            let none = Cell::text("none of the settings run");
-            let rest = (0..5).map(|_| Cell::text("–"));
-            table = table.row([wanted, none].into_iter().chain(rest).collect());
-            continue;
-        };
+    type Row<'a> = (f64, Option<&'a Point>);
+    let goals = [1e-2, 3e-3, 1e-3, 3e-4].map(|goal| (goal, cheapest(points, goal)));
+    let of = |show: fn(&Point) -> Cell| move |(_, p): &Row| p.map_or(Cell::text("–"), show);
+    let setting = |(_, p): &Row| p.map_or("none of the settings run".into(), Point::setting);
+    let spread = |p: &Point| {
         let (fast, slow) = p.spread();
-        table = table.row(vec![
-            wanted,
-            Cell::text(format!("`{}`, {}", p.ladder, p.label)),
-            Cell::percent(p.error, 2),
-            Cell::seconds(p.median()),
-            Cell::text(format!("{} – {} ({})", seconds(fast), seconds(slow), p.seconds.len())),
-            Cell::count(p.steps),
-            Cell::sci(p.pairs, 2),
-        ]);
-    }
-    table
+        Cell::text(format!("{} – {} ({})", seconds(fast), seconds(slow), p.seconds.len()))
+    };
+    Columns::<Row>::default()
+        .num(["error wanted", "-"], |(goal, _)| Cell::percent(*goal, 1))
+        .text("cheapest setting", setting)
+        .num(["error", "-"], of(|p| Cell::percent(p.error, 2)))
+        .num(["median", "s"], of(|p| Cell::seconds(p.median())))
+        .with(Column::text("fastest – slowest (runs)"), of(spread))
+        .num(["steps", "1"], of(|p| Cell::count(p.steps)))
+        .num(["pair interactions", "1"], of(|p| Cell::sci(p.pairs, 2)))
+        .table(CHEAPEST, goals)
 }
 
 /// At the error of each peer, the cheapest of ours and how many times faster it is.
-fn peer_table(peers: &[Peer], points: &[Point]) -> Table {
-    let columns = vec![
-        Column::text("code"),
-        Column::num("its error", "-"),
-        Column::num("its time", "s"),
-        Column::text("timed"),
-        Column::text("ours at no more error"),
-        Column::num("our error", "-"),
-        Column::num("our time", "s"),
-        Column::num("times as fast", "-"),
-        Column::text("ours at its resolution"),
-        Column::num("our error", "-"),
-        Column::num("times as fast", "-"),
-    ];
+fn peer_table<'a>(peers: &'a [Peer], points: &'a [Point]) -> Table {
     let caption = "Other codes on the same work, against our cheapest setting with no more error, and \
                    against the most accurate of ours at the same resolution. At equal error, points of ours \
                    count whose finer levels have no more error either.";
-    let mut table = Table::new(caption, columns);
-    for peer in peers {
-        let mut row = vec![
-            Cell::text(&peer.name),
-            Cell::percent(peer.error, 2),
-            Cell::seconds(peer.seconds),
-            Cell::text(&peer.timed),
-        ];
-        match cheapest(points, peer.error) {
-            Some(p) => row.extend([
-                Cell::text(format!("`{}`, {}", p.ladder, p.label)),
-                Cell::percent(p.error, 2),
-                Cell::seconds(p.median()),
-                Cell::num(peer.seconds / p.median(), 2),
-            ]),
-            None => row.extend((0..4).map(|_| Cell::text("–"))),
-        }
-        match at_spacing(points, peer.spacing) {
-            Some(p) => row.extend([
-                Cell::text(format!("`{}`", p.ladder)),
-                Cell::percent(p.error, 2),
-                Cell::num(peer.seconds / p.median(), 2),
-            ]),
-            None => row.extend((0..3).map(|_| Cell::text("–"))),
-        }
-        table = table.row(row);
-    }
-    table
+    type Row<'a> = (&'a Peer, Option<&'a Point>, Option<&'a Point>);
+    let dash = || Cell::text("–");
+    let row =
+        |peer: &'a Peer| (peer, cheapest(points, peer.error), at_spacing(points, peer.spacing));
+    let rows = peers.iter().map(row);
+    let equal = |show: fn(&Point) -> Cell| move |(_, p, _): &Row| p.map_or_else(dash, show);
+    let at = |show: fn(&Point) -> Cell| move |(.., p): &Row| p.map_or_else(dash, show);
+    let faster = |peer: &Peer, ours: Option<&Point>| {
+        ours.map_or_else(dash, |p| Cell::num(peer.seconds / p.median(), 2))
+    };
+    Columns::<Row>::default()
+        .text("code", |(peer, ..)| &peer.name)
+        .num(["its error", "-"], |(peer, ..)| Cell::percent(peer.error, 2))
+        .num(["its time", "s"], |(peer, ..)| Cell::seconds(peer.seconds))
+        .text("timed", |(peer, ..)| &peer.timed)
+        .with(Column::text("ours at no more error"), equal(|p| Cell::text(p.setting())))
+        .num(["our error", "-"], equal(|p| Cell::percent(p.error, 2)))
+        .num(["our time", "s"], equal(|p| Cell::seconds(p.median())))
+        .num(["times as fast", "-"], move |(peer, p, _)| faster(peer, *p))
+        .with(Column::text("ours at its resolution"), at(|p| Cell::text(format!("`{}`", p.ladder))))
+        .num(["our error", "-"], at(|p| Cell::percent(p.error, 2)))
+        .num(["times as fast", "-"], move |(peer, _, p)| faster(peer, *p))
+        .table(caption, rows)
 }
 
 #[cfg(test)]

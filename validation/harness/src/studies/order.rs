@@ -1,10 +1,11 @@
 //! The observed order of accuracy with its confidence interval.
 
 use base::gate::Gate;
-use report::{Axis, Cell, Column, Figure, Layer, Legend, Plot, Series, Table, sig};
+use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, Table, sig};
 
 use crate::{
-    convergence::{Convergence, Label, Level as Point, convergence},
+    columns::Columns,
+    convergence::{Convergence, ConvergenceError, Label, Level as Point, convergence},
     declare::{Accuracy, ErrorOf, Ladder},
     runs::Runs,
     study::Study,
@@ -48,20 +49,11 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     let slope = accuracy.slope.map_or(String::new(), |p| format!(" The triangle shows order {p}."));
     let caption = format!("{} against spacing.{successive}{slope}", accuracy.label);
     let mut plot = Plot::new("", Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("order ± standard error", "-"),
-        Column::text("95 % interval"),
-        Column::text("local orders, coarse to fine"),
-        Column::text("label"),
-        Column::num("finest error", "-"),
-        Column::num("fitted floor", "-"),
-    ];
     let about = format!(
         "Observed order: least squares over all levels, with the 95 % interval of Student's t. {}",
         accuracy.about
     );
-    let mut table = Table::new(about, columns);
+    let mut rows = Vec::new();
     let mut study = Study::new(&id, "Order of accuracy");
     for (k, ladder) in accuracy.ladders.iter().enumerate() {
         let points = points(accuracy, ladder, runs);
@@ -75,43 +67,48 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
             study = study.judge(gate, found.as_ref().map_or(f64::NAN, |c| c.order));
         }
         let finest = points.last().map_or(f64::NAN, |p| p.value);
-        table = table.row(match found {
-            Ok(found) => row(&name, &found, finest),
-            Err(error) => unknown(&name, &error.to_string(), finest),
-        });
+        rows.push((name, found, finest));
     }
     if let Some(order) = accuracy.slope {
         plot = plot.layer(Layer::slope(order));
     }
     let figure = Figure::new(&id, caption).panel(plot.legend(Legend::Outside));
-    study.block(figure).block(table)
+    study.block(figure).block(table(about, rows))
 }
 
-fn error_cell(error: f64) -> Cell {
-    if error.is_finite() { Cell::percent(error, 2) } else { Cell::text("–") }
-}
+/// Name of a ladder, its order or why it has none, its finest error.
+type Row = (String, Result<Convergence, ConvergenceError>, f64);
 
-fn row(name: &str, found: &Convergence, finest: f64) -> Vec<Cell> {
-    let local: Vec<String> = found.local_orders.iter().map(|p| sig(*p, 2)).collect();
-    let label = match found.label {
-        Label::Asymptotic => "asymptotic",
-        Label::FloorReached => "floor reached",
-        Label::NotAsymptotic => "not asymptotic",
+fn table(about: String, rows: Vec<Row>) -> Table {
+    let of = |show: fn(&Convergence) -> String| {
+        move |(_, found, _): &Row| found.as_ref().map_or("–".into(), show)
     };
-    let [low, high] = found.interval.map(|end| sig(end, 2));
-    vec![
-        Cell::text(format!("`{name}`")),
-        Cell::text(format!("{} ± {}", sig(found.order, 3), sig(found.standard_error, 2))),
-        Cell::text(format!("{low} … {high}")),
-        Cell::text(local.join(", ")),
-        Cell::text(label),
-        error_cell(finest),
-        found.floor.map_or(Cell::text("–"), |floor| Cell::percent(floor.error, 2)),
-    ]
-}
-
-fn unknown(name: &str, why: &str, finest: f64) -> Vec<Cell> {
-    let [dash, none] = [Cell::text("–"), Cell::text("–")];
-    let (name, why) = (Cell::text(format!("`{name}`")), Cell::text(format!("no order: {why}")));
-    vec![name, dash.clone(), dash, none.clone(), why, error_cell(finest), none]
+    let order = of(|found| format!("{} ± {}", sig(found.order, 3), sig(found.standard_error, 2)));
+    let interval = of(|found| {
+        let [low, high] = found.interval.map(|end| sig(end, 2));
+        format!("{low} … {high}")
+    });
+    let local = of(|found| {
+        let orders: Vec<String> = found.local_orders.iter().map(|p| sig(*p, 2)).collect();
+        orders.join(", ")
+    });
+    let label = |(_, found, _): &Row| match found {
+        Ok(Convergence { label: Label::Asymptotic, .. }) => "asymptotic".into(),
+        Ok(Convergence { label: Label::FloorReached, .. }) => "floor reached".into(),
+        Ok(Convergence { label: Label::NotAsymptotic, .. }) => "not asymptotic".into(),
+        Err(error) => format!("no order: {error}"),
+    };
+    let floor = |(_, found, _): &Row| {
+        let floor = found.as_ref().ok().and_then(|found| found.floor);
+        floor.map_or(Cell::text("–"), |floor| Cell::percent(floor.error, 2))
+    };
+    Columns::default()
+        .code("variant", |(name, ..): &Row| name.clone())
+        .num(["order ± standard error", "-"], move |row| Cell::text(order(row)))
+        .text("95 % interval", interval)
+        .text("local orders, coarse to fine", local)
+        .text("label", label)
+        .of(["finest error", "-"], |(.., finest)| *finest, |error| Cell::percent(error, 2))
+        .num(["fitted floor", "-"], floor)
+        .table(about, rows)
 }

@@ -43,7 +43,7 @@ impl Experiment {
 pub fn measured(entry: Entry, record: &Record, metric: MetricKey, more: &str) -> Entry {
     match completed(record, metric) {
         Some(value) => entry.found(value, format!("{}{more}", sci(value))),
-        None => entry.found(f64::NAN, in_words(record)),
+        None => entry.found(f64::NAN, record.status.to_string()),
     }
 }
 
@@ -73,18 +73,6 @@ pub fn study(
 /// A metric of a run that reached its end.
 pub fn completed(record: &Record, metric: MetricKey) -> Option<f64> {
     if record.status == Status::Completed { record.value(metric) } else { None }
-}
-
-/// How a run ended.
-pub fn in_words(record: &Record) -> String {
-    match &record.status {
-        Status::Completed => format!("completed {} steps", record.cost.steps),
-        Status::Diverged { step, time, particle, field, value_text } => format!(
-            "diverged at step {step}, t = {time:.6e} s: {field} {value_text} of particle {particle}"
-        ),
-        Status::Refused { reason } => reason.clone(),
-        Status::Interrupted { step, .. } => format!("interrupted at step {step}"),
-    }
 }
 
 /// A number as in tables, a dash if there is none.

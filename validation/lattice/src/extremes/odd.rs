@@ -6,7 +6,7 @@ use solver::{CubicSpline, Domain, Kernel, Leapfrog, Particle, SceneError, Tait, 
 
 use super::{
     EXTREMES, Experiment, ExtremeSettings, Simulation, drive,
-    experiment::{completed, in_words, measured, sci},
+    experiment::{completed, measured, sci},
     record_of,
 };
 use crate::wave::plain;
@@ -271,7 +271,7 @@ pub fn fast_blocks() -> Vec<Experiment> {
             );
             let speed = completed(record, FASTEST);
             match record.status {
-                Status::Diverged { .. } => entry.found(0.0, in_words(record)),
+                Status::Diverged { .. } => entry.found(0.0, record.status.to_string()),
                 _ if speed.is_some_and(|speed| !speed.is_finite()) => {
                     entry.found(f64::NAN, "not finite")
                 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use solver::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
-use super::{EXTREMES, Experiment, ExtremeSettings, experiment::sci, in_words, record_of};
+use super::{EXTREMES, Experiment, ExtremeSettings, experiment::sci, record_of};
 use crate::wave::{Polarisation, Wave, WaveSettings, fit, measure};
 use base::{
     gate::{Bound, Evidence},
@@ -101,7 +101,7 @@ fn smoothed(variant: &str, kernel: &'static str, ratio: f64) -> Experiment {
                 "sound factor {sound:.4}, viscous factor {viscous:.4}; off theory by {}",
                 sci(distance)
             ),
-            _ => in_words(record),
+            _ => record.status.to_string(),
         };
         entry.found(distance.unwrap_or(f64::NAN), found)
     })

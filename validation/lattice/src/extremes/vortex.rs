@@ -10,7 +10,7 @@ use solver::{
 
 use super::{
     EXTREMES, Experiment, ExtremeSettings, Simulation, drive,
-    experiment::{completed, in_words, measured, sci},
+    experiment::{completed, measured, sci},
 };
 use base::{
     gate::{Bound, Evidence},
@@ -140,13 +140,13 @@ pub fn fast() -> Vec<Experiment> {
         );
         let [slow, usual] = [0, 1].map(|k| completed(records[k], VELOCITY_ERROR));
         let entry = match (&records[0].status, slow.zip(usual)) {
-            (Status::Diverged { .. }, _) => entry.found(0.0, in_words(records[0])),
+            (Status::Diverged { .. }, _) => entry.found(0.0, records[0].status.to_string()),
             (_, Some((slow, usual))) => {
                 let [error, at_usual] = [slow, usual].map(|error| percent(error, 2));
                 let found = format!("velocity error {error}, at Mach 0.1 {at_usual}");
                 entry.found(slow - usual, found)
             }
-            _ => entry.found(f64::NAN, [0, 1].map(|k| in_words(records[k])).join("; ")),
+            _ => entry.found(f64::NAN, [0, 1].map(|k| records[k].status.to_string()).join("; ")),
         };
         vec![entry]
     };
@@ -191,7 +191,7 @@ pub fn jittered() -> Vec<Experiment> {
                     );
                     entry.found(peak, found)
                 }
-                _ => entry.found(f64::NAN, in_words(record)),
+                _ => entry.found(f64::NAN, record.status.to_string()),
             }
         })
     };

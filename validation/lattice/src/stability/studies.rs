@@ -3,9 +3,9 @@
 use solver::{CubicSpline, Kernel, QuinticSpline};
 
 use base::record::Record;
-use harness::{case::Tier, runs::Runs, study::Study};
+use harness::{case::Tier, columns::Columns, runs::Runs, study::Study};
 use maths::theory::{lattice::SquareLattice, time_step};
-use report::{Axis, Cell, Colour, Column, Dash, Figure, Layer, Plot, Series, Shape, Table};
+use report::{Axis, Cell, Colour, Dash, Figure, Layer, Plot, Series, Shape, Table};
 
 use super::{
     Limit, Point, SIDE, WAVE_ANGLE, WAVE_GROWTH, WEAK, baseline, beyond, noisy_box, points,
@@ -62,49 +62,29 @@ const WEAK_TEXT: &str = "Without damping the predictor-corrector amplifies sound
     h/dx = 1.3, over 300 steps; dt/h c₀ is the Courant number.";
 
 fn limits_table(points: &[Point], limits: &[Limit]) -> Table {
-    let columns = vec![
-        Column::text("kernel"),
-        Column::num("h/dx", ""),
-        Column::text("integrator"),
-        Column::text("damping"),
-        Column::num("measured c₀dt/h", ""),
-        Column::num("theory", ""),
-        Column::num("measured/theory", ""),
-        Column::num("steps a run", ""),
-    ];
-    let table = Table::new("Longest stable step, measured and in theory.", columns);
-    points.iter().zip(limits).fold(table, |table, (point, limit)| {
-        table.row(vec![
-            Cell::text(point.kernel),
-            Cell::num(point.settings.h_over_dx, 2),
-            Cell::text(point.integrator),
-            Cell::text(point.fluid()),
-            Cell::num(limit.middle(), 4),
-            Cell::num(limit.theory.limit, 4),
-            Cell::num(limit.ratio(), 4),
-            Cell::count(limit.theory.steps as u64),
-        ])
-    })
+    Columns::<(&Point, &Limit)>::default()
+        .text("kernel", |(point, _)| point.kernel)
+        .num(["h/dx", ""], |(point, _)| Cell::num(point.settings.h_over_dx, 2))
+        .text("integrator", |(point, _)| point.integrator)
+        .text("damping", |(point, _)| point.fluid())
+        .num(["measured c₀dt/h", ""], |(_, limit)| Cell::num(limit.middle(), 4))
+        .num(["theory", ""], |(_, limit)| Cell::num(limit.theory.limit, 4))
+        .num(["measured/theory", ""], |(_, limit)| Cell::num(limit.ratio(), 4))
+        .num(["steps a run", ""], |(_, limit)| Cell::count(limit.theory.steps as u64))
+        .table("Longest stable step, measured and in theory.", points.iter().zip(limits))
 }
 
 fn weak_table(weak: &[[f64; 2]]) -> Table {
-    let columns = vec![
-        Column::num("Courant number", ""),
-        Column::num("ω dt", ""),
-        Column::num("measured growth", "1/step"),
-        Column::num("½ ln(1 + (ω dt)⁴/4)", "1/step"),
-        Column::num("(ω dt)⁴/8", "1/step"),
-    ];
     let caption = "Weak instability of the predictor-corrector without damping.";
-    WEAK.iter().zip(weak).fold(Table::new(caption, columns), |table, (courant, &[growth, wdt])| {
-        table.row(vec![
-            Cell::num(*courant, 2),
-            Cell::num(wdt, 4),
-            Cell::sci(growth, 4),
-            Cell::sci(theory_of_weak_growth(wdt), 4),
-            Cell::sci(wdt.powi(4) / 8.0, 4),
-        ])
-    })
+    Columns::<(&f64, &[f64; 2])>::default()
+        .num(["Courant number", ""], |(courant, _)| Cell::num(**courant, 2))
+        .num(["ω dt", ""], |(_, [_, wdt])| Cell::num(*wdt, 4))
+        .num(["measured growth", "1/step"], |(_, [growth, _])| Cell::sci(*growth, 4))
+        .num(["½ ln(1 + (ω dt)⁴/4)", "1/step"], |(_, [_, wdt])| {
+            Cell::sci(theory_of_weak_growth(*wdt), 4)
+        })
+        .num(["(ω dt)⁴/8", "1/step"], |(_, [_, wdt])| Cell::sci(wdt.powi(4) / 8.0, 4))
+        .table(caption, WEAK.iter().zip(weak))
 }
 
 /// The theoretical limit over c₀h/ν, without artificial damping.

@@ -97,10 +97,8 @@ fn fast(runs: &Runs) -> Entry {
                 [MOMENTUM, PIECES_MOST].map(|key| record.value(key).unwrap_or(f64::NAN));
             entry.found(momentum, format!("completed: {} in {pieces} pieces", sci(momentum, 3)))
         }
-        Status::Diverged { step, field, particle, .. } => {
-            entry.found(0.0, format!("diverged at step {step}: {field} of particle {particle}"))
-        }
-        other => entry.found(f64::NAN, format!("{other:?}")),
+        ended @ Status::Diverged { .. } => entry.found(0.0, ended.to_string()),
+        ended => entry.found(f64::NAN, ended.to_string()),
     }
 }
 

@@ -10,15 +10,11 @@ use super::{
 };
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricName, Profile, Record, Status},
+    record::{Profile, Record},
     reference::Reference as Package,
     spec::RunSpec,
 };
-use harness::{
-    case::{self, Tier},
-    runs::Runs,
-    study::Study,
-};
+use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{
     Axis, Cell, Colour, ColourMap, Column, Figure, Film, ParticleMap, Plot, Series, Table, percent,
     sig,
@@ -40,28 +36,13 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     studies
 }
 
-/// A metric for a table: a dash where it was not measured.
-fn measured(record: &Record, metric: impl Into<MetricName>, show: impl Fn(f64) -> Cell) -> Cell {
-    record.value(metric).map_or(Cell::text("–"), show)
-}
-
-/// The name of a variant for a table.
-fn variant(record: &Record) -> Cell {
-    Cell::text(format!("`{}`", record.variant))
-}
-
 fn settings(record: &Record) -> RingSettings {
     record.settings_as()
 }
 
-/// The records of these runs.
-fn records(specs: impl IntoIterator<Item = RunSpec>, runs: &Runs) -> impl Iterator<Item = &Record> {
-    specs.into_iter().filter_map(|spec| runs.record(&spec))
-}
-
 /// The collisions of the plan.
-fn collisions(tier: Tier, runs: &Runs) -> impl Iterator<Item = &Record> {
-    records(plan::collisions(tier).into_iter().map(|planned| planned.spec), runs)
+fn collisions(tier: Tier, runs: &Runs) -> Vec<&Record> {
+    runs.records(plan::collisions(tier).into_iter().map(|planned| planned.spec))
 }
 
 /// Strength of the artificial stress and h/dx are as they are meant.
@@ -72,7 +53,7 @@ fn is_usual(record: &Record) -> bool {
 
 /// Usual collisions at a speed that has a reference.
 fn with_reference(tier: Tier, runs: &Runs) -> impl Iterator<Item = (&Record, Reference)> {
-    let usual = collisions(tier, runs).filter(|record| is_usual(record));
+    let usual = collisions(tier, runs).into_iter().filter(|record| is_usual(record));
     usual.filter_map(|record| Some((record, Reference::of(&settings(record))?)))
 }
 
@@ -182,10 +163,10 @@ fn reference_phases(speed: f64, reference: &Reference) -> Vec<Cell> {
 fn found_phases(record: &Record) -> Vec<Cell> {
     let RingSettings { speed, spacing, .. } = settings(record);
     let mut row = vec![
-        variant(record),
+        Cell::text(format!("`{}`", record.variant)),
         Cell::num(speed, 3),
         Cell::num(spacing, 3),
-        measured(record, PHASES, |n| Cell::num(n, 1)),
+        record.value(PHASES).map_or(Cell::text("–"), |n| Cell::num(n, 1)),
     ];
     for phase in [0, 1].map(metrics::phase) {
         let Some(impulse) = record.value(IMPULSE.at(&phase)) else {
@@ -264,11 +245,7 @@ fn axes(record: &Record, shares: &[f64]) -> (Axis, Axis) {
 }
 
 fn picture(record: &Record, share: f64, title: &str, axes: (Axis, Axis)) -> ParticleMap {
-    let empty = Profile::default();
-    let profile = record.profiles.get(&format!("particles@{share}")).unwrap_or(&empty);
-    let (x, y) = (profile.column("x"), profile.column("y"));
-    let values = profile.column("stress").iter();
-    let points = x.iter().zip(y).zip(values).map(|((x, y), s)| (*x, *y, *s)).collect();
+    let points = pictures::points(record, &format!("particles@{share}"), "stress");
     ParticleMap::new(title, axes, "σ₁ [K]", ColourMap::Diverging, points)
         .diameter(settings(record).spacing)
         .values(-0.05, 0.05)
@@ -317,43 +294,30 @@ fn fracture(tier: Tier, runs: &Runs) -> Study {
 
 /// Every collision of the plan, with its distances from the reference where there is one.
 fn collisions_table(tier: Tier, runs: &Runs) -> Table {
-    let number = |r: &Record, metric| measured(r, metric, |x| Cell::num(x, 3));
-    let share = |r: &Record, metric| measured(r, metric, |x| Cell::percent(x, 2));
-    let restitution = |r: &Record| measured(r, RESTITUTION, |x| Cell::num(x, 4));
-    let changed = |r: &Record| Cell::text(case::changed(&RUBBER_RINGS, &r.spec()).join(", "));
     let exact = |r: &Record| {
         let exact = Reference::of(&settings(r)).and_then(|of| of.number(RESTITUTION));
         let exact = exact.map(|(value, spread)| format!("{} ± {}", sig(value, 4), sig(spread, 1)));
-        Cell::text(exact.unwrap_or("–".into()))
+        exact.unwrap_or("–".into())
     };
-    let mirror = |r: &Record| measured(r, MIRROR, |x| Cell::sci(x, 2));
-    let ended = |r: &Record| match r.status {
-        Status::Completed => Cell::text("completed"),
-        _ => Cell::text("diverged"),
-    };
-    Table::of(
-        "Every collision; unless changed the spacing is 0.1 L and the speed 0.059 c0. Pieces: particles \
-         within 1.5 spacings of each other hold together, so two whole rings are 2. Restitution: speed of \
-         the centre of mass at t = 200 L/c0 over the initial one, with the uncertainty of finite elements. \
-         A ring keeps part of its energy as vibration, which no dissipation has taken; energy lost is what \
-         stabilisation took.",
-        &[
-            (Column::text("variant"), &variant),
-            (Column::text("changed"), &changed),
-            (Column::num("most pieces", "1"), &|r| number(r, PIECES_MOST)),
-            (Column::num("pieces at the end", "1"), &|r| number(r, PIECES)),
-            (Column::num("restitution", "-"), &restitution),
-            (Column::text("finite elements"), &exact),
-            (Column::num("error of restitution", "-"), &|r| share(r, RESTITUTION_ERROR)),
-            (Column::num("of least width", "-"), &|r| share(r, WIDTH_MIN_ERROR)),
-            (Column::num("of largest height", "-"), &|r| share(r, HEIGHT_MAX_ERROR)),
-            (Column::num("rms of centre", "L"), &|r| number(r, X_C_RMS)),
-            (Column::num("energy lost", "-"), &|r| share(r, ENERGY_LOST)),
-            (Column::num("distance from mirror image", "dx"), &mirror),
-            (Column::text("ended"), &ended),
-        ],
-        collisions(tier, runs),
-    )
+    let caption = "Every collision; unless changed the spacing is 0.1 L and the speed 0.059 c0. Pieces: \
+                   particles within 1.5 spacings of each other hold together, so two whole rings are 2. \
+                   Restitution: speed of the centre of mass at t = 200 L/c0 over the initial one, with the \
+                   uncertainty of finite elements. A ring keeps part of its energy as vibration, which no \
+                   dissipation has taken; energy lost is what stabilisation took.";
+    Columns::of_variants()
+        .changed("changed", &RUBBER_RINGS)
+        .number("most pieces", "1", PIECES_MOST)
+        .number("pieces at the end", "1", PIECES)
+        .metric(["restitution", "-"], RESTITUTION, |x| Cell::num(x, 4))
+        .text("finite elements", exact)
+        .percent("error of restitution", "-", RESTITUTION_ERROR, 1.0)
+        .percent("of least width", "-", WIDTH_MIN_ERROR, 1.0)
+        .percent("of largest height", "-", HEIGHT_MAX_ERROR, 1.0)
+        .number("rms of centre", "L", X_C_RMS)
+        .percent("energy lost", "-", ENERGY_LOST, 1.0)
+        .metric(["distance from mirror image", "dx"], MIRROR, |x| Cell::sci(x, 2))
+        .ended()
+        .table(caption, collisions(tier, runs))
 }
 
 /// What a particle of rubber costs.
@@ -362,47 +326,41 @@ fn rates(tier: Tier, runs: &Runs) -> Study {
         let sweeps = if r.variant == "leapfrog" { 2.0 } else { 1.0 };
         r.cost.pair_interactions as f64 / r.cost.particle_rhs as f64 / sweeps
     };
-    let rhs = |r: &Record| Cell::num(1e9 * r.cost.cpu_s / r.cost.particle_rhs as f64, 3);
-    let memory = |r: &Record| Cell::num(r.cost.solver_bytes as f64 / r.cost.particles as f64, 3);
-    let table = Table::of(
-        "What a particle of rubber costs: one right-hand side (stress, artificial viscosity, density, \
-         stress rate, XSPH), timed with nothing else at work.",
-        &[
-            (Column::text("variant"), &variant),
-            (Column::num("spacing", "L"), &|r| Cell::num(settings(r).spacing, 3)),
-            (Column::num("particles", "1"), &|r| Cell::count(r.cost.particles as u64)),
-            (Column::num("steps", "1"), &|r| Cell::count(r.cost.steps)),
-            (Column::num("neighbours", "1"), &|r| Cell::num(neighbours(r), 3)),
-            (Column::num("right-hand side of a particle", "ns"), &rhs),
-            (Column::num("solver memory of a particle", "B"), &memory),
-        ],
-        records(declaration::specs_of_ladders(tier), runs),
-    );
+    let rhs = |r: &Record| 1e9 * r.cost.cpu_s / r.cost.particle_rhs as f64;
+    let memory = |r: &Record| r.cost.solver_bytes as f64 / r.cost.particles as f64;
+    let three = |value| Cell::num(value, 3);
+    let caption = "What a particle of rubber costs: one right-hand side (stress, artificial viscosity, \
+                   density, stress rate, XSPH), timed with nothing else at work.";
+    let table = Columns::of_variants()
+        .of(["spacing", "L"], |r| settings(r).spacing, three)
+        .num(["particles", "1"], |r| Cell::count(r.cost.particles as u64))
+        .steps()
+        .of(["neighbours", "1"], neighbours, three)
+        .of(["right-hand side of a particle", "ns"], rhs, three)
+        .of(["solver memory of a particle", "B"], memory, three)
+        .table(caption, runs.records(declaration::specs_of_ladders(tier)));
     Study::new("rubber-rings-rates", "What a particle of rubber costs").block(table)
 }
 
 /// A rotated scene must give the rotated answer.
 fn rotated(runs: &Runs) -> Study {
     let mut study = Study::new("rubber-rings-rotated", "The same collision rotated by 30 degrees");
-    let columns = vec![
-        Column::text("variant"),
-        Column::num("restitution", "-"),
-        Column::num("rotated", "-"),
-        Column::num("difference", "-"),
-    ];
     let caption = "Restitution at spacing 0.2 L, as it is and with the whole scene rotated by 30 \
                    degrees. Principal axes rotate with the scene; components do not.";
-    let mut table = Table::new(caption, columns);
-    for variant in plan::ROTATED {
+    let restitution = |variant: &str| {
         let specs = [collision(variant, FIVE_LAYERS, SPEED), plan::rotated(variant)];
-        let restitution = |spec| runs.record(spec).and_then(|record| record.value(RESTITUTION));
-        let [a, b] = [0, 1].map(|k| restitution(&specs[k]).unwrap_or(f64::NAN));
-        table = table.row(vec![
-            Cell::text(format!("`{variant}`")),
-            Cell::num(a, 8),
-            Cell::num(b, 8),
-            Cell::sci((a - b).abs(), 2),
-        ]);
+        let value = |spec| runs.record(spec).and_then(|record| record.value(RESTITUTION));
+        specs.each_ref().map(|spec| value(spec).unwrap_or(f64::NAN))
+    };
+    let found = plan::ROTATED.map(|variant| (variant, restitution(variant)));
+    type Row = (&'static str, [f64; 2]);
+    let table = Columns::<Row>::default()
+        .code("variant", |(variant, _)| *variant)
+        .num(["restitution", "-"], |(_, [a, _])| Cell::num(*a, 8))
+        .num(["rotated", "-"], |(_, [_, b])| Cell::num(*b, 8))
+        .num(["difference", "-"], |(_, [a, b])| Cell::sci((a - b).abs(), 2))
+        .table(caption, found);
+    for (variant, [a, b]) in found {
         let because = "no direction is special: artificial stress in principal axes rotates with the \
                        scene, and round-off of the rotated places grows while rings bend";
         let id = format!("rubber_rings.{variant}.turned");

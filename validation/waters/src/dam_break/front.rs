@@ -11,8 +11,8 @@ use base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
 };
-use harness::{case::Tier, runs::Runs, study::Study};
-use report::{Cell, Column, Table, sig};
+use harness::{case::Tier, columns::Columns, runs::Runs, study::Study};
+use report::{Cell, sig};
 
 /// T between which fronts are compared: before, they have hardly moved; later, there is no experiment.
 pub const LATER: [f64; 2] = [1.0, 3.3];
@@ -44,37 +44,21 @@ fn order([coarse, middle, fine]: [&Curve; 3]) -> [f64; 3] {
 
 /// The observed order of the front, variant by variant, from the three finest judged runs of each.
 pub fn orders(tier: Tier, runs: &Runs) -> Study {
-    let columns = vec![
-        Column::text("variant"),
-        Column::text("a/dx"),
-        Column::text("Z at T = 3"),
-        Column::num("order", "-"),
-        Column::text("over thirds of the time"),
-        Column::num("Z at T = 3 in the limit", "a"),
-    ];
     let caption = format!(
         "Observed order of the front: log2 of the ratio of the rms of successive differences of Z(T), 1 ≤ T \
          ≤ 3.3, and as its error the range over thirds of that time. The limit is Richardson's with that \
          order. Three other codes have {} to {} at T = 3.",
         PEERS[1].1, PEERS[1].2
     );
-    let mut table = Table::new(caption, columns);
+    let z = |record: &Record| record.value(metrics::Z.at(3)).unwrap_or(f64::NAN);
+    let mut rows = Vec::new();
     let mut study = Study::new("dam-break-front-order", "Order of the front");
     for variant in ["seed", "modern"] {
         let Some(&n) = specs::martin_moyce(variant, tier).last_chunk::<3>() else { continue };
         let records = n.map(|n| runs.record(&specs::free(tier, variant, n)));
         let [Some(a), Some(b), Some(c)] = records else { continue };
         let [p, least, most] = order([&front(a), &front(b), &front(c)]);
-        let z = |record: &Record| record.value(metrics::Z.at(3)).unwrap_or(f64::NAN);
-        let limit = z(c) + (z(c) - z(b)) / (p.exp2() - 1.0);
-        table = table.row(vec![
-            Cell::text(format!("`{variant}`")),
-            Cell::text(n.map(|n| n.to_string()).join(", ")),
-            Cell::text([a, b, c].map(|record| sig(z(record), 4)).join(", ")),
-            Cell::num(p, 2),
-            Cell::text(format!("{} to {}", sig(least, 2), sig(most, 2))),
-            Cell::num(limit, 3),
-        ]);
+        rows.push((variant, n, [a, b, c].map(z), [p, least, most]));
         if variant == "modern" {
             let because = "artificial viscosity, the place of a surface and what a wall sees of it are of \
                            first order in dx: differences at least fall as the root of it, and faster than \
@@ -85,6 +69,17 @@ pub fn orders(tier: Tier, runs: &Runs) -> Study {
             study = study.judge(gate, p);
         }
     }
+    let limit = |[_, b, c]: [f64; 3], p: f64| c + (c - b) / (p.exp2() - 1.0);
+    let table = Columns::<(&str, [usize; 3], [f64; 3], [f64; 3])>::default()
+        .code("variant", |(variant, ..)| *variant)
+        .text("a/dx", |(_, n, ..)| n.map(|n| n.to_string()).join(", "))
+        .text("Z at T = 3", |(.., z, _)| z.map(|z| sig(z, 4)).join(", "))
+        .num(["order", "-"], |(.., [p, ..])| Cell::num(*p, 2))
+        .text("over thirds of the time", |(.., [_, least, most])| {
+            format!("{} to {}", sig(*least, 2), sig(*most, 2))
+        })
+        .num(["Z at T = 3 in the limit", "a"], |(.., z, [p, ..])| Cell::num(limit(*z, *p), 3))
+        .table(caption, rows);
     study.block(table)
 }
 

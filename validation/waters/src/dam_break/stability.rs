@@ -13,7 +13,7 @@ use base::{
     spec::RunSpec,
 };
 use harness::{
-    case::{self, Case, Tier},
+    case::{Case, Tier},
     columns::Columns,
     runs::Runs,
     study::Study,
@@ -104,7 +104,7 @@ pub fn extreme_settings(tier: Tier, runs: &Runs) -> Study {
     let must = |holds: bool| if holds { "keep water and energy" } else { "end as diverged" };
     let table = Columns::default()
         .text("extreme", |record| of(record).map_or(String::new(), |of| of.name.into()))
-        .text("settings", |record| case::changed(&DAM_BREAK, &record.spec()).join(", "))
+        .changed("settings", &DAM_BREAK)
         .text("must", |record| of(record).map_or(String::new(), |of| must(of.holds).into()))
         .ended()
         .number("lost particles", "1", OUTSIDE_END)

@@ -15,7 +15,7 @@ use base::{
     record::{MetricName, Record},
     reference::ReferenceError,
 };
-use harness::{case::Tier, columns::Columns, gate_power, runs::Runs, study::Study};
+use harness::{case::Tier, columns::Columns, gate_power, pictures, runs::Runs, study::Study};
 use report::{
     Axis, Cell, Colour, ColourMap, Dash, Figure, Film, Layer, Legend, ParticleMap, Plot, Series,
     Shape, Table, percent, sig,
@@ -66,7 +66,7 @@ fn n(record: &Record) -> usize {
 }
 
 /// Columns of a table of runs: the variant, and its resolution.
-fn columns<'a>(side: &str) -> Columns<'a> {
+fn columns<'a>(side: &str) -> Columns<'a, Record> {
     let n = |record: &Record| n(record) as f64;
     Columns::of_variants().of([side, "1"], n, |n| Cell::num(n, 3))
 }
@@ -411,8 +411,7 @@ fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
 
 /// One of them.
 fn picture(record: &Record, share: f64, (width, height): (f64, f64)) -> ParticleMap {
-    let [x, y, p] = ["x", "y", "p"].map(|name| record.column(&format!("particles@{share}"), name));
-    let points = x.iter().zip(y).zip(p).map(|((x, y), p)| (*x, *y, *p)).collect();
+    let points = pictures::points(record, &format!("particles@{share}"), "p");
     let s = settings(record);
     let axes = (Axis::linear("x [H]").range(0.0, width), Axis::linear("y [H]").range(0.0, height));
     let title = format!("t √(g/H) = {}", sig(s.end * share, 3));
@@ -495,7 +494,7 @@ fn energy_table(tier: Tier, runs: &Runs) -> Table {
                    store. Momentum over M √(g H).";
     let scene = |record: &Record| if is_free(record) { "Martin & Moyce" } else { "Lobovsky" };
     let sci = |value| Cell::sci(value, 2);
-    let mut columns = Columns::of_variants().text("case", move |record| scene(record).into()).of(
+    let mut columns = Columns::of_variants().text("case", move |record| scene(record)).of(
         ["n", "1"],
         |record| n(record) as f64,
         |n| Cell::num(n, 3),
