@@ -90,7 +90,7 @@ pub fn parts(
     context: &Context,
 ) -> Parts {
     let (domain, limits) = (Domain::open(), Limits::default());
-    let (medium, threads) = (medium.clone(), context.threads);
+    let (medium, threads) = (*medium, context.threads);
     Parts { medium, domain, particles, mirrors, skin: None, limits, threads }
 }
 
