@@ -188,11 +188,11 @@ fn collide(planned: &Planned, fault: &Fault) -> Record {
     let mut rings = Rings::new(&settings, &method, &context).expect("sound settings");
     rings.dt *= (fault.time_step)(&rings);
     let healthy = method::scene::<Healthy>(rings.parts(&context));
-    let (stress, viscosity) = healthy.forces.clone();
+    let (stress, viscosity) = healthy.forces;
     let (xi, w) = (fault.tensile * settings.xi, rings.medium.w_at_spacing);
     let tensile = PrincipalStress::new(xi, settings.exponent as u32, w);
     let stress = SidedStress(CauchyStress { tensile, ..stress }, fault.own_side);
-    let (continuity, jaumann, xsph) = healthy.drift.clone();
+    let (continuity, jaumann, xsph) = healthy.drift;
     let drift = (continuity, rate(jaumann, fault), xsph);
     let scene = with_terms::<Healthy, Spoiled>(healthy, (stress, viscosity), drift);
     let simulation = Box::new(scene.build().expect("a scene"));
@@ -206,8 +206,8 @@ type Rippled =
 fn ripple(settings: &WaveSettings, fault: &Fault) -> Record {
     let (context, method) = (Context::default(), Method::of::<Bare>());
     let healthy = method::scene::<Bare>(settings.parts(&method, &context));
-    let (continuity, jaumann) = healthy.drift.clone();
-    let forces = SidedStress(healthy.forces.clone(), fault.own_side);
+    let (continuity, jaumann) = healthy.drift;
+    let forces = SidedStress(healthy.forces, fault.own_side);
     let drift = (continuity, rate(jaumann, fault));
     let scene = with_terms::<Bare, Rippled>(healthy, forces, drift);
     let simulation = Box::new(scene.build().expect("a scene"));
