@@ -4,7 +4,7 @@ use base::{
     gate::{Evidence, Verdict},
     manifest::{Known, Manifest},
     record::Record,
-    reference::Reference,
+    reference::{Reference, ReferenceError},
     settings::Field,
     spec::{RunSpec, Task},
 };
@@ -228,31 +228,29 @@ fn what(case: &dyn Case, spec: &RunSpec) -> String {
 }
 
 fn references_section() -> Section {
-    let columns = vec![Column::text("reference"), Column::text("what"), Column::text("licence")];
-    let mut table =
-        Table::new("Reference data, embedded with its provenance and checked by hash.", columns);
-    for name in Reference::names() {
-        let cells = match Reference::load(name) {
-            Ok(reference) => vec![
-                Cell::text(format!("`{name}`")),
-                Cell::text(reference.package.title.clone()),
-                Cell::text(
-                    reference
-                        .package
-                        .licenses
-                        .iter()
-                        .map(|l| l.name.clone())
-                        .collect::<Vec<_>>()
-                        .join(", "),
-                ),
-            ],
-            Err(error) => vec![
-                Cell::text(format!("`{name}`")).with(Status::Fail),
-                Cell::text(error.to_string()),
-                Cell::text("–"),
-            ],
-        };
-        table = table.row(cells);
-    }
+    type Row = (&'static str, Result<Reference, ReferenceError>);
+    let name = |(name, found): &Row| {
+        let cell = Cell::text(format!("`{name}`"));
+        if found.is_err() { cell.with(Status::Fail) } else { cell }
+    };
+    let what = |(_, found): &Row| match found {
+        Ok(reference) => reference.package.title.clone(),
+        Err(error) => error.to_string(),
+    };
+    let licences = |(_, found): &Row| match found {
+        Ok(Reference { package, .. }) => {
+            let names: Vec<&str> = package.licenses.iter().map(|l| l.name.as_str()).collect();
+            names.join(", ")
+        }
+        Err(_) => "–".into(),
+    };
+    let table = Columns::<Row>::default()
+        .with(Column::text("reference"), name)
+        .text("what", what)
+        .text("licence", licences)
+        .table(
+            "Reference data, embedded with its provenance and checked by hash.",
+            Reference::names().into_iter().map(|name| (name, Reference::load(name))),
+        );
     Section::new("references", "References").block(table)
 }

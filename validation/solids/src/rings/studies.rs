@@ -418,13 +418,11 @@ fn explained(tier: Tier, runs: &Runs) -> Option<String> {
 fn law_table() -> Result<Table, base::reference::ReferenceError> {
     let package = Package::load("rubber_rings")?;
     let laws = package.table("laws")?;
-    let columns = laws.fields().iter().map(|field| Column::text(field.name.clone())).collect();
-    let mut table =
-        Table::new("Finite elements with several laws, see the reference's page.", columns);
-    let texts: Vec<Vec<&str>> =
-        laws.fields().iter().map(|field| laws.texts(&field.name)).collect::<Result<_, _>>()?;
-    for k in 0..laws.len() {
-        table = table.row(texts.iter().map(|column| Cell::text(column[k])).collect());
+    let mut columns = Columns::<usize>::default();
+    for field in laws.fields() {
+        let texts = laws.texts(&field.name)?;
+        columns = columns.text(&field.name, move |k| texts[*k]);
     }
-    Ok(table)
+    let caption = "Finite elements with several laws, see the reference's page.";
+    Ok(columns.table(caption, 0..laws.len()))
 }
