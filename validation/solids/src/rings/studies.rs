@@ -332,12 +332,12 @@ fn rates(tier: Tier, runs: &Runs) -> Study {
     let caption = "What a particle of rubber costs: one right-hand side (stress, artificial viscosity, \
                    density, stress rate, XSPH), timed with nothing else at work.";
     let table = Columns::of_variants()
-        .of(["spacing", "L"], |r| settings(r).spacing, three)
+        .num(["spacing", "L"], |r| three(settings(r).spacing))
         .num(["particles", "1"], |r| Cell::count(r.cost.particles as u64))
         .steps()
-        .of(["neighbours", "1"], neighbours, three)
-        .of(["right-hand side of a particle", "ns"], rhs, three)
-        .of(["solver memory of a particle", "B"], memory, three)
+        .num(["neighbours", "1"], |r| three(neighbours(r)))
+        .num(["right-hand side of a particle", "ns"], |r| three(rhs(r)))
+        .num(["solver memory of a particle", "B"], |r| three(memory(r)))
         .table(caption, runs.records(declaration::specs_of_ladders(tier)));
     Study::new("rubber-rings-rates", "What a particle of rubber costs").block(table)
 }
