@@ -33,6 +33,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     for side in [-1.0, 1.0] {
         for r in (0..layers).map(|k| radius + (f64::from(k) + 0.5) * dx) {
             let count = (TAU * r / dx).round();
+            #[allow(clippy::disallowed_methods, reason = "an example without digests")]
             let turn = |k: f64| Vector2::new((TAU * k / count).cos(), (TAU * k / count).sin()) * r;
             let centre = Vector2::new(5.0 * side, 0.0);
             let velocity = Vector2::new(-speed * side, 0.0);

@@ -6,6 +6,7 @@ pub mod new_term;
 pub mod new_wall;
 pub mod spoil;
 
+use base::functions::{cos, sin};
 use nalgebra::Vector2;
 use solver::{
     Compose, Domain, Engine, Evolved, Fault, Flow, Integrator, Kernel, Observer, Open, Outcome,
@@ -124,7 +125,7 @@ pub fn patch(n: usize, jitter: f64, seed: u64) -> Vec<Particle> {
             let position = point + random.vector(-jitter, jitter) * dx;
             let k = 2.0 * std::f64::consts::PI;
             let (x, y) = (k * position.x, k * position.y);
-            let velocity = Vector2::new(x.sin() * y.cos(), 0.5 * y.sin() - 0.3 * x.cos()) * 0.1;
+            let velocity = Vector2::new(sin(x) * cos(y), 0.5 * sin(y) - 0.3 * cos(x)) * 0.1;
             Particle::fluid(position, velocity, 1.0, dx * dx)
         })
         .collect()

@@ -1,5 +1,6 @@
 //! A case of its own in one file: the decay of a shear wave in a periodic box.
 
+use base::functions::{exp, sin};
 use base::record::{MetricKey, Record};
 use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate::*};
 use nalgebra::Vector2;
@@ -33,16 +34,16 @@ fn medium(method: &Method, s: &Decay) -> Medium {
 
 fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record, RunError> {
     let (medium, Rules { dt, .. }, dx) = (medium(m, s), rules(m, s)?, 1.0 / s.n as f64);
-    let wave = |x: Vector2<f64>| Vector2::new(1e-3 * (TAU * x.y).sin(), 0.0);
+    let wave = |x: Vector2<f64>| Vector2::new(1e-3 * sin(TAU * x.y), 0.0);
     let places = lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n);
     let particles = places.map(|x| Particle::fluid(x, wave(x), 1.0, dx * dx)).collect();
     let parts = Parts::new(medium, Domain::torus(1.0, 1.0), particles, context);
     let mut record = begin((DECAY.name, variant), s, m, &[("dt [s]", dt)], context);
     let end = simulate(m, parts, [dt, s.end], context, &mut record)?;
     let all = end.particles();
-    let projected = all.iter().map(|p| p.velocity.x * (TAU * p.position.y).sin());
+    let projected = all.iter().map(|p| p.velocity.x * sin(TAU * p.position.y));
     let amplitude = 2e3 * projected.sum::<f64>() / all.len() as f64;
-    record.put(ERROR, (amplitude / (-0.01 * TAU * TAU * s.end).exp() - 1.0).abs());
+    record.put(ERROR, (amplitude / exp(-0.01 * TAU * TAU * s.end) - 1.0).abs());
     Ok(record)
 }
 

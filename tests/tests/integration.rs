@@ -1,5 +1,6 @@
 //! Time: order of the integrators, reversibility, and the book-keeping of steps.
 
+use base::functions::log2;
 use solver::{
     Compose, Continuity, Domain, Euler, Flow, Integrator, Leapfrog, Observer, Open, Outcome,
     Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, Stepper, Tait,
@@ -33,7 +34,7 @@ fn orders<I: Integrator<()>>(mu: f64) -> [f64; 2] {
     let [a, b, c, d] = [1, 2, 4, 8].map(|k| end::<I>(mu, time, steps * k));
     let [e1, e2, e3] = [(&a, &b), (&b, &c), (&c, &d)].map(|(p, q)| difference(p, q, TORUS));
     println!("{} mu {mu}: differences {e1:.3e} {e2:.3e} {e3:.3e}", I::NAME);
-    [(e1 / e2).log2(), (e2 / e3).log2()]
+    [log2(e1 / e2), log2(e2 / e3)]
 }
 
 fn check_order<I: Integrator<()>>() {

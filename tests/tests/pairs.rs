@@ -1,6 +1,7 @@
 //! Two particles, one term, and the formula of the paper written out again in plain numbers, with
 //! ∇ᵢWᵢⱼ from differences of W: finds a wrong sign or a factor of two.
 
+use base::functions::powf;
 use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, CubicSpline, DensityDiffusion,
@@ -86,7 +87,7 @@ fn eos() -> Tait {
 
 /// (7), (8)
 fn p(i: &Particle) -> f64 {
-    BACKGROUND + C * C * RHO / 7.0 * ((i.density / RHO).powf(7.0) - 1.0)
+    BACKGROUND + C * C * RHO / 7.0 * (powf(i.density / RHO, 7.0) - 1.0)
 }
 
 fn acceleration(velocity: V2) -> Rate<()> {
@@ -111,7 +112,7 @@ fn pressure_with_artificial_stress_is_equations_14_18_19() {
         };
         let phi = w(r) / w(spacing);
         let pair = p(i) / i.density.powi(2) + p(j) / j.density.powi(2);
-        let extra = (repulsion(i) + repulsion(j)) * phi.powf(4.0);
+        let extra = (repulsion(i) + repulsion(j)) * powf(phi, 4.0);
         acceleration(-grad_w(r) * (j.mass * (pair + extra)))
     });
 }
@@ -127,7 +128,7 @@ fn viscosity_is_equation_6() {
 
 /// Πᵢⱼ of (16), (17) with z1, z2; `all` takes receding pairs as well.
 fn pi(i: &Particle, j: &Particle, r: V2, v: V2, [z1, z2]: [f64; 2]) -> f64 {
-    let c = |k: &Particle| C * (k.density / RHO).powf(3.0);
+    let c = |k: &Particle| C * powf(k.density / RHO, 3.0);
     let psi = v.dot(&r) / (r.norm_squared() + 0.01 * H * H);
     let sum = i.density + j.density;
     -z1 * (c(i) + c(j)) * (H + H) / (2.0 * sum) * psi
@@ -185,7 +186,7 @@ fn shifting_moves_down_the_gradient_of_the_crowding() {
     let spacing = Vector2::new(0.25, 0.0);
     check((), Shifting::new(0.5, H, w(spacing)), |i, j, r, _| {
         let fastest = i.velocity.norm().max(j.velocity.norm());
-        let bracket = 1.0 + 0.2 * (w(r) / w(spacing)).powf(4.0);
+        let bracket = 1.0 + 0.2 * powf(w(r) / w(spacing), 4.0);
         let position = -grad_w(r) * (0.5 * fastest * H * j.mass / j.density * bracket);
         Rate { position, ..Rate::default() }
     });

@@ -2,6 +2,7 @@
 //! plain numbers, uniform strain, rotation, and the linear theory of its waves and of its tensile
 //! instability on a lattice.
 
+use base::functions::{cos, ln, log2, modulus, powf, rotation, sin, sinh};
 use std::f64::consts::PI;
 
 use maths::theory::lattice::SquareLattice;
@@ -223,7 +224,7 @@ fn accelerations<K: Kernel>(cloud: &[Solid], tension: fn(Tensor) -> Tensor) -> V
             let r = own.position - other.position;
             let phi = w::<K>(r) / w::<K>(Vector2::new(SPACING, 0.0));
             let pair = sigma(own) / own.density.powi(2) + sigma(other) / other.density.powi(2);
-            let extra = (repulsions[i] + repulsions[j]) * phi.powf(f64::from(N));
+            let extra = (repulsions[i] + repulsions[j]) * powf(phi, f64::from(N));
             sum += (pair + extra) * grad_w::<K>(r) * other.mass;
         }
         sum
@@ -408,7 +409,7 @@ fn turned_once<I: Integrator<Symmetric>>(steps: u32) -> Tensor {
 /// the computed one is from there falls with dt at the order of the integrator.
 fn check_turning<I: Integrator<Symmetric>>() {
     let factor = SquareLattice::<QuinticSpline>::new(RATIO, 0.0).gradient_factor();
-    let turn = Rotation2::new(2.0 * PI * factor);
+    let turn = rotation(2.0 * PI * factor);
     let exact = turn * matrix(START) * turn.inverse();
     let errors = [500, 1000, 2000, 4000]
         .map(|steps| (turned_once::<I>(steps) - exact).norm() / exact.norm());
@@ -418,7 +419,7 @@ fn check_turning<I: Integrator<Symmetric>>() {
         nalgebra::RowVector4::from(errors)
     );
     for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
+        let order = log2(pair[0] / pair[1]);
         let apart = (order - f64::from(I::ORDER[1])).abs();
         assert!(apart < 0.15, "{}: order {order:.3} of {errors:?}", I::NAME);
     }
@@ -468,7 +469,7 @@ fn collision<T: TensileStress>(tensile: T, turn: Rotation2<f64>) -> Vec<Solid> {
 
 /// Largest difference in spacings, c, ⁰ρ and K between a turned run and a run of the turned scene.
 fn frame_dependence<T: TensileStress>(tensile: T) -> f64 {
-    let turn = Rotation2::new(PI / 6.0);
+    let turn = rotation(PI / 6.0);
     let here = collision(tensile, Rotation2::identity());
     let there = collision(tensile, turn);
     let size = here.iter().map(|p| matrix(p.extra).amax()).fold(0.0, f64::max);
@@ -558,7 +559,7 @@ impl Lattice {
     /// the leapfrog's own error divided out: q(n+1) + q(n−1) = (2 + s² dt²) q(n).
     fn measured<K: Kernel>(&self, theta: V2, along: V2, steps: u32) -> f64 {
         let (amplitude, dt) = (1e-6, 0.4);
-        let shape = |x: V2| along * theta.dot(&(x - Vector2::repeat(0.5))).cos();
+        let shape = |x: V2| along * cos(theta.dot(&(x - Vector2::repeat(0.5))));
         let weights = self.points().into_iter().map(shape).collect();
         let mut simulation = self.simulation::<K>(|x| shape(x) * amplitude);
         let mut mode = Mode { weights, amplitudes: Vec::new() };
@@ -602,7 +603,7 @@ impl Lattice {
                 let theta = Vector2::new(i as f64, j as f64) * (2.0 * PI / self.n as f64);
                 let a = self.dispersion::<K>(theta);
                 for eigenvalue in a.complex_eigenvalues().iter() {
-                    let rate = (0.5 * (eigenvalue.norm() + eigenvalue.re)).max(0.0).sqrt();
+                    let rate = (0.5 * (modulus(*eigenvalue) + eigenvalue.re)).max(0.0).sqrt();
                     largest = largest.max(rate);
                 }
             }
@@ -622,8 +623,8 @@ impl Lattice {
             let energy = simulation.particles().into_iter().map(|p| p.velocity.norm_squared());
             (time, energy.fold(0.0, |sum, e| sum + e))
         });
-        let rate = 0.5 * (after.1 / before.1).ln() / (after.0 - before.0);
-        2.0 * (0.5 * rate * dt).sinh() / dt
+        let rate = 0.5 * ln(after.1 / before.1) / (after.0 - before.0);
+        2.0 * sinh(0.5 * rate * dt) / dt
     }
 }
 
@@ -637,9 +638,9 @@ fn symbols(support: f64, theta: V2, f: impl Fn(f64) -> f64) -> (V2, Tensor) {
         if r2 > 0.0 {
             let d = 1e-5;
             let slope = (f(r2 + d) - f(r2 - d)) / (2.0 * d);
-            g += r * (f(r2) * phase.sin());
+            g += r * (f(r2) * sin(phase));
             let gradient = Matrix2::identity() * f(r2) + r * r.transpose() * (2.0 * slope);
-            m -= gradient * (1.0 - phase.cos());
+            m -= gradient * (1.0 - cos(phase));
         }
     }
     (g, m)

@@ -1,6 +1,7 @@
 //! Wall particles that extrapolate from the fluid, against the formula in plain numbers, and the
 //! density diffusion that keeps a column at rest.
 
+use base::functions::powf;
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, EquationOfState, ExtrapolatingWall,
@@ -172,7 +173,7 @@ fn column(eos: &Tait, gravity: V2, seed: u64) -> Vec<Particle> {
         let w = gravity.dot(&(x - Vector2::new(0.5, 1.0)));
         let c2 = eos.sound_speed * eos.sound_speed;
         let n = f64::from(eos.gamma - 1);
-        eos.density * (1.0 + n * w / c2).powf(1.0 / n)
+        eos.density * powf(1.0 + n * w / c2, 1.0 / n)
     };
     (0..300)
         .map(|_| {

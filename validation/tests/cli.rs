@@ -429,6 +429,30 @@ fn a_hundred_thousand_threads_are_clamped() {
     assert_eq!(Record::from_json(&stdout(&output)).unwrap().cost.threads, 1024);
 }
 
+/// Sines and exponentials of the C library have other last bits on a processor without FMA, and this variable
+/// makes it believe that it is on one.
+#[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
+#[test]
+fn bits_do_not_depend_on_the_instructions_that_the_c_library_finds() {
+    let record = |case: &str, sets: [&str; 2], tunables: Option<&str>| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
+        command.env_remove("GLIBC_TUNABLES").envs(tunables.map(|value| ("GLIBC_TUNABLES", value)));
+        let sets = ["--set", sets[0], "--set", sets[1], "--json"];
+        let output = command.args(["run", case]).args(sets).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{case}: {}", stderr(&output));
+        Record::from_json(&stdout(&output)).unwrap()
+    };
+    let short = [("taylor_green", ["n=30", "end=0.02"]), ("acoustic_wave", ["n=40", "span=0.1"])];
+    for (case, sets) in short {
+        let [with, without] = [None, Some("glibc.cpu.hwcaps=-FMA,-AVX2")]
+            .map(|tunables| record(case, sets, tunables));
+        assert!(with.state.is_some() && with.cost.steps > 5, "{case}");
+        assert_eq!(with.state, without.state, "{case}");
+        let metrics = |of: &Record| format!("{:?}", of.metrics); // some may be NaN
+        assert_eq!(metrics(&with), metrics(&without), "{case}");
+    }
+}
+
 /// A program that reads half a document must not take it for a whole one.
 #[cfg(target_os = "linux")]
 #[test]

@@ -1,5 +1,6 @@
 //! The planned runs that mutants go through, each with its gates.
 
+use base::functions::{exp, sin};
 use base::{gate::Gate, record::Record, spec::Task};
 use fluids::channel::{self, ChannelSettings, Flow, Modern, Seed, Setup, Stabilised};
 use harness::{
@@ -359,7 +360,7 @@ fn spoiled_velocity(flow: Flow, reference: Reference) -> Option<Velocity> {
     match (flow, reference) {
         (Flow::Couette, Reference::NoAlternation) => Some(|y, t, [v, l, nu]| {
             let term = |n: f64| {
-                2.0 / (n * PI) * (n * PI * y / l).sin() * (-n * n * PI * PI * nu * t / l / l).exp()
+                2.0 / (n * PI) * sin(n * PI * y / l) * exp(-n * n * PI * PI * nu * t / l / l)
             };
             v * (y / l + (1..200).map(|n| term(f64::from(n))).sum::<f64>())
         }),

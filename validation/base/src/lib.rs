@@ -1,6 +1,7 @@
 //! The types that all crates of the harness use: settings, numbers, files, gates, records, references.
 
 pub mod files;
+pub mod functions;
 pub mod gate;
 pub mod manifest;
 pub mod number;

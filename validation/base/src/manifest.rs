@@ -30,6 +30,10 @@ pub struct Manifest {
     pub target: String,
     /// instruction sets that the compiler was allowed to use, for they decide on the speed
     pub features: Vec<String>,
+    /// instruction sets that the processor has, of those by which the solver or the C library choose a
+    /// form at run time; no bits depend on them
+    #[serde(default)]
+    pub cpu_features: Vec<String>,
     /// operating system
     pub os: String,
     /// processor, as it calls itself
@@ -91,6 +95,7 @@ impl Manifest {
             opt_level: env!("TOUCHSTONE_OPT_LEVEL").into(),
             target: env!("TOUCHSTONE_TARGET").into(),
             features,
+            cpu_features: cpu_features(),
             os: std::env::consts::OS.into(),
             cpu: cpu().unwrap_or_else(|| "unknown".into()),
             cores: thread::available_parallelism().map_or(1, usize::from),
@@ -101,11 +106,28 @@ impl Manifest {
     /// Can the times of two runs be compared? Same processor, threads, compiler and optimisation.
     pub fn is_same_machine(&self, other: &Self) -> bool {
         let machine = |of: &Self| {
-            let Manifest { cpu, target, rustc, profile, opt_level, features, .. } = of.clone();
-            (cpu, of.cores, of.threads, target, rustc, profile, opt_level, features)
+            let Manifest { cpu, target, rustc, profile, opt_level, .. } = of.clone();
+            let sets = (of.features.clone(), of.cpu_features.clone());
+            (cpu, of.cores, of.threads, target, rustc, profile, opt_level, sets)
         };
         self.cpu != "unknown" && machine(self) == machine(other)
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn cpu_features() -> Vec<String> {
+    let all = [
+        ("avx2", is_x86_feature_detected!("avx2")),
+        ("fma", is_x86_feature_detected!("fma")),
+        ("avx512f", is_x86_feature_detected!("avx512f")),
+        ("avx512vl", is_x86_feature_detected!("avx512vl")),
+    ];
+    all.iter().filter(|(_, has)| *has).map(|(name, _)| name.to_string()).collect()
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn cpu_features() -> Vec<String> {
+    Vec::new()
 }
 
 fn cpu() -> Option<String> {
@@ -144,6 +166,13 @@ mod tests {
         assert!(!two.is_same_machine(&Manifest { threads: 1, ..two.clone() }));
         let unknown = Manifest { cpu: "unknown".into(), ..two };
         assert!(!unknown.is_same_machine(&unknown.clone()));
+    }
+
+    #[test]
+    fn a_manifest_from_before_the_features_of_the_processor_were_named_is_read() {
+        let mut text = serde_json::to_value(Manifest::of_this_process(1)).unwrap();
+        text.as_object_mut().unwrap().remove("cpu_features").unwrap();
+        assert!(serde_json::from_value::<Manifest>(text).unwrap().cpu_features.is_empty());
     }
 
     #[test]

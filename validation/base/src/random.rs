@@ -2,6 +2,8 @@
 //! Flood 2014). Published results depend on randomly disturbed lattices, so an update of a library must not
 //! change the numbers.
 
+use crate::functions::{cos, ln};
+
 /// A stream of random numbers.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
@@ -24,7 +26,7 @@ impl Random {
     /// Normal with mean 0 and standard deviation 1 (Box & Muller 1958).
     pub fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.uniform(), self.uniform());
-        (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+        (-2.0 * ln(u)).sqrt() * cos(std::f64::consts::TAU * v)
     }
 }
 

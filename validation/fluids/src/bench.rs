@@ -5,6 +5,7 @@
 //! are so short that lists are never rebuilt: what is measured is the right-hand side. Building lists
 //! is measured by [`Rebuilding`], an integrator that does nothing else.
 
+use base::functions::sin;
 use std::time::Instant;
 
 use nalgebra::Vector2;
@@ -39,7 +40,7 @@ pub const SHORT: f64 = 1e-9;
 pub fn scene<I: Integrator<()>>(side: usize, parallel: bool) -> Scene<Fluid<I>> {
     let dx = 1.0 / side as f64;
     let h = 1.2 * dx;
-    let wave = |y: f64| 0.01 * (std::f64::consts::TAU * y).sin();
+    let wave = |y: f64| 0.01 * sin(std::f64::consts::TAU * y);
     let particles = lattice(Vector2::repeat(0.5 * dx), dx, side, side)
         .map(|x| Particle::fluid(x, Vector2::new(wave(x.y), wave(x.x + 0.25)), 1000.0, dx * dx))
         .collect();

@@ -190,6 +190,7 @@ impl Growth {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use base::functions::{exp, sin};
 
     #[test]
     fn bisection_finds_a_limit_far_from_the_guess() {
@@ -218,13 +219,13 @@ mod tests {
 
     #[test]
     fn growth_is_seen_and_decay_and_beats_are_not() {
-        assert_eq!(watched(|k| (-0.1 * k).exp()), (false, 400));
+        assert_eq!(watched(|k| exp(-0.1 * k)), (false, 400));
         assert_eq!(watched(|_| 1.0), (false, 400));
-        assert_eq!(watched(|k| 1.0 + 0.3 * (0.05 * k).sin()), (false, 400));
+        assert_eq!(watched(|k| 1.0 + 0.3 * sin(0.05 * k)), (false, 400));
         // Early exit, at ln(100)/0.5 = 9.2 steps.
-        assert_eq!(watched(|k| (0.5 * k).exp()), (true, 10));
+        assert_eq!(watched(|k| exp(0.5 * k)), (true, 10));
         // A weak mode below decaying ones, still far below the start.
-        assert_eq!(watched(|k| (-0.1 * k).exp() + 1e-4 * (0.01 * k).exp()), (true, 400));
+        assert_eq!(watched(|k| exp(-0.1 * k) + 1e-4 * exp(0.01 * k)), (true, 400));
         assert_eq!(watched(|k| if k > 7.0 { f64::NAN } else { 1.0 }), (true, 8));
     }
 
@@ -236,7 +237,7 @@ mod tests {
             let rate = 2.0 * (dt / 1.7 - 1.0);
             for k in 1..=400 {
                 let k = f64::from(k);
-                if growth.see((-0.2 * k).exp() + 0.01 * (2.0 * rate * k).exp()) {
+                if growth.see(exp(-0.2 * k) + 0.01 * exp(2.0 * rate * k)) {
                     break;
                 }
             }

@@ -12,6 +12,7 @@
 //!   largest: the error first decreased with a clear order and then stopped decreasing;
 //! - [`Label::NotAsymptotic`] otherwise.
 
+use base::functions::{ln, powf};
 use thiserror::Error;
 
 /// Local orders within this fraction of the fitted one count as the same order.
@@ -115,8 +116,8 @@ pub enum ConvergenceError {
 /// [`ConvergenceError`]; an error of exactly 0 has no order and is refused.
 pub fn convergence(levels: &[Level]) -> Result<Convergence, ConvergenceError> {
     let levels = sorted(levels, |level| level.value > 0.0 && level.value.is_finite())?;
-    let x: Vec<f64> = levels.iter().map(|level| level.spacing.ln()).collect();
-    let y: Vec<f64> = levels.iter().map(|level| level.value.ln()).collect();
+    let x: Vec<f64> = levels.iter().map(|level| ln(level.spacing)).collect();
+    let y: Vec<f64> = levels.iter().map(|level| ln(level.value)).collect();
     let (order, standard_error) = slope(&x, &y);
     let half_width = student_t(levels.len() - 2) * standard_error;
     let local_orders: Vec<f64> =
@@ -145,7 +146,7 @@ pub fn extrapolate(levels: &[Level], scale: f64) -> Result<GridConvergence, Conv
         let [a, b, c] = [3, 2, 1].map(|back| levels[levels.len() - back].value);
         return Err(ConvergenceError::Oscillating([a, b, c]));
     }
-    let growth = (middle.spacing / fine.spacing).powf(order) - 1.0;
+    let growth = powf(middle.spacing / fine.spacing, order) - 1.0;
     let correction = (fine.value - middle.value) / growth;
     let same = orders.len() >= 2 && orders.iter().all(|p| (p - order).abs() <= SAME_ORDER * order);
     let gci = same.then(|| 1.25 * correction.abs() / scale);
@@ -234,7 +235,7 @@ fn linear_floor(levels: &[Level], order: f64) -> Floor {
     let (mut aa, mut ab, mut bb, mut a, mut b) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for Level { spacing, value } in levels {
         // Relative residual 1 - E₀ u - C w.
-        let (u, w) = (1.0 / value, spacing.powf(order) / value);
+        let (u, w) = (1.0 / value, powf(*spacing, order) / value);
         aa += u * u;
         ab += u * w;
         bb += w * w;
@@ -255,7 +256,7 @@ fn linear_floor(levels: &[Level], order: f64) -> Floor {
 /// Σ (1 - (E₀ + C hᵖ)/E)².
 fn misfit(levels: &[Level], floor: &Floor) -> f64 {
     let residual = |level: &Level| {
-        1.0 - (floor.error + floor.coefficient * level.spacing.powf(floor.order)) / level.value
+        1.0 - (floor.error + floor.coefficient * powf(level.spacing, floor.order)) / level.value
     };
     levels.iter().map(residual).map(|r| r * r).sum()
 }
@@ -269,7 +270,7 @@ fn triplet_order(levels: &[Level]) -> Option<f64> {
     if !(ratio > 0.0 && ratio.is_finite()) {
         return None;
     }
-    let power = |level: &Level, p: f64| (level.spacing / middle.spacing).powf(p);
+    let power = |level: &Level, p: f64| powf(level.spacing / middle.spacing, p);
     let excess = |p: f64| (power(coarse, p) - 1.0) / (1.0 - power(fine, p)) - ratio;
     let (mut low, mut high) = (1e-6, 20.0);
     if excess(low) > 0.0 || excess(high) < 0.0 {
@@ -313,7 +314,7 @@ mod tests {
 
     #[test]
     fn a_power_law_is_found_exactly() {
-        let mut shuffled = levels(SPACINGS, |h| 3.0 * h.powf(1.7));
+        let mut shuffled = levels(SPACINGS, |h| 3.0 * powf(h, 1.7));
         shuffled.swap(0, 2);
         let found = convergence(&shuffled).expect("usable");
         assert_relative_eq!(found.order, 1.7, epsilon = 1e-12);
@@ -406,10 +407,10 @@ mod tests {
 
     #[test]
     fn richardson_finds_the_limit() {
-        let found = extrapolate(&levels(SPACINGS, |h| 2.0 + 0.5 * h.powf(1.5)), 2.0).unwrap();
+        let found = extrapolate(&levels(SPACINGS, |h| 2.0 + 0.5 * powf(h, 1.5)), 2.0).unwrap();
         assert_relative_eq!(found.order, 1.5, epsilon = 1e-9);
         assert_relative_eq!(found.extrapolated, 2.0, epsilon = 1e-12);
-        let error = 0.5 * 0.025f64.powf(1.5) / 2.0;
+        let error = 0.5 * powf(0.025, 1.5) / 2.0;
         assert_relative_eq!(
             found.gci.expect("two triplets agree"),
             1.25 * error,

@@ -2,6 +2,8 @@
 //!
 //! `cargo run --example figures -- FOLDER`
 
+#![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
+
 use report::{
     Axis, Block, CategoryMap, Cell, Colour, ColourMap, Column, Counts, Dash, Figure, Layer, Legend,
     Page, ParticleMap, Plot, Section, Series, Shape, Status, Table, check_page,

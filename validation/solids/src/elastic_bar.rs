@@ -7,6 +7,7 @@ use solver::{
 };
 
 use super::solid::{self, Energy, Material, Problem, SharedSettings, Watch};
+use base::functions::exp;
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricKey, Profile, Record},
@@ -92,7 +93,7 @@ impl BarSettings {
     /// The pulse: v at x, that is −σ/(ρ c_p), for a wave to the right alone \[m/s\].
     fn pulse(&self, x: f64) -> f64 {
         let z = (x / self.length - START) / self.width;
-        self.speed() * (-0.5 * z * z).exp()
+        self.speed() * exp(-0.5 * z * z)
     }
 }
 

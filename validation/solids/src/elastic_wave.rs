@@ -12,6 +12,7 @@ use solver::{
 use std::f64::consts::TAU;
 
 use super::solid::{Bare, Material, parts};
+use base::functions::{acos, cos, sin};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricKey, Record},
@@ -122,7 +123,7 @@ impl WaveSettings {
             (Domain::open(), block.collect())
         } else {
             let places = solver::lattice(Vector2::repeat(0.5 * dx), dx, side, side).enumerate();
-            let wave = places.map(|(k, x)| at(x, self.direction() * (AMPLITUDE * phase(k).cos())));
+            let wave = places.map(|(k, x)| at(x, self.direction() * (AMPLITUDE * cos(phase(k)))));
             (Domain::torus(1.0, 1.0), wave.collect())
         };
         parts(RUBBER.medium(method, [dx, self.h_over_dx * dx]), domain, particles, context)
@@ -212,7 +213,7 @@ pub fn measured(
         let factor = method.gradient_factor(h_over_dx);
         (shear / (2.0 * STRESS * ANGLE * factor) - 1.0).abs()
     } else {
-        (2.0 * (0.5 * watch.angle()).sin() / (omega * dt) - 1.0).abs()
+        (2.0 * sin(0.5 * watch.angle()) / (omega * dt) - 1.0).abs()
     };
     record.put(settings.metric(), error);
     Ok(record)
@@ -232,16 +233,15 @@ impl Watch {
             forward += a[1] * (a[0] + a[2]);
             square += a[1] * a[1];
         }
-        (0.5 * forward / square).acos()
+        acos(0.5 * forward / square)
     }
 }
 
 impl Observer<Symmetric> for Watch {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
         let particles = simulation.particles();
-        let part = |(k, p): (usize, &Particle<Symmetric>)| {
-            p.velocity.dot(&self.direction) * phase(k).cos()
-        };
+        let part =
+            |(k, p): (usize, &Particle<Symmetric>)| p.velocity.dot(&self.direction) * cos(phase(k));
         self.amplitudes.push(particles.iter().enumerate().map(part).sum());
         Flow::Continue
     }

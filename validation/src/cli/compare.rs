@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context as _;
-use base::{gate::Verdict, record::Record};
+use base::{functions::ln, gate::Verdict, record::Record};
 use harness::store::Store;
 use serde_json::{Value, json};
 
@@ -165,7 +165,7 @@ fn of_records(old: &BTreeMap<String, Record>, new: &BTreeMap<String, Record>) ->
         let (Some(before), Some(after)) = (from.alone_median(), to.alone_median()) else {
             continue;
         };
-        let is_other = (after / before).ln().abs() > NOTABLE.ln();
+        let is_other = ln(after / before).abs() > ln(NOTABLE);
         if is_other && was.manifest.is_same_machine(&is.manifest) {
             let words = format!("{before:.4} to {after:.4} s, {:.3} times", after / before);
             add("seconds", name, words);

@@ -58,7 +58,7 @@ fn about(manifest: &Manifest) -> String {
         ("compiler", rustc.clone()),
         ("build", format!("{profile}, opt-level {opt_level}{advice}")),
         ("target", format!("{target}, {}", manifest.features.join(" "))),
-        ("processor", manifest.cpu.clone()),
+        ("processor", format!("{}, {}", manifest.cpu, manifest.cpu_features.join(" "))),
         ("threads", format!("{} of {} cores", manifest.threads, manifest.cores)),
     ];
     let words = |words: &str| output::wrap(words, 100, "            ").trim_start().to_string();

@@ -9,6 +9,7 @@ use super::{
     declaration::{at_rows, compared_at, ladder, levels},
     measure::L2,
 };
+use base::functions::ln;
 use base::record::Record;
 use harness::{
     case::Tier,
@@ -71,10 +72,10 @@ impl LatticeFloor {
     /// factor of two; η², if the error would be less than half without.
     fn cause(&self, floor: f64) -> String {
         let of = [("a lattice in place", self.in_place), ("slid rows", self.slid)];
-        let off = |k: usize| (of[k].1 / floor).ln().abs();
+        let off = |k: usize| ln(of[k].1 / floor).abs();
         let k = usize::from(off(1) < off(0));
         let ((lattice, with), without) = (of[k], self.unguarded[k]);
-        let part = match (off(k) <= 2_f64.ln(), without < 0.5 * with) {
+        let part = match (off(k) <= ln(2.0), without < 0.5 * with) {
             (true, true) => "*η²*",
             (true, false) => "*lattice factor*",
             (false, _) => "*open*, see the error budget",

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 use solver::{EquationOfState, Flow as Going, Observer, Particle, Role, Stepper};
 
 use super::Setup;
+use base::functions::cos;
 use base::record::{MetricKey, Profile, Record};
 use maths::metrics::{
     norms::{Scale, l2, linf},
@@ -302,7 +303,7 @@ impl Observer<()> for Series {
             let (mut mode, mut count) = (0.0, 0.0);
             for (_, e) in simulation.fluid() {
                 let phase = std::f64::consts::PI * e.position.y / self.width;
-                mode += 2.0 * self.eos.pressure(e.density) / self.pressure * phase.cos();
+                mode += 2.0 * self.eos.pressure(e.density) / self.pressure * cos(phase);
                 count += 1.0;
             }
             series.push((simulation.time(), mode / count));

@@ -6,6 +6,7 @@ use super::{
     measure::{MODE, MODE_AMPLITUDE, MODE_TIME, WINDOW},
     starts::disorder,
 };
+use base::functions::{cos, hypot, powf, sin};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
@@ -215,7 +216,7 @@ fn tapered(series: &[(f64, f64)]) -> Vec<(f64, f64)> {
         tp += t * p / n;
     }
     let slope = (tp - t1 * p1) / (t2 - t1 * t1);
-    let taper = |k: usize| 1.0 - (std::f64::consts::TAU * (k as f64 + 0.5) / n).cos();
+    let taper = |k: usize| 1.0 - cos(std::f64::consts::TAU * (k as f64 + 0.5) / n);
     let value = |k: usize, (t, p): &(f64, f64)| (*t, taper(k) * (p - p1 - slope * (t - t1)));
     series.iter().enumerate().map(|(k, point)| value(k, point)).collect()
 }
@@ -225,16 +226,16 @@ fn amplitude_at(series: &[(f64, f64)], period: f64) -> f64 {
     let (mut re, mut im) = (0.0, 0.0);
     for (t, value) in series {
         let phase = std::f64::consts::TAU * t / period;
-        re += value * phase.cos();
-        im += value * phase.sin();
+        re += value * cos(phase);
+        im += value * sin(phase);
     }
-    2.0 * re.hypot(im) / series.len() as f64
+    2.0 * hypot(re, im) / series.len() as f64
 }
 
 /// The period between 0.5 and 8 with the largest Fourier amplitude, and that amplitude.
 fn dominant_period(series: &[(f64, f64)]) -> (f64, f64) {
     let series = tapered(series);
-    let periods = (0..400).map(|k| 0.5 * 16.0_f64.powf(f64::from(k) / 399.0));
+    let periods = (0..400).map(|k| 0.5 * powf(16.0, f64::from(k) / 399.0));
     let found = periods.map(|t| (t, amplitude_at(&series, t)));
     found.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f64::NAN, f64::NAN))
 }
@@ -242,12 +243,13 @@ fn dominant_period(series: &[(f64, f64)]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::dominant_period;
+    use base::functions::sin;
 
     #[test]
     fn a_sine_on_a_trend_is_found_with_its_amplitude() {
         let wave = |k: i32| {
             let t = f64::from(k) * 0.02;
-            (t, 5.0 + 0.3 * t + 0.1 * (std::f64::consts::TAU * t / 1.9).sin())
+            (t, 5.0 + 0.3 * t + 0.1 * sin(std::f64::consts::TAU * t / 1.9))
         };
         let series: Vec<(f64, f64)> = (0..3000).map(wave).collect();
         let (period, amplitude) = dominant_period(&series);

@@ -1,5 +1,6 @@
 //! The force that holds the flux: a controller that acts between stretches of a few steps.
 
+use base::functions::exp;
 use nalgebra::Vector2;
 use solver::{BodyForce, Scheme, Simulation, Stepper};
 
@@ -57,7 +58,7 @@ impl Controller {
         if self.response > 0.0 {
             let settle = 0.25 * self.response;
             // Exact for a constant right-hand side: never more than the whole way.
-            let share = 1.0 - (-dt / settle).exp();
+            let share = 1.0 - exp(-dt / settle);
             self.force += share * ((self.wanted - mean) / self.response - (mean - self.last) / dt);
         }
         self.last = mean;

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use solver::{EquationOfState, Role, Stepper};
 
 use super::{Setup, setup::FLUX as FLUX_WANTED};
+use base::functions::hypot;
 use base::record::{MetricKey, Profile, Record};
 
 /// Points across a section.
@@ -323,7 +324,7 @@ pub fn wall_offset(setup: &Setup, s: &dyn Stepper<()>) -> f64 {
     let walls = || all.iter().filter(|p| p.role != Role::Fluid).map(|p| p.position);
     let distance = |from: Vector2<f64>, to: &Vector2<f64>| {
         let across = (to.x - from.x).abs().rem_euclid(period);
-        across.min(period - across).hypot(to.y - from.y)
+        hypot(across.min(period - across), to.y - from.y)
     };
     let off = |place: Vector2<f64>, depth: &dyn Fn(Vector2<f64>) -> f64| {
         let nearest =

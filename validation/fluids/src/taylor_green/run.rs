@@ -5,6 +5,7 @@ use solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
 use crate::unit_flow::{Scales, UnitFlow};
+use base::functions::ln;
 use base::{
     random::Random,
     record::{Profile, Record, Status},
@@ -145,8 +146,8 @@ fn measure(setup: &Setup, simulation: &dyn Stepper<()>, series: &[Sample], recor
     let worst = series.iter().map(|s| s.error).fold(0.0, f64::max);
     record.put(L2_WORST, worst);
     record.put(ENERGY, last.energy - 1.0);
-    let exact = (setup.exact.kinetic_energy(0.0) / setup.exact.kinetic_energy(last.time)).ln();
-    let found = exact - (last.energy / first.energy).ln();
+    let exact = ln(setup.exact.kinetic_energy(0.0) / setup.exact.kinetic_energy(last.time));
+    let found = exact - ln(last.energy / first.energy);
     record.put(NU_EFF, found / exact);
     record.put(MOMENTUM, last.momentum.norm());
     record.put(MOMENTUM_ADDED, (last.momentum - first.momentum).norm());

@@ -12,6 +12,7 @@ use super::{
     EXTREMES, Experiment, ExtremeSettings, Simulation, drive,
     experiment::{completed, measured, sci},
 };
+use base::functions::{cos, exp, sin};
 use base::{
     gate::{Bound, Evidence},
     random::Random,
@@ -60,9 +61,9 @@ impl Vortex {
     }
 
     fn exact(&self, place: Vector2<f64>, t: f64) -> Vector2<f64> {
-        let decay = (-2.0 * TAU * TAU / self.settings.re * t).exp();
+        let decay = exp(-2.0 * TAU * TAU / self.settings.re * t);
         let (x, y) = (TAU * place.x, TAU * place.y);
-        Vector2::new(-x.cos() * y.sin(), x.sin() * y.cos()) * decay
+        Vector2::new(-cos(x) * sin(y), sin(x) * cos(y)) * decay
     }
 
     fn parts(&self, method: &Method) -> Parts {
@@ -109,7 +110,7 @@ pub fn run(
             difference += (particle.velocity - exact).norm_squared();
             scale += exact.norm_squared();
         }
-        let decay = (-4.0 * TAU * TAU / re * simulation.time()).exp();
+        let decay = exp(-4.0 * TAU * TAU / re * simulation.time());
         record.put(VELOCITY_ERROR, (difference / scale).sqrt());
         record.put(PEAK_ENERGY, peak);
         record.put(ENERGY_RATIO, kinetic(&*simulation) / (start * decay));

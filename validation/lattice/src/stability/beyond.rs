@@ -2,6 +2,7 @@
 
 use super::{BoxSettings, NoisyBox, Pair, RESTING_BOX, noisy_box::NOISE};
 use crate::extremes::Experiment;
+use base::functions::ln;
 use base::{
     gate::{Bound, Evidence},
     record::{Record, Status},
@@ -33,7 +34,7 @@ fn beyond(pair: Pair, stiffness: Option<f64>, factor: f64) -> Experiment {
     let courant = factor * time_step::time_step_limit(&modes, theory);
     let growth = time_step::growth_per_step(&modes, theory, courant);
     // From the noise to the speed of sound.
-    let expected = (1.0 / NOISE).ln() / growth;
+    let expected = ln(1.0 / NOISE) / growth;
     let steps = (3.0 * expected + 20.0).ceil() as usize;
     let set = |s: &mut BoxSettings| {
         *s = BoxSettings { courant, steps, to_the_end: true, ..settings };

@@ -9,6 +9,7 @@ use solver::{
 };
 
 use super::{BoxSettings, ENERGY, GREW, RESTING_BOX, WAVE_ANGLE, WAVE_GROWTH};
+use base::functions::{cis, ln};
 use base::{
     random::Random,
     record::{Cost, Record, Status},
@@ -218,7 +219,7 @@ impl StiffestWave {
         let labels = solver::lattice(Vector2::zeros(), 1.0, self.n, self.n);
         let (mut p, mut v) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
         for (particle, label) in particles.iter().zip(labels) {
-            let wave = Complex::<f64>::cis(-self.theta.dot(&label));
+            let wave = cis(-self.theta.dot(&label));
             p += wave * (particle.density - 1.0);
             v += wave * particle.velocity.dot(&self.along);
         }
@@ -298,7 +299,7 @@ impl NoisyBox {
             &|density| Tait::new(1.0, 1.0).pressure(density),
             &mut |simulation, _| {
                 let ratio = wave.energy(&simulation.particles()) / wave_start;
-                wave_growth = Some(0.5 * ratio.ln() / steps as f64);
+                wave_growth = Some(0.5 * ln(ratio) / steps as f64);
             },
         )?;
         if watch.stopped {

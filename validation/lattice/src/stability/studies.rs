@@ -2,6 +2,7 @@
 
 use solver::{CubicSpline, Kernel, QuinticSpline};
 
+use base::functions::powf;
 use base::record::Record;
 use harness::{case::Tier, columns::Columns, runs::Runs, study::Study};
 use maths::theory::{lattice::SquareLattice, time_step};
@@ -91,7 +92,7 @@ fn weak_table(weak: &[[f64; 2]]) -> Table {
 fn theory_line<K: Kernel>(h_over_dx: f64, integrator: time_step::Integrator) -> Vec<(f64, f64)> {
     let lattice = SquareLattice::<K>::new(h_over_dx, noisy_box::ETA2);
     let at = |k: u32| {
-        let stiffness = 0.8 * (400.0f64 / 0.8).powf(f64::from(k) / 60.0);
+        let stiffness = 0.8 * powf(400.0 / 0.8, f64::from(k) / 60.0);
         let medium =
             time_step::Medium { c0: 1.0, h: 1.0, nu: 1.0 / stiffness, alpha: 0.0, delta: 0.0 };
         let modes = time_step::modes(&lattice, SIDE, &medium);

@@ -12,6 +12,7 @@
 
 use nalgebra::{Complex, Matrix2, Vector2};
 
+use base::functions::complex_sqrt;
 use maths::{exact::damped_mode::DampedMode, theory::time_step::Integrator};
 
 /// The matrix of one step of (p, v).
@@ -57,9 +58,9 @@ pub fn mode_of_step(m: &Matrix2<f64>, integrator: Integrator, dt: f64) -> Damped
         return DampedMode { omega: square.max(0.0).sqrt() / dt, gamma: gamma / dt };
     }
     let half = Complex::new(0.5 * trace, 0.0);
-    let root = (half * half - determinant).sqrt();
+    let root = complex_sqrt(half * half - determinant);
     let z = [half + root, half - root].map(|xi| match integrator {
-        Integrator::PredictorCorrector => (xi * 2.0 - 1.0).sqrt() - 1.0,
+        Integrator::PredictorCorrector => complex_sqrt(xi * 2.0 - 1.0) - 1.0,
         _ => xi - 1.0,
     });
     let square = (z[0] * z[1]).re.max(0.0);

@@ -7,6 +7,7 @@ use super::{
     DECAY_ERROR, FREQUENCY_ERROR, MOMENTUM_ERROR, Polarisation, SHEAR_DECAY_ERROR,
     TRAJECTORY_ERROR, WaveCase, WaveSettings, fit,
 };
+use base::functions::{cos, sin};
 use base::{
     random::Random,
     record::{self, Cost, MetricKey, Profile, Record, Status},
@@ -154,7 +155,7 @@ impl Wave {
         let mut random = Random::new(1);
         let mut offset = || Vector2::new(random.normal(), random.normal()) * (s.jitter * dx);
         let particles = places.zip(self.phases()).map(|(place, phase)| {
-            let velocity = direction * (s.amplitude * sound_speed * phase.cos());
+            let velocity = direction * (s.amplitude * sound_speed * cos(phase));
             let place = if s.jitter > 0.0 { place + offset() } else { place };
             Particle::fluid(place, velocity, density, dx * dx)
         });
@@ -187,7 +188,7 @@ impl Wave {
 
 impl<'a> Projection<'a> {
     fn new(wave: &'a Wave) -> Self {
-        let mut basis: Vec<[f64; 2]> = wave.phases().map(|a| [a.cos(), a.sin()]).collect();
+        let mut basis: Vec<[f64; 2]> = wave.phases().map(|a| [cos(a), sin(a)]).collect();
         let squares = [0, 1].map(|k| basis.iter().map(|b| b[k] * b[k]).sum::<f64>());
         basis.iter_mut().for_each(|b| *b = [b[0] / squares[0], b[1] / squares[1]]);
         Self { wave, basis, series: Vec::new(), momentum: None }

@@ -7,6 +7,7 @@
 //! (after Carslaw & Jaeger, Conduction of Heat in Solids).
 
 use super::{IMAGES_BELOW, Wall, terms_for};
+use base::functions::{erfc, exp, exp_m1, sin};
 use std::f64::consts::PI;
 
 /// Two plates a distance `l` \[m\] apart in a fluid of kinematic viscosity `nu` \[m²/s\], at rest
@@ -53,7 +54,7 @@ impl Couette {
         let decay = PI * PI * self.tau(t);
         terms_for(|n| {
             let m = n + 1.0;
-            2.0 / (m * PI) * (-m * m * decay).exp() / -(-2.0 * m * decay).exp_m1()
+            2.0 / (m * PI) * exp(-m * m * decay) / -exp_m1(-2.0 * m * decay)
         })
     }
 
@@ -63,7 +64,7 @@ impl Couette {
         let mut sum = 0.0;
         for n in (1..=terms).rev() {
             let m = n as f64;
-            sum += alternating(n) * 2.0 / (m * PI) * (m * PI * eta).sin() * (-m * m * decay).exp();
+            sum += alternating(n) * 2.0 / (m * PI) * sin(m * PI * eta) * exp(-m * m * decay);
         }
         self.v0 * (eta + sum)
     }
@@ -73,11 +74,11 @@ impl Couette {
     pub fn velocity_by_images(&self, y: f64, t: f64) -> f64 {
         let (eta, tau) = (y / self.l, self.tau(t));
         let width = 2.0 * tau.sqrt();
-        let images = terms_for(|m| (-m * m / tau).exp() / -(-2.0 * m / tau).exp_m1());
+        let images = terms_for(|m| exp(-m * m / tau) / -exp_m1(-2.0 * m / tau));
         let mut sum = 0.0;
         for m in (0..images).rev() {
             let odd = (2 * m + 1) as f64;
-            sum += libm::erfc((odd - eta) / width) - libm::erfc((odd + eta) / width);
+            sum += erfc((odd - eta) / width) - erfc((odd + eta) / width);
         }
         self.v0 * sum
     }
@@ -94,7 +95,7 @@ impl Couette {
             return f64::NAN;
         }
         if tau < IMAGES_BELOW {
-            let gauss = |x: f64| (-x * x / tau).exp();
+            let gauss = |x: f64| exp(-x * x / tau);
             let sum = match wall {
                 Wall::Lower => 2.0 * (gauss(2.5) + gauss(1.5) + gauss(0.5)),
                 Wall::Upper => 2.0 * (gauss(3.0) + gauss(2.0) + gauss(1.0)) + 1.0,
@@ -104,7 +105,7 @@ impl Couette {
         let mut sum = 0.0;
         for n in (1..=self.terms(t) + 1).rev() {
             let sign = if wall == Wall::Lower { alternating(n) } else { 1.0 };
-            sum += sign * (-((n * n) as f64) * PI * PI * tau).exp();
+            sum += sign * exp(-((n * n) as f64) * PI * PI * tau);
         }
         scale * (1.0 + 2.0 * sum)
     }
@@ -202,7 +203,7 @@ mod tests {
         for n in [20, 40, SEED.terms(t)] {
             let m = n as f64 + 1.0;
             let decay = PI * PI * t;
-            let bound = 2.0 / (m * PI) * (-m * m * decay).exp() / (1.0 - (-2.0 * m * decay).exp());
+            let bound = 2.0 / (m * PI) * exp(-m * m * decay) / (1.0 - exp(-2.0 * m * decay));
             assert!(error(n).abs() <= bound + 2e-15, "{n}: {} > {bound}", error(n));
         }
     }

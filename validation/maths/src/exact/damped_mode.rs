@@ -5,6 +5,8 @@
 //! equations ω = c₀k and γ = νk² (Morris viscosity acts as ν∇²v); for particles on a lattice both
 //! are the symbols of [`crate::theory::lattice`]. A shear wave has ω = 0 and decays as exp(-γt).
 
+use base::functions::{cos, exp, sin};
+
 /// Angular frequency and damping of a mode.
 #[derive(Clone, Copy, Debug)]
 pub struct DampedMode {
@@ -24,13 +26,13 @@ impl DampedMode {
         let sigma = square.abs().sqrt();
         // exp(-γt/2) goes into both, for cosh alone overflows when a mode is strongly damped.
         let (c, s) = if sigma * t < 1e-8 {
-            let decay = (-half * t).exp();
+            let decay = exp(-half * t);
             (decay, decay * t)
         } else if square > 0.0 {
-            let decay = (-half * t).exp();
-            (decay * (sigma * t).cos(), decay * (sigma * t).sin() / sigma)
+            let decay = exp(-half * t);
+            (decay * cos(sigma * t), decay * sin(sigma * t) / sigma)
         } else {
-            let (slow, fast) = (((sigma - half) * t).exp(), ((-sigma - half) * t).exp());
+            let (slow, fast) = (exp((sigma - half) * t), exp((-sigma - half) * t));
             (0.5 * (slow + fast), 0.5 * (slow - fast) / sigma)
         };
         [p * c + (half * p - self.omega * v) * s, v * c + (self.omega * p - half * v) * s]
@@ -67,6 +69,6 @@ mod tests {
     #[test]
     fn strong_damping_does_not_overflow() {
         let [p, v] = DampedMode { omega: 1.0, gamma: 1e6 }.state([1.0, 0.0], 10.0);
-        assert!((p - (-10e-6f64).exp()).abs() < 1e-9 && v.is_finite());
+        assert!((p - exp(-10e-6)).abs() < 1e-9 && v.is_finite());
     }
 }

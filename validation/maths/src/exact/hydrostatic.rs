@@ -1,5 +1,7 @@
 //! A column of Tait fluid at rest under gravity: dp/dy = −ρ g with (7).
 
+use base::functions::powf;
+
 /// A column, compressed by its own weight.
 #[derive(Clone, Copy, Debug)]
 pub struct Hydrostatic {
@@ -21,13 +23,13 @@ impl Hydrostatic {
 
     /// ρ at a depth \[m\], ⁰ρ \[1 + (γ−1) g d/⁰c²\]^(1/(γ−1)).
     pub fn density(&self, depth: f64) -> f64 {
-        self.density * self.power(depth).powf(1.0 / (self.gamma - 1.0))
+        self.density * powf(self.power(depth), 1.0 / (self.gamma - 1.0))
     }
 
     /// p at a depth \[m\], (⁰ρ ⁰c²/γ) {\[1 + (γ−1) g d/⁰c²\]^(γ/(γ−1)) − 1} \[Pa\].
     pub fn pressure(&self, depth: f64) -> f64 {
         let stiffness = self.density * self.sound_speed * self.sound_speed / self.gamma;
-        stiffness * (self.power(depth).powf(self.gamma / (self.gamma - 1.0)) - 1.0)
+        stiffness * (powf(self.power(depth), self.gamma / (self.gamma - 1.0)) - 1.0)
     }
 
     /// Sound speed at a depth \[m\], ⁰c \[1 + (γ−1) g d/⁰c²\]^(1/2) \[m/s\].

@@ -5,6 +5,8 @@
 //! V travels through the strip at U with ⁰ρ U V = −σ and V = U (1 − J); as V → 0, −σ = ⁰ρ c_p V and
 //! U = c_p. Each strip of length L gives its momentum 2 ⁰ρ L V to the other in 2 L/U.
 
+use base::functions::ln_1p;
+
 /// What follows from moduli, density and speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
@@ -31,7 +33,7 @@ impl Impact {
 
 /// −σ at J = 1 − e \[Pa\].
 fn stress(bulk: f64, shear: f64, e: f64) -> f64 {
-    bulk * e / (1.0 - e) - 4.0 / 3.0 * shear * (-e).ln_1p()
+    bulk * e / (1.0 - e) - 4.0 / 3.0 * shear * ln_1p(-e)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! i²erfc((n+1-η)/(2√τ))]) (after Carslaw & Jaeger).
 
 use super::{IMAGES_BELOW, Wall, terms_for};
+use base::functions::{erfc, exp, exp_m1, sin};
 use std::f64::consts::PI;
 
 /// A channel of width `l` \[m\] with a fluid of kinematic viscosity `nu` \[m²/s\], at rest until
@@ -57,7 +58,7 @@ impl Poiseuille {
         let decay = PI * PI * self.tau(t);
         terms_for(|n| {
             let m = 2.0 * n + 1.0;
-            32.0 / (PI * m).powi(3) * (-m * m * decay).exp() / -(-4.0 * m * decay).exp_m1()
+            32.0 / (PI * m).powi(3) * exp(-m * m * decay) / -exp_m1(-4.0 * m * decay)
         })
     }
 
@@ -67,7 +68,7 @@ impl Poiseuille {
         let mut sum = 0.0;
         for n in (0..terms).rev() {
             let m = (2 * n + 1) as f64;
-            sum += 32.0 / (PI * m).powi(3) * (m * PI * eta).sin() * (-m * m * decay).exp();
+            sum += 32.0 / (PI * m).powi(3) * sin(m * PI * eta) * exp(-m * m * decay);
         }
         self.v * (4.0 * eta * (1.0 - eta) - sum)
     }
@@ -77,7 +78,7 @@ impl Poiseuille {
     pub fn velocity_by_images(&self, y: f64, t: f64) -> f64 {
         let (eta, tau) = (y / self.l, self.tau(t));
         let width = 2.0 * tau.sqrt();
-        let images = terms_for(|n| 16.0 * tau * (-n * n / (4.0 * tau)).exp());
+        let images = terms_for(|n| 16.0 * tau * exp(-n * n / (4.0 * tau)));
         let mut sum = 0.0;
         for n in (0..images).rev() {
             let m = n as f64;
@@ -105,7 +106,7 @@ impl Poiseuille {
             let mut sum = 0.0;
             for n in (0..self.terms(t) + 1).rev() {
                 let m = PI * (2 * n + 1) as f64;
-                sum += 32.0 / (m * m) * (-m * m * tau).exp();
+                sum += 32.0 / (m * m) * exp(-m * m * tau);
             }
             4.0 - sum
         };
@@ -127,7 +128,7 @@ fn ierfc(x: f64) -> f64 {
     if x > ERFC_VANISHES {
         return 0.0; // also keeps x² finite
     }
-    (-x * x).exp() / PI.sqrt() - x * libm::erfc(x)
+    exp(-x * x) / PI.sqrt() - x * erfc(x)
 }
 
 /// i²erfc(x) = ∫ₓ^∞ ierfc = ((1 + 2x²) erfc(x) - 2x exp(-x²)/√π)/4 (Abramowitz & Stegun 7.2.5).
@@ -135,7 +136,7 @@ fn i2erfc(x: f64) -> f64 {
     if x > ERFC_VANISHES {
         return 0.0;
     }
-    0.25 * ((1.0 + 2.0 * x * x) * libm::erfc(x) - 2.0 * x * (-x * x).exp() / PI.sqrt())
+    0.25 * ((1.0 + 2.0 * x * x) * erfc(x) - 2.0 * x * exp(-x * x) / PI.sqrt())
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Taylor-Green vortices: a periodic array of vortices that decays without changing its shape.
 
+use base::functions::{cos, exp, sin};
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
@@ -26,20 +27,20 @@ impl TaylorGreen {
     /// e^{−2νk²t}.
     pub fn decay(&self, t: f64) -> f64 {
         let k = self.wave_number();
-        (-2.0 * self.nu * k * k * t).exp()
+        exp(-2.0 * self.nu * k * k * t)
     }
 
     /// Velocity at a place \[m\] and time \[s\].
     pub fn velocity(&self, place: Vector2<f64>, t: f64) -> Vector2<f64> {
         let (x, y) = (place.x * self.wave_number(), place.y * self.wave_number());
-        Vector2::new(-x.cos() * y.sin(), x.sin() * y.cos()) * (self.speed * self.decay(t))
+        Vector2::new(-cos(x) * sin(y), sin(x) * cos(y)) * (self.speed * self.decay(t))
     }
 
     /// Pressure, of mean 0 \[Pa\].
     pub fn pressure(&self, place: Vector2<f64>, t: f64) -> f64 {
         let k = 2.0 * self.wave_number();
         let scale = 0.25 * self.rho * (self.speed * self.decay(t)).powi(2);
-        -scale * ((k * place.x).cos() + (k * place.y).cos())
+        -scale * (cos(k * place.x) + cos(k * place.y))
     }
 
     /// Kinetic energy of one period per unit depth \[J/m\].

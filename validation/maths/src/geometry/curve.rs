@@ -1,5 +1,6 @@
 //! Rows of particles along a smooth curve and beside it, each spaced evenly by its own arc length.
 
+use base::functions::{cos, sin};
 use nalgebra::Vector2;
 use solver::{Particle, Role};
 
@@ -79,7 +80,7 @@ impl Curve {
     pub fn circle(centre: Point, radius: f64, fluid_outside: bool, dx: f64) -> Self {
         let turn = if fluid_outside { -1.0 } else { 1.0 };
         let full = 2.0 * std::f64::consts::PI;
-        let at = |t: f64| centre + Vector2::new(t.cos(), turn * t.sin()) * radius;
+        let at = |t: f64| centre + Vector2::new(cos(t), turn * sin(t)) * radius;
         Self::new(at, [0.0, full], dx)
     }
 
@@ -161,6 +162,7 @@ impl Curve {
 mod tests {
     use super::*;
     use crate::geometry::Hill;
+    use base::functions::exp;
     use solver::{Kernel, QuinticSpline, Smoothing, WendlandC2};
 
     /// Particles of a curve and of the fluid before it, with their areas.
@@ -285,7 +287,7 @@ mod tests {
     #[test]
     fn a_fold_is_cut_off() {
         let dx = 0.1;
-        let bump = |x: f64| Vector2::new(x, 0.5 * (-x * x / 0.08).exp());
+        let bump = |x: f64| Vector2::new(x, 0.5 * exp(-x * x / 0.08));
         let curve = Curve::new(bump, [-2.0, 2.0], dx);
         let row = curve.row(3.0 * dx, dx);
         let distance = |p: &Point| {

@@ -1,5 +1,6 @@
 //! The energies of weakly compressible water under gravity, from its particles.
 
+use base::functions::{exp_m1, ln};
 use nalgebra::Vector2;
 use solver::{EquationOfState, Evolved, Numbers, Rate, Stepper, Tait};
 
@@ -39,8 +40,8 @@ impl Water {
         let k = sound_speed * sound_speed / gamma;
         // (x^n − 1)/n → ln x for γ = 1.
         let power = match gamma - 1.0 {
-            0.0 => x.ln(),
-            n => (n * x.ln()).exp_m1() / n,
+            0.0 => ln(x),
+            n => exp_m1(n * ln(x)) / n,
         };
         k * (power + 1.0 / x - 1.0) + background / rho * (1.0 - 1.0 / x)
     }

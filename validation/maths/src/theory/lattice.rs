@@ -12,6 +12,7 @@
 //!
 //! All numbers are dimensionless: in units of the spacing inside, of h at the surface.
 
+use base::functions::{cos, sin};
 use nalgebra::{Matrix2, Vector2};
 use solver::kernel::{Kernel, Smoothing};
 use std::f64::consts::PI;
@@ -113,7 +114,7 @@ impl<K: Kernel> SquareLattice<K> {
     /// up to 40 % smaller. The pressure noise is about (c₀/U)² A ρU².
     pub fn density_swing(&self) -> f64 {
         let kernel = Smoothing::<K>::new(self.h);
-        self.rows(|y| 2.0 * self.row_mean(y, |r2| kernel.w(r2), |s| (2.0 * PI * s).cos()).abs())
+        self.rows(|y| 2.0 * self.row_mean(y, |r2| kernel.w(r2), |s| cos(2.0 * PI * s)).abs())
     }
 
     /// Σ over the rows y ≠ 0 in reach; both signs are alike.
@@ -142,7 +143,7 @@ impl<K: Kernel> SquareLattice<K> {
     pub fn gradient(&self, theta: Vector2<f64>) -> Vector2<f64> {
         let mut sum = Vector2::zeros();
         for s in &self.sites {
-            sum += s.r * (s.vf * theta.dot(&s.r).sin());
+            sum += s.r * (s.vf * sin(theta.dot(&s.r)));
         }
         sum * self.h
     }
@@ -182,7 +183,7 @@ impl<K: Kernel> SquareLattice<K> {
 
 /// 1 - cos a = 2 sin²(a/2), without cancellation for long waves.
 fn one_minus_cos(a: f64) -> f64 {
-    let half = (0.5 * a).sin();
+    let half = sin(0.5 * a);
     2.0 * half * half
 }
 

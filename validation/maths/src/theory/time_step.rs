@@ -12,6 +12,7 @@
 //! earlier: see the notes of each study.
 
 use super::lattice::{SquareLattice, wave_vectors};
+use base::functions::{ln, ln_1p, modulus};
 use nalgebra::{Complex, Matrix3, Vector2};
 use solver::kernel::Kernel;
 
@@ -126,7 +127,7 @@ pub fn free_sound<K: Kernel>(lattice: &SquareLattice<K>, n: usize) -> f64 {
 
 /// Growth of an undamped wave a step of the predictor-corrector, ½ ln(1 + (ω dt)⁴/4) ≈ (ω dt)⁴/8.
 pub fn predictor_corrector_growth(omega_dt: f64) -> f64 {
-    0.5 * (0.25 * omega_dt.powi(4)).ln_1p()
+    0.5 * ln_1p(0.25 * omega_dt.powi(4))
 }
 
 impl Mode {
@@ -166,7 +167,7 @@ impl Mode {
         if integrator == Integrator::Leapfrog {
             return 2.0 / self.stiffness().symmetric_eigenvalues().max();
         }
-        let limit = |s: Complex<f64>| match s.norm() {
+        let limit = |s: Complex<f64>| match modulus(s) {
             0.0 => f64::INFINITY,
             _ if s.re >= 0.0 => 0.0,
             size if integrator == Integrator::Euler => -2.0 * s.re / (size * size),
@@ -180,18 +181,18 @@ impl Mode {
         let radius = match integrator {
             Integrator::Leapfrog => {
                 let spectrum = self.leapfrog_step(dt).complex_eigenvalues();
-                spectrum.iter().map(|s| s.norm()).fold(0.0, f64::max)
+                spectrum.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
             }
             Integrator::Euler => self.largest(|s| Complex::new(1.0, 0.0) + s * dt),
             Integrator::PredictorCorrector => {
                 self.largest(|s| Complex::new(1.0, 0.0) + s * dt + s * s * (0.5 * dt * dt))
             }
         };
-        radius.ln()
+        ln(radius)
     }
 
     fn largest(&self, factor: impl Fn(Complex<f64>) -> Complex<f64>) -> f64 {
-        self.eigenvalues().map(|s| factor(s).norm()).into_iter().fold(0.0, f64::max)
+        self.eigenvalues().map(|s| modulus(factor(s))).into_iter().fold(0.0, f64::max)
     }
 
     /// The symmetric matrix whose largest eigenvalue limits the leapfrog.

@@ -10,6 +10,7 @@ use super::{
     reference::Reference,
 };
 use crate::solid::digest;
+use base::functions::hypot;
 use base::record::{Profile, Record, Status};
 use harness::{
     case::{Rules, RunError},
@@ -148,7 +149,7 @@ fn keep(
     let largest = |p: &Particle<Symmetric>| {
         let (m, d) = (0.5 * (p.extra.xx + p.extra.yy), 0.5 * (p.extra.xx - p.extra.yy));
         let pressure = rings.c0 * rings.c0 * (p.density - rings.settings.rho);
-        m + d.hypot(p.extra.xy) - pressure
+        m + hypot(d, p.extra.xy) - pressure
     };
     let profile = Profile::default()
         .with("x", "m", column(&|p| p.position.x))

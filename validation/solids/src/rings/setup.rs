@@ -1,5 +1,6 @@
 //! From settings to a scene: spacing, moduli, time step, particles.
 
+use base::functions::{rotation, sin_cos};
 use nalgebra::{Rotation2, Vector2};
 use solver::{Domain, Limits, Particle, Symmetric};
 use std::f64::consts::TAU;
@@ -88,7 +89,7 @@ impl Rings {
 
     /// Rotates the line of flight to the x axis.
     pub fn to_flight(&self) -> Rotation2<f64> {
-        Rotation2::new(-self.settings.angle.to_radians())
+        rotation(-self.settings.angle.to_radians())
     }
 
     /// The particles: concentric layers, their numbers multiples of four, so that mass is exact, the
@@ -141,7 +142,7 @@ impl Rings {
 fn quadrant_point(j: usize, quarter: usize) -> Vector2<f64> {
     let (quadrant, k) = (j / quarter, j % quarter);
     let k = if quadrant % 2 == 0 { k } else { quarter - 1 - k };
-    let (sin, cos) = (TAU * (k as f64 + 0.5) / (4 * quarter) as f64).sin_cos();
+    let (sin, cos) = sin_cos(TAU * (k as f64 + 0.5) / (4 * quarter) as f64);
     let x = if quadrant == 0 || quadrant == 3 { cos } else { -cos };
     Vector2::new(x, if quadrant < 2 { sin } else { -sin })
 }

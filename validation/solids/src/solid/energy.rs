@@ -1,5 +1,6 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
+use base::functions::ln_1p;
 use nalgebra::Vector2;
 use solver::{Evolved, Numbers, Particle, Rate, Stepper, Symmetric};
 
@@ -44,7 +45,7 @@ impl Energy {
         };
         Self {
             kinetic: 0.5 * mass * particle.velocity.norm_squared(),
-            compression: mass * c2 * (x.ln_1p() - x / ratio),
+            compression: mass * c2 * (ln_1p(x) - x / ratio),
             shear,
         }
     }

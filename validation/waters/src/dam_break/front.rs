@@ -7,6 +7,7 @@ use super::{
     specs,
 };
 use crate::water;
+use base::functions::{exp2, log2};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
@@ -34,7 +35,7 @@ pub fn rms(one: &Curve, other: &Curve, [from, to]: [f64; 2]) -> f64 {
 /// The observed order of three curves, each at half the spacing of the one before: log2 of the rms of
 /// successive differences, over the whole window, and the least and most over its thirds.
 fn order([coarse, middle, fine]: [&Curve; 3]) -> [f64; 3] {
-    let over = |window| (rms(coarse, middle, window) / rms(middle, fine, window)).log2();
+    let over = |window| log2(rms(coarse, middle, window) / rms(middle, fine, window));
     let [from, to] = LATER;
     let third = (to - from) / 3.0;
     let thirds = [0.0, 1.0, 2.0].map(|k| over([from + k * third, from + (k + 1.0) * third]));
@@ -69,7 +70,7 @@ pub fn orders(tier: Tier, runs: &Runs) -> Study {
             study = study.judge(gate, p);
         }
     }
-    let limit = |[_, b, c]: [f64; 3], p: f64| c + (c - b) / (p.exp2() - 1.0);
+    let limit = |[_, b, c]: [f64; 3], p: f64| c + (c - b) / (exp2(p) - 1.0);
     let table = Columns::<(&str, [usize; 3], [f64; 3], [f64; 3])>::default()
         .code("variant", |(variant, ..)| *variant)
         .text("a/dx", |(_, n, ..)| n.map(|n| n.to_string()).join(", "))
@@ -86,11 +87,12 @@ pub fn orders(tier: Tier, runs: &Runs) -> Study {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use base::functions::powf;
 
     #[test]
     fn an_order_is_found_from_three_curves() {
         let with = |dx: f64| -> Curve {
-            (0..80).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t + dx.powf(1.5) * t)).collect()
+            (0..80).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t + powf(dx, 1.5) * t)).collect()
         };
         let curves = [0.4, 0.2, 0.1].map(with);
         let [p, least, most] = order([&curves[0], &curves[1], &curves[2]]);
