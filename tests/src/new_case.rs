@@ -39,8 +39,7 @@ fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record
     let particles = places.map(|x| Particle::fluid(x, wave(x), 1.0, dx * dx)).collect();
     let parts = Parts::new(medium, Domain::torus(1.0, 1.0), particles, context);
     let mut record = begin((DECAY.name, variant), s, m, &[("dt [s]", dt)], context);
-    let end = simulate(m, parts, [dt, s.end], context, &mut record)?;
-    let all = end.particles();
+    let all = simulate(m, parts, [dt, s.end], context, &mut record)?.particles();
     let projected = all.iter().map(|p| p.velocity.x * sin(TAU * p.position.y));
     let amplitude = 2e3 * projected.sum::<f64>() / all.len() as f64;
     record.put(ERROR, (amplitude / exp(-0.01 * TAU * TAU * s.end) - 1.0).abs());

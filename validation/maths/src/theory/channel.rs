@@ -312,9 +312,9 @@ impl RowModel {
     }
 }
 
-/// exp(A) - 1 by Taylor's series of A/2ⁿ, of norm below 1/2, and n doublings of e = exp - 1 as e (e + 2), which
-/// do not cancel. The exponential of nalgebra comes with a product of matrices that has other bits on other
-/// processors.
+/// exp(A) - 1 by Taylor's series of A/2ⁿ, of norm below 1/2, and n doublings of e = exp - 1 as e (e + 2),
+/// which do not cancel. The exponential of nalgebra comes with a product of matrices that has other bits on
+/// other processors.
 fn exp_m1_of(mut a: DMatrix<f64>) -> DMatrix<f64> {
     let size =
         a.column_iter().map(|column| column.iter().map(|x| x.abs()).sum()).fold(0.0, f64::max);

@@ -3,7 +3,10 @@
 
 use super::{
     RUBBER_RINGS, RingSettings,
-    metrics::{HEIGHT_MAX_ERROR, PIECES_MOST, RESTITUTION, RESTITUTION_ERROR, WIDTH_MIN_ERROR},
+    metrics::{
+        Fate, HEIGHT_MAX_ERROR, PIECES_MOST, RESTITUTION, RESTITUTION_ERROR, TORN_AT,
+        WIDTH_MIN_ERROR,
+    },
     plan::{self, FIVE_LAYERS, SPEED, collision},
     reference::Reference,
 };
@@ -212,24 +215,27 @@ fn step_limit(variant: &'static str) -> Option<StepLimit> {
 
 /// What a collision can come to.
 fn outcomes() -> Vec<(String, Colour)> {
-    let outcomes =
-        [("whole", Colour::GREEN), ("broken", Colour::ORANGE), ("diverged", Colour::VERMILLION)];
-    outcomes.map(|(name, colour)| (name.into(), colour)).into()
+    let fates = [
+        (Fate::Whole, Colour::GREEN),
+        (Fate::Torn, Colour::YELLOW),
+        (Fate::InPieces, Colour::ORANGE),
+    ];
+    let outcomes = fates.map(|(fate, colour)| (fate.name().into(), colour)).into_iter();
+    outcomes.chain([("diverged".into(), Colour::VERMILLION)]).collect()
 }
 
 fn outcome(records: &[&Record]) -> (usize, String) {
-    let [record] = records else { return (2, String::new()) };
-    match record.value(PIECES_MOST) {
-        None => (2, "diverged".into()),
-        Some(2.0) => {
-            let restitution = record.value(RESTITUTION).unwrap_or(f64::NAN);
-            (0, format!("2; {}", sig(restitution, 2)))
-        }
-        Some(pieces) => (1, format!("{pieces}")),
+    let [record] = records else { return (3, String::new()) };
+    let number = |metric| record.value(metric).unwrap_or(f64::NAN);
+    match Fate::of(record) {
+        None => (3, "diverged".into()),
+        Some(Fate::Whole) => (0, format!("whole; {}", sig(number(RESTITUTION), 2))),
+        Some(Fate::Torn) => (1, format!("torn at {}", sig(number(TORN_AT), 2))),
+        Some(Fate::InPieces) => (2, format!("{} pieces", number(PIECES_MOST))),
     }
 }
 
-/// Claim M2: pieces over speed and spacing.
+/// Claim M2: whole, torn or in pieces over speed and spacing.
 fn fracture_map(tier: Tier) -> Map {
     let mut speeds = [plan::speeds(tier), &[SPEED]].concat();
     speeds.sort_by(f64::total_cmp);
@@ -244,9 +250,11 @@ fn fracture_map(tier: Tier) -> Map {
     };
     Map {
         id: "rubber-rings-fracture-map".into(),
-        title: "M2: pieces over speed and spacing".into(),
-        caption: "Most pieces of the two rings over the speed of each and the spacing; for whole rings the \
-                  restitution follows."
+        title: "M2: whole, torn or in pieces over speed and spacing".into(),
+        caption: "What becomes of the two rings over the speed of each and the spacing. Whole: each is one \
+                  piece with a hole, at each of 100 counts; the restitution follows. Torn: a ring is cut \
+                  through once, like a C, and one piece still; the time in L/c0 follows. In pieces: how many \
+                  there are at most."
             .into(),
         x: "speed [c0]".into(),
         y: "spacing [L]".into(),
@@ -265,7 +273,7 @@ fn cell(set: impl FnOnce(&mut RingSettings)) -> Vec<RunSpec> {
     vec![spec.allow_unstable()]
 }
 
-/// Pieces over ξ and n.
+/// Whole, torn or in pieces over ξ and n.
 fn stress_map() -> Map {
     const XI: [f64; 5] = [0.0, 0.1, 0.2, 0.3, 0.5];
     const N: [usize; 3] = [2, 4, 6];
@@ -273,8 +281,9 @@ fn stress_map() -> Map {
     Map {
         id: "rubber-rings-stress-map".into(),
         title: "Stability over the artificial stress".into(),
-        caption: "Most pieces of the two rings at 0.12 c0 each, spacing 0.2 L, over strength and exponent of \
-                  the artificial stress; for whole rings the restitution follows."
+        caption: "What becomes of the two rings at 0.12 c0 each, spacing 0.2 L, over strength and exponent \
+                  of the artificial stress: for whole rings the restitution follows, for torn ones the time \
+                  in L/c0, for others the most pieces."
             .into(),
         x: "ξ [-]".into(),
         y: "n [-]".into(),
@@ -284,7 +293,7 @@ fn stress_map() -> Map {
     }
 }
 
-/// Pieces over α.
+/// The same over α.
 fn viscosity_map() -> Map {
     const ALPHA: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
     let cell = |alpha, _| cell(|s| (s.alpha, s.beta) = (alpha, 2.0 * alpha));

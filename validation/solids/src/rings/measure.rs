@@ -2,17 +2,18 @@
 
 use nalgebra::Vector2;
 use solver::{Flow as Going, Observer, Particle, Stepper, Symmetric};
-use std::collections::HashMap;
 
 use super::{Rings, metrics::*};
 use crate::solid::Energy;
 use base::record::{Profile, Record};
+use maths::geometry::{Bonds, Topology};
 
-/// Samples of a run, at most, and how many of them pass between two counts of fragments.
+/// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
 const SAMPLES: f64 = 800.0;
-const FRAGMENTS_EVERY: usize = 8;
-/// Particles closer than this belong together \[dx\].
-const BOND: f64 = 1.5;
+const COUNTED_EVERY: usize = 8;
+/// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
+/// nearest one or two of the layers beside it.
+const NEIGHBOURS: f64 = 1.2;
 
 /// One ring at one time, in the frame whose x axis is the line of flight.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,34 +57,84 @@ pub fn side(ring: &[Particle<Symmetric>], dx: f64) -> Side {
     Side { centre: centre / mass, velocity: momentum / mass, width: extent.x, height: extent.y }
 }
 
-/// Connected pieces of a ring: particles within [`BOND`] spacings of each other hold together.
-pub fn fragments(ring: &[Particle<Symmetric>], dx: f64) -> usize {
-    let reach = BOND * dx;
-    let cell = |p: Vector2<f64>| ((p.x / reach).floor() as i64, (p.y / reach).floor() as i64);
-    let mut cells: HashMap<(i64, i64), Vec<usize>> = HashMap::new();
-    for (k, p) in ring.iter().enumerate() {
-        cells.entry(cell(p.position)).or_default().push(k);
+/// Where the particles of a ring are.
+fn places(ring: &[Particle<Symmetric>]) -> Vec<Vector2<f64>> {
+    ring.iter().map(|p| p.position).collect()
+}
+
+/// What is seen of the two rings holding together.
+struct Wholeness {
+    /// Area below which a hole is none of a ring \[m²\].
+    least_hole: f64,
+    /// Neighbours of each ring at the start.
+    bonds: [Bonds; 2],
+    /// Is each ring seen as one at the start? Not if its hole is narrower than a disc.
+    is_seen: bool,
+    /// Of both rings, at the last count; the fewest of one ring for holes.
+    pieces: usize,
+    holes: usize,
+    most_pieces: usize,
+    least_holes: usize,
+    /// \[L/c₀\].
+    torn_at: Option<f64>,
+}
+
+impl Wholeness {
+    fn new(rings: &Rings) -> Self {
+        let least_hole = Topology::least_hole_of_ring(rings.settings.inner, rings.settings.outer);
+        let start = rings.particles();
+        let mut this = Self {
+            least_hole,
+            bonds: halves(&start)
+                .map(|ring| Bonds::of(&places(ring), NEIGHBOURS * rings.medium.dx)),
+            is_seen: false,
+            pieces: 2,
+            holes: 1,
+            most_pieces: 2,
+            least_holes: usize::MAX,
+            torn_at: None,
+        };
+        this.is_seen = this.of(rings, &start).iter().all(|ring| ring.is_whole_ring());
+        this
     }
-    let mut is_counted = vec![false; ring.len()];
-    let mut pieces = 0;
-    for start in 0..ring.len() {
-        if std::mem::replace(&mut is_counted[start], true) {
-            continue;
+
+    fn of(&self, rings: &Rings, particles: &[Particle<Symmetric>]) -> [Topology; 2] {
+        halves(particles).map(|ring| Topology::of(&places(ring), rings.medium.dx, self.least_hole))
+    }
+
+    /// Counts pieces and holes at a time \[L/c₀\].
+    fn count(&mut self, time: f64, rings: &Rings, particles: &[Particle<Symmetric>]) {
+        let found = self.of(rings, particles);
+        self.pieces = found.iter().map(|ring| ring.pieces).sum();
+        self.holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
+        self.most_pieces = self.most_pieces.max(self.pieces);
+        self.least_holes = self.least_holes.min(self.holes);
+        if self.torn_at.is_none() && !found.iter().all(|ring| ring.is_whole_ring()) {
+            self.torn_at = Some(time);
         }
-        pieces += 1;
-        let mut open = vec![start];
-        while let Some(k) = open.pop() {
-            let (x, y) = cell(ring[k].position);
-            let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| (x + i, y + j)));
-            for &other in around.filter_map(|c| cells.get(&c)).flatten() {
-                let near = (ring[k].position - ring[other].position).norm() <= reach;
-                if near && !std::mem::replace(&mut is_counted[other], true) {
-                    open.push(other);
-                }
+    }
+
+    /// Largest distance of particles that were neighbours at the start \[dx\].
+    fn stretch(&self, dx: f64, particles: &[Particle<Symmetric>]) -> f64 {
+        let rings = self.bonds.iter().zip(halves(particles));
+        rings.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx).fold(0.0, f64::max)
+    }
+
+    fn measure(&self, record: &mut Record) {
+        record.put(PIECES_MOST, self.most_pieces as f64);
+        if self.is_seen {
+            record.put(HOLES_LEAST, self.least_holes as f64);
+            if let Some(time) = self.torn_at {
+                record.put(TORN_AT, time);
             }
         }
     }
-    pieces
+}
+
+/// The ring on the left and the one on the right.
+fn halves(particles: &[Particle<Symmetric>]) -> [&[Particle<Symmetric>]; 2] {
+    let (left, right) = particles.split_at(particles.len() / 2);
+    [left, right]
 }
 
 /// Watches a run.
@@ -92,12 +143,11 @@ pub struct Series<'a> {
     every: f64,
     next: f64,
     samples: usize,
-    pieces: usize,
-    most_pieces: usize,
+    wholeness: Wholeness,
     rows: Vec<[f64; COLUMNS]>,
 }
 
-const COLUMNS: usize = 10;
+const COLUMNS: usize = 12;
 const NAMES: [(&str, &str); COLUMNS] = [
     ("t", "L/c0"),
     ("x_c", "L"),
@@ -109,23 +159,24 @@ const NAMES: [(&str, &str); COLUMNS] = [
     ("compression", "J/m"),
     ("shear", "J/m"),
     ("mirror", "dx"),
+    ("holes", "1"),
+    ("stretch", "dx"),
 ];
 
 impl<'a> Series<'a> {
     /// A series over a run.
     pub fn new(rings: &'a Rings) -> Self {
         let every = rings.settings.end / rings.c0 / SAMPLES;
-        let (samples, pieces, most_pieces) = (0, 2, 2);
-        Self { rings, every, next: 0.0, samples, pieces, most_pieces, rows: Vec::new() }
+        let wholeness = Wholeness::new(rings);
+        Self { rings, every, next: 0.0, samples: 0, wholeness, rows: Vec::new() }
     }
 
     /// Takes a sample: the ring on the right, whose centre has x > 0.
     pub fn sample(&mut self, time: f64, particles: &[Particle<Symmetric>]) {
         let (rings, dx) = (self.rings, self.rings.medium.dx);
-        let (left, right) = particles.split_at(particles.len() / 2);
-        if self.samples.is_multiple_of(FRAGMENTS_EVERY) {
-            self.pieces = fragments(left, dx) + fragments(right, dx);
-            self.most_pieces = self.most_pieces.max(self.pieces);
+        let [left, right] = halves(particles);
+        if self.samples.is_multiple_of(COUNTED_EVERY) {
+            self.wholeness.count(time * rings.c0, rings, particles);
         }
         self.samples += 1;
         let ring = side(right, dx);
@@ -137,11 +188,13 @@ impl<'a> Series<'a> {
             ring.velocity.x / rings.c0,
             ring.width,
             ring.height,
-            self.pieces as f64,
+            self.wholeness.pieces as f64,
             energies.kinetic,
             energies.compression,
             energies.shear,
             mirror,
+            self.wholeness.holes as f64,
+            self.wholeness.stretch(dx, particles),
         ]);
     }
 
@@ -163,7 +216,12 @@ impl<'a> Series<'a> {
         let speed = self.rings.settings.speed;
         record.put(RESTITUTION, last[2] / speed);
         record.put(PIECES, last[5]);
-        record.put(PIECES_MOST, self.most_pieces as f64);
+        self.wholeness.measure(record);
+        let stretched = self.rows.iter().max_by(|a, b| a[11].total_cmp(&b[11]));
+        if let Some(row) = stretched {
+            record.put(STRETCH_MOST, row[11]);
+            record.put(T_STRETCH_MOST, row[0]);
+        }
         record.put(WIDTH_MIN, least(3));
         record.put(HEIGHT_MAX, column(4).fold(f64::NEG_INFINITY, f64::max));
         record.put(X_C_MIN, least(1));
@@ -275,17 +333,69 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_is_one_piece_and_a_cut_one_is_two() {
+    fn centre_velocity_and_extents_are_those_of_the_ring() {
         let rings = rings();
         let particles = rings.particles();
         let (left, _) = particles.split_at(particles.len() / 2);
-        assert_eq!(fragments(left, rings.medium.dx), 1);
-        let cut: Vec<_> = left.iter().filter(|p| p.position.y.abs() > 0.3).copied().collect();
-        assert_eq!(fragments(&cut, rings.medium.dx), 2);
         let side = side(left, rings.medium.dx);
         assert!((side.centre.x + 5.0).abs() < 1e-12 && side.centre.y.abs() < 1e-12);
         assert!((side.width - 8.0).abs() < 1e-3 && (side.height - 8.0).abs() < 1e-3);
         assert!((side.velocity.x - 0.059).abs() < 1e-12);
+    }
+
+    /// A run of made-up places: the rings of the scene, changed.
+    fn watched(change: impl Fn(f64, &mut Particle<Symmetric>)) -> (Record, Vec<(f64, f64)>) {
+        let rings = rings();
+        let mut series = Series::new(&rings);
+        for k in 0..40 {
+            let time = f64::from(k);
+            let mut particles = rings.particles();
+            particles.iter_mut().for_each(|p| change(time, p));
+            series.sample(time, &particles);
+        }
+        let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
+        series.measure(&mut record);
+        (record, series.points(10))
+    }
+
+    /// Seen from outside at 0.09 to 0.12 c0: a ring opens at its rear pole into a C. It is one piece still.
+    #[test]
+    fn a_ring_that_is_cut_at_its_rear_pole_is_torn() {
+        // From t = 11 on the two halves of the right ring's rear move apart, 0.05 dx each a unit of time.
+        let open = |time: f64, p: &mut Particle<Symmetric>| {
+            let moved = if p.position.x > 5.0 { 0.005 * (time - 11.0).max(0.0) } else { 0.0 };
+            p.position.y += moved * p.position.y.signum();
+        };
+        let (record, holes) = watched(open);
+        assert_eq!(record.value(PIECES_MOST), Some(2.0));
+        assert_eq!(record.value(HOLES_LEAST), Some(0.0));
+        // 1.5 dx apart at t = 16, 1.7 at 18; counted at every eighth sample.
+        assert_eq!(record.value(TORN_AT), Some(24.0));
+        assert!(holes.iter().all(|(t, holes)| *holes == if *t < 24.0 { 1.0 } else { 0.0 }));
+        let stretch = record.value(STRETCH_MOST).unwrap();
+        assert!((stretch - 3.85).abs() < 0.1, "{stretch} dx: 1 + 28 x 0.1");
+        assert_eq!(record.value(T_STRETCH_MOST), Some(39.0));
+    }
+
+    #[test]
+    fn rings_that_move_and_bend_are_whole_and_a_ring_in_two_is_not() {
+        let bend = |time: f64, p: &mut Particle<Symmetric>| {
+            p.position.y *= 1.0 + 0.005 * time;
+            p.position.x *= 1.0 - 0.005 * time;
+        };
+        let (record, _) = watched(bend);
+        assert_eq!((record.value(HOLES_LEAST), record.value(PIECES_MOST)), (Some(1.0), Some(2.0)));
+        assert_eq!(record.value(TORN_AT), None);
+        let stretch = record.value(STRETCH_MOST).unwrap();
+        assert!((1.2..1.45).contains(&stretch), "{stretch} dx: at most 1.2 x 1.195");
+        let split = |time: f64, p: &mut Particle<Symmetric>| {
+            if p.position.x < 0.0 && time > 20.0 {
+                p.position.y += 0.3 * p.position.y.signum();
+            }
+        };
+        let (record, _) = watched(split);
+        assert_eq!((record.value(HOLES_LEAST), record.value(PIECES_MOST)), (Some(0.0), Some(3.0)));
+        assert_eq!(record.value(TORN_AT), Some(24.0));
     }
 
     #[test]

@@ -1,11 +1,18 @@
 //! What the records of the rings state.
 
-use base::record::MetricKey;
+use base::record::{MetricKey, Record};
 
 base::metrics! {
     RESTITUTION = "restitution" ["-"] "velocity of the centre of mass at the end/V";
     PIECES = "pieces" ["1"] "connected pieces at the end, 1.5 dx; two rings are 2";
     PIECES_MOST = "pieces_most" ["1"] "most connected pieces at any time";
+    HOLES_LEAST = "holes_least" ["1"]
+        "least number of holes of a ring at any time, discs of 0.75 dx; 1 is whole, 0 is torn";
+    TORN_AT = "torn_at" ["L/c0"]
+        "first sample at which a ring has no hole or more than one piece; absent if none";
+    STRETCH_MOST = "stretch_most" ["dx"]
+        "largest distance at any time of particles that were within 1.2 dx at the start";
+    T_STRETCH_MOST = "t_stretch_most" ["L/c0"] "when that distance is largest";
     WIDTH_MIN = "width_min" ["L"] "least extent of a ring along the line of flight";
     HEIGHT_MAX = "height_max" ["L"] "largest extent of a ring across it";
     X_C_MIN = "x_c_min" ["L"] "least distance of a ring's centre of mass from the plane";
@@ -36,6 +43,38 @@ base::metrics! {
         "energy that the artificial viscosity has added until the end/E(0)";
     WORK_STRESS = "work_stress" ["-"] "energy that the artificial stress has added until the end/E(0)";
     WORK_ELASTIC = "work_elastic" ["-"] "energy that the elastic law has added until the end/E(0)";
+}
+
+/// What has become of two rings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// Each is one piece with a hole, at every count.
+    Whole,
+    /// One is cut through once, like a C, and so has no hole; it is one piece all the same.
+    Torn,
+    /// There are more pieces than rings.
+    InPieces,
+}
+
+impl Fate {
+    /// Of a run that reached its end; `None` where nothing was counted.
+    pub fn of(record: &Record) -> Option<Self> {
+        let (pieces, holes) = (record.value(PIECES_MOST)?, record.value(HOLES_LEAST));
+        Some(match holes {
+            _ if pieces > 2.0 => Self::InPieces,
+            Some(holes) if holes < 1.0 => Self::Torn,
+            _ => Self::Whole,
+        })
+    }
+
+    /// For tables and captions.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::Torn => "torn",
+            Self::InPieces => "in pieces",
+        }
+    }
 }
 
 /// Of a phase of contact, for each of [`super::measure::SHARES`].

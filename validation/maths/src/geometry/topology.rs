@@ -1,0 +1,421 @@
+//! Pieces and holes of a body of particles: what tells a ring from a ring that is cut, which is one piece
+//! as well.
+//!
+//! A particle stands for a disc of the radius 0.75 dx. Discs overlap where particles are within 1.5 dx of
+//! each other, so pieces of the union are what such bonds hold together, and a hole is there as long as one
+//! closed chain of bonds goes around it. The radius follows from two bounds:
+//!
+//! - A body that is only strained must stay whole. One layer that is stretched to less than 1.5 of its
+//!   length keeps a ring closed; in bending a layer keeps its length or is shortened, so this is far off. No
+//!   gap at all is left in a square lattice whose cells a × b have a² + b² below (1.5 dx)²: at rest,
+//!   where it is (1.41 dx)², and to a stretch of 1.28 at constant area. What opens beyond that between
+//!   four particles is a pinhole, which counts as a hole only if it is as large as the caller asks.
+//! - A cut must be open before it is two spacings wide. Rows that face each other 2 dx apart leave
+//!   0.5 dx between their discs, rows that are staggered by half a spacing 0.56 dx.
+//!
+//! Holes are found on scan lines 0.2 dx apart, on which discs are intervals, exactly: a channel along the
+//! lines that is narrower than 0.2 dx may be missed. So a cut along the lines counts as open from a distance
+//! of 1.5 to 1.7 dx between its rows, depending on where the lines are.
+
+use nalgebra::Vector2;
+use std::f64::consts::PI;
+
+type Point = Vector2<f64>;
+
+/// Particles that are no farther apart hold together \[dx\].
+pub const BOND: f64 = 1.5;
+/// Distance of scan lines \[dx\].
+const LINE: f64 = 0.2;
+
+/// What the union of the discs about particles is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Topology {
+    /// Parts that hold together.
+    pub pieces: usize,
+    /// Parts of the background that are closed in, of at least the area that was asked for.
+    pub holes: usize,
+}
+
+impl Topology {
+    /// Of particles with the spacing `dx` \[m\]; holes of less than `least_hole` \[m²\] do not count.
+    ///
+    /// A piece closes in its holes alone, so each piece is scanned in its own box: debris far away
+    /// costs nothing.
+    pub fn of(points: &[Point], dx: f64, least_hole: f64) -> Self {
+        let mut pieces = pieces(points, BOND * dx);
+        let holes = pieces.iter_mut().map(|piece| holes(piece, dx, least_hole)).sum();
+        Self { pieces: pieces.len(), holes }
+    }
+
+    /// Is it one piece with one hole or more? A hole that narrows in the middle becomes two.
+    pub fn is_whole_ring(self) -> bool {
+        self.pieces == 1 && self.holes >= 1
+    }
+
+    /// The area \[m²\] below which a hole in a ring of these radii \[m\] does not count as the ring's: that
+    /// of a disc half as wide as the wall is thick, or a quarter of that of the hole at rest, if that is
+    /// less.
+    ///
+    /// Pinholes and voids inside a wall that holds are far smaller. A ring that is pressed flat until its
+    /// walls touch keeps a hole on either side; one without any would count as cut.
+    pub fn least_hole_of_ring(inner: f64, outer: f64) -> f64 {
+        let wall = outer - inner;
+        0.25 * PI * (0.25 * wall * wall).min(inner * inner)
+    }
+}
+
+/// Particles that were neighbours once.
+#[derive(Clone, Debug, Default)]
+pub struct Bonds(Vec<[usize; 2]>);
+
+impl Bonds {
+    /// Pairs of particles that are at most `reach` \[m\] apart.
+    pub fn of(points: &[Point], reach: f64) -> Self {
+        let mut bonds = Vec::new();
+        each_pair(points, reach, |a, b| bonds.push([a, b]));
+        Self(bonds)
+    }
+
+    /// The largest distance of such a pair where its particles are now \[m\]; 0 without pairs.
+    pub fn longest(&self, points: &[Point]) -> f64 {
+        let distance2 = |[a, b]: &[usize; 2]| match (points.get(*a), points.get(*b)) {
+            (Some(a), Some(b)) => (a - b).norm_squared(),
+            _ => 0.0,
+        };
+        self.0.iter().map(distance2).fold(0.0, f64::max).sqrt()
+    }
+
+    /// How many pairs there are.
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+}
+
+/// Calls `found` once with every pair of particles that are at most `reach` \[m\] apart.
+fn each_pair(points: &[Point], reach: f64, mut found: impl FnMut(usize, usize)) {
+    // Row and column of the square cell that a particle is in, and its number: rows one after another.
+    let cell =
+        |(k, p): (usize, &Point)| ((p.y / reach).floor() as i64, (p.x / reach).floor() as i64, k);
+    let mut cells: Vec<(i64, i64, usize)> = points.iter().enumerate().map(cell).collect();
+    cells.sort_unstable();
+    let reach2 = reach * reach;
+    // The first in the next row that can be near: it only moves on.
+    let mut below = 0;
+    for (i, &(row, column, a)) in cells.iter().enumerate() {
+        let (next, last) = (row.saturating_add(1), column.saturating_add(1));
+        while cells.get(below).is_some_and(|c| *c < (next, column.saturating_sub(1), 0)) {
+            below += 1;
+        }
+        for (row, start) in [(row, i + 1), (next, below.max(i + 1))] {
+            let near = cells[start..].iter().take_while(|c| c.0 == row && c.1 <= last);
+            for &(_, _, b) in near {
+                if (points[a] - points[b]).norm_squared() <= reach2 {
+                    found(a, b);
+                }
+            }
+        }
+    }
+}
+
+/// The pieces that bonds of at most `reach` \[m\] hold together.
+fn pieces(points: &[Point], reach: f64) -> Vec<Vec<Point>> {
+    let mut joined = Joined::new(points.len());
+    each_pair(points, reach, |a, b| {
+        joined.join(a, b);
+    });
+    // The number of a piece, by the first of its particles.
+    let (mut number, mut pieces) = (vec![0; points.len()], Vec::<Vec<Point>>::new());
+    for (k, p) in points.iter().enumerate() {
+        let first = joined.root(k);
+        if first == k {
+            number[k] = pieces.len();
+            pieces.push(Vec::new());
+        }
+        pieces[number[first]].push(*p);
+    }
+    pieces
+}
+
+/// Things that are one as soon as they are joined; the first of them stands for all.
+struct Joined(Vec<usize>);
+
+impl Joined {
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    fn root(&mut self, mut k: usize) -> usize {
+        while self.0[k] != k {
+            self.0[k] = self.0[self.0[k]];
+            k = self.0[k];
+        }
+        k
+    }
+
+    /// The one that stands for both from now on, and the one that did so and no longer does.
+    fn join(&mut self, a: usize, b: usize) -> Option<(usize, usize)> {
+        let (a, b) = (self.root(a), self.root(b));
+        let (kept, gone) = (a.min(b), a.max(b));
+        self.0[gone] = kept;
+        (kept != gone).then_some((kept, gone))
+    }
+}
+
+/// Holes of one piece, of at least this area \[m²\].
+fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
+    // So that the intervals of a line are nearly in order.
+    piece.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
+    let mut background = Background::default();
+    let everything = (f64::NEG_INFINITY, f64::INFINITY, OUTSIDE);
+    let mut above = vec![everything];
+    for mut line in scan_lines(piece, 0.5 * BOND * dx, LINE * dx) {
+        put_in_order(&mut line);
+        let mut gaps = Vec::with_capacity(4);
+        // Where the gap that is open begins, and its number.
+        let mut from = f64::NEG_INFINITY;
+        for (start, end) in line {
+            if start > from {
+                let is_outside = from == f64::NEG_INFINITY;
+                let area = (start - from) * LINE * dx;
+                let region = if is_outside { OUTSIDE } else { background.begin(area) };
+                gaps.push((from, start, region));
+            }
+            from = from.max(end);
+        }
+        gaps.push((from, f64::INFINITY, OUTSIDE));
+        background.join_lines(&above, &gaps);
+        above = gaps;
+    }
+    background.join_lines(&above, &[everything]);
+    background.closed(least_hole)
+}
+
+/// Sorts intervals by where they begin; few are out of order, and by a few places.
+fn put_in_order(line: &mut [(f64, f64)]) {
+    for k in 1..line.len() {
+        let (mut place, moved) = (k, line[k]);
+        while place > 0 && line[place - 1].0 > moved.0 {
+            line[place] = line[place - 1];
+            place -= 1;
+        }
+        line[place] = moved;
+    }
+}
+
+/// The intervals \[m\] that discs leave on lines a `step` \[m\] apart.
+fn scan_lines(piece: &[Point], radius: f64, step: f64) -> Vec<Vec<(f64, f64)>> {
+    let ys = || piece.iter().map(|p| p.y);
+    let low = ys().fold(f64::INFINITY, f64::min) - radius;
+    let high = ys().fold(f64::NEG_INFINITY, f64::max) + radius;
+    // A piece holds together, so that this is at most its number of particles times 2 radius/step.
+    let most = piece.len() as f64 * (2.0 * radius / step) + 1.0;
+    let count = ((high - low) / step).clamp(0.0, most) as usize;
+    let on_each = (most / count.max(1) as f64) as usize;
+    let mut lines: Vec<_> = (0..count).map(|_| Vec::with_capacity(on_each + 8)).collect();
+    for p in piece {
+        let first = ((p.y - radius - low) / step - 0.5).ceil().max(0.0) as usize;
+        for (k, line) in lines.iter_mut().enumerate().skip(first) {
+            let away = low + (k as f64 + 0.5) * step - p.y;
+            let half2 = radius * radius - away * away;
+            if half2 > 0.0 {
+                let half = half2.sqrt();
+                line.push((p.x - half, p.x + half));
+            } else if away > 0.0 {
+                break;
+            }
+        }
+    }
+    lines
+}
+
+/// The region outside of everything.
+const OUTSIDE: usize = 0;
+
+/// Regions of the background, joined as lines show that they are one; outside stays outside, for the
+/// first stands for all.
+struct Background {
+    joined: Joined,
+    /// \[m²\].
+    area: Vec<f64>,
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self { joined: Joined::new(OUTSIDE + 1), area: vec![0.0] }
+    }
+}
+
+impl Background {
+    fn begin(&mut self, area: f64) -> usize {
+        let region = self.area.len();
+        self.joined.0.push(region);
+        self.area.push(area);
+        region
+    }
+
+    /// Joins the gaps of two lines that overlap.
+    fn join_lines(&mut self, above: &[(f64, f64, usize)], below: &[(f64, f64, usize)]) {
+        let (mut i, mut j) = (0, 0);
+        while let (Some(a), Some(b)) = (above.get(i), below.get(j)) {
+            let overlap = a.0.max(b.0) < a.1.min(b.1);
+            if overlap && let Some((kept, gone)) = self.joined.join(a.2, b.2) {
+                self.area[kept] += self.area[gone];
+            }
+            if a.1 < b.1 { i += 1 } else { j += 1 }
+        }
+    }
+
+    /// Regions that are closed in, of at least this area \[m²\].
+    fn closed(&self, least: f64) -> usize {
+        let is_hole = |&k: &usize| self.joined.0[k] == k && self.area[k] >= least;
+        (OUTSIDE + 1..self.area.len()).filter(is_hole).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::functions::{rotation, sin_cos};
+    use std::f64::consts::TAU;
+
+    const DX: f64 = 0.1;
+
+    /// Concentric layers from radius 3 to 4, as the rings of `rubber_rings` have them.
+    fn annulus() -> Vec<Point> {
+        let layer = |k: usize| {
+            let r = 3.0 + (k as f64 + 0.5) * DX;
+            let count = 4 * (TAU * r / (4.0 * DX)).round() as usize;
+            (0..count).map(move |j| {
+                let (sin, cos) = sin_cos(TAU * (j as f64 + 0.5) / count as f64);
+                Point::new(r * cos, r * sin)
+            })
+        };
+        (0..10).flat_map(layer).collect()
+    }
+
+    fn of(points: &[Point]) -> (usize, usize) {
+        let topology = Topology::of(points, DX, Topology::least_hole_of_ring(3.0, 4.0));
+        (topology.pieces, topology.holes)
+    }
+
+    /// Turned about the origin by this angle \[rad\].
+    fn turned(points: &[Point], angle: f64) -> Vec<Point> {
+        points.iter().map(|p| rotation(angle) * p).collect()
+    }
+
+    /// Opens the annulus at its left pole: what is above moves up and what is below moves down, so that
+    /// rows that were one spacing apart are `apart` \[dx\].
+    fn cut(apart: f64, angle: f64) -> Vec<Point> {
+        let open = |p: &Point| {
+            let moved = if p.x < 0.0 { 0.5 * (apart - 1.0) * DX * p.y.signum() } else { 0.0 };
+            Point::new(p.x, p.y + moved)
+        };
+        turned(&annulus().iter().map(open).collect::<Vec<_>>(), angle)
+    }
+
+    #[test]
+    fn a_disc_has_no_hole_and_an_annulus_has_one() {
+        let dx = Vector2::repeat(DX);
+        let square = (-20..=20).flat_map(|i| (-20..=20).map(move |j| (f64::from(i), f64::from(j))));
+        let disc: Vec<Point> = square
+            .map(|(i, j)| Point::new(i, j).component_mul(&dx))
+            .filter(|p| p.norm() <= 2.0)
+            .collect();
+        assert_eq!(of(&disc), (1, 0));
+        // Not even a pinhole.
+        assert_eq!(Topology::of(&disc, DX, 0.0), Topology { pieces: 1, holes: 0 });
+        assert_eq!(of(&annulus()), (1, 1));
+        assert_eq!(Topology::of(&annulus(), DX, 0.0), Topology { pieces: 1, holes: 1 });
+        assert_eq!(of(&[]), (0, 0));
+        assert_eq!(of(&[Point::zeros()]), (1, 0));
+    }
+
+    /// In every direction, for the scan lines have one.
+    #[test]
+    fn a_cut_is_open_before_it_is_two_spacings_wide_and_closed_at_one_and_a_half() {
+        for k in 0..24 {
+            let angle = TAU * (f64::from(k) + 0.1) / 24.0;
+            for (apart, holes) in [(1.0, 1), (1.45, 1), (1.71, 0), (2.0, 0), (3.0, 0)] {
+                assert_eq!(of(&cut(apart, angle)), (1, holes), "{apart} dx apart at {angle}");
+            }
+        }
+    }
+
+    /// A cut through nine of ten layers is none.
+    #[test]
+    fn one_layer_keeps_a_ring_closed() {
+        let layers = [3.0, 3.5, 3.9];
+        for kept in layers {
+            let is_kept = |p: &Point| {
+                let r = p.norm();
+                p.x > 0.0 || p.y.abs() > 2.0 * DX || (kept..kept + DX).contains(&r)
+            };
+            let notched: Vec<Point> = annulus().into_iter().filter(is_kept).collect();
+            assert_eq!(of(&notched), (1, 1), "kept at {kept}");
+        }
+    }
+
+    #[test]
+    fn rings_that_touch_are_one_piece_with_two_holes() {
+        let ring = annulus();
+        let right = |gap: f64| ring.iter().map(move |p| p + Point::new(8.0 + gap, 0.0));
+        let pair = |gap: f64| ring.iter().copied().chain(right(gap)).collect::<Vec<_>>();
+        assert_eq!(of(&pair(0.0)), (1, 2));
+        assert_eq!(of(&pair(2.0 * DX)), (2, 2));
+        // One inside the hole of the other.
+        let inside = ring.iter().map(|p| 0.4 * p);
+        let nested: Vec<Point> = ring.iter().copied().chain(inside).collect();
+        assert_eq!(of(&nested), (2, 2));
+    }
+
+    /// Numbers between -1 and 1, equally likely.
+    fn random() -> impl FnMut() -> f64 {
+        let mut state = 1_u64;
+        move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+        }
+    }
+
+    #[test]
+    fn strain_and_disorder_tear_nothing() {
+        let mut random = random();
+        for angle in [0.0, 0.4, TAU / 4.0] {
+            let strained = |p: Point| Point::new(1.3 * p.x, p.y);
+            let jittered: Vec<Point> = turned(&annulus(), angle)
+                .into_iter()
+                .map(|p| strained(p) + 0.2 * DX * Point::new(random(), random()))
+                .collect();
+            assert_eq!(of(&jittered), (1, 1));
+        }
+    }
+
+    #[test]
+    fn a_ring_in_two_pieces_has_no_hole() {
+        let apart: Vec<Point> = annulus().into_iter().filter(|p| p.y.abs() > 1.5 * DX).collect();
+        assert_eq!(of(&apart), (2, 0));
+        // Debris far away costs neither time nor memory.
+        let mut debris = annulus();
+        debris.push(Point::new(1e9, -1e9));
+        assert_eq!(of(&debris), (2, 1));
+    }
+
+    #[test]
+    fn bonds_know_how_far_neighbours_have_come_apart() {
+        let ring = annulus();
+        let bonds = Bonds::of(&ring, 1.2 * DX);
+        // Two in the layer, and 1.3 to each side, each counted once.
+        let of_each = bonds.count() as f64 / ring.len() as f64;
+        assert!((2.1..2.4).contains(&of_each), "{of_each} a particle");
+        let rest = bonds.longest(&ring);
+        assert!(rest > DX && rest <= 1.2 * DX, "{rest}");
+        // The bonds across the cut are longer by what it opened.
+        let opened = bonds.longest(&cut(4.0, 0.3)) / DX;
+        assert!((4.0..4.1).contains(&opened), "{opened} dx");
+        let swollen: Vec<Point> = ring.iter().map(|p| 1.5 * p).collect();
+        assert!((bonds.longest(&swollen) / rest - 1.5).abs() < 1e-12);
+        assert_eq!(Bonds::of(&[], DX).longest(&[]), 0.0);
+    }
+}
