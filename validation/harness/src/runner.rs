@@ -129,13 +129,16 @@ impl<X: Numbers> Run<'_, X> {
     }
 }
 
+/// More time steps than this are refused, whatever the case.
+const MOST_STEPS: f64 = 1e10;
+
 /// Steps through `times` \[s\], ascending; `at(simulation, k)` is called at the k-th. Returns how the
 /// run ended, and its cost: that of the stepping, and separately that of the observers and of `at`.
 ///
 /// `observer` is called after every step. Frames show `pressure` \[Pa\] as a function of density \[kg/m³\].
 ///
 /// # Errors
-/// If a frame cannot be written: the run stops at once.
+/// If there would be more than 10¹⁰ time steps, or a frame cannot be written: the run stops at once.
 pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
     simulation: &mut D,
     dt: f64,
@@ -146,6 +149,11 @@ pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
     at: &mut dyn FnMut(&mut D, usize),
 ) -> Result<(Status, Cost), RunError> {
     let end = times.last().copied().unwrap_or_default();
+    let value = (end - simulation.time()) / dt;
+    if value.is_nan() || value > MOST_STEPS {
+        let (what, setting) = ("the number of time steps", "the end or the time step");
+        return Err(RunError::TooMuch { what, value, most: MOST_STEPS, setting });
+    }
     let mut watch = Watch { context, end, shown: Instant::now() };
     watch.show(simulation, dt);
     let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));

@@ -325,4 +325,12 @@ mod tests {
         assert!(matches!(refused(|s| s.dt = Some(1.0)), Some(RunError::TimeStep { .. })));
         assert!(matches!(refused(|s| s.n = 4), Some(RunError::Scene(_))));
     }
+
+    /// Seen with random settings: a viscosity of 1e-300 m²/s decays in 1e300 s, and the run panicked.
+    #[test]
+    fn a_shear_wave_that_never_decays_is_refused() {
+        let spec = SHEAR_WAVE.spec("cubic-pc", |s| s.nu = 1e-300);
+        let refused = SHEAR_WAVE.run(&spec, &Context::default());
+        assert!(matches!(refused, Err(RunError::TooMuch { .. })));
+    }
 }
