@@ -256,7 +256,7 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
     };
     // The kernel and the integrator decide on the limit of dt only, which is not used here.
     let method = Method::of::<Channels<QuinticSpline, Ghosts, Leapfrog>>();
-    let context = Context { allow_unstable: true, ..Context::default() };
+    let context = Context::of_rules();
     let setup = Setup::new(flow, &settings, &method, &context).expect(&name);
     let model = matrix_of(&record, &setup);
     let (mut u, mut before) = (DVector::zeros(model.y.len()), 0.0);

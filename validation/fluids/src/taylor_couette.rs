@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Continuity, Domain, ExtrapolatingWall, InterfaceWall, Limits, NoSlip, Particle, Pressure, Role,
+    Continuity, Domain, ExtrapolatingWall, InterfaceWall, NoSlip, Particle, Pressure, Role,
     Stepper, Tait, Viscosity,
 };
 
@@ -133,19 +133,6 @@ impl Cylinders {
         };
         fluid.chain(inside).chain(outside).flat_map(particles).collect()
     }
-
-    /// What the run chose.
-    fn numbers(&self) -> [(&'static str, f64); 6] {
-        let Rules { dt, dt_limit, sound_speed } = self.rules;
-        [
-            ("h/dx", self.settings.h_over_dx),
-            ("dx [m]", self.medium.dx),
-            ("V [m/s]", self.flow.speed),
-            ("c0 [m/s]", sound_speed),
-            ("dt [s]", dt),
-            ("dt/limit", dt / dt_limit),
-        ]
-    }
 }
 
 const PROGRAM: Program<CylinderSettings, Method> =
@@ -158,16 +145,10 @@ fn run(
     context: &Context,
 ) -> Result<Record, RunError> {
     let cylinders = Cylinders::new(settings, method, context)?;
-    let numbers = cylinders.numbers();
-    let parts = Parts {
-        medium: cylinders.medium,
-        domain: Domain::open(),
-        particles: cylinders.particles(method),
-        mirrors: Vec::new(),
-        skin: None,
-        limits: Limits::default(),
-        threads: context.threads,
-    };
+    let common = cylinders.rules.numbers([settings.h_over_dx, cylinders.medium.dx]);
+    let numbers = [&common[..], &[("V [m/s]", cylinders.flow.speed)]].concat();
+    let particles = cylinders.particles(method);
+    let parts = Parts::new(cylinders.medium, Domain::open(), particles, context);
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
     let until = [cylinders.rules.dt, cylinders.end()];
     let simulation = simulate::simulate(method, parts, until, context, &mut record)?;

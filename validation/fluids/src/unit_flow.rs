@@ -74,27 +74,9 @@ impl UnitFlow {
     pub fn parts(&self, domain: Domain, particles: Vec<Particle>, context: &Context) -> Parts {
         // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
         let speed = 2.0 * (self.speed + self.rules.sound_speed);
-        Parts {
-            medium: self.medium,
-            domain,
-            particles,
-            mirrors: Vec::new(),
-            skin: Some(self.skin),
-            limits: Limits { density: [0.7, 1.3], speed },
-            threads: context.threads,
-        }
-    }
-
-    /// What a run chose, for its record.
-    pub fn numbers(&self) -> [(&'static str, f64); 5] {
-        let Rules { dt, dt_limit, sound_speed } = self.rules;
-        [
-            ("h/dx", self.medium.h / self.medium.dx),
-            ("dx [m]", self.medium.dx),
-            ("c0 [m/s]", sound_speed),
-            ("dt [s]", dt),
-            ("dt/limit", dt / dt_limit),
-        ]
+        let limits = Limits { density: [0.7, 1.3], speed };
+        let parts = Parts::new(self.medium, domain, particles, context);
+        Parts { skin: Some(self.skin), limits, ..parts }
     }
 }
 
@@ -120,7 +102,7 @@ macro_rules! unit_settings {
                 diffusion: f64 ["-"] in 0.0..=10.0 = 0.1,
                 /// particle shifting, amplitude
                 shift: f64 ["-"] in 0.0..=10.0 = 0.5,
-                /// reach of neighbour rows beyond the support
+                /// Verlet skin: reach of neighbour lists beyond the support radius
                 skin: f64 ["h"] in 0.0..=2.0 = 0.15,
             }
         }

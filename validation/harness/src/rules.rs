@@ -10,3 +10,17 @@ pub struct Rules {
     /// Sound speed \[m/s\].
     pub sound_speed: f64,
 }
+
+impl Rules {
+    /// These and the lattice, h/dx and dx \[m\], by the names that records give them.
+    pub fn numbers(self, [h_over_dx, dx]: [f64; 2]) -> [(&'static str, f64); 5] {
+        let Self { dt, dt_limit, sound_speed } = self;
+        [
+            ("h/dx", h_over_dx),
+            ("dx [m]", dx),
+            ("c0 [m/s]", sound_speed),
+            ("dt [s]", dt),
+            ("dt/limit", dt / dt_limit),
+        ]
+    }
+}

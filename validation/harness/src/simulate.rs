@@ -40,23 +40,37 @@ pub fn begin<X, D: ?Sized>(
     record
 }
 
-/// Refuses a step beyond its theoretical limit, unless the context allows it, and more steps to the end
+/// Refuses a step beyond its theoretical limit, unless the context allows it.
+///
+/// # Errors
+/// The step, its limit, and the integrator.
+pub fn check_step(
+    integrator: &'static str,
+    Rules { dt, dt_limit: limit, .. }: Rules,
+    context: &Context,
+) -> Result<(), RunError> {
+    if dt > limit && !context.allow_unstable {
+        return Err(RunError::TimeStep { dt, limit, integrator });
+    }
+    Ok(())
+}
+
+/// Refuses a step as [`check_step`] does, and more steps to the end
 /// \[s\] or more particles than anyone waits for: `most` of each, and the settings that decide on them.
 ///
 /// # Errors
 /// What is too large, by how much, and which settings to change.
 pub fn check(
     integrator: &'static str,
-    Rules { dt, dt_limit: limit, .. }: Rules,
+    rules: Rules,
     end: f64,
     particles: f64,
     most: [(f64, &'static str); 2],
     context: &Context,
 ) -> Result<(), RunError> {
-    if dt > limit && !context.allow_unstable {
-        return Err(RunError::TimeStep { dt, limit, integrator });
-    }
-    let counts = [("the number of time steps", end / dt), ("the number of particles", particles)];
+    check_step(integrator, rules, context)?;
+    let steps = end / rules.dt;
+    let counts = [("the number of time steps", steps), ("the number of particles", particles)];
     match counts.into_iter().zip(most).find(|((_, value), (most, _))| value > most) {
         Some(((what, value), (most, setting))) => {
             Err(RunError::TooMuch { what, value, most, setting })

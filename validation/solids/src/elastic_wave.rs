@@ -11,7 +11,7 @@ use solver::{
 };
 use std::f64::consts::TAU;
 
-use super::solid::{Bare, Material, parts};
+use super::solid::{Bare, Material};
 use base::functions::{acos, cos, sin};
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -126,7 +126,7 @@ impl WaveSettings {
             let wave = places.map(|(k, x)| at(x, self.direction() * (AMPLITUDE * cos(phase(k)))));
             (Domain::torus(1.0, 1.0), wave.collect())
         };
-        parts(RUBBER.medium(method, [dx, self.h_over_dx * dx]), domain, particles, context)
+        Parts::new(RUBBER.medium(method, [dx, self.h_over_dx * dx]), domain, particles, context)
     }
 
     /// Of the particles' motion in a wave along x.

@@ -100,12 +100,22 @@ static SOUND: [&dyn Case; 2] = [&RIGHT, &WRONG];
 static NEVER: AtomicBool = AtomicBool::new(false);
 static ALREADY: AtomicBool = AtomicBool::new(true);
 
-fn exit_with(interrupt: &'static AtomicBool, line: &str, out: &Path) -> Exit {
+/// Runs a command line on these cases; `OUT` in it is the folder `out`.
+fn run_on(
+    cases: &'static [&'static dyn Case],
+    interrupt: &'static AtomicBool,
+    line: &str,
+    out: &Path,
+) -> Exit {
     let line = line.replace("OUT", out.to_str().expect("a plain path"));
     let words = std::iter::once("touchstone").chain(line.split(' '));
     let arguments = Arguments::try_parse_from(words).expect("a sound command line");
-    let world = World { cases: &ALL, sources, interrupt };
+    let world = World { cases, sources, interrupt };
     conclude(|| dispatch(&arguments.command, &world))
+}
+
+fn exit_with(interrupt: &'static AtomicBool, line: &str, out: &Path) -> Exit {
+    run_on(&ALL, interrupt, line, out)
 }
 
 /// Commands that keep records keep them in a folder of their own.
@@ -149,13 +159,8 @@ fn verify_ends_with_the_verdict() {
 #[test]
 fn a_report_is_whole_and_explain_reads_it() {
     let folder = tempfile::tempdir().expect("a folder");
-    let world = World { cases: &SOUND, sources, interrupt: &NEVER };
-    let in_folder = |line: &str| {
-        let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
-        let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
-        conclude(|| dispatch(&arguments.command, &world))
-    };
-    assert_eq!(in_folder("touchstone report --out OUT"), Exit::GateFailed);
+    let in_folder = |line: &str| run_on(&SOUND, &NEVER, line, folder.path());
+    assert_eq!(in_folder("report --out OUT"), Exit::GateFailed);
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
     check_page(&read("index.html")).expect("a page that opens");
     let verdicts: Verdicts = serde_json::from_str(&read("verdicts.json")).expect("verdicts");
@@ -250,36 +255,28 @@ fn block(path: &Path) {
 #[test]
 fn a_record_that_cannot_be_kept_is_reported_all_the_same() {
     static GOOD: [&dyn Case; 1] = [&RIGHT];
-    let world = World { cases: &GOOD, sources, interrupt: &NEVER };
     let folder = tempfile::tempdir().expect("a folder");
-    let in_folder = |line: &str| {
-        let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
-        let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
-        conclude(|| dispatch(&arguments.command, &world))
-    };
+    let in_folder = |line: &str| run_on(&GOOD, &NEVER, line, folder.path());
     let spec = case::spec(&RIGHT, "right", &["re=1".to_string()]).expect("staged settings");
     let record = format!("records/right-right-{}.json", spec.key());
     block(&folder.path().join(&record));
-    assert_eq!(in_folder("touchstone report --out OUT"), Exit::Usage);
+    assert_eq!(in_folder("report --out OUT"), Exit::Usage);
     let page = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
     check_page(&page).expect("a page that opens");
     let verdicts = std::fs::read_to_string(folder.path().join("verdicts.json")).expect("verdicts");
     let verdicts: Verdicts = serde_json::from_str(&verdicts).expect("verdicts");
     assert_eq!((verdicts.counts["pass"], verdicts.counts.get("fail")), (2, None));
-    assert_eq!(in_folder("touchstone verify --store OUT/records"), Exit::Usage);
+    assert_eq!(in_folder("verify --store OUT/records"), Exit::Usage);
 }
 
 #[test]
 fn a_file_of_a_report_that_cannot_be_written_keeps_no_other_from_being_written() {
     static GOOD: [&dyn Case; 1] = [&RIGHT];
-    let world = World { cases: &GOOD, sources, interrupt: &NEVER };
     let folder = tempfile::tempdir().expect("a folder");
     block(&folder.path().join("verdicts.json"));
     block(&folder.path().join("junit.xml"));
-    let line = "touchstone report --out OUT --junit OUT/junit.xml --markdown OUT/verdicts.md";
-    let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
-    let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
-    assert_eq!(conclude(|| dispatch(&arguments.command, &world)), Exit::Usage);
+    let line = "report --out OUT --junit OUT/junit.xml --markdown OUT/verdicts.md";
+    assert_eq!(run_on(&GOOD, &NEVER, line, folder.path()), Exit::Usage);
     for name in ["index.html", "verdicts.md"] {
         assert!(folder.path().join(name).is_file(), "{name}");
     }
@@ -288,17 +285,12 @@ fn a_file_of_a_report_that_cannot_be_written_keeps_no_other_from_being_written()
 #[test]
 fn gates_are_listed_by_their_last_verdict() {
     let folder = tempfile::tempdir().expect("a folder");
-    let world = World { cases: &SOUND, sources, interrupt: &NEVER };
-    let in_folder = |line: &str| {
-        let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
-        let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
-        conclude(|| dispatch(&arguments.command, &world))
-    };
-    let line = "touchstone explain --status fail --reports OUT";
+    let in_folder = |line: &str| run_on(&SOUND, &NEVER, line, folder.path());
+    let line = "explain --status fail --reports OUT";
     assert_eq!(in_folder(line), Exit::Usage, "there is no report yet");
-    assert_eq!(in_folder("touchstone report --out OUT"), Exit::GateFailed);
+    assert_eq!(in_folder("report --out OUT"), Exit::GateFailed);
     assert_eq!(in_folder(line), Exit::Pass);
-    assert_eq!(in_folder("touchstone explain staged.e --status pass --reports OUT"), Exit::Pass);
+    assert_eq!(in_folder("explain staged.e --status pass --reports OUT"), Exit::Pass);
 }
 
 #[test]

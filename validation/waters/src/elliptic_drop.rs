@@ -3,8 +3,8 @@
 
 use nalgebra::Vector2;
 use solver::{
-    BodyForce, Compose, Continuity, DensityDiffusion, EquationOfState, Leapfrog, Open, Particle,
-    Pressure, Stepper, Tait, WendlandC2,
+    BodyForce, Compose, Continuity, DensityDiffusion, Domain, EquationOfState, Leapfrog, Open,
+    Particle, Pressure, Stepper, Tait, WendlandC2,
 };
 
 use super::water::{self, Ledger, Modern, Seed, WaterMethod, gate, ledger, method};
@@ -18,7 +18,7 @@ use harness::{
     columns::Columns,
     composed::{Composed, Composition, Program, Variants, completed},
     declare::{Accuracy, Declaration, ErrorOf, Ladder, Level},
-    method::Medium,
+    method::{Medium, Parts},
     pictures,
     runner::{self, Context},
     runs::{Judged, Runs},
@@ -218,9 +218,9 @@ fn run(
     let (medium, end) = (&drop.medium, s.end / s.strain);
     let count = drop.particles.len() as f64;
     simulate::check(method.integrator, drop.rules, end, count, MOST, context)?;
-    let parts = water::parts(medium, drop.particles.clone(), Vec::new(), context);
+    let parts = Parts::new(*medium, Domain::open(), drop.particles.clone(), context);
     let mut simulation = (method.build)(parts)?;
-    let [_, numbers @ ..] = water::numbers(s.h_over_dx, medium, drop.rules);
+    let [_, numbers @ ..] = drop.rules.numbers([s.h_over_dx, medium.dx]);
     let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
     let mut ledger = Ledger::new(medium);
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };

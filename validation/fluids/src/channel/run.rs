@@ -89,17 +89,9 @@ pub fn measured(
 }
 
 /// What the run chose.
-fn numbers(setup: &Setup) -> [(&'static str, f64); 8] {
+fn numbers(setup: &Setup) -> Vec<(&'static str, f64)> {
     let (s, medium) = (&setup.settings, &setup.medium);
     let c0 = medium.eos.sound_speed;
-    [
-        ("h/dx", s.h_over_dx),
-        ("dx [m]", medium.dx),
-        ("V [m/s]", setup.v),
-        ("c0 [m/s]", c0),
-        ("c0/V", c0 / setup.v),
-        ("c0 h/nu", c0 * medium.h / s.nu),
-        ("dt [s]", setup.dt),
-        ("dt/limit", setup.dt / setup.dt_limit),
-    ]
+    let own = [("V [m/s]", setup.v), ("c0/V", c0 / setup.v), ("c0 h/nu", c0 * medium.h / s.nu)];
+    [&setup.rules().numbers([s.h_over_dx, medium.dx])[..], &own].concat()
 }

@@ -110,7 +110,8 @@ pub fn measured(
     context: &Context,
 ) -> Result<Record, RunError> {
     let (s, flow) = (&setup.settings, &setup.flow);
-    let mut record = simulate::begin((NAME, variant), s, method, &flow.numbers(), context);
+    let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
+    let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
     let stretches = (s.end / (STRETCH * flow.rules.dt)).ceil().max(1.0) as usize;
     let stretch = s.end / stretches as f64;
     let times: Vec<f64> = (1..=stretches).map(|k| stretch * k as f64).collect();

@@ -78,7 +78,8 @@ fn run(
     let parts = flow.parts(Domain::torus(1.0, 1.0), setup.particles(), context);
     let mut simulation = (method.build)(parts)?;
     let name = (super::NAME, variant);
-    let mut record = simulate::begin(name, settings, method, &flow.numbers(), context);
+    let numbers = flow.rules.numbers([settings.h_over_dx, flow.medium.dx]);
+    let mut record = simulate::begin(name, settings, method, &numbers, context);
     let end = settings.end;
     let times: Vec<f64> = (1..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let mut series = vec![Sample::of(&setup, &*simulation)];

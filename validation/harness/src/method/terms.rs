@@ -109,6 +109,11 @@ impl FirstRow {
     pub fn depth(self) -> f64 {
         if self == Self::OnSurface { 0.0 } else { 0.5 }
     }
+
+    /// Distance of the first row of fluid before the surface \[dx\].
+    pub fn fluid(self) -> f64 {
+        if self == Self::OnSurface { 1.0 } else { 0.5 }
+    }
 }
 
 /// Walls that can be constructed from a medium and from the planes that mirror the fluid.

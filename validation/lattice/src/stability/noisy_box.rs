@@ -352,10 +352,9 @@ pub fn run(
     let fluid = NoisyBox::new(settings);
     let method = pair.method(&fluid);
     let &BoxSettings { courant, steps, to_the_end, .. } = settings;
-    let Rules { dt, dt_limit, sound_speed } = rules(pair, settings)?;
-    if dt > dt_limit && !context.allow_unstable {
-        return Err(RunError::TimeStep { dt, limit: dt_limit, integrator: method.integrator });
-    }
+    let rules = rules(pair, settings)?;
+    simulate::check_step(method.integrator, rules, context)?;
+    let Rules { dt, dt_limit, sound_speed } = rules;
     let simulation = (method.build)(fluid.parts(method))?;
     let measured = fluid.run(method, simulation, (courant, steps), to_the_end, context)?;
     let numbers = [

@@ -109,9 +109,7 @@ impl Wave {
         // The predictor-corrector amplifies sound at every dt, which is part of what is compared.
         let theory = time_step::Integrator::Leapfrog;
         let dt_limit = time_step::time_step_limit(&method.modes(lattice, s.n, &waves), theory);
-        if dt > dt_limit && !context.allow_unstable {
-            return Err(RunError::TimeStep { dt, limit: dt_limit, integrator: "leapfrog" });
-        }
+        simulate::check_step("leapfrog", Rules { dt, dt_limit, sound_speed }, context)?;
         let period = std::f64::consts::TAU / sound.omega;
         let time = match polarisation {
             Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,

@@ -84,11 +84,6 @@ impl Bonds {
         };
         self.0.iter().map(distance2).fold(0.0, f64::max).sqrt()
     }
-
-    /// How many pairs there are.
-    pub fn count(&self) -> usize {
-        self.0.len()
-    }
 }
 
 /// Calls `found` once with every pair of particles that are at most `reach` \[m\] apart.
@@ -407,7 +402,7 @@ mod tests {
         let ring = annulus();
         let bonds = Bonds::of(&ring, 1.2 * DX);
         // Two in the layer, and 1.3 to each side, each counted once.
-        let of_each = bonds.count() as f64 / ring.len() as f64;
+        let of_each = bonds.0.len() as f64 / ring.len() as f64;
         assert!((2.1..2.4).contains(&of_each), "{of_each} a particle");
         let rest = bonds.longest(&ring);
         assert!(rest > DX && rest <= 1.2 * DX, "{rest}");

@@ -43,8 +43,7 @@ pub fn run(
 
 /// What the rules choose.
 pub fn rules(method: &RingMethod, settings: &RingSettings) -> Result<Rules, RunError> {
-    let context = Context { allow_unstable: true, ..Context::default() };
-    Ok(Rings::new(settings, method, &context)?.rules())
+    Ok(Rings::new(settings, method, &Context::of_rules())?.rules())
 }
 
 /// Steps a simulation and measures it against the setup: the same measuring for one that is not what
@@ -101,16 +100,9 @@ pub fn measured(
 }
 
 /// What the run chose.
-fn numbers(rings: &Rings) -> [(&'static str, f64); 7] {
-    [
-        ("h/dx", rings.settings.h_over_dx),
-        ("dx [m]", rings.medium.dx),
-        ("V [m/s]", rings.v),
-        ("c0 [m/s]", rings.c0),
-        ("c_p [m/s]", rings.cp),
-        ("dt [s]", rings.dt),
-        ("dt/limit", rings.dt / rings.dt_limit),
-    ]
+fn numbers(rings: &Rings) -> Vec<(&'static str, f64)> {
+    let own = [("V [m/s]", rings.v), ("c_p [m/s]", rings.cp)];
+    [&rings.rules().numbers([rings.settings.h_over_dx, rings.medium.dx])[..], &own].concat()
 }
 
 /// A stop of a run: for a picture, or for a sample of the energy budget.

@@ -6,7 +6,7 @@ use solver::{Domain, Limits, Particle, Symmetric};
 use std::f64::consts::TAU;
 
 use super::RingSettings;
-use crate::solid::{self, Material};
+use crate::solid::Material;
 use harness::{
     case::{Rules, RunError},
     context::Context,
@@ -133,7 +133,7 @@ impl Rings {
         let speed = 2.0 * (self.cp + self.v);
         let limits = Limits { density: [0.5 * density, 2.0 * density], speed };
         let (medium, particles) = (self.medium, self.particles());
-        Parts { limits, ..solid::parts(medium, Domain::open(), particles, context) }
+        Parts { limits, ..Parts::new(medium, Domain::open(), particles, context) }
     }
 }
 

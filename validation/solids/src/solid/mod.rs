@@ -15,7 +15,7 @@ use harness::{
 pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
 pub use material::Material;
 pub use method::{Bare, Clamp, Plain, Rubber};
-pub use problem::{Problem, SharedSettings, Watch, digest, parts, variants};
+pub use problem::{Problem, SharedSettings, Watch, digest, variants};
 
 /// The largest of these numbers, none of which is negative; NaN if one is NaN, for what was not measured must
 /// not pass.

@@ -1,8 +1,8 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
 use solver::{
-    Domain, EquationOfState, Limits, Observer, Particle, PredictorCorrector, PrincipalStress,
-    Stepper, Symmetric, walls::Walls,
+    Domain, EquationOfState, Observer, Particle, PredictorCorrector, PrincipalStress, Stepper,
+    Symmetric, walls::Walls,
 };
 
 use super::{Bare, Material, Plain, Rubber};
@@ -137,7 +137,7 @@ fn run<P: Problem>(
     let mut record = simulate::begin((P::NAME, variant), settings, method, &numbers, context);
     let (eos, particles) = (material.eos(), settings.particles());
     let mut watch = settings.watch(&particles);
-    let mut simulation = (method.build)(parts(medium, settings.domain(), particles, context))?;
+    let mut simulation = (method.build)(Parts::new(medium, settings.domain(), particles, context))?;
     // No stop but the end: one would bring the leapfrog's velocities to a whole step.
     (record.status, record.cost) = runner::drive(
         &mut *simulation,
@@ -151,17 +151,6 @@ fn run<P: Problem>(
     record.state = Some(digest(&simulation.particles()));
     watch.measure(&*simulation, &mut record);
     Ok(record)
-}
-
-/// The parts of a scene without mirrors and with the usual limits.
-pub fn parts(
-    medium: Medium,
-    domain: Domain,
-    particles: Vec<Particle<Symmetric>>,
-    context: &Context,
-) -> Parts<Symmetric> {
-    let (mirrors, limits, threads) = (Vec::new(), Limits::default(), context.threads);
-    Parts { medium, domain, particles, mirrors, skin: None, limits, threads }
 }
 
 /// A digest of a state, stress included, in the order of the scene.

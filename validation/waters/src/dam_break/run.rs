@@ -9,7 +9,7 @@ use super::{
     measure::{Gauge, Samples},
     metrics, reference,
 };
-use crate::water::{self, Ledger, WaterMethod};
+use crate::water::{Ledger, WaterMethod};
 use base::record::{Profile, Record, Status};
 use harness::{
     case::RunError,
@@ -26,7 +26,7 @@ pub const PROGRAM: Program<DamSettings, WaterMethod> = Program {
         let simulation = (method.build)(dam.parts(method, context))?;
         measured(&dam, method, variant, simulation, context)
     },
-    rules: |method, settings| Ok(Dam::new(settings, method, &water::of_rules())?.rules),
+    rules: |method, settings| Ok(Dam::new(settings, method, &Context::of_rules())?.rules),
 };
 
 /// Times at which particles are kept for pictures, shares of the run.
@@ -66,7 +66,7 @@ pub fn measured(
     context: &Context,
 ) -> Result<Record, RunError> {
     let Dam { settings, medium, rules, .. } = dam;
-    let numbers = water::numbers(settings.h_over_dx, medium, *rules);
+    let numbers = rules.numbers([settings.h_over_dx, medium.dx]);
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
     let mut ledger = Ledger::new(medium);
     let mut samples = Samples::new(dam);

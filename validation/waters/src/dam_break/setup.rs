@@ -1,7 +1,7 @@
 //! From settings to a scene: spacing, time step, tank, column.
 
 use nalgebra::Vector2;
-use solver::{EquationOfState, Limits, Particle};
+use solver::{Domain, EquationOfState, Limits, Particle};
 
 use super::DamSettings;
 use crate::water::{self, WaterMethod};
@@ -94,7 +94,7 @@ impl Dam {
         // Between two surfaces with particles on them there is one column less.
         let is_full = walls == FirstRow::OnSurface && columns == self.tank.columns;
         let columns = columns - usize::from(is_full);
-        let (first, dx) = (water::first_water(walls), self.medium.dx);
+        let (first, dx) = (walls.fluid(), self.medium.dx);
         let surface = (first - 0.5 + rows as f64) * dx;
         let offset = Vector2::repeat(s.offset * dx);
         solver::lattice(Vector2::repeat(first * dx), dx, columns, rows)
@@ -119,8 +119,8 @@ impl Dam {
         let skin = (LEAST_SKIN * medium.h).max(SKIN_STEPS * self.rules.dt * speed);
         // Water that is twice as dense, or as fast as sound, is no water any more.
         let limits = Limits { density: [0.5 * rho, 2.0 * rho], speed: c0.max(2.0 * speed) };
-        let parts = water::parts(medium, particles, tank.mirrors(), context);
-        Parts { skin: Some(skin), limits, ..parts }
+        let parts = Parts::new(*medium, Domain::open(), particles, context);
+        Parts { mirrors: tank.mirrors(), skin: Some(skin), limits, ..parts }
     }
 }
 

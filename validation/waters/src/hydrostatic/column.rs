@@ -1,7 +1,7 @@
 //! From settings to the water and its tank.
 
 use nalgebra::Vector2;
-use solver::{Particle, Tait, lattice};
+use solver::{Domain, Particle, Tait, lattice};
 
 use super::HydrostaticSettings;
 use crate::water;
@@ -67,7 +67,7 @@ impl Column {
         let fastest = exact.sound_speed(s.depth);
         let dt_limit = water::step_limit(method, &medium, [s.h_over_dx, fastest], LIMIT_BOX);
         let rules = Rules { dt: s.courant * h / fastest, dt_limit, sound_speed: c0 };
-        let first = water::first_water(method.first_row);
+        let first = method.first_row.fluid();
         let column = Self { settings: s.clone(), exact, medium, rules, first };
         let particles = s.rows as f64 * s.columns as f64;
         simulate::check(method.integrator, rules, column.end(), particles, MOST, context)?;
@@ -125,11 +125,12 @@ impl Column {
     /// interface is frozen, and what others push with is their mass by p/ρ², so that with the mass of the
     /// surface a compressed column would sink into the bottom.
     pub fn parts(&self, method: &Method, context: &Context) -> Parts {
-        let (medium, tank) = (&self.medium, self.tank());
+        let (medium, tank) = (self.medium, self.tank());
         let mut particles = self.water(method.first_row);
         let walls = water::wall_particles(method.first_row, &tank, method.support * medium.h);
         let at_rest = |(place, role)| self.at_rest(place).with_role(role);
         particles.extend(walls.into_iter().map(at_rest));
-        water::parts(medium, particles, tank.mirrors(), context)
+        let parts = Parts::new(medium, Domain::open(), particles, context);
+        Parts { mirrors: tank.mirrors(), ..parts }
     }
 }

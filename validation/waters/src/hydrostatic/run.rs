@@ -3,7 +3,6 @@
 use solver::{EquationOfState, Particle, Role, Stepper};
 
 use super::{HydrostaticSettings, NAME, column::Column};
-use crate::water;
 use base::record::{Profile, Record, Status};
 use harness::{
     case::RunError,
@@ -29,7 +28,7 @@ base::metrics! {
 /// Runs of the variants.
 pub const PROGRAM: Program<HydrostaticSettings, Method> = Program {
     run,
-    rules: |method, settings| Ok(Column::new(settings, method, &water::of_rules())?.rules),
+    rules: |method, settings| Ok(Column::new(settings, method, &Context::of_rules())?.rules),
 };
 
 fn run(
@@ -41,7 +40,7 @@ fn run(
     let column = Column::new(settings, method, context)?;
     let Column { medium, rules, .. } = &column;
     let mut simulation = (method.build)(column.parts(method, context))?;
-    let numbers = water::numbers(settings.h_over_dx, medium, *rules);
+    let numbers = rules.numbers([settings.h_over_dx, medium.dx]);
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
     let start = ends(&column, &fluid(&*simulation));
     let mut history = History { column: &column, start, moments: Vec::new() };

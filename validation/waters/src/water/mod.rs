@@ -10,11 +10,7 @@ use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricName, Record},
 };
-use harness::{
-    case::Rules,
-    context::Context,
-    method::{self, FirstRow, Medium, Method, Parts, Standard},
-};
+use harness::method::{self, FirstRow, Medium, Method, Standard};
 use maths::{
     geometry::Tank,
     metrics::budget::{Itemised, Metered},
@@ -22,8 +18,8 @@ use maths::{
 use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, Domain, ExtrapolatingWall, Leapfrog, Limits, Particle, PlaneWall,
-    PredictorCorrector, Pressure, Role, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+    DensityDiffusion, ExtrapolatingWall, Leapfrog, PredictorCorrector, Pressure, Role, Tait,
+    WendlandC2, Xsph, terms::Hydrostatic,
 };
 
 pub use ledger::Ledger;
@@ -63,40 +59,6 @@ pub fn step_limit<D: ?Sized>(
 ) -> f64 {
     let waves = maths::theory::time_step::Medium { c0, ..medium.waves(&method.uses) };
     method.step_limit([h_over_dx, ETA2], n, &waves)
-}
-
-/// What the rules chose, as records state it.
-pub fn numbers(h_over_dx: f64, medium: &Medium, rules: Rules) -> [(&'static str, f64); 5] {
-    let Rules { dt, dt_limit, sound_speed } = rules;
-    [
-        ("h/dx", h_over_dx),
-        ("dx [m]", medium.dx),
-        ("c0 [m/s]", sound_speed),
-        ("dt [s]", dt),
-        ("dt/limit", dt / dt_limit),
-    ]
-}
-
-/// The context in which rules are asked for: no step is refused.
-pub fn of_rules() -> Context<'static> {
-    Context { allow_unstable: true, ..Context::default() }
-}
-
-/// A scene of this water, with the usual skin and limits.
-pub fn parts(
-    medium: &Medium,
-    particles: Vec<Particle>,
-    mirrors: Vec<PlaneWall>,
-    context: &Context,
-) -> Parts {
-    let (domain, limits) = (Domain::open(), Limits::default());
-    let (medium, threads) = (*medium, context.threads);
-    Parts { medium, domain, particles, mirrors, skin: None, limits, threads }
-}
-
-/// Where the first row of water is, from the surface of a wall \[dx\].
-pub fn first_water(walls: FirstRow) -> f64 {
-    if walls == FirstRow::OnSurface { 1.0 } else { 0.5 }
 }
 
 /// Places and roles of the particles of a tank's walls, out to the support \[m\].
