@@ -141,7 +141,7 @@ const MUTANTS: [Mutant; 5] = [
 ];
 
 fn failed(planned: &Planned, record: &Record) -> Vec<String> {
-    let fails = |gate: &&Gate| gate.judge(gate.value(record)).verdict.is_failure();
+    let fails = |gate: &&Gate| gate.judge_record(record).verdict.is_failure();
     planned.gates.iter().filter(fails).map(|gate| gate.id.clone()).collect()
 }
 

@@ -122,7 +122,7 @@ fn run(fault: &Fault) -> Record {
 
 /// Gates that this record fails.
 fn failed(planned: &Planned, record: &Record) -> Vec<String> {
-    let fails = |gate: &&base::gate::Gate| gate.judge(gate.value(record)).verdict.is_failure();
+    let fails = |gate: &&base::gate::Gate| gate.judge_record(record).verdict.is_failure();
     planned.gates.iter().filter(fails).map(|gate| gate.id.clone()).collect()
 }
 

@@ -219,7 +219,7 @@ fn ripple(settings: &WaveSettings, fault: &Fault) -> Record {
 fn failed(fault: &Fault) -> (Vec<String>, usize) {
     let planned = planned();
     let record = collide(&planned, fault);
-    let fails = |gate: &Gate, record: &Record| gate.judge(gate.value(record)).verdict.is_failure();
+    let fails = |gate: &Gate, record: &Record| gate.judge_record(record).verdict.is_failure();
     let mut failed: Vec<String> = planned
         .gates
         .iter()

@@ -70,7 +70,7 @@ pub enum Measured {
 impl Measured {
     pub fn value(&self, gate: &Gate) -> Option<f64> {
         match self {
-            Measured::Record(record) => gate.value(record),
+            Measured::Record(record) => record.metric(&gate.metric),
             Measured::Number(value) => Some(*value),
             Measured::Errors(errors) => {
                 errors.iter().find(|(metric, _)| *metric == gate.metric).map(|(_, error)| *error)

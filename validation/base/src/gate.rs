@@ -1,7 +1,8 @@
 //! Gates: a metric, a bound, the kind of evidence behind the bound, and the reason for the bound.
 //!
-//! A gate passes only if the metric is a finite number inside the bound: NaN, infinity and a metric
-//! that was not measured fail. A number that is shown without being judged is marked so.
+//! A gate passes only if the metric is a finite number inside the bound: NaN, infinity, a metric that was
+//! not measured, and a run that ended early fail. A known limitation has a bound of its own, and a number
+//! outside of that fails too.
 //!
 //! ```
 //! use base::gate::{Bound, Evidence, Gate, Verdict};
@@ -73,6 +74,28 @@ impl Bound {
             Bound::Within(low, high) => low.is_finite() && high.is_finite() && low < high,
         }
     }
+
+    /// Smallest and largest number inside.
+    fn ends(self) -> [f64; 2] {
+        match self {
+            Bound::Below(high) => [f64::NEG_INFINITY, high],
+            Bound::Above(low) => [low, f64::INFINITY],
+            Bound::Within(low, high) => [low, high],
+            Bound::Equals(expected) => [expected; 2],
+        }
+    }
+
+    /// Does every number inside lie inside of `other` too?
+    fn is_inside(self, other: Self) -> bool {
+        let ([low, high], [lowest, highest]) = (self.ends(), other.ends());
+        lowest <= low && high <= highest
+    }
+
+    /// Is it unlimited on a side on which `other` is not?
+    fn is_open_where(self, other: Self) -> bool {
+        let ([low, high], [lowest, highest]) = (self.ends(), other.ends());
+        (low.is_infinite() && lowest.is_finite()) || (high.is_infinite() && highest.is_finite())
+    }
 }
 
 impl fmt::Display for Bound {
@@ -117,10 +140,19 @@ pub enum Purpose {
     Judge,
     /// show the number and judge nothing
     Report,
-    /// a finite number outside is known, for this reason, and does not fail
-    Limitation(String),
+    /// a number outside is a known limitation as long as it is inside of the limitation's own bound
+    Limitation(Known),
     /// a control that must lie outside its bound: inside fails
     ExpectFailure,
+}
+
+/// How far outside the bound of its gate a metric is known to lie, and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Known {
+    /// from the evidence for the cause: outside of it, the gate fails
+    pub bound: Bound,
+    /// the cause
+    pub reason: String,
 }
 
 /// A metric, its bound and its reasons.
@@ -138,10 +170,11 @@ pub struct Gate {
     pub because: String,
     /// what the judgement is for
     pub purpose: Purpose,
-    /// may the metric be missing?
-    pub may_be_missing: bool,
+    /// is a run that ends early the limitation or the failure that is expected?
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub may_end_early: bool,
     /// does it judge what was measured of a run that did not reach its end?
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub even_if_diverged: bool,
 }
 
@@ -174,6 +207,27 @@ pub enum GateError {
         /// its bound
         bound: Bound,
     },
+    /// A limitation without a bound that is wider than the gate's.
+    #[error(
+        "the limitation of gate {id} is {known}, which must have finite ends in ascending order and reach \
+         beyond the gate's {bound} on one side"
+    )]
+    Known {
+        /// the gate
+        id: String,
+        /// its bound
+        bound: Bound,
+        /// the bound of its limitation
+        known: Bound,
+    },
+    /// An early end is neither a limitation nor an expected failure.
+    #[error(
+        "gate {id} lets a run end early and names neither a limitation nor an expected failure"
+    )]
+    EndsEarly {
+        /// the gate
+        id: String,
+    },
     /// Two gates of one name.
     #[error("two gates are called {id}")]
     Duplicate {
@@ -201,13 +255,10 @@ impl Gate {
             evidence,
             because: because.into(),
             purpose: Purpose::Judge,
-            may_be_missing: false,
+            may_end_early: false,
             even_if_diverged: false,
         };
-        match gate.check() {
-            Ok(()) => gate,
-            Err(error) => panic!("{error}"),
-        }
+        gate.sound()
     }
 
     /// The number is shown and not judged.
@@ -215,9 +266,14 @@ impl Gate {
         Gate { purpose: Purpose::Report, ..self }
     }
 
-    /// Lying outside is known, for a reason; NaN and a missing metric still fail.
-    pub fn with_limitation(self, reason: impl Into<String>) -> Self {
-        Gate { purpose: Purpose::Limitation(reason.into()), ..self }
+    /// Lying outside is known, for a reason, as far as `known` reaches: a number outside of that, NaN and
+    /// a missing metric fail.
+    ///
+    /// # Panics
+    /// If the gate is unsound with it (see [`Gate::check`]).
+    pub fn with_limitation(self, known: Bound, reason: impl Into<String>) -> Self {
+        let known = Known { bound: known, reason: reason.into() };
+        Gate { purpose: Purpose::Limitation(known), ..self }.sound()
     }
 
     /// A control: a finite number outside the bound is what must come out.
@@ -225,37 +281,84 @@ impl Gate {
         Gate { purpose: Purpose::ExpectFailure, ..self }
     }
 
-    /// The metric may be missing, as in the quick tier.
-    pub fn when_measured(self) -> Self {
-        Gate { may_be_missing: true, ..self }
+    /// A run that ends early counts as the limitation or as the failure that is expected.
+    ///
+    /// # Panics
+    /// If the gate has neither.
+    pub fn may_end_early(self) -> Self {
+        Gate { may_end_early: true, ..self }.sound()
     }
 
-    /// What was measured before a run diverged counts as well; otherwise it is as good as missing.
+    /// What was measured before a run ended early is judged; otherwise such a run fails the gate.
     pub fn even_if_diverged(self) -> Self {
         Gate { even_if_diverged: true, ..self }
     }
 
     /// The number that the gate judges: none of a run that did not reach its end, however good it was
     /// until then.
-    pub fn value(&self, record: &Record) -> Option<f64> {
+    fn value(&self, record: &Record) -> Option<f64> {
         let counts = record.status == Status::Completed || self.even_if_diverged;
         if counts { record.metric(&self.metric) } else { None }
     }
 
-    /// Has the gate a name, a metric, a sound bound and a reason?
+    /// Panics unless it is sound.
+    fn sound(self) -> Self {
+        match self.check() {
+            Ok(()) => self,
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// Has the gate a name, a metric, sound bounds and reasons?
     pub fn check(&self) -> Result<(), GateError> {
         let is_blank = |text: &str| text.trim().is_empty();
         let Gate { id, metric, bound, because, purpose, .. } = self;
         if is_blank(id) || is_blank(metric) {
             return Err(GateError::NoName { id: id.clone(), metric: metric.clone() });
         }
-        if is_blank(because) || matches!(purpose, Purpose::Limitation(why) if is_blank(why)) {
-            return Err(GateError::NoReason { id: id.clone() });
+        let id = || id.clone();
+        if is_blank(because)
+            || matches!(purpose, Purpose::Limitation(known) if is_blank(&known.reason))
+        {
+            return Err(GateError::NoReason { id: id() });
         }
-        match bound.is_sound() {
-            true => Ok(()),
-            false => Err(GateError::Bound { id: id.clone(), bound: *bound }),
+        if !bound.is_sound() {
+            return Err(GateError::Bound { id: id(), bound: *bound });
         }
+        if self.may_end_early && matches!(purpose, Purpose::Judge | Purpose::Report) {
+            return Err(GateError::EndsEarly { id: id() });
+        }
+        match purpose {
+            Purpose::Limitation(Known { bound: known, .. })
+                if !known.is_sound() || known.is_inside(*bound) || known.is_open_where(*bound) =>
+            {
+                Err(GateError::Known { id: id(), bound: *bound, known: *known })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Where the metric must lie, in words, with how far its limitation reaches.
+    pub fn bounds(&self) -> String {
+        match &self.purpose {
+            Purpose::Limitation(known) => format!("{}; limitation: {}", self.bound, known.bound),
+            _ => self.bound.to_string(),
+        }
+    }
+
+    /// Judges a record: its metric by [`judge`] if the run reached its end or the gate judges what was
+    /// measured until then, and otherwise the early end, which fails unless the gate says what it is.
+    pub fn judge_record(&self, record: &Record) -> Judgement {
+        let value = self.value(record);
+        let verdict = match &self.purpose {
+            _ if value.is_some() || record.status == Status::Completed => return self.judge(value),
+            Purpose::Limitation(known) if self.may_end_early => {
+                Verdict::Limitation(known.reason.clone())
+            }
+            Purpose::ExpectFailure if self.may_end_early => Verdict::ExpectedFailure,
+            _ => Verdict::Fail,
+        };
+        Judgement { id: self.id.clone(), verdict, value: None, margin: None }
     }
 
     /// Judges a metric; see [`judge`].
@@ -290,8 +393,6 @@ pub enum Verdict {
     Limitation(String),
     /// a control that failed, as it must
     ExpectedFailure,
-    /// missing, as it may
-    NotMeasured,
 }
 
 impl Verdict {
@@ -309,7 +410,6 @@ impl fmt::Display for Verdict {
             Verdict::Reported => f.write_str("reported, not judged"),
             Verdict::Limitation(reason) => write!(f, "known limitation: {reason}"),
             Verdict::ExpectedFailure => f.write_str("fails, as it must"),
-            Verdict::NotMeasured => f.write_str("not measured"),
         }
     }
 }
@@ -334,25 +434,24 @@ pub struct Judgement {
 /// | metric | `Judge` | `Report` | `Limitation` | `ExpectFailure` |
 /// |---|---|---|---|---|
 /// | finite, inside | pass | reported | pass | fail |
-/// | finite, outside | fail | reported | limitation | expected failure |
-/// | NaN, infinite | fail | reported | fail | fail |
-/// | missing | fail | not measured | fail | fail |
-///
-/// A missing metric is `NotMeasured` where the gate allows that.
+/// | outside, inside the limitation's bound | fail | reported | limitation | expected failure |
+/// | outside of both | fail | reported | fail | expected failure |
+/// | NaN, infinite, missing | fail | fail | fail | fail |
 pub fn judge(gate: &Gate, value: Option<f64>) -> Judgement {
     let is_finite = value.is_some_and(f64::is_finite);
     let is_inside = value.is_some_and(|value| gate.bound.contains(value));
-    let verdict = match (&gate.purpose, value) {
-        (Purpose::Report, None) => Verdict::NotMeasured,
-        (_, None) if gate.may_be_missing => Verdict::NotMeasured,
-        (Purpose::Report, Some(_)) => Verdict::Reported,
-        (Purpose::ExpectFailure, _) if is_finite && !is_inside => Verdict::ExpectedFailure,
-        (Purpose::ExpectFailure, _) => Verdict::Fail,
-        (_, _) if is_inside => Verdict::Pass,
-        (Purpose::Limitation(reason), _) if is_finite => Verdict::Limitation(reason.clone()),
-        (_, _) => Verdict::Fail,
+    let verdict = match &gate.purpose {
+        Purpose::Report if is_finite => Verdict::Reported,
+        Purpose::ExpectFailure if is_finite && !is_inside => Verdict::ExpectedFailure,
+        Purpose::Report | Purpose::ExpectFailure => Verdict::Fail,
+        _ if is_inside => Verdict::Pass,
+        Purpose::Limitation(known) if value.is_some_and(|value| known.bound.contains(value)) => {
+            Verdict::Limitation(known.reason.clone())
+        }
+        _ => Verdict::Fail,
     };
-    let margin = value.and_then(|value| gate.bound.margin(value));
+    let judged = value.filter(|_| verdict != Verdict::Reported);
+    let margin = judged.and_then(|value| gate.bound.margin(value));
     Judgement { id: gate.id.clone(), verdict, value, margin }
 }
 
@@ -393,42 +492,72 @@ mod tests {
 
     #[test]
     fn the_table_of_purposes_holds() {
+        use Verdict::{ExpectedFailure, Fail, Limitation, Pass, Reported};
         let plain = gate(Bound::Below(1.0));
-        let limited = plain.clone().with_limitation("tensile instability");
-        let known = Verdict::Limitation("tensile instability".into());
+        let limited = plain.clone().with_limitation(Bound::Below(2.0), "tensile instability");
+        let known = Limitation("tensile instability".into());
         let expected = [
-            (plain.clone(), Verdict::Pass, Verdict::Fail, Verdict::Fail, Verdict::Fail),
-            (limited, Verdict::Pass, known, Verdict::Fail, Verdict::Fail),
-            (
-                plain.clone().reported(),
-                Verdict::Reported,
-                Verdict::Reported,
-                Verdict::Reported,
-                Verdict::NotMeasured,
-            ),
-            (
-                plain.clone().expected_to_fail(),
-                Verdict::Fail,
-                Verdict::ExpectedFailure,
-                Verdict::Fail,
-                Verdict::Fail,
-            ),
-            (
-                plain.when_measured(),
-                Verdict::Pass,
-                Verdict::Fail,
-                Verdict::Fail,
-                Verdict::NotMeasured,
-            ),
+            (plain.clone(), [Pass, Fail, Fail, Fail]),
+            (limited, [Pass, known, Fail, Fail]),
+            (plain.clone().reported(), [Reported, Reported, Reported, Fail]),
+            (plain.expected_to_fail(), [Fail, ExpectedFailure, ExpectedFailure, Fail]),
         ];
-        for (gate, inside, outside, not_finite, missing) in expected {
+        for (gate, [inside, outside, far, none]) in expected {
             let purpose = &gate.purpose;
             assert_eq!(gate.judge(Some(0.5)).verdict, inside, "{purpose:?}");
             assert_eq!(gate.judge(Some(1.5)).verdict, outside, "{purpose:?}");
-            for value in NOT_FINITE {
-                assert_eq!(gate.judge(Some(value)).verdict, not_finite, "{purpose:?}");
+            assert_eq!(gate.judge(Some(2.5)).verdict, far, "{purpose:?}");
+            for value in NOT_FINITE.map(Some).into_iter().chain([None]) {
+                assert_eq!(gate.judge(value).verdict, none, "{purpose:?}: {value:?}");
             }
-            assert_eq!(gate.judge(None).verdict, missing, "{purpose:?}");
+        }
+    }
+
+    /// A run that diverged was "not measured": the gates of a method that broke down neither passed nor
+    /// failed.
+    #[test]
+    fn an_early_end_fails_unless_the_gate_names_it() {
+        let mut record = Record::new("case", "seed", serde_json::json!({}), 1);
+        record.metrics.insert("metric".into(), crate::record::Metric::new(0.5, "-", "exact"));
+        let plain = gate(Bound::Below(1.0));
+        assert_eq!(plain.judge_record(&record).verdict, Verdict::Pass);
+        record.status = Status::Interrupted { step: 3, time: 0.1 };
+        let limited = plain.clone().with_limitation(Bound::Below(2.0), "it tears");
+        let control = plain.clone().expected_to_fail();
+        for gate in [plain.clone(), plain.clone().reported(), limited.clone(), control.clone()] {
+            let judgement = gate.judge_record(&record);
+            assert_eq!((judgement.verdict, judgement.value), (Verdict::Fail, None), "{gate:?}");
+        }
+        let verdict = |gate: Gate| gate.may_end_early().judge_record(&record).verdict;
+        assert_eq!(verdict(limited), Verdict::Limitation("it tears".into()));
+        assert_eq!(verdict(control), Verdict::ExpectedFailure);
+        assert_eq!(plain.clone().even_if_diverged().judge_record(&record).verdict, Verdict::Pass);
+        let silent = Gate { may_end_early: true, ..plain };
+        assert_eq!(silent.check(), Err(GateError::EndsEarly { id: "case.metric".into() }));
+    }
+
+    #[test]
+    fn a_limitation_has_a_bound_that_is_wider_than_the_gates() {
+        let known = |bound: Bound, known: Bound| {
+            let known = Known { bound: known, reason: "it is soft".into() };
+            Gate { purpose: Purpose::Limitation(known), ..gate(bound) }.check()
+        };
+        let within = Bound::Within(-0.1, 0.1);
+        for wider in [Bound::Within(-0.5, 0.1), Bound::Within(0.2, 0.5), Bound::Within(-1.0, 1.0)] {
+            assert_eq!(known(within, wider), Ok(()), "{wider}");
+        }
+        assert_eq!(known(Bound::Equals(2.0), Bound::Within(2.0, 12.0)), Ok(()));
+        assert_eq!(known(Bound::Above(0.0), Bound::Above(-0.2)), Ok(()));
+        let refused = [
+            (within, Bound::Within(-0.05, 0.1)),
+            (within, Bound::Below(0.5)),
+            (Bound::Below(1.0), Bound::Below(1.0)),
+            (Bound::Below(1.0), Bound::Above(0.0)),
+            (Bound::Below(1.0), Bound::Below(f64::INFINITY)),
+        ];
+        for (bound, narrow) in refused {
+            let error = known(bound, narrow).unwrap_err();
+            assert!(matches!(error, GateError::Known { .. }), "{bound}, {narrow}");
         }
     }
 
@@ -458,7 +587,9 @@ mod tests {
             refused(silent).to_string(),
             "gate case.metric does not say why its bound has this value"
         );
-        assert!(matches!(refused(sound.clone().with_limitation("")), GateError::NoReason { .. }));
+        let known = Known { bound: Bound::Below(2.0), reason: String::new() };
+        let causeless = Gate { purpose: Purpose::Limitation(known), ..sound.clone() };
+        assert!(matches!(refused(causeless), GateError::NoReason { .. }));
         let nameless = Gate { metric: String::new(), ..sound.clone() };
         assert!(matches!(refused(nameless), GateError::NoName { .. }));
         for bound in [Bound::Below(f64::NAN), Bound::Within(1.0, 1.0), Bound::Within(1.0, 0.0)] {

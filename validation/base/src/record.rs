@@ -74,6 +74,9 @@ pub struct Record {
     pub status: Status,
     /// measured results by name
     pub metrics: BTreeMap<String, Metric>,
+    /// results that this run gives no meaning, by name, and the reason why
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub absent: BTreeMap<String, String>,
     /// what the run took
     pub cost: Cost,
     /// what the run chose: `h/dx`, kernel, integrator, c0, dt; see [`number::json`](crate::number::json)
@@ -389,6 +392,7 @@ impl Record {
             keep: Keep::default(),
             status: Status::Completed,
             metrics: BTreeMap::new(),
+            absent: BTreeMap::new(),
             cost: Cost { threads, ..Cost::default() },
             numerics: BTreeMap::new(),
             profiles: BTreeMap::new(),
@@ -407,6 +411,11 @@ impl Record {
         let MetricName { key, name, what } = metric.into();
         let formula = key.formula.replace("{}", &what);
         self.metrics.insert(name, Metric::new(value, key.unit, &formula));
+    }
+
+    /// States why a metric is absent: this run gives it no meaning.
+    pub fn leave_out(&mut self, metric: impl Into<MetricName>, reason: impl Into<String>) {
+        self.absent.insert(metric.into().name, reason.into());
     }
 
     /// A metric's value, `None` if it was not measured.
@@ -484,6 +493,7 @@ mod tests {
         record.numerics.insert("kernel".into(), "quintic".into());
         let profile = Profile::default().with("y", "m", vec![1e-300, 0.1]);
         record.profiles.insert("t=0.1".into(), profile.with("u", "m/s", vec![f64::INFINITY, 0.3]));
+        record.absent.insert("order".into(), "there is one level".into());
         record.state = Some(digest(&[1.0]));
         record.cost.alone_s = vec![0.1, 0.3];
         record

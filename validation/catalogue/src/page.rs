@@ -19,7 +19,8 @@ use report::{Block, Cell, Column, Counts, Page, Section, Status, Table};
 
 /// The whole report.
 pub fn assemble(suite: &Suite) -> Page {
-    let counts = Counts::of(suite.judged().map(Judged::status));
+    let counts =
+        Counts { diverged: suite.diverged(), ..Counts::of(suite.judged().map(Judged::status)) };
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
     let lead = vec![
         "How wrong is a particle method, what does being less wrong cost, and how far can it be pushed \
@@ -163,7 +164,7 @@ fn gate_table<'a>(caption: &str, judged: impl Iterator<Item = &'a Judged>) -> Ta
     Columns::<Judged>::default()
         .code("gate", |judged| judged.gate.id.clone())
         .num(["value", "-"], |judged| value(judged.judgement.value))
-        .text("bound", |judged| judged.gate.bound.to_string())
+        .text("bound", |judged| judged.gate.bounds())
         .num(["margin", "-"], |judged| margin(judged.judgement.margin))
         .text("evidence", |judged| evidence(judged.gate.evidence))
         .text("because", because)

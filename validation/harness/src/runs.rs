@@ -25,8 +25,8 @@ pub struct JudgedRun {
 impl JudgedRun {
     /// Judges a record by the gates of its plan.
     pub fn new(planned: Planned, record: Record) -> Self {
-        let judge = |gate: &Gate| Judged::new(gate.clone(), gate.value(&record));
-        let judged = planned.gates.iter().map(judge).collect();
+        let judged =
+            planned.gates.iter().map(|gate| Judged::of_record(gate.clone(), &record)).collect();
         Self { planned, record, judged }
     }
 }
@@ -47,13 +47,19 @@ impl Judged {
         Self { gate, judgement }
     }
 
+    /// Judges the record of a run.
+    pub fn of_record(gate: Gate, record: &Record) -> Self {
+        let judgement = gate.judge_record(record);
+        Self { gate, judgement }
+    }
+
     /// How the verdict is shown.
     pub fn status(&self) -> report::Status {
         use report::Status;
         match self.judgement.verdict {
             Verdict::Pass => Status::Pass,
             Verdict::Fail => Status::Fail,
-            Verdict::Reported | Verdict::NotMeasured => Status::Reported,
+            Verdict::Reported => Status::Reported,
             Verdict::Limitation(_) => Status::Limitation,
             Verdict::ExpectedFailure => Status::ExpectedFailure,
         }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use base::{
     gate::{Bound, Evidence, Gate, Verdict},
-    record::Record,
+    record::{Record, Status},
     spec::RunKey,
 };
 use rayon::prelude::*;
@@ -60,6 +60,12 @@ impl Suite {
     /// Gates that failed.
     pub fn failures(&self) -> usize {
         self.judged().filter(|j| j.judgement.verdict.is_failure()).count()
+    }
+
+    /// Simulations that diverged.
+    pub fn diverged(&self) -> usize {
+        let records = self.cases.iter().flat_map(|case| case.runs.simulations());
+        records.filter(|record| matches!(record.status, Status::Diverged { .. })).count()
     }
 
     /// Gates that passed.

@@ -32,7 +32,7 @@ pub struct Page {
     pub png_folder: String,
 }
 
-/// How many gates ended how.
+/// How many gates ended how, and how many runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
     /// Judged and inside.
@@ -45,6 +45,8 @@ pub struct Counts {
     pub limitation: usize,
     /// Outside, as it should be.
     pub expected_failure: usize,
+    /// Runs that diverged.
+    pub diverged: usize,
 }
 
 impl Counts {
@@ -67,16 +69,39 @@ impl Counts {
         }
     }
 
+    /// What came of all gates, failures first, and of the runs, in a sentence.
+    fn headline(self) -> String {
+        let of = |count: usize, one: &str, many: &str| match count {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            n => Some(format!("{n} {many}")),
+        };
+        let parts = [
+            of(self.fail, "gate fails", "gates fail"),
+            of(self.pass, "gate passes", "gates pass"),
+            of(
+                self.limitation,
+                "is outside its bound for a known reason",
+                "are outside their bounds for known reasons",
+            ),
+            of(self.expected_failure, "control fails as it must", "controls fail as they must"),
+            of(self.reported, "number is not judged", "numbers are not judged"),
+            of(self.diverged, "run diverged", "runs diverged"),
+        ];
+        let text = parts.into_iter().flatten().collect::<Vec<_>>().join(", ");
+        if text.is_empty() { "Nothing was judged".into() } else { text }
+    }
+
     fn html(mut self) -> Markup {
-        let verdict = match (self.fail, self.pass) {
-            (0, 0) => (Status::Reported, "Nothing was judged".to_string()),
-            (0, n) => (Status::Pass, format!("All {n} gates pass")),
-            (1, _) => (Status::Fail, "1 gate fails".to_string()),
-            (n, _) => (Status::Fail, format!("{n} gates fail")),
+        let worst = match self {
+            Self { fail: 1.., .. } => Status::Fail,
+            Self { limitation: 1.., .. } => Status::Limitation,
+            Self { pass: 1.., .. } => Status::Pass,
+            _ => Status::Reported,
         };
         html! {
-            div class=(format!("banner {}", verdict.0.class())) {
-                p.verdict { span.mark { (verdict.0.mark()) } " " (verdict.1) }
+            div class=(format!("banner {}", worst.class())) {
+                p.verdict { span.mark { (worst.mark()) } " " (self.headline()) }
                 p.counts {
                     @for status in Status::ALL {
                         button type="button" class=(status.class()) data-filter=(status.class()) {
@@ -394,6 +419,12 @@ mod tests {
     fn counts_add_up() {
         let counts = Counts::of([Status::Pass, Status::Pass, Status::ExpectedFailure]);
         assert_eq!((counts.pass, counts.fail, counts.expected_failure), (2, 0, 1));
-        assert!(counts.html().into_string().contains("All 2 gates pass"));
+        assert_eq!(counts.headline(), "2 gates pass, 1 control fails as it must");
+        let all = Counts { fail: 1, limitation: 2, reported: 1, diverged: 3, ..counts };
+        let headline = "1 gate fails, 2 gates pass, 2 are outside their bounds for known reasons, 1 control \
+                        fails as it must, 1 number is not judged, 3 runs diverged";
+        assert_eq!(all.headline(), headline);
+        assert!(all.html().into_string().contains(headline));
+        assert_eq!(Counts::default().headline(), "Nothing was judged");
     }
 }

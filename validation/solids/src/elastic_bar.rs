@@ -296,11 +296,12 @@ fn pulse(variant: &'static str, n: usize) -> Planned {
     let travel = match variant {
         "bare" => travel,
         _ => travel.with_limitation(
+            Bound::Within(-(0.09 * 40.0 / n as f64 + 0.0068), 0.01),
             "artificial viscosity acts on approaching pairs only, that is in the front of the pulse, \
              and pushes the centre ahead: its stress there, about 0.4 alpha rho c h |dv/dx|, is \
              0.16 alpha h/width of rho c v, 9 % at the start with h = 1.5 dx and a width of 2.5 dx, \
-             and proportional to dx: 16 times smaller with 640 \
-             spacings, where G1 alone is left",
+             less as the pulse widens, and proportional to dx: 16 times smaller with 640 \
+             spacings, where G1 alone is left. The bound: 9 % at 40 spacings, and G1",
         ),
     };
     let mut gates = vec![travel, momentum(&id)];
@@ -325,7 +326,10 @@ fn touching(variant: &str, (name, speed): (&str, f64)) -> Planned {
     let near = Bound::Within(-LATTICE, LATTICE);
     let welded = "bars on one lattice are one bar: (3) and (11) know no surface, so the contact pulls as \
                   soon as the first expansion returns, and the front that returns is as wide as the \
-                  kernel, wider with viscosity: what it has not delivered by then is missing";
+                  kernel, wider with viscosity: what it has not delivered by then is missing, the less \
+                  the more spacings a bar has. The bound: with 20 in place of 40 spacings (--set n=20) the \
+                  exchange is 0.93, with viscosity 0.85, with 80 it is 0.97 and 0.93";
+    let least = if variant == "bare" { 0.92 } else { 0.85 };
     let time = gate(
         &id,
         CONTACT_TIME_ERROR,
@@ -337,8 +341,11 @@ fn touching(variant: &str, (name, speed): (&str, f64)) -> Planned {
         ("bare", _) => time,
         (_, ..0.1) => time,
         _ => time.with_limitation(
+            Bound::Within(-LATTICE, 0.022),
             "compressed by 10 % along x the lattice has G1 = 0.991, which takes 0.9 %, and viscosity, \
-             whose beta matters at this speed, widens the front beyond the first tenth of the exchange",
+             whose beta matters at this speed, widens the front beyond the first tenth of the exchange. \
+             The bound: 1.1 % that `bare` has, and 0.8 % that viscosity adds at 0.01 c_p, times 1.3, for \
+             beta adds 2 h V/(dx c_p) = 0.3 of alpha",
         ),
     };
     let gates = vec![
@@ -356,7 +363,7 @@ fn touching(variant: &str, (name, speed): (&str, f64)) -> Planned {
             Bound::Within(0.98, 1.02),
             "equal elastic bars exchange their velocities; 2 % for the lattice as for stress and time",
         )
-        .with_limitation(welded),
+        .with_limitation(Bound::Within(least, 1.02), welded),
         momentum(&id),
     ];
     ELASTIC_BAR.planned(variant, |s| (s.collide, s.speed) = (true, speed)).judged(gates)
@@ -368,12 +375,27 @@ fn separate(variant: &str, (name, speed): (&str, f64), end: f64) -> Planned {
     let soft = "faces meet across 2 h, and their density rises as about 0.14 (d/h)^3.5 with the depth d \
                 of one in the other's support: a contact of strain V/c_p is 0.2, 0.4, 0.7 dx deep at \
                 1e-4, 1e-3, 1e-2 c_p and takes d/V, which is 2 L/c_p = 80 dx/c_p at 1e-2 c_p and far \
-                longer below: the bars meet as on a spring, and artificial viscosity dissipates in it";
+                longer below: the bars meet as on a spring, and artificial viscosity dissipates in it. \
+                Depth and time are in units of dx, so the same bars with 20 to 80 spacings (--set n=20) \
+                show how far it reaches: the bound holds what they have at this speed, and for `bare`, \
+                at any";
+    // What these have, of every variant: stress, and the least restitution with viscosity.
+    let (stress, restitution) = match speed {
+        ..5e-4 => ([-1.0 - LATTICE, LATTICE], 0.1),
+        ..5e-3 => ([-0.98, LATTICE], 0.1),
+        ..0.05 => ([-0.42, 0.13], 0.28),
+        _ => ([-LATTICE, 0.075], 0.83),
+    };
+    let stress = Bound::Within(stress[0], stress[1]);
+    let restitution =
+        Bound::Within(if variant == "bare" { 0.79 } else { restitution }, 1.0 + LATTICE);
     let goal = "equal elastic bars exchange their velocities, and the contact bears rho c_p V; 2 % for \
                 the lattice as for bars in touch";
     let gates = vec![
-        gate(&id, STRESS_ERROR, Bound::Within(-LATTICE, LATTICE), goal).with_limitation(soft),
-        gate(&id, RESTITUTION, Bound::Within(0.98, 1.02), goal).with_limitation(soft),
+        gate(&id, STRESS_ERROR, Bound::Within(-LATTICE, LATTICE), goal)
+            .with_limitation(stress, soft),
+        gate(&id, RESTITUTION, Bound::Within(1.0 - LATTICE, 1.0 + LATTICE), goal)
+            .with_limitation(restitution, soft),
         momentum(&id),
     ];
     let set = |s: &mut BarSettings| {

@@ -310,7 +310,7 @@ mod tests {
         for Planned { spec, gates, .. } in plan() {
             let record = ELASTIC_WAVE.run(&spec, &Context::default()).expect("a run");
             for gate in gates {
-                let judgement = gate.judge(gate.value(&record));
+                let judgement = gate.judge_record(&record);
                 assert!(!judgement.verdict.is_failure(), "{}: {:?}", gate.id, judgement.value);
             }
         }

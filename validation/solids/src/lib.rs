@@ -17,3 +17,21 @@ pub const CASES: &[&dyn Case] = &[
     &oscillating_plate::OSCILLATING_PLATE,
     &rings::RUBBER_RINGS,
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::gate;
+    use harness::case::Tier;
+
+    #[test]
+    fn the_gates_of_every_plan_are_sound() {
+        for case in CASES {
+            for tier in [Tier::Quick, Tier::Full] {
+                let gates = case.plan(tier).into_iter().flat_map(|planned| planned.gates);
+                let gates = gates.collect::<Vec<_>>();
+                assert_eq!(gate::check_all(&gates), Ok(()), "{}", case.name());
+            }
+        }
+    }
+}

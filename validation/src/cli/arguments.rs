@@ -274,16 +274,14 @@ pub struct Explain {
 pub enum Status {
     /// Inside its bound
     Pass,
-    /// Outside its bound, not finite, or missing
+    /// Outside its bounds, not finite, missing, or of a run that ended early
     Fail,
-    /// Outside its bound, for a known reason
+    /// Outside its bound and inside that of its known limitation
     Limitation,
     /// A control that lies outside its bound, as it must
     ExpectedFailure,
     /// Shown, not judged
     Reported,
-    /// Missing, which this gate allows
-    NotMeasured,
 }
 
 #[derive(Debug, Args)]

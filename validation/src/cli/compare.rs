@@ -120,7 +120,7 @@ fn of_verdicts(old: &BTreeMap<String, Judged>, new: &BTreeMap<String, Judged>) -
         let [from, to] = [&was.judgement, &is.judgement];
         let values = format!("{} to {}", number(from.value), number(to.value));
         if to.verdict == Verdict::Fail && from.verdict != Verdict::Fail {
-            add(NEW_FAILURE, id, format!("{}; {values}; bound {}", from.verdict, is.gate.bound));
+            add(NEW_FAILURE, id, format!("{}; {values}; bound {}", from.verdict, is.gate.bounds()));
         } else if kind_of(&from.verdict) != kind_of(&to.verdict) {
             add("verdict", id, format!("{} to {}; {values}", from.verdict, to.verdict));
         } else if moved(from.margin, to.margin) || from.value.is_some() != to.value.is_some() {

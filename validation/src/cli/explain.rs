@@ -112,7 +112,7 @@ fn listed(verdicts: &Verdicts, status: arguments::Status, begins: &str) -> Strin
     });
     let row = |judged: &Judged| {
         let value = judged.judgement.value.map_or("-".into(), |value| report::sig(value, 5));
-        vec![judged.gate.id.clone(), value, judged.gate.bound.to_string()]
+        vec![judged.gate.id.clone(), value, judged.gate.bounds()]
     };
     output::table(&["gate", "value", "bound"], &chosen.map(row).collect::<Vec<_>>())
 }
@@ -125,7 +125,6 @@ fn is(verdict: &Verdict, status: arguments::Status) -> bool {
         Verdict::Limitation(_) => Status::Limitation,
         Verdict::ExpectedFailure => Status::ExpectedFailure,
         Verdict::Reported => Status::Reported,
-        Verdict::NotMeasured => Status::NotMeasured,
     };
     of_verdict == status
 }
@@ -188,7 +187,9 @@ fn purpose(purpose: &Purpose) -> String {
     match purpose {
         Purpose::Judge => "inside passes, outside fails".into(),
         Purpose::Report => "reported, not judged".into(),
-        Purpose::Limitation(reason) => format!("known limitation, may lie outside: {reason}"),
+        Purpose::Limitation(known) => {
+            format!("known limitation, may lie outside, but {}: {}", known.bound, known.reason)
+        }
         Purpose::ExpectFailure => "a control, which must lie outside".into(),
     }
 }

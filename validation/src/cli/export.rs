@@ -42,7 +42,7 @@ fn junit(suite: &Suite) -> String {
         );
         for judged in all {
             let (gate, judgement) = (&judged.gate, &judged.judgement);
-            let message = format!("{} {}; {}", value(judgement), gate.bound, judgement.verdict);
+            let message = format!("{} {}; {}", value(judgement), gate.bounds(), judgement.verdict);
             let body = match judgement.verdict {
                 Verdict::Pass => String::new(),
                 Verdict::Fail => format!(
@@ -81,7 +81,7 @@ fn markdown(suite: &Suite) -> String {
     rows.sort_by_key(|j| !j.judgement.verdict.is_failure());
     for judged in rows {
         let verdict = judged.judgement.verdict.to_string().replace('|', "\\|");
-        let (id, bound) = (&judged.gate.id, judged.gate.bound);
+        let (id, bound) = (&judged.gate.id, judged.gate.bounds());
         text += &format!("| {verdict} | `{id}` | {} | {bound} |\n", value(&judged.judgement));
     }
     text

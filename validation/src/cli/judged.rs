@@ -34,7 +34,7 @@ pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
                 word(&judgement.verdict),
                 gate.id.clone(),
                 number(judgement.value).unwrap_or("-".into()),
-                gate.bound.to_string(),
+                gate.bounds(),
                 number(judgement.margin).unwrap_or("-".into()),
             ]
         })
@@ -164,16 +164,20 @@ fn counts(suite: &Suite) -> BTreeMap<String, usize> {
             Verdict::Reported => "reported",
             Verdict::Limitation(_) => "limitation",
             Verdict::ExpectedFailure => "expected failure",
-            Verdict::NotMeasured => "not measured",
         };
         *counts.entry(name.to_string()).or_default() += 1;
     }
     counts
 }
 
-/// `12 pass, 1 fail`.
+/// `12 pass, 1 fail; 3 runs diverged`.
 pub fn in_words(suite: &Suite) -> String {
     let counts: Vec<String> =
         counts(suite).iter().map(|(name, count)| format!("{count} {name}")).collect();
-    if counts.is_empty() { "no gate was judged".into() } else { counts.join(", ") }
+    let gates = if counts.is_empty() { "no gate was judged".into() } else { counts.join(", ") };
+    match suite.diverged() {
+        0 => gates,
+        1 => gates + "; 1 run diverged",
+        n => format!("{gates}; {n} runs diverged"),
+    }
 }

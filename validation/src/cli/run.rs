@@ -49,13 +49,8 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         return Err(Failure::interrupted(what));
     }
     let written = folder.as_ref().map(|folder| write(&record, folder)).transpose();
-    let verdicts: Vec<Judged> = gates_of(case, &spec)
-        .into_iter()
-        .map(|gate| {
-            let value = gate.value(&record);
-            Judged::new(gate, value)
-        })
-        .collect();
+    let verdicts: Vec<Judged> =
+        gates_of(case, &spec).into_iter().map(|gate| Judged::of_record(gate, &record)).collect();
     // What was computed is not lost with a file that cannot be written: then the record is printed, and where
     // that is refused, too, its numbers are told.
     let is_printed = arguments.json || written.is_err();
@@ -308,7 +303,16 @@ fn summary(record: &Record) -> String {
         cost.steps,
         report::seconds(cost.wall_s)
     );
-    text + &metrics(record)
+    text + &metrics(record) + &absent(record)
+}
+
+/// The results that the run gives no meaning, with the reasons.
+fn absent(record: &Record) -> String {
+    let line = |(name, reason): (&String, &String)| {
+        output::wrap(&format!("{name} is absent: {reason}"), 100, "    ")
+    };
+    let lines: String = record.absent.iter().map(line).collect();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
 /// Metrics `name@tau` as a table over tau, the others below.

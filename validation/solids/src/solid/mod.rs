@@ -2,6 +2,7 @@
 //! variants of a problem.
 
 mod energy;
+pub mod faces;
 mod material;
 mod method;
 mod problem;

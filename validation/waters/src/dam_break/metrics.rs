@@ -34,6 +34,7 @@ pub const HEIGHT: Distance = distance!("height");
 pub const LEVELS: Distance = distance!("levels");
 
 base::metrics! {
+    REACHED = "reached" ["-"] "time at which the run ended over that at which it was to end";
     OUTSIDE = "outside" ["1"] "most particles more than dx/2 behind bottom and sides at any time";
     OUTSIDE_END = "outside_end" ["1"] "those at the end";
     OUTSIDE_DEPTH = "outside_depth" ["dx"] "the deepest that a particle was behind bottom or sides";

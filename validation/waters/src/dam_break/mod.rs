@@ -7,6 +7,7 @@
 mod ablation;
 mod declared;
 mod front;
+mod limitations;
 mod measure;
 mod metrics;
 mod plan;

@@ -89,6 +89,7 @@ pub fn measured(
             }
         },
     )?;
+    record.put(metrics::REACHED, simulation.time() / times[times.len() - 1]);
     let particles = simulation.particles();
     let mass = water_mass(&particles);
     samples.measure(mass, &mut record);
