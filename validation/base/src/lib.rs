@@ -4,6 +4,7 @@ pub mod files;
 pub mod functions;
 pub mod gate;
 pub mod manifest;
+pub mod mutation;
 pub mod number;
 pub mod random;
 pub mod record;

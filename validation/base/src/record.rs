@@ -22,6 +22,7 @@ use serde_json::Value;
 use thiserror::Error;
 
 use crate::manifest::Manifest;
+use crate::mutation::Mutation;
 use crate::reference::sha256;
 use crate::settings::Settings;
 use crate::spec::{Keep, RunKey, RunSpec, Task};
@@ -70,6 +71,9 @@ pub struct Record {
     /// what the record keeps beside metrics and curves
     #[serde(default, skip_serializing_if = "is_default")]
     pub keep: Keep,
+    /// a deliberate error of the scene
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mutation: Option<Mutation>,
     /// how the run ended
     pub status: Status,
     /// measured results by name
@@ -357,13 +361,13 @@ impl Record {
 
     /// The same record, which states that it is of this run.
     pub fn of(self, spec: &RunSpec) -> Self {
-        let RunSpec { task, allow_unstable, keep, .. } = spec.clone();
-        Self { task, allow_unstable, keep, ..self }
+        let RunSpec { task, allow_unstable, keep, mutation, .. } = spec.clone();
+        Self { task, allow_unstable, keep, mutation, ..self }
     }
 
     /// The run that it is of.
     pub fn spec(&self) -> RunSpec {
-        let Self { case, variant, settings, task, allow_unstable, keep, .. } = self;
+        let Self { case, variant, settings, task, allow_unstable, keep, mutation, .. } = self;
         RunSpec {
             case: case.clone(),
             variant: variant.clone(),
@@ -371,6 +375,7 @@ impl Record {
             task: task.clone(),
             allow_unstable: *allow_unstable,
             keep: *keep,
+            mutation: *mutation,
         }
     }
 
@@ -390,6 +395,7 @@ impl Record {
             task: Task::Simulate,
             allow_unstable: false,
             keep: Keep::default(),
+            mutation: None,
             status: Status::Completed,
             metrics: BTreeMap::new(),
             absent: BTreeMap::new(),

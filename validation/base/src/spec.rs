@@ -17,7 +17,10 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::reference::sha256;
+use crate::{
+    mutation::{Detect, Mutation},
+    reference::sha256,
+};
 
 /// One run, resolved: no default is left to be filled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,6 +41,9 @@ pub struct RunSpec {
     /// what the record keeps beside metrics and curves
     #[serde(default, skip_serializing_if = "Keep::is_nothing")]
     pub keep: Keep,
+    /// a deliberate error of the scene
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mutation: Option<Mutation>,
 }
 
 /// What is done with the settings.
@@ -49,6 +55,8 @@ pub enum Task {
     Simulate,
     /// the largest value of one setting with which the simulation is stable
     Bisect(Bisect),
+    /// the smallest deliberate error of the scene that the gates of the simulation detect
+    Detect(Detect),
 }
 
 /// How the largest stable value of a setting is found: value = x · `unit`, x bisected from `guess` down to
@@ -119,7 +127,7 @@ impl RunSpec {
     pub fn new(case: &str, variant: &str, settings: Value) -> Self {
         let (case, variant) = (case.to_string(), variant.to_string());
         let (task, keep) = (Task::Simulate, Keep::default());
-        Self { case, variant, settings, task, allow_unstable: false, keep }
+        Self { case, variant, settings, task, allow_unstable: false, keep, mutation: None }
     }
 
     /// The same, whatever its time step.
@@ -142,6 +150,16 @@ impl RunSpec {
     /// The largest stable value of a setting in place of one simulation.
     pub fn bisect(self, bisect: Bisect) -> Self {
         Self { task: Task::Bisect(bisect), ..self }
+    }
+
+    /// The smallest error that the gates of this run detect, in place of one simulation.
+    pub fn detect(self, detect: Detect) -> Self {
+        Self { task: Task::Detect(detect), ..self }
+    }
+
+    /// The same with a deliberate error of the scene.
+    pub fn mutated(self, mutation: Mutation) -> Self {
+        Self { mutation: Some(mutation), ..self }
     }
 
     /// The same with one setting changed, by name; the caller knows that there is one.
@@ -177,6 +195,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::mutation::Constant;
 
     #[test]
     fn whatever_decides_the_result_changes_the_key() {
@@ -191,6 +210,9 @@ mod tests {
             spec.clone().keep_particles(),
             spec.clone().keep_pictures(3),
             spec.clone().bisect(bisect),
+            spec.clone().detect(Detect { of: Constant::Xsph, only_allowed: false }),
+            spec.clone().detect(Detect { of: Constant::Xsph, only_allowed: true }),
+            spec.clone().mutated(Mutation { of: Constant::Xsph, factor: 1.03 }),
         ];
         let keys: std::collections::BTreeSet<_> = others.iter().map(RunSpec::key).collect();
         assert_eq!(keys.len(), others.len());

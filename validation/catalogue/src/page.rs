@@ -222,9 +222,12 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
 /// `key=value` of what differs from the defaults of the variant, and what is done with it.
 fn what(case: &dyn Case, spec: &RunSpec) -> String {
     let mut words = case::changed(case, spec);
-    if let Task::Bisect(bisect) = &spec.task {
-        words.push(format!("(bisects {})", bisect.setting));
+    match &spec.task {
+        Task::Simulate => {}
+        Task::Bisect(bisect) => words.push(format!("(bisects {})", bisect.setting)),
+        Task::Detect(detect) => words.push(format!("(smallest detected error of {})", detect.of)),
     }
+    words.extend(spec.mutation.map(|m| format!("({} × {})", m.of, m.factor)));
     words.join(" ")
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use base::spec::RunSpec;
+use base::{mutation::Mutation, spec::RunSpec};
 
 /// What a progress bar shows.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +27,8 @@ pub struct Context<'a> {
     pub threads: usize,
     /// Frames for ParaView: the folder, and how many.
     pub frames: Option<(PathBuf, usize)>,
+    /// A deliberate error of the scene.
+    pub mutation: Option<Mutation>,
     /// Keep the particles of the last time in the record.
     pub keep_particles: bool,
     /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
@@ -49,6 +51,7 @@ impl Context<'_> {
             allow_unstable: spec.allow_unstable,
             keep_particles: spec.keep.particles,
             pictures: spec.keep.pictures,
+            mutation: spec.mutation,
             ..self.clone()
         }
     }

@@ -5,12 +5,17 @@
 
 use base::{
     gate::{Bound, Evidence, Gate},
+    mutation::{Constant, Detect},
     record::{MetricName, Record, Status},
     spec::{Bisect, RunSpec},
 };
 use report::{Axis, Colour};
 
-use crate::{planned::Planned, rules::Rules, runs::Runs};
+use crate::{
+    planned::{Planned, Tier},
+    rules::Rules,
+    runs::Runs,
+};
 
 /// The declaration of one case for one tier.
 #[derive(Default)]
@@ -25,6 +30,8 @@ pub struct Declaration {
     pub limits: Option<StepLimits>,
     /// Outcomes over two settings.
     pub maps: Vec<Map>,
+    /// Errors of constants that the gates must detect.
+    pub sensitivity: Option<Sensitivity>,
 }
 
 /// Error against spacing and against cost.
@@ -285,6 +292,63 @@ pub struct StepLimit {
     pub of_default: Vec<Gate>,
 }
 
+/// Which errors of the constants of a case the gates of some of its runs must detect.
+pub struct Sensitivity {
+    /// Name of the case, with which names of gates begin.
+    pub case: &'static str,
+    /// Anchor of the study.
+    pub id: String,
+    /// The runs, each judged by the gates that the plans have for it.
+    pub runs: Vec<RunSpec>,
+    /// The constants.
+    pub of: Vec<Watched>,
+    /// Are smaller errors than the largest that may go undetected tried?
+    pub is_bisected: bool,
+}
+
+/// A constant, an error of which the gates must detect.
+pub struct Watched {
+    /// The constant.
+    pub constant: Constant,
+    /// Where the gates do not detect the largest error that is allowed: the error that they do detect, 1 for
+    /// none up to 30 %, and the reason.
+    pub blind: Option<(f64, &'static str)>,
+}
+
+impl Watched {
+    /// A constant whose allowed error the gates detect.
+    pub fn new(constant: Constant) -> Self {
+        Self { constant, blind: None }
+    }
+
+    /// A constant to which the gates are blind up to an error, 1 if they are up to 30 %, for a reason.
+    pub fn blind_up_to(constant: Constant, detected: f64, why: &'static str) -> Self {
+        Self { constant, blind: Some((detected, why)) }
+    }
+}
+
+impl Sensitivity {
+    /// The full tier bisects every constant. The quick tier tries the largest allowed error of those that the
+    /// gates detect.
+    pub fn new(
+        case: &'static str,
+        tier: Tier,
+        runs: impl IntoIterator<Item = RunSpec>,
+        of: impl IntoIterator<Item = Watched>,
+    ) -> Self {
+        let is_bisected = tier == Tier::Full;
+        let of = of.into_iter().filter(|watched| is_bisected || watched.blind.is_none()).collect();
+        let id = format!("{}-sensitivity", case.replace('_', "-"));
+        Self { case, id, runs: runs.into_iter().collect(), of, is_bisected }
+    }
+
+    /// The searches for a constant, one a run.
+    pub fn searches(&self, constant: Constant) -> impl Iterator<Item = RunSpec> {
+        let detect = Detect { of: constant, only_allowed: !self.is_bisected };
+        self.runs.iter().map(move |run| run.clone().detect(detect))
+    }
+}
+
 /// Outcomes over two settings.
 pub struct Map {
     /// Anchor of the study and of its figure.
@@ -393,6 +457,10 @@ impl Declaration {
         self.limits.iter().flat_map(|limits| &limits.of).for_each(|limit| plain(&limit.spec));
         let cells = self.maps.iter().flat_map(|map| &map.panels).flat_map(|panel| &panel.cells);
         cells.flatten().flatten().for_each(&mut plain);
+        if let Some(sensitivity) = &self.sensitivity {
+            let constants = sensitivity.of.iter().map(|watched| watched.constant);
+            constants.flat_map(|of| sensitivity.searches(of)).for_each(|spec| plain(&spec));
+        }
         let panels = self.curves.iter().flat_map(|curves| &curves.panels);
         panels.flat_map(|panel| &panel.lines).for_each(|line| plain(&line.spec));
         runs

@@ -14,6 +14,7 @@ pub mod composed;
 pub mod context;
 pub mod convergence;
 pub mod declare;
+pub mod detect;
 pub mod error;
 pub mod extremes;
 pub mod frames;

@@ -15,6 +15,7 @@ use crate::{
     bisect,
     case::{Case, RunError},
     context::Context,
+    detect,
     planned::{Planned, Tier},
     store::{Found, Store, StoreError},
 };
@@ -220,7 +221,7 @@ fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
     Ok(records)
 }
 
-/// One run of a case: a simulation, or a bisection of many. Settings that are refused give a
+/// One run of a case: a simulation, or a search by many. Settings that are refused give a
 /// record too, with the reason; the only error is a file that cannot be written.
 ///
 /// # Errors
@@ -229,6 +230,7 @@ pub fn run(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record,
     let record = match &spec.task {
         Task::Simulate => case.run(spec, context),
         Task::Bisect(bisect) => bisect::run(case, spec, bisect, context),
+        Task::Detect(detect) => detect::run(case, spec, detect, context),
     };
     match record {
         Err(refusal) if refusal.is_refusal() => Ok(Record::refused(spec, refusal.to_string())),

@@ -4,6 +4,7 @@
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
+use base::mutation::Constant;
 use base::record::{Cost, Status};
 use cpu_time::{ProcessTime, ThreadTime};
 use solver::{Flow, Numbers, Observer, Outcome, Stepper};
@@ -148,6 +149,7 @@ pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
     pressure: &dyn Fn(f64) -> f64,
     at: &mut dyn FnMut(&mut D, usize),
 ) -> Result<(Status, Cost), RunError> {
+    let dt = context.mutation.map_or(dt, |mutation| dt * mutation.factor_of(Constant::TimeStep));
     let end = times.last().copied().unwrap_or_default();
     let value = (end - simulation.time()) / dt;
     if value.is_nan() || value > MOST_STEPS {

@@ -5,6 +5,7 @@ use super::{
     Channel, ChannelSettings, Flow, limits, map,
     measure::{L2, profile_at},
     plan::ladder_gates,
+    sensitivity,
 };
 use base::{
     gate::{Bound, Evidence},
@@ -37,6 +38,7 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
         budgets: Some(budgets(channel, tier)),
         limits: Some(limits::limits(channel, tier)),
         maps,
+        sensitivity: Some(sensitivity::sensitivity(channel, tier)),
     }
 }
 

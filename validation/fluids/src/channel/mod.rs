@@ -10,6 +10,7 @@ mod map;
 mod measure;
 mod plan;
 mod run;
+mod sensitivity;
 mod settings;
 mod setup;
 mod starts;

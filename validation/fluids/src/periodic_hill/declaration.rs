@@ -8,7 +8,7 @@ use super::{
     measure::{L2_U, POINTS, STATIONS},
     plan::{HillRun, REYNOLDS, best},
     reference::{Reference, floor, reference},
-    stability,
+    sensitivity, stability,
 };
 use base::{
     gate::{Bound, Evidence},
@@ -33,6 +33,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         budgets: Some(budgets(tier, &accuracy)),
         accuracy: vec![accuracy],
         limits: Some(stability::limits(tier)),
+        sensitivity: Some(sensitivity::sensitivity(tier)),
         maps: Vec::new(),
     }
 }

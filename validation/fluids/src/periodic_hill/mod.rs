@@ -10,6 +10,7 @@ mod measure;
 mod plan;
 mod reference;
 mod run;
+mod sensitivity;
 mod setup;
 mod stability;
 mod studies;

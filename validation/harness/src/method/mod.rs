@@ -5,8 +5,10 @@
 //! their values from the parameters in a [`Medium`]. Only [`Method::of`] is compiled for each scheme.
 
 mod medium;
+mod mutate;
 mod terms;
 
+use base::mutation::Mutation;
 use maths::theory::{
     Stepping,
     lattice::SquareLattice,
@@ -59,6 +61,8 @@ pub struct Parts<X = ()> {
     pub limits: Limits,
     /// Threads inside the run.
     pub threads: usize,
+    /// A deliberate error.
+    pub mutation: Option<Mutation>,
 }
 
 impl<X> Parts<X> {
@@ -69,18 +73,19 @@ impl<X> Parts<X> {
         particles: Vec<Particle<X>>,
         context: &Context,
     ) -> Self {
-        let (mirrors, skin, limits, threads) =
-            (Vec::new(), None, Limits::default(), context.threads);
-        Self { medium, domain, particles, mirrors, skin, limits, threads }
+        let (mirrors, limits) = (Vec::new(), Limits::default());
+        let &Context { threads, mutation, .. } = context;
+        Self { medium, domain, particles, mirrors, skin: None, limits, threads, mutation }
     }
 }
 
 /// The scene of a scheme with these parts.
-pub fn scene<S>(parts: Parts<S::Extra>) -> Scene<S>
+pub fn scene<S>(mut parts: Parts<S::Extra>) -> Scene<S>
 where
     S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
 {
-    let Parts { medium, domain, particles, mirrors, skin, limits, threads } = parts;
+    mutate::mutate(&mut parts);
+    let Parts { medium, domain, particles, mirrors, skin, limits, threads, .. } = parts;
     let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
     let walls = S::Walls::new(&medium, mirrors);
     let mut scene = Scene::new(medium.h, domain, particles, forces, drift, walls);

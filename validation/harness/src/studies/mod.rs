@@ -6,6 +6,7 @@ mod curves;
 mod limit;
 mod map;
 mod order;
+mod sensitivity;
 
 pub use limit::of_theory as limit_of_theory;
 
@@ -21,6 +22,7 @@ pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     }
     studies.extend(declared.budgets.iter().map(|budgets| budget::study(budgets, runs)));
     studies.extend(declared.limits.iter().map(|limits| limit::study(case, limits, runs)));
+    studies.extend(declared.sensitivity.iter().map(|of| sensitivity::study(of, runs)));
     studies.extend(declared.maps.iter().map(|map| map::study(map, runs)));
     studies
 }

@@ -9,6 +9,7 @@ use super::{
     },
     plan::{self, FIVE_LAYERS, SPEED, collision},
     reference::Reference,
+    sensitivity,
 };
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -36,6 +37,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         budgets: Some(budgets(tier)),
         limits: Some(limits(tier)),
         maps,
+        sensitivity: Some(sensitivity::sensitivity(tier)),
     }
 }
 

@@ -12,6 +12,7 @@ mod metrics;
 mod plan;
 mod reference;
 mod run;
+mod sensitivity;
 mod setup;
 mod studies;
 

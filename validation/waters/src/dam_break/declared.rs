@@ -1,7 +1,7 @@
 //! What the studies that every case has are made of: the front of the column of Martin & Moyce over
 //! resolutions, what its error is made of, and the longest stable time steps in both scenes.
 
-use super::{DAM_BREAK, DamSettings, NAME, front, lobovsky, specs};
+use super::{DAM_BREAK, DamSettings, NAME, front, lobovsky, sensitivity, specs};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
@@ -19,7 +19,8 @@ use harness::{
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     let (budgets, limits) = (Some(budgets(tier, &accuracy)), Some(limits(tier)));
-    Declaration { accuracy: vec![accuracy], budgets, limits, ..Declaration::default() }
+    let sensitivity = Some(sensitivity::sensitivity(tier));
+    Declaration { accuracy: vec![accuracy], budgets, limits, sensitivity, ..Declaration::default() }
 }
 
 /// rms distance of two fronts \[a\].

@@ -13,6 +13,7 @@ mod metrics;
 mod plan;
 mod reference;
 mod run;
+mod sensitivity;
 mod setup;
 mod specs;
 mod stability;

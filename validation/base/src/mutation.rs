@@ -1,0 +1,129 @@
+//! Deliberate errors of a run: one constant of its scene is multiplied by a factor, while everything that is
+//! measured and judged follows the settings as before. A gate that such a run passes cannot detect the error.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// One constant of the scene, and the factor by which it is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mutation {
+    /// the constant
+    pub of: Constant,
+    /// the factor \[-\]
+    pub factor: f64,
+}
+
+impl Mutation {
+    /// The factor of this constant, 1 if another one is wrong.
+    pub fn factor_of(self, constant: Constant) -> f64 {
+        if self.of == constant { self.factor } else { 1.0 }
+    }
+}
+
+/// A physical constant of a problem or an ingredient of the method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Constant {
+    /// viscosity
+    Viscosity,
+    /// body force: gravity, or what drives a channel
+    BodyForce,
+    /// velocity of the walls
+    WallSpeed,
+    /// velocity of the particles at the start
+    Speed,
+    /// sound speed; the bulk modulus goes with its square
+    SoundSpeed,
+    /// density at rest
+    Density,
+    /// shear modulus
+    ShearModulus,
+    /// height of the scene: fluid, body and walls are stretched along y, at the same density
+    Height,
+    /// every sum over neighbours: the masses in them, at the same density
+    Normalisation,
+    /// smoothing length at the same spacing
+    SmoothingLength,
+    /// time step
+    TimeStep,
+    /// artificial viscosity, both parts
+    ArtificialViscosity,
+    /// artificial stress
+    ArtificialStress,
+    /// XSPH
+    Xsph,
+    /// density diffusion
+    DensityDiffusion,
+    /// particle shifting
+    Shifting,
+}
+
+impl Constant {
+    /// Is it a constant of the problem, and not of the method?
+    pub fn is_physical(self) -> bool {
+        self <= Self::Height
+    }
+
+    /// The largest relative error that may go undetected: 3 % of a physical constant, 10 % of an ingredient
+    /// of the method.
+    pub fn allowed(self) -> f64 {
+        if self.is_physical() { 0.03 } else { 0.1 }
+    }
+
+    /// The name in gates.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Viscosity => "viscosity",
+            Self::BodyForce => "body_force",
+            Self::WallSpeed => "wall_speed",
+            Self::Speed => "speed",
+            Self::SoundSpeed => "sound_speed",
+            Self::Density => "density",
+            Self::ShearModulus => "shear_modulus",
+            Self::Height => "height",
+            Self::Normalisation => "normalisation",
+            Self::SmoothingLength => "smoothing_length",
+            Self::TimeStep => "time_step",
+            Self::ArtificialViscosity => "artificial_viscosity",
+            Self::ArtificialStress => "artificial_stress",
+            Self::Xsph => "xsph",
+            Self::DensityDiffusion => "density_diffusion",
+            Self::Shifting => "shifting",
+        }
+    }
+}
+
+impl fmt::Display for Constant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name().replace('_', " "))
+    }
+}
+
+/// How the smallest error that the gates of a run detect is found: an error counts as detected if the run
+/// fails a gate with either sign of it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Detect {
+    /// what is wrong
+    pub of: Constant,
+    /// try only the largest error that may go undetected, in place of a bisection
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub only_allowed: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_what_serde_writes() {
+        for constant in [Constant::Viscosity, Constant::Height, Constant::Xsph, Constant::Shifting]
+        {
+            let text = serde_json::to_value(constant).unwrap();
+            assert_eq!(text, constant.name());
+        }
+        assert!(Constant::Height.is_physical() && !Constant::Normalisation.is_physical());
+    }
+}

@@ -1,0 +1,250 @@
+//! The smallest deliberate error of a constant that the gates of a run detect.
+
+use std::collections::BTreeSet;
+
+use base::{
+    gate::{Evidence, Gate},
+    mutation::{Constant, Detect, Mutation},
+    record::{Cost, Record, Status},
+    spec::{RunSpec, Task},
+};
+
+use crate::{
+    bisect,
+    case::{Case, RunError},
+    context::Context,
+    plan,
+    planned::Tier,
+};
+
+/// The relative errors that are tried, ascending.
+const ERRORS: [f64; 10] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3];
+
+base::metrics! {
+    DETECTED = "detected" ["-"]
+        "smallest relative error of the constant with either sign of which the run fails a gate";
+    UNDETECTED = "undetected" ["-"]
+        "largest smaller error with a sign of which the run passes every gate";
+}
+
+/// Among what a run chose: the gates that it fails with the smallest detected error.
+pub const GATES: &str = "gates";
+
+/// The gates of a run that can detect an error of a constant, from the plans of its case. A regression gate
+/// compares the program with itself and cannot; an invariant is not counted for a physical constant, for it
+/// holds whatever the constant is, unless the measuring has one of its own.
+pub fn gates(case: &dyn Case, run: &RunSpec, constant: Constant) -> Vec<Gate> {
+    let plans = [Tier::Quick, Tier::Full].map(|tier| plan::of_case(case, tier));
+    let of_run = plans.into_iter().flatten().filter(|planned| planned.spec == *run);
+    let counts = |gate: &Gate| match gate.evidence {
+        Evidence::Analytic | Evidence::Theory | Evidence::Reference => true,
+        Evidence::Invariant => !constant.is_physical(),
+        Evidence::Regression => false,
+    };
+    let mut names = BTreeSet::new();
+    let gates = of_run.flat_map(|planned| planned.gates).filter(counts);
+    gates.filter(|gate| names.insert(gate.id.clone())).collect()
+}
+
+/// Searches the smallest error that the gates of a run detect. The record has the settings of the run, the cost
+/// of all runs together, and the two metrics, each absent with its reason where the search found no such error.
+///
+/// # Errors
+/// Those of a run that cannot be made for another reason than its settings.
+pub fn run(
+    case: &dyn Case,
+    spec: &RunSpec,
+    detect: &Detect,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let healthy = RunSpec { task: Task::Simulate, ..spec.clone() };
+    let gates = gates(case, &healthy, detect.of);
+    let mut search =
+        Search { case, healthy, detect, gates, context, ended: None, cost: Cost::default() };
+    let (detected, undetected) = search.smallest()?;
+    let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(spec);
+    record.cost = search.cost;
+    if let Some(status) = search.ended {
+        record.status = status;
+    }
+    match &detected {
+        Some((error, failed)) => {
+            record.put(DETECTED, *error);
+            record.numerics.insert(GATES.into(), failed.join(" ").into());
+        }
+        None => record.leave_out(DETECTED, "no error that was tried fails a gate with both signs"),
+    }
+    match undetected {
+        Some(error) => record.put(UNDETECTED, error),
+        None => record.leave_out(UNDETECTED, "every error that was tried fails a gate"),
+    }
+    Ok(record)
+}
+
+struct Search<'a> {
+    case: &'a dyn Case,
+    healthy: RunSpec,
+    detect: &'a Detect,
+    gates: Vec<Gate>,
+    context: &'a Context<'a>,
+    /// Set by an interrupt.
+    ended: Option<Status>,
+    cost: Cost,
+}
+
+/// An error and the gates that detect it.
+type Found = (f64, Vec<String>);
+
+impl Search<'_> {
+    /// The smallest detected error, and the largest smaller one that is not detected.
+    fn smallest(&mut self) -> Result<(Option<Found>, Option<f64>), RunError> {
+        let allowed = self.detect.of.allowed();
+        let mut middle = ERRORS.iter().position(|error| *error >= allowed).unwrap_or_default();
+        let (mut low, mut high) = match self.detect.only_allowed {
+            true => (middle, middle + 1),
+            false => (0, ERRORS.len()),
+        };
+        let (mut detected, mut undetected) = (None, None);
+        while low < high && self.ended.is_none() {
+            let error = ERRORS[middle];
+            let failed = self.failed(error)?;
+            if failed.is_empty() {
+                (undetected, low) = (Some(error), middle + 1);
+            } else {
+                (detected, high) = (Some((error, failed)), middle);
+            }
+            middle = (low + high) / 2;
+        }
+        Ok((detected, undetected))
+    }
+
+    /// The gates that the run fails with both signs of an error, or with different gates for each; none if it
+    /// passes all of them with one sign.
+    fn failed(&mut self, error: f64) -> Result<Vec<String>, RunError> {
+        let more = self.failed_at(1.0 + error)?;
+        if more.is_empty() {
+            return Ok(more);
+        }
+        let less = self.failed_at(1.0 - error)?;
+        let both: Vec<String> = less.iter().filter(|id| more.contains(id)).cloned().collect();
+        Ok(match (less.is_empty(), both.is_empty()) {
+            (true, _) => less,
+            (_, false) => both,
+            _ => [more, less].concat(),
+        })
+    }
+
+    /// The gates that the run fails with a constant multiplied by this factor.
+    fn failed_at(&mut self, factor: f64) -> Result<Vec<String>, RunError> {
+        let mutation = Mutation { of: self.detect.of, factor };
+        let spec = self.healthy.clone().allow_unstable().mutated(mutation);
+        let record = match self.case.run(&spec, self.context) {
+            Ok(record) => record,
+            Err(error) if error.is_refusal() => Record::refused(&spec, error.to_string()),
+            Err(error) => return Err(error),
+        };
+        bisect::add(&mut self.cost, &record.cost);
+        if let Status::Interrupted { .. } = record.status {
+            self.ended = Some(record.status);
+            return Ok(Vec::new());
+        }
+        let fails = |gate: &&Gate| gate.judge_record(&record).verdict.is_failure();
+        Ok(self.gates.iter().filter(fails).map(|gate| gate.id.clone()).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use base::{gate::Bound, settings::Field};
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::{
+        case::{Planned, Variant},
+        runs::Runs,
+        study::Study,
+    };
+
+    base::metrics! {
+        FORCE = "force" ["-"] "1 of a healthy run";
+    }
+
+    /// Its one metric is the factor of the body force.
+    struct Balance;
+
+    impl Case for Balance {
+        fn name(&self) -> &'static str {
+            "balance"
+        }
+        fn about(&self) -> &'static str {
+            "A force is weighed."
+        }
+        fn variants(&self) -> Vec<Variant> {
+            vec![Variant { name: "only", about: "as it is" }]
+        }
+        fn fields(&self) -> &'static [Field] {
+            &[]
+        }
+        fn settings(&self, _: &str, _: &[String]) -> Result<Value, RunError> {
+            Ok(json!({}))
+        }
+        fn run(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
+            let mut record = Record::new("balance", "only", json!({}), 1).of(spec);
+            let factor = spec.mutation.map_or(1.0, |m| m.factor_of(Constant::BodyForce));
+            record.put(FORCE, factor);
+            record.cost.steps = 1;
+            Ok(record)
+        }
+        fn plan(&self, _: Tier) -> Vec<Planned> {
+            let gate = |id: &str, bound, evidence| Gate::new(id, FORCE, bound, evidence, "staged");
+            let within = |d: f64| Bound::Within(1.0 - d, 1.0 + d);
+            let gates = vec![
+                gate("balance.exact", within(0.015), Evidence::Analytic),
+                gate("balance.high", Bound::Below(1.003), Evidence::Theory),
+                gate("balance.sum", within(0.004), Evidence::Invariant),
+                gate("balance.before", within(1e-9), Evidence::Regression),
+            ];
+            vec![Planned::new(spec()).judged(gates)]
+        }
+        fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
+            Vec::new()
+        }
+    }
+
+    fn spec() -> RunSpec {
+        RunSpec::new("balance", "only", json!({}))
+    }
+
+    fn found(of: Constant, only_allowed: bool) -> Record {
+        let detect = Detect { of, only_allowed };
+        let spec = spec().detect(detect);
+        run(&Balance, &spec, &detect, &Context::default()).unwrap()
+    }
+
+    /// 2 % is beyond 1.5 %; the gates of 0.3 and 0.4 % see one sign, or are invariant, or regression.
+    #[test]
+    fn the_smallest_error_is_the_one_that_a_gate_outside_the_program_sees_with_both_signs() {
+        let record = found(Constant::BodyForce, false);
+        assert_eq!((record.value(DETECTED), record.value(UNDETECTED)), (Some(0.02), Some(0.01)));
+        assert_eq!(record.numerics[GATES], "balance.exact");
+        assert_eq!(
+            record.spec(),
+            spec().detect(Detect { of: Constant::BodyForce, only_allowed: false })
+        );
+        assert!(record.cost.steps >= 4);
+    }
+
+    #[test]
+    fn an_error_that_no_gate_sees_is_absent_with_its_reason() {
+        let record = found(Constant::Viscosity, false);
+        assert_eq!((record.value(DETECTED), record.value(UNDETECTED)), (None, Some(0.3)));
+        assert!(record.absent.contains_key("detected"));
+    }
+
+    #[test]
+    fn only_the_allowed_error_is_tried_where_that_is_asked_for() {
+        let record = found(Constant::BodyForce, true);
+        assert_eq!((record.value(DETECTED), record.value(UNDETECTED)), (Some(0.03), None));
+        assert_eq!(record.cost.steps, 2);
+    }
+}

@@ -1,0 +1,136 @@
+//! Deliberate errors of a scene.
+
+use base::mutation::Constant;
+use nalgebra::Vector2;
+use solver::Role;
+
+use super::Parts;
+
+/// Multiplies the constant that is wrong by its factor; the time step is not a part of a scene.
+pub fn mutate<X>(parts: &mut Parts<X>) {
+    let Some(mutation) = parts.mutation else { return };
+    let of = |constant| mutation.factor_of(constant);
+    let Parts { medium, particles, mirrors, .. } = parts;
+    medium.nu *= of(Constant::Viscosity);
+    medium.acceleration *= of(Constant::BodyForce);
+    medium.wall_acceleration *= of(Constant::BodyForce);
+    for sound_speed in [&mut medium.sound_speed, &mut medium.eos.sound_speed] {
+        *sound_speed *= of(Constant::SoundSpeed);
+    }
+    for density in [&mut medium.density, &mut medium.eos.density] {
+        *density *= of(Constant::Density);
+    }
+    medium.shear_modulus *= of(Constant::ShearModulus);
+    medium.h *= of(Constant::SmoothingLength);
+    medium.alpha *= of(Constant::ArtificialViscosity);
+    medium.beta *= of(Constant::ArtificialViscosity);
+    medium.xi *= of(Constant::ArtificialStress);
+    medium.xsph *= of(Constant::Xsph);
+    medium.diffusion *= of(Constant::DensityDiffusion);
+    medium.shift *= of(Constant::Shifting);
+    let stretch = Vector2::new(1.0, of(Constant::Height));
+    for particle in particles {
+        let own = if particle.role == Role::Fluid { Constant::Speed } else { Constant::WallSpeed };
+        particle.velocity *= of(own);
+        particle.position.component_mul_assign(&stretch);
+        particle.density *= of(Constant::Density);
+        particle.mass *= of(Constant::Density) * of(Constant::Height) * of(Constant::Normalisation);
+    }
+    for mirror in mirrors {
+        mirror.velocity *= of(Constant::WallSpeed);
+        mirror.point.component_mul_assign(&stretch);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use base::mutation::Mutation;
+    use solver::{Domain, Particle, PlaneWall, Tait};
+
+    use super::*;
+    use crate::{
+        context::Context,
+        method::{Medium, Method},
+    };
+
+    type Plain = solver::Compose<
+        solver::CubicSpline,
+        (solver::Pressure<Tait>, solver::Viscosity),
+        solver::Continuity,
+        solver::Ghosts,
+        solver::Leapfrog,
+    >;
+
+    fn parts(mutation: Option<Mutation>) -> Parts {
+        let method = Method::of::<Plain>();
+        let medium = Medium {
+            nu: 0.1,
+            shear_modulus: 3.0,
+            acceleration: Vector2::new(0.0, -9.8),
+            wall_acceleration: Vector2::new(0.0, -9.8),
+            alpha: 0.1,
+            beta: 0.2,
+            xsph: 0.5,
+            xi: 0.3,
+            diffusion: 0.4,
+            shift: 0.6,
+            ..method.medium(Tait::new(1000.0, 20.0), [0.1, 0.15])
+        };
+        let fluid = Particle::fluid(Vector2::new(0.2, 0.3), Vector2::new(1.0, 2.0), 1000.0, 0.01);
+        let wall = fluid.clone().with_role(Role::Wall);
+        let context = Context { mutation, ..Context::default() };
+        let wall_at = PlaneWall::new(Vector2::new(0.0, 1.0), -Vector2::y(), Vector2::x());
+        Parts {
+            mirrors: vec![wall_at],
+            ..Parts::new(medium, Domain::open(), vec![fluid, wall], &context)
+        }
+    }
+
+    /// Every number that a scene is made from.
+    fn numbers(parts: &Parts) -> Vec<f64> {
+        let m = parts.medium;
+        let mut all = vec![m.nu, m.shear_modulus, m.acceleration.y, m.wall_acceleration.y, m.alpha];
+        all.extend([m.beta, m.xsph, m.xi, m.diffusion, m.shift, m.h, m.density, m.sound_speed]);
+        all.extend([m.eos.density, m.eos.sound_speed]);
+        for p in &parts.particles {
+            all.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density, p.mass]);
+        }
+        all.extend(parts.mirrors.iter().flat_map(|w| [w.point.y, w.velocity.x]));
+        all
+    }
+
+    #[test]
+    fn an_error_changes_its_own_constant_and_nothing_else() {
+        let healthy = numbers(&parts(None));
+        let changed = |of: Constant| {
+            let mut parts = parts(Some(Mutation { of, factor: 1.5 }));
+            mutate(&mut parts);
+            let pairs = healthy.iter().zip(numbers(&parts));
+            pairs.filter(|(a, b)| (*b / *a - 1.5).abs() < 1e-12).count()
+        };
+        let expected = [
+            (Constant::Viscosity, 1),
+            (Constant::BodyForce, 2),
+            (Constant::WallSpeed, 3),
+            (Constant::Speed, 2),
+            (Constant::SoundSpeed, 2),
+            (Constant::Density, 6),
+            (Constant::ShearModulus, 1),
+            (Constant::Height, 5),
+            (Constant::Normalisation, 2),
+            (Constant::SmoothingLength, 1),
+            (Constant::TimeStep, 0),
+            (Constant::ArtificialViscosity, 2),
+            (Constant::ArtificialStress, 1),
+            (Constant::Xsph, 1),
+            (Constant::DensityDiffusion, 1),
+            (Constant::Shifting, 1),
+        ];
+        for (of, count) in expected {
+            assert_eq!(changed(of), count, "{of}");
+        }
+        let mut same = parts(Some(Mutation { of: Constant::Height, factor: 1.0 }));
+        mutate(&mut same);
+        assert_eq!(numbers(&same), healthy);
+    }
+}

@@ -1,0 +1,98 @@
+//! The smallest error of each constant that the gates of a case detect.
+
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::Record,
+};
+use report::Cell;
+
+use crate::{
+    columns::Columns,
+    declare::{Sensitivity, Watched},
+    detect::{DETECTED, GATES, UNDETECTED},
+    runs::Runs,
+    study::Study,
+};
+
+const ABOUT: &str = "What the gates can detect. One constant of the scene is multiplied by 1 + e and by 1 - e, while \
+    everything that is measured and judged follows the settings as before. An error counts as detected if the run \
+    fails a gate with both signs. Gates that compare the program with itself do not count, and neither do conserved \
+    quantities where the constant is physical. An error of 3 % of a physical constant and of 10 % of an ingredient \
+    of the method must be detected.";
+
+/// An error that means that none up to 30 % is detected.
+const NONE: f64 = 1.0;
+
+/// A constant and what the searches found: the best of all runs.
+struct Row<'a> {
+    watched: &'a Watched,
+    detected: Option<&'a Record>,
+    undetected: Option<f64>,
+}
+
+impl Row<'_> {
+    fn error(&self) -> f64 {
+        self.detected.and_then(|record| record.value(DETECTED)).unwrap_or(NONE)
+    }
+
+    fn gates(&self) -> String {
+        let names = self.detected.and_then(|record| record.numerics.get(GATES));
+        let names = names.and_then(|names| names.as_str()).unwrap_or_default();
+        names.split_whitespace().map(|id| format!("`{id}`")).collect::<Vec<_>>().join(" ")
+    }
+}
+
+pub fn study(sensitivity: &Sensitivity, runs: &Runs) -> Study {
+    let row = |watched| row(sensitivity, watched, runs);
+    let rows: Vec<Row> = sensitivity.of.iter().map(row).collect();
+    let mut study = Study::new(&sensitivity.id, "Errors that the gates detect");
+    for row in &rows {
+        study = study.judge(gate(sensitivity, row.watched), row.error());
+    }
+    let percent = |error: f64| Cell::percent(error, 2);
+    let error = move |row: &Row| match row.error() {
+        NONE => Cell::text("none"),
+        error => percent(error),
+    };
+    let table = Columns::<Row>::default()
+        .text("constant", |row| row.watched.constant.to_string())
+        .num(["must be detected", "-"], move |row| percent(row.watched.constant.allowed()))
+        .num(["detected from", "-"], error)
+        .num(["not detected", "-"], move |row| row.undetected.map_or(Cell::text("–"), percent))
+        .text("gates that detect it", Row::gates)
+        .text("why not smaller", |row| row.watched.blind.map_or("", |(_, why)| why))
+        .table(ABOUT, &rows);
+    study.block(table)
+}
+
+/// The search of that run which detects the smallest error.
+fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> Row<'a> {
+    let records = sensitivity.searches(watched.constant).filter_map(|spec| runs.completed(&spec));
+    let (mut detected, mut undetected) = (None, None);
+    for record in records {
+        let Some(error) = record.value(DETECTED) else {
+            undetected = undetected.or(record.value(UNDETECTED));
+            continue;
+        };
+        let best = detected.and_then(|best: &Record| best.value(DETECTED)).unwrap_or(NONE);
+        if error < best {
+            (detected, undetected) = (Some(record), record.value(UNDETECTED));
+        }
+    }
+    Row { watched, detected, undetected }
+}
+
+/// The gate on the smallest error that is detected.
+fn gate(sensitivity: &Sensitivity, watched: &Watched) -> Gate {
+    let id = format!("{}.detects.{}", sensitivity.case, watched.constant.name());
+    let because = match watched.constant.is_physical() {
+        true => "a result whose physical constant is wrong by 3 % is wrong",
+        false => "an ingredient of the method that is wrong by 10 % is a fault of the program",
+    };
+    let bound = Bound::Below(watched.constant.allowed());
+    let gate = Gate::new(id, DETECTED, bound, Evidence::Theory, because);
+    match watched.blind {
+        Some((error, why)) => gate.with_limitation(Bound::Below(error), why),
+        None => gate,
+    }
+}
