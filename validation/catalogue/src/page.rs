@@ -117,7 +117,7 @@ fn case_section(results: &CaseResults) -> Section {
     if let Some(status) = worst(judged().chain(results.studies.iter().flat_map(|s| &s.judged))) {
         section = section.status(status);
     }
-    section = section.block(gate_table("Gates on single runs.", judged()));
+    section = gates(section, "Gates on single runs.", &judged().collect::<Vec<_>>());
     for study in &results.studies {
         section = section.child(study_section(study));
     }
@@ -150,26 +150,43 @@ fn study_section(study: &Study) -> Section {
     if study.judged.is_empty() {
         section
     } else {
-        section.block(gate_table("Gates.", study.judged.iter()))
+        gates(section, "Gates.", &study.judged.iter().collect::<Vec<_>>())
     }
 }
 
-fn gate_table<'a>(caption: &str, judged: impl Iterator<Item = &'a Judged>) -> Table {
-    let because = |Judged { gate, judgement }: &Judged| match &judgement.verdict {
-        Verdict::Limitation(reason) => format!("{} — limitation: {reason}", gate.because),
-        _ => gate.because.clone(),
+/// Adds a table of gates and below it their reasons, each once.
+fn gates<'a>(section: Section, caption: &str, judged: &[&'a Judged]) -> Section {
+    let of = |judged: &&&'a Judged| match &judged.judgement.verdict {
+        Verdict::Limitation(limitation) => vec![judged.gate.because.as_str(), limitation],
+        _ => vec![judged.gate.because.as_str()],
     };
+    let mut reasons: Vec<&str> = Vec::new();
+    for reason in judged.iter().flat_map(|judged| of(&judged)) {
+        if !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
+    }
+    let number = |reason: &str| 1 + reasons.iter().position(|known| *known == reason).unwrap_or(0);
+    let notes = |judged: &&'a Judged| {
+        let numbers = of(&judged).into_iter().map(|reason| format!("[{}]", number(reason)));
+        numbers.collect::<Vec<_>>().join(", limitation ")
+    };
+    let rows: Vec<(&Judged, String)> =
+        judged.iter().map(|judged| (*judged, notes(judged))).collect();
+    let numbered = |(k, reason): (usize, &&str)| format!("[{}] {reason}", k + 1);
+    let list = Block::List(reasons.iter().enumerate().map(numbered).collect());
     let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
     let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
-    Columns::<Judged>::default()
-        .code("gate", |judged| judged.gate.id.clone())
-        .num(["value", "-"], |judged| value(judged.judgement.value))
-        .text("bound", |judged| judged.gate.bounds())
-        .num(["margin", "-"], |judged| margin(judged.judgement.margin))
-        .text("evidence", |judged| evidence(judged.gate.evidence))
-        .text("because", because)
-        .with(Column::text("verdict"), |judged| Cell::status(judged.status()))
-        .table(caption, judged)
+    let table = Columns::<(&Judged, String)>::default()
+        .code("gate", |(judged, _)| judged.gate.id.clone())
+        .num(["value", "-"], |(judged, _)| value(judged.judgement.value))
+        .text("bound", |(judged, _)| judged.gate.bounds())
+        .num(["margin", "-"], |(judged, _)| margin(judged.judgement.margin))
+        .text("evidence", |(judged, _)| evidence(judged.gate.evidence))
+        .text("reason", |(_, notes)| notes.clone())
+        .with(Column::text("verdict"), |(judged, _)| Cell::status(judged.status()))
+        .table(caption, &rows);
+    section.block(table).block(Block::Details { summary: "Reasons".into(), blocks: vec![list] })
 }
 
 /// A measured value: a whole number as such, any other with four digits.

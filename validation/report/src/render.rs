@@ -162,7 +162,8 @@ pub fn svg(figure: &Figure) -> String {
 fn compact(text: &str) -> String {
     let family = format!(" font-family=\"{}\"", font::FAMILY);
     let body = text.split_once('\n').map_or("", |(_, body)| body);
-    body.replace(&family, "")
+    let elements = body
+        .replace(&family, "")
         .replace(" opacity=\"1\"", "")
         .replace(" stroke=\"none\" stroke-width=\"1\"", "")
         .replace(" stroke=\"none\"", "")
@@ -177,7 +178,39 @@ fn compact(text: &str) -> String {
                 out.push('\n');
             }
             out
-        })
+        });
+    joined(&elements)
+}
+
+/// Successive strokes of one style, as those of an axis or of error bars, are one path.
+fn joined(elements: &str) -> String {
+    let (mut out, mut style) = (String::new(), None);
+    let end = |style: &mut Option<&str>, out: &mut String| {
+        if style.take().is_some() {
+            out.push_str("\"/>\n");
+        }
+    };
+    for line in elements.lines() {
+        let stroke = line.strip_prefix("<polyline").and_then(|line| line.strip_suffix("\"/>"));
+        match stroke.and_then(|stroke| stroke.split_once(" points=\"")) {
+            Some((of, points)) => {
+                if style != Some(of) {
+                    end(&mut style, &mut out);
+                    out.push_str(&format!("<path{of} d=\""));
+                    style = Some(of);
+                }
+                out.push('M');
+                out.push_str(points);
+            }
+            None => {
+                end(&mut style, &mut out);
+                out.push_str(line);
+                out.push('\n');
+            }
+        }
+    }
+    end(&mut style, &mut out);
+    out
 }
 
 /// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
@@ -232,6 +265,18 @@ pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn strokes_of_one_style_are_one_path() {
+        let elements = "<polyline stroke=\"red\" points=\"1,2 3,4\"/>\n\
+                        <polyline stroke=\"red\" points=\"5,6 7,8\"/>\n<rect/>\n\
+                        <polyline stroke=\"red\" points=\"0,0 1,1\"/>\n\
+                        <polyline stroke=\"blue\" points=\"9,9 8,8\"/>\n";
+        let paths = "<path stroke=\"red\" d=\"M1,2 3,4M5,6 7,8\"/>\n<rect/>\n\
+                     <path stroke=\"red\" d=\"M0,0 1,1\"/>\n<path stroke=\"blue\" d=\"M9,9 8,8\"/>\n";
+        assert_eq!(joined(elements), paths);
+    }
+
     use crate::{Axis, CategoryMap, ColourMap, Layer, Legend, ParticleMap, Plot, Series, Shape};
 
     fn figure(panel: impl Into<Panel>) -> Figure {
