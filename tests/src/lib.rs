@@ -4,7 +4,6 @@
 pub mod new_case;
 pub mod new_term;
 pub mod new_wall;
-pub mod spoil;
 
 use base::functions::{cos, sin};
 use nalgebra::Vector2;

@@ -2,12 +2,8 @@
 
 mod consistent;
 mod cost;
-mod dam_power;
 mod extremes;
 mod frozen_lattice;
-mod gate_power;
-mod gate_power_runs;
-mod hill_power;
 mod identities;
 mod integration;
 mod invariance;
@@ -16,7 +12,6 @@ mod new_case;
 mod pairs;
 mod plans;
 mod restart;
-mod ring_power;
 mod shifting;
 mod snapshots;
 mod solid;

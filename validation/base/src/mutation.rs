@@ -58,6 +58,12 @@ pub enum Constant {
     DensityDiffusion,
     /// particle shifting
     Shifting,
+    /// guard against division by zero in the viscous term
+    Eta2,
+    /// curvature of the velocity profile at walls of mirror particles
+    WallCurvature,
+    /// how far a particle may move before neighbour lists are built again
+    ListLifetime,
 }
 
 impl Constant {
@@ -91,6 +97,9 @@ impl Constant {
             Self::Xsph => "xsph",
             Self::DensityDiffusion => "density_diffusion",
             Self::Shifting => "shifting",
+            Self::Eta2 => "eta2",
+            Self::WallCurvature => "wall_curvature",
+            Self::ListLifetime => "list_lifetime",
         }
     }
 }

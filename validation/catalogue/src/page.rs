@@ -31,10 +31,6 @@ pub fn assemble(suite: &Suite) -> Page {
     ];
     let mut sections: Vec<Section> = vec![summary(suite)];
     sections.extend(suite.cases.iter().map(case_section));
-    if !suite.studies.is_empty() {
-        let method = Section::new("method", "The method itself");
-        sections.push(suite.studies.iter().map(study_section).fold(method, Section::child));
-    }
     sections.push(references_section());
     Page {
         title: "touchstone".into(),
@@ -93,9 +89,6 @@ fn summary(suite: &Suite) -> Section {
             let title = format!("{name}: {}", study.title);
             rows.push((link(&anchor(study), &title), study.judged.iter().collect()));
         }
-    }
-    for study in &suite.studies {
-        rows.push((link(&anchor(study), &study.title), study.judged.iter().collect()));
     }
     let failed = |judged: &[&Judged]| {
         judged.iter().filter(|j| j.judgement.verdict.is_failure()).count() as u64

@@ -5,7 +5,7 @@
 
 use base::{
     gate::{Bound, Evidence, Gate},
-    mutation::{Constant, Detect},
+    mutation::{Constant, Detect, Mutation},
     record::{MetricName, Record, Status},
     spec::{Bisect, RunSpec},
 };
@@ -313,23 +313,30 @@ pub struct Watched {
     /// Where the gates do not detect the largest error that is allowed: the error that they do detect, 1 for
     /// none up to 30 %, and the reason.
     pub blind: Option<(f64, &'static str)>,
+    /// Factors of gross faults, such as -1 for a wrong sign and 0 for a term that is missing.
+    pub faults: Vec<f64>,
 }
 
 impl Watched {
     /// A constant whose allowed error the gates detect.
     pub fn new(constant: Constant) -> Self {
-        Self { constant, blind: None }
+        Self { constant, blind: None, faults: Vec::new() }
+    }
+
+    /// The same with gross faults, each of which some gate must detect: factors of the constant.
+    pub fn faults(self, factors: &[f64]) -> Self {
+        Self { faults: factors.to_vec(), ..self }
     }
 
     /// A constant to which the gates are blind up to an error, 1 if they are up to 30 %, for a reason.
     pub fn blind_up_to(constant: Constant, detected: f64, why: &'static str) -> Self {
-        Self { constant, blind: Some((detected, why)) }
+        Self { blind: Some((detected, why)), ..Self::new(constant) }
     }
 }
 
 impl Sensitivity {
-    /// The full tier bisects every constant. The quick tier tries the largest allowed error of those that the
-    /// gates detect.
+    /// The full tier bisects every constant and makes every gross fault. The quick tier tries the largest
+    /// allowed error of the constants of which the gates detect it.
     pub fn new(
         case: &'static str,
         tier: Tier,
@@ -337,7 +344,11 @@ impl Sensitivity {
         of: impl IntoIterator<Item = Watched>,
     ) -> Self {
         let is_bisected = tier == Tier::Full;
-        let of = of.into_iter().filter(|watched| is_bisected || watched.blind.is_none()).collect();
+        let mut of: Vec<Watched> = of.into_iter().collect();
+        if !is_bisected {
+            of.retain(|watched| watched.blind.is_none());
+            of.iter_mut().for_each(|watched| watched.faults.clear());
+        }
         let id = format!("{}-sensitivity", case.replace('_', "-"));
         Self { case, id, runs: runs.into_iter().collect(), of, is_bisected }
     }
@@ -346,6 +357,12 @@ impl Sensitivity {
     pub fn searches(&self, constant: Constant) -> impl Iterator<Item = RunSpec> {
         let detect = Detect { of: constant, only_allowed: !self.is_bisected };
         self.runs.iter().map(move |run| run.clone().detect(detect))
+    }
+
+    /// The runs with a constant multiplied by a factor.
+    pub fn faulty(&self, of: Constant, factor: f64) -> impl Iterator<Item = (&RunSpec, RunSpec)> {
+        let mutation = Mutation { of, factor };
+        self.runs.iter().map(move |run| (run, run.clone().allow_unstable().mutated(mutation)))
     }
 }
 
@@ -458,8 +475,11 @@ impl Declaration {
         let cells = self.maps.iter().flat_map(|map| &map.panels).flat_map(|panel| &panel.cells);
         cells.flatten().flatten().for_each(&mut plain);
         if let Some(sensitivity) = &self.sensitivity {
-            let constants = sensitivity.of.iter().map(|watched| watched.constant);
-            constants.flat_map(|of| sensitivity.searches(of)).for_each(|spec| plain(&spec));
+            for Watched { constant, faults, .. } in &sensitivity.of {
+                sensitivity.searches(*constant).for_each(|spec| plain(&spec));
+                let faulty = faults.iter().flat_map(|f| sensitivity.faulty(*constant, *f));
+                faulty.for_each(|(_, spec)| plain(&spec));
+            }
         }
         let panels = self.curves.iter().flat_map(|curves| &curves.panels);
         panels.flat_map(|panel| &panel.lines).for_each(|line| plain(&line.spec));

@@ -18,7 +18,6 @@ pub mod detect;
 pub mod error;
 pub mod extremes;
 pub mod frames;
-pub mod gate_power;
 pub mod make;
 pub mod method;
 pub mod pictures;

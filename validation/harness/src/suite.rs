@@ -35,8 +35,6 @@ pub struct Suite {
     pub tier: Tier,
     /// One entry per case.
     pub cases: Vec<CaseResults>,
-    /// Studies that belong to no case.
-    pub studies: Vec<Study>,
     /// Runs whose record the store had.
     pub reused: usize,
     /// Those of them that other sources made.
@@ -50,11 +48,10 @@ pub struct Suite {
 impl Suite {
     /// Every judgement.
     pub fn judged(&self) -> impl Iterator<Item = &Judged> {
-        let of_cases = self.cases.iter().flat_map(|case| {
+        self.cases.iter().flat_map(|case| {
             let runs = case.runs.all().iter().flat_map(|run| &run.judged);
             runs.chain(case.studies.iter().flat_map(|study| &study.judged))
-        });
-        of_cases.chain(self.studies.iter().flat_map(|study| &study.judged))
+        })
     }
 
     /// Gates that failed.
@@ -94,7 +91,6 @@ pub fn judge(plans: Vec<(&'static dyn Case, Vec<Planned>)>, tier: Tier, mut made
     let mut suite = Suite {
         tier,
         cases: Vec::new(),
-        studies: Vec::new(),
         reused: made.reused,
         of_other_sources: made.of_other_sources,
         not_kept: std::mem::take(&mut made.not_kept),

@@ -140,7 +140,6 @@ impl Verdicts {
         let of_cases = suite.cases.iter().flat_map(|results| {
             results.studies.iter().map(|study| of_study(results.case.name(), study))
         });
-        let of_method = suite.studies.iter().map(|study| of_study("method", study));
         Verdicts {
             tier: tier_name(suite.tier).into(),
             commit: super::SOURCE.commit.into(),
@@ -150,7 +149,7 @@ impl Verdicts {
                 .iter()
                 .flat_map(|of| of.runs.all().iter().map(|run| of_run(of.case, run)))
                 .collect(),
-            studies: of_cases.chain(of_method).collect(),
+            studies: of_cases.collect(),
         }
     }
 }

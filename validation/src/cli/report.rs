@@ -17,7 +17,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
     let folder = OutputFolder::create(&arguments.out)?;
     let tier = arguments.tier.into();
-    let mut suite = match &arguments.store {
+    let suite = match &arguments.store {
         Some(store) => {
             verify::of_store(world.cases, tier, store, arguments.reuse.any_build, world)?
         }
@@ -26,7 +26,6 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             verify::run(world.cases, tier, &store, arguments.reuse, arguments.threads, world)?
         }
     };
-    verify::add_method(&mut suite, &[]);
     // A file that cannot be written keeps none of the others from being written: the runs took minutes.
     let exported = export::write(&suite, &arguments.export);
     let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";

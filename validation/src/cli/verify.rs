@@ -6,7 +6,6 @@ use ::report;
 use base::record::Status;
 use harness::{
     case::{self, Case, Tier},
-    gate_power,
     make::{self, Made},
     store::{Found, Store},
     suite::{self, Suite},
@@ -23,25 +22,16 @@ pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
     let start = Instant::now();
     let store = Store::open(&arguments.store)?;
     let (tier, reuse) = (arguments.tier.into(), arguments.reuse);
-    let mut suite = run(&cases, tier, &store, reuse, arguments.threads, world)?;
-    add_method(&mut suite, &arguments.cases);
+    let suite = run(&cases, tier, &store, reuse, arguments.threads, world)?;
     show(&suite, arguments.json, &arguments.export, start)
 }
 
 pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
     let start = Instant::now();
-    let mut suite =
+    let suite =
         of_store(&cases, arguments.tier.into(), &arguments.store, arguments.any_build, world)?;
-    add_method(&mut suite, &arguments.cases);
     show(&suite, arguments.json, &arguments.export, start)
-}
-
-/// What is said of the method itself where no case was named.
-pub fn add_method(suite: &mut Suite, named: &[String]) {
-    if named.is_empty() {
-        suite.studies.push(gate_power::study());
-    }
 }
 
 fn show(suite: &Suite, json: bool, export: &arguments::Export, start: Instant) -> Outcome {

@@ -16,7 +16,7 @@ pub fn sensitivity(channel: Channel, tier: Tier) -> Sensitivity {
         Flow::Poiseuille => Constant::BodyForce,
     };
     let watched = [
-        Watched::new(drive),
+        Watched::new(drive).faults(&[-1.0, 0.5]),
         Watched::new(Constant::Viscosity),
         Watched::new(Constant::Height),
         Watched::new(Constant::Density),
@@ -24,8 +24,10 @@ pub fn sensitivity(channel: Channel, tier: Tier) -> Sensitivity {
         Watched::new(Constant::Normalisation),
         Watched::new(Constant::SmoothingLength),
         Watched::new(Constant::TimeStep),
-        Watched::new(Constant::DensityDiffusion),
-        Watched::new(Constant::Shifting),
+        Watched::new(Constant::DensityDiffusion).faults(&[-1.0, 0.0]),
+        Watched::new(Constant::Shifting).faults(&[-1.0, 0.0]),
+        Watched::new(Constant::Eta2).faults(&[1000.0]),
+        Watched::new(Constant::ListLifetime).faults(&[100.0]),
     ];
     let runs = [case.spec("plain", |_| {}), case.spec("modern", |s| s.end = 1.5)];
     Sensitivity::new(case.name, tier, runs, watched)

@@ -20,7 +20,7 @@ pub fn sensitivity(tier: Tier) -> Sensitivity {
         Watched::new(Constant::SmoothingLength),
         Watched::new(Constant::TimeStep),
         Watched::new(Constant::DensityDiffusion),
-        Watched::new(Constant::Shifting),
+        Watched::new(Constant::Shifting).faults(&[0.0]),
     ];
     Sensitivity::new(NAME, tier, [QUICK.spec()], watched)
 }

@@ -18,7 +18,7 @@ use base::{
 use harness::{
     case::{self, Tier},
     columns::Columns,
-    gate_power, pictures,
+    pictures,
     runs::Runs,
     study::Study,
 };
@@ -26,7 +26,7 @@ use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, percent, sig};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let mut studies = vec![pictures(tier, runs), all(tier, runs), drags(tier, runs), power()];
+    let mut studies = vec![pictures(tier, runs), all(tier, runs), drags(tier, runs)];
     if tier == Tier::Full {
         studies.extend([starts(runs), reasons(runs), stability::reynolds(runs)]);
     }
@@ -211,16 +211,4 @@ fn of_finest(runs: &Runs) -> Option<String> {
         percent(left, 2),
         percent(error + left, 2),
     ))
-}
-
-/// Mutant, how many gates it fails, of how many, which: written by `tests/tests/hill_power.rs`.
-const SPOILED: &str = include_str!("../../../../tests/hill_power.csv");
-
-/// What the gates are worth.
-fn power() -> Study {
-    let caption = "The run of the quick tier (Re 50, H/dx = 10, from rest to 30 H/U_b) with one thing \
-                   spoiled, judged by its own gates. Measured by `tests/tests/hill_power.rs`, which takes a \
-                   minute and a half and runs on request: `cargo test --test hill_power -- --ignored`.";
-    let table = gate_power::of_one_scene("hills with", SPOILED, caption);
-    Study::new("periodic-hill-gate-power", "What the gates are worth").block(table)
 }

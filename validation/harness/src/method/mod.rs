@@ -8,7 +8,7 @@ mod medium;
 mod mutate;
 mod terms;
 
-use base::mutation::Mutation;
+use base::mutation::{Constant, Mutation};
 use maths::theory::{
     Stepping,
     lattice::SquareLattice,
@@ -85,12 +85,13 @@ where
     S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
 {
     mutate::mutate(&mut parts);
-    let Parts { medium, domain, particles, mirrors, skin, limits, threads, .. } = parts;
+    let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation } = parts;
     let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
     let walls = S::Walls::new(&medium, mirrors);
     let mut scene = Scene::new(medium.h, domain, particles, forces, drift, walls);
     scene.skin = skin.unwrap_or(scene.skin);
     scene.limits = limits;
+    scene.skin_share *= mutation.map_or(1.0, |m| m.factor_of(Constant::ListLifetime));
     if threads <= 1 {
         scene.parallel_from = usize::MAX;
     }

@@ -1,7 +1,10 @@
 //! The smallest error of each constant that the gates of a case detect.
 
+use std::collections::BTreeSet;
+
 use base::{
     gate::{Bound, Evidence, Gate},
+    mutation::Constant,
     record::Record,
 };
 use report::Cell;
@@ -18,7 +21,8 @@ const ABOUT: &str = "What the gates can detect. One constant of the scene is mul
     everything that is measured and judged follows the settings as before. An error counts as detected if the run \
     fails a gate with both signs. Gates that compare the program with itself do not count, and neither do conserved \
     quantities where the constant is physical. An error of 3 % of a physical constant and of 10 % of an ingredient \
-    of the method must be detected.";
+    of the method must be detected, and so must gross faults: a wrong sign (× -1), a missing term (× 0), a constant \
+    that is wrong by a factor.";
 
 /// An error that means that none up to 30 % is detected.
 const NONE: f64 = 1.0;
@@ -48,7 +52,18 @@ pub fn study(sensitivity: &Sensitivity, runs: &Runs) -> Study {
     let mut study = Study::new(&sensitivity.id, "Errors that the gates detect");
     for row in &rows {
         study = study.judge(gate(sensitivity, row.watched), row.error());
+        for &factor in &row.watched.faults {
+            let failed = failed(sensitivity, row.watched.constant, factor, runs).len() as f64;
+            study = study.judge(fault_gate(sensitivity, row.watched.constant, factor), failed);
+        }
     }
+    let faults = |row: &Row| {
+        let of = |factor: &f64| {
+            let failed = failed(sensitivity, row.watched.constant, *factor, runs).len();
+            format!("× {factor}: {failed}")
+        };
+        row.watched.faults.iter().map(of).collect::<Vec<_>>().join(", ")
+    };
     let percent = |error: f64| Cell::percent(error, 2);
     let error = move |row: &Row| match row.error() {
         NONE => Cell::text("none"),
@@ -60,6 +75,7 @@ pub fn study(sensitivity: &Sensitivity, runs: &Runs) -> Study {
         .num(["detected from", "-"], error)
         .num(["not detected", "-"], move |row| row.undetected.map_or(Cell::text("–"), percent))
         .text("gates that detect it", Row::gates)
+        .text("gates that detect a gross fault", faults)
         .text("why not smaller", |row| row.watched.blind.map_or("", |(_, why)| why))
         .table(ABOUT, &rows);
     study.block(table)
@@ -80,6 +96,28 @@ fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> R
         }
     }
     Row { watched, detected, undetected }
+}
+
+/// The gates of the runs that a gross fault fails, those that compare the program with itself not counted.
+fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> BTreeSet<String> {
+    let mut failed = BTreeSet::new();
+    for (healthy, spec) in sensitivity.faulty(of, factor) {
+        let Some((record, healthy)) = runs.record(&spec).zip(runs.judged(healthy)) else {
+            continue;
+        };
+        let gates = healthy.planned.gates.iter();
+        let outside = gates.filter(|gate| gate.evidence != Evidence::Regression);
+        let fails = outside.filter(|gate| gate.judge_record(record).verdict.is_failure());
+        failed.extend(fails.map(|gate| gate.id.clone()));
+    }
+    failed
+}
+
+/// The gate on the number of gates that detect a gross fault.
+fn fault_gate(sensitivity: &Sensitivity, of: Constant, factor: f64) -> Gate {
+    let id = format!("{}.detects.{}_x_{factor}", sensitivity.case, of.name());
+    let because = "a wrong sign, a missing term, or a constant that is wrong by a factor is a fault of the program";
+    Gate::new(id, "gates that fail", Bound::Above(1.0), Evidence::Theory, because)
 }
 
 /// The gate on the smallest error that is detected.

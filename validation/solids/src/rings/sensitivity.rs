@@ -20,8 +20,8 @@ pub fn sensitivity(tier: Tier) -> Sensitivity {
         Watched::new(Constant::SmoothingLength),
         Watched::new(Constant::TimeStep),
         Watched::new(Constant::ArtificialViscosity),
-        Watched::new(Constant::ArtificialStress),
-        Watched::new(Constant::Xsph),
+        Watched::new(Constant::ArtificialStress).faults(&[-1.0, 0.0]),
+        Watched::new(Constant::Xsph).faults(&[-1.0]),
     ];
     let run = RUBBER_RINGS.spec("leapfrog", |s| s.spacing = FIVE_LAYERS);
     Sensitivity::new(RUBBER_RINGS.name, tier, [run], watched)

@@ -19,9 +19,9 @@ pub fn sensitivity(tier: Tier) -> Sensitivity {
         Watched::new(Constant::SmoothingLength),
         Watched::new(Constant::TimeStep),
         Watched::new(Constant::ArtificialViscosity),
-        Watched::new(Constant::DensityDiffusion),
-        Watched::new(Constant::ArtificialStress),
-        Watched::new(Constant::Xsph),
+        Watched::new(Constant::DensityDiffusion).faults(&[-1.0]),
+        Watched::new(Constant::ArtificialStress).faults(&[-1.0]),
+        Watched::new(Constant::Xsph).faults(&[-1.0]),
     ];
     let runs = ["modern", "seed"].map(|variant| DAM_BREAK.spec(variant, |s| s.n = 20));
     Sensitivity::new(NAME, tier, runs, watched)

@@ -15,7 +15,7 @@ use base::{
     record::{MetricName, Record},
     reference::ReferenceError,
 };
-use harness::{case::Tier, columns::Columns, gate_power, pictures, runs::Runs, study::Study};
+use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{
     Axis, Cell, Colour, ColourMap, Dash, Figure, Film, Layer, Legend, ParticleMap, Plot, Series,
     Shape, Table, percent, sig,
@@ -40,20 +40,7 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         studies.push(front::orders(tier, runs));
         studies.push(stability::sound(runs));
     }
-    studies.push(power());
     studies
-}
-
-/// What the gates see of four mistakes, and one of the measurement.
-fn power() -> Study {
-    let caption = "The column of Martin & Moyce with one thing spoiled, judged by its own gates. Measured by \
-                   `tests/tests/dam_power.rs`, which compares this table exactly.";
-    let text = include_str!("../../../../tests/dam_power.csv");
-    Study::new("dam-break-gate-power", "What the gates are worth").block(gate_power::of_one_scene(
-        "dam break with",
-        text,
-        caption,
-    ))
 }
 
 fn settings(record: &Record) -> DamSettings {
