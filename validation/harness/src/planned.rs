@@ -1,6 +1,9 @@
 //! A run of a plan and how it is judged.
 
-use base::{gate::Gate, spec::RunSpec};
+use base::{
+    gate::Gate,
+    spec::{RunSpec, Task},
+};
 
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,7 +31,9 @@ pub struct Planned {
 impl Planned {
     /// A run without gates.
     pub fn new(spec: RunSpec) -> Self {
-        Self { spec, gates: Vec::new(), timed: false, seconds: 1.0 }
+        // A search makes several simulations, one after another.
+        let seconds = if spec.task == Task::Simulate { 1.0 } else { 10.0 };
+        Self { spec, gates: Vec::new(), timed: false, seconds }
     }
 
     /// The same run, which takes roughly so long \[s\].
