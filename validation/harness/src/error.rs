@@ -55,6 +55,16 @@ pub enum RunError {
         /// What is wrong with them.
         reason: String,
     },
+    /// A setting whose value is in its range and has no meaning with the other settings.
+    #[error("setting {key} is {value}, which is allowed only with {allowed}")]
+    Combination {
+        /// The setting.
+        key: &'static str,
+        /// Its value.
+        value: String,
+        /// The other settings with which it may have that value.
+        allowed: String,
+    },
     /// A case that states no rules for the choice of its time step.
     #[error("case {case} states no rules for its time step")]
     NoRules {

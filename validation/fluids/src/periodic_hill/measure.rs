@@ -3,7 +3,11 @@
 use nalgebra::{Matrix3, Vector2, Vector3};
 use solver::{EquationOfState, Role, Stepper};
 
-use super::{Setup, setup::FLUX as FLUX_WANTED};
+use super::{
+    Setup,
+    reference::KNOWN_SETTINGS,
+    steadiness::{BATCHES, Steadiness},
+};
 use base::functions::hypot;
 use base::record::{MetricKey, Profile, Record};
 
@@ -16,11 +20,14 @@ pub const WALL: usize = 361;
 
 base::metrics! {
     DRIFT = "drift" ["U_b"] "rms over stations of the change of mean u from one window to the next";
+    DISORDER = "drift_of_disorder" ["U_b"]
+        "standard error of drift, from the scatter of the means of five batches of each window";
     UNSTEADY = "unsteady" ["U_b"]
-        "drift r/(1 - r), r the ratio of the last two drifts, not above 0.9: what a decay leaves";
+        "d r/(1 - r), what a decay leaves: d = (drift^2 - 4 drift_of_disorder^2)^(1/2), r its ratio to \
+         the d before, at most 0.9";
     FORCE = "force" ["U_b^2/H"] "mean body force of the last window";
     FORCE_RIPPLE = "force_ripple" ["-"] "rms(force/mean - 1)";
-    FLUX = "flux" ["-"] "mean flux over 2.035 U_b H, less 1, from the particles' volumes";
+    FLUX = "flux" ["-"] "mean flux over the flux wanted, less 1, from the particles' volumes";
     FLUX_RIPPLE = "flux_ripple" ["-"] "rms(flux/mean - 1)";
     SECTION_FLUX = "section_flux" ["-"]
         "largest |flux through a station/flux wanted - 1|, interpolated";
@@ -48,6 +55,10 @@ base::metrics! {
 
 /// What the drag is made of, named as in the reference.
 pub const DRAGS: [MetricKey; 3] = [HILL_SHEAR_DRAG, LID_SHEAR_DRAG, HILL_PRESSURE_DRAG];
+
+/// What is measured against the reference.
+const COMPARED: [MetricKey; 6] =
+    [L2_U, L2_V, FORCE_ERROR, SEPARATION_ERROR, REATTACHMENT_ERROR, SHEAR_ERROR];
 
 /// Velocity and pressure where it is asked for: a linear field fitted to the particles in reach, walls
 /// included, with the weights V W (moving least squares).
@@ -123,6 +134,8 @@ pub struct Window {
     wall: Vec<[f64; 3]>,
     /// Force and flux.
     forces: Vec<[f64; 2]>,
+    /// u at the points of the stations, sample by sample.
+    samples: Vec<Vec<f64>>,
 }
 
 /// The places of the stations: x, y, weight of the section's height.
@@ -161,10 +174,10 @@ impl Window {
         let points = s.plain_columns().iter().map(point).collect();
         let weight = |r2: f64| s.weight(r2);
         let field = Field::new((&weight, setup.flow.support), points, setup.hill.lid());
-        add(
-            &mut self.sections,
-            places(setup).iter().map(|p| field.at(p[0], p[1])).map(|[u, v, _]| [u, v]),
-        );
+        let sections: Vec<[f64; 2]> =
+            places(setup).iter().map(|p| field.at(p[0], p[1])).map(|[u, v, _]| [u, v]).collect();
+        self.samples.push(sections.iter().map(|[u, _]| *u).collect());
+        add(&mut self.sections, sections.into_iter());
         add(&mut self.wall, (0..WALL).map(|k| wall(setup, &field, along(k))));
         self.count += 1.0;
     }
@@ -211,39 +224,63 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
 
 /// Metrics and profiles from the last three windows, in time.
 pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, record: &mut Record) {
-    let sections = [first, second, last].map(|w| w.mean(&w.sections));
-    let moved = |a: &[[f64; 2]], b: &[[f64; 2]]| rms(a.iter().zip(b).map(|(a, b)| a[0] - b[0]));
-    let (early, late) = (moved(&sections[0], &sections[1]), moved(&sections[1], &sections[2]));
-    let ratio = (late / early).min(0.9);
-    record.put(DRIFT, late);
-    record.put(UNSTEADY, late * ratio / (1.0 - ratio));
+    steadiness([first, second, last], record);
+    let sections = last.mean(&last.sections);
     let wall = last.mean(&last.wall);
     let count = last.forces.len() as f64;
     let [force, flux] = [0, 1].map(|k| last.forces.iter().map(|f| f[k]).sum::<f64>() / count);
     record.put(FORCE, force);
     record.put(FORCE_RIPPLE, rms(last.forces.iter().map(|f| f[0] / force - 1.0)));
-    record.put(FLUX, flux / FLUX_WANTED - 1.0);
-    record.put(FLUX_RIPPLE, rms(last.forces.iter().map(|f| f[1] / flux - 1.0)));
-    let lid = setup.hill.lid();
-    let through = |k: usize| {
-        let u = &sections[2][k * POINTS..(k + 1) * POINTS];
-        u.iter().map(|u| u[0]).sum::<f64>() / POINTS as f64 * (lid - setup.floor(STATIONS[k]))
-    };
-    let worst =
-        (0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()).fold(0.0, f64::max);
-    record.put(SECTION_FLUX, worst);
+    if setup.flux() == 0.0 {
+        for metric in [FLUX, FLUX_RIPPLE, SECTION_FLUX] {
+            record.leave_out(metric, "the flux wanted is 0, so no error relative to it exists");
+        }
+    } else {
+        record.put(FLUX, flux / setup.flux() - 1.0);
+        record.put(FLUX_RIPPLE, rms(last.forces.iter().map(|f| f[1] / flux - 1.0)));
+        record.put(SECTION_FLUX, section_flux(setup, &sections));
+    }
     let drags = drags(setup, &wall);
     for (part, drag) in DRAGS.into_iter().zip(drags) {
         record.put(part, drag);
     }
     record.put(DRAG_BALANCE, drags.iter().sum::<f64>() / (force * area) - 1.0);
     for (metric, sign) in [(SEPARATION, -1.0), (REATTACHMENT, 1.0)] {
-        if let Some(x) = sign_change(&wall, sign) {
-            record.put(metric, x);
+        match sign_change(&wall, sign) {
+            Some(x) => record.put(metric, x),
+            None => record.leave_out(metric, "no stretch of the hill has backward flow"),
         }
     }
-    compare(setup, &sections[2], &wall, record);
-    profiles(setup, &sections[2], &wall, record);
+    compare(setup, &sections, &wall, record);
+    profiles(setup, &sections, &wall, record);
+}
+
+/// How far the mean flow still moves.
+fn steadiness(windows: [&Window; 3], record: &mut Record) {
+    match Steadiness::of(windows.map(|w| &w.samples[..])) {
+        Some(Steadiness { change, disorder, left }) => {
+            record.put(DRIFT, change);
+            record.put(DISORDER, disorder);
+            record.put(UNSTEADY, left);
+        }
+        None => {
+            let reason = format!("a window of averaging has fewer than {BATCHES} samples");
+            for metric in [DRIFT, DISORDER, UNSTEADY] {
+                record.leave_out(metric, &reason);
+            }
+        }
+    }
+}
+
+/// The largest error of the flux through a station, relative to the flux wanted; sections are the means of u
+/// and v at the points of the stations.
+fn section_flux(setup: &Setup, sections: &[[f64; 2]]) -> f64 {
+    let through = |k: usize| {
+        let u = &sections[k * POINTS..(k + 1) * POINTS];
+        let gap = setup.hill.lid() - setup.floor(STATIONS[k]);
+        u.iter().map(|u| u[0]).sum::<f64>() / POINTS as f64 * gap
+    };
+    (0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()).fold(0.0, f64::max)
 }
 
 /// [`DRAGS`], by the trapezoidal rule over the period: the ends are the same point.
@@ -278,7 +315,13 @@ fn sign_change(wall: &[[f64; 3]], sign: f64) -> Option<f64> {
 
 /// Distances from the reference.
 fn compare(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mut Record) {
-    let Some(reference) = &setup.reference else { return };
+    let Some(reference) = &setup.reference else {
+        let reason = format!("no reference exists for these settings, only for {KNOWN_SETTINGS}");
+        for metric in COMPARED {
+            record.leave_out(metric, &reason);
+        }
+        return;
+    };
     let exact: Vec<Vector2<f64>> =
         reference.stations.iter().flat_map(|s| s.v.iter().copied()).collect();
     let gap = |metric: MetricKey| Some(record.value(metric)? - reference.number(metric)?);
@@ -292,8 +335,9 @@ fn compare(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mut
     let gaps =
         [(FORCE_ERROR, force), (SEPARATION_ERROR, separation), (REATTACHMENT_ERROR, reattachment)];
     for (metric, gap) in gaps {
-        if let Some(gap) = gap {
-            record.put(metric, gap);
+        match gap {
+            Some(gap) => record.put(metric, gap),
+            None => record.leave_out(metric, "the run or the reference has no backward flow"),
         }
     }
 }

@@ -13,6 +13,7 @@ mod run;
 mod sensitivity;
 mod setup;
 mod stability;
+mod steadiness;
 mod studies;
 
 use harness::{

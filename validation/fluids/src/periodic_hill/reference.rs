@@ -12,6 +12,9 @@ use base::{
 };
 use maths::geometry::Hill;
 
+/// The settings that have a reference, in words.
+pub const KNOWN_SETTINGS: &str = "re = 10, 50 or 100, crest = 1 and flux = 1";
+
 /// Read and checked once: 25 000 rows, which every run and every figure asks for.
 static PACKAGE: OnceLock<Package> = OnceLock::new();
 /// What was taken from them, by the bits of the Reynolds number: every plan asks for it, too.
@@ -44,9 +47,10 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The reference of these settings; `None` where nothing was computed for them.
+    /// The reference of these settings; `None` where nothing was computed for their geometry, their flux or
+    /// their Reynolds number.
     pub fn of(settings: &HillSettings) -> Result<Option<Self>, ReferenceError> {
-        if settings.crest == 0.0 {
+        if (settings.crest, settings.flux) != (1.0, 1.0) {
             return Ok(None);
         }
         let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -213,5 +217,19 @@ mod tests {
             }
         }
         assert!(at(30.0).expect("sound").is_none());
+    }
+
+    /// Runs of half the crest and of half the flux were compared with the flow over the whole hill.
+    #[test]
+    fn another_geometry_and_another_flux_have_no_reference() {
+        let has = |set: fn(&mut HillSettings)| {
+            let mut settings = HillSettings::default();
+            set(&mut settings);
+            Reference::of(&settings).expect("sound").is_some()
+        };
+        assert!(has(|_| {}));
+        let others: [fn(&mut HillSettings); 3] =
+            [|s| s.crest = 0.5, |s| s.crest = 0.0, |s| s.flux = 0.5];
+        assert!(others.into_iter().all(|set| !has(set)));
     }
 }

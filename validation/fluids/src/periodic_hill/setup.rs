@@ -3,7 +3,10 @@
 use nalgebra::Vector2;
 use solver::{Domain, Particle};
 
-use super::{HillMethod, HillSettings, reference::Reference};
+use super::{
+    HillMethod, HillSettings,
+    reference::{KNOWN_SETTINGS, Reference},
+};
 use crate::unit_flow::{Scales, UnitFlow};
 use harness::{case::RunError, context::Context, method::Parts};
 use maths::geometry::{Curve, Hill};
@@ -36,6 +39,13 @@ impl Setup {
         let flow = s.flow(method, scales, context)?;
         let hill = Hill::new(1.0).map_err(|e| RunError::Reference(e.to_string()))?;
         let reference = Reference::of(s).map_err(|e| RunError::Reference(e.to_string()))?;
+        if s.from_reference && reference.is_none() {
+            return Err(RunError::Combination {
+                key: "from_reference",
+                value: "true".into(),
+                allowed: format!("{KNOWN_SETTINGS}, the flows that have a reference"),
+            });
+        }
         let first = method.first_row.depth();
         Ok(Self { settings: s.clone(), hill, flow, first, reference })
     }
@@ -108,6 +118,32 @@ impl Setup {
         match &self.reference {
             Some(reference) if self.settings.from_reference => reference.velocity(place.x, s, gap),
             _ => Vector2::zeros(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::periodic_hill::CASE;
+    use harness::case::Case;
+
+    /// Runs that have no reference started from rest without a word.
+    #[test]
+    fn a_start_from_a_reference_that_does_not_exist_is_refused() {
+        let rules = |set: fn(&mut HillSettings)| {
+            let spec = CASE.spec("carried", |s| {
+                s.from_reference = true;
+                set(s);
+            });
+            CASE.rules(&spec).map(|_| ()).map_err(|error| error.to_string())
+        };
+        assert_eq!(rules(|_| {}), Ok(()));
+        let others: [fn(&mut HillSettings); 3] =
+            [|s| s.re = 30.0, |s| s.crest = 0.5, |s| s.flux = 0.5];
+        for refused in others.map(rules) {
+            let words = refused.expect_err("refused");
+            assert!(words.contains("from_reference is true") && words.contains("re = 10"), "{words}");
         }
     }
 }
