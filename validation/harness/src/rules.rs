@@ -12,6 +12,10 @@ pub struct Rules {
 }
 
 impl Rules {
+    /// Those of a run that is refused, for plans: the run itself is refused too, so that its gates, which must
+    /// be there, fail.
+    pub const REFUSED: Self = Self { dt: 1.0, dt_limit: 1.0, sound_speed: 1.0 };
+
     /// These and the lattice, h/dx and dx \[m\], by the names that records give them.
     pub fn numbers(self, [h_over_dx, dx]: [f64; 2]) -> [(&'static str, f64); 5] {
         let Self { dt, dt_limit, sound_speed } = self;

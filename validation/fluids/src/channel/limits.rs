@@ -10,7 +10,7 @@ use base::{
     spec::{Bisect, EndAfter},
 };
 use harness::{
-    case::{Case, Tier},
+    case::{Case, Rules, Tier},
     declare::{StepLimit, StepLimits},
 };
 
@@ -33,7 +33,7 @@ pub fn is_stable(record: &Record) -> bool {
 
 /// The step limits of a flow.
 pub fn limits(channel: Channel, tier: Tier) -> StepLimits {
-    let of = variants(channel, tier).into_iter().filter_map(|variant| limit(channel, variant));
+    let of = variants(channel, tier).into_iter().map(|variant| limit(channel, variant));
     StepLimits {
         id: format!("{}-time-step", channel.flow.name()),
         about: format!(
@@ -58,9 +58,9 @@ fn variants(Channel { flow, case }: Channel, tier: Tier) -> Vec<&'static str> {
     }
 }
 
-fn limit(Channel { flow, case }: Channel, variant: &'static str) -> Option<StepLimit> {
+fn limit(Channel { flow, case }: Channel, variant: &'static str) -> StepLimit {
     let spec = case.spec(variant, |s| s.jitter = DISORDER).allow_unstable();
-    let rules = case.rules(&spec).ok()?;
+    let rules = case.rules(&spec).unwrap_or(Rules::REFUSED);
     // Not `dt_limit`, in the last bit: bisections begin where they always have.
     let theory = rules.dt / (rules.dt / rules.dt_limit);
     let defaults = ChannelSettings::default();
@@ -85,7 +85,7 @@ fn limit(Channel { flow, case }: Channel, variant: &'static str) -> Option<StepL
     };
     let ratio = before.map(|(_, [_, ratio])| no_less("ratio", "measured/theory", *ratio));
     let margin = before.map(|(_, [margin, _])| no_less("margin", of_default, *margin));
-    Some(StepLimit {
+    StepLimit {
         variant,
         scene: "20 rows".into(),
         spec: spec.bisect(bisect),
@@ -94,7 +94,7 @@ fn limit(Channel { flow, case }: Channel, variant: &'static str) -> Option<StepL
         default_at: rules.dt,
         of_theory: ratio.into_iter().collect(),
         of_default: [stable].into_iter().chain(margin).collect(),
-    })
+    }
 }
 
 /// A limit may be this much below what it was: the resolution of the bisections.
@@ -133,6 +133,15 @@ const BEFORE: &[(&str, [f64; 2])] = &[
 mod tests {
     use super::*;
     use crate::couette::COUETTE;
+
+    /// The gates of a variant whose default settings were refused were not there at all.
+    #[test]
+    fn a_variant_that_is_refused_keeps_its_gates() {
+        let channel = Channel { flow: Flow::Couette, case: &COUETTE };
+        let refused = limit(channel, "no such variant");
+        assert_eq!(refused.of_default[0].id, "stability.default.no such variant.stable");
+        assert!(refused.of_default[0].judge(None).verdict.is_failure());
+    }
 
     #[test]
     fn every_variant_of_couette_flow_has_a_limit_and_a_baseline() {
