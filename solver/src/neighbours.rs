@@ -106,7 +106,6 @@ impl Grid {
 pub(crate) struct Neighbours {
     radius: f64,
     pub domain: Domain,
-    mirrors: Vec<PlaneWall>,
     pub maps: Vec<Map>,
     pub images: Vec<Image>,
     /// Those of the fluid particles.
@@ -135,7 +134,7 @@ impl Neighbours {
                 maps.extend([Map::Shift(shift), Map::Shift(-shift)]);
             }
         }
-        Self { radius, domain, mirrors: mirrors.to_vec(), maps, ..Self::default() }
+        Self { radius, domain, maps, ..Self::default() }
     }
 
     /// Neighbours of all lists, without padding.
@@ -201,19 +200,17 @@ impl Neighbours {
     /// axis the periodic copies of all of these. Maps are used in the order of [`Neighbours::new`].
     fn make_images(&mut self) {
         self.images.clear();
-        let mirrors = take(&mut self.mirrors);
-        let real = self.points.len();
+        let (real, radius) = (self.points.len(), self.radius);
+        let mut shift = self.maps.partition_point(|map| !map.walls().is_empty());
         for source in 0..real {
-            let (point, radius) = (self.points[source], self.radius);
+            let point = self.points[source];
             let near = |wall: &PlaneWall| wall.depth(point).abs() < radius;
-            let at_walls = mirrors.iter().map(near);
-            let in_corners = corners(&mirrors).map(|walls| walls.into_iter().all(near));
-            for (map, _) in (0..).zip(at_walls.chain(in_corners)).filter(|(_, near)| *near) {
-                self.add_image(source, map);
+            for map in 0..shift {
+                if self.maps[map].walls().iter().all(near) {
+                    self.add_image(source, map);
+                }
             }
         }
-        let mut shift = mirrors.len() + corners(&mirrors).count();
-        self.mirrors = mirrors;
         for axis in 0..2 {
             let Some(period) = self.domain.period[axis] else { continue };
             let along = || self.points[..real].iter().map(|p| p[axis]);

@@ -203,28 +203,22 @@ fn check_domain(domain: &Domain, support: f64, skin: f64) -> Checked {
     Ok(())
 }
 
-/// |cos| of the angle between the last of these mirroring walls and an earlier one, if it is neither 0 (a
-/// corner, for which there are images across both walls) nor 1 (parallel walls).
-fn oblique_cosine(mirrors: &[PlaneWall]) -> Option<f64> {
-    let (last, before) = mirrors.split_last()?;
-    let mut cosines = before.iter().map(|m| m.normal.dot(&last.normal).abs());
-    cosines.find(|c| *c > RIGHT_ANGLE && (c - 1.0).abs() > 1e-12)
-}
-
 /// A normal that is not of length 1 would stretch the images, and a wall with a velocity along its normal
-/// would have to move its plane, which is not implemented.
+/// would have to move its plane, which is not implemented. Two walls are parallel or make a right angle, a
+/// corner, for which there are images across both.
 fn check_walls(mirrors: &[PlaneWall]) -> Checked {
     for (wall, mirror) in mirrors.iter().enumerate() {
         let PlaneWall { point, normal, velocity, curvature } = mirror;
         let (length, across) = (normal.norm(), velocity.dot(normal));
         let sum = point.sum() + velocity.sum() + curvature.sum();
+        let mut cosines = mirrors[..wall].iter().map(|other| other.normal.dot(normal).abs());
         let (field, value, range) = if !((length - 1.0).abs() < 1e-12) {
             ("a normal of length", length, "1")
         } else if !(across.abs() <= 1e-12 * velocity.norm()) {
             ("a velocity along its normal of", across, "0")
         } else if !sum.is_finite() {
             ("components whose sum is", sum, "finite ones")
-        } else if let Some(cosine) = oblique_cosine(&mirrors[..=wall]) {
+        } else if let Some(cosine) = cosines.find(|c| *c > RIGHT_ANGLE && (c - 1.0).abs() > 1e-12) {
             ("a cosine between its normal and another one of", cosine, "0 (corner) or 1")
         } else {
             continue;

@@ -161,4 +161,29 @@ mod tests {
         let [_, rate] = work_and_rate(Ghosts { walls: tank() }, along());
         assert!(rate > 0.1, "images with the opposite velocity sum disorder: {rate:e}");
     }
+
+    /// A particle behind the bottom repelled the water above it twice: from its own place, and as an image in
+    /// the midst of the water.
+    #[test]
+    fn a_particle_that_has_crossed_acts_from_its_own_place_alone() {
+        let floor = tank()[..1].to_vec();
+        let particle = |x, y| Particle::fluid(Vector2::new(x, y), Vector2::zeros(), 2.1, 0.01);
+        let rates = |crossed: Option<Particle>, walls| {
+            let particles = [particle(0.5, 0.05)].into_iter().chain(crossed).collect();
+            let (pressure, domain) = (Pressure::new(EOS), Domain::open());
+            let scene =
+                Scene::<Method<Ghosts>>::new(0.15, domain, particles, pressure, Continuity, walls);
+            let mut simulation = scene.build().expect("a scene");
+            simulation.advance(0.0, 1.0, &mut ());
+            let rates = simulation.rates(&pressure);
+            let mut all = simulation.fluid().zip(rates).filter(|((_, p), _)| p.position.y > 0.0);
+            all.next().expect("the particle in the water").1.velocity
+        };
+        let behind = || Some(particle(0.55, -0.04));
+        let all = rates(behind(), Ghosts { walls: floor.clone() });
+        let image = rates(None, Ghosts { walls: floor });
+        let pair = rates(behind(), Ghosts::default());
+        assert!(pair.y > 0.0 && image.y > 0.0, "both push it up: {pair} {image}");
+        assert!((all - image - pair).norm() < 1e-12 * all.norm(), "{all} {image} {pair}");
+    }
 }

@@ -14,7 +14,7 @@ pub enum Map {
     /// source in the fluid; where the fluid slips v' = v − 2(v·n)n.
     Mirror(PlaneWall),
     /// The mirror particle across both walls of a corner at c \[m\]: x' = 2c − x, v' = v; with slip −v.
-    Corner(Vector2<f64>),
+    Corner([PlaneWall; 2], Vector2<f64>),
     /// The copy a period away: x' = x + s \[m\].
     Shift(Vector2<f64>),
 }
@@ -22,7 +22,7 @@ pub enum Map {
 impl Map {
     /// The mirror particle across two walls at a right angle: half a turn about their corner.
     pub fn corner([a, b]: [&PlaneWall; 2]) -> Self {
-        Self::Corner(a.point - b.normal * b.depth(a.point))
+        Self::Corner([*a, *b], a.point - b.normal * b.depth(a.point))
     }
 
     /// Where the image of a point is \[m\].
@@ -30,30 +30,41 @@ impl Map {
     pub fn place(&self, point: Vector2<f64>) -> Vector2<f64> {
         match self {
             Self::Mirror(wall) => point - wall.normal * (2.0 * wall.depth(point)),
-            Self::Corner(corner) => corner * 2.0 - point,
+            Self::Corner(_, corner) => corner * 2.0 - point,
             Self::Shift(by) => point + by,
         }
     }
 
+    /// The walls across which it mirrors.
+    #[inline(always)]
+    pub(crate) fn walls(&self) -> &[PlaneWall] {
+        match self {
+            Self::Mirror(wall) => std::slice::from_ref(wall),
+            Self::Corner(walls, _) => walls,
+            Self::Shift(_) => &[],
+        }
+    }
+
     /// The image of a column, `slip` being [`super::Walls::SLIPS`]. Scalars (density, pressure) are those
-    /// of the source.
+    /// of the source. Of a source that has crossed a wall the image would lie in the fluid: it has neither
+    /// mass nor volume, and so acts on nothing.
     #[inline(always)]
     pub fn apply<S: Numbers>(&self, source: &Column<S>, slip: bool) -> Column<S> {
-        let position = self.place(source.position);
-        match self {
-            Self::Mirror(wall) if slip => {
-                let across = wall.normal * source.velocity.dot(&wall.normal);
-                Column { position, velocity: source.velocity - across * 2.0, ..*source }
-            }
-            Self::Corner(_) if slip => Column { position, velocity: -source.velocity, ..*source },
+        let v = source.velocity;
+        let velocity = match self {
+            Self::Mirror(wall) if slip => v - wall.normal * v.dot(&wall.normal) * 2.0,
             Self::Mirror(wall) => {
                 let depth = wall.depth(source.position);
-                let velocity =
-                    wall.velocity * 2.0 - source.velocity + wall.curvature * (depth * depth);
-                Column { position, velocity, ..*source }
+                wall.velocity * 2.0 - v + wall.curvature * (depth * depth)
             }
-            Self::Corner(_) | Self::Shift(_) => Column { position, ..*source },
+            Self::Corner(..) if slip => -v,
+            Self::Corner(..) | Self::Shift(_) => v,
+        };
+        let mut image = Column { position: self.place(source.position), velocity, ..*source };
+        if self.walls().iter().any(|wall| wall.depth(source.position) < 0.0) {
+            (image.common.mass, image.common.volume) = (0.0, 0.0);
         }
+        image
     }
 }
 
@@ -104,5 +115,29 @@ mod tests {
         }
         let ghost = corner_map.apply(&source, false);
         assert!((ghost.position + source.position - corner * 2.0).norm() < 1e-14, "half a turn");
+    }
+
+    /// It had the mass of its source, and pushed the water from inside.
+    #[test]
+    fn the_image_of_a_particle_that_has_crossed_a_wall_lay_in_the_fluid() {
+        let wall = |n: Vector2<f64>| PlaneWall::new(Vector2::zeros(), n, Vector2::zeros());
+        let walls = [wall(Vector2::y()), wall(Vector2::x())];
+        let common = Common { mass: 1.0, density: 2.0, volume: 0.5 };
+        let maps =
+            [Map::Mirror(walls[0]), Map::Mirror(walls[1]), Map::corner([&walls[0], &walls[1]])];
+        for (place, seen) in [
+            (Vector2::new(0.3, 0.1), [true, true, true]),
+            (Vector2::new(0.3, 0.0), [true, true, true]),
+            (Vector2::new(0.3, -0.1), [false, true, false]),
+            (Vector2::new(-0.3, 0.1), [true, false, false]),
+            (Vector2::new(-0.3, -0.1), [false, false, false]),
+        ] {
+            let source = Column { position: place, velocity: Vector2::y(), common, derived: 9.0 };
+            for (map, seen) in maps.iter().zip(seen) {
+                let Common { mass, volume, density } = map.apply(&source, true).common;
+                let expected = if seen { (1.0, 0.5, 2.0) } else { (0.0, 0.0, 2.0) };
+                assert_eq!((mass, volume, density), expected, "{map:?} of {place:?}");
+            }
+        }
     }
 }

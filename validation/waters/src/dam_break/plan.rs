@@ -38,7 +38,7 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
 }
 
 /// What holds whatever the water does.
-fn invariants(variant: &str, id: &str) -> Vec<Gate> {
+fn invariants(id: &str) -> Vec<Gate> {
     let tight = "a wall that lets water through is none; a splash may dent one of particles, whose surface \
                  lies half a spacing before the first of them: beyond that it is through";
     let kept = "particles keep their masses, and none comes or goes";
@@ -53,7 +53,7 @@ fn invariants(variant: &str, id: &str) -> Vec<Gate> {
     let ends = "a run of water that does not reach its end says nothing of what comes then";
     let invariant =
         |metric: MetricKey, bound, because| gate(id, metric, bound, Evidence::Invariant, because);
-    let gates = vec![
+    vec![
         invariant(metrics::REACHED, Bound::Above(1.0), ends),
         invariant(ledger::WORK_WALLS, Bound::Within(-0.05, 0.05), still),
         invariant(metrics::OUTSIDE, Bound::Equals(0.0), tight),
@@ -61,18 +61,13 @@ fn invariants(variant: &str, id: &str) -> Vec<Gate> {
         invariant(ledger::ENERGY_GAP, Bound::Below(1e-3), closes),
         invariant(metrics::MOMENTUM_GAP, Bound::Below(0.01), momentum),
         gate(id, metrics::MACH, Bound::Below(0.3), Evidence::Theory, slow),
-    ];
-    let even_if_diverged = |gate: Gate| match variant {
-        "ghosts" => gate.even_if_diverged(),
-        _ => gate,
-    };
-    gates.into_iter().map(even_if_diverged).collect()
+    ]
 }
 
 /// Gates of a column that runs out freely.
 fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
     let id = format!("{NAME}.martin-moyce.{variant}.{n}");
-    let mut gates = invariants(variant, &id);
+    let mut gates = invariants(&id);
     if n >= 20 {
         gates.extend(free_references(&id)); // coarser runs are for the order and the cost alone
     }
@@ -116,7 +111,7 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
                    2^(1/2) the standard uncertainty of one; twice that is 8.5 %, taken for the other \
                    heights too, for which none is known";
     let spread = 2.0 * IMPULSE_SPREAD / 2.0_f64.sqrt();
-    let mut gates = invariants(variant, &id);
+    let mut gates = invariants(&id);
     gates.push(reference(FRONT.rms_shifted.into(), Bound::Below(0.08), front));
     gates.push(reference(LEVELS.rms_shifted.into(), Bound::Below(0.05), levels));
     gates.extend(
