@@ -13,7 +13,7 @@ const DIAMETER: f64 = 0.0042;
 pub const PROBES: [f64; 4] = [0.300, 0.865, 1.114, 1.3625];
 
 /// Where the residual height is read, and half of the width that it is read over, from the back wall
-/// \[width of the column\]; at least ± 2 dx, the least width over which a lattice has an exact depth.
+/// \[width of the column\]; at least ± 2 dx, or less where that would reach behind the wall.
 ///
 /// Not at the wall itself: the particles next to it slide down it more slowly than the water does, in a
 /// layer of a few spacings, so a probe within so many spacings of it would read the layer, at a place
@@ -34,6 +34,15 @@ fn depth<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, x: f64, w:
         let hat = (1.0 - ((p.position.x - x) / w).abs()).max(0.0);
         sum + mass / p.density * hat / w
     })
+}
+
+/// Where a probe at x reads, and half of the width that it reads over, so many spacings if a wall is not
+/// nearer: the water behind it would be missing from the depth \[m\].
+fn probe(x: f64, spacings: f64, dx: f64, width: f64) -> (f64, f64) {
+    let place = x.max(dx);
+    // A rounding error must not take away a spacing.
+    let room = (place.min(width - place) / dx + 1e-9).floor();
+    (place, dx * spacings.min(room).max(1.0))
 }
 
 /// x of the foremost particle of the water that counts \[m\].
@@ -93,8 +102,12 @@ impl<'a> Samples<'a> {
         if self.samples.is_empty() {
             self.start = foremost;
         }
-        let (width, w) = (self.dam.tank.width(), 2.0 * dx);
-        let over = (HEIGHT_OVER * s.width / dx).round().max(2.0) * dx;
+        let width = self.dam.tank.width();
+        let depth_at = |x: f64, spacings: f64| {
+            let (place, w) = probe(x, spacings, dx, width);
+            depth(simulation.fluid(), place, w)
+        };
+        let over = (HEIGHT_OVER * s.width / dx).round().max(2.0);
         let depth_of = |p: &Evolved<()>| {
             (-p.position.x).max(p.position.x - width).max(-p.position.y).max(0.0) / dx
         };
@@ -108,8 +121,8 @@ impl<'a> Samples<'a> {
             time: simulation.time(),
             // Water reaches a fixed distance beyond its foremost particle, by which it begins at a.
             front: s.width + foremost - self.start,
-            height: depth(simulation.fluid(), HEIGHT_AT * s.width, over),
-            levels: PROBES.map(|x| depth(simulation.fluid(), x, w)),
+            height: depth_at(HEIGHT_AT * s.width, over),
+            levels: PROBES.map(|x| depth_at(x, 2.0)),
             outside,
             deepest,
             speed: fastest,
@@ -283,10 +296,226 @@ impl Observer<()> for Gauge {
 }
 
 #[cfg(test)]
+impl<'a> Samples<'a> {
+    /// Samples with these t, front, residual height \[s, m\] and levels at each time \[m\].
+    pub fn made_up(dam: &'a Dam, rows: impl Iterator<Item = ([f64; 3], [f64; 4])>) -> Self {
+        let zero = Sample {
+            time: 0.0,
+            front: 0.0,
+            height: 0.0,
+            levels: [0.0; 4],
+            outside: 0.0,
+            deepest: 0.0,
+            speed: 0.0,
+            density: [0.0; 2],
+        };
+        let row = |([time, front, height], levels): ([f64; 3], [f64; 4])| Sample {
+            time,
+            front,
+            height,
+            levels,
+            ..zero
+        };
+        Self { samples: rows.map(row).collect(), ..Self::new(dam) }
+    }
+}
+
+#[cfg(test)]
+impl Gauge {
+    /// A gauge that has read these t \[s\] and pressures \[Pa\].
+    pub fn made_up(dam: &Dam, rows: Vec<[f64; 5]>) -> Self {
+        Self { eos: dam.medium.eos, reach: 0.0, sensors: Vec::new(), rows }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dam_break::setup::near_the_floor;
-    use solver::{Smoothing, WendlandC2};
+    use crate::{
+        dam_break::{DAM_BREAK, DamSettings, lobovsky, setup::near_the_floor},
+        water::{Modern, method},
+    };
+    use harness::{context::Context, method::Parts};
+    use maths::metrics::budget::Metered;
+    use solver::{Particle, Smoothing, WendlandC2};
+
+    /// The numbers of a dam break, and a simulation of these particles in place of its own, without walls.
+    fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
+        let spec = DAM_BREAK.spec("modern", set);
+        let settings = serde_json::from_value(spec.settings).expect("settings of the case");
+        Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
+    }
+
+    fn simulation(dam: &Dam, particles: Vec<Particle>) -> Box<dyn Metered<()>> {
+        let (method, context) = (method::<Modern>(), Context::default());
+        let parts = Parts { particles, ..dam.parts(&method, &context) };
+        let mut simulation = (method.build)(parts).expect("a scene");
+        simulation.advance(0.0, 1.0, &mut ());
+        simulation
+    }
+
+    /// Water of the density at rest from one column to another, so many rows high, with this velocity.
+    fn water(dam: &Dam, from: usize, to: usize, rows: usize, v: Vector2<f64>) -> Vec<Particle> {
+        let dx = dam.medium.dx;
+        let first = Vector2::new(from as f64 + 0.5, 0.5) * dx;
+        solver::lattice(first, dx, to - from, rows)
+            .map(|x| Particle::fluid(x, v, dam.settings.rho, dx * dx))
+            .collect()
+    }
+
+    fn record(dam: &Dam, samples: &Samples, mass: f64) -> Record {
+        let mut record = Record::new("dam_break", "modern", serde_json::json!(dam.settings), 1);
+        samples.measure(mass, &mut record);
+        record
+    }
+
+    fn is(value: f64, expected: f64) {
+        let error = (value - expected).abs();
+        assert!(error <= 1e-9 * expected.abs().max(1e-3), "{value} instead of {expected}");
+    }
+
+    #[test]
+    fn front_height_and_levels_are_those_of_water_put_by_hand() {
+        let tank = dam(|s| {
+            lobovsky(s);
+            s.n = 10;
+        });
+        let dx = tank.medium.dx;
+        let mut samples = Samples::new(&tank);
+        for (from, to, rows) in [(0, 20, 10), (3, 40, 4), (5, 50, 2)] {
+            let mut all = water(&tank, from, to, rows, Vector2::zeros());
+            // Spray above a quarter of the column is no front.
+            all.push(Particle::fluid(Vector2::new(1.55, 0.2), Vector2::zeros(), 1e3, 1e-12));
+            samples.sample(&*simulation(&tank, all));
+        }
+        let [full, later, last] = [0, 1, 2].map(|k| samples.samples[k]);
+        is(full.front, 0.6);
+        is(later.front, 0.6 + 20.0 * dx);
+        is(last.front, 0.6 + 30.0 * dx);
+        // The probe of the residual height reads from 2 to 6 spacings.
+        is(full.height, 10.0 * dx);
+        is(later.height, 4.0 * dx * (1.0 - 0.5 * 0.25));
+        is(last.height, 2.0 * dx * 0.125);
+        for (sample, levels) in
+            [(full, [10.0, 0.0, 0.0, 0.0]), (later, [4.0, 4.0, 4.0, 0.0]), (last, [2.0; 4])]
+        {
+            for (level, expected) in sample.levels.into_iter().zip(levels) {
+                assert!((level - expected * dx).abs() < 1e-6 * dx, "{level}: {expected} dx");
+            }
+        }
+        // Water that ends at 45 spacings fills a part of what H4 reads, from 43.42 to 47.42.
+        let mut samples = Samples::new(&tank);
+        samples.sample(&*simulation(&tank, water(&tank, 30, 45, 3, Vector2::zeros())));
+        let hat = |k: f64| (1.0 - (k + 0.5 - 1.3625 / dx).abs() / 2.0) / 2.0;
+        is(samples.samples[0].levels[3], 3.0 * dx * (hat(44.0) + hat(43.0)));
+    }
+
+    #[test]
+    fn what_is_behind_the_walls_how_fast_and_how_dense_is_measured() {
+        let free = dam(|s| s.n = 10);
+        let (dx, width) = (free.medium.dx, free.tank.width());
+        let at = |x, y| Particle::fluid(Vector2::new(x, y) * dx, Vector2::zeros(), 1e3, dx * dx);
+        let mut particles = water(&free, 0, 10, 20, Vector2::zeros());
+        particles[7].velocity = Vector2::new(0.3, -0.4);
+        (particles[8].density, particles[9].density) = (1070.0, 940.0);
+        let mut samples = Samples::new(&free);
+        samples.sample(&*simulation(&free, particles.clone()));
+        // Half a spacing is a dent; more than that is lost.
+        particles.extend([
+            at(-0.49, 3.0),
+            at(-0.51, 5.0),
+            at(3.0, -2.5),
+            at(width / dx + 0.75, 5.0),
+        ]);
+        samples.sample(&*simulation(&free, particles.clone()));
+        particles.truncate(202);
+        samples.sample(&*simulation(&free, particles));
+        let record = record(&free, &samples, 1.0);
+        let value = |metric| record.value(metric).expect("a metric");
+        assert_eq!((value(metrics::OUTSIDE), value(metrics::OUTSIDE_END)), (3.0, 1.0));
+        is(value(metrics::OUTSIDE_DEPTH), 2.5);
+        is(value(metrics::MACH), 0.5 / free.medium.eos.sound_speed);
+        is(value(metrics::DENSITY_MOST), 0.07);
+        is(value(metrics::DENSITY_LEAST), -0.06);
+    }
+
+    #[test]
+    fn momentum_that_no_force_explains_is_the_gap() {
+        let free = dam(|s| s.n = 10);
+        let apart = |v: Vector2<f64>| {
+            let place = |k: usize| Vector2::new(0.1 * k as f64, 0.05 * k as f64);
+            let particle = |k| Particle::fluid(place(k), v, 1e3, 1e-5 * (k + 1) as f64);
+            simulation(&free, (1..4).map(particle).collect())
+        };
+        let unit = (free.settings.gravity * free.settings.height).sqrt();
+        let gap = |samples: &Samples| {
+            record(&free, samples, 0.09).value(metrics::MOMENTUM_GAP).expect("a gap")
+        };
+        // A free fall: gravity gives what the water has.
+        let (mut falling, mut samples) = (apart(Vector2::zeros()), Samples::new(&free));
+        for k in 0..4 {
+            falling.advance(0.01 * f64::from(k), 1e-3, &mut ());
+            samples.sample(&*falling);
+        }
+        assert!(gap(&samples) < 1e-13, "{:e}", gap(&samples));
+        // A kick of all masses, of 0.09 kg/m, and then a smaller one: the largest counts.
+        let mut samples = Samples::new(&free);
+        for v in [Vector2::zeros(), Vector2::new(0.3, 0.4) * unit, Vector2::new(0.1, 0.0)] {
+            samples.sample(&*apart(v));
+        }
+        is(gap(&samples), 0.5);
+    }
+
+    #[test]
+    fn a_sensor_reads_a_linear_pressure_at_its_height_and_less_where_it_is_half_dry() {
+        let tank = dam(|s| {
+            lobovsky(s);
+            s.n = 60;
+        });
+        let (dx, eos, weight) = (tank.medium.dx, tank.medium.eos, 1e3 * 9.81);
+        let pressure = |y: f64| weight * (0.5 - y);
+        // Water behind the floor too, so that no kernel is cut and each mean is the value in its middle.
+        let wall = |share: f64| {
+            let first = Vector2::new(1.61 - 9.5 * dx, -29.5 * dx);
+            let at = |x: Vector2<f64>| {
+                let density = eos.density(pressure(x.y));
+                Particle {
+                    mass: share * density * dx * dx,
+                    ..Particle::fluid(x, Vector2::zeros(), density, 1.0)
+                }
+            };
+            simulation(&tank, solver::lattice(first, dx, 10, 60).map(at).collect())
+        };
+        let full = wall(1.0);
+        let gauge = Gauge::new(&tank, 2.0 * tank.medium.h, &|r2| full.weight(r2));
+        let read = gauge.read(&*full);
+        for (value, height) in read.iter().zip(SENSORS) {
+            let error = (value / pressure(height) - 1.0).abs();
+            assert!(error < 2e-3, "{height} m: {error}");
+        }
+        // Only the highest sensor has no floor in its reach: a half of its kernel is in the tank, and a
+        // quarter of that is wet, half of what counts as all.
+        let dry = gauge.read(&*wall(0.25))[3] / read[3];
+        assert!((dry - 0.5).abs() < 5e-3, "{dry}");
+    }
+
+    #[test]
+    fn pressures_are_means_over_blocks_of_time() {
+        let tank = dam(lobovsky);
+        let row = |k: u32| {
+            let t = 0.1 * f64::from(k) + 0.05;
+            [t, t, 10.0 * t, 0.0, if k < 10 { 0.0 } else { 4.0 }]
+        };
+        let gauge = Gauge::made_up(&tank, (0..20).map(row).collect());
+        let mean = |k: usize| gauge.pressure(k, 0.5);
+        assert_eq!(mean(0).len(), 4);
+        for (k, (t, p)) in mean(0).into_iter().enumerate() {
+            is(t, 0.5 * k as f64 + 0.25);
+            is(p, t);
+            is(mean(1)[k].1, 10.0 * t);
+        }
+        assert_eq!(mean(3).iter().map(|(_, p)| *p).collect::<Vec<_>>(), [0.0, 0.0, 4.0, 4.0]);
+    }
 
     fn still(x: f64, y: f64) -> Evolved<()> {
         let (position, velocity) = (Vector2::new(x, y), Vector2::zeros());
@@ -309,6 +538,32 @@ mod tests {
         let spray = still(9.0, 5.0);
         let with_spray = all().chain([(1.0, &spray)]);
         assert!((foremost(with_spray, low) - 1.95).abs() < 1e-12);
+    }
+
+    /// With two spacings to either side at n = 6 it reached behind the back wall, where there is no water,
+    /// and the column began 0.925 H high.
+    #[test]
+    fn a_height_gauge_that_reaches_behind_the_wall_is_narrowed() {
+        for n in 1..=40 {
+            let dx = 1.0 / n as f64;
+            let (place, w) = probe(HEIGHT_AT, (HEIGHT_OVER / dx).round().max(2.0), dx, 8.5);
+            for first in [0.5, 1.0] {
+                let corner = Vector2::new(first * dx, 0.5 * dx);
+                let water: Vec<_> =
+                    solver::lattice(corner, dx, 3 * n, 2 * n).map(|p| still(p.x, p.y)).collect();
+                let height = depth(water.iter().map(|p| (1000.0 * dx * dx, p)), place, w);
+                assert!(
+                    (height - 2.0).abs() < 1e-12,
+                    "n = {n}, first column at {first} dx: {height}"
+                );
+            }
+            assert!(n < 10 || (place, w) == (HEIGHT_AT, dx * (0.05 / dx).round().max(2.0)));
+        }
+        assert_eq!(
+            probe(9.0, 2.0, 0.1, 8.5),
+            (9.0, 0.1),
+            "beyond the tank there is nothing to read"
+        );
     }
 
     #[test]

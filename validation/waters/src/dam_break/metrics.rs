@@ -58,7 +58,7 @@ base::metrics! {
     ARRIVAL_MEASURED = "arrival_measured" ["-"]
         "the same of the experiment, on the clock of its pressures";
     NOISE = "pressure_noise" ["-"]
-        "rms distance of P2/(rho g H) from its running mean over 0.1 (H/g)^(1/2)";
+        "rms distance of P2/(rho g H) from its running mean over 0.101 (H/g)^(1/2)";
     NOISE_MEASURED = "pressure_noise_measured" ["-"] "the same of the experiment, sampled at 2 kHz";
 }
 

@@ -129,8 +129,9 @@ const ARRIVAL: f64 = 0.1;
 pub const WINDOWS: [f64; 2] = [1.0, 2.5];
 /// Blocks over which computed pressures are averaged \[(H/g)^(1/2)\], for the record.
 const BLOCK: f64 = 0.01;
-/// Width of the running mean that noise is the distance from \[(H/g)^(1/2)\].
-const SMOOTH: f64 = 0.1;
+/// Width of the running mean that noise is the distance from \[(H/g)^(1/2)\]; not a whole number of
+/// blocks, so that no rounding error decides whether a block belongs to it.
+const SMOOTH: f64 = 0.101;
 
 /// When a pressure curve \[ρ g H\] first exceeds [`ARRIVAL`].
 pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
@@ -284,6 +285,12 @@ fn pressures(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge, record: &mut Record)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        dam_break::{DAM_BREAK, DamSettings, lobovsky, metrics::IMPULSE},
+        water::{Modern, method},
+    };
+    use base::record::MetricName;
+    use harness::context::Context;
 
     #[test]
     fn a_curve_that_starts_late_is_found_shifted() {
@@ -337,12 +344,103 @@ mod tests {
 
     #[test]
     fn noise_is_what_a_running_mean_leaves() {
+        // The mean over five points of alternating sign has a fifth of their amplitude.
         let curve = |amplitude: f64| -> Curve {
-            (0..1000)
-                .map(|k| (0.01 * f64::from(k), if k % 2 == 0 { amplitude } else { -amplitude }))
-                .collect()
+            let sign = |k: u32| if k.is_multiple_of(2) { amplitude } else { -amplitude };
+            (0..1000).map(|k| (0.02 * f64::from(k) + 0.001, sign(k))).collect()
         };
         assert!(noise(&curve(0.0), 0.0) < 1e-12);
-        assert!((noise(&curve(0.5), 0.0) - 0.5).abs() < 0.06);
+        let left = noise(&curve(0.5), 0.0);
+        assert!((left - 0.4).abs() < 1e-3, "{left}");
+    }
+
+    fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
+        let spec = DAM_BREAK.spec("modern", set);
+        let settings = serde_json::from_value(spec.settings).expect("settings of the case");
+        Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
+    }
+
+    fn compared(dam: &Dam, samples: &Samples, gauge: &Gauge) -> impl Fn(MetricName) -> f64 + use<> {
+        let mut record = Record::new("dam_break", "modern", serde_json::json!(dam.settings), 1);
+        compare(dam, samples, gauge, &mut record).expect("packages are sound");
+        move |metric| record.value(metric.clone()).unwrap_or_else(|| panic!("no {metric:?}"))
+    }
+
+    #[track_caller]
+    fn is(value: f64, expected: f64, tolerance: f64) {
+        assert!((value - expected).abs() <= tolerance, "{value} instead of {expected}");
+    }
+
+    /// A computation that is early by 0.2 T and by 0.1 tau.
+    #[test]
+    fn a_computation_that_has_the_curves_of_martin_and_moyce_early_is_that_early() {
+        let dam = dam(|_| {});
+        let [front, height] = martin_moyce().unwrap();
+        let (a, g) = (dam.settings.width, dam.settings.gravity);
+        let (t, tau) = ((0.5 * a / g).sqrt(), (a / g).sqrt());
+        let row = |k: u32| {
+            let time = 1e-3 * f64::from(k);
+            let at = [value(&front, time / t + 0.2), value(&height, time / tau + 0.1)];
+            ([time, a * at[0], dam.settings.height * at[1]], [0.0; 4])
+        };
+        let samples = Samples::made_up(&dam, (0..192).map(row));
+        let metric = compared(&dam, &samples, &Gauge::made_up(&dam, Vec::new()));
+        is(metric(FRONT.shift.into()), 0.2, 2e-3);
+        is(metric(HEIGHT.shift.into()), 0.1, 2e-3);
+        assert!(
+            metric(FRONT.rms_shifted.into()) < 0.01 && metric(HEIGHT.rms_shifted.into()) < 0.01
+        );
+        assert!(metric(FRONT.rms.into()) > 0.2 && metric(HEIGHT.rms.into()) > 0.02);
+        is(metric(metrics::Z.at(2)), value(&front, 2.2), 2e-3);
+        is(metric(metrics::Z.at(3)), value(&front, 3.2), 2e-3);
+    }
+
+    /// Pressures 5, 10, 15 and 20 % too high, on another clock; levels 0.02 H too high; a front that runs at
+    /// 1.03 times the speed.
+    #[test]
+    fn what_a_computation_of_lobovsky_has_too_much_of_is_measured() {
+        let (dam, lobovsky) = (dam(lobovsky), Lobovsky::load().unwrap());
+        let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
+        let levels = [0, 1, 2, 3].map(|k| lobovsky.level(k, 6.0));
+        let row = |k: u32| {
+            let t = 0.01 * f64::from(k);
+            let front = 1.03 * value(&lobovsky.front, t);
+            let level = |k: usize| h * (value(&levels[k], t) + 0.02);
+            ([unit * t, dam.settings.width + h * front, 0.0], [0, 1, 2, 3].map(level))
+        };
+        let samples = Samples::made_up(&dam, (0..=600).map(row));
+        let sensor = |t: f64| {
+            let p = |k: usize| scale * (1.05 + 0.05 * k as f64) * value(&lobovsky.pressure[k], t);
+            [unit * (t + 0.3005), p(0), p(1), p(2), p(3)]
+        };
+        let rows: Vec<[f64; 5]> = (0..5400).map(|k| sensor(0.001 * f64::from(k))).collect();
+        let gauge = Gauge::made_up(&dam, rows.clone());
+        let metric = compared(&dam, &samples, &gauge);
+        // Ten readings a block.
+        let mean = |rows: &[[f64; 5]], k: usize| rows.iter().map(|row| row[k]).sum::<f64>() / 10.0;
+        is(metric(metrics::ARRIVAL.into()), 2.443 + 0.3, 0.011);
+        is(metric(metrics::ARRIVAL_MEASURED.into()), 2.443, 1e-3);
+        for (k, too_much) in [0.05, 0.10, 0.15, 0.20].into_iter().enumerate() {
+            is(metric(metrics::LEVEL_RMS[k].into()), 0.02, 1e-3);
+            is(metric(IMPULSE[k].at(1)), too_much, 0.015);
+            is(metric(IMPULSE[k].at(2.5)), too_much, 0.01);
+            let most = rows.chunks(10).map(|rows| mean(rows, k + 1)).fold(0.0, f64::max) / scale;
+            is(metric(metrics::PEAK[k].into()) / most, 1.0, 1e-9);
+        }
+        is(metric(LEVELS.rms.into()), 0.02, 1e-3);
+        is(
+            metric(metrics::FRONT_SPEED.into()) / metric(metrics::FRONT_SPEED_MEASURED.into()),
+            1.03,
+            0.01,
+        );
+        is(metric(metrics::FRONT_SPEED_MEASURED.into()), 1.515, 1e-3);
+        let thickness = tongue(&levels[3]);
+        let thicker: Curve = levels[3].iter().map(|(t, y)| (*t, y + 0.02)).collect();
+        is(metric(metrics::TONGUE.into()), tongue(&thicker) / thickness - 1.0, 0.02);
+        let p2: Curve =
+            rows.chunks(10).map(|rows| (mean(rows, 0) / unit, mean(rows, 2) / scale)).collect();
+        let left = noise(&p2, metric(metrics::ARRIVAL.into()) + 1.0);
+        is(metric(metrics::NOISE.into()) / left, 1.0, 0.01);
+        is(metric(metrics::NOISE_MEASURED.into()), 0.0201, 1e-4);
     }
 }

@@ -75,3 +75,56 @@ impl Ledger {
         record.profiles.insert("energy".into(), series);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::water::{Modern, method};
+    use harness::{context::Context, method::Parts};
+    use nalgebra::Vector2;
+    use solver::{Domain, Particle, Tait};
+
+    /// Water of three particles that do not see each other, raised and moving.
+    fn particles(medium: &Medium, height: f64, v: Vector2<f64>) -> Box<dyn Metered<()>> {
+        let place = |k: usize| Vector2::new(k as f64, height);
+        let particle = |k| Particle::fluid(place(k), v, 1000.0, 0.001 * (k + 1) as f64);
+        let particles = (0..3).map(particle).collect();
+        let parts = Parts::new(*medium, Domain::open(), particles, &Context::default());
+        let mut simulation = (method::<Modern>().build)(parts).expect("a scene");
+        simulation.advance(0.0, 1.0, &mut ());
+        simulation
+    }
+
+    #[test]
+    fn energy_that_no_term_gave_is_the_gap_and_works_are_integrals_over_the_scale() {
+        let medium = method::<Modern>().medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
+        let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
+        let mut ledger = Ledger::new(&medium);
+        // 6 kg/m: at rest; 0.2 m higher, 12 J/m; at 3 m/s, 27 J/m.
+        for (height, v) in [(0.0, 0.0), (0.2, 0.0), (0.0, 3.0)] {
+            ledger.sample(&mut *particles(&medium, height, Vector2::new(v, 0.0)));
+        }
+        assert!((ledger.rows[1][2] - 12.0).abs() < 1e-9 && (ledger.rows[2][1] - 27.0).abs() < 1e-9);
+        assert!((ledger.gap() - 27.0).abs() < 1e-9, "{}", ledger.gap());
+        // Each term at a power of its own for 3 s, seen at the end.
+        for time in [0.0, 1.0, 3.0] {
+            let powers: Vec<_> =
+                (1..).map(f64::from).zip(ITEMS).map(|(p, (name, _))| (name, p)).collect();
+            ledger.account.add(time, &powers);
+        }
+        let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
+        ledger.measure(50.0, "it", &mut record);
+        let value = |metric: MetricKey| record.value(metric).expect("a metric");
+        assert!((value(ENERGY_GAP) - 27.0 / 50.0).abs() < 1e-12);
+        for (k, metric) in [WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS]
+            .into_iter()
+            .enumerate()
+        {
+            assert!((value(metric) - 3.0 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");
+        }
+        // What a term gave is no gap.
+        ledger.rows.push([3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, -4.0]);
+        ledger.rows[2] = [1.0, 3.0, 0.0, 2.0, 3.0, 0.0, 0.0, 1.5, 0.0];
+        assert!((ledger.gap() - 12.0).abs() < 1e-9, "{}", ledger.gap());
+    }
+}
