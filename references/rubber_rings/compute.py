@@ -13,14 +13,13 @@ import package
 import ring
 
 SPEEDS = (0.059, 0.03)
-MESHES = {"hencky": (4, 8, 16), "neo_hookean": (4, 8, 16)}
+MESHES = {"hencky": (4, 8, 16), "neo_hookean": (4, 8, 16), "jaumann": (4, 8, 16)}
 FINER = dict(law="hencky", speed=0.059, layers=32, penalty=4.0, courant=0.7)  # a check of the above
 STIFFNESS, COURANT = 16.0, 0.5
 SHARED = 16  # the mesh on which the half step and the rigid contact run
 SEEDS, SEEDED = (1, 2, 3, 4, 5), 8  # runs from disturbed starts, on the mesh of so many elements
 TOO_FAST = 0.12
 APART = 5.0  # contacts closer in time than this belong to one phase
-LAWS = ("hencky", "neo_hookean", "saint_venant", "jaumann")
 LAW_MESHES = {"neo_hookean": 16, "saint_venant": 16, "jaumann": 16}  # compared with hencky on the same
 
 
@@ -33,7 +32,7 @@ def runs():
             listed += [dict(base, law=law, speed=speed, layers=layers) for layers in meshes]
         listed += [dict(base, law="hencky", speed=speed, layers=SHARED, courant=COURANT / 2)]
         listed += [dict(base, law="hencky", speed=speed, layers=SHARED, penalty=None)]
-        listed += [dict(base, law=law, speed=speed, layers=LAW_MESHES[law]) for law in LAWS[2:]]
+        listed += [dict(base, law=law, speed=speed, layers=LAW_MESHES[law]) for law in LAW_MESHES if law not in MESHES]
         listed += [dict(base, law="hencky", speed=speed, layers=SEEDED, seed=seed) for seed in SEEDS]
     listed += [FINER]
     # Faster: only until the inner faces meet, to show why it is not certified.
@@ -184,7 +183,7 @@ DECIMALS = {"v_c": 6, "force": 4, "impulse": 5, "kinetic": 6, "strain": 6}
 
 def series_rows(families):
     for family in families:
-        every = 1 if family.law == "hencky" else 2
+        every = 2 if family.law == "neo_hookean" else 1
         values = [series(run) for run in family.values(lambda run: run)]
         t = family.meshes[-1]["t"]
         wide = {key: widest(uncertainty([v[key] for v in values])) for key in values[0]}

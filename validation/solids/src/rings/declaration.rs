@@ -231,7 +231,10 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     let number = |metric| record.value(metric).unwrap_or(f64::NAN);
     match Fate::of(record) {
         None => (3, "diverged".into()),
-        Some(Fate::Whole) => (0, format!("whole; {}", sig(number(RESTITUTION), 2))),
+        Some(Fate::Whole) => {
+            let parted = record.value(RESTITUTION).map(|restitution| sig(restitution, 2));
+            (0, format!("whole; {}", parted.unwrap_or("in touch".into())))
+        }
         Some(Fate::Torn) => (1, format!("torn at {}", sig(number(TORN_AT), 2))),
         Some(Fate::InPieces) => (2, format!("{} pieces", number(PIECES_MOST))),
     }
@@ -254,7 +257,7 @@ fn fracture_map(tier: Tier) -> Map {
         id: "rubber-rings-fracture-map".into(),
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
         caption: "What becomes of the two rings over the speed of each and the spacing. Whole: each is one \
-                  piece with a hole, at each of 100 counts; the restitution follows. Torn: a ring is cut \
+                  piece with a hole, at each of 100 counts; the restitution follows, or that they still touch. Torn: a ring is cut \
                   through once, like a C, and one piece still; the time in L/c0 follows. In pieces: how many \
                   there are at most."
             .into(),

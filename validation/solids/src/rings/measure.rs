@@ -13,7 +13,7 @@ const SAMPLES: f64 = 800.0;
 const COUNTED_EVERY: usize = 8;
 /// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
 /// nearest one or two of the layers beside it.
-const NEIGHBOURS: f64 = 1.2;
+pub const NEIGHBOURS: f64 = 1.2;
 
 /// One ring at one time, in the frame whose x axis is the line of flight.
 #[derive(Clone, Copy, Debug, Default)]
@@ -168,7 +168,7 @@ impl<'a> Series<'a> {
     pub fn new(rings: &'a Rings) -> Self {
         let every = rings.settings.end / rings.c0 / SAMPLES;
         let wholeness = Wholeness::new(rings);
-        Self { rings, every, next: 0.0, samples: 0, wholeness, rows: Vec::new() }
+        Self { rings, every, next: every, samples: 0, wholeness, rows: Vec::new() }
     }
 
     /// Takes a sample: the ring on the right, whose centre has x > 0.
@@ -198,6 +198,11 @@ impl<'a> Series<'a> {
         ]);
     }
 
+    /// Time of the last sample \[L/c₀\].
+    pub fn last_time(&self) -> Option<f64> {
+        self.rows.last().map(|row| row[0])
+    }
+
     /// (t \[L/c0\], column number `k`) of every sample.
     pub fn points(&self, k: usize) -> Vec<(f64, f64)> {
         self.rows.iter().map(|row| (row[0], row[k])).collect()
@@ -214,7 +219,6 @@ impl<'a> Series<'a> {
         let column = |k: usize| self.rows.iter().map(move |row| row[k]);
         let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
         let speed = self.rings.settings.speed;
-        record.put(RESTITUTION, last[2] / speed);
         record.put(PIECES, last[5]);
         self.wholeness.measure(record);
         let stretched = self.rows.iter().max_by(|a, b| a[11].total_cmp(&b[11]));
@@ -226,20 +230,43 @@ impl<'a> Series<'a> {
         record.put(HEIGHT_MAX, column(4).fold(f64::NEG_INFINITY, f64::max));
         record.put(X_C_MIN, least(1));
         record.put(X_C_END, last[1]);
-        let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
-        record.put(ENERGY_LOST, 1.0 - energy(last) / energy(first));
-        let largest = self.rows.iter().map(energy).fold(0.0, f64::max);
-        record.put(ENERGY_GAINED, largest / energy(first) - 1.0);
-        let late = self.rows.iter().filter(|row| row[0] >= 0.9 * last[0]);
-        let pushed = late.map(|row| (row[2] - last[2]).abs()).fold(0.0, f64::max);
-        record.put(PUSHED_BY_ITSELF, pushed / speed);
         record.put(MIRROR, column(9).fold(0.0, f64::max));
+        if speed > 0.0 {
+            let late = self.rows.iter().filter(|row| row[0] >= 0.9 * last[0]);
+            let pushed = late.map(|row| (row[2] - last[2]).abs()).fold(0.0, f64::max);
+            record.put(PUSHED_BY_ITSELF, pushed / speed);
+            let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
+            record.put(ENERGY_LOST, 1.0 - energy(last) / energy(first));
+            let largest = self.rows.iter().map(energy).fold(0.0, f64::max);
+            record.put(ENERGY_GAINED, largest / energy(first) - 1.0);
+        } else {
+            for metric in [PUSHED_BY_ITSELF, ENERGY_LOST, ENERGY_GAINED] {
+                record.leave_out(metric, "the rings are at rest at the start");
+            }
+        }
+        self.measure_contact(last[2] / speed, record);
+    }
+
+    /// Metrics of contact; `restitution` is that of rings that have parted.
+    fn measure_contact(&self, restitution: f64, record: &mut Record) {
         let phases = self.phases();
         record.put(PHASES, phases.len() as f64);
+        match phases.last() {
+            Some(last) if last.is_over => record.put(RESTITUTION, restitution),
+            Some(_) => record.leave_out(RESTITUTION, "the rings still touch at the end"),
+            None => record.leave_out(RESTITUTION, "the rings never touch"),
+        }
         for (k, found) in phases.iter().enumerate().take(2) {
-            record.put(IMPULSE.at(phase(k)), found.impulse);
-            for (metric, time) in T_IMPULSE.iter().zip(found.times) {
-                record.put(metric.at(phase(k)), time);
+            if found.is_over {
+                record.put(IMPULSE.at(phase(k)), found.impulse);
+                for (metric, time) in T_IMPULSE.iter().zip(found.times) {
+                    record.put(metric.at(phase(k)), time);
+                }
+            } else {
+                record.leave_out(IMPULSE.at(phase(k)), NOT_OVER);
+                for metric in T_IMPULSE {
+                    record.leave_out(metric.at(phase(k)), NOT_OVER);
+                }
             }
         }
     }
@@ -247,11 +274,7 @@ impl<'a> Series<'a> {
     /// Phases of contact: where the force on a ring is above 1 % of its largest, with pauses of less
     /// than 5 L/c0 bridged, as in `references/rubber_rings`.
     pub fn phases(&self) -> Vec<Phase> {
-        // The last sample may stand at the time of the one before it.
-        let force = |w: &[[f64; COLUMNS]]| match w[1][0] - w[0][0] {
-            dt if dt > 0.0 => (w[1][2] - w[0][2]) / dt,
-            _ => 0.0,
-        };
+        let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
         let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
         let least = TOUCH * forces.iter().copied().fold(0.0, f64::max);
         let mut spans: Vec<[usize; 2]> = Vec::new();
@@ -261,10 +284,11 @@ impl<'a> Series<'a> {
                 _ => spans.push([k, k + 1]),
             }
         }
-        spans.into_iter().map(|[start, end]| self.phase(&self.rows[start..=end])).collect()
+        spans.into_iter().map(|span| self.phase(span)).collect()
     }
 
-    fn phase(&self, rows: &[[f64; COLUMNS]]) -> Phase {
+    fn phase(&self, [start, end]: [usize; 2]) -> Phase {
+        let rows = &self.rows[start..=end];
         let s = &self.rings.settings;
         let mass = std::f64::consts::PI * (s.outer * s.outer - s.inner * s.inner);
         let (first, last) = (rows[0][2], rows[rows.len() - 1][2]);
@@ -276,7 +300,8 @@ impl<'a> Series<'a> {
                 w[0][0] + part * (w[1][0] - w[0][0])
             })
         });
-        Phase { impulse: mass * (last - first), times }
+        let is_over = end + 1 < self.rows.len();
+        Phase { impulse: mass * (last - first), times, is_over }
     }
 }
 
@@ -287,7 +312,12 @@ pub struct Phase {
     pub impulse: f64,
     /// When [`SHARES`] of it have passed \[L/c₀\].
     pub times: [f64; 3],
+    /// Does it end before the run does?
+    pub is_over: bool,
 }
+
+/// Why a phase has no impulse.
+const NOT_OVER: &str = "the phase lasts until the end of the run";
 
 /// Shares of a phase's impulse whose times are kept.
 pub const SHARES: [f64; 3] = [0.01, 0.5, 0.99];

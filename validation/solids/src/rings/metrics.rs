@@ -3,7 +3,7 @@
 use base::record::{MetricKey, Record};
 
 base::metrics! {
-    RESTITUTION = "restitution" ["-"] "velocity of the centre of mass at the end/V";
+    RESTITUTION = "restitution" ["-"] "velocity of the centre of mass at the end/V, of rings that have touched and parted";
     PIECES = "pieces" ["1"] "connected pieces at the end, 1.5 dx; two rings are 2";
     PIECES_MOST = "pieces_most" ["1"] "most connected pieces at any time";
     HOLES_LEAST = "holes_least" ["1"]
@@ -29,11 +29,17 @@ base::metrics! {
     T_IMPULSE_1 = "t_impulse_1" ["L/c0"] "when this share (in %) of the phase's impulse has passed";
     T_IMPULSE_50 = "t_impulse_50" ["L/c0"] "when this share (in %) of the phase's impulse has passed";
     T_IMPULSE_99 = "t_impulse_99" ["L/c0"] "when this share (in %) of the phase's impulse has passed";
-    IMPULSE_ERROR = "impulse_error" ["-"] "|impulse of the phase - finite elements|/finite elements";
-    RESTITUTION_ERROR = "restitution_error" ["-"] "|restitution - finite elements|/finite elements";
-    WIDTH_MIN_ERROR = "width_min_error" ["-"] "|width_min - finite elements|/finite elements";
-    HEIGHT_MAX_ERROR = "height_max_error" ["-"] "|height_max - finite elements|/finite elements";
-    X_C_MIN_ERROR = "x_c_min_error" ["-"] "|x_c_min - finite elements|/finite elements";
+    IMPULSE_ERROR = "impulse_error" ["-"] "impulse of the phase/finite elements - 1";
+    CONTACT_BEGIN_ERROR = "contact_begin_error" ["L/c0"]
+        "when 1 % of the phase's impulse has passed, less that of finite elements";
+    CONTACT_END_ERROR = "contact_end_error" ["L/c0"]
+        "when 99 % of the phase's impulse has passed, less that of finite elements";
+    RESTITUTION_ERROR = "restitution_error" ["-"] "restitution/finite elements - 1";
+    WIDTH_MIN_ERROR = "width_min_error" ["-"] "width_min/finite elements - 1";
+    HEIGHT_MAX_ERROR = "height_max_error" ["-"] "height_max/finite elements - 1";
+    X_C_MIN_ERROR = "x_c_min_error" ["-"] "x_c_min/finite elements - 1";
+    X_C_END_ERROR = "x_c_end_error" ["L"] "x_c at the end less finite elements";
+    X_C_WORST = "x_c_worst" ["L"] "x_c less finite elements, when that is largest in magnitude";
     X_C_RMS = "x_c_rms" ["L"] "rms over the run of x_c - finite elements";
     V_C_RMS = "v_c_rms" ["c0"] "rms over the run of v_c - finite elements";
     WIDTH_RMS = "width_rms" ["L"] "rms over the run of width - finite elements";

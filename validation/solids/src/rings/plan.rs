@@ -1,10 +1,11 @@
 //! The runs: variants over spacings at the paper's speed, other speeds, a rotated scene.
 
 use super::{
-    LONG_STEPS, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings, extremes, metrics::*,
-    reference::Reference,
+    LONG_STEPS, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings, extremes, measure::NEIGHBOURS,
+    metrics::*, reference::Reference,
 };
 use crate::solid::faces;
+use base::functions::exp;
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricKey, MetricName},
@@ -145,8 +146,7 @@ fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
         "a ring is one piece: rubber does not break, and finite elements find no strain near that";
     gates.extend(whole(id, because).map(|gate| match (variant, spacing) {
         // M2 at the paper's speed; at spacing 0.2 L the rings hold all the same.
-        ("no-artificial-stress", 0.1) => gate.expected_to_fail(),
-        ("no-artificial-stress", _) => gate.reported(),
+        ("no-artificial-stress", ..0.15) => gate.expected_to_fail(),
         _ => gate,
     }));
     if variant == "no-artificial-stress" || variant == "componentwise" {
@@ -170,63 +170,174 @@ fn whole(id: &str, because: &str) -> [Gate; 2] {
 
 /// Distances from finite elements; no setting was chosen with those at 0.03 c0.
 fn reference_gates(id: &str, spacing: f64, speed: f64) -> Vec<Gate> {
-    let mut gates = Vec::new();
-    let first_order = "a surface of particles is known to about a spacing, and sums are short of \
-                       neighbours there: first order in dx/thickness, with a factor of a half";
-    let allowed = 0.5 * spacing;
-    for metric in [RESTITUTION_ERROR, HEIGHT_MAX_ERROR] {
-        gates.push(reference(id, metric, Bound::Below(allowed), first_order));
-    }
-    gates.extend(phase_gates(id, spacing, allowed));
-    let soft = "the same; a ring of few layers is too soft in bending, as published SPH beams are by 7 \
-                to 12 %, and is flattened more";
-    let width = reference(id, WIDTH_MIN_ERROR, Bound::Below(allowed), soft);
-    let known = flattened(spacing, speed);
-    gates.push(match known > allowed {
-        true => width.with_limitation(Bound::Below(known), FLATTENED),
-        false => width,
-    });
+    let settings = RingSettings { speed, ..RingSettings::default() };
+    let Some(exact) = Reference::of(&settings) else { return Vec::new() };
+    let layers = (1.0 / spacing).round() as usize;
+    let softer = faces::known_excess(layers, settings.h_over_dx);
+    let distance = Distance { id, spacing, exact, softer };
+    let mut gates = distance.of_extremes();
+    gates.extend(distance.of_path());
+    gates.extend(distance.of_contact());
+    gates.push(distance.of_stretch());
     gates
 }
 
-/// Why rings of few layers become too flat.
-const FLATTENED: &str = "velocity gradients and forces miss neighbours at faces, so that a ring of few layers is \
-                         too soft in bending and is flattened further than finite elements. The bound: the same \
-                         kinetic energy bends a ring by as much further as its period of bending is longer, \
-                         from sums over its layers, and 7 % as plates have it";
+/// A surface of particles is known to about a spacing.
+const FIRST_ORDER: &str = "a surface of particles is known to about a spacing, and sums are short of \
+                           neighbours there: first order in dx/thickness, with a factor of a half";
+/// Why rings of few layers bend too far and too slowly.
+const SOFT: &str = "velocity gradients and forces miss neighbours at faces, so that a ring of few layers is too \
+                    soft in bending. The bound: its period of bending is longer by what sums over its layers \
+                    say, and 7 % as plates have it";
 
-/// How much further than finite elements rings of this spacing \[L\] and speed \[c0\] can be flattened, over the
-/// least width.
-fn flattened(spacing: f64, speed: f64) -> f64 {
-    let settings = RingSettings { speed, ..RingSettings::default() };
-    let width = Reference::of(&settings).and_then(|reference| reference.number(WIDTH_MIN));
-    let further = faces::known_excess((1.0 / spacing).round() as usize, settings.h_over_dx);
-    width.map_or(f64::NAN, |(width, _)| further * (2.0 * settings.outer - width) / width)
+/// Gates on the distances of a run from finite elements.
+struct Distance<'a> {
+    /// Of the run.
+    id: &'a str,
+    /// \[L\].
+    spacing: f64,
+    exact: Reference,
+    /// Period of bending over that of an elastic ring, less 1, as far as it is known.
+    softer: f64,
 }
 
-/// Gates on the phases of contact.
-fn phase_gates(id: &str, spacing: f64, allowed: f64) -> Vec<Gate> {
-    let because = "finite elements touch twice, and fly free for 15 L/c0 in between";
-    let phases = reference(id, PHASES, Bound::Equals(2.0), because);
-    if spacing > 0.1 {
-        return vec![phases.with_limitation(
-            Bound::Within(1.0, 2.0),
-            "kernels of 5 layers reach 0.6 L across the gap that opens in between: the rings never let go",
-        )];
+impl Distance<'_> {
+    /// What first order allows, of 1.
+    fn allowed(&self) -> f64 {
+        0.5 * self.spacing
     }
-    let because = "the impulse of a phase is momentum given and taken while rings are in touch; particles \
-                   touch from 3 dx on, first order in dx";
-    let impulse = |k: usize| {
-        reference(id, IMPULSE_ERROR.at(phase(k)), Bound::Below(allowed), because).with_limitation(
-            Bound::Below(0.15),
-            "rings of 10 and 20 layers share the impulse otherwise: 5 to 6 % less in the first phase, 6 to \
-             7 % more in the second, at 0.03 c0 7 and 12 %. One error seen twice, for the sum goes with \
-             the restitution. Viscosity has a part in it (a quarter leaves 4 and 6 %), XSPH has none; the \
-             rest is not explained",
-        )
-    };
-    vec![phases, impulse(0), impulse(1)]
+
+    /// A gate on a number that may be too small and too large by as much.
+    fn near_zero(&self, metric: MetricKey, allowed: f64) -> Gate {
+        reference(self.id, metric, Bound::Within(-allowed, allowed), FIRST_ORDER)
+    }
+
+    /// When the contact of finite elements begins \[L/c0\].
+    fn touch(&self) -> f64 {
+        self.exact.phases[0][1].0
+    }
+
+    /// Restitution, largest height and least width.
+    fn of_extremes(&self) -> Vec<Gate> {
+        let allowed = self.allowed();
+        let width = self.near_zero(WIDTH_MIN_ERROR, allowed);
+        let least = self.exact.number(WIDTH_MIN).map_or(f64::NAN, |(width, _)| width);
+        // The same kinetic energy bends a ring by as much further as its period is longer.
+        let flatter = self.softer * (2.0 * RingSettings::default().outer / least - 1.0);
+        let width = match flatter > allowed {
+            true => width.with_limitation(Bound::Within(-flatter, allowed), SOFT),
+            false => width,
+        };
+        let [restitution, height] =
+            [RESTITUTION_ERROR, HEIGHT_MAX_ERROR].map(|metric| self.near_zero(metric, allowed));
+        vec![restitution, height, width]
+    }
+
+    /// The path of the centre of mass.
+    fn of_path(&self) -> [Gate; 2] {
+        let x: Vec<f64> = self.exact.columns[0].iter().map(|(x, _)| *x).collect();
+        let least = x.iter().copied().fold(f64::INFINITY, f64::min);
+        let allowed = self.allowed() * (x[0] - least + x[x.len() - 1] - least);
+        let last = self.exact.phases[self.exact.phases.len() - 1][3].0;
+        let speed = self.exact.columns[1][x.len() - 1].0;
+        // A ring that bends more slowly leaves later.
+        let behind = self.softer * (last - self.touch()) * speed;
+        [X_C_WORST, X_C_END_ERROR].map(|metric| {
+            self.near_zero(metric, allowed).with_limitation(Bound::Within(-behind, allowed), SOFT)
+        })
+    }
+
+    /// Begin, end and impulse of the phases of contact.
+    fn of_contact(&self) -> Vec<Gate> {
+        let because = "finite elements touch twice, and fly free for 15 L/c0 in between";
+        let phases = reference(self.id, PHASES, Bound::Equals(2.0), because);
+        let is_one = self.spacing > 0.1;
+        let phases = match is_one {
+            true => phases.with_limitation(
+                Bound::Within(1.0, 2.0),
+                "kernels of 5 layers reach 0.4 L across the gap, and finite elements are 0.28 L apart: \
+                 the rings never let go in between",
+            ),
+            false => phases,
+        };
+        let last = self.exact.phases.len() - 1;
+        let mut gates = vec![phases];
+        for k in 0..=last {
+            if k == 0 || !is_one {
+                gates.push(self.of_begin(k));
+            }
+            if k == last || !is_one {
+                gates.push(self.of_end(k));
+            }
+            if !is_one {
+                gates.push(self.of_impulse(k));
+            }
+        }
+        gates
+    }
+
+    /// The begin of a phase. A sample is taken every 0.25 L/c0.
+    fn of_begin(&self, k: usize) -> Gate {
+        let (found, [comes, _]) = (self.exact.phases[k][1].0, self.exact.within(self.spacing, k));
+        let late = self.allowed() * (found - self.touch());
+        let bound = Bound::Within(comes - found - late, late + 0.25);
+        reference(self.id, CONTACT_BEGIN_ERROR.at(phase(k)), bound, REACH)
+    }
+
+    /// The end of a phase.
+    fn of_end(&self, k: usize) -> Gate {
+        let (found, [_, leaves]) = (self.exact.phases[k][3].0, self.exact.within(self.spacing, k));
+        let since = found - self.touch();
+        let late = self.allowed() * since;
+        let bound = Bound::Within(-late, leaves - found + late);
+        let gate = reference(self.id, CONTACT_END_ERROR.at(phase(k)), bound, REACH);
+        match self.spacing > 0.1 {
+            true => gate
+                .with_limitation(Bound::Within(-late, leaves - found + self.softer * since), SOFT),
+            false => gate,
+        }
+    }
+
+    /// The impulse of a phase.
+    fn of_impulse(&self, k: usize) -> Gate {
+        let because = "the impulse of a phase is momentum given and taken while rings are in touch; particles \
+                       touch from 3 dx on, first order in dx";
+        let bound = Bound::Within(-self.allowed(), self.allowed());
+        let known = if k == 0 { (-0.09, self.allowed()) } else { (-self.allowed(), 0.14) };
+        let gate = reference(self.id, IMPULSE_ERROR.at(phase(k)), bound, because);
+        gate.with_limitation(Bound::Within(known.0, known.1), SHARED)
+    }
+
+    /// The largest distance of particles that were neighbours at the start.
+    fn of_stretch(&self) -> Gate {
+        let most = NEIGHBOURS * exp(self.exact.strain);
+        let because = "neighbours at the start are up to 1.2 dx apart, and no line of finite elements becomes \
+                       longer than by their largest principal strain";
+        let gate = reference(self.id, STRETCH_MOST, Bound::Below(most), because);
+        match self.spacing < 0.1 {
+            true => gate.with_limitation(
+                Bound::Below(2.0 * RingSettings::default().h_over_dx),
+                "a tear begins at the inner face of rings of 20 layers. The bound: neighbours farther \
+                 apart than the kernel reaches have let go",
+            ),
+            false => gate,
+        }
+    }
 }
+
+/// How impulses are shared between the phases.
+const SHARED: &str = "rings of 10 and 20 layers share the impulse otherwise: 6 and 5 % less in the first phase, 7 % \
+                      more in the second, at 0.03 c0 7 % less and 12 % more. One error seen twice, for the sum \
+                      goes with the restitution. Viscosity has a part in it (a quarter leaves 4 and 6 %), XSPH \
+                      has none; neither softer rings nor a softer contact do it in finite elements, and the rest \
+                      is not explained. The bound: the largest at two spacings and two speeds, and the 2 % by \
+                      which a quarter of the viscosity changes it";
+
+/// What particles do to the time of contact.
+const REACH: &str = "kernels reach 3 dx and particles stand dx/2 inside of the surface, so a ring is in touch \
+                     from a distance of dx from the plane on: between the times when finite elements come so \
+                     near, or leave so far, and those when they touch; and first order in dx/thickness of the \
+                     time since the first touch";
 
 const EXACT_MIRROR: &str = "the scene is its own mirror image to the last bit; sums take neighbours in \
                             another order, and round-off of 1e-16 grows while rings bend, the faster the \
@@ -256,6 +367,8 @@ const TORN_OPEN: &str = "M2 fails: at 0.12 c0 each rings of ten layers tear from
                          c0, and at 0.08 they hold";
 const TORN_FAST: &str = "M2 fails: at 0.2 c0 each rings of 5 and of 10 layers are cut through, at 62 and \
                          48 L/c0; from 0.09 c0 on others are as well";
+const TORN_IN_AXES: &str = "artificial stress component by component is weaker at 45 degrees to the axes: at \
+                            0.12 and 0.2 c0 each rings of 5 layers are cut through, at 106 and 100 L/c0";
 const BROKEN: &str = "at 0.2 c0 each the paper's artificial stress no longer holds rings of ten layers \
                       together: a piece of each comes off";
 
@@ -280,8 +393,9 @@ fn fast_gates(variant: &str, spacing: f64, speed: f64) -> Vec<Gate> {
         ("seed", 0.12, 0.1) => [pieces, torn(holes, TORN_OPEN)],
         ("seed", ..) => [pieces, holes],
         // M2: without artificial stress the tensile instability tears the rings.
-        ("no-artificial-stress", 0.12, _) => [pieces, holes].map(Gate::expected_to_fail),
-        _ => [pieces, holes].map(Gate::reported),
+        ("no-artificial-stress", 0.12.., _) => [pieces, holes].map(Gate::expected_to_fail),
+        ("componentwise", 0.12.., _) => [pieces, torn(holes, TORN_IN_AXES)],
+        _ => [pieces, holes],
     });
     if variant == "seed" && speed == 0.03 {
         gates.extend(reference_gates(id, spacing, speed));

@@ -2,8 +2,11 @@
 
 use super::{
     RingSettings,
-    measure::Series,
-    metrics::{self, COMPARED, IMPULSE_ERROR, RMS},
+    measure::{Phase, Series},
+    metrics::{
+        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, IMPULSE_ERROR, RMS, X_C_END_ERROR,
+        X_C_WORST, phase,
+    },
 };
 use base::{
     record::{MetricKey, Record},
@@ -26,6 +29,18 @@ fn column(table: &Table, name: &str, speed: f64) -> Result<Vec<(f64, f64)>, Refe
     Ok(rows(table, speed)?.into_iter().map(|k| (values[k], spread[k])).collect())
 }
 
+/// Largest principal logarithmic strain on the finest mesh at this speed.
+fn largest_strain(checks: &Table, speed: f64) -> Result<f64, ReferenceError> {
+    let (names, laws) = (checks.texts("check")?, checks.texts("law")?);
+    let (speeds, values) = (checks.optional("speed")?, checks.numbers("value")?);
+    let is_it = |k: &usize| {
+        let is_strain = names[*k] == "greatest principal logarithmic strain";
+        is_strain && laws[*k] == LAW && speeds[*k] == Some(speed)
+    };
+    // Coarse meshes come first.
+    Ok((0..checks.len()).rev().find(is_it).map_or(f64::NAN, |k| values[k]))
+}
+
 /// What finite elements say of one speed.
 #[derive(Clone, Debug)]
 pub struct Reference {
@@ -38,6 +53,22 @@ pub struct Reference {
     pub times: Vec<f64>,
     /// One list a column.
     pub columns: Vec<Vec<(f64, f64)>>,
+    /// Least distance of the ring from the plane at these times \[L\].
+    gap: Vec<f64>,
+    /// Largest principal logarithmic strain at any time and place \[-\].
+    pub strain: f64,
+}
+
+/// Why a run has no distance from finite elements.
+const NOT_COMPUTED: &str =
+    "finite elements have rings of 3 and 4 L, 0.22 K, at 0.059 and 0.03 c0, to 200 L/c0";
+
+/// Names the metrics that need a reference as absent.
+pub fn leave_out(record: &mut Record) {
+    let errors = COMPARED.map(|(_, error)| error);
+    for metric in errors.into_iter().chain(RMS).chain([X_C_WORST, X_C_END_ERROR]) {
+        record.leave_out(metric, NOT_COMPUTED);
+    }
 }
 
 impl Reference {
@@ -50,7 +81,8 @@ impl Reference {
         let default = RingSettings::default();
         let same_rings = (s.inner, s.outer, s.centre)
             == (default.inner, default.outer, default.centre)
-            && s.shear_modulus == default.shear_modulus;
+            && s.shear_modulus == default.shear_modulus
+            && s.end == default.end;
         if same_rings { Self::at(s.speed).ok().flatten() } else { None }
     }
 
@@ -75,7 +107,9 @@ impl Reference {
         let (impulse, early, half, late) = (impulse?, early?, half?, late?);
         let phase = |k: usize| [impulse[k], early[k], half[k], late[k]];
         let phases = (0..impulse.len()).map(phase).collect();
-        Ok(Some(Self { summary, phases, times, columns }))
+        let gap = column(series, "gap", speed)?.into_iter().map(|(gap, _)| gap).collect();
+        let strain = largest_strain(package.table("checks")?, speed)?;
+        Ok(Some(Self { summary, phases, times, columns, gap, strain }))
     }
 
     /// A number of the summary with its uncertainty.
@@ -85,47 +119,95 @@ impl Reference {
         Some((found.1, found.2))
     }
 
+    /// When the ring of finite elements comes within this distance \[L\] of the plane before phase `k`, and
+    /// when it is farther away again \[L/c₀\]. Where it never is farther between two phases, the time when it
+    /// is farthest.
+    pub fn within(&self, reach: f64, k: usize) -> [f64; 2] {
+        let start = |k: usize| self.phases.get(k).map_or(f64::INFINITY, |phase| phase[1].0);
+        let end = |k: usize| self.phases.get(k).map_or(f64::INFINITY, |phase| phase[3].0);
+        let gaps = |from: f64, to: f64| {
+            let all = self.times.iter().copied().zip(self.gap.iter().copied());
+            all.filter(move |(t, _)| from < *t && *t < to)
+        };
+        let before = if k == 0 { f64::NEG_INFINITY } else { end(k - 1) };
+        let farthest = |from, to| gaps(from, to).max_by(|a, b| a.1.total_cmp(&b.1));
+        let time = |found: Option<(f64, f64)>| found.map_or(f64::NAN, |(t, _)| t);
+        let far = |(_, gap): &(f64, f64)| *gap > reach;
+        let comes = gaps(before, start(k)).filter(far).last();
+        let leaves = gaps(end(k), start(k + 1)).find(far);
+        [
+            time(comes.or_else(|| farthest(before, start(k)))),
+            time(leaves.or_else(|| farthest(end(k), start(k + 1)))),
+        ]
+    }
+
     /// Adds the distances from the reference to the metrics of a run that has been measured.
     pub fn compare(&self, series: &Series, record: &mut Record) {
         for (quantity, error) in COMPARED {
             let (exact, found) = (self.number(quantity), record.value(quantity));
-            if let Some(((exact, _), found)) = exact.zip(found) {
-                record.put(error, (found / exact - 1.0).abs());
+            match exact.zip(found) {
+                Some(((exact, _), found)) => record.put(error, found / exact - 1.0),
+                None => record.leave_out(error, "the run has no number to compare"),
             }
         }
-        for (k, (exact, found)) in self.phases.iter().zip(series.phases()).enumerate() {
-            let error = (found.impulse / exact[0].0 - 1.0).abs();
-            record.put(IMPULSE_ERROR.at(metrics::phase(k)), error);
-        }
+        self.compare_phases(&series.phases(), record);
         for (k, rms) in RMS.into_iter().enumerate() {
-            record.put(rms, self.distance(k, series));
+            let distances = self.distances(k, series);
+            let squares = distances.iter().fold(0.0, |sum, distance| sum + distance * distance);
+            record.put(rms, (squares / distances.len() as f64).sqrt());
+        }
+        let path = self.distances(0, series);
+        let worst = path.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        record.put(X_C_WORST, worst.unwrap_or(f64::NAN));
+        record.put(X_C_END_ERROR, path.last().copied().unwrap_or(f64::NAN));
+    }
+
+    /// Begin, end and impulse of each phase. Of a run that has not as many phases, only the first begin and
+    /// the last end have a partner.
+    fn compare_phases(&self, found: &[Phase], record: &mut Record) {
+        let is_same = found.len() == self.phases.len();
+        let last = self.phases.len().saturating_sub(1);
+        for (k, [(impulse, _), (begin, _), _, (end, _)]) in self.phases.iter().enumerate() {
+            let [first, partner] =
+                [found.first(), if k == last { found.last() } else { found.get(k) }];
+            let mut put = |metric: MetricKey, found: Option<f64>| match found {
+                Some(error) => record.put(metric.at(phase(k)), error),
+                None => record.leave_out(metric.at(phase(k)), UNLIKE),
+            };
+            let of = |has_partner: bool| partner.filter(|found| has_partner && found.is_over);
+            let beginning = if k == 0 { first } else { of(is_same) };
+            put(CONTACT_BEGIN_ERROR, beginning.map(|found| found.times[0] - begin));
+            put(CONTACT_END_ERROR, of(is_same || k == last).map(|found| found.times[2] - end));
+            put(IMPULSE_ERROR, of(is_same).map(|found| found.impulse / impulse - 1.0));
         }
     }
 
-    /// Root mean square of the distance over the common times.
-    fn distance(&self, column: usize, series: &Series) -> f64 {
+    /// Less finite elements, at each of their times that the samples enclose.
+    fn distances(&self, column: usize, series: &Series) -> Vec<f64> {
         let found = series.points(1 + column);
-        let (mut sum, mut count) = (0.0, 0.0);
-        for (t, (exact, _)) in self.times.iter().zip(&self.columns[column]) {
-            let Some(k) = found.iter().position(|(time, _)| time >= t) else { continue };
-            let (a, b) = (found[k.max(1) - 1], found[k.max(1)]);
-            let value = a.1 + (b.1 - a.1) * ((t - a.0) / (b.0 - a.0));
-            sum += (value - exact).powi(2);
-            count += 1.0;
-        }
-        (sum / count).sqrt()
+        let between = |(t, (exact, _)): (&f64, &(f64, f64))| {
+            let k = found.iter().position(|(time, _)| time >= t)?.max(1);
+            let [(t0, y0), (t1, y1)] = [found[k - 1], found[k]];
+            Some(y0 + (y1 - y0) * ((t - t0) / (t1 - t0)) - exact)
+        };
+        self.times.iter().zip(&self.columns[column]).filter_map(between).collect()
     }
 }
+
+/// Why a phase is not compared.
+const UNLIKE: &str =
+    "the rings have another number of phases than finite elements, or still touch at the end";
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rings::metrics::RESTITUTION;
 
     #[test]
     fn two_speeds_have_a_reference_and_others_have_none() {
         let at = |speed| Reference::of(&RingSettings { speed, ..RingSettings::default() });
         let paper = at(0.059).expect("the paper's speed");
-        let (restitution, spread) = paper.number(metrics::RESTITUTION).expect("measured");
+        let (restitution, spread) = paper.number(RESTITUTION).expect("measured");
         assert!((restitution - 0.7956).abs() < 1e-3 && spread < 0.01);
         assert!(at(0.03).is_some() && at(0.12).is_none());
         assert!((paper.phases[0][0].0 - 1.19383).abs() < 1e-4 && paper.phases.len() == 2);

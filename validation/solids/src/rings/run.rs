@@ -7,7 +7,7 @@ use super::{
     budget::Budget,
     measure::{self, Series},
     metrics::{COURANT, MOMENTUM},
-    reference::Reference,
+    reference::{self, Reference},
 };
 use crate::solid::digest;
 use base::functions::hypot;
@@ -63,6 +63,7 @@ pub fn measured(
     let mut series = Series::new(rings);
     let mut budget = Budget::default();
     simulation.advance(0.0, rings.dt, &mut ());
+    series.sample(0.0, &measure::along_flight(rings, &*simulation));
     budget.sample(rings, &*simulation);
     keep(rings, &*simulation, 0.0, context, &mut record);
     let stops = stops(rings, context);
@@ -84,11 +85,14 @@ pub fn measured(
     )?;
     let particles = measure::along_flight(rings, &*simulation);
     if status == Status::Completed {
-        series.sample(simulation.time(), &particles);
+        if series.last_time() < Some(simulation.time() * rings.c0) {
+            series.sample(simulation.time(), &particles);
+        }
         series.measure(&mut record);
         budget.measure(rings, &mut record);
-        if let Some(reference) = Reference::of(&rings.settings) {
-            reference.compare(&series, &mut record);
+        match Reference::of(&rings.settings) {
+            Some(reference) => reference.compare(&series, &mut record),
+            None => reference::leave_out(&mut record),
         }
         record.put(MOMENTUM, measure::momentum_error(rings, &particles));
         record.put(COURANT, rings.dt * (rings.cp + rings.v) / rings.medium.h);

@@ -345,7 +345,13 @@ fn collisions_table(tier: Tier, runs: &Runs) -> Table {
         .percent("error of restitution", "-", RESTITUTION_ERROR, 1.0)
         .percent("of least width", "-", WIDTH_MIN_ERROR, 1.0)
         .percent("of largest height", "-", HEIGHT_MAX_ERROR, 1.0)
-        .number("rms of centre", "L", X_C_RMS)
+        .number(
+            "end of contact less finite elements",
+            "L/c0",
+            CONTACT_END_ERROR.at(metrics::phase(1)),
+        )
+        .number("centre less finite elements", "L", X_C_WORST)
+        .number("at the end", "L", X_C_END_ERROR)
         .percent("energy lost", "-", ENERGY_LOST, 1.0)
         .metric(["distance from mirror image", "dx"], MIRROR, |x| Cell::sci(x, 2))
         .ended()
