@@ -251,11 +251,6 @@ fn bounds_of_solids(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
             ("energy_change", Bound::Within(-0.5, 0.01), little),
             ("stress_ratio", Bound::Within(0.97, 1.1), "rho c_p V, 5 % more at V = 0.1 c_p"),
             ("contact_time_ratio", Bound::Within(0.9, 1.03), "2 L/c_p, 5 % less at V = 0.1 c_p"),
-            (
-                "restitution",
-                Bound::Within(-1.0, 1.0),
-                "bars on one lattice are one bar, and swing between their two exchanges",
-            ),
         ],
         "spinning_disk" => vec![
             (

@@ -68,7 +68,7 @@ base::metrics! {
          less 1";
     CONTACT_TIME_RATIO = "contact_time_ratio" ["-"] "the same time over 2 L/c_p";
     EXCHANGE = "exchange" ["-"] "largest speed of the left bar backwards over V";
-    RESTITUTION = "restitution" ["-"] "relative speed of the bars at the end over 2 V";
+    RESTITUTION = "restitution" ["-"] "relative speed of the bars at the end over 2 V, of bars with a gap";
     MOMENTUM_ERROR = "momentum_error" ["-"] "|change of sum m v|/sum m |v| at the start";
     ENERGY_CHANGE = "energy_change" ["-"] "kinetic and strain energy, end over start less 1";
 }
@@ -222,18 +222,36 @@ impl Motion {
         let (s, speed, wave) = (&self.settings, self.settings.speed(), self.settings.wave());
         let Material { density, bulk, shear } = s.material();
         let exact = Impact::new(bulk, shear, density, speed);
-        let stress = self.stress.unwrap_or(f64::NAN);
         let [from, to] = EXCHANGED.map(|share| self.passes(2, (1.0 - 2.0 * share) * speed));
         let time = (to - from) / (EXCHANGED[1] - EXCHANGED[0]);
         let last = self.series.last().copied().unwrap_or([f64::NAN; 4]);
         let least = self.series.iter().map(|row| row[2]).fold(f64::INFINITY, f64::min);
         let linear = density * wave * speed;
-        record.put(STRESS_ERROR, stress / exact.stress - 1.0);
-        record.put(STRESS_RATIO, stress / linear);
-        record.put(CONTACT_TIME_ERROR, time * exact.speed / (2.0 * s.length) - 1.0);
-        record.put(CONTACT_TIME_RATIO, time * wave / (2.0 * s.length));
+        match self.stress {
+            Some(stress) => {
+                record.put(STRESS_ERROR, stress / exact.stress - 1.0);
+                record.put(STRESS_RATIO, stress / linear);
+            }
+            None => {
+                for metric in [STRESS_ERROR, STRESS_RATIO] {
+                    record.leave_out(metric, "the left bar does not come to rest");
+                }
+            }
+        }
+        if time.is_finite() {
+            record.put(CONTACT_TIME_ERROR, time * exact.speed / (2.0 * s.length) - 1.0);
+            record.put(CONTACT_TIME_RATIO, time * wave / (2.0 * s.length));
+        } else {
+            for metric in [CONTACT_TIME_ERROR, CONTACT_TIME_RATIO] {
+                record.leave_out(metric, "less than 90 % of the velocity is exchanged");
+            }
+        }
         record.put(EXCHANGE, -least / speed);
-        record.put(RESTITUTION, (last[3] - last[2]) / (2.0 * speed));
+        if s.gap > 0.0 {
+            record.put(RESTITUTION, (last[3] - last[2]) / (2.0 * speed));
+        } else {
+            record.leave_out(RESTITUTION, "bars on one lattice are one bar and do not part");
+        }
     }
 }
 

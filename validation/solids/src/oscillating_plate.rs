@@ -58,7 +58,7 @@ base::metrics! {
     PERIOD_EXCESS = "period_excess" ["-"]
         "period over 2 pi (12 rho (1 - nu^2)/(E H^2))^(1/2) (L/1.875)^2, less 1";
     AMPLITUDE_RATIO = "amplitude_ratio" ["-"]
-        "largest height of the tip over its first speed/omega of thin-plate theory";
+        "largest height of the tip over its first speed times period/(2 pi)";
     ENERGY_CHANGE = "energy_change" ["-"]
         "kinetic and strain energy of the free particles, end over start less 1";
 }
@@ -170,22 +170,32 @@ impl Tip {
         };
         self.series.windows(2).filter_map(passes).collect()
     }
+
+    /// \[s\]; none if the tip does not pass its height of rest.
+    fn period(&self) -> Option<f64> {
+        match self.passes()[..] {
+            [half] => Some(2.0 * half),
+            [_, whole, ..] => Some(whole),
+            [] => None,
+        }
+    }
 }
 
 impl Watch for Tip {
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
-        let passes = self.passes();
-        let period = match passes[..] {
-            [half] => 2.0 * half,
-            [_, whole, ..] => whole,
-            [] => f64::NAN,
-        };
-        let theory = thin_plate_period(&self.settings);
         let highest = self.series.iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max);
-        let speed = self.settings.speed();
-        record.put(PERIOD, period);
-        record.put(PERIOD_EXCESS, period / theory - 1.0);
-        record.put(AMPLITUDE_RATIO, highest * TAU / (theory * speed));
+        match self.period() {
+            Some(period) => {
+                record.put(PERIOD, period);
+                record.put(PERIOD_EXCESS, period / thin_plate_period(&self.settings) - 1.0);
+                record.put(AMPLITUDE_RATIO, highest * TAU / (period * self.settings.speed()));
+            }
+            None => {
+                for metric in [PERIOD, PERIOD_EXCESS, AMPLITUDE_RATIO] {
+                    record.leave_out(metric, "the tip does not pass its height of rest again");
+                }
+            }
+        }
         let after = Energy::of(simulation, &self.material).total();
         record.put(ENERGY_CHANGE, after / self.energy - 1.0);
         let profile = Profile::of_rows(&[("t", "s"), ("tip", "m")], &self.series);
@@ -204,6 +214,10 @@ const FACES: &str = "velocity gradients are not corrected, so that (11) sees les
 const BARE: &str = "the same at faces, and more the finer the plate is, 35 % and 42 % with 5 and 10 \
     particles: without viscosity and artificial stress, motion at the scale of the spacing takes up the \
     energy. Why it grows with n is not known; the bound is the 7 points of a doubling more";
+
+/// Why coarse plates end with less energy than they began with.
+const LOSES: &str = "artificial viscosity takes energy, the more the coarser the plate is: 8.2 % with 5 particles \
+    through the thickness and 2.4 % with 10. The bound: 8.5 % with 4 (--set n=4)";
 
 /// Why the finest plate ends with more energy than it began with.
 const GAINS: &str = "artificial stress gives energy to particles in tension, in proportion to the stress, \
@@ -239,21 +253,24 @@ fn swing(variant: &str, n: usize) -> Planned {
     let amplitude = OSCILLATING_PLATE.gate(
         &id,
         AMPLITUDE_RATIO,
-        Bound::Within(0.85, 1.5),
+        Bound::Within(0.9, 1.02),
         Evidence::Theory,
-        "a plate that starts at v swings to v/omega: as much larger than 1 as its period is longer, 1.0 to \
-         1.5 here, and smaller by what viscosity takes in a quarter of a period",
+        "a plate that starts at v swings to v T/(2 pi), no farther but for the 2 % by which thin-plate theory \
+         has another first mode, and less far by what the first quarter of a period takes of the energy: \
+         a fifth of it is a tenth of the amplitude",
     );
-    let amplitude = if variant == "bare" { amplitude.reported() } else { amplitude };
     let energy = OSCILLATING_PLATE.gate(
         &id,
         ENERGY_CHANGE,
-        Bound::Below(0.01),
+        Bound::Within(-0.01, 0.01),
         Evidence::Invariant,
-        "nothing drives the plate: its energy does not rise",
+        "nothing drives the plate and nothing in an elastic body dissipates: its energy stays",
     );
-    let energy =
-        if n >= 20 { energy.with_limitation(Bound::Below(0.5 * 0.3 / 0.7), GAINS) } else { energy };
+    let energy = match (variant, n) {
+        ("bare", _) => energy,
+        (_, 20..) => energy.with_limitation(Bound::Within(-0.01, 0.5 * 0.3 / 0.7), GAINS),
+        _ => energy.with_limitation(Bound::Within(-0.086, 0.01), LOSES),
+    };
     Planned::new(swing_spec(variant, n)).judged(vec![period, amplitude, energy])
 }
 
@@ -314,7 +331,7 @@ fn study(tier: Tier, runs: &Runs) -> Study {
         .changed("settings", &OSCILLATING_PLATE)
         .metric(["period", "s"], PERIOD, |period| Cell::num(period, 4))
         .metric(["longer than theory", ""], PERIOD_EXCESS, |excess| Cell::percent(excess, 3))
-        .number("amplitude over that of theory", "", AMPLITUDE_RATIO)
+        .number("amplitude over v T/(2π)", "", AMPLITUDE_RATIO)
         .percent("energy, change", "", ENERGY_CHANGE, 1.0)
         .num(["time", "s"], |r| Cell::seconds(r.cost.cpu_s))
         .table(caption, runs.records(swings(tier).into_iter().map(|planned| planned.spec)));
@@ -344,7 +361,7 @@ fn incompressible(tier: Tier, runs: &Runs) -> String {
         let lost = excess(record);
         let swing = sig(record.value(AMPLITUDE_RATIO)?, 3);
         let steps = sig(record.cost.steps as f64 / rubber.cost.steps as f64, 2);
-        Some(format!("{ratio}: {lost}, swings {swing} of theory, {steps} times the steps"))
+        Some(format!("{ratio}: {lost}, swings {swing} of v T/(2π), {steps} times the steps"))
     };
     let list = RATIOS.into_iter().filter_map(other).collect::<Vec<String>>().join("; ");
     let base = excess(rubber);

@@ -56,6 +56,8 @@ base::metrics! {
     RIM_STRAIN = "rim_strain" ["-"] "root mean square of the same for the other particles";
     ANGULAR_MOMENTUM_DRIFT = "angular_momentum_drift" ["-"]
         "|angular momentum at the end over that at the start less 1|, a revolution";
+    ANGULAR_MOMENTUM_TENTH = "angular_momentum_tenth" ["-"]
+        "angular momentum after a tenth of a revolution over that at the start, less 1";
     STRESS_DRIFT = "stress_drift" ["-"] "(mean S:S)^(1/2) at the end over rho U^2, a revolution";
     LARGEST_STRESS = "largest_stress" ["-"] "largest (mean S:S)^(1/2) over rho U^2";
     ENERGY_DRIFT = "energy_drift" ["-"] "change of energy, a revolution";
@@ -65,6 +67,8 @@ base::metrics! {
 
 /// Samples of the series.
 const SAMPLES: f64 = 200.0;
+/// When the angular momentum is looked at first, of a revolution.
+const TENTH: f64 = 0.1;
 
 impl Problem for DiskSettings {
     const NAME: &'static str = "spinning_disk";
@@ -175,6 +179,16 @@ impl Watch for History {
         let (material, speed) = (self.material, self.settings.speed());
         let scale = material.density * speed * speed;
         metrics(&self.series, self.settings.end, scale, record);
+        if self.settings.end > TENTH {
+            let time = TENTH / self.settings.end * self.settings.end();
+            let spin = momentum_at(&self.series, time);
+            record.put(ANGULAR_MOMENTUM_TENTH, spin / self.series[0][1] - 1.0);
+        } else {
+            record.leave_out(
+                ANGULAR_MOMENTUM_TENTH,
+                "the run is not longer than a tenth of a revolution",
+            );
+        }
         let ([inside, rim], dt) = self.first.unwrap_or(([f64::NAN; 2], 1.0));
         let scale = 2.0 * material.shear * speed / self.settings.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
@@ -195,6 +209,15 @@ fn first_row(particles: &[Particle<Symmetric>]) -> ([f64; 5], f64) {
             ]
         });
     ([0.0, spin, energy, 0.0, radius / mass], mass)
+}
+
+/// Angular momentum at a time \[s\], between two samples of the series; NaN outside of it.
+fn momentum_at(series: &[[f64; 5]], time: f64) -> f64 {
+    let around = series.windows(2).find(|w| w[0][0] <= time && time <= w[1][0]);
+    around.map_or(f64::NAN, |w| {
+        let [a, b] = [w[0], w[1]];
+        a[1] + (b[1] - a[1]) * ((time - a[0]) / (b[0] - a[0]))
+    })
 }
 
 fn metrics(series: &[[f64; 5]], revolutions: f64, scale: f64, record: &mut Record) {
@@ -231,6 +254,10 @@ const RIM: &str = "the velocity gradient in (11) is a sum over neighbours that i
     which are not central, brake the disk. It is of space and not of time; \
     the drift falls with finer spacing, but slower than the share of the rim";
 
+/// How fast a disk is braked at first.
+const BRAKED: &str = "The bound: falling at least as the width of the rim, dx/R, from what disks of 4 spacings lose \
+    in a tenth of a revolution (--set n=4 --set end=0.2), 1.9 % without viscosity and 13 % with it";
+
 /// How far the angular momentum can be from what it was.
 const REVERSED: &str = "The bound: L^2 is at most 2 I T, and the energy grows by 5 % at most, so that a disk \
     that springs back has not lost more than 2.1 of what it had";
@@ -250,6 +277,7 @@ fn spin(variant: &str, n: usize) -> Planned {
     let gate = |metric, bound, because| {
         SPINNING_DISK.gate(&run, metric, bound, Evidence::Invariant, because)
     };
+    let braked = if variant == "bare" { 0.08 } else { 0.53 };
     let gates = vec![
         gate(
             MOMENTUM_ERROR,
@@ -263,14 +291,13 @@ fn spin(variant: &str, n: usize) -> Planned {
             "on a lattice whose neighbours are all there M is a number times the unit matrix, so a \
              rotation has no strain: round-off of a sum of 28 neighbours over the phase W dt of 1e-3",
         ),
-        Gate::new(
-            format!("spinning_disk.{run}.angular_momentum_bounded"),
-            ANGULAR_MOMENTUM_DRIFT,
-            Bound::Below(2.2),
-            Evidence::Invariant,
-            "L^2 is at most 2 I T, and neither the radius nor the energy can grow by more than some per \
-             cent: between -1.1 and 1.1 of the start, a change by 2.1; more is energy from nowhere",
-        ),
+        gate(
+            ANGULAR_MOMENTUM_TENTH,
+            Bound::Within(-0.001, 0.001),
+            "a free body keeps its angular momentum; 1 % a revolution is what two rings that collide and \
+             turn by a fraction of one would not notice",
+        )
+        .with_limitation(Bound::Within(-braked / n as f64, 0.001), format!("{RIM}. {BRAKED}")),
         gate(
             ANGULAR_MOMENTUM_DRIFT,
             Bound::Below(0.01),
