@@ -6,19 +6,16 @@ use solver::{Domain, Limits, Particle, Symmetric};
 use std::f64::consts::TAU;
 
 use super::RingSettings;
-use crate::solid::Material;
+use crate::solid::{Material, step_limit};
 use harness::{
     case::{Rules, RunError},
     context::Context,
     method::{Medium, Method, Parts},
     simulate,
 };
-use maths::theory::time_step;
 
 /// More steps or particles than anyone waits for, and the settings that decide on them.
 const MOST: [(f64, &str); 2] = [(1e7, "end, dt, courant or spacing"), (2e6, "spacing or outer")];
-/// Side of the periodic box whose waves give the limit of the time step.
-const LIMIT_BOX: usize = 24;
 
 /// The numbers of one run.
 #[derive(Clone, Debug)]
@@ -72,9 +69,7 @@ impl Rings {
             exponent: s.exponent as u32,
             ..material.medium(method, [dx, h])
         };
-        let alpha = s.alpha * c0 / cp;
-        let waves = time_step::Medium { c0: cp, h, nu: 0.0, alpha, delta: 0.0 };
-        let dt_limit = method.step_limit([s.h_over_dx, 0.01], LIMIT_BOX, &waves);
+        let dt_limit = step_limit(method, &material, &medium, s.h_over_dx);
         let dt = s.dt.unwrap_or(s.courant * h / (cp + v));
         let rings = Self { settings: s.clone(), material, medium, c0, cp, v, dt, dt_limit };
         let particles = TAU * (s.outer * s.outer - s.inner * s.inner) / (dx * dx);

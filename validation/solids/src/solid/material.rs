@@ -1,6 +1,7 @@
 //! The elastic material, and the medium that it is at a spacing.
 
 use harness::method::{Medium, Method};
+use maths::theory::time_step;
 use solver::{Linear, Symmetric, Tait};
 
 /// An isotropic elastic solid: small-strain moduli, plane strain with the 1/3 of three dimensions.
@@ -43,6 +44,26 @@ impl Material {
         let eos = Tait { density, sound_speed, gamma: 7, background: 0.0 };
         Medium { shear_modulus: self.shear, ..method.medium(eos, lengths) }
     }
+}
+
+/// Side of the periodic box whose waves give the limit of the time step.
+const LIMIT_BOX: usize = 24;
+
+/// The largest stable step of a method on a stress-free lattice of this material, with artificial viscosity on
+/// every pair \[s\]: with α = 1 about 1.1 h/c_p for the leapfrog.
+///
+/// Its fastest waves run at c_p. The c of the artificial viscosity is that of the equation of state, c₀, so its
+/// α counts as α c₀/c_p of c_p.
+pub fn step_limit<D: ?Sized>(
+    method: &Method<Symmetric, D>,
+    material: &Material,
+    medium: &Medium,
+    h_over_dx: f64,
+) -> f64 {
+    let wave = material.p_wave_speed();
+    let alpha = medium.alpha * material.sound_speed() / wave;
+    let waves = time_step::Medium { c0: wave, h: medium.h, nu: 0.0, alpha, delta: 0.0 };
+    method.step_limit([h_over_dx, 0.01], LIMIT_BOX, &waves)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use solver::{
     Symmetric, walls::Walls,
 };
 
-use super::{Bare, Material, Plain, Rubber};
+use super::{Bare, Material, Plain, Rubber, step_limit};
 use base::{
     record::{self, Record},
     settings::Settings,
@@ -17,7 +17,7 @@ use harness::{
     method::{Boundary, Medium, Method, Parts},
     runner, simulate,
 };
-use maths::theory::time_step::{self, Integrator};
+use maths::theory::time_step::Integrator;
 
 /// Settings by [`solid_settings!`](crate::solid_settings!).
 pub trait SharedSettings: Settings + 'static {
@@ -97,18 +97,14 @@ fn leave_out(settings: &mut impl Settings, names: &[&str]) {
     }
 }
 
-/// The time step C h/(c_p + V) for speeds of V unless it is given, and the limit of the leapfrog on a
-/// lattice: about 1.87 h/c_p without artificial viscosity, and 1.03 h/c_p with α = 1.
+/// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
 fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
     let (material, medium) = (settings.material(), settings.medium(method, settings.dx()));
-    let (h, c0) = (medium.h, material.p_wave_speed());
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
     let [dt, courant] = settings.given_step();
-    let dt = dt.unwrap_or(courant.unwrap_or(usual) * h / (c0 + settings.speed()));
-    let waves = time_step::Medium { c0, h, nu: 0.0, alpha: medium.alpha, delta: 0.0 };
-    let modes = method.modes([settings.h_over_dx(), 0.01], 24, &waves);
-    // The predictor-corrector amplifies undamped sound at every dt: what it does is measured.
-    let dt_limit = time_step::time_step_limit(&modes, Integrator::Leapfrog);
+    let courant = courant.unwrap_or(usual);
+    let dt = dt.unwrap_or(courant * medium.h / (material.p_wave_speed() + settings.speed()));
+    let dt_limit = step_limit(method, &material, &medium, settings.h_over_dx());
     Rules { dt, dt_limit, sound_speed: material.sound_speed() }
 }
 
@@ -121,7 +117,7 @@ fn run<P: Problem>(
 ) -> Result<Record, RunError> {
     let (rules, end) = (rules(method, settings), settings.end());
     let most = [(1e7, "end or dt"), (1e6, "n, length or thickness")];
-    simulate::check("leapfrog", rules, end, settings.count(), most, context)?;
+    simulate::check(method.integrator, rules, end, settings.count(), most, context)?;
     let medium = settings.medium(method, settings.dx());
     let (dt, material) = (rules.dt, settings.material());
     let numbers = [
