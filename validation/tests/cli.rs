@@ -14,6 +14,7 @@ use base::{
 };
 use harness::case::{Case, spec};
 use harness::runner::Context;
+use harness::size::Size;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use serde_json::Value;
@@ -120,7 +121,7 @@ fn senseless_settings_are_refused_with_their_range() {
         ("re=fast", "re takes a number in the range 1e-9 to 1e6 [-], not \"fast\""),
         ("re=", "setting re takes a number"),
         ("wall_curvature=1", "true or false"),
-        ("dt=1e-15", "the number of time steps would be"),
+        ("dt=1e-15", "--allow-long"),
         ("columns=2", "impossible scene"),
     ] {
         refused(&["run", "couette", "--set", set], &[says]);
@@ -130,9 +131,45 @@ fn senseless_settings_are_refused_with_their_range() {
     refused(&["verify", "--threads", "1025"], &["1..=1024"]);
     refused(&["run", "couette", "--vtk", "0"], &["1..=9999"]);
     let many = ["run", "couette", "--rows", "2000", "--set", "columns=100000"];
-    refused(&many, &["number of particles", "at most", "rows or columns"]);
+    refused(&many, &["MB; without --allow-long", "at most", "rows or columns"]);
     let unused = ["run", "couette", "--variant", "seed", "--set", "shift=0.1"];
     refused(&unused, &["\"shift\" has no effect in variant seed"]);
+}
+
+/// These stepped in silence, some for thousands of hours, or were ended by the system for their memory.
+#[test]
+fn a_run_of_years_or_of_more_memory_than_there_is_is_refused() {
+    let runs: [(&str, &[&str], &[&str]); 6] = [
+        ("acoustic_wave", &["dt=1e-15"], &["\u{a0}h on one core", "span, dt"]),
+        ("shear_wave", &["nu=1e-300"], &["--allow-long", "nu or n"]),
+        ("elliptic_drop", &["dt=1e-15", "n=6"], &["\u{a0}h on one core", "end, dt"]),
+        ("elliptic_drop", &["strain=1e-9", "dt=1e-15"], &["--allow-long", "end, dt"]),
+        ("couette", &["rows=2000", "columns=10000"], &["11655 MB", "rows or columns"]),
+        ("extremes", &["steps=100000000", "n=400"], &["--allow-long", "time step"]),
+    ];
+    for (case, sets, says) in runs {
+        let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+        let start = Instant::now();
+        refused(&[&["run", case][..], &sets].concat(), says);
+        assert!(start.elapsed() < Duration::from_secs(5), "{case}: {:?}", start.elapsed());
+    }
+    // More than 10^10 steps are refused whatever is allowed.
+    let asked = ["run", "acoustic_wave", "--set", "dt=1e-15", "--allow-long"];
+    refused(&asked, &["the number of time steps would be"]);
+}
+
+#[test]
+fn a_run_says_what_it_takes_before_its_first_step() {
+    let message = stderr(&touchstone(&short("couette", &[])));
+    let first = message.lines().next().unwrap_or_default();
+    assert!(first.starts_with("estimate: ") && first.contains(" on one core and "), "{first}");
+    assert_eq!(message.matches("estimate: ").count(), 1, "{message}");
+    // Of a run that is one simulation, the steps are those that are made.
+    let steps = |text: &str| text.split(' ').nth(1).and_then(|word| word.parse::<f64>().ok());
+    let estimate = steps(first).unwrap();
+    let output = touchstone(&short("couette", &["--json"]));
+    let made = Record::from_json(&stdout(&output)).unwrap().cost.steps as f64;
+    assert!((estimate / made - 1.0).abs() < 0.1, "{estimate} against {made}");
 }
 
 #[test]
@@ -499,6 +536,53 @@ fn small(case: &dyn Case, variant: &str) -> Vec<String> {
     let all = ["rows=5", "columns=0", "layers=6", "n=8", "spacing=0.5"].map(String::from);
     let is_known = |set: &String| case.settings(variant, std::slice::from_ref(set)).is_ok();
     all.into_iter().filter(is_known).collect()
+}
+
+/// The ends of the range of each setting of each case, in each case's first variant and its last: refused in
+/// words, or begun after its size was told.
+#[test]
+fn the_ends_of_every_range_are_refused_or_run() {
+    let (mut begun, mut refusals) = (0, 0);
+    for case in cases::CASES {
+        let variants = case.variants();
+        // The most particles that are allowed take half a minute to be placed, so that end is left out.
+        let is_large = |end: &String| case.name() == "elliptic_drop" && end == "n=2000";
+        let ends = case.fields().iter().flat_map(|field| {
+            let words = field.range.split(' ').filter(|word| word.parse::<f64>().is_ok());
+            words.map(move |end| format!("{}={end}", field.name))
+        });
+        let ends: Vec<String> = ends.filter(|end| !is_large(end)).collect();
+        for (variant, end) in [variants.first(), variants.last()]
+            .into_iter()
+            .flatten()
+            .flat_map(|v| ends.iter().map(move |e| (v.name, e)))
+        {
+            let mut set = small(*case, variant);
+            set.push(end.clone());
+            let (stop, told) = (AtomicBool::new(false), AtomicUsize::new(0));
+            let tell = |size: &Size| {
+                assert!(!size.is_too_much(), "{} {set:?}: {size}", case.name());
+                told.fetch_add(1, Ordering::Relaxed);
+                stop.store(true, Ordering::Relaxed); // after the first step
+            };
+            let context =
+                Context { interrupt: Some(&stop), estimate: Some(&tell), ..Context::default() };
+            let run = |spec: RunSpec| case.run(&RunSpec { allow_unstable: true, ..spec }, &context);
+            match spec(*case, variant, &set).and_then(run) {
+                Err(error) => {
+                    refusals += 1;
+                    assert!(error.to_string().len() > 10, "{} {set:?}", case.name());
+                }
+                Ok(record) => {
+                    begun += 1;
+                    let told = told.load(Ordering::Relaxed);
+                    let is_none = record.cost.steps == 0; // an experiment without a simulation
+                    assert!(told == 1 || is_none, "{} {variant} {set:?}: {told}", case.name());
+                }
+            }
+        }
+    }
+    assert!(begun > 200 && refusals > 50, "{begun} runs, {refusals} refusals");
 }
 
 /// Whatever is set is refused in words or runs; the runs are stopped after a few steps.

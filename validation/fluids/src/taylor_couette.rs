@@ -65,8 +65,8 @@ type With<W> = Modern<(Pressure<Tait>, Viscosity), Continuity, W>;
 const NAME: &str = "taylor_couette";
 const INTERFACE: &str = "interface-wall";
 const EXTRAPOLATING: &str = "extrapolating-wall";
-/// More time steps and more particles than these are refused.
-const MOST: [(f64, &str); 2] = [(1e8, "end, viscous or layers"), (1e7, "layers or ratio")];
+/// The settings on which time and memory of a run depend.
+const DECISIVE: &str = "end, viscous, layers or ratio";
 
 base::metrics! {
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles, u the velocity around the axis";
@@ -106,8 +106,8 @@ impl Cylinders {
         }
         let cylinders = Self { settings: s.clone(), flow, medium, rules };
         let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
-        let (end, particles) = (cylinders.end(), area / (dx * dx));
-        simulate::check(method.integrator, rules, end, particles, MOST, context)?;
+        let extent = [cylinders.end(), area / (dx * dx)];
+        simulate::check(method, &medium, rules, extent, DECISIVE, context)?;
         Ok(cylinders)
     }
 

@@ -40,10 +40,8 @@ pub struct UnitFlow {
     skin: f64,
 }
 
-/// More time steps than this are refused.
-const MOST_STEPS: f64 = 1e8;
-/// More particles than this are refused.
-const MOST_PARTICLES: f64 = 1e7;
+/// The settings on which time and memory of a run depend.
+const DECISIVE: &str = "end, courant, c0 or n";
 /// Particles of the box whose waves give the limit of dt: even, so that it has the stiffest ones.
 pub const LIMIT_BOX: usize = 32;
 
@@ -64,8 +62,7 @@ impl UnitFlow {
         let waves = medium.waves(&method.uses);
         let dt_limit = method.step_limit([h / dx, eta2_over_h2], LIMIT_BOX, &waves);
         let rules = Rules { dt, dt_limit, sound_speed };
-        let most = [(MOST_STEPS, "end, courant, c0 or n"), (MOST_PARTICLES, "n")];
-        simulate::check(method.integrator, rules, end, area / (dx * dx), most, context)?;
+        simulate::check(method, &medium, rules, [end, area / (dx * dx)], DECISIVE, context)?;
         let medium = Medium { acceleration: Vector2::new(force, 0.0), ..medium };
         Ok(Self { medium, support: method.support * h, rules, speed, skin: skin * h })
     }

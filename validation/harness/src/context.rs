@@ -5,6 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use base::{mutation::Mutation, spec::RunSpec};
 
+use crate::size::Size;
+
 /// What a progress bar shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
@@ -23,6 +25,8 @@ pub struct Progress {
 pub struct Context<'a> {
     /// Run even with a time step beyond the theoretical limit.
     pub allow_unstable: bool,
+    /// Run even if it is estimated to take more time or memory than a run may.
+    pub allow_long: bool,
     /// Threads inside the run, 1 for serial; 0 counts as 1.
     pub threads: usize,
     /// Frames for ParaView: the folder, and how many.
@@ -33,6 +37,8 @@ pub struct Context<'a> {
     pub keep_particles: bool,
     /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
     pub pictures: Option<usize>,
+    /// Told what the run is estimated to take, before its first step.
+    pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
     /// Called with the progress of the run.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     /// Set by another thread to stop the run.
@@ -40,9 +46,10 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// The context for computing rules, which give the time step whether or not it is stable.
+    /// The context for computing rules, which give the time step whether or not it is stable, and however
+    /// many there are.
     pub fn of_rules() -> Self {
-        Self { allow_unstable: true, ..Self::default() }
+        Self { allow_unstable: true, allow_long: true, ..Self::default() }
     }
 
     /// The same context for this run, with what its spec says about the time step and about what is kept.

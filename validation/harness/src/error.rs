@@ -6,7 +6,10 @@ use base::{
 };
 use thiserror::Error;
 
-use crate::frames::FrameError;
+use crate::{
+    frames::FrameError,
+    size::{MOST_BYTES, MOST_SECONDS, Size},
+};
 
 /// Why a run was refused before its first step.
 #[derive(Debug, Error)]
@@ -84,10 +87,10 @@ pub enum RunError {
         /// Name of the integrator.
         integrator: &'static str,
     },
-    /// More steps or particles than a run may have.
+    /// Something that a case does not allow to be so large.
     #[error("{what} would be {value:.3e}, but must be at most {most:.1e}; change {setting}")]
     TooMuch {
-        /// Steps or particles.
+        /// What it is.
         what: &'static str,
         /// How many.
         value: f64,
@@ -95,6 +98,17 @@ pub enum RunError {
         most: f64,
         /// The settings on which this number depends.
         setting: &'static str,
+    },
+    /// More time or memory than a run may take.
+    #[error(
+        "the run would be {size}; without --allow-long at most {} and {} MB are allowed; change {settings}",
+        report::seconds(MOST_SECONDS), report::sig(1e-6 * MOST_BYTES, 2)
+    )]
+    TooLong {
+        /// What it would take.
+        size: Size,
+        /// The settings on which this depends.
+        settings: &'static str,
     },
     /// The solver refuses the scene.
     #[error("the settings make an impossible scene: {0}")]

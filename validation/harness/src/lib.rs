@@ -27,6 +27,7 @@ pub mod rules;
 pub mod runner;
 pub mod runs;
 pub mod simulate;
+pub mod size;
 pub mod store;
 pub mod studies;
 pub mod study;

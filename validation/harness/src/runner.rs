@@ -10,7 +10,7 @@ use cpu_time::{ProcessTime, ThreadTime};
 use solver::{Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
-use crate::{error::RunError, frames::Frames};
+use crate::{error::RunError, frames::Frames, size::Size};
 
 /// Wall time after which it is shown again how far a run is.
 const SHOW_EVERY: Duration = Duration::from_millis(200);
@@ -130,8 +130,24 @@ impl<X: Numbers> Run<'_, X> {
     }
 }
 
-/// More time steps than this are refused, whatever the case.
+/// More time steps than this are refused, whatever is allowed.
 const MOST_STEPS: f64 = 1e10;
+
+/// Refuses a run that takes more time or memory than a run may, unless the context allows it, and more than
+/// 10¹⁰ time steps in any case.
+///
+/// # Errors
+/// What it would take, and the settings on which this depends.
+pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Result<(), RunError> {
+    if size.is_too_much() && !context.allow_long {
+        return Err(RunError::TooLong { size, settings });
+    }
+    if size.steps.is_nan() || size.steps > MOST_STEPS {
+        let (what, value, most) = ("the number of time steps", size.steps, MOST_STEPS);
+        return Err(RunError::TooMuch { what, value, most, setting: settings });
+    }
+    Ok(())
+}
 
 /// Steps through `times` \[s\], ascending; `at(simulation, k)` is called at the k-th. Returns how the
 /// run ended, and its cost: that of the stepping, and separately that of the observers and of `at`.
@@ -139,7 +155,7 @@ const MOST_STEPS: f64 = 1e10;
 /// `observer` is called after every step. Frames show `pressure` \[Pa\] as a function of density \[kg/m³\].
 ///
 /// # Errors
-/// If there would be more than 10¹⁰ time steps, or a frame cannot be written: the run stops at once.
+/// If it would take more time or memory than a run may, or a frame cannot be written: the run stops at once.
 pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
     simulation: &mut D,
     dt: f64,
@@ -151,10 +167,10 @@ pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
 ) -> Result<(Status, Cost), RunError> {
     let dt = context.mutation.map_or(dt, |mutation| dt * mutation.factor_of(Constant::TimeStep));
     let end = times.last().copied().unwrap_or_default();
-    let value = (end - simulation.time()) / dt;
-    if value.is_nan() || value > MOST_STEPS {
-        let (what, setting) = ("the number of time steps", "the end or the time step");
-        return Err(RunError::TooMuch { what, value, most: MOST_STEPS, setting });
+    let size = Size::of(simulation, ((end - simulation.time()) / dt).max(times.len() as f64));
+    check_size(size, "the end, the time step or the spacing", context)?;
+    if let Some(tell) = context.estimate {
+        tell(&size);
     }
     let mut watch = Watch { context, end, shown: Instant::now() };
     watch.show(simulation, dt);

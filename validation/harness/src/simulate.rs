@@ -10,9 +10,10 @@ use solver::{EquationOfState as _, Numbers, Particle, Stepper};
 use crate::{
     context::Context,
     error::RunError,
-    method::{Method, Parts},
+    method::{Medium, Method, Parts},
     rules::Rules,
-    runner::drive,
+    runner::{check_size, drive},
+    size::Size,
 };
 
 /// Name of the kernel among what a run chose.
@@ -55,28 +56,31 @@ pub fn check_step(
     Ok(())
 }
 
-/// Refuses a step as [`check_step`] does, and more steps to the end
-/// \[s\] or more particles than anyone waits for: `most` of each, and the settings that decide on them.
+/// The size of a run of so many steps and particles, before these are made.
+pub fn size<X, D: ?Sized>(
+    method: &Method<X, D>,
+    medium: &Medium,
+    steps_and_particles: [f64; 2],
+) -> Size {
+    Size::new(steps_and_particles, method.support * medium.h / medium.dx)
+}
+
+/// Refuses a step as [`check_step`] does, and a run to the end \[s\] with so many particles as
+/// [`check_size`](crate::runner::check_size) does, before the particles are made. `settings` are those on
+/// which its size depends.
 ///
 /// # Errors
 /// What is too large, by how much, and which settings to change.
-pub fn check(
-    integrator: &'static str,
+pub fn check<X, D: ?Sized>(
+    method: &Method<X, D>,
+    medium: &Medium,
     rules: Rules,
-    end: f64,
-    particles: f64,
-    most: [(f64, &'static str); 2],
+    [end, particles]: [f64; 2],
+    settings: &'static str,
     context: &Context,
 ) -> Result<(), RunError> {
-    check_step(integrator, rules, context)?;
-    let steps = end / rules.dt;
-    let counts = [("the number of time steps", steps), ("the number of particles", particles)];
-    match counts.into_iter().zip(most).find(|((_, value), (most, _))| value > most) {
-        Some(((what, value), (most, setting))) => {
-            Err(RunError::TooMuch { what, value, most, setting })
-        }
-        None => Ok(()),
-    }
+    check_step(method.integrator, rules, context)?;
+    check_size(size(method, medium, [end / rules.dt, particles]), settings, context)
 }
 
 /// Steps a scene to `end` \[s\] by `dt` \[s\] and completes its record: how it ended, what it took, and the

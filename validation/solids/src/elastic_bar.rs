@@ -465,7 +465,7 @@ mod tests {
         assert!(matches!(refused("plain", "xsph=0.5"), Some(RunError::Unused { .. })));
         assert!(matches!(refused("plain", "poisson=0.5"), Some(RunError::Setting(_))));
         assert!(matches!(refused("plain", "courant=2"), Some(RunError::TimeStep { .. })));
-        assert!(matches!(refused("bare", "end=1e5"), Some(RunError::TooMuch { .. })));
+        assert!(matches!(refused("bare", "end=1e5"), Some(RunError::TooLong { .. })));
         assert!(matches!(refused("nothing", "n=40"), Some(RunError::Variant { .. })));
     }
 

@@ -454,6 +454,6 @@ mod tests {
         let refused = |set| solid::refused(&OSCILLATING_PLATE, "plain", set);
         assert!(matches!(refused("n=1"), Some(RunError::Setting(_))));
         assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));
-        assert!(matches!(refused("thickness=1e-9"), Some(RunError::TooMuch { .. })));
+        assert!(matches!(refused("thickness=1e-9"), Some(RunError::TooLong { .. })));
     }
 }

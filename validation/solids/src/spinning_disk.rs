@@ -419,6 +419,6 @@ mod tests {
         assert!(matches!(refused("n=2"), Some(RunError::Setting(_))));
         assert!(matches!(refused("speed=0.9"), Some(RunError::Setting(_))));
         assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));
-        assert!(matches!(refused("courant=1e-6"), Some(RunError::TooMuch { .. })));
+        assert!(matches!(refused("dt=1e-15"), Some(RunError::TooLong { .. })));
     }
 }

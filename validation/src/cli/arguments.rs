@@ -60,8 +60,18 @@ fn threads() -> clap::builder::RangedI64ValueParser<u16> {
 }
 
 /// The options of `run` that apply to a single run and are refused with `--specs`.
-const OF_ONE_RUN: [&str; 9] =
-    ["case", "variant", "set", "rows", "out", "overwrite", "vtk", "json", "allow_unstable"];
+const OF_ONE_RUN: [&str; 10] = [
+    "case",
+    "variant",
+    "set",
+    "rows",
+    "out",
+    "overwrite",
+    "vtk",
+    "json",
+    "allow_unstable",
+    "allow_long",
+];
 
 #[derive(Debug, Args)]
 pub struct Run {
@@ -97,6 +107,9 @@ pub struct Run {
     /// Run even with a time step beyond the theoretical limit
     #[arg(long)]
     pub allow_unstable: bool,
+    /// Run even if it is estimated to take more than 24 hours on one core or 4 GB of memory
+    #[arg(long)]
+    pub allow_long: bool,
     /// Make the runs of this file of JSON lines, as `touchstone plan` prints them; `-` is standard input
     #[arg(long, value_name = "FILE", requires = "store", conflicts_with_all = OF_ONE_RUN)]
     pub specs: Option<PathBuf>,

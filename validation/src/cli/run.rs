@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Once;
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
 use base::{
@@ -15,6 +16,7 @@ use harness::{
     context::{Context, Progress},
     plan,
     runs::Judged,
+    size::Size,
 };
 use serde_json::Value;
 use validation::cases;
@@ -104,11 +106,19 @@ fn compute(
     world: &World,
 ) -> Result<Record, Failure> {
     let bar = Bar::of_a_run();
+    let told = Once::new(); // a run may consist of several simulations, the first of which is the longest
+    let tell = |size: &Size| {
+        if !arguments.json {
+            told.call_once(|| output::say(&format!("estimate: {size}")));
+        }
+    };
     let show = |progress: Progress| bar.show_run(progress);
     let frames = folder.zip(arguments.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
     let context = Context {
         threads: rayon::current_num_threads(),
         frames,
+        allow_long: arguments.allow_long,
+        estimate: Some(&tell),
         progress: Some(&show),
         interrupt: Some(world.interrupt),
         ..Context::default()

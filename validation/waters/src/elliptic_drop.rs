@@ -65,8 +65,8 @@ base::metrics! {
 /// Samples of a run.
 const SAMPLES: usize = 80;
 
-/// More steps or particles than anyone waits for, and the settings that decide on them.
-const MOST: [(f64, &str); 2] = [(1e9, "end, dt, courant, c0 or n"), (2e7, "n")];
+/// The settings on which time and memory of a run depend.
+const DECISIVE: &str = "end, dt, courant, c0 or n";
 
 type Plain = Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
 
@@ -216,8 +216,8 @@ fn run(
 ) -> Result<Record, RunError> {
     let drop = Drop::new(s, method);
     let (medium, end) = (&drop.medium, s.end / s.strain);
-    let count = drop.particles.len() as f64;
-    simulate::check(method.integrator, drop.rules, end, count, MOST, context)?;
+    let extent = [end, drop.particles.len() as f64];
+    simulate::check(method, medium, drop.rules, extent, DECISIVE, context)?;
     let parts = Parts::new(*medium, Domain::open(), drop.particles.clone(), context);
     let mut simulation = (method.build)(parts)?;
     let [_, numbers @ ..] = drop.rules.numbers([s.h_over_dx, medium.dx]);

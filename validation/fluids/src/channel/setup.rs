@@ -9,7 +9,7 @@ use harness::{
     case::{Rules, RunError},
     context::Context,
     method::{FirstRow, Medium, Method, Parts},
-    simulate,
+    runner, simulate,
 };
 use maths::exact::{couette::Couette, poiseuille::Poiseuille};
 
@@ -62,14 +62,10 @@ pub struct Setup {
     pub dt_limit: f64,
 }
 
-/// More steps than this are refused.
-const MOST_STEPS: f64 = 1e9;
-/// Settings that decide on the number of steps, and on that of particles.
-const DECISIVE: [&str; 2] = ["end, dt, c0 or rows", "rows or columns"];
+/// The settings on which time and memory of a run depend.
+const DECISIVE: &str = "end, dt, c0, rows or columns";
 /// A sound speed above the range of the setting is refused, whatever it follows from \[m/s\].
 const MOST_SOUND: f64 = 1e6;
-/// More particles than this are refused.
-const MOST_PARTICLES: f64 = 2e7;
 
 impl Setup {
     /// Follows the rules for a method.
@@ -128,10 +124,12 @@ impl Setup {
             let (what, setting) = ("the sound speed", "c0, re, nu or width");
             return Err(RunError::TooMuch { what, value, most: MOST_SOUND, setting });
         }
-        let end = self.time(self.settings.end);
-        let particles = self.settings.rows as f64 * self.columns as f64;
-        let most = [(MOST_STEPS, DECISIVE[0]), (MOST_PARTICLES, DECISIVE[1])];
-        simulate::check(method.integrator, self.rules(), end, particles, most, context)
+        let Self { settings: s, medium, columns, .. } = self;
+        simulate::check_step(method.integrator, self.rules(), context)?;
+        let (steps, particles) = (self.time(s.end) / self.dt, s.rows as f64 * *columns as f64);
+        let size = simulate::size(method, medium, [steps, particles]);
+        let size = if s.watch_mode { size.sampled_at_every_step() } else { size };
+        runner::check_size(size, DECISIVE, context)
     }
 
     /// What the rules chose.

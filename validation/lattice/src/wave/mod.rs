@@ -331,6 +331,6 @@ mod tests {
     fn a_shear_wave_that_never_decays_is_refused() {
         let spec = SHEAR_WAVE.spec("cubic-pc", |s| s.nu = 1e-300);
         let refused = SHEAR_WAVE.run(&spec, &Context::default());
-        assert!(matches!(refused, Err(RunError::TooMuch { .. })));
+        assert!(matches!(refused, Err(RunError::TooLong { .. })));
     }
 }

@@ -116,7 +116,11 @@ impl Wave {
             _ => period,
         };
         let end = s.span * time;
-        let dt = end / (end / dt).ceil().max(4.0);
+        let steps = (end / dt).ceil().max(4.0);
+        let size =
+            simulate::size(method, &medium, [steps, (s.n * s.n) as f64]).sampled_at_every_step();
+        runner::check_size(size, "span, dt, courant, viscous, nu or n", context)?;
+        let dt = end / steps;
         Ok(Self {
             settings: s.clone(),
             polarisation,

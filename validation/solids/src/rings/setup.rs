@@ -14,8 +14,8 @@ use harness::{
     simulate,
 };
 
-/// More steps or particles than anyone waits for, and the settings that decide on them.
-const MOST: [(f64, &str); 2] = [(1e7, "end, dt, courant or spacing"), (2e6, "spacing or outer")];
+/// The settings on which time and memory of a run depend.
+const DECISIVE: &str = "end, dt, courant, spacing or outer";
 
 /// The numbers of one run.
 #[derive(Clone, Debug)]
@@ -73,7 +73,8 @@ impl Rings {
         let dt = s.dt.unwrap_or(s.courant * h / (cp + v));
         let rings = Self { settings: s.clone(), material, medium, c0, cp, v, dt, dt_limit };
         let particles = TAU * (s.outer * s.outer - s.inner * s.inner) / (dx * dx);
-        simulate::check(method.integrator, rings.rules(), s.end / c0, particles, MOST, context)?;
+        let extent = [s.end / c0, particles];
+        simulate::check(method, &medium, rings.rules(), extent, DECISIVE, context)?;
         Ok(rings)
     }
 

@@ -116,9 +116,11 @@ fn run<P: Problem>(
     context: &Context,
 ) -> Result<Record, RunError> {
     let (rules, end) = (rules(method, settings), settings.end());
-    let most = [(1e7, "end or dt"), (1e6, "n, length or thickness")];
-    simulate::check(method.integrator, rules, end, settings.count(), most, context)?;
+    simulate::check_step(method.integrator, rules, context)?;
     let medium = settings.medium(method, settings.dx());
+    let size =
+        simulate::size(method, &medium, [end / rules.dt, settings.count()]).sampled_at_every_step();
+    runner::check_size(size, "end, dt, n, length or thickness", context)?;
     let (dt, material) = (rules.dt, settings.material());
     let numbers = [
         ("h/dx", settings.h_over_dx()),

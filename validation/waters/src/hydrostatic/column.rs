@@ -18,8 +18,8 @@ use maths::{exact, geometry};
 const FREEBOARD: usize = 4;
 /// Particles of the box whose waves give the limit of dt.
 const LIMIT_BOX: usize = 32;
-/// More steps or particles than anyone waits for, and the settings that decide on them.
-const MOST: [(f64, &str); 2] = [(1e8, "end, courant or rows"), (1e7, "rows or columns")];
+/// The settings on which time and memory of a run depend.
+const DECISIVE: &str = "end, courant, rows or columns";
 
 /// The numbers of one run, SI units.
 pub struct Column {
@@ -69,8 +69,8 @@ impl Column {
         let rules = Rules { dt: s.courant * h / fastest, dt_limit, sound_speed: c0 };
         let first = method.first_row.fluid();
         let column = Self { settings: s.clone(), exact, medium, rules, first };
-        let particles = s.rows as f64 * s.columns as f64;
-        simulate::check(method.integrator, rules, column.end(), particles, MOST, context)?;
+        let extent = [column.end(), s.rows as f64 * s.columns as f64];
+        simulate::check(method, &medium, rules, extent, DECISIVE, context)?;
         Ok(column)
     }
 
