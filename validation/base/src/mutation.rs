@@ -58,10 +58,6 @@ pub enum Constant {
     DensityDiffusion,
     /// particle shifting
     Shifting,
-    /// guard against division by zero in the viscous term
-    Eta2,
-    /// curvature of the velocity profile at walls of mirror particles
-    WallCurvature,
     /// how far a particle may move before neighbour lists are built again
     ListLifetime,
 }
@@ -97,8 +93,6 @@ impl Constant {
             Self::Xsph => "xsph",
             Self::DensityDiffusion => "density_diffusion",
             Self::Shifting => "shifting",
-            Self::Eta2 => "eta2",
-            Self::WallCurvature => "wall_curvature",
             Self::ListLifetime => "list_lifetime",
         }
     }

@@ -143,7 +143,10 @@ mod tests {
             [|s| s.re = 30.0, |s| s.crest = 0.5, |s| s.flux = 0.5];
         for refused in others.map(rules) {
             let words = refused.expect_err("refused");
-            assert!(words.contains("from_reference is true") && words.contains("re = 10"), "{words}");
+            assert!(
+                words.contains("from_reference is true") && words.contains("re = 10"),
+                "{words}"
+            );
         }
     }
 }

@@ -59,7 +59,8 @@ fn mean_square(a: &[f64], b: &[f64]) -> f64 {
 
 /// Mean over the points of the variance of the mean: that of the means of batches over their number.
 fn variance_of_mean(samples: &Samples) -> f64 {
-    let batch = |k: usize| mean(&samples[k * samples.len() / BATCHES..(k + 1) * samples.len() / BATCHES]);
+    let batch =
+        |k: usize| mean(&samples[k * samples.len() / BATCHES..(k + 1) * samples.len() / BATCHES]);
     let batches: Vec<Vec<f64>> = (0..BATCHES).map(batch).collect();
     let all = mean(&batches);
     let squares: f64 = batches.iter().map(|batch| mean_square(batch, &all)).sum();
@@ -124,7 +125,8 @@ mod tests {
             assert!((noisy.left / exact - 1.0).abs() < 0.25, "{} {exact}", noisy.left);
         }
         // What does not slow down is not steady, however little it moves in a window.
-        let ramp = |k: usize| (0..40).map(|j| vec![1e-5 * (40 * k + j) as f64; 3]).collect::<Vec<_>>();
+        let ramp =
+            |k: usize| (0..40).map(|j| vec![1e-5 * (40 * k + j) as f64; 3]).collect::<Vec<_>>();
         let [a, b, c] = [0, 1, 2].map(ramp);
         let left = Steadiness::of([&a, &b, &c]).expect("enough samples").left;
         assert!((left / (9.0 * 40.0 * 1e-5) - 1.0).abs() < 0.2, "{left}");
@@ -136,9 +138,7 @@ mod tests {
         // batch to batch, which is a variance of 0.01 of a batch and of 0.01/5 of a mean of five.
         let jump = [0.1, -0.1, 0.1, -0.1, 0.0];
         let window = |k: usize| -> Vec<Vec<f64>> {
-            let at = |j: usize| {
-                vec![0.3 * k as f64 + jump[j / 8], 0.4 * k as f64 + jump[j / 8]]
-            };
+            let at = |j: usize| vec![0.3 * k as f64 + jump[j / 8], 0.4 * k as f64 + jump[j / 8]];
             (0..40).map(at).collect()
         };
         let [a, b, c] = [0, 1, 2].map(window);

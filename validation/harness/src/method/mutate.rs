@@ -29,7 +29,6 @@ pub fn mutate<X>(parts: &mut Parts<X>) {
     medium.xsph *= of(Constant::Xsph);
     medium.diffusion *= of(Constant::DensityDiffusion);
     medium.shift *= of(Constant::Shifting);
-    medium.eta2_over_h2 *= of(Constant::Eta2);
     let stretch = Vector2::new(1.0, of(Constant::Height));
     for particle in particles {
         let own = if particle.role == Role::Fluid { Constant::Speed } else { Constant::WallSpeed };
@@ -40,7 +39,6 @@ pub fn mutate<X>(parts: &mut Parts<X>) {
     }
     for mirror in mirrors {
         mirror.velocity *= of(Constant::WallSpeed);
-        mirror.curvature *= of(Constant::WallCurvature);
         mirror.point.component_mul_assign(&stretch);
     }
 }
@@ -77,14 +75,12 @@ mod tests {
             xi: 0.3,
             diffusion: 0.4,
             shift: 0.6,
-            eta2_over_h2: 0.01,
             ..method.medium(Tait::new(1000.0, 20.0), [0.1, 0.15])
         };
         let fluid = Particle::fluid(Vector2::new(0.2, 0.3), Vector2::new(1.0, 2.0), 1000.0, 0.01);
         let wall = fluid.clone().with_role(Role::Wall);
         let context = Context { mutation, ..Context::default() };
-        let mut wall_at = PlaneWall::new(Vector2::new(0.0, 1.0), -Vector2::y(), Vector2::x());
-        wall_at.curvature = Vector2::x();
+        let wall_at = PlaneWall::new(Vector2::new(0.0, 1.0), -Vector2::y(), Vector2::x());
         Parts {
             mirrors: vec![wall_at],
             ..Parts::new(medium, Domain::open(), vec![fluid, wall], &context)
@@ -96,11 +92,11 @@ mod tests {
         let m = parts.medium;
         let mut all = vec![m.nu, m.shear_modulus, m.acceleration.y, m.wall_acceleration.y, m.alpha];
         all.extend([m.beta, m.xsph, m.xi, m.diffusion, m.shift, m.h, m.density, m.sound_speed]);
-        all.extend([m.eos.density, m.eos.sound_speed, m.eta2_over_h2]);
+        all.extend([m.eos.density, m.eos.sound_speed]);
         for p in &parts.particles {
             all.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density, p.mass]);
         }
-        all.extend(parts.mirrors.iter().flat_map(|w| [w.point.y, w.velocity.x, w.curvature.x]));
+        all.extend(parts.mirrors.iter().flat_map(|w| [w.point.y, w.velocity.x]));
         all
     }
 
@@ -130,8 +126,6 @@ mod tests {
             (Constant::Xsph, 1),
             (Constant::DensityDiffusion, 1),
             (Constant::Shifting, 1),
-            (Constant::Eta2, 1),
-            (Constant::WallCurvature, 1),
             (Constant::ListLifetime, 0),
         ];
         for (of, count) in expected {

@@ -8,11 +8,12 @@ use super::{
 use crate::water::gate;
 use base::{
     gate::{Bound, Evidence, Gate},
+    mutation::Constant,
     spec::RunSpec,
 };
 use harness::{
     case::{Planned, Tier},
-    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level},
+    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level, Sensitivity, Watched},
 };
 
 /// g H/c₀², and as gates name it.
@@ -99,7 +100,10 @@ pub fn declaration(tier: Tier) -> Declaration {
         ladders: SHOWN.map(of).into(),
         ..Accuracy::new("hydrostatic", error, "error of the pressure [-]")
     };
-    Declaration { accuracy: vec![accuracy], ..Declaration::default() }
+    let run = plain("modern", USUAL.0);
+    let watched = [Constant::BodyForce, Constant::Density, Constant::Height].map(Watched::new);
+    let sensitivity = Some(Sensitivity::new(NAME, tier, [run], watched));
+    Declaration { accuracy: vec![accuracy], sensitivity, ..Declaration::default() }
 }
 
 fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
