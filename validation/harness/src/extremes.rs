@@ -35,9 +35,9 @@ impl Entry {
         self
     }
 
-    /// Shown, not judged.
-    pub fn reported(self) -> Self {
-        Self { gate: self.gate.reported(), ..self }
+    /// A control, which must lie outside its bound.
+    pub fn expected_to_fail(self) -> Self {
+        Self { gate: self.gate.expected_to_fail(), ..self }
     }
 
     /// What came: the judged value, and words.

@@ -83,8 +83,12 @@ fn matrix_error<K: Kernel>(count: usize, h_over_dx: f64, eta2: f64) -> Option<f6
 /// The same with the steps of a leapfrog of at most `dt` \[L²/ν\]: half a kick first, whole ones, half a
 /// kick last, between the times at which a run pauses.
 fn stepped_error(count: usize, dt: f64) -> Option<f64> {
-    let model = rows::<QuinticSpline>(count, 1.0, 1e-6)?;
-    let (mut u, mut start) = (DVector::zeros(count), 0.0);
+    rows::<QuinticSpline>(count, 1.0, 1e-6).map(|model| error_of_leapfrog(&model, dt))
+}
+
+/// That of these rows.
+pub fn error_of_leapfrog(model: &RowModel, dt: f64) -> f64 {
+    let (mut u, mut start) = (DVector::zeros(model.y.len()), 0.0);
     for until in TIMES.into_iter().filter(|tau| *tau <= END) {
         let steps = ((until - start) / dt * (1.0 - 1e-12)).ceil();
         let dt = (until - start) / steps;
@@ -95,7 +99,7 @@ fn stepped_error(count: usize, dt: f64) -> Option<f64> {
         u += model.rate(&u) * (0.5 * dt);
         start = until;
     }
-    Some(error_of(&model, &u))
+    error_of(model, &u)
 }
 
 /// Variants and rows at Reynolds number 1e-4: viscosity alone sets the step, and rows do not slide.
@@ -133,7 +137,7 @@ fn slow(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
 }
 
 /// Reynolds numbers at which sound is a thousand times faster than the rule asks for: where rows stay in
-/// place, and, reported, where they slide past each other.
+/// place, and, as a control, where they slide past each other.
 fn sound_settings(tier: Tier) -> &'static [f64] {
     if tier == Tier::Full { &[1e-3, 0.5] } else { &[1e-3] }
 }
@@ -156,8 +160,8 @@ fn sound_specs(case: &ChannelCase, re: f64, tier: Tier) -> [RunSpec; 2] {
 fn sound(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
     let still = "sound does not enter the exact flow, nor that of rows in their places, but for the step: \
                  its part of the error is below 5 %";
-    let sliding =
-        "reported: rows that slide by a spacing swing the density, and c₀² makes that force";
+    let sliding = "a control: rows that slide by a spacing swing the density, and c₀² makes that force, so \
+                   that a sound speed without a rule must spoil the flow";
     let entry = |re: &f64| {
         let specs = sound_specs(case, *re, tier);
         let [usual, fast] = specs.each_ref().map(|spec| error(runs, spec));
@@ -173,7 +177,7 @@ fn sound(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
         let entry = Entry::new(&name, what, "error/usual error", bound)
             .because(Evidence::Theory, because)
             .found(fast.zip(usual).map_or(f64::NAN, |(fast, usual)| fast / usual), found);
-        if slides { entry.reported() } else { entry }
+        if slides { entry.expected_to_fail() } else { entry }
     };
     sound_settings(tier).iter().map(entry).collect()
 }

@@ -2,7 +2,9 @@
 //! the modern variant, walls that extrapolate, and what studies of a flow's own need; and the gates.
 
 use super::{
-    Channel, Flow, TIMES, cures, extremes,
+    Channel, Flow, TIMES, cures,
+    declaration::compared_at,
+    extremes,
     measure::{
         L2, L2_WORST, MOMENTUM_Y, NU_EFF, OUTSIDE, P_RMS, SHEAR_LOWER, SHEAR_UPPER, V_RMS,
         VOLUME_DRIFT,
@@ -125,22 +127,25 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
     let error = |metric: MetricName, most: f64, because: &str| {
         gate(&of, metric, Bound::Below(most), Evidence::Analytic, because)
     };
-    let prototype = "an independent scalar implementation of the same method reached this";
-    let mut gates = match (flow, variant, rows) {
-        (Flow::Couette, "plain", 10) => vec![error(L2.at(0.1), 2e-3, prototype)],
-        (Flow::Couette, "plain", 20) => {
-            vec![error(L2.at(0.1), 7e-4, prototype), error(L2.at(1), 1e-4, prototype)]
-        }
-        (Flow::Poiseuille, "plain", 10) => vec![error(L2.at(1), 1.8e-2, prototype)],
-        (Flow::Poiseuille, "plain", 20) => vec![error(L2.at(1), 4.5e-3, prototype)],
-        (Flow::Poiseuille, "plain", 40) => vec![error(L2.at(1), 1.1e-3, prototype)],
-        (Flow::Poiseuille, "curved", 20) => vec![error(
-            L2.at(1),
-            3e-4,
-            "below 0.03 %, where the best of seven other codes is at 80 rows",
-        )],
-        _ => Vec::new(),
-    };
+    let mut gates = Vec::new();
+    if variant == "plain" {
+        gates.extend(between_matrices(flow, rows).map(|bound| {
+            let metric = L2.at(compared_at(flow));
+            let because = "the row-reduced matrices of rows in columns and of rows that slid past each \
+                           other, with the steps of the leapfrog, enclose the error of rows that slide";
+            gate(&of, metric, bound, Evidence::Theory, because)
+        }));
+    }
+    if (flow, variant, rows) == (Flow::Couette, "plain", 20) {
+        let because = "a linear profile is exact on mirrored rows, and of the start 1e-6 is left: \
+                       compressibility may move the rest by less than (V/c0)^2 = 1.3e-4";
+        gates.push(error(L2.at(1), 1e-4, because));
+    }
+    if (flow, variant, rows) == (Flow::Poiseuille, "curved", 20) {
+        let because = "the goal of 0.03 %, between the row-reduced matrices of rows that slid past each other, \
+                       9e-5, and of rows in columns, 8e-4: at Re 0.5 they slide by ten spacings";
+        gates.push(error(L2.at(1), 3e-4, because));
+    }
     if variant == "seed" && rows == 20 {
         gates.extend(hypothesis_gates(flow, &of));
     }
@@ -156,6 +161,22 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
         gates.extend(invariant_gates(flow, &of));
     }
     gates
+}
+
+/// Errors of the row-reduced matrix of ghost walls with the quintic spline, h = dx, at the time of the
+/// comparison: rows of a flow, the lesser and the larger one of rows in columns and of rows that slid past
+/// each other, Couette flow with the steps of the leapfrog.
+const MATRICES: [(Flow, usize, [f64; 2]); 5] = [
+    (Flow::Couette, 10, [1.010e-3, 1.269e-3]),
+    (Flow::Couette, 20, [3.656e-4, 6.572e-4]),
+    (Flow::Poiseuille, 10, [1.712e-2, 1.794e-2]),
+    (Flow::Poiseuille, 20, [3.744e-3, 4.540e-3]),
+    (Flow::Poiseuille, 40, [5.064e-4, 1.196e-3]),
+];
+
+fn between_matrices(flow: Flow, rows: usize) -> Option<Bound> {
+    let of = MATRICES.into_iter().find(|(of, n, _)| (*of, *n) == (flow, rows));
+    of.map(|(.., [low, high])| Bound::Within(low, high))
 }
 
 /// H1 and H2 of the paper: profiles follow the analytic solution.
@@ -240,35 +261,62 @@ mod tests {
     use super::*;
     use maths::{
         exact::{couette::Couette, poiseuille::Poiseuille},
-        theory::channel::{Alignment, Channel as Section, WallRule},
+        theory::channel::{Alignment, Channel as Section, RowModel, WallRule},
     };
     use solver::QuinticSpline;
+
+    const COUETTE: Couette = Couette { v0: 1.0, l: 1.0, nu: 1.0 };
+    const POISEUILLE: Poiseuille = Poiseuille { v: 1.0, l: 1.0, nu: 1.0 };
+
+    fn model(flow: Flow, rows: usize, wall_rule: WallRule, alignment: Alignment) -> RowModel {
+        let (wall_velocity, force) = match flow {
+            Flow::Couette => ([0.0, 1.0], 0.0),
+            Flow::Poiseuille => ([0.0; 2], POISEUILLE.force()),
+        };
+        let section =
+            Section { rows, width: 1.0, nu: 1.0, wall_velocity, force, wall_rule, alignment };
+        section.reduce::<QuinticSpline>(1.0, 1e-6).expect("a wide channel")
+    }
+
+    /// Error at νt/L² = 1, exact in time.
+    fn at_the_end(flow: Flow, model: &RowModel) -> f64 {
+        let u = model.at(1.0).expect("regular");
+        match flow {
+            Flow::Couette => model.relative_error(&u, |y| COUETTE.velocity(y, 1.0)),
+            Flow::Poiseuille => model.relative_error(&u, |y| POISEUILLE.velocity(y, 1.0)),
+        }
+    }
+
+    fn assert_near(found: f64, printed: f64, tolerance: f64) {
+        assert!((found / printed - 1.0).abs() < tolerance, "{found} is not {printed}");
+    }
 
     #[test]
     fn the_errors_of_walls_that_extrapolate_are_those_of_the_matrix() {
         for (rows, printed) in EXTRAPOLATED {
-            let section = |wall_velocity, force| Section {
-                rows,
-                width: 1.0,
-                nu: 1.0,
-                wall_velocity,
-                force,
-                wall_rule: WallRule::Adami,
-                alignment: Alignment::Aligned,
-            };
-            let (couette, poiseuille) =
-                (Couette { v0: 1.0, l: 1.0, nu: 1.0 }, Poiseuille { v: 1.0, l: 1.0, nu: 1.0 });
-            let error = |section: Section, exact: &dyn Fn(f64) -> f64| {
-                let model = section.reduce::<QuinticSpline>(1.0, 1e-6).expect("a wide channel");
-                model.relative_error(&model.at(1.0).expect("regular"), exact)
-            };
-            let found = [
-                error(section([0.0, 1.0], 0.0), &|y| couette.velocity(y, 1.0)),
-                error(section([0.0; 2], poiseuille.force()), &|y| poiseuille.velocity(y, 1.0)),
-            ];
-            for (found, printed) in found.into_iter().zip(printed) {
-                assert!((found / printed - 1.0).abs() < 0.02, "{found} {printed} at {rows} rows");
+            for (flow, printed) in [Flow::Couette, Flow::Poiseuille].into_iter().zip(printed) {
+                let model = model(flow, rows, WallRule::Adami, Alignment::Aligned);
+                assert_near(at_the_end(flow, &model), printed, 0.02);
             }
+        }
+    }
+
+    #[test]
+    fn the_errors_of_ghost_walls_are_those_of_the_matrices() {
+        for (flow, rows, printed) in MATRICES {
+            let error = |alignment| {
+                let model = model(flow, rows, WallRule::Ghosts, alignment);
+                match flow {
+                    // Viscous number 0.4 of the default step.
+                    Flow::Couette => {
+                        extremes::error_of_leapfrog(&model, 0.4 / (rows * rows) as f64)
+                    }
+                    Flow::Poiseuille => at_the_end(flow, &model),
+                }
+            };
+            let [a, b] = [Alignment::Aligned, Alignment::Slid].map(error);
+            assert_near(a.min(b), printed[0], 1e-3);
+            assert_near(a.max(b), printed[1], 1e-3);
         }
     }
 }
