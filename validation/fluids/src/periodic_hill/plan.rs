@@ -22,17 +22,6 @@ use harness::case::{Planned, Tier};
 /// flow from there as from rest is gated.
 pub const FINEST: usize = 40;
 
-/// Why the finest run at Re 100 is not seen to be steady.
-const OPEN: &str = "the run ends after 6 H/U_b, which is all that the full tier can afford: its windows of 1.2 \
-                    H/U_b are short against disorder that goes round in the bubble, so that scatter within a \
-                    window does not show all that moves the mean from window to window. By hand this run was \
-                    taken to 40, in twelve minutes: 0.12 % is left, the error of u is 0.07 %, of the force \
-                    0.04 %, reattachment is 0.005 H off. The limitation reaches to nine times the 0.1 % by \
-                    which disorder alone moves such windows";
-
-/// Nine times, as if nothing decayed, the 0.1 % by which disorder moves windows of that run \[U_b\].
-const OPEN_TO: f64 = 0.009;
-
 /// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50: at 30 the error of u at 20
 /// spacings is 0.8 % instead of 0.3 %, and the gate on what is left of the decay fails.
 pub const END: f64 = 40.0;
@@ -152,12 +141,7 @@ fn seconds(n: usize, end: f64) -> f64 {
 
 /// A run with its gates.
 fn judged(run: HillRun) -> Planned {
-    let is_open = run.n == FINEST && run.re == 100.0;
-    let limited = |gate: Gate| match gate.metric == String::from(UNSTEADY) && is_open {
-        true => gate.with_limitation(Bound::Below(OPEN_TO), OPEN),
-        false => gate,
-    };
-    run.planned().judged(gates(run).into_iter().map(limited).collect())
+    run.planned().judged(gates(run))
 }
 
 /// Without the hill the flow between floor and lid is a parabola.
