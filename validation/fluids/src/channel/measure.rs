@@ -337,11 +337,93 @@ mod tests {
     use harness::{context::Context, method::Method};
     use solver::Continuity;
 
-    use super::{Setup, depends_on_viscosity};
+    use base::record::{MetricName, Record};
+    use solver::{EquationOfState, Particle};
+
+    use super::*;
     use crate::channel::{
         ChannelSettings, Flow,
         variants::{Fluid, Seed},
     };
+
+    fn setup(flow: Flow) -> Setup {
+        let method = Method::of::<Seed<Fluid<()>, Continuity>>();
+        let settings = ChannelSettings::default();
+        Setup::new(flow, &settings, &method, &Context::default()).expect("the defaults are valid")
+    }
+
+    /// The record of 20 rows whose velocity is this function of y \[m\] and t \[s\], compared at `tau`.
+    fn compared(setup: &Setup, tau: f64, velocity: &dyn Fn(f64, f64) -> f64) -> Record {
+        let mut fluid = setup.rows(0.5 * setup.medium.dx, 20);
+        let t = setup.time(tau);
+        fluid.iter_mut().for_each(|p| p.velocity.x = velocity(p.position.y, t));
+        let field = stations(setup).iter().map(|s| velocity(s.y, t)).collect();
+        let sample = Sample { all: fluid.clone(), fluid, field: Some(field) };
+        let mut record = Record::new(setup.flow.name(), "seed", serde_json::Value::Null, 1);
+        compare(setup, &sample, tau, &mut record);
+        record
+    }
+
+    fn assert_near(record: &Record, metric: MetricName, exact: f64, tolerance: f64) {
+        let (name, found) = (metric.name().to_string(), record.value(metric).expect("measured"));
+        assert!((found - exact).abs() < tolerance, "{name}: {found} is not {exact}");
+    }
+
+    #[test]
+    fn errors_that_are_put_in_are_measured() {
+        for flow in [Flow::Couette, Flow::Poiseuille] {
+            let setup = setup(flow);
+            let (width, v) = (setup.settings.width, setup.v);
+            let exact = |y: f64, t: f64| setup.exact(y, t);
+            let none = compared(&setup, 0.1, &exact);
+            for metric in [L2, LINF, FIELD_L2, SHEAR_LOWER, SHEAR_UPPER] {
+                assert_near(&none, metric.at(0.1), 0.0, 1e-12);
+            }
+            let faster = compared(&setup, 0.1, &|y, t| 1.02 * exact(y, t));
+            assert_near(&faster, L2.at(0.1), 0.02, 1e-9);
+            assert_near(&faster, FIELD_L2.at(0.1), 0.02, 1e-9);
+            assert_near(&faster, L2_WORST.into(), 0.02, 1e-9);
+            // Before 0.1 the layer of the start is too thin to count.
+            assert_eq!(compared(&setup, 0.05, &exact).value(L2_WORST), None);
+            let shifted = compared(&setup, 0.1, &|y, t| exact(y, t) + 0.01 * v);
+            assert_near(&shifted, LINF.at(0.1), 0.01, 1e-9);
+            // 0.02 V y (L - y)/L^2 has the slope 0.02 V/L at either wall, seen from it.
+            let bent = |y: f64, t: f64| exact(y, t) + 0.02 * v * y * (width - y) / width.powi(2);
+            let bent = compared(&setup, 0.1, &bent);
+            assert_near(&bent, SHEAR_LOWER.at(0.1), 0.02, 1e-9);
+            assert_near(&bent, SHEAR_UPPER.at(0.1), 0.02, 1e-9);
+            for ratio in [0.97, 1.03] {
+                let nu = ratio * setup.settings.nu;
+                let other = compared(&setup, 0.1, &|y, t| setup.exact_with_viscosity(y, t, nu));
+                assert_near(&other, NU_EFF.at(0.1), ratio, 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn what_should_be_zero_at_the_end_is_measured() {
+        let setup = setup(Flow::Poiseuille);
+        let (rho, v, eos) = (setup.settings.rho, setup.v, setup.medium.eos);
+        let mut fluid = setup.rows(0.5 * setup.medium.dx, 20);
+        let count = fluid.len() as f64;
+        let set = |(k, p): (usize, &mut Particle)| {
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            p.velocity.y = 0.02 * v + 0.03 * v * sign;
+            p.density = eos.density(0.04 * sign * rho * v * v + eos.background);
+        };
+        fluid.iter_mut().enumerate().for_each(set);
+        fluid[0].position.y = -1e-9;
+        let volume: f64 = fluid.iter().map(|p| p.mass / p.density).sum();
+        let sample = Sample { all: fluid.clone(), fluid, field: None };
+        let mut record = Record::new("poiseuille", "seed", serde_json::Value::Null, 1);
+        at_the_end(&setup, &sample, &mut record);
+        assert_near(&record, V_RMS.into(), (0.02_f64.powi(2) + 0.03_f64.powi(2)).sqrt(), 1e-9);
+        assert_near(&record, P_RMS.into(), 0.04, 1e-5);
+        assert_near(&record, MOMENTUM_Y.into(), 0.02, 1e-5);
+        assert_near(&record, OUTSIDE.into(), 1.0, 1e-9);
+        let exact = volume / (count * setup.medium.dx.powi(2)) - 1.0;
+        assert_near(&record, VOLUME_DRIFT.into(), exact, 1e-9);
+    }
 
     #[test]
     fn steady_couette_flow_does_not_show_its_viscosity() {

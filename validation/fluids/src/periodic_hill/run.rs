@@ -50,6 +50,13 @@ impl Schedule {
     }
 }
 
+/// The number of the window of a time, of three of a `length` that end at `end`; none before the first. A
+/// time between two belongs to the later one.
+fn window_of(time: f64, end: f64, length: f64) -> Option<usize> {
+    let left = (end - time) / length;
+    usize::try_from(2 - (left - 1e-9).max(0.0).floor().min(3.0) as isize).ok()
+}
+
 /// Holds the flux and samples the flow through time.
 struct Monitor<'a> {
     setup: &'a Setup,
@@ -63,13 +70,10 @@ struct Monitor<'a> {
 }
 
 impl Monitor<'_> {
-    /// The window of a time: 3 before the first.
+    /// The window of a time.
     fn window(&mut self, time: f64) -> Option<&mut Window> {
         let s = &self.setup.settings;
-        let left = (s.end - time) / (s.average * s.end);
-        // The last stretch ends at the end itself.
-        let k = 2 - (left - 1e-9).max(0.0).floor().min(3.0) as isize;
-        usize::try_from(k).ok().map(|k| &mut self.windows[k])
+        window_of(time, s.end, s.average * s.end).map(|k| &mut self.windows[k])
     }
 
     /// After a stretch: the controller acts, and the flow is sampled if it is time.
@@ -153,4 +157,24 @@ fn profile(series: &[[f64; 4]]) -> Profile {
         .with("force", "U_b^2/H", column(1))
         .with("flux", "U_b H", column(2))
         .with("kinetic energy", "rho U_b^2 H^2", column(3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Clocks that were off by a part of a window passed every test.
+    #[test]
+    fn samples_come_at_their_times_and_in_their_windows() {
+        let window = |time| window_of(time, 40.0, 8.0);
+        assert_eq!([0.0, 15.9].map(window), [None; 2]);
+        assert_eq!([16.1, 23.9].map(window), [Some(0); 2]);
+        assert_eq!([24.1, 31.9].map(window), [Some(1); 2]);
+        assert_eq!([32.0, 32.1, 40.0].map(window), [Some(2); 3]);
+        let mut schedule = Schedule { next: 0.0, every: 0.5 };
+        let looks = (1..=1000).map(|k| f64::from(k) * 0.01);
+        let times: Vec<f64> = looks.filter(|time| schedule.has_come(*time)).collect();
+        let exact = (0..=20).map(|k| 0.5 * f64::from(k)).map(|t| t.max(0.01));
+        assert!(times.len() == 21 && times.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-9));
+    }
 }
