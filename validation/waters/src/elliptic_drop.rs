@@ -510,6 +510,11 @@ mod tests {
             for record in [&still, &falling] {
                 assert!(record.value(MOMENTUM_ERROR).unwrap() < 1e-13);
                 assert!(record.value(CENTRE_ERROR).unwrap() < 1e-13);
+                let [kinetic, work] =
+                    ["kinetic", "work_viscosity"].map(|c| record.column("energy", c));
+                let share = work[work.len() - 1] / kinetic[0];
+                let taken = record.value(ledger::WORK_VISCOSITY).unwrap();
+                assert!((taken - share).abs() < 1e-12, "{variant}: {taken} of {share}");
             }
             let difference = still.value(B_END).unwrap() - falling.value(B_END).unwrap();
             assert!(difference.abs() < 1e-10, "{variant}: {difference:e}");

@@ -422,7 +422,7 @@ mod tests {
         samples.sample(&*simulation(&free, particles.clone()));
         // Half a spacing is a dent; more than that is lost.
         particles.extend([
-            at(-0.49, 3.0),
+            at(-0.495, 3.0),
             at(-0.51, 5.0),
             at(3.0, -2.5),
             at(width / dx + 0.75, 5.0),

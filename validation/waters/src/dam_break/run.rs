@@ -137,3 +137,31 @@ fn picture(dam: &Dam, simulation: &dyn Stepper<()>) -> Profile {
         .with("y", "H", fluid.iter().map(|p| p.position.y / unit).collect())
         .with("p", "rho g H", fluid.iter().map(|p| pressure(p.density)).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        dam_break::{DAM_BREAK, front},
+        water::ledger::WORK_VISCOSITY,
+    };
+    use harness::case::Case;
+
+    /// A run of the case, whose column is 2000 kg/m^3 times the square of its width heavy.
+    #[test]
+    fn a_run_is_measured_in_the_units_of_its_column() {
+        let spec = DAM_BREAK.spec("modern", |s| (s.n, s.end) = (6, 0.5));
+        let record = DAM_BREAK.run(&spec, &Context::default()).expect("a run");
+        let value = |metric: base::record::MetricKey| record.value(metric).expect("a metric");
+        assert_eq!((value(metrics::REACHED), value(metrics::MASS_ERROR)), (1.0, 0.0));
+        let (a, g) = (0.05715_f64, 9.81);
+        let fall = 0.5 * (2000.0 * a * a) * g * (2.0 * a);
+        let work = record.column("energy", "work_viscosity").last().expect("a series") / fall;
+        assert!((value(WORK_VISCOSITY) / work - 1.0).abs() < 5e-3, "{work}");
+        let front = front::front(&record);
+        let (t, z) = front[front.len() - 1];
+        assert!((t / (0.5 * 2.0) - 1.0).abs() < 1e-9, "0.5 (H/g)^(1/2) is T = 1, not {t}");
+        let start = record.column("series", "front")[0];
+        assert!((start / a - 1.0).abs() < 1e-12 && (front[0].1 - 1.0).abs() < 1e-12 && z > 1.05);
+    }
+}

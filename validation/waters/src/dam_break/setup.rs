@@ -146,6 +146,8 @@ mod tests {
     fn the_column_fills_its_corner_and_bears_its_weight() {
         let dam = dam(|_| {}).unwrap();
         assert!(dam.is_martin_moyce() && !dam.is_lobovsky());
+        assert!((dam.settings.unit_time() - (0.1143_f64 / 9.81).sqrt()).abs() < 1e-12);
+        assert!((dam.unit_pressure() - 1121.283).abs() < 1e-3);
         for (water, on_surface) in
             [(dam.water(FirstRow::Behind), 0.0), (dam.water(FirstRow::OnSurface), 0.5)]
         {

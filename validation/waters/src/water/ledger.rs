@@ -122,9 +122,10 @@ mod tests {
         {
             assert!((value(metric) - 3.0 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");
         }
-        // What a term gave is no gap.
-        ledger.rows.push([3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, -4.0]);
-        ledger.rows[2] = [1.0, 3.0, 0.0, 2.0, 3.0, 0.0, 0.0, 1.5, 0.0];
-        assert!((ledger.gap() - 12.0).abs() < 1e-9, "{}", ledger.gap());
+        // What terms gave is no gap; what they say that they gave and the water does not have is one.
+        ledger.rows = vec![[0.0; 9], [1.0, 3.0, 0.0, 2.0, 3.0, 0.0, 0.0, 1.5, 0.5]];
+        assert!(ledger.gap() < 1e-12, "{}", ledger.gap());
+        ledger.rows.push([3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 5.0, 0.0, -4.0]);
+        assert!((ledger.gap() - 4.0).abs() < 1e-12, "{}", ledger.gap());
     }
 }
