@@ -456,7 +456,114 @@ fn declaration(tier: Tier) -> Declaration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::case::{Case, RunError};
+    use approx::assert_relative_eq;
+    use harness::{
+        case::{Case, RunError},
+        context::Context,
+        method::{Method, Parts},
+    };
+
+    /// Motion that was written down, not stepped.
+    fn motion(settings: &BarSettings, series: Vec<[f64; 4]>, stress: Option<f64>) -> Motion {
+        let nothing = settings.watch(&[]);
+        Motion { series, stress, ..nothing }
+    }
+
+    fn record() -> Record {
+        Record::new("elastic_bar", "made-up", serde_json::Value::Null, 1)
+    }
+
+    fn close(record: &Record, metric: MetricKey, known: f64) {
+        let found = record.value(metric).expect("measured");
+        assert_relative_eq!(found, known, max_relative = 1e-6, epsilon = 1e-9);
+    }
+
+    /// Rubber of 2 MPa: c_p = 64.83 m/s.
+    #[test]
+    fn the_bars_have_the_speed_and_the_strain_that_were_asked_for() {
+        let s = BarSettings { speed: 1e-2, ..BarSettings::default() };
+        assert_relative_eq!(s.wave(), 64.83, max_relative = 1e-3);
+        let peak = s.particles().into_iter().max_by(|a, b| a.velocity.x.total_cmp(&b.velocity.x));
+        let peak = peak.expect("particles");
+        assert!((peak.position.x / s.length - 0.25).abs() < 0.02);
+        assert_relative_eq!(peak.velocity.x, 0.6483, max_relative = 3e-3);
+        // A wave to the right: strain -v/c_p, stress -rho c_p v.
+        assert_relative_eq!(peak.density, 1000.0 / 0.99, max_relative = 1e-3);
+        let stress = peak.extra.xx - s.material().eos().pressure(peak.density);
+        assert_relative_eq!(stress, -1000.0 * 64.83 * 0.6483, max_relative = 2e-2);
+        let bars = BarSettings { collide: true, ..s }.particles();
+        let left = bars.iter().filter(|p| p.position.x < 0.0);
+        assert!(left.clone().count() * 2 == bars.len());
+        left.for_each(|p| assert_relative_eq!(p.velocity.x, 0.6483, max_relative = 1e-3));
+    }
+
+    #[test]
+    fn a_pulse_that_is_three_per_cent_slow_is_three_per_cent_late() {
+        let s = BarSettings::default();
+        let row = |k: i32| {
+            let time = 1e-5 * f64::from(k);
+            [time, 0.25 * s.length + 0.97 * s.wave() * time, 0.0, 0.0]
+        };
+        let mut record = record();
+        motion(&s, (0..100).map(row).collect(), None).pulse_metrics(&mut record);
+        close(&record, TRAVEL_ERROR, 1.0 / 0.97 - 1.0);
+        close(&record, TRAVEL_LATTICE_ERROR, 1.006_724_5 / 0.97 - 1.0);
+    }
+
+    /// Velocities that are exchanged linearly in 1.05 times 2 L/U, but for 4 %.
+    #[test]
+    fn an_exchange_that_was_made_up_is_measured() {
+        let s = BarSettings { collide: true, gap: 1.0, speed: 1e-3, ..BarSettings::default() };
+        let Material { density, bulk, shear } = s.material();
+        let (speed, exact) = (s.speed(), Impact::new(bulk, shear, density, s.speed()));
+        let last = 1.05 * 2.0 * s.length / exact.speed;
+        let row = |k: i32| {
+            let share = 0.01 * f64::from(k);
+            let left = speed * (1.0 - 2.0 * share).max(-0.96);
+            [last * share, 0.0, left, 0.9 * speed]
+        };
+        let mut found = record();
+        let series: Vec<[f64; 4]> = (0..=100).map(row).collect();
+        motion(&s, series.clone(), Some(1.02 * exact.stress)).impact_metrics(&mut found);
+        close(&found, CONTACT_TIME_ERROR, 0.05);
+        close(&found, CONTACT_TIME_RATIO, 1.05 * s.wave() / exact.speed);
+        close(&found, STRESS_ERROR, 0.02);
+        close(&found, STRESS_RATIO, 1.02 * exact.stress / (density * s.wave() * speed));
+        close(&found, EXCHANGE, 0.96);
+        close(&found, RESTITUTION, 0.93);
+        let touching = BarSettings { gap: 0.0, ..s };
+        let mut found = record();
+        motion(&touching, series[..40].to_vec(), None).impact_metrics(&mut found);
+        let absent =
+            [STRESS_ERROR, STRESS_RATIO, CONTACT_TIME_ERROR, CONTACT_TIME_RATIO, RESTITUTION];
+        for metric in absent.map(String::from) {
+            assert!(found.absent.contains_key(&metric), "{metric}");
+        }
+    }
+
+    /// The stress within L/2 of the contact, and the velocities left and right of it.
+    #[test]
+    fn stress_and_velocities_are_those_of_the_particles() {
+        let s = BarSettings { collide: true, speed: 1e-2, ..BarSettings::default() };
+        let mut particles = s.particles();
+        for p in &mut particles {
+            let is_near = p.position.x.abs() < 0.5 * s.length;
+            p.density = if is_near { 1002.0 } else { 1050.0 };
+            p.extra.xx = -1000.0;
+            p.velocity.x = if p.position.x < 0.0 { -0.2 } else { 0.5 };
+        }
+        let (dx, method) = (s.dx(), Method::of::<solid::Bare<Open>>());
+        let mut watch = s.watch(&particles);
+        let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
+        let simulation = (method.build)(parts).expect("a scene");
+        watch.after_step(&*simulation);
+        let bulk = 2e6 / (3.0 * (1.0 - 2.0 * 0.3975));
+        let stress = watch.stress.expect("the left bar flies back");
+        assert_relative_eq!(stress, bulk * 0.002 + 1000.0, max_relative = 1e-9);
+        let [_, _, left, right] = watch.series[0];
+        assert_relative_eq!(left, -0.2, max_relative = 1e-9);
+        assert_relative_eq!(right, 0.5, max_relative = 1e-9);
+    }
 
     #[test]
     fn settings_that_make_no_sense_are_refused() {
@@ -465,6 +572,11 @@ mod tests {
         assert!(matches!(refused("plain", "xsph=0.5"), Some(RunError::Unused { .. })));
         assert!(matches!(refused("plain", "poisson=0.5"), Some(RunError::Setting(_))));
         assert!(matches!(refused("plain", "courant=2"), Some(RunError::TimeStep { .. })));
+        // Each variant is refused by the theory of its own integrator, which the error names.
+        for (variant, name) in [("plain", "leapfrog"), ("seed", "predictor-corrector")] {
+            let error = refused(variant, "courant=2").map(|error| error.to_string());
+            assert!(error.as_ref().is_some_and(|error| error.contains(name)), "{error:?}");
+        }
         assert!(matches!(refused("bare", "end=1e5"), Some(RunError::TooLong { .. })));
         assert!(matches!(refused("nothing", "n=40"), Some(RunError::Variant { .. })));
     }

@@ -183,6 +183,16 @@ impl Tip {
 
 impl Watch for Tip {
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+        self.measure_swing(record);
+        let after = Energy::of(simulation, &self.material).total();
+        record.put(ENERGY_CHANGE, after / self.energy - 1.0);
+        let profile = Profile::of_rows(&[("t", "s"), ("tip", "m")], &self.series);
+        record.profiles.insert("tip".into(), profile);
+    }
+}
+
+impl Tip {
+    fn measure_swing(&self, record: &mut Record) {
         let highest = self.series.iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max);
         match self.period() {
             Some(period) => {
@@ -196,10 +206,6 @@ impl Watch for Tip {
                 }
             }
         }
-        let after = Energy::of(simulation, &self.material).total();
-        record.put(ENERGY_CHANGE, after / self.energy - 1.0);
-        let profile = Profile::of_rows(&[("t", "s"), ("tip", "m")], &self.series);
-        record.profiles.insert("tip".into(), profile);
     }
 }
 
@@ -417,7 +423,70 @@ fn extremes(runs: &Runs) -> Study {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use harness::case::RunError;
+    use harness::{
+        case::RunError,
+        context::Context,
+        method::{Method, Parts},
+    };
+
+    /// A tip at a sin(2 pi t/T), at times that do not divide the period.
+    fn swing(s: &PlateSettings, periods: f64) -> Record {
+        let [period, amplitude] = [0.3, 0.004];
+        let row = |k: i32| {
+            let time = 0.0007 * f64::from(k);
+            [time, amplitude * sin(TAU * time / period)]
+        };
+        let series = (0..).map(row).take_while(|row| row[0] < periods * period).collect();
+        let mut record = Record::new("oscillating_plate", "made-up", serde_json::Value::Null, 1);
+        Tip { series, ..s.watch(&[]) }.measure_swing(&mut record);
+        record
+    }
+
+    #[test]
+    fn a_swing_that_was_made_up_has_its_period_and_its_amplitude() {
+        let s = PlateSettings::default();
+        for periods in [0.75, 1.25] {
+            let record = swing(&s, periods);
+            let metric = |key| record.value(key).expect("measured");
+            assert_relative_eq!(metric(PERIOD), 0.3, max_relative = 1e-4);
+            assert_relative_eq!(metric(PERIOD_EXCESS), 0.3 / 0.254_03 - 1.0, max_relative = 1e-3);
+            // Speed 0.01 c0 = 0.5702 m/s; a = v T/(2 pi) would be 0.02722 m.
+            assert_relative_eq!(metric(AMPLITUDE_RATIO), 0.004 / 0.027_22, max_relative = 1e-3);
+        }
+        let absent = swing(&s, 0.4).absent;
+        for metric in [PERIOD, PERIOD_EXCESS, AMPLITUDE_RATIO].map(String::from) {
+            assert!(absent.contains_key(&metric), "{metric}");
+        }
+    }
+
+    #[test]
+    fn the_tip_is_the_mean_of_the_last_column() {
+        let s = PlateSettings { n: 4, ..PlateSettings::default() };
+        let mut particles = s.particles();
+        let end = particles.iter().map(|p| p.position.x).fold(0.0, f64::max);
+        for p in particles.iter_mut().filter(|p| p.position.x > end - 1e-6) {
+            p.position.y = 1.5 * p.position.y + 0.001;
+        }
+        let (dx, method) = (s.dx(), Method::of::<solid::Bare<Clamp>>());
+        let mut tip = s.watch(&particles);
+        let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
+        let simulation = (method.build)(parts).expect("a scene");
+        tip.after_step(&*simulation);
+        assert_relative_eq!(tip.series[1][1], 0.001, max_relative = 1e-9);
+    }
+
+    /// At the tip, 0.01 c0 = 0.5702 m/s; in the middle 0.3395 of that.
+    #[test]
+    fn the_plate_starts_with_the_velocity_of_its_first_mode() {
+        let s = PlateSettings::default();
+        let particles = s.particles();
+        let near = |x: f64| {
+            let of = |p: &&Particle<Symmetric>| (p.position.x / s.length - x).abs();
+            particles.iter().min_by(|a, b| of(a).total_cmp(&of(b))).expect("particles")
+        };
+        assert_relative_eq!(near(1.0).velocity.y, 0.5702, max_relative = 1e-2);
+        assert_relative_eq!(near(0.5).velocity.y / 0.5702, 0.3395, max_relative = 2e-2);
+    }
 
     #[test]
     fn thin_plate_theory_is_that_of_the_literature() {

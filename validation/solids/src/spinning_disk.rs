@@ -401,6 +401,52 @@ mod tests {
         context::Context,
     };
 
+    /// c0 is 57.02 m/s, so 0.05 c0 is 2.851 m/s.
+    #[test]
+    fn the_disk_spins_with_the_speed_of_its_rim() {
+        let s = DiskSettings::default();
+        let particles = s.particles();
+        let rim =
+            particles.iter().find(|p| p.position.x == s.radius).expect("a particle at the rim");
+        let [x, y] = [rim.velocity.x, rim.velocity.y];
+        assert!(x == 0.0 && (y / 2.851 - 1.0).abs() < 1e-3, "{x} {y} m/s");
+        let (row, mass) = first_row(&particles);
+        let spin = 2.851 / 0.04;
+        assert!((row[1] / (mass * row[4] * spin) - 1.0).abs() < 1e-3);
+        assert!((row[2] / (0.5 * mass * row[4] * spin * spin) - 1.0).abs() < 2e-3);
+        assert!((row[4] / (0.5 * 0.04 * 0.04) - 1.0).abs() < 0.05, "half of R^2");
+        assert!((s.end() / (TAU * 0.04 / 2.851) - 1.0).abs() < 1e-3);
+    }
+
+    /// A disk that stopped passed: its angular momentum changed by less than 2.2 a revolution.
+    #[test]
+    fn a_disk_that_stops_fails() {
+        let rows = |left: f64| -> Vec<[f64; 5]> {
+            let row = |k: i32| {
+                let share = 0.01 * f64::from(k);
+                [2.0 * share, 3.0 * (1.0 - (1.0 - left) * share), 5.0, 4.0 * share, 1.0 + share]
+            };
+            (0..=100).map(row).collect()
+        };
+        let mut record = Record::new("spinning_disk", "made-up", serde_json::Value::Null, 1);
+        metrics(&rows(0.2), 0.5, 10.0, &mut record);
+        let metric = |name| record.value(name).expect("measured");
+        assert!((metric(ANGULAR_MOMENTUM_DRIFT) - 1.6).abs() < 1e-12, "0.8 in half a revolution");
+        assert!((metric(STRESS_DRIFT) - 0.4).abs() < 1e-12, "2/10 in half a revolution");
+        assert!((metric(LARGEST_STRESS) - 0.2).abs() < 1e-12);
+        assert!((metric(RADIUS) - 2.0_f64.sqrt()).abs() < 1e-12);
+        assert!((momentum_at(&rows(0.2), 0.405) / 3.0 - (1.0 - 0.8 * 0.2025)).abs() < 1e-12);
+        let stopped =
+            [[0.0, 3.0, 0.0, 0.0, 1.0], [0.01, 0.0, 0.0, 0.0, 1.0], [2.0, 0.0, 0.0, 0.0, 1.0]];
+        let change = momentum_at(&stopped, 0.2) / 3.0 - 1.0;
+        let fails = |gate: &Gate| gate.judge(Some(change)).verdict.is_failure();
+        for planned in plan(Tier::Full).iter().filter(|planned| !planned.gates.is_empty()) {
+            let name = String::from(ANGULAR_MOMENTUM_TENTH);
+            let gates = planned.gates.iter().filter(|gate| gate.metric == name);
+            assert_eq!(gates.filter(|gate| fails(gate)).count(), 1);
+        }
+    }
+
     #[test]
     fn a_rotation_is_no_strain_where_no_neighbour_is_missing() {
         for variant in ["bare", "plain", "seed"] {

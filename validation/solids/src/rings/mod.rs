@@ -7,6 +7,8 @@
 mod budget;
 mod declaration;
 mod extremes;
+#[cfg(test)]
+mod made_up;
 mod measure;
 mod metrics;
 mod plan;

@@ -69,7 +69,25 @@ pub fn step_limit<D: ?Sized>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solid::Plain;
     use approx::assert_relative_eq;
+    use solver::PrincipalStress;
+
+    /// Rings took α c0/c_p and bars α itself. The viscosity is α h c0, whatever c_p is.
+    #[test]
+    fn the_step_limit_has_the_viscosity_of_the_bulk_sound_speed() {
+        let method = Method::of::<Plain<PrincipalStress>>();
+        let limit = |shear: f64, alpha: f64| {
+            let material = Material { density: 1.0, bulk: 1.0, shear };
+            let medium = Medium { alpha, ..material.medium(&method, [1.0, 1.5]) };
+            step_limit(&method, &material, &medium, 1.5) * material.p_wave_speed()
+        };
+        // Without viscosity, and without shear: 1.87 h/c_p, and 1.03 with α = 1.
+        assert_relative_eq!(limit(0.22, 0.0) / 1.5, 1.87, max_relative = 1e-2);
+        assert_relative_eq!(limit(0.0, 1.0) / 1.5, 1.03, max_relative = 1e-2);
+        let wave = Material { density: 1.0, bulk: 1.0, shear: 0.22 }.p_wave_speed();
+        assert_relative_eq!(limit(0.22, wave), limit(0.0, 1.0), max_relative = 1e-12);
+    }
 
     #[test]
     fn rubber_has_the_moduli_and_wave_speeds_of_the_rings() {
