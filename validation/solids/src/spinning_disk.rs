@@ -399,6 +399,7 @@ mod tests {
     use harness::{
         case::{Case, RunError},
         context::Context,
+        method::{Method, Parts},
     };
 
     /// c0 is 57.02 m/s, so 0.05 c0 is 2.851 m/s.
@@ -416,6 +417,26 @@ mod tests {
         assert!((row[2] / (0.5 * mass * row[4] * spin * spin) - 1.0).abs() < 2e-3);
         assert!((row[4] / (0.5 * 0.04 * 0.04) - 1.0).abs() < 0.05, "half of R^2");
         assert!((s.end() / (TAU * 0.04 / 2.851) - 1.0).abs() < 1e-3);
+    }
+
+    /// Shear 2 inside, where one particle has 5, and 3 in the rim.
+    #[test]
+    fn the_strain_of_the_rim_is_that_of_its_particles() {
+        let s = DiskSettings { n: 4, ..DiskSettings::default() };
+        let mut particles = s.particles();
+        for p in &mut particles {
+            let shear = if p.position.norm() < 0.03 { 2.0 } else { 3.0 };
+            p.extra.xy = shear * 0.5_f64.sqrt();
+        }
+        let centre = particles
+            .iter_mut()
+            .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
+        centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
+        let (dx, method) = (s.dx(), Method::of::<solid::Bare<Open>>());
+        let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
+        let simulation = (method.build)(parts).expect("a scene");
+        let [inside, rim] = mistaken(&*simulation, 0.03);
+        assert!((inside - 50.0).abs() < 1e-12 && (rim - 9.0).abs() < 1e-12, "{inside} {rim}");
     }
 
     /// A disk that stopped passed: its angular momentum changed by less than 2.2 a revolution.
