@@ -278,6 +278,9 @@ pub struct Cost {
     pub pair_interactions: u64,
     /// right-hand sides of one particle
     pub particle_rhs: u64,
+    /// the largest time step that was taken in seconds: steps are shortened to reach a time exactly
+    #[serde(default, with = "crate::number")]
+    pub largest_dt_s: f64,
     /// particles that move
     pub particles: usize,
     /// threads used

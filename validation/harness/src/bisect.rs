@@ -88,6 +88,7 @@ pub fn add(sum: &mut Cost, run: &Cost) {
     sum.steps += run.steps;
     sum.pair_interactions += run.pair_interactions;
     sum.particle_rhs += run.particle_rhs;
+    sum.largest_dt_s = sum.largest_dt_s.max(run.largest_dt_s);
     sum.particles = sum.particles.max(run.particles);
     sum.solver_bytes = sum.solver_bytes.max(run.solver_bytes);
 }

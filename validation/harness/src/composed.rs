@@ -15,6 +15,7 @@ use crate::{
     context::Context,
     declare::Declaration,
     method::{Knob, Method},
+    rules::state_steps,
     runs::Runs,
     study::Study,
 };
@@ -240,7 +241,9 @@ impl<T: Settings + 'static> Case for Composed<T> {
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
         let (chosen, settings) = self.resolve(spec)?;
-        Ok(chosen.run(&settings, &context.of(spec))?.of(spec))
+        let mut record = chosen.run(&settings, &context.of(spec))?.of(spec);
+        state_steps(&mut record);
+        Ok(record)
     }
 
     fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {

@@ -85,9 +85,13 @@ impl<X: Numbers> Run<'_, X> {
         let Self { dt, watch, observer, frames, cost, .. } = self;
         let mut timed = Timed { observer: &mut **observer, frames, seconds: 0.0 };
         let (wall, cpu, process) = (Instant::now(), ThreadTime::now(), ProcessTime::now());
+        let before = simulation.work().steps;
         let outcome = simulation.advance(until, *dt, &mut (watch, &mut timed));
         // Runs side by side share a process, so the process's clock is only right for a run that
         // itself has threads.
+        if simulation.work().steps > before {
+            cost.largest_dt_s = cost.largest_dt_s.max(simulation.dt());
+        }
         let elapsed = if cost.threads > 1 { process.elapsed() } else { cpu.elapsed() };
         cost.wall_s += wall.elapsed().as_secs_f64() - timed.seconds;
         cost.cpu_s += (elapsed.as_secs_f64() - timed.seconds).max(0.0);
