@@ -1,9 +1,9 @@
 //! How a run is executed, apart from what it computes.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, atomic::AtomicBool};
 
-use base::{mutation::Mutation, spec::RunSpec};
+use base::{mutation::Mutation, record::Profile, spec::RunSpec};
 
 use crate::size::Size;
 
@@ -33,6 +33,8 @@ pub struct Context<'a> {
     pub frames: Option<(PathBuf, usize)>,
     /// A deliberate error of the scene.
     pub mutation: Option<Mutation>,
+    /// Where all fields of the particles at the end are put.
+    pub at_the_end: Option<&'a Mutex<Option<Profile>>>,
     /// Keep the particles of the last time in the record.
     pub keep_particles: bool,
     /// How many pictures, at equal intervals from the start, a case keeps in place of its own.

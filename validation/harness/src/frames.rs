@@ -1,13 +1,15 @@
 //! Frames for ParaView, written between the steps of a run. Writing them must not change the run, so no step
 //! is shortened to reach the time of a frame.
 
+use std::any::Any;
 use std::path::PathBuf;
 
 use base::{
     files::{FileError, OutputFolder},
+    record::Profile,
     vtk::{Collection, Particles, VtkError},
 };
-use solver::{Flow, Numbers, Stepper};
+use solver::{Flow, Numbers, Particle, Stepper, Symmetric};
 
 /// Writes `count` frames at equal intervals, each after the first step that reaches its time, and the last
 /// one at the end. In a leapfrog the velocities of a frame are half a step behind the places.
@@ -71,20 +73,21 @@ impl<'a> Frames<'a> {
         simulation: &(impl Stepper<X> + ?Sized),
     ) -> Result<(), FrameError> {
         let particles = simulation.particles();
-        let column = |f: &dyn Fn(&solver::Particle<X>) -> f64| -> Vec<f64> {
-            particles.iter().map(f).collect()
-        };
+        let column =
+            |f: &dyn Fn(&Particle<X>) -> f64| -> Vec<f64> { particles.iter().map(f).collect() };
         let xy = |v: nalgebra::Vector2<f64>| [v.x, v.y];
         let positions: Vec<_> = particles.iter().map(|p| xy(p.position)).collect();
         let velocities: Vec<_> = particles.iter().map(|p| xy(p.velocity)).collect();
-        let number: Vec<f64> = (0..particles.len()).map(|k| k as f64).collect();
-        let frame = Particles::new(simulation.time(), &positions)?
+        let mut frame = Particles::new(simulation.time(), &positions)?
             .vector("velocity", &velocities)?
             .scalar("density", &column(&|p| p.density))?
             .scalar("pressure", &column(&|p| (self.pressure)(p.density)))?
             .scalar("mass", &column(&|p| p.mass))?
             .scalar("role", &column(&|p| f64::from(p.role as u8)))?
-            .scalar("id", &number)?;
+            .scalar("id", &ids(&particles))?;
+        if let Some(stress) = stress(&particles) {
+            frame = frame.triple(STRESS, &stress)?;
+        }
         let name = format!("particles_{:04}.vtp", self.written);
         self.folder.write(&name, frame.to_xml().as_bytes())?;
         self.collection.push(simulation.time(), &name);
@@ -92,6 +95,41 @@ impl<'a> Frames<'a> {
         self.written += 1;
         Ok(())
     }
+}
+
+/// Name of the deviatoric stress of a solid: xx, yy, xy \[Pa\].
+const STRESS: &str = "deviatoric stress";
+
+/// The number of each particle, which stays the same through a run.
+fn ids<X>(particles: &[Particle<X>]) -> Vec<f64> {
+    (0..particles.len()).map(|k| k as f64).collect()
+}
+
+/// The deviatoric stress of each particle \[Pa\], if it is a solid that these are of.
+fn stress<X: Numbers>(particles: &[Particle<X>]) -> Option<Vec<[f64; 3]>> {
+    let stress = |p: &Particle<X>| {
+        let extra: &dyn Any = &p.extra;
+        extra.downcast_ref::<Symmetric>().map(|s| [s.xx, s.yy, s.xy])
+    };
+    particles.iter().map(stress).collect()
+}
+
+/// All fields of the particles at one time, as columns.
+pub fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> f64) -> Profile {
+    let column = |f: &dyn Fn(&Particle<X>) -> f64| particles.iter().map(f).collect();
+    let profile = Profile::default()
+        .with("id", "-", ids(particles))
+        .with("role", "-", column(&|p| f64::from(p.role as u8)))
+        .with("x", "m", column(&|p| p.position.x))
+        .with("y", "m", column(&|p| p.position.y))
+        .with("u", "m/s", column(&|p| p.velocity.x))
+        .with("v", "m/s", column(&|p| p.velocity.y))
+        .with("density", "kg/m^3", column(&|p| p.density))
+        .with("pressure", "Pa", column(&|p| pressure(p.density)));
+    let Some(stress) = stress(particles) else { return profile };
+    ["xx", "yy", "xy"].iter().enumerate().fold(profile, |profile, (k, name)| {
+        profile.with(&format!("{STRESS} {name}"), "Pa", stress.iter().map(|s| s[k]).collect())
+    })
 }
 
 /// Why a frame was not written.

@@ -1,7 +1,7 @@
 //! Steps a simulation through the times of interest: the only time loop of the program. It measures the
 //! cost, shows progress, writes frames and stops at an interrupt; cases contain only what differs.
 
-use std::sync::atomic::Ordering;
+use std::sync::{PoisonError, atomic::Ordering};
 use std::time::{Duration, Instant};
 
 use base::mutation::Constant;
@@ -10,7 +10,11 @@ use cpu_time::{ProcessTime, ThreadTime};
 use solver::{Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
-use crate::{error::RunError, frames::Frames, size::Size};
+use crate::{
+    error::RunError,
+    frames::{self, Frames},
+    size::Size,
+};
 
 /// Wall time after which it is shown again how far a run is.
 const SHOW_EVERY: Duration = Duration::from_millis(200);
@@ -192,6 +196,10 @@ pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
         run.cost.observing_s += start.elapsed().as_secs_f64();
     }
     let cost = run.finish(simulation, &status)?;
+    if let Some(at_the_end) = context.at_the_end {
+        let columns = frames::columns(&simulation.particles(), pressure);
+        *at_the_end.lock().unwrap_or_else(PoisonError::into_inner) = Some(columns);
+    }
     Ok((status, cost))
 }
 

@@ -87,8 +87,9 @@ pub struct Run {
     /// Short for `--set rows=N`; giving both is an error
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rows: Option<String>,
-    /// Write record.json, profile.csv, series.csv and profile.png into this folder; without --out
-    /// and --vtk no file is written
+    /// Write record.json, the curves of the record (series.csv and others) and profile.csv into this folder:
+    /// the velocity across a channel, with profile.png, or all fields of the particles at the end; without
+    /// --out and --vtk no file is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Write into the folder even if it holds the record of another case; files of both are then mixed

@@ -2,13 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Once;
+use std::sync::{Mutex, Once, PoisonError};
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
 use base::{
-    files::{CsvTable, FileError, OutputFolder},
+    files::{Cell, CsvTable, FileError, OutputFolder},
     gate::Gate,
-    record::{Profile, Record, Status},
+    record::{Column, Profile, Record, Status},
     spec::{RunSpec, Task},
 };
 use harness::{
@@ -35,10 +35,10 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     let mut spec = case::spec(case, variant, &set(arguments)?)?;
     spec.allow_unstable = arguments.allow_unstable;
     let folder = Folder::of(arguments, case.name(), variant)?;
-    let record = match on_threads(arguments.threads, || {
+    let (record, last) = match on_threads(arguments.threads, || {
         compute(case, &spec, arguments, folder.as_ref(), world)
     }) {
-        Ok(record) => record,
+        Ok(made) => made,
         Err(failure) => {
             folder.iter().for_each(Folder::remove_if_new_and_empty);
             return Err(failure);
@@ -50,7 +50,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         let what = format!("after {step} steps, at t = {time:.4e} s; no record is written{kept}");
         return Err(Failure::interrupted(what));
     }
-    let written = folder.as_ref().map(|folder| write(&record, folder)).transpose();
+    let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();
     let verdicts: Vec<Judged> =
         gates_of(case, &spec).into_iter().map(|gate| Judged::of_record(gate, &record)).collect();
     // What was computed is not lost with a file that cannot be written: then the record is printed, and where
@@ -98,14 +98,16 @@ fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
     }
 }
 
+/// The record, and all fields of the particles at the end if there is a folder for them.
 fn compute(
     case: &dyn Case,
     spec: &RunSpec,
     arguments: &arguments::Run,
     folder: Option<&Folder>,
     world: &World,
-) -> Result<Record, Failure> {
+) -> Result<(Record, Option<Profile>), Failure> {
     let bar = Bar::of_a_run();
+    let last = Mutex::default();
     let told = Once::new(); // a run may consist of several simulations, the first of which is the longest
     let tell = |size: &Size| {
         if !arguments.json {
@@ -119,6 +121,7 @@ fn compute(
         frames,
         allow_long: arguments.allow_long,
         estimate: Some(&tell),
+        at_the_end: folder.map(|_| &last),
         progress: Some(&show),
         interrupt: Some(world.interrupt),
         ..Context::default()
@@ -127,7 +130,7 @@ fn compute(
     bar.clear();
     let mut record = record?;
     record.manifest.sources = (world.sources)(case.name());
-    Ok(record)
+    Ok((record, last.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }
 
 /// Gates of the plans that judge just these settings.
@@ -192,8 +195,8 @@ fn case_in(folder: &Path) -> Option<String> {
 /// Name of the file of the record.
 const RECORD: &str = "record.json";
 
-/// Writes the record and what can be drawn from it; returns the names.
-fn write(record: &Record, folder: &Folder) -> Result<Vec<String>, Failure> {
+/// Writes the record, what can be drawn from it, and the particles at the end; returns the names.
+fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<String>, Failure> {
     let Folder { output, .. } = folder;
     output.write(RECORD, record.to_json()?.as_bytes())?;
     let mut names = vec![RECORD.to_string()];
@@ -204,6 +207,9 @@ fn write(record: &Record, folder: &Folder) -> Result<Vec<String>, Failure> {
         let refused = |reason| FileError::File { path: path.clone(), reason };
         report::png(&figure(record, &curves), &path).map_err(refused)?;
         names.extend(["profile.csv".into(), "profile.png".into()]);
+    } else if let Some(last) = last {
+        output.write("profile.csv", &series_csv(&last)?)?;
+        names.push("profile.csv".into());
     }
     for (name, profile) in &record.profiles {
         // Curves at one time are in profile.csv, particles in the frames.
@@ -262,18 +268,23 @@ fn profile_csv(curves: &[Curve]) -> Result<Vec<u8>, FileError> {
     Ok(table.into_bytes())
 }
 
-/// The columns as they are; a row with a number that is not finite ends the table.
+/// The columns as they are; a number that is not finite leaves a gap. Of rows at the same time, the last one:
+/// a sample may fall on the end, of which there is another sample.
 fn series_csv(series: &Profile) -> Result<Vec<u8>, FileError> {
     let heads: Vec<String> =
         series.columns.iter().map(|column| format!("{}[{}]", column.name, column.unit)).collect();
     let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
     let length = series.columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
     for k in 0..length {
-        let row: Vec<f64> = series.columns.iter().map(|column| column.values[k]).collect();
-        if row.iter().any(|number| !number.is_finite()) {
-            break;
+        let is_repeated =
+            |times: &&Column| times.name == "t" && times.values.get(k + 1) == times.values.get(k);
+        if series.columns.first().filter(is_repeated).is_some() {
+            continue;
         }
-        table.numbers(&row)?;
+        let cell =
+            |number: f64| if number.is_finite() { Cell::Number(number) } else { Cell::Empty };
+        let row: Vec<Cell> = series.columns.iter().map(|column| cell(column.values[k])).collect();
+        table.cells(&row)?;
     }
     Ok(table.into_bytes())
 }
