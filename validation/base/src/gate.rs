@@ -52,20 +52,30 @@ impl Bound {
         value.is_finite() && is_inside
     }
 
-    /// How much of the allowance is left: 1 far inside, 0 at the end, negative outside.
+    /// The share of the allowance that a number inside leaves: 0 at an end, 1 as far inside as can be.
     ///
-    /// The allowance is the bound itself (`Below`, `Above`), half the width (`Within`), or the
-    /// expected number (`Equals`); where that is zero, the distance in the metric's own unit.
-    /// `None` for a number that is not finite.
+    /// That is 1 − value/end (`Below`), 1 − end/value (`Above`), or the distance from the nearer end over
+    /// half the width (`Within`). There is none outside, where nothing is left; of a number that is expected
+    /// exactly (`Equals`), which allows nothing; and of a single end that is not above 0, of which nothing
+    /// is a share.
     pub fn margin(self, value: f64) -> Option<f64> {
-        let (distance, allowance) = match self {
-            Bound::Below(high) => (high - value, high.abs()),
-            Bound::Above(low) => (value - low, low.abs()),
-            Bound::Within(low, high) => ((value - low).min(high - value), 0.5 * (high - low)),
-            Bound::Equals(expected) => (-(value - expected).abs(), expected.abs()),
+        let margin = match self {
+            Bound::Below(high) if high > 0.0 => 1.0 - value / high,
+            Bound::Above(low) if low > 0.0 => 1.0 - low / value,
+            Bound::Within(low, high) => (value - low).min(high - value) / (0.5 * (high - low)),
+            _ => return None,
         };
-        let margin = if allowance > 0.0 { distance / allowance } else { distance };
-        margin.is_finite().then_some(margin + 0.0) // + 0: no negative zero
+        self.contains(value).then_some(margin.min(1.0))
+    }
+
+    /// What a change of the metric is compared with: the end (`Below`, `Above`), half the width (`Within`) or
+    /// the expected number (`Equals`), or 1 where that is zero.
+    pub fn scale(self) -> f64 {
+        let scale = match self {
+            Bound::Below(end) | Bound::Above(end) | Bound::Equals(end) => end.abs(),
+            Bound::Within(low, high) => 0.5 * (high - low),
+        };
+        if scale > 0.0 { scale } else { 1.0 }
     }
 
     fn is_sound(self) -> bool {
@@ -424,7 +434,7 @@ pub struct Judgement {
     /// the metric, if it was measured
     #[serde(with = "crate::number::optional", default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// what is left of the allowance, see [`Bound::margin`]
+    /// what is left of the allowance, of the gate or else of its limitation, see [`Bound::margin`]
     #[serde(with = "crate::number::optional", default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
 }
@@ -450,8 +460,12 @@ pub fn judge(gate: &Gate, value: Option<f64>) -> Judgement {
         }
         _ => Verdict::Fail,
     };
-    let judged = value.filter(|_| verdict != Verdict::Reported);
-    let margin = judged.and_then(|value| gate.bound.margin(value));
+    let bound = match (&verdict, &gate.purpose) {
+        (Verdict::Pass, _) => Some(gate.bound),
+        (Verdict::Limitation(_), Purpose::Limitation(known)) => Some(known.bound),
+        _ => None,
+    };
+    let margin = bound.zip(value).and_then(|(bound, value)| bound.margin(value));
     Judgement { id: gate.id.clone(), verdict, value, margin }
 }
 
@@ -561,21 +575,30 @@ mod tests {
         }
     }
 
+    /// Counts that were exactly as expected passed with a margin of 0 %, and numbers outside had one of
+    /// -14,891 %.
     #[test]
-    fn the_margin_is_what_is_left() {
+    fn the_margin_is_what_is_left_of_an_allowance() {
         for (bound, value, margin) in [
-            (Bound::Below(2.0), 0.5, 0.75),
-            (Bound::Below(2.0), 3.0, -0.5),
-            (Bound::Below(0.0), 0.25, -0.25),
-            (Bound::Above(2.0), 3.0, 0.5),
-            (Bound::Within(1.0, 3.0), 2.0, 1.0),
-            (Bound::Within(1.0, 3.0), 3.0, 0.0),
-            (Bound::Within(1.0, 3.0), 4.0, -1.0),
-            (Bound::Equals(4.0), 3.0, -0.25),
-            (Bound::Equals(0.0), 0.0, 0.0),
+            (Bound::Below(2.0), 0.5, Some(0.75)),
+            (Bound::Below(2.0), -1.0, Some(1.0)),
+            (Bound::Below(2.0), 3.0, None),
+            (Bound::Below(0.0), -0.25, None),
+            (Bound::Above(2.0), 2.0, Some(0.0)),
+            (Bound::Above(2.0), 200.0, Some(0.99)),
+            (Bound::Above(0.0), 3.0, None),
+            (Bound::Within(1.0, 3.0), 2.0, Some(1.0)),
+            (Bound::Within(1.0, 3.0), 3.0, Some(0.0)),
+            (Bound::Within(1.0, 3.0), 300.0, None),
+            (Bound::Equals(4.0), 4.0, None),
+            (Bound::Equals(0.0), 149.0, None),
         ] {
-            assert_eq!(gate(bound).judge(Some(value)).margin, Some(margin), "{bound}: {value}");
+            assert_eq!(gate(bound).judge(Some(value)).margin, margin, "{bound}: {value}");
         }
+        // Of a limitation, what is left until it fails.
+        let limited = gate(Bound::Below(1.0)).with_limitation(Bound::Below(4.0), "it is known");
+        let margins = [0.5, 3.0, 5.0].map(|value| limited.judge(Some(value)).margin);
+        assert_eq!(margins, [Some(0.5), Some(0.25), None]);
     }
 
     #[test]

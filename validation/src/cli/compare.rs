@@ -4,7 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::Context as _;
-use base::{functions::ln, gate::Verdict, record::Record};
+use base::{
+    functions::ln,
+    gate::{Bound, Verdict},
+    record::Record,
+};
 use harness::store::Store;
 use serde_json::{Value, json};
 
@@ -56,7 +60,7 @@ struct Change {
     words: String,
 }
 
-/// A value moved if its margin did by more than this share of the allowance of its gate.
+/// A value moved if it did by more than this share of the scale of its gate's bound.
 const RESOLUTION: f64 = 0.01;
 
 /// Seconds of a run are told if they differ by more than this factor.
@@ -123,7 +127,7 @@ fn of_verdicts(old: &BTreeMap<String, Judged>, new: &BTreeMap<String, Judged>) -
             add(NEW_FAILURE, id, format!("{}; {values}; bound {}", from.verdict, is.gate.bounds()));
         } else if kind_of(&from.verdict) != kind_of(&to.verdict) {
             add("verdict", id, format!("{} to {}; {values}", from.verdict, to.verdict));
-        } else if moved(from.margin, to.margin) || from.value.is_some() != to.value.is_some() {
+        } else if moved(is.gate.bound, from.value, to.value) {
             add("value", id, values);
         }
     }
@@ -139,8 +143,11 @@ fn kind_of(verdict: &Verdict) -> std::mem::Discriminant<Verdict> {
     std::mem::discriminant(verdict)
 }
 
-fn moved(from: Option<f64>, to: Option<f64>) -> bool {
-    matches!((from, to), (Some(from), Some(to)) if (from - to).abs() > RESOLUTION)
+fn moved(bound: Bound, from: Option<f64>, to: Option<f64>) -> bool {
+    match (from, to) {
+        (Some(from), Some(to)) => (from - to).abs() > RESOLUTION * bound.scale(),
+        _ => from.is_some() != to.is_some(),
+    }
 }
 
 fn of_records(old: &BTreeMap<String, Record>, new: &BTreeMap<String, Record>) -> Vec<Change> {
