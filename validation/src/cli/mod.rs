@@ -39,7 +39,7 @@ use base::manifest::{Known, Source, UNKNOWN, tell_source};
 use base::record::RecordError;
 use clap::{CommandFactory, Parser};
 use harness::case::{Case, RunError, Tier};
-use harness::make::{self, Job, Made, Making};
+use harness::make::{self, Done, Job, Made, Making};
 use harness::store::{Store, StoreError};
 use validation::cases;
 
@@ -159,8 +159,8 @@ impl World {
         reuse_other: bool,
         threads: Option<u16>,
     ) -> Result<Made, Failure> {
-        let bar = progress::Bar::new(1);
-        let show = |done: usize, all: usize, name: &str| bar.show_runs(done, all, name);
+        let bar = progress::Bar::new();
+        let show = |done: Done| bar.show_runs(done);
         let making = Making {
             tier,
             store,

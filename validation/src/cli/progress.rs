@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use ::report;
-use harness::context::Progress;
+use harness::{context::Progress, make::Done};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar on standard error, or nothing.
@@ -18,17 +18,16 @@ pub struct Bar {
 
 /// Between two looks.
 const EVERY: Duration = Duration::from_millis(100);
-/// Part of the runs that must be done before it is said how long the others will take: the longest start
-/// first.
+/// Part of the work that must be done before it is said how long the rest will take.
 const FIRST_ESTIMATE: f64 = 0.1;
-/// Parts that a run is divided into.
+/// Parts that the work is divided into.
 const PARTS: u64 = 1000;
 
 impl Bar {
-    /// A bar over so many parts if standard error is a terminal.
-    pub fn new(parts: u64) -> Self {
+    /// A bar if standard error is a terminal.
+    pub fn new() -> Self {
         let bar = if io::stderr().is_terminal() {
-            ProgressBar::new(parts)
+            ProgressBar::new(PARTS)
         } else {
             ProgressBar::hidden()
         };
@@ -41,11 +40,6 @@ impl Bar {
         }
         let start = Instant::now();
         Bar { bar, start, next: Mutex::new(start) }
-    }
-
-    /// A bar for one run.
-    pub fn of_a_run() -> Self {
-        Self::new(PARTS)
     }
 
     /// Shows how far a run is.
@@ -67,19 +61,18 @@ impl Bar {
         ));
     }
 
-    /// Shows that `done` of `all` runs are done, the last one of this name.
-    pub fn show_runs(&self, done: usize, all: usize, name: &str) {
-        let mut words = format!("{done} of {all} runs");
-        if done > 0 {
-            words += &format!(", last {name}");
+    /// Shows how far the runs of a plan are.
+    pub fn show_runs(&self, done: Done) {
+        let Done { runs, all, share, last } = done;
+        let mut words = format!("{runs} of {all} runs");
+        if runs > 0 {
+            words += &format!(", last {last}");
         }
-        if done > 0 && done as f64 >= FIRST_ESTIMATE * all as f64 {
-            let elapsed = self.start.elapsed().as_secs_f64();
-            let left = elapsed * all.saturating_sub(done) as f64 / done as f64;
+        if share >= FIRST_ESTIMATE {
+            let left = self.start.elapsed().as_secs_f64() * (1.0 - share).max(0.0) / share;
             words += &format!(", {} left", report::seconds(left));
         }
-        self.bar.set_length(all as u64);
-        self.bar.set_position(done as u64);
+        self.bar.set_position((share * PARTS as f64) as u64);
         self.bar.set_message(words);
     }
 

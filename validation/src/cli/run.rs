@@ -106,7 +106,7 @@ fn compute(
     folder: Option<&Folder>,
     world: &World,
 ) -> Result<(Record, Option<Profile>), Failure> {
-    let bar = Bar::of_a_run();
+    let bar = Bar::new();
     let last = Mutex::default();
     let told = Once::new(); // a run may consist of several simulations, the first of which is the longest
     let tell = |size: &Size| {
