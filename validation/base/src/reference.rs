@@ -321,6 +321,13 @@ impl Reference {
         EMBEDDED.iter().map(|embedded| embedded.name).collect()
     }
 
+    /// The references that are not as their descriptions state, and what is wrong with them: a table that was
+    /// changed has another hash.
+    pub fn unsound() -> Vec<(&'static str, ReferenceError)> {
+        let names = Self::names().into_iter();
+        names.filter_map(|name| Some((name, Self::load(name).err()?))).collect()
+    }
+
     /// Checks and reads an embedded reference.
     pub fn load(name: &str) -> Result<Self, ReferenceError> {
         let unknown = || ReferenceError::Unknown { name: name.into(), known: Self::names() };

@@ -34,6 +34,22 @@ pub fn find(name: &str) -> Result<&'static dyn Case, RunError> {
     find_in(CASES, name)
 }
 
+/// The references that cases are compared with, and these cases.
+const USERS: [(&str, &[&str]); 7] = [
+    ("dambreak_lobovsky", &["dam_break"]),
+    ("dambreak_martin_moyce", &["dam_break"]),
+    ("peers_channel", &["couette", "poiseuille"]),
+    ("peers_taylor_green", &["taylor_green"]),
+    ("periodic_hill", &["periodic_hill"]),
+    ("periodic_hill_geometry", &["periodic_hill"]),
+    ("rubber_rings", &["rubber_rings"]),
+];
+
+/// The cases that are compared with a reference; none with one that is only shown.
+pub fn users(reference: &str) -> &'static [&'static str] {
+    USERS.iter().find(|(name, _)| *name == reference).map_or(&[], |(_, cases)| cases)
+}
+
 /// The family that a case belongs to, by the name of its crate.
 pub fn family(case: &str) -> Option<&'static str> {
     let families = [
@@ -44,4 +60,41 @@ pub fn family(case: &str) -> Option<&'static str> {
     ];
     let has = |cases: &[&dyn Case]| cases.iter().any(|known| known.name() == case);
     families.into_iter().find(|(_, cases)| has(cases)).map(|(name, _)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use base::reference::Reference;
+
+    use super::*;
+
+    /// The text of all sources below a folder.
+    fn sources(folder: &Path) -> String {
+        let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let text = |path: std::path::PathBuf| match path.is_dir() {
+            true => sources(&path),
+            false => fs::read_to_string(path).unwrap(),
+        };
+        paths.map(text).collect()
+    }
+
+    #[test]
+    fn a_reference_that_is_read_has_its_cases_named() {
+        let names = Reference::names();
+        for (name, cases) in USERS {
+            assert!(names.contains(&name), "{name}");
+            assert!(cases.iter().all(|case| find(case).is_ok()), "{name}: {cases:?}");
+        }
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let crates = ["maths", "fluids", "waters", "solids", "lattice"];
+        let text: String =
+            crates.iter().map(|name| sources(&root.join(name).join("src"))).collect();
+        for name in names {
+            let is_read = text.contains(&format!("load(\"{name}\")"));
+            assert_eq!(is_read, !users(name).is_empty(), "{name}");
+        }
+    }
 }

@@ -37,6 +37,7 @@ use std::sync::atomic::AtomicBool;
 use base::files::FileError;
 use base::manifest::{Known, Source, UNKNOWN, tell_source};
 use base::record::RecordError;
+use base::reference::{Reference, ReferenceError};
 use clap::{CommandFactory, Parser};
 use harness::case::{Case, RunError, Tier};
 use harness::make::{self, Done, Job, Made, Making};
@@ -129,6 +130,8 @@ pub struct World {
     cases: &'static [&'static dyn Case],
     /// Digest of the sources that decide what a case computes.
     sources: fn(&str) -> String,
+    /// The references that are not as they were described, each with the cases that are compared with it.
+    references: fn() -> Vec<(ReferenceError, &'static [&'static str])>,
     /// Set to stop.
     interrupt: &'static AtomicBool,
 }
@@ -183,6 +186,26 @@ impl World {
         Ok(made)
     }
 
+    /// Refuses to judge cases by a reference that was changed, or to show one that no case uses.
+    fn check_references(&self, cases: &[&'static dyn Case]) -> Result<(), Failure> {
+        let mut words = Vec::new();
+        for (error, users) in (self.references)() {
+            let is_used = |case: &&dyn Case| users.contains(&case.name());
+            if users.is_empty() {
+                words.push(error.to_string());
+            } else if cases.iter().any(is_used) {
+                words.push(format!("{error}; it judges {}", users.join(" and ")));
+            }
+        }
+        match words.is_empty() {
+            true => Ok(()),
+            false => {
+                let reason = anyhow::anyhow!("nothing is judged: {}", words.join("\n"));
+                Err(Failure { exit: Exit::GateFailed, reason })
+            }
+        }
+    }
+
     fn is_interrupted(&self) -> bool {
         self.interrupt.load(std::sync::atomic::Ordering::Relaxed)
     }
@@ -210,6 +233,12 @@ fn sources(case: &str) -> String {
     digest.into()
 }
 
+/// The embedded references that are not as they were described, and the cases that use them.
+fn references() -> Vec<(ReferenceError, &'static [&'static str])> {
+    let unsound = Reference::unsound().into_iter();
+    unsound.map(|(name, error)| (error, cases::users(name))).collect()
+}
+
 /// Reads the arguments of the process and does what they ask.
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(output::report_bug));
@@ -221,7 +250,7 @@ pub fn main() -> ExitCode {
             return code(if error.use_stderr() { Exit::Usage } else { Exit::Pass });
         }
     };
-    let world = World { cases: cases::CASES, sources, interrupt: interrupt::flag() };
+    let world = World { cases: cases::CASES, sources, references, interrupt: interrupt::flag() };
     let threads = default_threads();
     if threads > 0 {
         output::say(&format!(

@@ -7,6 +7,7 @@ use ::report::check_page;
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricKey, Record, Status},
+    reference::{Reference, ReferenceError},
     settings::Field,
     spec::RunSpec,
 };
@@ -110,7 +111,7 @@ fn run_on(
     let line = line.replace("OUT", out.to_str().expect("a plain path"));
     let words = std::iter::once("touchstone").chain(line.split(' '));
     let arguments = Arguments::try_parse_from(words).expect("a sound command line");
-    let world = World { cases, sources, interrupt };
+    let world = World { cases, sources, references: Vec::new, interrupt };
     conclude(|| dispatch(&arguments.command, &world))
 }
 
@@ -187,10 +188,50 @@ fn a_page_that_may_not_open_is_told_and_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("a plain path");
     let arguments = Arguments::try_parse_from(["touchstone", "report", "--out", out]);
-    let world = World { cases: &TWICE, sources, interrupt: &NEVER };
+    let world = World { cases: &TWICE, sources, references: Vec::new, interrupt: &NEVER };
     assert_eq!(conclude(|| dispatch(&arguments.expect("sound").command, &world)), Exit::Bug);
     let html = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
     assert!(check_page(&html).is_err_and(|reason| reason.contains("used twice")));
+}
+
+/// One number of a table was changed, and not its hash.
+fn changed() -> Vec<(ReferenceError, &'static [&'static str])> {
+    let package = include_str!("../../../references/peers_channel/datapackage.json");
+    let table = include_str!("../../../references/peers_channel/errors.csv").replacen('1', "2", 1);
+    let refused = Reference::from_texts("peers_channel", package, &[("errors.csv", &table)]);
+    refused.err().into_iter().map(|error| (error, &["right"][..])).collect()
+}
+
+/// Some tables could be changed and every gate passed; others failed gates that did not name the table.
+#[test]
+fn a_changed_table_fails_every_case_that_uses_it_by_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().to_str().expect("a plain path");
+    let fails = |line: String| {
+        let words = ["touchstone"].into_iter().chain(line.split(' '));
+        let arguments = Arguments::try_parse_from(words).expect("a sound command line");
+        let world = World { cases: &SOUND, sources, references: changed, interrupt: &NEVER };
+        dispatch(&arguments.command, &world).err().map(|failure| {
+            assert_eq!(failure.exit, Exit::GateFailed);
+            failure.reason.to_string()
+        })
+    };
+    for line in [
+        format!("verify right --store {out}/store"),
+        format!("verify --store {out}/store"),
+        format!("judge --store {out}"),
+        format!("report --out {out}/report"),
+    ] {
+        let words = fails(line.clone()).unwrap_or_else(|| panic!("{line} passes"));
+        for part in ["the hash of reference peers_channel/errors.csv", "it judges right"] {
+            assert!(words.contains(part), "{line}: {words}");
+        }
+    }
+    assert_eq!(
+        fails(format!("verify wrong --store {out}/store")),
+        None,
+        "it does not use the table"
+    );
 }
 
 /// A second report makes nothing, a store is judged and rendered without a run, and a comparison of two
@@ -201,7 +242,7 @@ fn records_are_reused_judged_rendered_and_compared() {
     let on = |cases: &'static [&'static dyn Case], line: &str| {
         let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
         let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
-        let world = World { cases, sources, interrupt: &NEVER };
+        let world = World { references: Vec::new, cases, sources, interrupt: &NEVER };
         conclude(|| dispatch(&arguments.command, &world))
     };
     static GOOD: [&dyn Case; 1] = [&RIGHT];

@@ -82,6 +82,7 @@ pub fn run(
     threads: Option<u16>,
     world: &World,
 ) -> Result<Suite, Failure> {
+    world.check_references(cases)?;
     let plans = suite::plans(cases, tier);
     if reuse.fresh {
         for planned in plans.iter().flat_map(|(_, plan)| plan) {
@@ -108,6 +109,7 @@ pub fn of_store(
     any_build: bool,
     world: &World,
 ) -> Result<Suite, Failure> {
+    world.check_references(cases)?;
     if !path.is_dir() {
         return Err(Failure::usage(anyhow::anyhow!("the store {} does not exist", path.display())));
     }
