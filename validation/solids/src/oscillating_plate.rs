@@ -222,15 +222,15 @@ const BARE: &str = "the same at faces, and more the finer the plate is, 35 % and
     energy. Why it grows with n is not known; the bound is the 7 points of a doubling more";
 
 /// Why coarse plates end with less energy than they began with.
-const LOSES: &str = "artificial viscosity takes energy, the more the coarser the plate is: 8.2 % with 5 particles \
-    through the thickness and 2.4 % with 10. The bound: 8.5 % with 4 (--set n=4)";
+const LOSES: &str = "artificial viscosity takes energy, the more the coarser the plate is: 8.2 % with 5 \
+    particles through the thickness and 2.4 % with 10. The bound: 8.5 % with 4 (--set n=4)";
 
 /// Why the finest plate ends with more energy than it began with.
 const GAINS: &str = "artificial stress gives energy to particles in tension, in proportion to the stress, \
     and viscosity takes it in proportion to the spacing: at 20 particles through the thickness the former \
-    wins. It cannot be left out: with xi = 0 this plate loses 58 % of its energy and has no period. The bound: \
-    it takes at most xi = 0.3 from the pull in the half that is in tension, so the strain energy by the stress \
-    is there at most 1/0.7 of the work that was done";
+    wins. It cannot be left out: with xi = 0 this plate loses 58 % of its energy and has no period. The \
+    bound: it takes at most xi = 0.3 from the pull in the half that is in tension, so the strain energy by \
+    the stress is there at most 1/0.7 of the work that was done";
 
 /// A plate of so many particles through its thickness.
 fn swing_spec(variant: &str, n: usize) -> RunSpec {
@@ -261,9 +261,9 @@ fn swing(variant: &str, n: usize) -> Planned {
         AMPLITUDE_RATIO,
         Bound::Within(0.9, 1.02),
         Evidence::Theory,
-        "a plate that starts at v swings to v T/(2 pi), no farther but for the 2 % by which thin-plate theory \
-         has another first mode, and less far by what the first quarter of a period takes of the energy: \
-         a fifth of it is a tenth of the amplitude",
+        "a plate that starts at v swings to v T/(2 pi), no farther but for the 2 % by which thin-plate \
+         theory has another first mode, and less far by what the first quarter of a period takes of the \
+         energy: a fifth of it is a tenth of the amplitude",
     );
     let energy = OSCILLATING_PLATE.gate(
         &id,

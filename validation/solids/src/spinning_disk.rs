@@ -255,16 +255,17 @@ const RIM: &str = "the velocity gradient in (11) is a sum over neighbours that i
     the drift falls with finer spacing, but slower than the share of the rim";
 
 /// How fast a disk is braked at first.
-const BRAKED: &str = "The bound: falling at least as the width of the rim, dx/R, from what disks of 4 spacings lose \
-    in a tenth of a revolution (--set n=4 --set end=0.2), 1.9 % without viscosity and 13 % with it";
+const BRAKED: &str = "The bound: falling at least as the width of the rim, dx/R, from what disks of 4 \
+    spacings lose in a tenth of a revolution (--set n=4 --set end=0.2), 1.9 % without viscosity and 13 % \
+    with it";
 
 /// How far the angular momentum can be from what it was.
 const REVERSED: &str = "The bound: L^2 is at most 2 I T, and the energy grows by 5 % at most, so that a disk \
     that springs back has not lost more than 2.1 of what it had";
 
 /// How large the stress can become.
-const ALL_SHEAR: &str = "The bound: all of the kinetic energy, rho U^2/4 for each area, and 5 % more, as energy \
-    of shear S:S/(4 mu) at U = 0.05 c0";
+const ALL_SHEAR: &str = "The bound: all of the kinetic energy, rho U^2/4 for each area, and 5 % more, as \
+    energy of shear S:S/(4 mu) at U = 0.05 c0";
 
 /// One revolution of a disk of so many spacings.
 fn spin_spec(variant: &str, n: usize) -> RunSpec {

@@ -81,8 +81,8 @@ fn histories(tier: Tier) -> Curves {
         title: "Histories over finite elements".into(),
         caption: format!(
             "One of two rings that collide at 0.059 c0 each, variant `{variant}`, at several spacings, \
-             against time in L/c0. Black: finite elements, one ring against a frictionless plane, \
-             logarithmic strain; their uncertainty is less than the width of the line. Centre of mass and \
+             against time in L/c0. Black: finite elements, one ring against a frictionless plane, the \
+             law of (10) to (12); their uncertainty is less than the width of the line. Centre of mass and \
              its velocity, and the outer extents along the line of flight and across it."
         ),
         columns: 2,
@@ -257,9 +257,9 @@ fn fracture_map(tier: Tier) -> Map {
         id: "rubber-rings-fracture-map".into(),
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
         caption: "What becomes of the two rings over the speed of each and the spacing. Whole: each is one \
-                  piece with a hole, at each of 100 counts; the restitution follows, or that they still touch. Torn: a ring is cut \
-                  through once, like a C, and one piece still; the time in L/c0 follows. In pieces: how many \
-                  there are at most."
+                  piece with a hole, at each of 100 counts; the restitution follows, or that they still \
+                  touch. Torn: a ring is cut through once, like a C, and one piece still; the time in L/c0 \
+                  follows. In pieces: how many there are at most."
             .into(),
         x: "speed [c0]".into(),
         y: "spacing [L]".into(),

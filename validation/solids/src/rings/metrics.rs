@@ -3,7 +3,8 @@
 use base::record::{MetricKey, Record};
 
 base::metrics! {
-    RESTITUTION = "restitution" ["-"] "velocity of the centre of mass at the end/V, of rings that have touched and parted";
+    RESTITUTION = "restitution" ["-"]
+        "velocity of the centre of mass at the end/V, of rings that have touched and parted";
     PIECES = "pieces" ["1"] "connected pieces at the end, 1.5 dx; two rings are 2";
     PIECES_MOST = "pieces_most" ["1"] "most connected pieces at any time";
     HOLES_LEAST = "holes_least" ["1"]

@@ -4,10 +4,10 @@ use solver::{CubicSpline, kernel::Smoothing};
 
 /// Period of bending of a body of so many layers over that of one whose gradients are exact, less 1 \[-\].
 ///
-/// Gradients (11) and forces (9) are sums over neighbours that are not corrected. Where neighbours are missing,
-/// both are too small along the face, by the factor f = Σ V F x² over the layers that there are. A layer at the
-/// distance y from the middle therefore counts with f² y² in the stiffness, whose sum is 1/12 of the cube of
-/// the thickness if f = 1; the period goes with the inverse root of the stiffness.
+/// Gradients (11) and forces (9) are sums over neighbours that are not corrected. Where neighbours are
+/// missing, both are too small along the face, by the factor f = Σ V F x² over the layers that there are. A
+/// layer at the distance y from the middle therefore counts with f² y² in the stiffness, whose sum is 1/12
+/// of the cube of the thickness if f = 1; the period goes with the inverse root of the stiffness.
 pub fn period_excess(layers: usize, h_over_dx: f64) -> f64 {
     let kernel = Smoothing::<CubicSpline>::new(h_over_dx);
     let reach = kernel.support().ceil() as i32;

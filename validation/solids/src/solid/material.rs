@@ -49,11 +49,11 @@ impl Material {
 /// Side of the periodic box whose waves give the limit of the time step.
 const LIMIT_BOX: usize = 24;
 
-/// The largest stable step of a method on a stress-free lattice of this material, with artificial viscosity on
-/// every pair \[s\]: with α = 1 about 1.1 h/c_p for the leapfrog.
+/// The largest stable step of a method on a stress-free lattice of this material, with artificial viscosity
+/// on every pair \[s\]: with α = 1 about 1.1 h/c_p for the leapfrog.
 ///
-/// Its fastest waves run at c_p. The c of the artificial viscosity is that of the equation of state, c₀, so its
-/// α counts as α c₀/c_p of c_p.
+/// Its fastest waves run at c_p. The c of the artificial viscosity is that of the equation of state, c₀, so
+/// its α counts as α c₀/c_p of c_p.
 pub fn step_limit<D: ?Sized>(
     method: &Method<Symmetric, D>,
     material: &Material,
