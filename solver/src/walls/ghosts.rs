@@ -44,7 +44,7 @@ pub(crate) fn corners(walls: &[PlaneWall]) -> impl Iterator<Item = [&PlaneWall; 
 
 /// Walls represented by mirror (ghost) particles: each particle within the list radius of a wall has an
 /// image across the wall with the density and pressure of its original (inferred) and the velocity 2U − v
-/// + d² ∂²v/∂n².
+/// + d² ∂²v/∂n². A particle that has crossed the wall has none, because it would lie in the fluid.
 ///
 /// Where two walls meet at a right angle, the fluid between them, a particle within that radius of both
 /// has an image across both as well: the mirror particle of its mirror particle, half a turn about the
@@ -69,7 +69,7 @@ impl<X> Walls<X> for Ghosts {
 /// mirror of the whole particle, velocity included, v − 2\[(v − U)·n\]n = v − 2(v·n)n, and across a
 /// corner −v. The motion U of a wall along itself, and its curvature, have no effect.
 ///
-/// Pressure (5) and continuity (3) then do no work on these walls, in any arrangement: what the image of j
+/// Pressure (5) and continuity (3) then do no work on these walls, in any arrangement before them: what the image of j
 /// does to i is the mirror of what the image of i does to j. Images of a no-slip wall do work on the
 /// velocity along it (what is left of −2 Σ m m' (p'/ρ'²) v_t·∇W).
 #[derive(Clone, Debug, Default)]

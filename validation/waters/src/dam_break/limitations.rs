@@ -59,7 +59,7 @@ pub fn in_tank(gate: Gate, variant: &str, n: usize) -> Gate {
         // Those at H/dx = 30 and 60 that are within the bound have no limitation.
         ("modern", Some(k)) if [n < 60, n > 60, true, true][k] => {
             let limit = [-0.13, -0.27, -0.26, -0.53][k];
-            let spacing = 0.105 * 120.0 / n as f64;
+            let spacing = 1.25 * 0.105 * 120.0 / n as f64;
             gate.with_limitation(Bound::Within(limit - spacing, limit + spacing), TONGUE)
         }
         _ => gate,
@@ -151,7 +151,7 @@ const SPENT: &str = "artificial viscosity takes 73 % of the energy until the end
                      %; what remains is 5, 17 and 25 % less in the finest run of `modern`: together 86, 65 \
                      and 52 %";
 const TENSION: &str = "the impulse is negative, a net tension: what little water comes to 80 mm has lost \
-                       density there, and nothing cuts the equation of state at 0. How much is noise: seven \
+                       density there, and nothing cuts the equation of state at 0. How much is noise: five \
                        runs at H/dx 20 that differ in alpha or in XSPH alone have -0.12 to -1.03; their mean \
                        less twice their standard deviation is -1.35";
 const FAST: &str = "water in two dimensions, without gate and friction, runs faster than measured: 1.56, 1.62 \
@@ -163,4 +163,5 @@ const TONGUE: &str = "water in two dimensions, without gate and friction, comes 
                       after its arrival; from that on it lacks 25 % there, as at 30 mm. Errors at 60 and 120 \
                       have the limits -13, -27, -26 and -53 % at P1 to P4 if they are of first order, and \
                       differ by up to 10.5 % from each other: the limit is what this water does, and the \
-                      difference, in proportion to the spacing, what the spacing adds";
+                      difference in proportion to the spacing, times the usual factor of safety 1.25, what \
+                      the spacing adds";
