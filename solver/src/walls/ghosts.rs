@@ -69,9 +69,9 @@ impl<X> Walls<X> for Ghosts {
 /// mirror of the whole particle, velocity included, v − 2\[(v − U)·n\]n = v − 2(v·n)n, and across a
 /// corner −v. The motion U of a wall along itself, and its curvature, have no effect.
 ///
-/// Pressure (5) and continuity (3) then do no work on these walls, in any arrangement before them: what the image of j
-/// does to i is the mirror of what the image of i does to j. Images of a no-slip wall do work on the
-/// velocity along it (what is left of −2 Σ m m' (p'/ρ'²) v_t·∇W).
+/// Pressure (5) and continuity (3) then do no work on these walls, in any arrangement before them: what
+/// the image of j does to i is the mirror of what the image of i does to j. Images of a no-slip wall do work
+/// on the velocity along it (what is left of −2 Σ m m' (p'/ρ'²) v_t·∇W).
 #[derive(Clone, Debug, Default)]
 pub struct SlipGhosts {
     /// The walls.

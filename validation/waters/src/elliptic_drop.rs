@@ -369,10 +369,10 @@ fn gates(id: &str, n: usize) -> Vec<Gate> {
 }
 
 const STRINGS: &str = "the strain leaves half a spacing along x and two along y, across which the cubic \
-                       spline at h/dx 1.5 hardly reaches: `modern` with that h/dx has a 5.8 % too large at 40 \
-                       particles across. b falls short by less than the first order from 4.6 % at 14. Without \
-                       artificial stress, which adds to it, errors at 20 are 3.4 and 2.6 % instead of 4.0 and \
-                       3.1 %";
+                       spline at h/dx 1.5 hardly reaches: `modern` with that h/dx has a 5.8 % too large at \
+                       40 particles across. b falls short by less than the first order from 4.6 % at 14. \
+                       Without artificial stress, which adds to it, errors at 20 are 3.4 and 2.6 % instead \
+                       of 4.0 and 3.1 %";
 
 fn invariants(id: &str) -> Vec<Gate> {
     let round_off = "forces of pairs are equal and opposite, and the only other force is gravity, which \

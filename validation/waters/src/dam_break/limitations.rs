@@ -117,11 +117,11 @@ fn of_ghosts_in_tank(gate: Gate, sensor: Option<usize>) -> Gate {
 }
 
 const MIRRORED: &str = "ghosts carry the opposite velocity, as the paper has it, along the wall too: along a \
-                        wall that water runs past they double the difference that (3) sums, and in \
-                        disorder that is noise of the density, which does work. At a/dx 10, 14, 28 and 40 it \
-                        is 0.64, 0.66, 0.43 and 0.30 of M g H/2, with a mean and two standard deviations of \
-                        0.84, and the energy not accounted for is 0.013 so; the front at 14, the farthest of \
-                        them, has Z = 2.31 and 3.32 and a shift of -0.15; in the tank the Mach number is 0.60. \
+                        wall that water runs past they double the difference that (3) sums, and in disorder \
+                        that is noise of the density, which does work. At a/dx 10, 14, 28 and 40 it is 0.64, \
+                        0.66, 0.43 and 0.30 of M g H/2, with a mean and two standard deviations of 0.84, and \
+                        the energy not accounted for is 0.013 so; the front at 14, the farthest of them, has \
+                        Z = 2.31 and 3.32 and a shift of -0.15; in the tank the Mach number is 0.60. \
                         `ghosts-slip`, which differs in that alone, has 0.001 of work, Z = 2.58 and 4.00, \
                         and Mach 0.12";
 const CROSSED: &str = "in the plane of a ghost wall the water and its images push a particle alike from both \
@@ -147,19 +147,19 @@ const LAYER: &str = "particles next to the back wall lag, in a layer of a few sp
                      without artificial stress it stays";
 const SPENT: &str = "artificial viscosity takes 73 % of the energy until the end, so what reaches the far \
                      wall is late, at 3.04 instead of 2.44, and slow. With alpha 0.2 at H/dx 20, three times \
-                     the viscosity of this run, the front is 0.22 H off, and P1, P2 and P3 lack 85, 57 and 36 \
-                     %; what remains is 5, 17 and 25 % less in the finest run of `modern`: together 86, 65 \
-                     and 52 %";
+                     the viscosity of this run, the front is 0.22 H off, and P1, P2 and P3 lack 85, 57 and \
+                     36 %; what remains is 5, 17 and 25 % less in the finest run of `modern`: together 86, \
+                     65 and 52 %";
 const TENSION: &str = "the impulse is negative, a net tension: what little water comes to 80 mm has lost \
                        density there, and nothing cuts the equation of state at 0. How much is noise: five \
                        runs at H/dx 20 that differ in alpha or in XSPH alone have -0.12 to -1.03; their mean \
                        less twice their standard deviation is -1.35";
-const FAST: &str = "water in two dimensions, without gate and friction, runs faster than measured: 1.56, 1.62 \
-                    and 1.67 (g H)^(1/2) at H/dx 30, 60 and 120, where the experiment has 1.515. The \
+const FAST: &str = "water in two dimensions, without gate and friction, runs faster than measured: 1.56, \
+                    1.62 and 1.67 (g H)^(1/2) at H/dx 30, 60 and 120, where the experiment has 1.515. The \
                     distance of its front after the shift, 0.064, 0.075 and 0.089, has the limit 0.103 if it \
                     is of first order; 0.12 is that with the last difference";
-const TONGUE: &str = "water in two dimensions, without gate and friction, comes as a tongue that is 9 to 13 % \
-                      thinner than measured (metric `tongue`) and rises to 80 mm 0.20 (H/g)^(1/2) later \
+const TONGUE: &str = "water in two dimensions, without gate and friction, comes as a tongue that is 9 to 13 \
+                      % thinner than measured (metric `tongue`) and rises to 80 mm 0.20 (H/g)^(1/2) later \
                       after its arrival; from that on it lacks 25 % there, as at 30 mm. Errors at 60 and 120 \
                       have the limits -13, -27, -26 and -53 % at P1 to P4 if they are of first order, and \
                       differ by up to 10.5 % from each other: the limit is what this water does, and the \

@@ -395,8 +395,8 @@ mod tests {
         is(metric(metrics::Z.at(3)), value(&front, 3.2), 2e-3);
     }
 
-    /// Pressures 5, 10, 15 and 20 % too high, on another clock; levels 5 % too high; a front that runs at 1.03
-    /// times the speed.
+    /// Pressures 5, 10, 15 and 20 % too high, on another clock; levels 5 % too high; a front at 1.03 times
+    /// the speed.
     #[test]
     fn what_a_computation_of_lobovsky_has_too_much_of_is_measured() {
         let (dam, lobovsky) = (dam(lobovsky), Lobovsky::load().unwrap());

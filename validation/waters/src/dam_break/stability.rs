@@ -69,8 +69,8 @@ impl Extreme {
     pub fn planned(self) -> Planned {
         let id = format!("{NAME}.extreme.{}", self.name.replace(' ', "-"));
         let stays = "it is water in a tank: it stays there";
-        let closes = "pressure and (3) exchange energy exactly, and every other term is accounted for: 1 % is \
-                      for a coarse spacing and for the sampling of the powers";
+        let closes = "pressure and (3) exchange energy exactly, and every other term is accounted for: 1 % \
+                      is for a coarse spacing and for the sampling of the powers";
         let grows =
             "twice the limit grows without bound, which is a typed failure with step and particle";
         let judged =

@@ -277,9 +277,10 @@ fn since(curve: &Curve, arrival: f64) -> Curve {
 /// Impulses since the arrival of all runs.
 fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let caption = "Impulse on the same sensors since the wave arrives at P1, the integral of the pressure. \
-                   Black: the experiment; band: ± the difference of two sensors at the height of P2, side \
-                   by side in one event, at each time, in every panel. Impulses are judged at 1, where that \
-                   is 6.0 % of P2, within twice the standard uncertainty of one sensor, 8.5 %. A run that diverged has no curve.";
+                   Black: the experiment; band: ± the difference of two sensors at the height of P2, side by \
+                   side in one event, at each time, in every panel. Impulses are judged at 1, where that is \
+                   6.0 % of P2, within twice the standard uncertainty of one sensor, 8.5 %. A run that \
+                   diverged has no curve.";
     let mut figure = Figure::new("dam-break-impulses", caption).columns(2);
     let so_far = |curve: &Curve, arrival: f64| -> Curve {
         let later = since(curve, arrival).into_iter().filter(|(t, _)| *t >= 0.0);
