@@ -132,7 +132,7 @@ impl Reference {
         let farthest = |from, to| gaps(from, to).max_by(|a, b| a.1.total_cmp(&b.1));
         let time = |found: Option<(f64, f64)>| found.map_or(f64::NAN, |(t, _)| t);
         let far = |(_, gap): &(f64, f64)| *gap > reach;
-        let comes = gaps(before, start(k)).filter(far).last();
+        let comes = gaps(before, start(k)).rfind(far);
         let leaves = gaps(end(k), start(k + 1)).find(far);
         [
             time(comes.or_else(|| farthest(before, start(k)))),

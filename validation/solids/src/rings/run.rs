@@ -153,3 +153,25 @@ fn keep(
         .with("stress", "Pa", column(&largest));
     record.profiles.insert(format!("particles@{share}"), profile);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::RUBBER_RINGS;
+    use super::*;
+    use harness::case::Case;
+
+    /// The series had no row at t = 0 and its last row twice.
+    #[test]
+    fn the_series_begins_at_the_start_and_has_each_time_once() {
+        // With steps that meet the end and the times of samples, and with steps that do not.
+        for dt in [None, Some(0.125)] {
+            let set = |s: &mut RingSettings| (s.spacing, s.end, s.dt) = (0.5, 5.0, dt);
+            let spec = RUBBER_RINGS.spec("leapfrog", set);
+            let record = RUBBER_RINGS.run(&spec, &Context::default()).expect("a run");
+            let times = record.column("series", "t");
+            assert_eq!((times.first(), times.last()), (Some(&0.0), Some(&5.0)));
+            assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
+            assert_eq!(record.column("series", "x_c")[0], 5.0);
+        }
+    }
+}
