@@ -174,7 +174,7 @@ fn reference_gates(id: &str, spacing: f64, speed: f64) -> Vec<Gate> {
     let Some(exact) = Reference::of(&settings) else { return Vec::new() };
     let layers = (1.0 / spacing).round() as usize;
     let softer = faces::known_excess(layers, settings.h_over_dx);
-    let distance = Distance { id, spacing, exact, softer };
+    let distance = Distance { id, spacing, speed, exact, softer };
     let mut gates = distance.of_extremes();
     gates.extend(distance.of_path());
     gates.extend(distance.of_contact());
@@ -196,6 +196,8 @@ struct Distance<'a> {
     id: &'a str,
     /// \[L\].
     spacing: f64,
+    /// Of each ring \[c0\].
+    speed: f64,
     exact: Reference,
     /// Period of bending over that of an elastic ring, less 1, as far as it is known.
     softer: f64,
@@ -281,8 +283,12 @@ impl Distance<'_> {
         let (begin, doubt) = self.exact.phases[k][1];
         let [comes, _] = self.exact.within(self.spacing, k);
         let late = self.allowed() * (begin - self.touch()) + doubt;
-        let bound = Bound::Within(comes - begin - late, late + 0.25);
-        reference(self.id, CONTACT_BEGIN_ERROR.at(phase(k)), bound, REACH)
+        let early = comes - begin - late;
+        let bound = Bound::Within(early, late + 0.25);
+        let gate = reference(self.id, CONTACT_BEGIN_ERROR.at(phase(k)), bound, REACH);
+        // Slow rings miss it: they are softer than first order says.
+        let known = Bound::Within(early, self.softer * (begin - self.touch()) + doubt);
+        if k > 0 && self.speed < SPEED { gate.with_limitation(known, SOFT) } else { gate }
     }
 
     /// The end of a phase.
