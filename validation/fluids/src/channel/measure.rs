@@ -338,7 +338,6 @@ mod tests {
     use solver::Continuity;
 
     use base::record::{MetricName, Record};
-    use solver::{EquationOfState, Particle};
 
     use super::*;
     use crate::channel::{
@@ -379,6 +378,8 @@ mod tests {
             for metric in [L2, LINF, FIELD_L2, SHEAR_LOWER, SHEAR_UPPER] {
                 assert_near(&none, metric.at(0.1), 0.0, 1e-12);
             }
+            let [u, exact_u] = ["u", "u_exact"].map(|name| none.column(&profile_at(0.1), name));
+            assert!(u.len() == 20 && u.iter().zip(exact_u).all(|(u, e)| (u - e).abs() < 1e-9 * v));
             let faster = compared(&setup, 0.1, &|y, t| 1.02 * exact(y, t));
             assert_near(&faster, L2.at(0.1), 0.02, 1e-9);
             assert_near(&faster, FIELD_L2.at(0.1), 0.02, 1e-9);
@@ -423,6 +424,42 @@ mod tests {
         assert_near(&record, OUTSIDE.into(), 1.0, 1e-9);
         let exact = volume / (count * setup.medium.dx.powi(2)) - 1.0;
         assert_near(&record, VOLUME_DRIFT.into(), exact, 1e-9);
+    }
+
+    #[test]
+    fn the_series_has_means_and_the_pressure_mode() {
+        let method = Method::of::<Seed<Fluid<()>, Continuity>>();
+        let settings = ChannelSettings { watch_mode: true, ..ChannelSettings::default() };
+        let setup = Setup::new(Flow::Poiseuille, &settings, &method, &Context::default());
+        let setup = setup.expect("the defaults are valid");
+        let (v, eos) = (setup.v, setup.medium.eos);
+        let scale = settings.rho * v * v;
+        let mut parts = setup.parts(&method, &Context::default());
+        for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
+            p.velocity = Vector2::new(0.7 * v, 0.02 * v);
+            let mode = cos(std::f64::consts::PI * p.position.y / settings.width);
+            p.density = eos.density(0.05 * scale * mode + eos.background);
+        }
+        let simulation = (method.build)(parts).expect("a scene");
+        let mut series = Series::new(&setup, simulation.fluid_count());
+        let every = setup.time(settings.end) / POINTS;
+        assert!((series.every / every - 1.0).abs() < 1e-12 && series.next == series.every);
+        series.next = 0.0;
+        let _ = series.after_step(&*simulation);
+        assert_eq!(series.next, series.every);
+        let [_, u, v_rms, p_rms] = series.rows[0];
+        assert!((u - 0.7).abs() < 1e-9 && (v_rms - 0.02).abs() < 1e-9, "{u} {v_rms}");
+        assert!((p_rms - 0.05 / 2.0_f64.sqrt()).abs() < 1e-4, "{p_rms}");
+        let amplitude = series.mode.as_ref().expect("watched")[0].1;
+        assert!((amplitude - 0.05).abs() < 1e-4, "{amplitude}");
+        // A sample in every crossing of the channel by sound: the last 60 and the end are kept.
+        let crossing = settings.width / eos.sound_speed;
+        series.mode = Some((0..=100).map(|k| (f64::from(k) * crossing, f64::from(k))).collect());
+        let end = 100.001 * crossing;
+        let mode = series.mode_until(end).expect("long enough");
+        assert_eq!(mode.column(MODE_AMPLITUDE).first(), Some(&41.0));
+        assert!((mode.column(MODE_TIME)[0] + 59.001).abs() < 1e-9);
+        assert!(series.mode_until(59.0 * crossing).is_none());
     }
 
     #[test]

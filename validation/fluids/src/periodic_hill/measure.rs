@@ -563,6 +563,8 @@ mod tests {
         record.put(REATTACHMENT, number(REATTACHMENT) + 0.04);
         let exact = reference.stations.iter().flat_map(|station| &station.v);
         let sections: Vec<[f64; 2]> = exact.map(|v| [v.x + 0.01, v.y - 0.02]).collect();
+        let heights = reference.stations.iter().flat_map(|station| &station.y);
+        assert!(places(&setup).iter().zip(heights).all(|(p, y)| (p[1] - y).abs() < 1e-4));
         let largest = reference.wall.iter().map(|w| w[1].abs()).fold(0.0, f64::max);
         let wall: Vec<[f64; 3]> =
             reference.wall.iter().map(|w| [w[1] - 0.05 * largest, w[2], 0.0]).collect();
