@@ -17,8 +17,8 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// Those of a run that is refused, for plans: the run itself is refused too, so that its gates, which must
-    /// be there, fail.
+    /// Those of a run that is refused, for plans: the run itself is refused too, so that its gates, which
+    /// must be there, fail.
     pub const REFUSED: Self = Self { dt: 1.0, dt_limit: 1.0, sound_speed: 1.0 };
 
     /// These and the lattice, h/dx and dx \[m\], by the names that records give them.

@@ -108,8 +108,8 @@ const EXTRAPOLATED: [(usize, [f64; 2]); 4] = [
 ];
 
 fn extrapolated(Channel { flow, case }: Channel, rows: usize, flat: [f64; 2]) -> Planned {
-    let because = "the error of these walls by the row-reduced matrix of this flow, and 8e-4 more: by as much \
-                   the viscosity of rows that slide differs from that of rows in columns";
+    let because = "the error of these walls by the row-reduced matrix of this flow, and 8e-4 more: by as \
+                   much the viscosity of rows that slide differs from that of rows in columns";
     let of = format!("{}.extrapolating-wall.{rows}", flow.name());
     let most = flat[usize::from(flow == Flow::Poiseuille)] + 8e-4;
     let error = gate(&of, L2.at(1), Bound::Below(most), Evidence::Theory, because);
@@ -142,8 +142,8 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
         gates.push(error(L2.at(1), 1e-4, because));
     }
     if (flow, variant, rows) == (Flow::Poiseuille, "curved", 20) {
-        let because = "the goal of 0.03 %, between the row-reduced matrices of rows that slid past each other, \
-                       9e-5, and of rows in columns, 8e-4: at Re 0.5 they slide by ten spacings";
+        let because = "the goal of 0.03 %, between the row-reduced matrices of rows that slid past each \
+                       other, 9e-5, and of rows in columns, 8e-4: at Re 0.5 they slide by ten spacings";
         gates.push(error(L2.at(1), 3e-4, because));
     }
     if variant == "seed" && rows == 20 {

@@ -442,9 +442,9 @@ mod tests {
 
     /// Backward flow between these places, where the floor is flat \[H\].
     const BUBBLE: [f64; 2] = [2.5, 6.0];
-    /// How far the measured places are from the true ones at 40 spacings \[H\]: the line fitted to the field lies
-    /// 0.27 h² u'' above it, which makes the slope at the wall 0.41 h u'' too large, 0.24 Q/D² of this flow,
-    /// and du/ds = 6 - A changes by 2.6 in 1 H there.
+    /// How far the measured places are from the true ones at 40 spacings \[H\]: the line fitted to the field
+    /// lies 0.27 h² u'' above it, which makes the slope at the wall 0.41 h u'' too large, 0.24 Q/D² of this
+    /// flow, and du/ds = 6 - A changes by 2.6 in 1 H there.
     const FITTED: f64 = 0.03;
     /// Amplitude of the pressure \[ρ U_b²\].
     const PRESSURE: f64 = -0.3;

@@ -74,8 +74,8 @@ mod tests {
 
     const POINTS: usize = 200;
 
-    /// Three windows of samples of a run of `end` \[H/U_b\]: a decay of time 9 that is 1 at 0, and noise whose
-    /// samples forget a share of the last one in a time of 0.2, that of a spacing of 0.1 at half of U_b.
+    /// Three windows of samples of a run of `end` \[H/U_b\]: a decay of time 9 whose amplitude at 0 is
+    /// `decay`, and noise that is correlated over a time of 0.2, that of a spacing of 0.1 at half of U_b.
     fn windows(end: f64, decay: f64, noise: f64, seed: u64) -> [Vec<Vec<f64>>; 3] {
         let (mut random, mut state) = (Random::new(seed), vec![0.0; POINTS]);
         let every = 0.2 * end / 40.0;

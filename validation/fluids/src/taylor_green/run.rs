@@ -231,8 +231,8 @@ mod tests {
         Setup::new(&settings, &Method::of::<Plain>(), &Context::of_rules()).expect("the defaults")
     }
 
-    /// The record of particles that are the exact flow of viscosity nu_eff ν times `1 + error`, with a uniform
-    /// velocity and a share of the exact pressure added, at `time`.
+    /// The record of particles that have the exact velocity times `1 + error`, a uniform velocity and the
+    /// exact pressure times `1 + pressure`, at `time`.
     fn measured(setup: &Setup, time: f64, [error, drift, pressure]: [f64; 3]) -> Record {
         let eos = setup.flow.medium.eos;
         let at = |time: f64, [error, drift, pressure]: [f64; 3]| {
