@@ -256,20 +256,39 @@ pub struct Series {
 
 impl Series {
     /// A series over the whole run.
-    pub fn new(setup: &Setup, particles: usize) -> Self {
+    pub fn new(setup: &Setup, start: &dyn Stepper<()>) -> Self {
         let every = setup.time(setup.settings.end) / POINTS;
         let pressure = setup.settings.rho * setup.v * setup.v;
-        Self {
+        let mut series = Self {
             every,
             next: every,
             speed: setup.v,
             pressure,
             eos: setup.medium.eos,
             rows: Vec::new(),
-            count: particles as f64,
+            count: start.fluid_count() as f64,
             width: setup.settings.width,
             mode: setup.settings.watch_mode.then(Vec::new),
+        };
+        series.sample(start);
+        series
+    }
+
+    /// Takes a row.
+    fn sample(&mut self, simulation: &dyn Stepper<()>) {
+        let (mut u, mut v2, mut p1, mut p2) = (0.0, 0.0, 0.0, 0.0);
+        for (_, e) in simulation.fluid() {
+            let p = self.eos.pressure(e.density);
+            u += e.velocity.x;
+            v2 += e.velocity.y * e.velocity.y;
+            p1 += p;
+            p2 += p * p;
         }
+        let n = self.count;
+        let p = (p2 / n - (p1 / n).powi(2)).max(0.0).sqrt();
+        let v = (v2 / n).sqrt();
+        let row = [simulation.time(), u / n / self.speed, v / self.speed, p / self.pressure];
+        self.rows.push(row);
     }
 
     /// The lowest pressure mode over the last [`WINDOW`] of a run that ended at `end` \[s\].
@@ -310,23 +329,7 @@ impl Observer<()> for Series {
         }
         if simulation.time() >= self.next {
             self.next += self.every;
-            let (mut u, mut v2, mut p1, mut p2) = (0.0, 0.0, 0.0, 0.0);
-            for (_, e) in simulation.fluid() {
-                let p = self.eos.pressure(e.density);
-                u += e.velocity.x;
-                v2 += e.velocity.y * e.velocity.y;
-                p1 += p;
-                p2 += p * p;
-            }
-            let n = self.count;
-            let p = (p2 / n - (p1 / n).powi(2)).max(0.0).sqrt();
-            let v = (v2 / n).sqrt();
-            self.rows.push([
-                simulation.time(),
-                u / n / self.speed,
-                v / self.speed,
-                p / self.pressure,
-            ]);
+            self.sample(simulation);
         }
         Going::Continue
     }

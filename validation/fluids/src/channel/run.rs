@@ -61,7 +61,7 @@ pub fn measured(
     record.numerics.insert("columns".into(), setup.columns.into());
     let compared = settings.compared();
     let times: Vec<f64> = compared.iter().map(|tau| setup.time(*tau)).collect();
-    let mut series = Series::new(setup, simulation.fluid_count());
+    let mut series = Series::new(setup, &*simulation);
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) = runner::drive(
         &mut *simulation,

@@ -44,6 +44,7 @@ fn run(
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
     let start = ends(&column, &fluid(&*simulation));
     let mut history = History { column: &column, start, moments: Vec::new() };
+    history.sample(&*simulation);
     let pressure = |density| medium.eos.pressure(density);
     (record.status, record.cost) = runner::drive(
         &mut *simulation,
