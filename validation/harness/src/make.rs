@@ -392,8 +392,8 @@ mod tests {
         assert_eq!(shown.lock().unwrap()[0], (0, 3), "shown before the first run ends");
     }
 
-    /// The longest first on two threads, then those that are timed: durations are off from what is expected by
-    /// up to 30 %. The time that is left was told as 34.8 min after 20 s, for runs that took two minutes.
+    /// The longest first on two threads, then those that are timed: durations are off from what is expected
+    /// by up to 30 %. The time that is left was told as 34.8 min after 20 s, for runs that took two minutes.
     #[test]
     fn the_time_left_is_right_within_a_factor_of_two_after_a_tenth_of_the_work() {
         let expected: Vec<f64> = (0..200).map(|k| 20.0 * 0.95f64.powi(k) + 0.01).collect();

@@ -40,7 +40,8 @@ const DT: &str = "dt [s]";
 const DT_OVER_LIMIT: &str = "dt/limit";
 
 /// Calls the time step of a record and its share of the limit, which were planned, by that name, and states
-/// beside them the largest step that was taken: steps are shortened to reach the times of samples and the end.
+/// beside them the largest step that was taken: steps are shortened to reach the times of samples and the
+/// end.
 pub fn state_steps(record: &mut Record) {
     let numerics = &mut record.numerics;
     let planned = |numerics: &mut BTreeMap<String, Value>, name: &str| {
