@@ -313,6 +313,8 @@ pub struct Watched {
     /// Where the gates do not detect the largest error that is allowed: the error that they do detect, 1 for
     /// none up to 30 %, and the reason.
     pub blind: Option<(f64, &'static str)>,
+    /// Is the allowed error tried in the quick tier too?
+    pub is_quick: bool,
     /// Factors of gross faults, such as -1 for a wrong sign and 0 for a term that is missing.
     pub faults: Vec<f64>,
 }
@@ -320,7 +322,12 @@ pub struct Watched {
 impl Watched {
     /// A constant whose allowed error the gates detect.
     pub fn new(constant: Constant) -> Self {
-        Self { constant, blind: None, faults: Vec::new() }
+        Self { constant, blind: None, is_quick: false, faults: Vec::new() }
+    }
+
+    /// The same, whose allowed error is tried in the quick tier too.
+    pub fn quick(self) -> Self {
+        Self { is_quick: true, ..self }
     }
 
     /// The same with gross faults, each of which some gate must detect: factors of the constant.
@@ -335,8 +342,8 @@ impl Watched {
 }
 
 impl Sensitivity {
-    /// The full tier bisects every constant and makes every gross fault. The quick tier tries the largest
-    /// allowed error of the constants of which the gates detect it.
+    /// The full tier bisects every constant and makes every gross fault. The quick tier tries, on the first
+    /// run alone, the largest allowed error of the constants that are marked for it.
     pub fn new(
         case: &'static str,
         tier: Tier,
@@ -345,12 +352,14 @@ impl Sensitivity {
     ) -> Self {
         let is_bisected = tier == Tier::Full;
         let mut of: Vec<Watched> = of.into_iter().collect();
+        let mut runs: Vec<RunSpec> = runs.into_iter().collect();
         if !is_bisected {
-            of.retain(|watched| watched.blind.is_none());
+            of.retain(|watched| watched.is_quick);
             of.iter_mut().for_each(|watched| watched.faults.clear());
+            runs.truncate(1);
         }
         let id = format!("{}-sensitivity", case.replace('_', "-"));
-        Self { case, id, runs: runs.into_iter().collect(), of, is_bisected }
+        Self { case, id, runs, of, is_bisected }
     }
 
     /// The searches for a constant, one a run.

@@ -46,8 +46,9 @@ pub fn gates(case: &dyn Case, run: &RunSpec, constant: Constant) -> Vec<Gate> {
     gates.filter(|gate| names.insert(gate.id.clone())).collect()
 }
 
-/// Searches the smallest error that the gates of a run detect. The record has the settings of the run, the cost
-/// of all runs together, and the two metrics, each absent with its reason where the search found no such error.
+/// Searches the smallest error that the gates of a run detect. The record has the settings of the run, the
+/// cost of all runs together, and the two metrics, each absent with its reason where the search found no such
+/// error.
 ///
 /// # Errors
 /// Those of a run that cannot be made for another reason than its settings.

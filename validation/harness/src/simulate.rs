@@ -66,8 +66,7 @@ pub fn size<X, D: ?Sized>(
 }
 
 /// Refuses a step as [`check_step`] does, and a run to the end \[s\] with so many particles as
-/// [`check_size`](crate::runner::check_size) does, before the particles are made. `settings` are those on
-/// which its size depends.
+/// [`check_size`] does, before the particles are made. `settings` are those on which its size depends.
 ///
 /// # Errors
 /// What is too large, by how much, and which settings to change.

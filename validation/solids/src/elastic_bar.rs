@@ -579,7 +579,7 @@ mod tests {
             let error = refused(variant, "courant=2").map(|error| error.to_string());
             assert!(error.as_ref().is_some_and(|error| error.contains(name)), "{error:?}");
         }
-        assert!(matches!(refused("bare", "end=1e5"), Some(RunError::TooLong { .. })));
+        assert!(matches!(refused("bare", "dt=1e-15"), Some(RunError::TooLong { .. })));
         assert!(matches!(refused("nothing", "n=40"), Some(RunError::Variant { .. })));
     }
 

@@ -174,22 +174,7 @@ fn run(
     settings: &WaveSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let simulation = (method.build)(settings.parts(method, context))?;
-    measured(settings, method, variant, simulation, context)
-}
-
-/// Steps a simulation and measures it against theory: the same measuring for one that is not what its
-/// settings say.
-///
-/// # Errors
-/// If a frame cannot be written.
-pub fn measured(
-    settings: &WaveSettings,
-    method: &Method<Symmetric>,
-    variant: &str,
-    mut simulation: Box<dyn Stepper<Symmetric>>,
-    context: &Context,
-) -> Result<Record, RunError> {
+    let mut simulation = (method.build)(settings.parts(method, context))?;
     let (omega, h_over_dx) = (settings.frequency(method), settings.h_over_dx);
     let (dt, steps) = match settings.rotation {
         true => (ANGLE, 1),

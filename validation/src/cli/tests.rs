@@ -176,7 +176,7 @@ fn a_report_is_whole_and_explain_reads_it() {
         ("staged", Exit::Pass),
         ("staged.eror", Exit::Usage),
     ] {
-        let line = format!("touchstone explain {gate} --reports OUT");
+        let line = format!("explain {gate} --reports OUT");
         assert_eq!(in_folder(&line), expected, "{gate}");
     }
 }

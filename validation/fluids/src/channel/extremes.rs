@@ -216,8 +216,8 @@ fn smoothed_matrix(case: &ChannelCase, (variant, ratio): (&'static str, f64)) ->
 }
 
 fn smoothing(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
-    let because = "the row-reduced matrix with the steps of the leapfrog, the worse one of rows in columns and \
-                   of rows that slid past each other; 10 % for the rows' motion";
+    let because = "the row-reduced matrix with the steps of the leapfrog, the worse one of rows in columns \
+                   and of rows that slid past each other; 10 % for the rows' motion";
     let entry = |of: (&'static str, f64)| {
         let (variant, ratio) = of;
         let (found, matrix) = (error(runs, &smoothed_spec(case, of)), smoothed_matrix(case, of));

@@ -444,7 +444,7 @@ mod tests {
             p.density = eos.density(0.05 * scale * mode + eos.background);
         }
         let simulation = (method.build)(parts).expect("a scene");
-        let mut series = Series::new(&setup, simulation.fluid_count());
+        let mut series = Series::new(&setup, &*simulation);
         let every = setup.time(settings.end) / POINTS;
         assert!((series.every / every - 1.0).abs() < 1e-12 && series.next == series.every);
         series.next = 0.0;

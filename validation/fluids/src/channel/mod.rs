@@ -21,7 +21,7 @@ mod waves;
 pub use declaration::{declaration, ladder};
 pub use limits::is_stable;
 pub use plan::plan;
-pub use run::{COUETTE, POISEUILLE, measured};
+pub use run::{COUETTE, POISEUILLE};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};
 pub use studies::studies;

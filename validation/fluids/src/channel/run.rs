@@ -8,7 +8,7 @@ use harness::{
     method::Method,
     runner, simulate,
 };
-use solver::{EquationOfState, Stepper};
+use solver::EquationOfState;
 
 use super::{
     ChannelSettings, Flow, Setup,
@@ -27,6 +27,10 @@ pub const POISEUILLE: Program<ChannelSettings, Method> = Program {
     rules: |method, s| rules(Flow::Poiseuille, method, s),
 };
 
+fn rules(flow: Flow, method: &Method, settings: &ChannelSettings) -> Result<Rules, RunError> {
+    Ok(Setup::new(flow, settings, method, &Context::of_rules())?.rules())
+}
+
 fn run(
     flow: Flow,
     method: &Method,
@@ -34,27 +38,8 @@ fn run(
     settings: &ChannelSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let setup = Setup::new(flow, settings, method, context)?;
-    let simulation = (method.build)(setup.parts(method, context))?;
-    measured(&setup, method, variant, simulation, context)
-}
-
-fn rules(flow: Flow, method: &Method, settings: &ChannelSettings) -> Result<Rules, RunError> {
-    Ok(Setup::new(flow, settings, method, &Context::of_rules())?.rules())
-}
-
-/// Steps a simulation and measures it against the setup: the same measuring for one that is not what its
-/// settings say.
-///
-/// # Errors
-/// If a frame cannot be written.
-pub fn measured(
-    setup: &Setup,
-    method: &Method,
-    variant: &str,
-    mut simulation: Box<dyn Stepper<()>>,
-    context: &Context,
-) -> Result<Record, RunError> {
+    let setup = &Setup::new(flow, settings, method, context)?;
+    let mut simulation = (method.build)(setup.parts(method, context))?;
     let (settings, eos) = (&setup.settings, setup.medium.eos);
     let name = (setup.flow.name(), variant);
     let mut record = simulate::begin(name, settings, method, &numbers(setup), context);

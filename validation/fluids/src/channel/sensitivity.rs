@@ -8,17 +8,18 @@ use harness::{
 
 use super::{Channel, Flow};
 
-const STRESS: &str = "the velocity of a channel flow does not depend on the density, and no gate judges a stress in \
-                      Pa; a density that is wrong by 30 % is outside the bounds beyond which a run ends";
-const SOUND: &str = "the exact flow is incompressible, and at a tenth of the sound speed compressibility changes its \
-                     velocity by less than the spacing does";
-const STEP: &str = "the time step is limited by stability, and its part of the error is far below that of the spacing: \
-                    see the error budget";
+const STRESS: &str = "the velocity of a channel flow does not depend on the density, and no gate judges a \
+                      stress in Pa; a density that is wrong by 30 % is outside the bounds beyond which a \
+                      run ends";
+const SOUND: &str = "the exact flow is incompressible, and at a tenth of the sound speed compressibility \
+                     changes its velocity by less than the spacing does";
+const STEP: &str = "the time step is limited by stability, and its part of the error is far below that of \
+                    the spacing: see the error budget";
 const ORDER: &str = "it acts on disorder, and at Re 0.5 particles stay in straight rows";
-const REACH: &str = "sums over neighbours hold for any reach of the kernel, and at 20 rows the error of a parabola \
-                     that a longer reach adds is inside the bounds";
-const LISTS: &str = "lists are built again before a particle has crossed half of the skin, and a list that is kept \
-                     30 % too long still holds every neighbour";
+const REACH: &str = "sums over neighbours hold for any reach of the kernel, and at 20 rows the error of a \
+                     parabola that a longer reach adds is inside the bounds";
+const LISTS: &str = "lists are built again before a particle has crossed half of the skin, and a list that \
+                     is kept 30 % too long still holds every neighbour";
 
 /// The runs with the most gates, one without and one with density diffusion and shifting.
 pub fn sensitivity(channel: Channel, tier: Tier) -> Sensitivity {
@@ -33,9 +34,9 @@ pub fn sensitivity(channel: Channel, tier: Tier) -> Sensitivity {
         Flow::Poiseuille => Watched::blind_up_to(reach, 0.2, REACH),
     };
     let watched = [
-        Watched::new(drive).faults(&[-1.0, 0.5]),
-        Watched::new(Constant::Viscosity),
-        Watched::new(Constant::Height),
+        Watched::new(drive).quick().faults(&[-1.0, 0.5]),
+        Watched::new(Constant::Viscosity).quick(),
+        Watched::new(Constant::Height).quick(),
         Watched::blind_up_to(Constant::Density, 0.3, STRESS),
         Watched::blind_up_to(Constant::SoundSpeed, 1.0, SOUND),
         Watched::new(Constant::Normalisation),

@@ -32,7 +32,6 @@ use crate::{
 };
 
 pub use control::{Driven, Driving};
-pub use run::measured;
 pub use setup::Setup;
 
 unit_settings! {

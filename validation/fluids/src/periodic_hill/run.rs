@@ -14,17 +14,6 @@ use harness::{case::RunError, composed::Program, context::Context, runner, simul
 pub const PROGRAM: Program<HillSettings, HillMethod> =
     Program { run, rules: |method, s| Ok(Setup::new(s, method, &Context::of_rules())?.flow.rules) };
 
-fn run(
-    method: &HillMethod,
-    variant: &str,
-    settings: &HillSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let setup = Setup::new(settings, method, context)?;
-    let simulation = (method.build)(setup.parts(context))?;
-    measured(&setup, method, variant, simulation, context)
-}
-
 /// Steps between looks of the controller.
 const STRETCH: f64 = 10.0;
 /// Time between entries of the history \[H/U_b\].
@@ -101,18 +90,14 @@ impl Monitor<'_> {
     }
 }
 
-/// Steps a simulation and measures it against the setup: the same measuring for one that is not what its
-/// settings say.
-///
-/// # Errors
-/// If a frame cannot be written.
-pub fn measured(
-    setup: &Setup,
+fn run(
     method: &HillMethod,
     variant: &str,
-    mut simulation: Box<dyn Driving>,
+    settings: &HillSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
+    let setup = &Setup::new(settings, method, context)?;
+    let mut simulation = (method.build)(setup.parts(context))?;
     let (s, flow) = (&setup.settings, &setup.flow);
     let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
     let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);

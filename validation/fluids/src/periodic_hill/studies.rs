@@ -59,9 +59,9 @@ fn all(tier: Tier, runs: &Runs) -> Study {
                    error of shear is rms over the hill, of the largest shear there; flux of sections is the \
                    largest error of ten; drag balance is the stress at the walls over the force, less 1; \
                    unsteady is what is left of the decay, extrapolated, without the change that disorder \
-                   explains. A dash: a run that diverged, no bubble, or no finite elements to compare with. Runs from the reference start within 0.04 \
-                   % of U_b of it: their error says that the flow stays there, and unsteady how far it \
-                   would still go.";
+                   explains. A dash: a run that diverged, no bubble, or no finite elements to compare \
+                   with. Runs from the reference start within 0.04 % of U_b of it: their error says that \
+                   the flow stays there, and unsteady how far it would still go.";
     let shown = REYNOLDS.into_iter().filter(|&re| !best(tier, re).is_empty());
     let mut rows: Vec<Row> = Vec::new();
     for (re, reference) in shown.filter_map(|re| Some((re, reference(re)?))) {

@@ -59,9 +59,9 @@ fn best_ladder(start: f64) -> Ladder {
         bound: Bound::Within(1.6, 2.3),
         evidence: Evidence::Regression,
         because: "what this program computed before, 1.95 from the disturbed lattice and 1.91 from the \
-                  square one, with 0.3 either way. Sums that are exact for linear fields let errors fall as h^2, \
-                  but those of the sound speed and the step fall otherwise and partly cancel them (the error \
-                  budget), so that theory gives no order at these spacings"
+                  square one, with 0.3 either way. Sums that are exact for linear fields let errors fall \
+                  as h^2, but those of the sound speed and the step fall otherwise and partly cancel them \
+                  (the error budget), so that theory gives no order at these spacings"
             .into(),
     };
     Ladder { order: Some(order), ..ladder(BEST, &SIDES, start) }

@@ -6,8 +6,8 @@ use solver::Role;
 
 use super::Parts;
 
-/// Multiplies the constant that is wrong by its factor; the time step is not a part of a scene, and neither is
-/// the lifetime of neighbour lists.
+/// Multiplies the constant that is wrong by its factor; the time step is not a part of a scene, and neither
+/// is the lifetime of neighbour lists.
 pub fn mutate<X>(parts: &mut Parts<X>) {
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);
@@ -78,7 +78,7 @@ mod tests {
             ..method.medium(Tait::new(1000.0, 20.0), [0.1, 0.15])
         };
         let fluid = Particle::fluid(Vector2::new(0.2, 0.3), Vector2::new(1.0, 2.0), 1000.0, 0.01);
-        let wall = fluid.clone().with_role(Role::Wall);
+        let wall = fluid.with_role(Role::Wall);
         let context = Context { mutation, ..Context::default() };
         let wall_at = PlaneWall::new(Vector2::new(0.0, 1.0), -Vector2::y(), Vector2::x());
         Parts {

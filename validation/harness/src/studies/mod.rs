@@ -22,7 +22,8 @@ pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     }
     studies.extend(declared.budgets.iter().map(|budgets| budget::study(budgets, runs)));
     studies.extend(declared.limits.iter().map(|limits| limit::study(case, limits, runs)));
-    studies.extend(declared.sensitivity.iter().map(|of| sensitivity::study(of, runs)));
+    let sensitivity = declared.sensitivity.iter().filter(|sensitivity| !sensitivity.of.is_empty());
+    studies.extend(sensitivity.map(|of| sensitivity::study(of, runs)));
     studies.extend(declared.maps.iter().map(|map| map::study(map, runs)));
     studies
 }

@@ -17,12 +17,13 @@ use crate::{
     study::Study,
 };
 
-const ABOUT: &str = "What the gates can detect. One constant of the scene is multiplied by 1 + e and by 1 - e, while \
-    everything that is measured and judged follows the settings as before. An error counts as detected if the run \
-    fails a gate with both signs. Gates that compare the program with itself do not count, and neither do conserved \
-    quantities where the constant is physical. An error of 3 % of a physical constant and of 10 % of an ingredient \
-    of the method must be detected, and so must gross faults: a wrong sign (× -1), a missing term (× 0), a constant \
-    that is wrong by a factor.";
+const ABOUT: &str = "What the gates can detect. One constant of the scene is multiplied by 1 + e and by 1 \
+                     - e, while everything that is measured and judged follows the settings as before. An \
+                     error counts as detected if the run fails a gate with both signs. Gates that compare \
+                     the program with itself do not count, and neither do conserved quantities where the \
+                     constant is physical. An error of 3 % of a physical constant and of 10 % of an \
+                     ingredient of the method must be detected, and so must gross faults: a wrong sign (× \
+                     -1), a missing term (× 0), a constant that is wrong by a factor.";
 
 /// An error that means that none up to 30 % is detected.
 const NONE: f64 = 1.0;
@@ -116,7 +117,8 @@ fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> 
 /// The gate on the number of gates that detect a gross fault.
 fn fault_gate(sensitivity: &Sensitivity, of: Constant, factor: f64) -> Gate {
     let id = format!("{}.detects.{}_x_{factor}", sensitivity.case, of.name());
-    let because = "a wrong sign, a missing term, or a constant that is wrong by a factor is a fault of the program";
+    let because = "a wrong sign, a missing term, or a constant that is wrong by a factor is a fault of the \
+                   program";
     Gate::new(id, "gates that fail", Bound::Above(1.0), Evidence::Theory, because)
 }
 

@@ -14,7 +14,7 @@
 pub mod fit;
 mod run;
 
-pub use run::{Wave, measure, measured};
+pub use run::{Wave, measure};
 
 use solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Kernel, Leapfrog, Open, PredictorCorrector,

@@ -276,24 +276,8 @@ pub(super) fn run(
     settings: &WaveSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let wave = Wave::new(case.polarisation, settings, method, context)?;
+    let wave = &Wave::new(case.polarisation, settings, method, context)?;
     let simulation = (method.build)(wave.parts(context))?;
-    measured(case, &wave, method, variant, simulation, context)
-}
-
-/// Steps a simulation and compares it with the theory of the wave: the same measuring for one that is not
-/// what its settings say.
-///
-/// # Errors
-/// If a frame cannot be written.
-pub fn measured(
-    case: &WaveCase,
-    wave: &Wave,
-    method: &Method,
-    variant: &str,
-    simulation: Box<dyn Stepper<()>>,
-    context: &Context,
-) -> Result<Record, RunError> {
     let (s, Medium { density, sound_speed, h, .. }) = (&wave.settings, wave.medium);
     let measured = project(wave, simulation, context)?;
     let numbers = [

@@ -30,7 +30,6 @@ use solver::{
 
 use crate::solid::Rubber;
 pub use budget::{Metered, Stressed};
-pub use run::measured;
 pub use setup::Rings;
 
 base::settings! {

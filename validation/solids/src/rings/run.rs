@@ -3,7 +3,7 @@
 use solver::{EquationOfState, Particle, Stepper, Symmetric};
 
 use super::{
-    Metered, RingMethod, RingSettings, Rings,
+    RingMethod, RingSettings, Rings,
     budget::Budget,
     measure::{self, Series},
     metrics::{COURANT, MOMENTUM},
@@ -29,6 +29,11 @@ fn pictures(context: &Context) -> Vec<f64> {
     }
 }
 
+/// What the rules choose.
+pub fn rules(method: &RingMethod, settings: &RingSettings) -> Result<Rules, RunError> {
+    Ok(Rings::new(settings, method, &Context::of_rules())?.rules())
+}
+
 /// Runs and measures.
 pub fn run(
     method: &RingMethod,
@@ -36,28 +41,8 @@ pub fn run(
     settings: &RingSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let rings = Rings::new(settings, method, context)?;
-    let simulation = (method.build)(rings.parts(context))?;
-    measured(&rings, method, variant, simulation, context)
-}
-
-/// What the rules choose.
-pub fn rules(method: &RingMethod, settings: &RingSettings) -> Result<Rules, RunError> {
-    Ok(Rings::new(settings, method, &Context::of_rules())?.rules())
-}
-
-/// Steps a simulation and measures it against the setup: the same measuring for one that is not what
-/// its settings say.
-///
-/// # Errors
-/// If a frame cannot be written.
-pub fn measured(
-    rings: &Rings,
-    method: &RingMethod,
-    variant: &str,
-    mut simulation: Box<dyn Metered>,
-    context: &Context,
-) -> Result<Record, RunError> {
+    let rings = &Rings::new(settings, method, context)?;
+    let mut simulation = (method.build)(rings.parts(context))?;
     let name = (super::NAME, variant);
     let mut record = simulate::begin(name, &rings.settings, method, &numbers(rings), context);
     let mut series = Series::new(rings);

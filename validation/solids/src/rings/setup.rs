@@ -181,6 +181,6 @@ mod tests {
         assert!(refused(|s| s.centre = 3.9).contains("outer radius"));
         assert!(refused(|s| s.inner = 3.9).contains("inner radius"));
         assert!(refused(|s| s.dt = Some(1.0)).contains("theoretical limit"));
-        assert!(refused(|s| s.end = 1e6).contains("time steps"));
+        assert!(refused(|s| s.dt = Some(1e-12)).contains("time steps"));
     }
 }

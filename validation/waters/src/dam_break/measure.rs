@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use solver::{EquationOfState, Evolved, Flow, Observer, Stepper, Tait};
 
-use super::{Dam, metrics};
+use super::{Dam, metrics, setup::near_the_floor};
 use base::record::{Profile, Record};
 
 /// Heights of the sensors on the far wall \[m\], and their diameter (Lobovsky et al. 2014).
@@ -97,7 +97,7 @@ impl<'a> Samples<'a> {
     /// Takes a sample of a simulation that has been brought to a time.
     pub fn sample(&mut self, simulation: &dyn Stepper<()>) {
         let (s, dx) = (&self.dam.settings, self.dam.medium.dx);
-        let counts = |place| (self.dam.is_front)(place, s.height);
+        let counts = |place| near_the_floor(place, s.height);
         let foremost = foremost(simulation.fluid(), counts);
         if self.samples.is_empty() {
             self.start = foremost;
@@ -332,7 +332,7 @@ impl Gauge {
 mod tests {
     use super::*;
     use crate::{
-        dam_break::{DAM_BREAK, DamSettings, lobovsky, setup::near_the_floor},
+        dam_break::{DAM_BREAK, DamSettings, lobovsky},
         water::{Modern, method},
     };
     use harness::{context::Context, method::Parts};

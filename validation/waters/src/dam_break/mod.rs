@@ -25,7 +25,6 @@ use solver::{
     Ghosts, InterfaceWall, Leapfrog, PredictorCorrector, SlipGhosts, Tait, WendlandC2, Xsph,
 };
 
-pub use run::measured;
 pub use setup::Dam;
 
 use crate::water::{Diffusion, Modern, Seed, Water, WaterMethod, method};

@@ -17,15 +17,10 @@ use harness::{
     runner::{self, Context},
     simulate,
 };
-use maths::metrics::budget::Metered;
 
 /// Runs of the variants.
 pub const PROGRAM: Program<DamSettings, WaterMethod> = Program {
-    run: |method, variant, settings, context| {
-        let dam = Dam::new(settings, method, context)?;
-        let simulation = (method.build)(dam.parts(method, context))?;
-        measured(&dam, method, variant, simulation, context)
-    },
+    run,
     rules: |method, settings| Ok(Dam::new(settings, method, &Context::of_rules())?.rules),
 };
 
@@ -53,18 +48,14 @@ const SAMPLE: f64 = 4.0;
 /// At most so many samples.
 const MOST_SAMPLES: f64 = 2e4;
 
-/// Steps a simulation and measures it against the setup: the same measuring for one that is not what its
-/// settings say.
-///
-/// # Errors
-/// If a frame cannot be written.
-pub fn measured(
-    dam: &Dam,
+fn run(
     method: &WaterMethod,
     variant: &str,
-    mut simulation: Box<dyn Metered<()>>,
+    settings: &DamSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
+    let dam = &Dam::new(settings, method, context)?;
+    let mut simulation = (method.build)(dam.parts(method, context))?;
     let Dam { settings, medium, rules, .. } = dam;
     let numbers = rules.numbers([settings.h_over_dx, medium.dx]);
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);

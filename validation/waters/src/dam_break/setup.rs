@@ -36,12 +36,10 @@ pub struct Dam {
     pub speed: f64,
     /// Time step and its theoretical limit.
     pub rules: Rules,
-    /// Whether water at this place counts when the foremost particle is looked for, in a column of this
-    /// height \[m\]: below a quarter of it, so that spray does not.
-    pub is_front: fn(Vector2<f64>, f64) -> bool,
 }
 
-/// Below a quarter of the height of the column.
+/// Whether water at this place counts when the foremost particle is looked for, in a column of this height
+/// \[m\]: below a quarter of it, so that spray does not.
 pub fn near_the_floor(place: Vector2<f64>, height: f64) -> bool {
     place.y < 0.25 * height
 }
@@ -64,8 +62,7 @@ impl Dam {
         let (medium, rules) = s.medium(method, [dx, s.c0 * fall, s.gravity, speed]);
         let end = s.end * s.height / fall;
         simulate::check(method, &medium, rules, [end, all], DECISIVE, context)?;
-        let (settings, is_front) = (s.clone(), near_the_floor);
-        Ok(Self { settings, medium, tank, counts, speed, rules, is_front })
+        Ok(Self { settings: s.clone(), medium, tank, counts, speed, rules })
     }
 
     /// ρ g H \[Pa\], the unit of pressure.

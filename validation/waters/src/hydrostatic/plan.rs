@@ -101,7 +101,8 @@ pub fn declaration(tier: Tier) -> Declaration {
         ..Accuracy::new("hydrostatic", error, "error of the pressure [-]")
     };
     let run = plain("modern", USUAL.0);
-    let watched = [Constant::BodyForce, Constant::Density, Constant::Height].map(Watched::new);
+    let watched = [Constant::BodyForce, Constant::Density, Constant::Height]
+        .map(|constant| Watched::new(constant).quick());
     let sensitivity = Some(Sensitivity::new(NAME, tier, [run], watched));
     Declaration { accuracy: vec![accuracy], sensitivity, ..Declaration::default() }
 }
