@@ -68,6 +68,12 @@ impl Constant {
         self <= Self::Height
     }
 
+    /// Is it a constant of the discretisation, and not the strength of a term?
+    pub fn is_of_sums(self) -> bool {
+        use Constant::{ListLifetime, Normalisation, SmoothingLength, TimeStep};
+        matches!(self, Normalisation | SmoothingLength | TimeStep | ListLifetime)
+    }
+
     /// The largest relative error that may go undetected: 3 % of a physical constant, 10 % of an ingredient
     /// of the method.
     pub fn allowed(self) -> f64 {
