@@ -31,9 +31,9 @@ base::metrics! {
 pub const GATES: &str = "gates";
 
 /// The gates of a run that can detect an error of a constant, from the plans of its case. A regression gate
-/// compares the program with itself and cannot. An invariant counts for a constant of the discretisation alone:
-/// it holds whatever a physical constant or the strength of a term is, unless the measuring, as an energy
-/// ledger does, has that from the settings.
+/// compares the program with itself and cannot. An invariant counts for a constant of the discretisation
+/// alone: it holds whatever a physical constant or the strength of a term is, unless the measuring, as an
+/// energy ledger does, has that from the settings.
 pub fn gates(case: &dyn Case, run: &RunSpec, constant: Constant) -> Vec<Gate> {
     let plans = [Tier::Quick, Tier::Full].map(|tier| plan::of_case(case, tier));
     let of_run = plans.into_iter().flatten().filter(|planned| planned.spec == *run);

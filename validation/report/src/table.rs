@@ -122,7 +122,10 @@ impl Cell {
     }
 
     fn html(&self, numeric: bool) -> Markup {
-        let class = match (self.status, numeric) {
+        // What a column is sorted by: six digits. The style sheet shows a cell that has it as a number.
+        let six = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
+        let value: Option<f64> = self.value.filter(|value| value.is_finite()).map(six);
+        let class = match (self.status, numeric && value.is_none()) {
             (Some(s), true) => format!("number {}", s.class()),
             (Some(s), false) => s.class().into(),
             (None, true) => "number".into(),
@@ -130,7 +133,7 @@ impl Cell {
         };
         html! {
             td class=[Some(class).filter(|c| !c.is_empty())]
-                data-value=[self.value.filter(|v| v.is_finite())] {
+                data-value=[value] {
                 @if let Some(s) = self.status {
                     span.mark title=(s.name()) { (s.mark()) } "\u{a0}"
                 }
@@ -237,8 +240,11 @@ mod tests {
     fn cells_carry_value_and_verdict() {
         let table = Table::new("Errors", vec![Column::text("case"), Column::num("L2", "1")])
             .row(vec![Cell::text("a < b"), Cell::sci(1.2e-4, 2).with(Status::Fail)])
-            .row(vec![Cell::text("short")]);
+            .row(vec![Cell::text("short"), Cell::sci(0.123456789, 2)])
+            .row(vec![Cell::text("none"), Cell::text("–")]);
         let html = table.html();
+        assert!(html.contains("<td data-value=\"0.123457\">1.2·10⁻¹</td>"), "{html}");
+        assert!(html.contains("<td class=\"number\">–</td>"));
         assert!(html.contains("a &lt; b"));
         assert!(html.contains("1.2·10⁻⁴"));
         assert!(html.contains("data-value=\"0.00012\""));

@@ -15,8 +15,8 @@ const STIFF: &str = "five layers bend too softly, so a ring that is stiffer for 
                      fails the path of the centre, and with ten layers one of 2 % fails the end of contact";
 const STEP: &str = "the time step is limited by stability, and its part of the error is far below that of \
                     the spacing: see the error budget";
-const LOSS: &str = "artificial viscosity takes a small part of the energy of rings, and 30 % of that is inside \
-                    the bounds on the restitution";
+const LOSS: &str = "artificial viscosity takes a small part of the energy of rings, and 30 % of that is \
+                    inside the bounds on the restitution";
 const STRESS: &str = "artificial stress keeps rings whole, and 30 % less still does at this speed; its \
                       wrong sign and its absence are detected";
 const XSPH: &str = "XSPH moves particles by a share of their relative velocities, which are small in a \
