@@ -11,6 +11,7 @@ use base::{
 use harness::{
     case::{self, Case, Tier},
     columns::Columns,
+    notes::Notes,
     runs::{Judged, JudgedRun},
     study::Study,
     suite::{CaseResults, Suite},
@@ -148,26 +149,19 @@ fn study_section(study: &Study) -> Section {
 }
 
 /// Adds a table of gates and below it their reasons, each once.
-fn gates<'a>(section: Section, caption: &str, judged: &[&'a Judged]) -> Section {
-    let of = |judged: &&&'a Judged| match &judged.judgement.verdict {
-        Verdict::Limitation(limitation) => vec![judged.gate.because.as_str(), limitation],
-        _ => vec![judged.gate.because.as_str()],
-    };
-    let mut reasons: Vec<&str> = Vec::new();
-    for reason in judged.iter().flat_map(|judged| of(&judged)) {
-        if !reasons.contains(&reason) {
-            reasons.push(reason);
-        }
-    }
-    let number = |reason: &str| 1 + reasons.iter().position(|known| *known == reason).unwrap_or(0);
-    let notes = |judged: &&'a Judged| {
-        let numbers = of(&judged).into_iter().map(|reason| format!("[{}]", number(reason)));
-        numbers.collect::<Vec<_>>().join(", limitation ")
-    };
-    let rows: Vec<(&Judged, String)> =
-        judged.iter().map(|judged| (*judged, notes(judged))).collect();
-    let numbered = |(k, reason): (usize, &&str)| format!("[{}] {reason}", k + 1);
-    let list = Block::List(reasons.iter().enumerate().map(numbered).collect());
+fn gates(section: Section, caption: &str, judged: &[&Judged]) -> Section {
+    let mut notes = Notes::default();
+    let rows: Vec<(&Judged, String)> = judged
+        .iter()
+        .map(|&judged| {
+            let mut words = format!("[{}]", notes.number(&judged.gate.because));
+            if let Verdict::Limitation(reason) = &judged.judgement.verdict {
+                words += &format!(", limitation [{}]", notes.number(reason));
+            }
+            (judged, words)
+        })
+        .collect();
+    let list = Block::List(notes.all().map(|(k, reason)| format!("[{k}] {reason}")).collect());
     let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
     let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
     let table = Columns::<(&Judged, String)>::default()

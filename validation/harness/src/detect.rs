@@ -1,7 +1,5 @@
 //! The smallest deliberate error of a constant that the gates of a run detect.
 
-use std::collections::BTreeSet;
-
 use base::{
     gate::{Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
@@ -14,7 +12,6 @@ use crate::{
     case::{Case, RunError},
     context::Context,
     plan,
-    planned::Tier,
 };
 
 /// The relative errors that are tried, ascending.
@@ -35,16 +32,12 @@ pub const GATES: &str = "gates";
 /// alone: it holds whatever a physical constant or the strength of a term is, unless the measuring, as an
 /// energy ledger does, has that from the settings.
 pub fn gates(case: &dyn Case, run: &RunSpec, constant: Constant) -> Vec<Gate> {
-    let plans = [Tier::Quick, Tier::Full].map(|tier| plan::of_case(case, tier));
-    let of_run = plans.into_iter().flatten().filter(|planned| planned.spec == *run);
     let counts = |gate: &Gate| match gate.evidence {
         Evidence::Analytic | Evidence::Theory | Evidence::Reference => true,
         Evidence::Invariant => constant.is_of_sums(),
         Evidence::Regression => false,
     };
-    let mut names = BTreeSet::new();
-    let gates = of_run.flat_map(|planned| planned.gates).filter(counts);
-    gates.filter(|gate| names.insert(gate.id.clone())).collect()
+    plan::gates_of(case, run).into_iter().filter(counts).collect()
 }
 
 /// Searches the smallest error that the gates of a run detect. The record has the settings of the run, the
@@ -162,7 +155,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Planned, Variant},
+        case::{Planned, Tier, Variant},
         runs::Runs,
         study::Study,
     };

@@ -20,6 +20,7 @@ pub mod extremes;
 pub mod frames;
 pub mod make;
 pub mod method;
+pub mod notes;
 pub mod pictures;
 pub mod plan;
 pub mod planned;

@@ -1,8 +1,11 @@
 //! Turns the declarations of cases into a list of runs in which each run occurs once.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use base::spec::RunKey;
+use base::{
+    gate::Gate,
+    spec::{RunKey, RunSpec, Task},
+};
 
 use crate::{
     case::Case,
@@ -15,6 +18,17 @@ pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
     let mut all = case.plan(tier);
     all.extend(case.declaration(tier).runs());
     merged(all)
+}
+
+/// The gates that the plans of both tiers have for the simulation with the settings of this run, each once.
+pub fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
+    let plans = [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| of_case(case, tier));
+    let is_this = |of: &RunSpec| {
+        of.task == Task::Simulate && of.variant == spec.variant && of.settings == spec.settings
+    };
+    let mut names = BTreeSet::new();
+    let gates = plans.filter(|planned| is_this(&planned.spec)).flat_map(|planned| planned.gates);
+    gates.filter(|gate| names.insert(gate.id.clone())).collect()
 }
 
 /// Each run once, at its first place, with all gates; timed if one of them is.

@@ -6,6 +6,7 @@ use ::report;
 use base::gate::{Gate, Judgement, Verdict};
 use base::record;
 use harness::case::{self, Case, Tier};
+use harness::notes::Notes;
 use harness::runs::{self, JudgedRun};
 use harness::study::Study;
 use harness::suite::Suite;
@@ -17,14 +18,10 @@ use super::output;
 pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
     let mut judged: Vec<&runs::Judged> = all.into_iter().collect();
     judged.sort_by_key(|j| j.judgement.verdict.is_failure());
-    let mut reasons: Vec<&str> = Vec::new();
+    let mut notes = Notes::default();
     let mut word = |verdict: &'a Verdict| {
         let Verdict::Limitation(reason) = verdict else { return verdict.to_string() };
-        let known = reasons.iter().position(|known| known == reason).unwrap_or_else(|| {
-            reasons.push(reason);
-            reasons.len() - 1
-        });
-        format!("known limitation [{}]", known + 1)
+        format!("known limitation [{}]", notes.number(reason))
     };
     let rows: Vec<Vec<String>> = judged
         .into_iter()
@@ -40,8 +37,8 @@ pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
         })
         .collect();
     let mut text = output::table(&["verdict", "gate", "value", "bound", "margin"], &rows);
-    for (k, reason) in reasons.iter().enumerate() {
-        let head = format!("[{}]", k + 1);
+    for (k, reason) in notes.all() {
+        let head = format!("[{k}]");
         text += &format!("{head:<5}{}", output::wrap(reason, 100, "     ").trim_start());
     }
     text

@@ -7,12 +7,11 @@ use std::sync::{Mutex, Once, PoisonError};
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
 use base::{
     files::{Cell, CsvTable, FileError, OutputFolder},
-    gate::Gate,
     record::{Column, Profile, Record, Status},
-    spec::{RunSpec, Task},
+    spec::RunSpec,
 };
 use harness::{
-    case::{self, Case, Tier},
+    case::{self, Case},
     context::{Context, Progress},
     plan,
     runs::Judged,
@@ -51,8 +50,10 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         return Err(Failure::interrupted(what));
     }
     let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();
-    let verdicts: Vec<Judged> =
-        gates_of(case, &spec).into_iter().map(|gate| Judged::of_record(gate, &record)).collect();
+    let verdicts: Vec<Judged> = plan::gates_of(case, &spec)
+        .into_iter()
+        .map(|gate| Judged::of_record(gate, &record))
+        .collect();
     // What was computed is not lost with a file that cannot be written: then the record is printed, and where
     // that is refused, too, its numbers are told.
     let is_printed = arguments.json || written.is_err();
@@ -131,21 +132,6 @@ fn compute(
     let mut record = record?;
     record.manifest.sources = (world.sources)(case.name());
     Ok((record, last.into_inner().unwrap_or_else(PoisonError::into_inner)))
-}
-
-/// Gates of the plans that judge just these settings.
-fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
-    let plans = [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| plan::of_case(case, tier));
-    let is_this = |of: &RunSpec| {
-        of.task == Task::Simulate && of.variant == spec.variant && of.settings == spec.settings
-    };
-    let mut gates: Vec<Gate> = Vec::new();
-    for gate in plans.filter(|planned| is_this(&planned.spec)).flat_map(|planned| planned.gates) {
-        if !gates.iter().any(|known| known.id == gate.id) {
-            gates.push(gate);
-        }
-    }
-    gates
 }
 
 /// Where a run writes to.

@@ -42,14 +42,9 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
     }
 }
 
-/// νt/L² of the error that ladders are judged by.
-pub fn compared_at(flow: Flow) -> f64 {
-    if flow == Flow::Couette { 0.1 } else { 1.0 }
-}
-
 /// The error that ladders are judged by, and its name.
 fn error(flow: Flow) -> (MetricName, String) {
-    let tau = compared_at(flow);
+    let tau = flow.compared_at();
     (L2.at(tau), format!("Relative L2 error of u at νt/L² = {tau} [-]"))
 }
 
@@ -272,7 +267,7 @@ fn budgets(channel: Channel, tier: Tier) -> Budgets {
 
 /// How much the exact series moves with twice the terms \[V\].
 fn series_moves(flow: Flow) -> f64 {
-    let tau = compared_at(flow);
+    let tau = flow.compared_at();
     let moved = (1..20).map(|k| {
         let y = f64::from(k) / 20.0;
         let [once, twice] = [1, 2].map(|times| match flow {

@@ -6,7 +6,7 @@ use solver::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
 use super::{
     Channel, ChannelSettings, Flow,
-    declaration::{at_rows, compared_at, ladder, levels},
+    declaration::{at_rows, ladder, levels},
     measure::L2,
 };
 use base::functions::ln;
@@ -88,7 +88,7 @@ impl LatticeFloor {
 /// Where the ladders stop, and why.
 pub fn study(channel: Channel, tier: Tier, runs: &Runs) -> Study {
     let flow = channel.flow;
-    let tau = compared_at(flow);
+    let tau = flow.compared_at();
     let caption = format!(
         "Errors of u at νt/L² = {tau} that the viscosity of a square lattice makes at any spacing, in place \
          and with rows that shear has slid past each other, and the error at which a ladder stops."

@@ -2,9 +2,7 @@
 //! the modern variant, walls that extrapolate, and what studies of a flow's own need; and the gates.
 
 use super::{
-    Channel, Flow, TIMES, cures,
-    declaration::compared_at,
-    extremes,
+    Channel, Flow, TIMES, cures, extremes,
     measure::{
         L2, L2_WORST, MOMENTUM_Y, NU_EFF, OUTSIDE, P_RMS, SHEAR_LOWER, SHEAR_UPPER, V_RMS,
         VOLUME_DRIFT,
@@ -130,7 +128,7 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
     let mut gates = Vec::new();
     if variant == "plain" {
         gates.extend(between_matrices(flow, rows).map(|bound| {
-            let metric = L2.at(compared_at(flow));
+            let metric = L2.at(flow.compared_at());
             let because = "the row-reduced matrices of rows in columns and of rows that slid past each \
                            other, with the steps of the leapfrog, enclose the error of rows that slide";
             gate(&of, metric, bound, Evidence::Theory, because)

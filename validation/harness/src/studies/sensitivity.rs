@@ -34,11 +34,17 @@ struct Row<'a> {
     watched: &'a Watched,
     detected: Option<&'a Record>,
     undetected: Option<f64>,
+    /// Factors of gross faults, and how many gates detect each.
+    faults: Vec<(f64, usize)>,
+    /// Was every search made to its end?
+    is_whole: bool,
 }
 
 impl Row<'_> {
+    /// The smallest detected error; NaN if a search is missing, for that says nothing.
     fn error(&self) -> f64 {
-        self.detected.and_then(|record| record.value(DETECTED)).unwrap_or(NONE)
+        let error = self.detected.and_then(|record| record.value(DETECTED)).unwrap_or(NONE);
+        if self.is_whole { error } else { f64::NAN }
     }
 
     fn gates(&self) -> String {
@@ -54,17 +60,14 @@ pub fn study(sensitivity: &Sensitivity, runs: &Runs) -> Study {
     let mut study = Study::new(&sensitivity.id, "Errors that the gates detect");
     for row in &rows {
         study = study.judge(gate(sensitivity, row.watched), row.error());
-        for &factor in &row.watched.faults {
-            let failed = failed(sensitivity, row.watched.constant, factor, runs).len() as f64;
-            study = study.judge(fault_gate(sensitivity, row.watched.constant, factor), failed);
+        for &(factor, failed) in &row.faults {
+            let gate = fault_gate(sensitivity, row.watched.constant, factor);
+            study = study.judge(gate, failed as f64);
         }
     }
     let faults = |row: &Row| {
-        let of = |factor: &f64| {
-            let failed = failed(sensitivity, row.watched.constant, *factor, runs).len();
-            format!("× {factor}: {failed}")
-        };
-        row.watched.faults.iter().map(of).collect::<Vec<_>>().join(", ")
+        let of = |(factor, failed): &(f64, usize)| format!("× {factor}: {failed}");
+        row.faults.iter().map(of).collect::<Vec<_>>().join(", ")
     };
     let percent = |error: f64| Cell::percent(error, 2);
     let error = move |row: &Row| match row.error() {
@@ -85,9 +88,11 @@ pub fn study(sensitivity: &Sensitivity, runs: &Runs) -> Study {
 
 /// The search of that run which detects the smallest error.
 fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> Row<'a> {
-    let records = sensitivity.searches(watched.constant).filter_map(|spec| runs.completed(&spec));
+    let searches = sensitivity.searches(watched.constant);
+    let records: Vec<Option<&Record>> = searches.map(|spec| runs.completed(&spec)).collect();
+    let is_whole = records.iter().all(Option::is_some);
     let (mut detected, mut undetected) = (None, None);
-    for record in records {
+    for record in records.into_iter().flatten() {
         let Some(error) = record.value(DETECTED) else {
             undetected = undetected.or(record.value(UNDETECTED));
             continue;
@@ -97,7 +102,9 @@ fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> R
             (detected, undetected) = (Some(record), record.value(UNDETECTED));
         }
     }
-    Row { watched, detected, undetected }
+    let failed = |factor: &f64| failed(sensitivity, watched.constant, *factor, runs).len();
+    let faults = watched.faults.iter().map(|factor| (*factor, failed(factor))).collect();
+    Row { watched, detected, undetected, faults, is_whole }
 }
 
 /// The gates of the runs that a gross fault fails, those that compare the program with itself not counted.
@@ -135,5 +142,30 @@ fn gate(sensitivity: &Sensitivity, watched: &Watched) -> Gate {
     match watched.blind {
         Some((error, why)) => gate.with_limitation(Bound::Below(error), why),
         None => gate,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use base::{gate::Verdict, spec::RunSpec};
+    use serde_json::json;
+
+    use super::*;
+    use crate::planned::Tier;
+
+    /// A search that was not made counted as one that found nothing, which a limitation allows.
+    #[test]
+    fn a_search_that_is_missing_fails() {
+        let run = RunSpec::new("case", "seed", json!({}));
+        let watched = [
+            Watched::new(Constant::Height).faults(&[0.0]),
+            Watched::blind_up_to(Constant::Speed, 1.0, "nothing depends on it"),
+        ];
+        let of = Sensitivity::new("case", Tier::Full, [run], watched);
+        let study = study(&of, &Runs::new(Vec::new()));
+        assert_eq!(study.judged.len(), 3);
+        for judged in study.judged {
+            assert_eq!(judged.judgement.verdict, Verdict::Fail, "{}", judged.gate.id);
+        }
     }
 }
