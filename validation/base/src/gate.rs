@@ -18,6 +18,7 @@
 //! assert_eq!(gate.judge(None).verdict, Verdict::Fail);
 //! ```
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fmt;
 
@@ -161,8 +162,30 @@ pub enum Purpose {
 pub struct Known {
     /// from the evidence for the cause: outside of it, the gate fails
     pub bound: Bound,
-    /// the cause
+    /// what causes it, and where its bound comes from
     pub reason: String,
+    /// the cause that it shares with other gates
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<Cause>,
+}
+
+/// Why numbers lie outside of their bounds, for any number of gates.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Cause {
+    /// the cause, a sentence
+    pub what: Cow<'static, str>,
+    /// what would remove it, a sentence
+    pub mend: Cow<'static, str>,
+    /// since when it is known: year, month, day
+    pub since: Cow<'static, str>,
+}
+
+impl Cause {
+    /// A cause, what would remove it, and since when it is known.
+    pub const fn new(what: &'static str, mend: &'static str, since: &'static str) -> Self {
+        let [what, mend, since] = [Cow::Borrowed(what), Cow::Borrowed(mend), Cow::Borrowed(since)];
+        Self { what, mend, since }
+    }
 }
 
 /// A metric, its bound and its reasons.
@@ -282,8 +305,16 @@ impl Gate {
     /// # Panics
     /// If the gate is unsound with it (see [`Gate::check`]).
     pub fn with_limitation(self, known: Bound, reason: impl Into<String>) -> Self {
-        let known = Known { bound: known, reason: reason.into() };
+        let known = Known { bound: known, reason: reason.into(), cause: None };
         Gate { purpose: Purpose::Limitation(known), ..self }.sound()
+    }
+
+    /// The cause of the limitation; nothing of a gate without one.
+    pub fn because_of(mut self, cause: &Cause) -> Self {
+        if let Purpose::Limitation(known) = &mut self.purpose {
+            known.cause = Some(cause.clone());
+        }
+        self
     }
 
     /// A control: a finite number outside the bound is what must come out.

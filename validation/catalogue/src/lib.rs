@@ -6,4 +6,5 @@
 //! families of cases `fluids`, `waters`, `solids` and `lattice`.
 
 pub mod cases;
+mod limitations;
 pub mod page;

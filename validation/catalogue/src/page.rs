@@ -14,33 +14,77 @@ use harness::{
     notes::Notes,
     runs::{Judged, JudgedRun},
     study::Study,
-    suite::{CaseResults, Suite},
+    suite::{CaseResults, Of, Suite},
 };
-use report::{Block, Cell, Column, Counts, Page, Section, Status, Table};
+use report::{
+    Block, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS,
+};
 
-/// The whole report.
-pub fn assemble(suite: &Suite) -> Page {
+use crate::limitations;
+
+/// The whole report; `made` is the time at which it is made, for people.
+pub fn assemble(suite: &Suite, made: &str) -> Page {
     let counts =
         Counts { diverged: suite.diverged(), ..Counts::of(suite.judged().map(Judged::status)) };
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
-    let lead = vec![
-        "How wrong is a particle method, what does being less wrong cost, and how far can it be pushed \
-         before it breaks? Each number below was measured by this run of touchstone; each gate says what \
-         it stands on."
+    let mut cards = Vec::new();
+    let mut others = Vec::new();
+    for results in &suite.cases {
+        match &results.card {
+            Some(card) => cards.push(card.clone()),
+            None => others.push(line(results)),
+        }
+    }
+    let notes = vec![
+        format!("**Supporting cases:** {}.", others.join("; ")),
+        "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
+         limitation if it lies outside for a known reason and not farther than this reason explains, and fails \
+         otherwise; controls must lie outside. [All verdicts](#verdicts) can be searched and \
+         [limitations](#limitations) are grouped by cause. Errors, orders and costs come from the runs of this \
+         report; results of other codes and reference data are stored with their source, see \
+         [references](#references)."
             .to_string(),
-        format!("{} tier. {}{}", tier_name(suite), provenance(&manifest), reused(suite)),
     ];
-    let mut sections: Vec<Section> = vec![summary(suite)];
+    let mut sections: Vec<Section> = vec![verdicts(suite), limitations::section(suite)];
     sections.extend(suite.cases.iter().map(case_section));
     sections.push(references_section());
     Page {
-        title: "touchstone".into(),
-        lead,
+        title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
+        lead: vec![format!(
+            "{} tier, {made}. {}{} {}",
+            tier_name(suite),
+            cost(suite),
+            reused(suite),
+            provenance(&manifest)
+        )],
         counts: Some(counts),
+        cards,
+        notes,
         sections,
         png_folder: "figures".into(),
-        footer: provenance(&manifest),
+        footer: String::new(),
     }
+}
+
+/// A supporting case: how its gates ended.
+fn line(results: &CaseResults) -> String {
+    let counts = Counts::of(results.judged().map(|(_, judged)| judged.status()));
+    format!("[{0}](#{0}) {1}", results.case.name(), counts.short())
+}
+
+/// What all runs of the report cost together.
+fn cost(suite: &Suite) -> String {
+    let records = || suite.cases.iter().flat_map(|results| results.runs.all()).map(|r| &r.record);
+    let cost = || records().map(|record| &record.cost);
+    let repeated: f64 = cost().flat_map(|cost| cost.alone_s.iter().skip(1)).sum();
+    let stepping: f64 = cost().map(|cost| cost.cpu_s).sum();
+    let pairs: f64 = cost().map(|cost| cost.pair_interactions as f64).sum();
+    format!(
+        "{} runs took {} of processor time for stepping and {} pair interactions.",
+        records().count(),
+        report::seconds(stepping + repeated),
+        report::sci(pairs, 2)
+    )
 }
 
 fn tier_name(suite: &Suite) -> &'static str {
@@ -70,62 +114,70 @@ fn provenance(m: &Manifest) -> String {
     };
     let commit: String = m.commit.chars().take(12).collect();
     format!(
-        "touchstone {} at commit `{commit}`{dirty}, {} build, {}, {}, {} cores, {} threads.",
+        "Made by touchstone {} at commit `{commit}`{dirty} ({} build, {}) on {}, {} cores, {} threads.",
         m.touchstone, m.profile, m.rustc, m.cpu, m.cores, m.threads
     )
 }
 
-fn worst<'a>(judged: impl Iterator<Item = &'a Judged>) -> Option<Status> {
-    judged.map(Judged::status).max()
+/// All verdicts, the worst first, and below each other the reasons, each once.
+fn verdicts(suite: &Suite) -> Section {
+    let mut notes = Notes::default();
+    let mut gates: Vec<GateRow> = suite
+        .cases
+        .iter()
+        .flat_map(|results| results.judged().map(move |(of, judged)| (results, of, judged)))
+        .map(|(results, of, judged)| gate_row(results.case, of, judged, &mut notes))
+        .collect();
+    gates.sort_by_key(|gate| std::cmp::Reverse(gate.status));
+    let reasons = notes.all().map(|(_, reason)| reason.to_string()).collect();
+    Section::new(VERDICTS, "All verdicts")
+        .prose(
+            "The margin is the unused share of what a bound allows: 100 % is far inside, 0 % is at the bound. Of a \
+             limitation it is the share that is left until it fails. Select a gate to read its reasons.",
+        )
+        .block(Block::Explorer(Explorer { gates, reasons }))
 }
 
-fn summary(suite: &Suite) -> Section {
-    let mut rows: Vec<(String, Vec<&Judged>)> = Vec::new();
-    let link = |id: &str, title: &str| format!("[{title}](#{id})");
-    for results in &suite.cases {
-        let name = results.case.name();
-        let runs = results.runs.all().iter().flat_map(|run| &run.judged).collect();
-        rows.push((link(name, &format!("{name}: single runs")), runs));
-        for study in &results.studies {
-            let title = format!("{name}: {}", study.title);
-            rows.push((link(&anchor(study), &title), study.judged.iter().collect()));
-        }
+fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Notes<'a>) -> GateRow {
+    let Judged { gate, judgement } = judged;
+    let mut reasons = vec![notes.number(&gate.because)];
+    if let Verdict::Limitation(reason) = &judgement.verdict {
+        reasons.push(notes.number(reason));
     }
-    let failed = |judged: &[&Judged]| {
-        judged.iter().filter(|j| j.judgement.verdict.is_failure()).count() as u64
+    let of = match of {
+        Of::Run(run) => {
+            let spec = &run.planned.spec;
+            format!("`{}` {}", spec.variant, what(case, spec)).trim_end().to_string()
+        }
+        Of::Study(study) => format!("[{}](#{})", study.title, anchor(study)),
     };
-    let verdict = |judged: &[&Judged]| worst(judged.iter().copied()).unwrap_or(Status::Reported);
-    let table = Columns::<(String, Vec<&Judged>)>::default()
-        .text("part", |(part, _)| part.clone())
-        .num(["gates", "1"], |(_, judged)| Cell::count(judged.len() as u64))
-        .num(["failed", "1"], |(_, judged)| Cell::count(failed(judged)))
-        .with(Column::text("verdict"), |(_, judged)| Cell::status(verdict(judged)))
-        .table("Verdicts.", rows);
-    Section::new("verdicts", "Verdicts").block(table)
+    GateRow {
+        id: gate.id.clone(),
+        status: judged.status(),
+        of,
+        value: judgement.value.map_or(Cell::text("not measured"), measured),
+        bound: gate.bounds(),
+        margin: judgement.margin.map_or(Cell::text("–"), |margin| Cell::percent(margin, 2)),
+        evidence: evidence(gate.evidence),
+        reasons,
+    }
 }
 
 fn case_section(results: &CaseResults) -> Section {
     let case = results.case;
-    let judged = || results.runs.all().iter().flat_map(|run| &run.judged);
-    let mut section = Section::new(case.name(), case.name()).prose(case.about());
-    if let Some(status) = worst(judged().chain(results.studies.iter().flat_map(|s| &s.judged))) {
-        section = section.status(status);
-    }
-    section = gates(section, "Gates on single runs.", &judged().collect::<Vec<_>>());
+    let counts = Counts::of(results.judged().map(|(_, judged)| judged.status()));
+    let mut section = Section::new(case.name(), case.name())
+        .block(Block::Outcome { counts, words: case.name().into() })
+        .prose(case.about());
+    section.status = counts.worst();
     for study in &results.studies {
         section = section.child(study_section(study));
     }
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
     section
         .block(Block::Details { summary: "Variants".into(), blocks: vec![Block::List(variants)] })
-        .block(Block::Details {
-            summary: "Settings".into(),
-            blocks: vec![settings_table(results).into()],
-        })
-        .block(Block::Details {
-            summary: "Runs and what they cost".into(),
-            blocks: vec![run_table(case, results.runs.all()).into()],
-        })
+        .block(settings_table(results))
+        .block(run_table(case, results.runs.all()))
 }
 
 /// Sections and figures share a name space; figures are named by their study.
@@ -134,46 +186,13 @@ fn anchor(study: &Study) -> String {
 }
 
 fn study_section(study: &Study) -> Section {
+    let counts = Counts::of(study.judged.iter().map(Judged::status));
     let mut section = Section::new(anchor(study), &study.title);
-    if let Some(status) = worst(study.judged.iter()) {
-        section = section.status(status);
+    section.status = counts.worst();
+    if !study.judged.is_empty() {
+        section = section.block(Block::Outcome { counts, words: study.title.clone() });
     }
-    for block in &study.blocks {
-        section = section.block(block.clone());
-    }
-    if study.judged.is_empty() {
-        section
-    } else {
-        gates(section, "Gates.", &study.judged.iter().collect::<Vec<_>>())
-    }
-}
-
-/// Adds a table of gates and below it their reasons, each once.
-fn gates(section: Section, caption: &str, judged: &[&Judged]) -> Section {
-    let mut notes = Notes::default();
-    let rows: Vec<(&Judged, String)> = judged
-        .iter()
-        .map(|&judged| {
-            let mut words = format!("[{}]", notes.number(&judged.gate.because));
-            if let Verdict::Limitation(reason) = &judged.judgement.verdict {
-                words += &format!(", limitation [{}]", notes.number(reason));
-            }
-            (judged, words)
-        })
-        .collect();
-    let list = Block::List(notes.all().map(|(k, reason)| format!("[{k}] {reason}")).collect());
-    let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
-    let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
-    let table = Columns::<(&Judged, String)>::default()
-        .code("gate", |(judged, _)| judged.gate.id.clone())
-        .num(["value", "-"], |(judged, _)| value(judged.judgement.value))
-        .text("bound", |(judged, _)| judged.gate.bounds())
-        .num(["margin", "-"], |(judged, _)| margin(judged.judgement.margin))
-        .text("evidence", |(judged, _)| evidence(judged.gate.evidence))
-        .text("reason", |(_, notes)| notes.clone())
-        .with(Column::text("verdict"), |(judged, _)| Cell::status(judged.status()))
-        .table(caption, &rows);
-    section.block(table).block(Block::Details { summary: "Reasons".into(), blocks: vec![list] })
+    study.blocks.iter().fold(section, |section, block| section.block(block.clone()))
 }
 
 /// A measured value: a whole number as such, any other with four digits.
@@ -224,7 +243,7 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
 }
 
 /// `key=value` of what differs from the defaults of the variant, and what is done with it.
-fn what(case: &dyn Case, spec: &RunSpec) -> String {
+pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
     let mut words = case::changed(case, spec);
     match &spec.task {
         Task::Simulate => {}

@@ -20,6 +20,8 @@ use crate::{
 /// The declaration of one case for one tier.
 #[derive(Default)]
 pub struct Declaration {
+    /// What the report says first of the case.
+    pub card: Option<Card>,
     /// Profiles or histories over their reference.
     pub curves: Vec<Curves>,
     /// Resolution ladders: order, error against cost, cheapest settings.
@@ -32,6 +34,27 @@ pub struct Declaration {
     pub maps: Vec<Map>,
     /// Errors of constants that the gates must detect.
     pub sensitivity: Option<Sensitivity>,
+}
+
+/// What the report says first of a case: its error with the best variant and with the paper's.
+pub struct Card {
+    /// Name of the problem.
+    pub title: &'static str,
+    /// A figure of the case and the place of the panel in it that is the picture.
+    pub picture: (&'static str, usize),
+    /// Name of the error, without unit.
+    pub error: String,
+    /// The error, which has the unit 1 and may have a sign.
+    pub metric: MetricName,
+    /// The run of the best variant and that of the paper's.
+    pub runs: Vec<RunSpec>,
+    /// What it is compared with.
+    pub against: &'static str,
+    /// Standard uncertainty of what it is compared with, in the unit of the error; none if it is exact.
+    pub uncertainty: Option<f64>,
+    /// The setting that is varied the farthest, such as the Reynolds number, with what stands before and after
+    /// its values.
+    pub reach: (&'static str, &'static str, &'static str),
 }
 
 /// Error against spacing and against cost.
@@ -202,6 +225,15 @@ impl Accuracy {
             Ladder::new(variant, resolutions.map(level))
         }));
         self
+    }
+}
+
+impl Accuracy {
+    /// The runs of these variants with the finest spacing of their ladders.
+    pub fn finest(&self, variants: &[&str]) -> Vec<RunSpec> {
+        let ladder = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
+        let finest = variants.iter().filter_map(ladder).filter_map(|ladder| ladder.levels.last());
+        finest.map(|level| level.run.spec.clone()).collect()
     }
 }
 
@@ -492,6 +524,7 @@ impl Declaration {
         }
         let panels = self.curves.iter().flat_map(|curves| &curves.panels);
         panels.flat_map(|panel| &panel.lines).for_each(|line| plain(&line.spec));
+        self.card.iter().flat_map(|card| &card.runs).for_each(&mut plain);
         runs
     }
 }

@@ -8,6 +8,7 @@ use base::{
     spec::RunKey,
 };
 use rayon::prelude::*;
+use report::Card;
 
 use crate::{
     case::{Case, Planned, RunError, Tier},
@@ -27,6 +28,28 @@ pub struct CaseResults {
     pub runs: Runs,
     /// Its studies.
     pub studies: Vec<Study>,
+    /// What is said of it first.
+    pub card: Option<Card>,
+}
+
+impl CaseResults {
+    /// Every judgement on the case, with the run that was judged, or the study.
+    pub fn judged(&self) -> impl Iterator<Item = (Of<'_>, &Judged)> {
+        let of_run = |run| move |judged| (Of::Run(run), judged);
+        let of_study = |study| move |judged| (Of::Study(study), judged);
+        let runs = self.runs.all().iter().flat_map(move |run| run.judged.iter().map(of_run(run)));
+        let studies = self.studies.iter();
+        runs.chain(studies.flat_map(move |study| study.judged.iter().map(of_study(study))))
+    }
+}
+
+/// What a gate judges.
+#[derive(Clone, Copy)]
+pub enum Of<'a> {
+    /// One run.
+    Run(&'a JudgedRun),
+    /// A result of many runs.
+    Study(&'a Study),
 }
 
 /// The results of all cases.
@@ -48,10 +71,7 @@ pub struct Suite {
 impl Suite {
     /// Every judgement.
     pub fn judged(&self) -> impl Iterator<Item = &Judged> {
-        self.cases.iter().flat_map(|case| {
-            let runs = case.runs.all().iter().flat_map(|run| &run.judged);
-            runs.chain(case.studies.iter().flat_map(|study| &study.judged))
-        })
+        self.cases.iter().flat_map(|case| case.judged().map(|(_, judged)| judged))
     }
 
     /// Gates that failed.
@@ -115,10 +135,12 @@ pub fn judge(plans: Vec<(&'static dyn Case, Vec<Planned>)>, tier: Tier, mut made
         })
         .collect();
     let study = |(case, runs): (&'static dyn Case, Runs)| {
+        let declared = case.declaration(tier);
         let mut studies = case.studies(tier, &runs);
-        studies.extend(studies::of(case.name(), &case.declaration(tier), &runs));
+        studies.extend(studies::of(case.name(), &declared, &runs));
+        let card = studies::card(case.name(), &declared, &studies, &runs);
         studies.extend(unplanned(case, &runs));
-        CaseResults { case, runs, studies }
+        CaseResults { case, runs, studies, card }
     };
     suite.cases = of_plans.into_par_iter().map(study).collect();
     suite

@@ -280,7 +280,7 @@ fn table() -> Table {
         ("`channel.couette` error", 3.2e-4, 1e-3, 12.5, Status::Pass),
         ("`vortex` order", 1.2e-2, 1e-2, 400.0, Status::Fail),
         ("`cavity` Re 3200", f64::NAN, 0.1, 8000.0, Status::ExpectedFailure),
-        ("`dam` front", 4.4e-2, 0.1, 0.02, Status::Reported),
+        ("`dam` front", 4.4e-2, 0.1, 0.02, Status::Pass),
         ("`beam` tension", 0.31, 0.1, 61.0, Status::Limitation),
     ];
     rows.into_iter().fold(
@@ -300,8 +300,7 @@ fn table() -> Table {
 fn page() -> Page {
     let formula = "<math><mfrac><mrow><mi>d</mi><mi>ρ</mi></mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>\
                    <mo>=</mo><mo>−</mo><mi>ρ</mi><mo>∇</mo><mo>⋅</mo><mi mathvariant=\"bold\">u</mi></math>";
-    let outcomes_seen =
-        [Status::Pass, Status::Fail, Status::ExpectedFailure, Status::Reported, Status::Limitation];
+    let outcomes_seen = [Status::Pass, Status::Fail, Status::ExpectedFailure, Status::Limitation];
     let mut section = Section::new("curves", "Curves").status(Status::Fail).prose(format!(
         "Continuity reads {formula}; see [the convergence](#convergence) and \
          [Morris et al.](https://doi.org/10.1006/jcph.1997.5776). Run `touchstone report`."
@@ -319,6 +318,8 @@ fn page() -> Page {
         title: "Demo of the report".into(),
         lead: vec!["Every block once, from made-up data. **Not a result.**".into()],
         counts: Some(Counts::of(outcomes_seen)),
+        cards: Vec::new(),
+        notes: Vec::new(),
         sections: vec![
             Section::new("gates", "Gates")
                 .block(table())

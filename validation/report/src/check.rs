@@ -186,7 +186,8 @@ impl<'a> Walk<'a> {
             }
             "href" if tag == "a" => {
                 if let Some(target) = value.strip_prefix('#') {
-                    self.targets.insert(target);
+                    // What follows a question mark is read by the page's script.
+                    self.targets.insert(target.split('?').next().unwrap_or_default());
                     self.summary.anchors += 1;
                 } else if remote && !value.starts_with("https://doi.org/") {
                     return Err(format!("a link to {value}"));
@@ -245,8 +246,13 @@ fn loads(text: &str, opening: &str) -> bool {
 mod tests {
     use super::*;
     use crate::{
-        Axis, Block, Cell, Column, Counts, Figure, Page, Plot, Section, Series, Status, Table,
+        Axis, Block, Card, Cell, Column, Counts, Explorer, Figure, GateRow, Page, Plot, Section,
+        Series, Status, Table, VERDICTS,
     };
+
+    fn x() -> Axis {
+        Axis::linear("x [m]")
+    }
 
     fn real_page() -> Page {
         let plot = Plot::new("p < q & r", Axis::linear("x [m]"), Axis::log("y [\"1\"]"))
@@ -260,11 +266,34 @@ mod tests {
             .block(Figure::new("fig", "A caption with `code`.").title("\"T\"").panel(plot))
             .block(Block::Details { summary: "more".into(), blocks: details })
             .child(Section::new("two", "Two").status(Status::Pass).block(table));
+        let card = Card {
+            id: "one".into(),
+            title: "One & *two*".into(),
+            picture: Some(Figure::new("small", "").panel(Plot::new("", x(), x()))),
+            facts: vec![("error".into(), "**1 %**".into())],
+            counts: Counts::of([Status::Limitation]),
+            limitations: vec!["It is < 2.".into()],
+        };
+        let gate = GateRow {
+            id: "one.a&b".into(),
+            status: Status::Limitation,
+            of: "`seed`".into(),
+            value: Cell::num(0.5, 2),
+            bound: "at most 0.4".into(),
+            margin: Cell::text("–"),
+            evidence: "theory",
+            reasons: vec![1],
+        };
+        let explorer = Explorer { gates: vec![gate], reasons: vec!["because".into()] };
+        let outcome = Block::Outcome { counts: card.counts, words: "one.a".into() };
+        let verdicts = Section::new(VERDICTS, "Verdicts").block(Block::Explorer(explorer));
         Page {
             title: "A & B".into(),
             lead: vec!["Lead.".into()],
             counts: Some(Counts::of([Status::Pass])),
-            sections: vec![section, Section::new("three", "Three")],
+            cards: vec![card],
+            notes: vec!["Note.".into()],
+            sections: vec![section, Section::new("three", "Three").block(outcome), verdicts],
             footer: "Foot.".into(),
             png_folder: "figures".into(),
         }
@@ -274,7 +303,7 @@ mod tests {
     fn a_real_page_passes_here_and_in_an_xml_parser() {
         let html = real_page().html();
         let summary = check_page(&html).unwrap();
-        assert_eq!((summary.figures, summary.tables, summary.sections), (1, 2, 3));
+        assert_eq!((summary.figures, summary.tables, summary.sections), (1, 3, 4));
         let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
         roxmltree::Document::parse_with_options(&html, options).unwrap();
     }

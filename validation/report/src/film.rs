@@ -1,6 +1,7 @@
 //! Figures one after the other: an animated PNG, which browsers and image viewers play.
 
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 use super::{figure::Figure, render};
 
@@ -18,6 +19,14 @@ pub struct Film {
     pub caption: String,
     /// The animated PNG; the first frame is the picture where animation is not understood.
     pub(super) png: Vec<u8>,
+    /// A PNG of all frames, one below the other.
+    pub(super) sheet: Vec<u8>,
+    /// Width and height of a frame \[CSS pixels\].
+    pub(super) size: (u32, u32),
+    /// How many there are.
+    pub(super) frames: usize,
+    /// How long each is shown \[ms\].
+    pub(super) milliseconds: u16,
 }
 
 impl Film {
@@ -37,31 +46,37 @@ impl Film {
         if drawn.iter().any(|frame| (frame.1, frame.2) != (width, height)) {
             return Err("frames of different sizes".into());
         }
-        let mut png = Vec::new();
-        let frames = drawn.into_iter().map(|(pixels, ..)| pixels);
-        encode(&mut png, frames.collect(), (width, height), milliseconds)
-            .map_err(|error| error.to_string())?;
-        Ok(Self { id: id.into(), caption: caption.into(), png })
+        let drawn: Vec<Vec<u8>> = drawn.into_iter().map(|(pixels, ..)| pixels).collect();
+        let (frames, size) = (drawn.len(), (width, height));
+        let sheet = encode(&[drawn.concat()], (width, height * frames as u32), 1)?;
+        let png = encode(&drawn, size, milliseconds)?;
+        Ok(Self { id: id.into(), caption: caption.into(), png, sheet, size, frames, milliseconds })
     }
 }
 
 /// One figure as a small PNG: for thousands of dots, each of which an SVG would name.
 pub(super) fn still(figure: &Figure) -> Result<Vec<u8>, String> {
     let (pixels, width, height) = render::pixels(figure, DENSITY)?;
-    let mut png = Vec::new();
-    encode(&mut png, vec![pixels], (width, height), 1).map_err(|error| error.to_string())?;
-    Ok(png)
+    encode(&[pixels], (width, height), 1)
 }
 
-/// Writes frames of three bytes a pixel.
-fn encode(
+/// A PNG of frames of three bytes a pixel, in the colours of a palette.
+fn encode(frames: &[Vec<u8>], size: (u32, u32), milliseconds: u16) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    write(&mut bytes, frames, size, milliseconds).map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+fn write(
     bytes: &mut Vec<u8>,
-    frames: Vec<Vec<u8>>,
+    frames: &[Vec<u8>],
     (width, height): (u32, u32),
     milliseconds: u16,
 ) -> Result<(), png::EncodingError> {
+    let palette = Palette::of(frames);
     let mut encoder = png::Encoder::new(bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_palette(palette.colours.concat());
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Best);
     encoder.set_filter(png::FilterType::NoFilter); // flat colours: every filter makes it larger
@@ -71,10 +86,49 @@ fn encode(
     }
     let mut writer = encoder.write_header()?;
     for pixels in frames {
-        let coarse: Vec<u8> = pixels.into_iter().map(coarse).collect();
-        writer.write_image_data(&coarse)?;
+        writer.write_image_data(&palette.indices(pixels))?;
     }
     writer.finish()
+}
+
+/// Red, green and blue.
+type Rgb = [u8; 3];
+
+/// The most frequent colours of some frames, which stand for the others.
+struct Palette {
+    colours: Vec<Rgb>,
+    index: BTreeMap<Rgb, u8>,
+}
+
+impl Palette {
+    fn of(frames: &[Vec<u8>]) -> Self {
+        let mut counts: BTreeMap<Rgb, usize> = BTreeMap::new();
+        for colour in frames.iter().flat_map(|pixels| colours(pixels)) {
+            *counts.entry(colour).or_default() += 1;
+        }
+        let mut all: Vec<Rgb> = counts.keys().copied().collect();
+        all.sort_by_key(|colour| std::cmp::Reverse(counts[colour]));
+        let chosen: Vec<Rgb> = all.iter().copied().take(256).collect();
+        let away = |a: &Rgb, b: &Rgb| {
+            a.iter().zip(b).map(|(a, b)| (i32::from(*a) - i32::from(*b)).pow(2)).sum::<i32>()
+        };
+        let nearest = |colour: &Rgb| {
+            let nearest = (0..chosen.len()).min_by_key(|&k| away(&chosen[k], colour));
+            nearest.unwrap_or_default() as u8
+        };
+        let index = all.iter().map(|colour| (*colour, nearest(colour))).collect();
+        Self { colours: chosen, index }
+    }
+
+    /// The pixels as places in the palette.
+    fn indices(&self, pixels: &[u8]) -> Vec<u8> {
+        colours(pixels).map(|colour| self.index.get(&colour).copied().unwrap_or_default()).collect()
+    }
+}
+
+/// The colours of pixels of three bytes, with [`BITS`] bits a channel, black and white as they are.
+fn colours(pixels: &[u8]) -> impl Iterator<Item = Rgb> + '_ {
+    pixels.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]].map(coarse))
 }
 
 /// The channel value with [`BITS`] bits, black and white as they are.

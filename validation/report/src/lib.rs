@@ -8,8 +8,10 @@
 
 mod axis;
 mod canvas;
+mod card;
 mod check;
 mod colour;
+mod explorer;
 mod figure;
 mod film;
 mod font;
@@ -26,8 +28,10 @@ mod table;
 mod ticks;
 
 pub use axis::Axis;
+pub use card::Card;
 pub use check::{Summary, check_page};
 pub use colour::{Colour, ColourMap};
+pub use explorer::{Explorer, GateRow, VERDICTS, verdicts_where};
 pub use figure::{
     Align, CategoryMap, Dash, Figure, Layer, Legend, Orientation, Panel, ParticleMap, Plot, Series,
     Shape,

@@ -1,11 +1,18 @@
 "use strict";
-// A click on a column's head sorts the table by it; a second click turns the order.
-document.querySelectorAll("thead th").forEach(function (head) {
-  head.addEventListener("click", function () {
+(function () {
+  var all = function (selector, within) { return Array.from((within || document).querySelectorAll(selector)); };
+  var make = function (tag, attributes, text) {
+    var element = document.createElement(tag);
+    Object.keys(attributes).forEach(function (name) { element.setAttribute(name, attributes[name]); });
+    element.textContent = text || "";
+    return element;
+  };
+
+  // The button in a column's head sorts the table by that column; pressed again it turns the order.
+  var sort = function (head, turn) {
     var row = head.parentElement;
     var column = Array.prototype.indexOf.call(row.children, head);
     var body = row.closest("table").tBodies[0];
-    var turn = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
     var key = function (tr) {
       var cell = tr.children[column];
       return cell.dataset.value === undefined ? cell.textContent.trim() : Number(cell.dataset.value);
@@ -17,17 +24,137 @@ document.querySelectorAll("thead th").forEach(function (head) {
     };
     Array.from(row.children).forEach(function (th) { th.removeAttribute("aria-sort"); });
     head.setAttribute("aria-sort", turn === 1 ? "ascending" : "descending");
+    all("tr.why", body).forEach(function (tr) { tr.remove(); });
     Array.from(body.rows).sort(compare).forEach(function (tr) { body.appendChild(tr); });
-  });
-});
-// A click on a count of the banner leaves only the rows with that verdict; a second click undoes it.
-var buttons = document.querySelectorAll("button[data-filter]");
-buttons.forEach(function (button) {
-  button.addEventListener("click", function () {
-    var chosen = button.getAttribute("aria-pressed") === "true" ? null : button.dataset.filter;
-    buttons.forEach(function (b) { b.setAttribute("aria-pressed", String(b.dataset.filter === chosen)); });
-    document.querySelectorAll("tr[data-status]").forEach(function (tr) {
-      tr.hidden = chosen !== null ? tr.dataset.status !== chosen : false;
+  };
+  all("thead th").forEach(function (head) {
+    var button = make("button", { type: "button", class: "sort" });
+    while (head.firstChild) { button.appendChild(head.firstChild); }
+    head.appendChild(button);
+    button.addEventListener("click", function () {
+      sort(head, head.getAttribute("aria-sort") === "ascending" ? -1 : 1);
+      if (head.closest("#gates")) { apply(); remember(); }
     });
   });
-});
+
+  // All verdicts: search, filters and order, which the address keeps.
+  var table = document.getElementById("gates");
+  var rows = table ? Array.from(table.tBodies[0].rows) : [];
+  var most = 25;
+  var form = make("form", { class: "filters", "aria-label": "Filter the verdicts" });
+  var found = make("p", { class: "found", role: "status" });
+  var more = make("button", { type: "button", class: "more" });
+  var text = function (row, column) { return row.children[column].textContent.trim(); };
+  var distinct = function (of) { return Array.from(new Set(rows.map(of))).sort(); };
+  var case_of = function (row) { return row.id.split(".")[0]; };
+  var fields = {
+    "case": case_of,
+    "variant": function (row) { return text(row, 2).split(" ")[0]; },
+    "status": function (row) { return row.dataset.status; },
+    "evidence": function (row) { return text(row, 6); }
+  };
+  var apply = function () {
+    all("tr.why", table).forEach(function (tr) { tr.remove(); });
+    var words = form.elements.q.value.toLowerCase().split(" ");
+    var count = 0;
+    Array.from(table.tBodies[0].rows).forEach(function (row) {
+      var content = row.textContent.toLowerCase();
+      var fits = words.every(function (word) { return content.includes(word); });
+      Object.keys(fields).forEach(function (name) {
+        var wanted = form.elements[name].value;
+        if (wanted) { fits = fits ? fields[name](row) === wanted : false; }
+      });
+      count += fits ? 1 : 0;
+      row.hidden = fits ? count > most : true;
+    });
+    found.textContent = count + " of " + rows.length + " gates" + (count > most ? ", " + most + " shown" : "");
+    more.hidden = most >= count;
+    more.textContent = "Show all " + count;
+  };
+  var remember = function () {
+    var state = new URLSearchParams();
+    Array.from(form.elements).forEach(function (field) { if (field.value) { state.set(field.name, field.value); } });
+    var head = table.querySelector("th[aria-sort]");
+    if (head) { state.set(head.getAttribute("aria-sort"), head.textContent); }
+    history.replaceState(null, "", "#verdicts?" + state);
+  };
+  // The row of a gate, with its reasons below it.
+  var open = function (row) {
+    row.hidden = false;
+    all("tr.why", table).forEach(function (tr) { tr.remove(); });
+    var why = make("tr", { class: "why" });
+    var cell = make("td", { colspan: row.children.length });
+    all("a", row.lastElementChild).forEach(function (link) {
+      cell.appendChild(make("p", {}, document.querySelector(link.getAttribute("href")).textContent));
+    });
+    why.appendChild(cell);
+    row.after(why);
+    row.scrollIntoView({ block: "center" });
+  };
+  var follow = function () {
+    var parts = decodeURIComponent(location.hash.slice(1)).split("?");
+    var target = document.getElementById(parts[0]);
+    if (parts[0] === "verdicts") {
+      var state = new URLSearchParams(parts[1] || "");
+      form.reset();
+      Array.from(form.elements).forEach(function (field) { field.value = state.get(field.name) || ""; });
+      all("th", table).forEach(function (head) {
+        if (state.get("ascending") === head.textContent) { sort(head, 1); }
+        if (state.get("descending") === head.textContent) { sort(head, -1); }
+      });
+      apply();
+      document.getElementById("verdicts").scrollIntoView();
+    } else if (rows.includes(target)) { form.reset(); apply(); open(target); }
+    else if (target) {
+      var closed = target.closest("details");
+      if (closed) { closed.open = true; target.scrollIntoView(); }
+    }
+  };
+  if (table) {
+    var search = make("label", {}, "search ");
+    search.appendChild(make("input", { type: "search", name: "q" }));
+    form.appendChild(search);
+    Object.keys(fields).forEach(function (name) {
+      var label = make("label", {}, name + " ");
+      var select = make("select", { name: name });
+      select.appendChild(make("option", { value: "" }, "all"));
+      distinct(fields[name]).forEach(function (value) { select.appendChild(make("option", { value: value }, value)); });
+      label.appendChild(select);
+      form.appendChild(label);
+    });
+    var box = table.closest(".explorer");
+    box.before(form, found);
+    box.after(more);
+    form.addEventListener("submit", function (event) { event.preventDefault(); });
+    form.addEventListener("input", function () { most = 25; apply(); remember(); });
+    more.addEventListener("click", function () { most = rows.length; apply(); });
+    var before = most;
+    addEventListener("beforeprint", function () { before = most; most = rows.length; apply(); });
+    addEventListener("afterprint", function () { most = before; apply(); });
+    addEventListener("hashchange", follow);
+    apply();
+  }
+  follow();
+
+  // Films: the frames are one below the other in an image, of which one is seen.
+  all(".film").forEach(function (film) {
+    var image = film.querySelector("img");
+    var frames = Number(film.dataset.frames);
+    var play = make("button", { type: "button" }, "Play");
+    var at = make("input", { type: "range", min: 0, max: frames - 1, value: 0, "aria-label": "Frame" });
+    var controls = make("div", { class: "controls" });
+    var show = function () { image.style.transform = "translateY(" + (-100 * at.value / frames) + "%)"; };
+    var timer = null;
+    var toggle = function () {
+      if (timer) { clearInterval(timer); timer = null; } else {
+        timer = setInterval(function () { at.value = (Number(at.value) + 1) % frames; show(); }, film.dataset.delay);
+      }
+      play.textContent = timer ? "Pause" : "Play";
+    };
+    play.addEventListener("click", toggle);
+    at.addEventListener("input", show);
+    controls.append(play, at);
+    film.after(controls);
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) { toggle(); }
+  });
+}());

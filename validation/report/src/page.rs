@@ -1,5 +1,7 @@
 //! One self-contained page: opens from disk, loads nothing, prints.
 
+use super::card::Card;
+use super::explorer::{Explorer, verdicts_where};
 use super::figure::Figure;
 use super::film::{self, Film};
 use super::font;
@@ -24,6 +26,10 @@ pub struct Page {
     pub lead: Vec<String>,
     /// The verdict banner; `None` for none.
     pub counts: Option<Counts>,
+    /// What is said first.
+    pub cards: Vec<Card>,
+    /// Paragraphs below the cards; inline markup.
+    pub notes: Vec<String>,
     /// Sections in order.
     pub sections: Vec<Section>,
     /// Last line: commit, machine, command; inline markup.
@@ -39,9 +45,7 @@ pub struct Counts {
     pub pass: usize,
     /// Judged and outside.
     pub fail: usize,
-    /// Shown without judgement.
-    pub reported: usize,
-    /// Known limits.
+    /// Outside for a known reason.
     pub limitation: usize,
     /// Outside, as it should be.
     pub expected_failure: usize,
@@ -63,7 +67,6 @@ impl Counts {
         match status {
             Status::Pass => &mut self.pass,
             Status::Fail => &mut self.fail,
-            Status::Reported => &mut self.reported,
             Status::Limitation => &mut self.limitation,
             Status::ExpectedFailure => &mut self.expected_failure,
         }
@@ -85,30 +88,48 @@ impl Counts {
                 "are outside their bounds for known reasons",
             ),
             of(self.expected_failure, "control fails as it must", "controls fail as they must"),
-            of(self.reported, "number is not judged", "numbers are not judged"),
             of(self.diverged, "run diverged", "runs diverged"),
         ];
         let text = parts.into_iter().flatten().collect::<Vec<_>>().join(", ");
         if text.is_empty() { "Nothing was judged".into() } else { text }
     }
 
-    fn html(mut self) -> Markup {
-        let worst = match self {
-            Self { fail: 1.., .. } => Status::Fail,
-            Self { limitation: 1.., .. } => Status::Limitation,
-            Self { pass: 1.., .. } => Status::Pass,
-            _ => Status::Reported,
-        };
+    /// Marks and counts, worst first: `△ 2 ✓ 30`.
+    pub fn short(self) -> String {
+        let some = Status::ALL.into_iter().rev().filter(|status| self.count(*status) > 0);
+        let parts: Vec<String> =
+            some.map(|status| format!("{} {}", status.mark(), self.count(status))).collect();
+        parts.join(" ")
+    }
+
+    /// The worst outcome, if there is any.
+    pub fn worst(self) -> Option<Status> {
+        Status::ALL.into_iter().rev().find(|status| self.count(*status) > 0)
+    }
+
+    fn count(mut self, status: Status) -> usize {
+        *self.slot(status)
+    }
+
+    /// The outcomes that there are, worst first, each a link to `target(class)`.
+    pub(super) fn chips(self, target: impl Fn(&str) -> String) -> Markup {
+        let some = Status::ALL.into_iter().rev().filter(|status| self.count(*status) > 0);
+        html! {
+            p.counts {
+                @for status in some {
+                    a class=(status.class()) href=(target(status.class())) {
+                        (status.mark()) " " (self.count(status)) " " (status.name())
+                    }
+                }
+            }
+        }
+    }
+
+    fn html(self) -> Markup {
+        let worst = self.worst().unwrap_or(Status::Pass);
         html! {
             div class=(format!("banner {}", worst.class())) {
                 p.verdict { span.mark { (worst.mark()) } " " (self.headline()) }
-                p.counts {
-                    @for status in Status::ALL {
-                        button type="button" class=(status.class()) data-filter=(status.class()) {
-                            (status.mark()) " " (self.slot(status)) " " (status.name())
-                        }
-                    }
-                }
             }
         }
     }
@@ -172,6 +193,15 @@ pub enum Block {
     Film(Film),
     /// A table with its number.
     Table(Table),
+    /// The table of all verdicts, once a page.
+    Explorer(Explorer),
+    /// How the gates of this part ended, with a link to them in the table of all verdicts.
+    Outcome {
+        /// How they ended.
+        counts: Counts,
+        /// The words by which the table finds them.
+        words: String,
+    },
     /// Blocks behind a click.
     Details {
         /// What is behind; inline markup.
@@ -233,11 +263,15 @@ impl Page {
                 body {
                     header {
                         h1 { (self.title) }
-                        @for paragraph in &self.lead { p.lead { (inline(paragraph)) } }
                         @if let Some(counts) = self.counts { (counts.html()) }
+                        @for paragraph in &self.lead { p.lead { (inline(paragraph)) } }
                     }
+                    @if !self.cards.is_empty() {
+                        div.cards { @for card in &self.cards { (card.markup()) } }
+                    }
+                    @for note in &self.notes { p.note { (inline(note)) } }
                     @if self.sections.len() > 1 {
-                        nav { h2 { "Contents" } (contents(&self.sections)) }
+                        nav aria-label="Contents" { (contents(&self.sections)) }
                     }
                     main { @for section in &self.sections { (writer.section(section, 2)) } }
                     @if !self.footer.is_empty() { footer { p { (inline(&self.footer)) } } }
@@ -310,7 +344,6 @@ fn contents(sections: &[Section]) -> Markup {
                         " "
                     }
                     a href=(format!("#{}", section.id)) { (inline(&section.title)) }
-                    @if !section.children.is_empty() { (contents(&section.children)) }
                 }
             }
         }
@@ -328,6 +361,11 @@ impl Writer<'_> {
                     _ => h4 { (title) },
                 }
                 @for block in &section.blocks { (self.block(block)) }
+                @if level == 2 { @if section.children.len() > 1 {
+                    nav.inside aria-label=(format!("In {}", section.title)) {
+                        (contents(&section.children))
+                    }
+                } }
                 @for child in &section.children { (self.section(child, level + 1)) }
             }
         }
@@ -338,12 +376,14 @@ impl Writer<'_> {
             Block::Prose(paragraphs) => html! { @for p in paragraphs { p { (inline(p)) } } },
             Block::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
             Block::Figure(figure) => self.figure(&figure.id, &figure.caption, drawing(figure)),
-            Block::Film(film) => {
-                self.figure(&film.id, &film.caption, image(&film.caption, &film.png))
-            }
+            Block::Film(film) => self.figure(&film.id, &film.caption, moving(film)),
             Block::Table(table) => {
                 self.tables += 1;
-                table.markup(&format!("Table {}. ", self.tables))
+                table.markup(&format!("Table {}", self.tables))
+            }
+            Block::Explorer(explorer) => explorer.markup(),
+            Block::Outcome { counts, words } => {
+                counts.chips(|status| verdicts_where(&format!("q={words}&status={status}")))
             }
             Block::Details { summary, blocks } => html! {
                 details {
@@ -362,7 +402,9 @@ impl Writer<'_> {
         let link = format!("{}/{id}.png", self.png_folder);
         html! {
             figure id=(id) {
-                div.card { (drawing) }
+                div.card tabindex="0" role="group" aria-label=(format!("Figure {}", self.figures)) {
+                    (drawing)
+                }
                 figcaption {
                     b { "Figure " (self.figures) ". " }
                     (inline(caption))
@@ -377,7 +419,7 @@ impl Writer<'_> {
 const LARGEST_SVG: usize = 150_000;
 
 /// The figure as SVG, or as pixels where that would be too large.
-fn drawing(figure: &Figure) -> Markup {
+pub(super) fn drawing(figure: &Figure) -> Markup {
     let svg = render::svg(figure);
     match (svg.len() > LARGEST_SVG).then(|| film::still(figure)) {
         Some(Ok(png)) => image(&figure.caption, &png),
@@ -389,6 +431,17 @@ fn drawing(figure: &Figure) -> Markup {
 fn image(caption: &str, png: &[u8]) -> Markup {
     let (caption, data) = (escape(caption), font::base64(png));
     PreEscaped(format!("<img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"/>"))
+}
+
+/// The frames of a film one below the other; the script shows them one after the other.
+fn moving(film: &Film) -> Markup {
+    let (width, height) = film.size;
+    let style = format!("width:{width}px;aspect-ratio:{width}/{height}");
+    html! {
+        div.film style=(style) data-frames=(film.frames) data-delay=(film.milliseconds) {
+            (image(&film.caption, &film.sheet))
+        }
+    }
 }
 
 /// JSON without characters that mean something to HTML or XML.
@@ -412,7 +465,7 @@ mod tests {
     #[test]
     fn the_script_is_plain_xml_text() {
         assert!(!SCRIPT.contains(['<', '&']) && !STYLE.contains(['<', '&']));
-        assert!(SCRIPT.lines().count() < 100);
+        assert!(SCRIPT.lines().count() < 200);
     }
 
     #[test]
@@ -420,9 +473,13 @@ mod tests {
         let counts = Counts::of([Status::Pass, Status::Pass, Status::ExpectedFailure]);
         assert_eq!((counts.pass, counts.fail, counts.expected_failure), (2, 0, 1));
         assert_eq!(counts.headline(), "2 gates pass, 1 control fails as it must");
-        let all = Counts { fail: 1, limitation: 2, reported: 1, diverged: 3, ..counts };
+        let all = Counts { fail: 1, limitation: 2, diverged: 3, ..counts };
         let headline = "1 gate fails, 2 gates pass, 2 are outside their bounds for known reasons, 1 control \
-                        fails as it must, 1 number is not judged, 3 runs diverged";
+                        fails as it must, 3 runs diverged";
+        assert_eq!(
+            (all.worst(), counts.worst()),
+            (Some(Status::Fail), Some(Status::ExpectedFailure))
+        );
         assert_eq!(all.headline(), headline);
         assert!(all.html().into_string().contains(headline));
         assert_eq!(Counts::default().headline(), "Nothing was judged");

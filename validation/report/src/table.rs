@@ -9,26 +9,22 @@ use maud::{Markup, PreEscaped, html};
 pub enum Status {
     /// Judged and inside its bound.
     Pass,
-    /// Shown without judgement.
-    Reported,
-    /// A known limit of the method, not judged.
-    Limitation,
     /// Outside its bound, as it should be.
     ExpectedFailure,
+    /// Outside its bound for a known reason, and inside the bound of that reason.
+    Limitation,
     /// Judged and outside its bound.
     Fail,
 }
 
 impl Status {
     /// Every status, mildest first.
-    pub const ALL: [Self; 5] =
-        [Self::Pass, Self::Reported, Self::Limitation, Self::ExpectedFailure, Self::Fail];
+    pub const ALL: [Self; 4] = [Self::Pass, Self::ExpectedFailure, Self::Limitation, Self::Fail];
 
     /// In words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pass => "pass",
-            Self::Reported => "reported",
             Self::Limitation => "limitation",
             Self::ExpectedFailure => "expected failure",
             Self::Fail => "fail",
@@ -47,7 +43,6 @@ impl Status {
     pub(super) fn mark(self) -> &'static str {
         match self {
             Self::Pass => "✓",
-            Self::Reported => "•",
             Self::Limitation => "△",
             Self::ExpectedFailure => "⊘",
             Self::Fail => "✗",
@@ -121,7 +116,7 @@ impl Cell {
         Self { text, value: Some(value), status: None }
     }
 
-    fn html(&self, numeric: bool) -> Markup {
+    pub(super) fn html(&self, numeric: bool) -> Markup {
         // What a column is sorted by: six digits. The style sheet shows a cell that has it as a number.
         let six = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
         let value: Option<f64> = self.value.filter(|value| value.is_finite()).map(six);
@@ -140,6 +135,22 @@ impl Cell {
                 (inline(&self.text))
             }
         }
+    }
+}
+
+/// Cells of a table that is shown at once; one with more of them opens by a click.
+const SHORT: usize = 24;
+
+/// A text up to the end of its first sentence, and the rest.
+pub(super) fn first_sentence(text: &str) -> (&str, &str) {
+    let is_end = |at: &usize| {
+        let (before, after) = (&text[..*at], &text[at + 2..]);
+        let word = before.rsplit([' ', '(']).next().unwrap_or_default();
+        after.starts_with(char::is_uppercase) && (word.chars().count() > 3 || word.ends_with(']'))
+    };
+    match text.match_indices(". ").map(|(at, _)| at).find(is_end) {
+        Some(at) => (&text[..=at], &text[at + 2..]),
+        None => (text, ""),
     }
 }
 
@@ -163,6 +174,15 @@ impl Column {
     /// A column of numbers in a unit (empty for none).
     pub fn num(head: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { head: head.into(), unit: unit.into(), numeric: true }
+    }
+
+    pub(super) fn markup(&self) -> Markup {
+        html! {
+            th class=[self.numeric.then_some("number")] scope="col" {
+                (inline(&self.head))
+                @if !self.unit.is_empty() { span.unit { " [" (self.unit) "]" } }
+            }
+        }
     }
 }
 
@@ -191,28 +211,30 @@ impl Table {
 
     /// The table as HTML.
     pub fn html(&self) -> String {
-        self.markup("").into_string()
+        self.markup("Table").into_string()
     }
 
-    pub(super) fn markup(&self, number: &str) -> Markup {
-        html! {
-            div.scroll {
+    /// The table with its caption; behind a click if it is long.
+    pub(super) fn markup(&self, name: &str) -> Markup {
+        let cells = self.rows.len() * self.columns.len();
+        let (first, rest) = first_sentence(&self.caption);
+        let table = html! {
+            div.scroll tabindex="0" role="region" aria-label=(name) {
                 table {
-                    @if !self.caption.is_empty() {
-                        caption { b { (number) } (inline(&self.caption)) }
-                    }
-                    thead { tr {
-                        @for column in &self.columns {
-                            th class=[column.numeric.then_some("number")] scope="col" {
-                                (inline(&column.head))
-                                @if !column.unit.is_empty() {
-                                    span.unit { " [" (column.unit) "]" }
-                                }
-                            }
-                        }
-                    } }
+                    @if cells <= SHORT { caption { b { (name) ". " } (inline(&self.caption)) } }
+                    thead { tr { @for column in &self.columns { (column.markup()) } } }
                     tbody { @for row in &self.rows { (self.row_markup(row)) } }
                 }
+            }
+        };
+        if cells <= SHORT {
+            return table;
+        }
+        html! {
+            details {
+                summary { b { (name) ". " } (inline(first)) }
+                @if !rest.is_empty() { p { (inline(rest)) } }
+                (table)
             }
         }
     }
@@ -235,6 +257,27 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sentence_ends_before_a_capital_letter() {
+        assert_eq!(first_sentence("One a. Two b. Three."), ("One a. Two b. Three.", ""));
+        assert_eq!(first_sentence("Errors fall. Orders too."), ("Errors fall.", "Orders too."));
+        let text = "Front of Lobovsky et al. 2014, no. 3 [m]. Lines.";
+        assert_eq!(first_sentence(text), ("Front of Lobovsky et al. 2014, no. 3 [m].", "Lines."));
+    }
+
+    #[test]
+    fn a_long_table_opens_by_a_click() {
+        let columns = || vec![Column::text("a"); 8];
+        let row = || vec![Cell::text("1"); 8];
+        let with = |rows: usize| Table {
+            rows: vec![row(); rows],
+            ..Table::new("Errors fall. Orders too.", columns())
+        };
+        assert!(!with(3).html().contains("<details>"));
+        let long = with(4).html();
+        assert!(long.contains("<summary><b>Table. </b>Errors fall.</summary><p>Orders too.</p>"));
+    }
 
     #[test]
     fn cells_carry_value_and_verdict() {

@@ -1,6 +1,6 @@
 //! `report`: run what is missing, judge, render.
 
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 use ::report::{self, check_page};
 use base::files::{FileError, OutputFolder};
@@ -31,7 +31,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";
     let written = folder.write("verdicts.json", verdicts.as_bytes()).map_err(Failure::from);
     let path = folder.path().join("index.html");
-    let page = page::assemble(&suite);
+    let page = page::assemble(&suite, &now());
     let html = page.html();
     let sound = check_page(&html);
     // The page last: once it is there, everything that it speaks of is. It is kept even if it is found to
@@ -62,4 +62,11 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             "the page was written, but a browser may fail to open it: {reason}"
         ))),
     }
+}
+
+/// The time, such as `2026-11-23 05:41 UTC`.
+fn now() -> String {
+    let text = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+    let minutes: String = text.chars().take("2026-11-23T05:41".len()).collect();
+    minutes.replace('T', " ") + " UTC"
 }

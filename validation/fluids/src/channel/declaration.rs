@@ -16,7 +16,7 @@ use base::{
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
+        Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
         Ladder, Level, OrderGate, Peer,
     },
 };
@@ -32,13 +32,34 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
         accuracy.push(like_peers(channel));
         maps.push(map::declared(channel.case, tier));
     }
+    let card = Some(card(channel, &accuracy[0]));
     Declaration {
+        card,
         curves: vec![curves(channel)],
         accuracy,
         budgets: Some(budgets(channel, tier)),
         limits: Some(limits::limits(channel, tier)),
         maps,
         sensitivity: Some(sensitivity::sensitivity(channel, tier)),
+    }
+}
+
+/// What the report says first of the flow.
+fn card(channel: Channel, accuracy: &Accuracy) -> Card {
+    let tau = channel.flow.compared_at();
+    let (title, picture) = match channel.flow {
+        Flow::Couette => ("Couette flow, Re 0.5", "couette-profiles"),
+        Flow::Poiseuille => ("Poiseuille flow, Re 0.5", "poiseuille-profiles"),
+    };
+    Card {
+        title,
+        picture: (picture, 0),
+        error: format!("velocity at νt/L² = {tau}, relative L2 norm"),
+        metric: L2.at(tau),
+        runs: accuracy.finest(&["modern", "seed"]),
+        against: "the exact series",
+        uncertainty: None,
+        reach: ("re", "Re", ""),
     }
 }
 

@@ -7,7 +7,7 @@ use super::{
     BEST, HillSettings, NAME, VARIANTS,
     measure::{L2_U, POINTS, STATIONS},
     plan::{HillRun, REYNOLDS, best},
-    reference::{Reference, floor, reference},
+    reference::{Reference, floor, reference, uncertainty},
     sensitivity, stability,
 };
 use base::{
@@ -17,7 +17,7 @@ use base::{
 use harness::{
     case::Tier,
     declare::{
-        Accuracy, Budget, Budgets, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
+        Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
         Ladder, Level, OrderGate,
     },
 };
@@ -29,12 +29,31 @@ const ERROR: &str = "rms error of u [U_b]";
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     Declaration {
+        card: Some(card(tier, &accuracy)),
         curves: vec![profiles(tier), shear(tier)],
         budgets: Some(budgets(tier, &accuracy)),
         accuracy: vec![accuracy],
         limits: Some(stability::limits(tier)),
         sensitivity: Some(sensitivity::sensitivity(tier)),
         maps: Vec::new(),
+    }
+}
+
+/// What the report says first of the case.
+fn card(tier: Tier, accuracy: &Accuracy) -> Card {
+    let (title, re) = match tier {
+        Tier::Quick => ("Periodic hill, Re 10", 10.0),
+        Tier::Full => ("Periodic hill, Re 50", 50.0),
+    };
+    Card {
+        title,
+        picture: ("periodic-hill-pictures", 0),
+        error: "velocity at ten stations, rms in U_b".into(),
+        metric: L2_U.into(),
+        runs: accuracy.finest(&[BEST, "interface-wall"]),
+        against: "finite elements",
+        uncertainty: uncertainty(re),
+        reach: ("re", "Re", ""),
     }
 }
 

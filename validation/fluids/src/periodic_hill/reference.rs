@@ -156,6 +156,16 @@ pub fn reference(re: f64) -> Option<Reference> {
     Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
 }
 
+/// Root mean square of the uncertainty of u \[U_b\] over all points of the profiles of a Reynolds number.
+pub fn uncertainty(reynolds: f64) -> Option<f64> {
+    let package = Package::load("periodic_hill").ok()?;
+    let profiles = package.table("profiles").ok()?;
+    let (re, u) = (profiles.numbers("re").ok()?, profiles.numbers("u_uncertainty").ok()?);
+    let own = re.iter().zip(&u).filter(|(re, _)| **re == reynolds).map(|(_, u)| u * u);
+    let (sum, count) = own.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
+    (count > 0).then(|| (sum / f64::from(count)).sqrt())
+}
+
 /// The floor as a line.
 pub fn floor() -> Vec<(f64, f64)> {
     let Ok(hill) = Hill::new(1.0) else { return Vec::new() };

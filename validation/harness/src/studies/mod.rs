@@ -1,6 +1,7 @@
 //! The studies common to all cases: pure functions of the [`Declaration`] of a case and of its records.
 
 mod budget;
+mod card;
 mod cost;
 mod curves;
 mod limit;
@@ -8,6 +9,7 @@ mod map;
 mod order;
 mod sensitivity;
 
+pub use card::card;
 pub use limit::of_theory as limit_of_theory;
 
 use crate::{declare::Declaration, runs::Runs, study::Study};

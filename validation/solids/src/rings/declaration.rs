@@ -19,7 +19,7 @@ use base::{
 use harness::{
     case::{Case, Planned, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
+        Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
         Ladder, Level, Map, MapPanel, StepLimit, StepLimits,
     },
 };
@@ -31,13 +31,31 @@ pub fn declaration(tier: Tier) -> Declaration {
     if tier == Tier::Full {
         maps.extend([stress_map(), viscosity_map()]);
     }
+    let accuracy = accuracy(tier);
     Declaration {
+        card: Some(card(&accuracy[0])),
         curves: vec![histories(tier)],
-        accuracy: accuracy(tier),
+        accuracy,
         budgets: Some(budgets(tier)),
         limits: Some(limits(tier)),
         maps,
         sensitivity: Some(sensitivity::sensitivity(tier)),
+    }
+}
+
+/// What the report says first of the case.
+fn card(accuracy: &Accuracy) -> Card {
+    let reference = Reference::of(&RingSettings::default());
+    let number = reference.and_then(|reference| reference.number(RESTITUTION));
+    Card {
+        title: "Colliding rubber rings, 0.059 c0 each",
+        picture: ("rubber-rings-pictures", 2),
+        error: "restitution".into(),
+        metric: RESTITUTION_ERROR.into(),
+        runs: accuracy.finest(&["leapfrog", "seed"]),
+        against: "finite elements",
+        uncertainty: number.map(|(value, uncertainty)| uncertainty / value),
+        reach: ("speed", "speeds of", " c0 each"),
     }
 }
 

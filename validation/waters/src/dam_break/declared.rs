@@ -1,7 +1,10 @@
 //! What the studies that every case has are made of: the front of the column of Martin & Moyce over
 //! resolutions, what its error is made of, and the longest stable time steps in both scenes.
 
-use super::{DAM_BREAK, DamSettings, NAME, front, lobovsky, sensitivity, specs};
+use super::{
+    DAM_BREAK, DamSettings, NAME, front, lobovsky, metrics::FRONT, reference::FRONT_SPREAD,
+    sensitivity, specs,
+};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
@@ -10,7 +13,7 @@ use base::{
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Change, Declaration, ErrorOf, Ladder, Level, StepLimit,
+        Accuracy, Budget, Budgets, Card, Change, Declaration, ErrorOf, Ladder, Level, StepLimit,
         StepLimits,
     },
 };
@@ -20,7 +23,32 @@ pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     let (budgets, limits) = (Some(budgets(tier, &accuracy)), Some(limits(tier)));
     let sensitivity = Some(sensitivity::sensitivity(tier));
-    Declaration { accuracy: vec![accuracy], budgets, limits, sensitivity, ..Declaration::default() }
+    Declaration {
+        card: Some(card(tier)),
+        accuracy: vec![accuracy],
+        budgets,
+        limits,
+        sensitivity,
+        ..Declaration::default()
+    }
+}
+
+/// What the report says first of the case.
+fn card(tier: Tier) -> Card {
+    let finest = |variant: &str| {
+        let n = specs::martin_moyce(variant, tier).last().copied().unwrap_or_default();
+        specs::free(tier, variant, n)
+    };
+    Card {
+        title: "Dam break",
+        picture: ("dam-break-martin-moyce-pictures", 3),
+        error: "front after its best shift in time, rms in column widths".into(),
+        metric: FRONT.rms_shifted.into(),
+        runs: vec![finest("modern"), finest("seed")],
+        against: "the experiment of Martin & Moyce",
+        uncertainty: Some(FRONT_SPREAD),
+        reach: ("n", "", " spacings across the column"),
+    }
 }
 
 /// rms distance of two fronts \[a\].

@@ -1,0 +1,90 @@
+//! What lies outside of its bound for a known reason, grouped by cause.
+
+use std::collections::BTreeMap;
+
+use base::{
+    gate::{Cause, Purpose, Verdict},
+    spec::{RunSpec, Task},
+};
+use harness::{
+    case,
+    runs::Judged,
+    suite::{CaseResults, Of, Suite},
+};
+use report::{Block, Section, sig};
+
+/// One gate outside of its bound.
+struct Found<'a> {
+    results: &'a CaseResults,
+    of: Of<'a>,
+    judged: &'a Judged,
+}
+
+/// The causes, those of most gates first.
+pub fn section(suite: &Suite) -> Section {
+    let mut causes: BTreeMap<Option<&Cause>, Vec<Found>> = BTreeMap::new();
+    for results in &suite.cases {
+        for (of, judged) in results.judged() {
+            if let (Verdict::Limitation(_), Purpose::Limitation(known)) =
+                (&judged.judgement.verdict, &judged.gate.purpose)
+            {
+                let found = Found { results, of, judged };
+                causes.entry(known.cause.as_ref()).or_default().push(found);
+            }
+        }
+    }
+    let mut causes: Vec<_> = causes.into_iter().collect();
+    causes.sort_by_key(|(_, found)| std::cmp::Reverse(found.len()));
+    let section = Section::new("limitations", "Limitations by cause").prose(
+        "Each gate below is outside of its bound, and inside the wider bound that its cause explains; \
+         beyond that it would fail.",
+    );
+    causes.iter().fold(section, |section, (cause, found)| {
+        let (text, gates) = describe(*cause, found);
+        section.block(Block::Prose(vec![text])).block(Block::Details {
+            summary: format!("The gates ({})", found.len()),
+            blocks: vec![Block::List(gates)],
+        })
+    })
+}
+
+/// The cause in words, and a line for each gate.
+fn describe(cause: Option<&Cause>, found: &[Found]) -> (String, Vec<String>) {
+    let mut cases: Vec<&str> = found.iter().map(|found| found.results.case.name()).collect();
+    cases.dedup();
+    let what = match cause {
+        Some(Cause { what, mend, since }) => {
+            format!("**{what}** What would remove it: {mend} Known since {since}.")
+        }
+        None => "**Other causes.**".into(),
+    };
+    let command = found.iter().find_map(command).unwrap_or_default();
+    let text = format!("{what} Cases: {}. To see it: `{command}`.", cases.join(", "));
+    (text, found.iter().map(gate).collect())
+}
+
+/// The gate, its value and its bound.
+fn gate(found: &Found) -> String {
+    let Judged { gate, judgement } = found.judged;
+    let value = judgement.value.map_or("not measured".into(), |value| sig(value, 4));
+    format!("[{0}](#{0}): {value}; {1}", gate.id, gate.bounds())
+}
+
+/// The command that shows it: the run, or the verdict of the study.
+fn command(found: &Found) -> Option<String> {
+    match found.of {
+        Of::Run(run) => simulation(found, &run.planned.spec),
+        Of::Study(_) => Some(format!("touchstone explain {}", found.judged.gate.id)),
+    }
+}
+
+fn simulation(found: &Found, spec: &RunSpec) -> Option<String> {
+    if spec.task != Task::Simulate || spec.mutation.is_some() {
+        return Some(format!("touchstone explain {}", found.judged.gate.id));
+    }
+    let set: String = case::changed(found.results.case, spec)
+        .iter()
+        .map(|assignment| format!(" --set {assignment}"))
+        .collect();
+    Some(format!("touchstone run {} --variant {}{set}", spec.case, spec.variant))
+}

@@ -1,0 +1,113 @@
+//! What the report says first of a case: errors and costs of two variants, how far they were driven, verdicts.
+
+use std::collections::BTreeMap;
+
+use base::{
+    gate::{Purpose, Verdict},
+    record::{Record, Status},
+    spec::RunSpec,
+};
+use report::{Block, Card, Counts, Figure, Legend, Panel, exact, percent, sci, seconds, sig};
+
+use super::limit;
+use crate::{
+    declare::{self, Declaration},
+    runs::{Judged, Runs},
+    study::Study,
+};
+
+/// The card of a case, if it declares one.
+pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) -> Option<Card> {
+    let card = declared.card.as_ref()?;
+    let of_runs = runs.all().iter().flat_map(|run| &run.judged);
+    let judged: Vec<&Judged> = of_runs.chain(studies.iter().flat_map(|s| &s.judged)).collect();
+    let mut facts = vec![("Error:".to_string(), error(card))];
+    for (name, spec) in ["Best, ", "Paper's, "].into_iter().zip(&card.runs) {
+        facts.push((format!("{name}`{}`:", spec.variant), result(card, spec, runs)));
+    }
+    let stable = stable(declared, &card.runs, runs);
+    facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
+    facts.extend(reach(card, runs).map(|text| ("Completed for".into(), text)));
+    Some(Card {
+        id: case.into(),
+        title: card.title.into(),
+        picture: picture(card.picture, studies),
+        facts,
+        counts: Counts::of(judged.iter().map(|judged| judged.status())),
+        limitations: main_limitations(&judged),
+    })
+}
+
+/// The name of the error, and what it is compared with.
+fn error(card: &declare::Card) -> String {
+    let uncertainty = card.uncertainty.map(|u| format!(" (± {})", percent(u, 2)));
+    format!("{}, against {}{}", card.error, card.against, uncertainty.unwrap_or_default())
+}
+
+/// The error of a run and what it cost.
+fn result(card: &declare::Card, spec: &RunSpec, runs: &Runs) -> String {
+    let Some(record) = runs.record(spec) else { return "not run".into() };
+    let Some(value) = record.value(card.metric.clone()) else { return record.status.to_string() };
+    let cost = &record.cost;
+    let time = cost.alone_median().unwrap_or(cost.cpu_s);
+    let pairs = sci(cost.pair_interactions as f64, 2);
+    format!("**{}** in {} on one core, {pairs} pairs", percent(value, 2), seconds(time))
+}
+
+/// The largest stable time steps over their theoretical limits.
+fn stable(declared: &Declaration, specs: &[RunSpec], runs: &Runs) -> Option<String> {
+    let limits = declared.limits.as_ref()?;
+    let of = |spec: &RunSpec| {
+        let own = limits.of.iter().filter(|limit| limit.variant == spec.variant);
+        let ratios = own.filter_map(|limit| limit::of_theory(limit, runs));
+        let least = ratios.min_by(f64::total_cmp)?;
+        Some(format!("{} (`{}`)", sig(least, 3), spec.variant))
+    };
+    let found: Vec<String> = specs.iter().filter_map(of).collect();
+    (!found.is_empty()).then(|| found.join(", "))
+}
+
+/// The smallest and the largest value of a setting with which a run reached its end.
+fn reach(card: &declare::Card, runs: &Runs) -> Option<String> {
+    let (setting, name, unit) = card.reach;
+    let completed = |record: &&Record| record.status == Status::Completed;
+    let values: Vec<f64> = runs
+        .simulations()
+        .filter(completed)
+        .filter_map(|record| record.settings[setting].as_f64())
+        .collect();
+    let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick));
+    Some(format!("{name} {} to {}{unit}", exact(low?), exact(high?)))
+}
+
+/// One panel of a figure of the studies, as small as a card is.
+fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
+    let figures = studies.iter().flat_map(|study| &study.blocks).filter_map(|block| match block {
+        Block::Figure(figure) => Some(figure),
+        _ => None,
+    });
+    let figure = figures.into_iter().find(|figure| figure.id == id)?;
+    let panel = match figure.panels.get(panel)?.clone() {
+        Panel::Plot(plot) => Panel::Plot(plot.legend(Legend::Hidden)),
+        other => other,
+    };
+    let mut small = Figure::new(format!("{id}-small"), figure.caption.clone());
+    small.panels.push(panel);
+    Some(small.panel_size(150.0, 90.0))
+}
+
+/// The two causes that most gates share.
+fn main_limitations(judged: &[&Judged]) -> Vec<String> {
+    let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
+    for judged in judged {
+        if let (Verdict::Limitation(_), Purpose::Limitation(known)) =
+            (&judged.judgement.verdict, &judged.gate.purpose)
+            && let Some(cause) = &known.cause
+        {
+            *causes.entry(&cause.what).or_default() += 1;
+        }
+    }
+    let mut causes: Vec<(&str, usize)> = causes.into_iter().collect();
+    causes.sort_by_key(|(_, gates)| std::cmp::Reverse(*gates));
+    causes.into_iter().take(2).map(|(what, _)| what.to_string()).collect()
+}
