@@ -3,7 +3,7 @@
 //! The default build may use only the registers that every x86-64 processor has, which hold two numbers.
 //! Nearly all present processors have registers for four, which the program detects at run time. The pair
 //! sweep and the construction of neighbour lists are compiled a second time for these registers, and a third
-//! time for processors that have 32 of them (AVX-512). `README.md` states the measured speed.
+//! time for processors that have 32 of them (AVX-512). `touchstone doctor --bench` measures the speed.
 
 #![allow(unsafe_code)]
 

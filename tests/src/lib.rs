@@ -5,12 +5,22 @@ pub mod new_case;
 pub mod new_term;
 pub mod new_wall;
 
+use std::{fs, path::Path};
+
 use base::functions::{cos, sin};
 use nalgebra::Vector2;
+use serde_json::Value;
 use solver::{
     Compose, Domain, Engine, Evolved, Fault, Flow, Integrator, Kernel, Observer, Open, Outcome,
     Particle, Physics, Rate, Role, Scene, Stepper, Term, lattice, numbers::Numbers, walls::Walls,
 };
+
+/// The JSON of a committed snapshot, `case.variant`; `None` if there is none.
+pub fn snapshot(name: &str) -> Option<Value> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
+    let text = fs::read_to_string(folder.join(format!("{name}.snap"))).ok()?;
+    serde_json::from_str(text.split_once("\n---\n")?.1).ok()
+}
 
 /// A plane vector.
 pub type V2 = Vector2<f64>;
