@@ -2,6 +2,7 @@
 
 mod consistent;
 mod cost;
+mod documents;
 mod extremes;
 mod frozen_lattice;
 mod identities;

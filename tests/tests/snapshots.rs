@@ -151,7 +151,7 @@ fn kept_channel(flow: Flow) -> Vec<Kept> {
 /// The tank of Lobovsky et al.
 const LOBOVSKY: &str = "n=30 width=0.6 height=0.3 tank=1.61 rim=2 end=6";
 
-/// Of cases of water: what is at rest or flows smoothly, and is coarse; and the collapse that README tells of.
+/// Of cases of water: what is at rest or flows smoothly, and is coarse; and what README states of a collapse.
 fn kept_water(case: &str) -> Vec<Kept> {
     match case {
         "hydrostatic" => vec![

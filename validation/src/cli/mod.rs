@@ -15,6 +15,8 @@
 mod arguments;
 mod compare;
 mod doctor;
+#[cfg(test)]
+mod documents;
 mod explain;
 mod export;
 mod interrupt;

@@ -1,0 +1,294 @@
+//! The documents as tests: links lead somewhere, numbers are those of snapshots and gates, README is short.
+//! That the commands in them are valid is checked beside the arguments of the command line.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use base::gate::{Bound, Gate, Purpose};
+use harness::{case::Tier, plan};
+use serde_json::Value;
+use touchstone_tests::snapshot;
+use validation::cases;
+
+/// Words that README may have outside of code blocks and comments.
+const README_WORDS: usize = 900;
+/// Folders whose paths, in backquotes, must exist.
+const FOLDERS: [&str; 7] =
+    ["solver", "validation", "tests", "references", "docs", ".ci", ".github"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn read(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// Path and text of each document, by path.
+fn documents() -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    for folder in ["", "docs/", "references/", "reports/", ".github/", ".github/ISSUE_TEMPLATE/"] {
+        for entry in fs::read_dir(root().join(folder)).unwrap() {
+            let name = entry.unwrap().file_name().to_string_lossy().into_owned();
+            if name.ends_with(".md") {
+                let path = format!("{folder}{name}");
+                found.insert(path.clone(), read(&path));
+            }
+        }
+    }
+    found
+}
+
+/// A document without what is between two marks, the marks included.
+fn without(text: &str, begin: &str, end: &str) -> String {
+    let (mut kept, mut rest) = (String::new(), text);
+    while let Some((before, inside)) = rest.split_once(begin) {
+        kept += before;
+        rest = inside.split_once(end).map_or("", |(_, after)| after);
+    }
+    kept + rest
+}
+
+/// Without blocks of code.
+fn prose(text: &str) -> String {
+    without(text, "```", "```")
+}
+
+/// The name of a heading in an address: small letters, digits, hyphens.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.collect::<String>().to_lowercase().replace(' ', "-")
+}
+
+fn has_anchor(text: &str, wanted: &str) -> bool {
+    let text = prose(text);
+    let headings = text.lines().filter(|line| line.starts_with('#'));
+    headings.map(|line| anchor(line.trim_start_matches('#'))).any(|found| found == wanted)
+}
+
+/// Targets of the links of a document to files of the project.
+fn links(text: &str) -> Vec<String> {
+    let text = without(&prose(text), "`", "`");
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    targets.filter(|target| !target.contains("://")).map(String::from).collect()
+}
+
+#[track_caller]
+fn assert_none(rule: &str, found: Vec<String>) {
+    assert!(found.is_empty(), "{rule}:\n  {}", found.join("\n  "));
+}
+
+#[test]
+fn links_lead_to_files_and_headings() {
+    let mut broken = Vec::new();
+    for (path, text) in documents() {
+        let folder = Path::new(&path).parent().unwrap().to_path_buf();
+        for link in links(&text) {
+            let (file, heading) = link.split_once('#').unwrap_or((&link, ""));
+            let target = if file.is_empty() { PathBuf::from(&path) } else { folder.join(file) };
+            let target = root().join(target);
+            let is_found = heading.is_empty()
+                || fs::read_to_string(&target).is_ok_and(|text| has_anchor(&text, heading));
+            if !target.exists() || !is_found {
+                broken.push(format!("{path}: {link}"));
+            }
+        }
+    }
+    assert_none("a link leads to a file and a heading of it", broken);
+}
+
+#[test]
+fn paths_in_documents_exist() {
+    let mut missing = Vec::new();
+    for (path, text) in documents() {
+        for quoted in prose(&text).split('`').skip(1).step_by(2) {
+            let is_path_like = quoted.chars().all(|c| c.is_alphanumeric() || "_./-".contains(c));
+            let folder = quoted.split_once('/').map(|(folder, _)| folder);
+            let is_path = folder.map_or(quoted.ends_with(".md"), |f| FOLDERS.contains(&f));
+            if is_path_like && is_path && !root().join(quoted).exists() {
+                missing.push(format!("{path}: {quoted}"));
+            }
+        }
+    }
+    assert_none("a path in backquotes names a file or a folder", missing);
+}
+
+#[test]
+fn the_summary_lists_every_page_once() {
+    let mut listed = links(&read("docs/SUMMARY.md"));
+    listed.sort();
+    let is_page = |path: &String| path.starts_with("docs/") && path != "docs/SUMMARY.md";
+    let pages: Vec<String> = documents().into_keys().filter(is_page).collect();
+    assert_eq!(listed.iter().map(|page| format!("docs/{page}")).collect::<Vec<_>>(), pages);
+}
+
+/// Words are what is between spaces and holds a letter or a digit.
+#[test]
+fn readme_is_short() {
+    let text = without(&prose(&read("README.md")), "<!--", "-->");
+    let is_word = |word: &&str| word.chars().any(char::is_alphanumeric);
+    let words = text.split_whitespace().filter(is_word).count();
+    println!("README has {words} words");
+    assert!(words <= README_WORDS, "README has {words} words, allowed are {README_WORDS}");
+}
+
+/// The number that ends a text, as `−9.1 %`, with the unit of its last digit; `None` if there is none.
+fn last_number(text: &str) -> Option<(f64, f64)> {
+    let text = text.trim_end();
+    let (text, scale) = text.strip_suffix('%').map_or((text, 1.0), |rest| (rest.trim_end(), 100.0));
+    let before = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+    let digits = &text[before.len()..];
+    let sign = if before.ends_with(['−', '-']) { -1.0 } else { 1.0 };
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let value: f64 = digits.parse().ok()?;
+    Some((sign * value / scale, 10_f64.powi(-(decimals as i32)) / scale))
+}
+
+/// The numbers that a comment behind a number in a document stands for: `<!-- snapshot; run; metric -->` a
+/// result, `<!-- gate NAME -->` the ends of a bound; `None` of any other comment.
+fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
+    if let Some(name) = comment.strip_prefix("gate ") {
+        let gate = gates.iter().find(|gate| gate.id == name);
+        return Some(gate.map(ends).unwrap_or_default());
+    }
+    let [name, run, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
+    let document = snapshot(name).unwrap_or_default();
+    let value = [&document[run]["metrics"][metric], &document[run][metric]];
+    Some(value.into_iter().filter_map(Value::as_f64).collect())
+}
+
+/// The ends of the bound of a gate and of that of its limitation.
+fn ends(gate: &Gate) -> Vec<f64> {
+    let known = match &gate.purpose {
+        Purpose::Limitation(known) => Some(known.bound),
+        _ => None,
+    };
+    let ends = |bound| match bound {
+        Bound::Below(end) | Bound::Above(end) | Bound::Equals(end) => vec![end],
+        Bound::Within(low, high) => vec![low, high],
+    };
+    [gate.bound].into_iter().chain(known).flat_map(ends).collect()
+}
+
+/// What a document states with its source: what is before the comment, and the comment.
+fn sourced(text: &str) -> Vec<(&str, &str)> {
+    let comments = text.match_indices("<!-- ").filter_map(|(at, mark)| {
+        let comment = text[at + mark.len()..].split_once(" -->")?.0;
+        Some((&text[..at], comment))
+    });
+    comments.collect()
+}
+
+fn all_gates() -> Vec<Gate> {
+    let of = |tier| cases::CASES.iter().flat_map(move |case| plan::of_case(*case, tier));
+    [Tier::Quick, Tier::Full].into_iter().flat_map(of).flat_map(|planned| planned.gates).collect()
+}
+
+#[test]
+fn numbers_with_a_source_are_those_of_the_source() {
+    let (gates, mut wrong, mut count) = (all_gates(), Vec::new(), 0);
+    for (path, text) in documents() {
+        for (before, comment) in sourced(&without(&prose(&text), "`", "`")) {
+            let Some(found) = sources(comment, &gates) else { continue };
+            count += 1;
+            let is_shown = |value: &f64| {
+                let Some((shown, unit)) = last_number(before) else { return false };
+                (value - shown).abs() <= 0.5 * unit * (1.0 + 1e-9)
+            };
+            if !found.iter().any(is_shown) {
+                let shown = last_number(before).map(|(value, _)| value);
+                wrong.push(format!("{path}: {shown:?} is {found:?} by {comment}"));
+            }
+        }
+    }
+    assert!(count > 50, "{count} numbers have a source");
+    assert_none("a number is that of the snapshot or gate that its comment names", wrong);
+}
+
+/// In README's table a number that is no part of a name stands before the comment that names its source.
+#[test]
+fn errors_and_limits_in_readme_have_sources() {
+    let text = read("README.md");
+    let mut rows = text.lines().skip_while(|line| !line.contains("| Error |")).peekable();
+    let header: Vec<&str> = rows.next().expect("a table").split('|').map(str::trim).collect();
+    let columns: Vec<usize> =
+        ["Error", "Limit"].map(|name| header.iter().position(|cell| *cell == name).unwrap()).into();
+    let (mut bare, mut count) = (Vec::new(), 0);
+    for row in rows.skip(1).take_while(|line| line.starts_with('|')) {
+        count += 1;
+        let cells: Vec<&str> = row.split('|').collect();
+        for cell in columns.iter().map(|column| cells[*column]) {
+            let mut rest = cell;
+            while let Some((before, after)) = rest.split_once("<!-- ") {
+                let kept = before.trim_end().trim_end_matches('%').trim_end();
+                let kept = kept.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+                bare.extend(numbers(kept));
+                rest = after.split_once("-->").map_or("", |(_, rest)| rest);
+            }
+            bare.extend(numbers(rest));
+        }
+    }
+    assert!(count >= 6, "the five cases and the supporting ones: {count} rows");
+    assert_none("a number in README's table has a source", bare);
+}
+
+/// The words of a text that begin with a digit.
+fn numbers(text: &str) -> Vec<String> {
+    let words = text.split(|c: char| !c.is_alphanumeric() && c != '.');
+    words.filter(|word| word.starts_with(|c: char| c.is_ascii_digit())).map(String::from).collect()
+}
+
+#[test]
+fn two_versions_of_a_crate_have_a_reason() {
+    let lock = read("Cargo.lock");
+    let quoted = |line: &str| line.split('"').nth(1).unwrap_or_default().to_string();
+    let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for package in lock.split("[[package]]").skip(1) {
+        let mut lines = package.lines().skip(1).map(quoted);
+        let (name, version) = (lines.next().unwrap(), lines.next().unwrap());
+        versions.entry(name).or_default().insert(version);
+    }
+    let deny = read("deny.toml");
+    let entries = deny.split("crate = \"").skip(1).filter_map(|rest| rest.split('"').next());
+    let mut excepted: BTreeSet<&str> = entries.collect();
+    let mut unexplained = Vec::new();
+    for (name, versions) in versions.iter().filter(|(_, versions)| versions.len() > 1) {
+        let is_excepted =
+            |version: &&String| !excepted.contains(format!("{name}@{version}").as_str());
+        if versions.iter().filter(is_excepted).count() > 1 {
+            unexplained.push(format!("{name}: {versions:?}"));
+        }
+        excepted.retain(|entry| !versions.iter().any(|v| *entry == format!("{name}@{v}")));
+    }
+    unexplained.extend(excepted.into_iter().map(|entry| format!("{entry} is no longer needed")));
+    assert_none("deny.toml names the crates of which there are two versions", unexplained);
+}
+
+#[test]
+fn the_citation_names_this_version() {
+    let of = |path: &str, mark: &str| {
+        let text = read(path);
+        let line = text.lines().find(|line| line.starts_with(mark)).unwrap_or_default();
+        line.trim_start_matches(mark).trim_matches([' ', '=', '"']).to_string()
+    };
+    assert_eq!(of("CITATION.cff", "version:"), of("Cargo.toml", "version"));
+}
+
+/// The reader itself, on a text with each kind of fault.
+#[test]
+fn faults_of_a_document_are_seen() {
+    let text = "# A `b` c\n[one](x.md#a-b-c) `[no](y)` ![two](p.png)\n```sh\n[no](z)\n```\n";
+    assert_eq!(links(text), ["x.md#a-b-c", "p.png"]);
+    assert!(has_anchor(text, "a-b-c") && !has_anchor(text, "a-c"));
+    assert_eq!(last_number("is −9.1 %"), Some((-0.091, 0.001)));
+    assert_eq!(last_number("+1000"), Some((1000.0, 1.0)));
+    assert_eq!(last_number("none"), None);
+    assert_eq!(numbers("U_b at h0, +3 and 0.5"), ["3", "0.5"]);
+    let name = "couette.plain.20.l2@0.1";
+    let gates: Vec<Gate> = all_gates().into_iter().filter(|gate| gate.id == name).take(1).collect();
+    assert_eq!(sources(&format!("gate {name}"), &gates).map(|ends| ends.len()), Some(2));
+    assert_eq!(sources("gate none", &gates), Some(Vec::new()), "a missing gate is a fault");
+    assert_eq!(sources("couette.plain; rows=20; none", &gates), Some(Vec::new()));
+    assert_eq!(sources("a remark", &gates), None);
+}
