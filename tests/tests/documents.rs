@@ -90,7 +90,9 @@ fn links_lead_to_files_and_headings() {
             let target = root().join(target);
             let is_found = heading.is_empty()
                 || fs::read_to_string(&target).is_ok_and(|text| has_anchor(&text, heading));
-            if !target.exists() || !is_found {
+            // A book of `docs` holds no other files.
+            let leaves_the_book = path.starts_with("docs/") && link.starts_with("..");
+            if !target.exists() || !is_found || leaves_the_book {
                 broken.push(format!("{path}: {link}"));
             }
         }
