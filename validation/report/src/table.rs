@@ -139,7 +139,7 @@ impl Cell {
 }
 
 /// Cells of a table that is shown at once; one with more of them opens by a click.
-const SHORT: usize = 24;
+const SHORT: usize = 12;
 
 /// A text up to the end of its first sentence, and the rest.
 pub(super) fn first_sentence(text: &str) -> (&str, &str) {
@@ -274,8 +274,8 @@ mod tests {
             rows: vec![row(); rows],
             ..Table::new("Errors fall. Orders too.", columns())
         };
-        assert!(!with(3).html().contains("<details>"));
-        let long = with(4).html();
+        assert!(!with(1).html().contains("<details>"));
+        let long = with(2).html();
         assert!(long.contains("<summary><b>Table. </b>Errors fall.</summary><p>Orders too.</p>"));
     }
 
