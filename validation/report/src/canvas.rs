@@ -1,12 +1,12 @@
-//! Drawing primitives in CSS pixels on top of a plotters backend.
+//! Drawing primitives in CSS pixels, as SVG or as pixels.
 //!
-//! A backend knows whole pixels only, so everything is drawn `scale` times larger. The first error
-//! is kept and reported at the end, which keeps the drawing code free of `?`.
+//! The rasteriser knows whole pixels only, so everything is drawn `scale` times larger. Its first error is
+//! kept and reported at the end, which keeps the drawing code free of `?`.
 
 use super::colour::Colour;
 use super::figure::{Align, Dash, Shape};
-use super::font;
-use plotters::prelude::{DrawingBackend, RGBColor, ShapeStyle, TextStyle};
+use super::{font, svg::Svg};
+use plotters::prelude::{BitMapBackend, DrawingBackend, RGBColor, TextStyle};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform};
 
@@ -29,6 +29,11 @@ impl Rect {
 
     pub fn bottom(&self) -> f64 {
         self.top + self.height
+    }
+
+    fn corners(&self) -> [Point; 4] {
+        let (left, right, top, bottom) = (self.left, self.right(), self.top, self.bottom());
+        [(left, top), (right, top), (right, bottom), (left, bottom)]
     }
 
     pub fn contains(&self, (x, y): Point) -> bool {
@@ -76,13 +81,6 @@ impl Rect {
     }
 }
 
-/// Whether the target keeps shapes or pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Vector,
-    Raster,
-}
-
 /// How a text is set.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Type {
@@ -108,20 +106,146 @@ impl Type {
 }
 
 /// A drawing in progress.
-pub(super) struct Canvas<B: DrawingBackend> {
-    backend: B,
+pub(super) enum Canvas<'a> {
+    /// As text.
+    Vector(Svg),
+    /// As pixels.
+    Raster(Raster<'a>),
+}
+
+/// A drawing in pixels.
+pub(super) struct Raster<'a> {
+    backend: BitMapBackend<'a>,
     scale: f64,
-    kind: Kind,
     error: Option<String>,
 }
 
-impl<B: DrawingBackend> Canvas<B> {
-    pub fn new(backend: B, scale: f64, kind: Kind) -> Self {
-        Self { backend, scale, kind, error: None }
+impl Canvas<'_> {
+    /// The text of a drawing as text, or the first error of one in pixels.
+    pub fn finish(self) -> Result<String, String> {
+        match self {
+            Self::Vector(svg) => Ok(svg.finish()),
+            Self::Raster(raster) => raster.finish().map(|()| String::new()),
+        }
     }
 
-    /// Completes the drawing; the first error of all its steps.
-    pub fn finish(mut self) -> Result<(), String> {
+    /// A filled rectangle.
+    pub fn fill(&mut self, rect: Rect, colour: Colour) {
+        match self {
+            Self::Vector(svg) => svg.area(&rect.corners(), colour),
+            Self::Raster(raster) => raster.fill(rect, colour),
+        }
+    }
+
+    /// The outline of a rectangle.
+    pub fn frame(&mut self, rect: Rect, colour: Colour, width: f64) {
+        self.outline(&rect.corners(), colour, width, None);
+    }
+
+    /// The closed outline of a polygon, over a filling if there is one.
+    fn outline(&mut self, corners: &[Point], colour: Colour, width: f64, fill: Option<Colour>) {
+        match self {
+            Self::Vector(svg) => svg.outline(corners, colour, width, fill),
+            Self::Raster(raster) => {
+                if let Some(fill) = fill {
+                    raster.polygon(corners, fill);
+                }
+                let closed: Vec<_> = corners.iter().chain(&corners[..1]).copied().collect();
+                raster.path(&closed, colour, width);
+            }
+        }
+    }
+
+    /// A filled polygon.
+    pub fn polygon(&mut self, corners: &[Point], colour: Colour) {
+        match self {
+            Self::Vector(svg) => svg.area(corners, colour),
+            Self::Raster(raster) => raster.polygon(corners, colour),
+        }
+    }
+
+    /// A filled disc.
+    pub fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
+        match self {
+            Self::Vector(svg) => svg.disc(centre, radius, colour),
+            Self::Raster(raster) => raster.disc(centre, radius, colour),
+        }
+    }
+
+    /// A solid line from `a` to `b`.
+    pub fn line(&mut self, a: Point, b: Point, colour: Colour, width: f64) {
+        self.path(&[a, b], colour, width);
+    }
+
+    /// A solid line through the points.
+    pub fn path(&mut self, points: &[Point], colour: Colour, width: f64) {
+        self.dashed(points, colour, width, Dash::Solid);
+    }
+
+    /// A line through the points in the given pattern.
+    pub fn dashed(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash) {
+        match self {
+            Self::Vector(svg) => svg.line(points, (colour, width), dash),
+            Self::Raster(raster) if dash == Dash::Solid => raster.path(points, colour, width),
+            Self::Raster(raster) => raster.dashed(points, colour, width, dash.pattern()),
+        }
+    }
+
+    /// Markers of the given diameter.
+    pub fn markers(&mut self, all: &[Point], shape: Shape, size: f64, colour: Colour, open: bool) {
+        let r = 0.5 * size;
+        let corners: &[Point] = match shape {
+            Shape::Circle => {
+                all.iter().for_each(|at| self.disc(*at, r, colour));
+                let inner = all.iter().filter(|_| open);
+                inner.for_each(|at| self.disc(*at, r - OPEN_STROKE, Colour::WHITE));
+                return;
+            }
+            Shape::Cross | Shape::Plus => {
+                let (dx, dy) =
+                    if shape == Shape::Cross { (0.85 * r, 0.85 * r) } else { (1.15 * r, 0.0) };
+                for &(x, y) in all {
+                    self.line((x - dx, y - dy), (x + dx, y + dy), colour, 1.5);
+                    self.line((x - dy, y + dx), (x + dy, y - dx), colour, 1.5);
+                }
+                return;
+            }
+            Shape::Square => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+            Shape::Triangle => &[(0.0, -1.15), (1.08, 0.75), (-1.08, 0.75)],
+            Shape::Down => &[(0.0, 1.15), (-1.08, -0.75), (1.08, -0.75)],
+            Shape::Diamond => &[(0.0, -1.25), (1.1, 0.0), (0.0, 1.25), (-1.1, 0.0)],
+        };
+        for &(x, y) in all {
+            let corners: Vec<Point> = corners.iter().map(|c| (x + r * c.0, y + r * c.1)).collect();
+            match open {
+                true => self.outline(&corners, colour, OPEN_STROKE, Some(Colour::WHITE)),
+                false => self.polygon(&corners, colour),
+            }
+        }
+    }
+
+    /// A text, vertically centred on the digits' height at the point.
+    pub fn text(&mut self, text: &str, at: Point, how: Type) {
+        if text.is_empty() {
+            return;
+        }
+        let below = 0.5 * font::DIGIT_HEIGHT * how.em;
+        match self {
+            Self::Vector(svg) => {
+                let base = if how.upright { (at.0 + below, at.1) } else { (at.0, at.1 + below) };
+                svg.text(text, base, how);
+            }
+            Self::Raster(raster) => raster.text(text, at, how),
+        }
+    }
+}
+
+impl<'a> Raster<'a> {
+    pub fn new(backend: BitMapBackend<'a>, scale: f64) -> Self {
+        Self { backend, scale, error: None }
+    }
+
+    fn finish(mut self) -> Result<(), String> {
         let last = self.backend.present();
         self.note(last);
         self.error.map_or(Ok(()), Err)
@@ -139,69 +263,32 @@ impl<B: DrawingBackend> Canvas<B> {
         ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
     }
 
-    fn stroke(&self, colour: Colour, width: f64) -> ShapeStyle {
-        let pixels = (width * self.scale).round().max(1.0) as u32;
-        rgb(colour).stroke_width(pixels)
-    }
-
-    /// A filled rectangle.
-    pub fn fill(&mut self, rect: Rect, colour: Colour) {
+    fn fill(&mut self, rect: Rect, colour: Colour) {
         let (a, b) = (self.pixel((rect.left, rect.top)), self.pixel((rect.right(), rect.bottom())));
         let result = self.backend.draw_rect(a, b, &rgb(colour), true);
         self.note(result);
     }
 
-    /// The outline of a rectangle.
-    pub fn frame(&mut self, r: Rect, colour: Colour, width: f64) {
-        let corners =
-            [(r.left, r.top), (r.right(), r.top), (r.right(), r.bottom()), (r.left, r.bottom())];
-        self.outline(&corners, colour, width);
-    }
-
-    /// The closed outline of a polygon.
-    pub fn outline(&mut self, corners: &[Point], colour: Colour, width: f64) {
-        let closed: Vec<_> = corners.iter().chain(&corners[..1]).copied().collect();
-        self.path(&closed, colour, width);
-    }
-
-    /// A filled polygon.
-    pub fn polygon(&mut self, corners: &[Point], colour: Colour) {
+    fn polygon(&mut self, corners: &[Point], colour: Colour) {
         let pixels: Vec<_> = corners.iter().map(|&p| self.pixel(p)).collect();
         let result = self.backend.fill_polygon(pixels, &rgb(colour));
         self.note(result);
     }
 
-    /// A filled disc.
-    pub fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
+    fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
         let radius = (radius * self.scale).round().max(1.0) as u32;
         let result = self.backend.draw_circle(self.pixel(centre), radius, &rgb(colour), true);
         self.note(result);
     }
 
-    /// A solid line from `a` to `b`.
-    pub fn line(&mut self, a: Point, b: Point, colour: Colour, width: f64) {
-        self.path(&[a, b], colour, width);
-    }
-
-    /// A solid line through the points.
-    pub fn path(&mut self, points: &[Point], colour: Colour, width: f64) {
-        match self.kind {
-            Kind::Vector => {
-                let mut pixels: Vec<_> = points.iter().map(|&p| self.pixel(p)).collect();
-                pixels.dedup();
-                let result = self.backend.draw_path(pixels, &self.stroke(colour, width));
-                self.note(result);
-            }
-            // The rasteriser's own wide paths have spikes at sharp turns: bars and round joints.
-            Kind::Raster => {
-                for pair in points.windows(2) {
-                    self.bar(pair[0], pair[1], colour, width);
-                }
-                if width > 1.2 {
-                    for &joint in points.iter().skip(1).take(points.len().saturating_sub(2)) {
-                        self.disc(joint, 0.5 * width, colour);
-                    }
-                }
+    /// Bars and round joints: the rasteriser's own wide paths have spikes at sharp turns.
+    fn path(&mut self, points: &[Point], colour: Colour, width: f64) {
+        for pair in points.windows(2) {
+            self.bar(pair[0], pair[1], colour, width);
+        }
+        if width > 1.2 {
+            for &joint in points.iter().skip(1).take(points.len().saturating_sub(2)) {
+                self.disc(joint, 0.5 * width, colour);
             }
         }
     }
@@ -223,14 +310,7 @@ impl<B: DrawingBackend> Canvas<B> {
         self.polygon(&corners, colour);
     }
 
-    /// A line through the points in the given pattern.
-    pub fn dashed(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash) {
-        let pattern: &[f64] = match dash {
-            Dash::Solid => return self.path(points, colour, width),
-            Dash::Dashed => &[6.5, 3.5],
-            Dash::Dotted => &[1.6, 2.6],
-            Dash::DashDot => &[7.0, 2.6, 1.6, 2.6],
-        };
+    fn dashed(&mut self, points: &[Point], colour: Colour, width: f64, pattern: &[f64]) {
         let Some(&first) = points.first() else { return };
         let (mut on, mut left) = (0, pattern[0]);
         let mut run = vec![first];
@@ -257,53 +337,10 @@ impl<B: DrawingBackend> Canvas<B> {
         }
     }
 
-    /// A marker of the given diameter.
-    pub fn marker(&mut self, at: Point, shape: Shape, size: f64, colour: Colour, open: bool) {
-        let r = 0.5 * size;
-        let around = |corners: &[Point]| -> Vec<Point> {
-            corners.iter().map(|c| (at.0 + r * c.0, at.1 + r * c.1)).collect()
-        };
-        let corners = match shape {
-            Shape::Circle => {
-                self.disc(at, r, colour);
-                if open {
-                    self.disc(at, r - OPEN_STROKE, Colour::WHITE);
-                }
-                return;
-            }
-            Shape::Cross | Shape::Plus => {
-                let d = if shape == Shape::Cross { (0.85, 0.85) } else { (1.15, 0.0) };
-                let ends = around(&[(-d.0, -d.1), d, (-d.1, d.0), (d.1, -d.0)]);
-                self.line(ends[0], ends[1], colour, 1.5);
-                self.line(ends[2], ends[3], colour, 1.5);
-                return;
-            }
-            Shape::Square => around(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
-            Shape::Triangle => around(&[(0.0, -1.15), (1.08, 0.75), (-1.08, 0.75)]),
-            Shape::Down => around(&[(0.0, 1.15), (-1.08, -0.75), (1.08, -0.75)]),
-            Shape::Diamond => around(&[(0.0, -1.25), (1.1, 0.0), (0.0, 1.25), (-1.1, 0.0)]),
-        };
-        self.polygon(&corners, if open { Colour::WHITE } else { colour });
-        if open {
-            self.outline(&corners, colour, OPEN_STROKE);
-        }
-    }
-
-    /// A text, vertically centred on the digits' height at the point.
-    pub fn text(&mut self, text: &str, at: Point, how: Type) {
-        if text.is_empty() {
-            return;
-        }
-        let em = how.em * self.scale;
-        // Where each backend puts the baseline, for the anchor that asks for it.
-        let (size, vertical, below) = match self.kind {
-            Kind::Vector => (em * 1.24, VPos::Center, 0.5 * font::X_HEIGHT * how.em),
-            Kind::Raster => {
-                let size = em * font::HEIGHT_PER_EM;
-                (size, VPos::Top, 0.5 * size / self.scale)
-            }
-        };
-        let shift = 0.5 * font::DIGIT_HEIGHT * how.em - below;
+    fn text(&mut self, text: &str, at: Point, how: Type) {
+        let size = how.em * self.scale * font::HEIGHT_PER_EM;
+        // From the digits' centre to the centre of the line, which is what the rasteriser places.
+        let shift = 0.5 * font::DIGIT_HEIGHT * how.em - 0.5 * size / self.scale;
         let (place, turn) = match how.upright {
             false => ((at.0, at.1 + shift), FontTransform::None),
             true => ((at.0 + shift, at.1), FontTransform::Rotate270),
@@ -316,9 +353,21 @@ impl<B: DrawingBackend> Canvas<B> {
         let colour = rgb(how.colour);
         let style = TextStyle::from(font::desc(size).transform(turn))
             .color(&colour)
-            .pos(Pos::new(horizontal, vertical));
+            .pos(Pos::new(horizontal, VPos::Top));
         let result = self.backend.draw_text(text, &style, self.pixel(place));
         self.note(result);
+    }
+}
+
+impl Dash {
+    /// Lengths of dashes and gaps by turns, in CSS pixels.
+    pub(super) fn pattern(self) -> &'static [f64] {
+        match self {
+            Dash::Solid => &[f64::INFINITY],
+            Dash::Dashed => &[6.5, 3.5],
+            Dash::Dotted => &[1.6, 2.6],
+            Dash::DashDot => &[7.0, 2.6, 1.6, 2.6],
+        }
     }
 }
 

@@ -12,9 +12,6 @@ pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
 /// Ascent minus descent over the em: the rasteriser sizes text by this height.
 pub(super) const HEIGHT_PER_EM: f64 = (1901.0 + 483.0) / 2048.0;
 
-/// Height of the small letter x over the em.
-pub(super) const X_HEIGHT: f64 = 1120.0 / 2048.0;
-
 /// Height of a digit over the em.
 pub(super) const DIGIT_HEIGHT: f64 = 1493.0 / 2048.0;
 

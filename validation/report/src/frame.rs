@@ -6,7 +6,6 @@ use super::colour::Colour;
 use super::figure::Align;
 use super::font;
 use super::ticks::Ticks;
-use plotters::prelude::DrawingBackend;
 
 /// Em of tick labels, in CSS pixels.
 pub(super) const TICK_EM: f64 = 11.0;
@@ -57,8 +56,8 @@ pub(super) fn margins(texts: &Texts, y_labels: f64) -> Margins {
 }
 
 /// Grid, ticks, tick labels and frame; the upper `strip` pixels belong to no value.
-pub(super) fn axes<B: DrawingBackend>(
-    canvas: &mut Canvas<B>,
+pub(super) fn axes(
+    canvas: &mut Canvas,
     area: Rect,
     strip: f64,
     (x, x_ticks): (&Mapping, &Ticks),
@@ -73,32 +72,31 @@ pub(super) fn axes<B: DrawingBackend>(
     for py in y_ticks.major.iter().filter_map(|t| at_y(t.0)) {
         canvas.line((area.left, py), (area.right(), py), GRID, 0.7);
     }
-    for (v, label) in &x_ticks.major {
-        let Some(px) = at_x(*v) else { continue };
+    for px in x_ticks.major.iter().filter_map(|t| at_x(t.0)) {
         canvas.line((px, bottom), (px, bottom - 5.0), Colour::BLACK, 1.0);
-        canvas.text(label, (px, bottom + 12.0), Type::new(TICK_EM, Align::Middle));
+    }
+    for py in y_ticks.major.iter().filter_map(|t| at_y(t.0)) {
+        canvas.line((area.left, py), (area.left + 5.0, py), Colour::BLACK, 1.0);
     }
     for px in x_ticks.minor.iter().filter_map(|&v| at_x(v)) {
         canvas.line((px, bottom), (px, bottom - 3.0), Colour::BLACK, 0.7);
     }
-    for (v, label) in &y_ticks.major {
-        let Some(py) = at_y(*v) else { continue };
-        canvas.line((area.left, py), (area.left + 5.0, py), Colour::BLACK, 1.0);
-        canvas.text(label, (area.left - 6.0, py), Type::new(TICK_EM, Align::End));
-    }
     for py in y_ticks.minor.iter().filter_map(|&v| at_y(v)) {
         canvas.line((area.left, py), (area.left + 3.0, py), Colour::BLACK, 0.7);
+    }
+    for (v, label) in &x_ticks.major {
+        let Some(px) = at_x(*v) else { continue };
+        canvas.text(label, (px, bottom + 12.0), Type::new(TICK_EM, Align::Middle));
+    }
+    for (v, label) in &y_ticks.major {
+        let Some(py) = at_y(*v) else { continue };
+        canvas.text(label, (area.left - 6.0, py), Type::new(TICK_EM, Align::End));
     }
     canvas.frame(area, Colour::BLACK, 1.0);
 }
 
 /// Title, note and axis labels; `y_labels` is the width of the tick labels on the left.
-pub(super) fn labels<B: DrawingBackend>(
-    canvas: &mut Canvas<B>,
-    area: Rect,
-    texts: &Texts,
-    y_labels: f64,
-) {
+pub(super) fn labels(canvas: &mut Canvas, area: Rect, texts: &Texts, y_labels: f64) {
     let (middle, centre) = (area.left + 0.5 * area.width, area.top + 0.5 * area.height);
     let set = |text: &str, em, room| Type::new(fit(text, em, room), Align::Middle);
     let wide = area.width + 40.0;

@@ -56,14 +56,18 @@ pub(super) fn band_runs(
     outlines
 }
 
-/// The same curve to the eye: of the points in one third of a pixel column the first, the lowest,
-/// the highest and the last remain.
+/// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains.
 pub(super) fn thin(run: &[Point]) -> Vec<Point> {
-    const ENOUGH: usize = 600;
-    if run.len() < ENOUGH {
-        return run.to_vec();
-    }
-    let column = |p: &Point| (3.0 * p.0).round() as i64;
+    const MANY: usize = 600;
+    if run.len() < MANY { simplified(run) } else { simplified(&columns(run)) }
+}
+
+/// A distance that is not seen, in CSS pixels.
+const SEEN: f64 = 0.15;
+
+/// Of the points in one pixel column the first, the lowest, the highest and the last.
+fn columns(run: &[Point]) -> Vec<Point> {
+    let column = |p: &Point| p.0.round() as i64;
     let mut kept = Vec::new();
     for group in run.chunk_by(|a, b| column(a) == column(b)) {
         let by_y = |&i: &usize, &j: &usize| group[i].1.total_cmp(&group[j].1);
@@ -75,6 +79,33 @@ pub(super) fn thin(run: &[Point]) -> Vec<Point> {
     }
     kept.dedup();
     kept
+}
+
+/// Without the points that lie on the line between others (Ramer, Douglas and Peucker).
+fn simplified(run: &[Point]) -> Vec<Point> {
+    let mut is_kept = vec![false; run.len()];
+    let mut pieces = vec![(0, run.len().saturating_sub(1))];
+    for end in [is_kept.len().min(1), is_kept.len()] {
+        is_kept[..end].last_mut().into_iter().for_each(|kept| *kept = true);
+    }
+    while let Some((from, to)) = pieces.pop() {
+        let off = |i: usize| (i, distance(run[i], (run[from], run[to])));
+        let farthest = (from + 1..to).map(off).max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((at, _)) = farthest.filter(|(_, distance)| *distance > SEEN) {
+            is_kept[at] = true;
+            pieces.extend([(from, at), (at, to)]);
+        }
+    }
+    run.iter().zip(is_kept).filter_map(|(p, kept)| kept.then_some(*p)).collect()
+}
+
+/// Distance of a point from a segment.
+fn distance(p: Point, (a, b): (Point, Point)) -> f64 {
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let square = dx * dx + dy * dy;
+    let along = (p.0 - a.0) * dx + (p.1 - a.1) * dy;
+    let t = if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 };
+    (p.0 - a.0 - t * dx).hypot(p.1 - a.1 - t * dy)
 }
 
 /// The parts of a line inside an area.
@@ -165,7 +196,21 @@ mod tests {
             .map(|i| (f64::from(i) * 1e-3, if i == 5432 { -7.0 } else { 1.0 }))
             .collect();
         let kept = thin(&run);
-        assert!(kept.len() < 1300 && kept.iter().any(|p| p.1 == -7.0));
+        assert!(kept.len() < 10 && kept.iter().any(|p| p.1 == -7.0));
+        assert_eq!((thin(&[]), thin(&run[..1]).len(), thin(&run[..2]).len()), (vec![], 1, 2));
+    }
+
+    #[test]
+    fn a_smooth_curve_needs_few_points() {
+        let at = |k: i32| (f64::from(k), 100.0 * (f64::from(k) / 60.0).sin());
+        let run: Vec<Point> = (0..400).map(at).collect();
+        let kept = thin(&run);
+        assert!(kept.len() < 60, "{}", kept.len());
+        let off = |p: &Point| {
+            let distances = kept.windows(2).map(|pair| distance(*p, (pair[0], pair[1])));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        assert!(run.iter().all(|p| off(p) <= SEEN));
     }
 
     #[test]

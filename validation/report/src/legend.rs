@@ -4,7 +4,6 @@ use super::canvas::{Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::figure::{Align, Dash, Legend, Shape};
 use super::font;
-use plotters::prelude::DrawingBackend;
 
 /// How a series is drawn, after the palette was consulted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,26 +29,56 @@ pub(super) struct Entry {
     pub sample: Sample,
 }
 
+impl Entry {
+    pub fn colour(&self) -> Colour {
+        match self.sample {
+            Sample::Series(look) => look.colour,
+            Sample::Patch(colour) => colour,
+        }
+    }
+}
+
 const EM: f64 = 11.0;
 const ROW: f64 = 17.0;
 const PADDING: f64 = 7.0;
 const SAMPLE: f64 = 26.0;
 const INSET: f64 = 8.0;
 
-/// Width and height of the box around the entries.
+/// Width and height of the box around the entries, one below the other.
 pub(super) fn size(entries: &[Entry]) -> (f64, f64) {
+    (column(entries) + PADDING, entries.len() as f64 * ROW + 2.0 * PADDING - 5.0)
+}
+
+/// Width of an entry with the gap to the next column.
+fn column(entries: &[Entry]) -> f64 {
     let widest = entries.iter().map(|e| font::width(&e.name, EM)).fold(0.0, f64::max);
-    let text = SAMPLE + 7.0 + widest;
-    (text + 2.0 * PADDING, entries.len() as f64 * ROW + 2.0 * PADDING - 5.0)
+    SAMPLE + 7.0 + widest + PADDING
+}
+
+/// Rows of the entries in as many columns as fit side by side.
+fn rows_within(entries: &[Entry], width: f64) -> usize {
+    let columns = ((width - PADDING) / (column(entries) + PADDING)) as usize;
+    entries.len().div_ceil(columns.max(1)).max(1)
+}
+
+/// Height of the entries side by side within this width; 0 if there are none.
+pub(super) fn height_within(entries: &[Entry], width: f64) -> f64 {
+    match entries {
+        [] => 0.0,
+        _ => rows_within(entries, width) as f64 * ROW + PADDING,
+    }
+}
+
+/// Draws the entries side by side within this width, each column from top to bottom.
+pub(super) fn draw_within(canvas: &mut Canvas, entries: &[Entry], (left, top): Point, width: f64) {
+    for (i, entries_of_column) in entries.chunks(rows_within(entries, width)).enumerate() {
+        let left = left + i as f64 * (column(entries) + PADDING);
+        draw(canvas, entries_of_column, (left, top), false);
+    }
 }
 
 /// Draws the entries in a box whose corner is `at`.
-pub(super) fn draw<B: DrawingBackend>(
-    canvas: &mut Canvas<B>,
-    entries: &[Entry],
-    (left, top): Point,
-    boxed: bool,
-) {
+pub(super) fn draw(canvas: &mut Canvas, entries: &[Entry], (left, top): Point, boxed: bool) {
     let (width, height) = size(entries);
     if boxed {
         let area = Rect { left, top, width, height };
@@ -71,12 +100,12 @@ pub(super) fn draw<B: DrawingBackend>(
     }
 }
 
-fn sample<B: DrawingBackend>(canvas: &mut Canvas<B>, look: Look, (x, y): Point) {
+fn sample(canvas: &mut Canvas, look: Look, (x, y): Point) {
     if let Some(dash) = look.line {
         canvas.dashed(&[(x, y), (x + SAMPLE, y)], look.colour, look.width, dash);
     }
     if let Some((shape, diameter)) = look.marker {
-        canvas.marker((x + 0.5 * SAMPLE, y), shape, diameter, look.colour, look.open);
+        canvas.markers(&[(x + 0.5 * SAMPLE, y)], shape, diameter, look.colour, look.open);
     }
 }
 

@@ -24,6 +24,7 @@ mod number;
 mod page;
 mod plot;
 mod render;
+mod svg;
 mod table;
 mod ticks;
 

@@ -6,12 +6,14 @@ use super::colour::{Colour, ColourMap};
 use super::figure::{Align, CategoryMap, ParticleMap, Shape};
 use super::font;
 use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
+use super::geometry::{clip_line, thin};
 use super::legend::{self, Entry, Sample};
 use super::ticks::{Scale, Ticks, with_exponent};
-use plotters::prelude::DrawingBackend;
 
 const BAR_GAP: f64 = 12.0;
 const BAR_WIDTH: f64 = 13.0;
+/// Colours between the ends of a bar.
+const STEPS: f64 = 64.0;
 
 /// A particle map with its scales decided.
 pub(super) struct Particles<'a> {
@@ -26,6 +28,7 @@ pub(super) struct Particles<'a> {
     /// Radius of a dot in CSS pixels.
     radius: f64,
     note: String,
+    has_bar: bool,
 }
 
 impl<'a> Particles<'a> {
@@ -59,7 +62,19 @@ impl<'a> Particles<'a> {
             value_ticks: Axis::linear("").place_ticks(&values, (size.1 / 36.0) as usize),
             radius: (0.5 * diameter * pixels).clamp(0.8, 9.0),
             note: if lost > 0 { format!("{lost} not finite") } else { String::new() },
+            has_bar: true,
         }
+    }
+
+    /// Whether the colour bar of another map says the same, because both state the same ends.
+    pub fn shares_bar_with(&self, other: &Self) -> bool {
+        let said = |map: &'a ParticleMap| (map.map, map.values, &map.label);
+        self.map.values.is_some() && said(self.map) == said(other.map)
+    }
+
+    /// Leaves the colour bar to the figure.
+    pub fn hide_bar(&mut self) {
+        self.has_bar = false;
     }
 
     pub fn size(&self) -> (f64, f64) {
@@ -77,52 +92,71 @@ impl<'a> Particles<'a> {
 
     pub fn margins(&self) -> Margins {
         let around = self.with_texts(|texts| margins(texts, widest_label(&self.y_ticks)));
-        let bar = BAR_GAP + BAR_WIDTH + 8.0 + widest_label(&self.value_ticks);
-        Margins { right: bar + if self.map.label.is_empty() { 6.0 } else { 26.0 }, ..around }
+        Margins { right: if self.has_bar { self.bar_width() } else { 14.0 }, ..around }
     }
 
-    pub fn draw<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+    /// Room for the colour bar.
+    pub fn bar_width(&self) -> f64 {
+        let bar = BAR_GAP + BAR_WIDTH + 8.0 + widest_label(&self.value_ticks);
+        bar + if self.map.label.is_empty() { 6.0 } else { 26.0 }
+    }
+
+    pub fn draw(&self, canvas: &mut Canvas, area: Rect) {
         axes(canvas, area, 0.0, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
         self.with_texts(|texts| labels(canvas, area, texts, widest_label(&self.y_ticks)));
+        let place = |&(x, y): &(f64, f64)| {
+            let (ux, uy) = (self.x.unit(x)?, self.y.unit(y)?);
+            Some((area.left + ux * area.width, area.bottom() - uy * area.height))
+        };
+        // Dots of one colour after each other, for they are one element of an SVG.
+        let mut dots = vec![Vec::new(); STEPS as usize];
         for &(x, y, value) in &self.map.points {
-            let (Some(ux), Some(uy)) = (self.x.unit(x), self.y.unit(y)) else { continue };
-            let at = (area.left + ux * area.width, area.bottom() - uy * area.height);
-            if !area.contains(at) {
-                continue;
-            }
+            let Some(at) = place(&(x, y)).filter(|at| area.contains(*at)) else { continue };
             match self.values.unit(value) {
-                Some(t) => canvas.disc(at, self.radius, self.map.map.at(t)),
-                None => canvas.marker(at, Shape::Cross, 8.0, Colour::BLACK, false),
+                Some(t) => dots[((t * STEPS) as usize).min(STEPS as usize - 1)].push(at),
+                None => canvas.markers(&[at], Shape::Cross, 8.0, Colour::BLACK, false),
             }
+        }
+        for (step, dots) in dots.into_iter().enumerate() {
+            let colour = self.map.map.at((step as f64 + 0.5) / STEPS);
+            dots.into_iter().for_each(|at| canvas.disc(at, self.radius, colour));
         }
         for line in &self.map.lines {
-            let place = |&(x, y): &(f64, f64)| {
-                let (ux, uy) = (self.x.unit(x)?, self.y.unit(y)?);
-                Some((area.left + ux * area.width, area.bottom() - uy * area.height))
-            };
-            let points: Vec<_> =
-                line.iter().filter_map(place).filter(|p| area.contains(*p)).collect();
-            canvas.path(&points, Colour::BLACK, 1.4);
+            let points: Vec<_> = line.iter().filter_map(place).collect();
+            for piece in clip_line(&thin(&points), area) {
+                canvas.path(&piece, Colour::BLACK, 1.4);
+            }
         }
         canvas.frame(area, Colour::BLACK, 1.0);
-        self.bar(canvas, area);
+        if self.has_bar {
+            self.bar(canvas, area);
+        }
     }
 
-    fn bar<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
-        const STEPS: u32 = 64;
+    /// The colour bar, right of an area.
+    pub fn bar(&self, canvas: &mut Canvas, area: Rect) {
         let bar = Rect { left: area.right() + BAR_GAP, width: BAR_WIDTH, ..area };
-        for i in 0..STEPS {
-            let t = f64::from(i) / f64::from(STEPS);
+        let (middle, top) = (bar.left + 0.5 * bar.width, bar.top);
+        for step in 0..STEPS as u32 {
+            let t = f64::from(step) / STEPS;
             let bottom = bar.bottom() - t * bar.height;
             // Each step reaches to the top, so that no seam shows between two.
-            let step = Rect { height: bottom - bar.top, ..bar };
-            canvas.fill(step, self.map.map.at(t + 0.5 / f64::from(STEPS)));
+            canvas.line(
+                (middle, bottom),
+                (middle, top),
+                self.map.map.at(t + 0.5 / STEPS),
+                BAR_WIDTH,
+            );
         }
         canvas.frame(bar, Colour::BLACK, 1.0);
         for (v, label) in &self.value_ticks.major {
             let Some(t) = self.values.unit(*v) else { continue };
             let y = bar.bottom() - t * bar.height;
             canvas.line((bar.right(), y), (bar.right() + 4.0, y), Colour::BLACK, 1.0);
+        }
+        for (v, label) in &self.value_ticks.major {
+            let Some(t) = self.values.unit(*v) else { continue };
+            let y = bar.bottom() - t * bar.height;
             canvas.text(label, (bar.right() + 7.0, y), Type::new(TICK_EM, Align::Start));
         }
         let label = with_exponent(&self.map.label, self.value_ticks.exponent);
@@ -177,6 +211,16 @@ impl<'a> Categories<'a> {
         self.size
     }
 
+    /// The entries of its legend, if that is drawn.
+    pub fn legend(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// Leaves the legend to the figure.
+    pub fn hide_legend(&mut self) {
+        self.entries.clear();
+    }
+
     fn texts(&self) -> Texts<'_> {
         Texts { title: &self.map.title, note: "", x: "", y: &self.map.y_label }
     }
@@ -192,13 +236,17 @@ impl<'a> Categories<'a> {
     pub fn margins(&self) -> Margins {
         let label = if self.map.x_label.is_empty() { 4.0 } else { 22.0 };
         Margins {
-            right: legend::size(&self.entries).0 + 14.0,
+            right: if self.entries.is_empty() {
+                14.0
+            } else {
+                legend::size(&self.entries).0 + 14.0
+            },
             bottom: self.names() + label,
             ..margins(&self.texts(), widest(&self.map.y))
         }
     }
 
-    pub fn draw<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+    pub fn draw(&self, canvas: &mut Canvas, area: Rect) {
         let map = self.map;
         labels(canvas, area, &self.texts(), widest(&map.y));
         let width = area.width / map.x.len().max(1) as f64;
@@ -227,12 +275,7 @@ impl<'a> Categories<'a> {
         legend::draw(canvas, &self.entries, (area.right() + 8.0, area.top - 4.0), false);
     }
 
-    fn cell<B: DrawingBackend>(
-        &self,
-        canvas: &mut Canvas<B>,
-        rect: Rect,
-        cell: Option<&(usize, String)>,
-    ) {
+    fn cell(&self, canvas: &mut Canvas, rect: Rect, cell: Option<&(usize, String)>) {
         let known = cell.and_then(|(i, text)| Some((self.map.categories.get(*i)?.1, text)));
         let Some((colour, text)) = known else {
             canvas.frame(rect.grown(-0.5), Colour::LIGHT_GREY, 1.0);

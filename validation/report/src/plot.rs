@@ -12,7 +12,6 @@ use super::geometry::{
 };
 use super::legend::{self, Entry, Look, Sample};
 use super::ticks::{Ticks, minus, with_exponent};
-use plotters::prelude::DrawingBackend;
 
 const NOTE_EM: f64 = 9.5;
 const RULE_EM: f64 = 10.5;
@@ -86,6 +85,16 @@ impl<'a> Prepared<'a> {
         self.size
     }
 
+    /// The entries of its legend, if that is drawn.
+    pub fn legend(&self) -> &[Entry] {
+        if self.legend == Legend::Hidden { &[] } else { &self.entries }
+    }
+
+    /// Leaves the legend to the figure.
+    pub fn hide_legend(&mut self) {
+        self.legend = Legend::Hidden;
+    }
+
     pub fn margins(&self) -> Margins {
         let overhang =
             self.x_ticks.major.last().map_or(0.0, |(_, l)| font::width(l, TICK_EM) / 2.0);
@@ -107,7 +116,7 @@ impl<'a> Prepared<'a> {
     }
 
     /// Draws into the canvas; the axes enclose `area`.
-    pub fn draw<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+    pub fn draw(&self, canvas: &mut Canvas, area: Rect) {
         for layer in &self.plot.layers {
             self.background(canvas, area, layer);
         }
@@ -288,9 +297,9 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    fn rule<B: DrawingBackend>(
+    fn rule(
         &self,
-        canvas: &mut Canvas<B>,
+        canvas: &mut Canvas,
         area: Rect,
         ends: Option<(Point, Point)>,
         (label, colour, dash): (&str, Colour, Dash),
@@ -310,13 +319,14 @@ impl<'a> Prepared<'a> {
     }
 
     /// Bands and spans lie below the grid.
-    fn background<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect, layer: &Layer) {
+    fn background(&self, canvas: &mut Canvas, area: Rect, layer: &Layer) {
         match layer {
             Layer::Band { points, colour, .. } => {
                 for strip in band_runs(points, |p| self.place(p)) {
                     let clipped = clip_polygon(&strip, self.data_area());
                     if clipped.len() > 2 {
-                        let moved: Vec<_> = clipped.iter().map(|&p| shift(p, area)).collect();
+                        let moved: Vec<_> =
+                            thin(&clipped).into_iter().map(|p| shift(p, area)).collect();
                         canvas.polygon(&moved, colour.tint(BAND));
                     }
                 }
@@ -347,13 +357,7 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    fn series<B: DrawingBackend>(
-        &self,
-        canvas: &mut Canvas<B>,
-        area: Rect,
-        series: &Series,
-        look: Look,
-    ) {
+    fn series(&self, canvas: &mut Canvas, area: Rect, series: &Series, look: Look) {
         let inner = shift_rect(self.data_area(), area);
         for (a, b) in self.bars(series) {
             self.bar(canvas, inner, (shift(a, area), shift(b, area)), look.colour);
@@ -366,11 +370,10 @@ impl<'a> Prepared<'a> {
             }
         }
         if let Some((shape, size)) = look.marker {
-            for p in series.points.iter().filter_map(|&p| self.place(p)).map(|p| shift(p, area)) {
-                if inner.grown(0.5).contains(p) {
-                    canvas.marker(p, shape, size, look.colour, look.open);
-                }
-            }
+            let places =
+                series.points.iter().filter_map(|&p| self.place(p)).map(|p| shift(p, area));
+            let places: Vec<Point> = places.filter(|p| inner.grown(0.5).contains(*p)).collect();
+            canvas.markers(&places, shape, size, look.colour, look.open);
         }
     }
 
@@ -400,13 +403,7 @@ impl<'a> Prepared<'a> {
         bars
     }
 
-    fn bar<B: DrawingBackend>(
-        &self,
-        canvas: &mut Canvas<B>,
-        inner: Rect,
-        (a, b): (Point, Point),
-        colour: Colour,
-    ) {
+    fn bar(&self, canvas: &mut Canvas, inner: Rect, (a, b): (Point, Point), colour: Colour) {
         if let Some((p, q)) = inner.clip(a, b) {
             canvas.line(p, q, colour, 1.0);
         }
@@ -469,7 +466,7 @@ impl<'a> Prepared<'a> {
         best.map(|(_, corners)| corners)
     }
 
-    fn failures<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+    fn failures(&self, canvas: &mut Canvas, area: Rect) {
         if self.failed.is_empty() {
             return;
         }
@@ -479,7 +476,7 @@ impl<'a> Prepared<'a> {
         canvas.line((area.left, line), (area.right(), line), Colour::GREY, 0.7);
         for f in &self.failed {
             let at = (area.left + f.x, area.top + 2.0 + (f.row as f64 + 0.5) * STRIP_ROW);
-            canvas.marker(at, Shape::Cross, 8.5, Colour::VERMILLION, false);
+            canvas.markers(&[at], Shape::Cross, 8.5, Colour::VERMILLION, false);
             let side = if f.align == Align::Start { 8.0 } else { -8.0 };
             let em = fit(&f.reason, NOTE_EM, 0.8 * area.width);
             let how = Type::new(em, f.align).colour(Colour(150, 60, 0));
@@ -589,7 +586,7 @@ fn around(corners: &[Point; 3]) -> Rect {
 }
 
 /// A triangle with its rise beside and a 1 along its run.
-fn slope<B: DrawingBackend>(canvas: &mut Canvas<B>, area: Rect, order: f64, corners: [Point; 3]) {
+fn slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) {
     let [a, b, c] = corners.map(|p| shift(p, area));
     for (p, q) in [(a, b), (b, c), (c, a)] {
         if let Some((p, q)) = area.clip(p, q) {

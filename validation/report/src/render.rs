@@ -1,18 +1,17 @@
 //! From a figure to an SVG text or a PNG file.
 
-use super::canvas::{Canvas, Kind, Rect, Type};
+use super::canvas::{Canvas, Raster, Rect, Type};
 use super::colour::Colour;
 use super::figure::{Align, Figure, Panel};
-use super::font;
 use super::frame::{Margins, fit};
+use super::legend::{self, Entry};
 use super::maps::{Categories, Particles};
 use super::plot;
+use super::svg::{self, Svg};
 use base::files;
-use plotters::prelude::{BitMapBackend, DrawingBackend, SVGBackend};
+use plotters::prelude::BitMapBackend;
 use std::{fs::File, io, path::Path};
 
-/// Whole pixels of the SVG's drawing per CSS pixel: coordinates are thirds of a pixel.
-const FINE: f64 = 3.0;
 /// Drawn pixels per pixel of a PNG.
 const SUPERSAMPLE: u32 = 3;
 /// Pixels of a PNG per CSS pixel.
@@ -45,6 +44,22 @@ impl<'a> Prepared<'a> {
         }
     }
 
+    fn legend(&self) -> &[Entry] {
+        match self {
+            Self::Plot(p) => p.legend(),
+            Self::Particles(_) => &[],
+            Self::Categories(p) => p.legend(),
+        }
+    }
+
+    fn hide_legend(&mut self) {
+        match self {
+            Self::Plot(p) => p.hide_legend(),
+            Self::Particles(_) => {}
+            Self::Categories(p) => p.hide_legend(),
+        }
+    }
+
     fn margins(&self) -> Margins {
         match self {
             Self::Plot(p) => p.margins(),
@@ -53,7 +68,7 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    fn draw<B: DrawingBackend>(&self, canvas: &mut Canvas<B>, area: Rect) {
+    fn draw(&self, canvas: &mut Canvas, area: Rect) {
         match self {
             Self::Plot(p) => p.draw(canvas, area),
             Self::Particles(p) => p.draw(canvas, area),
@@ -65,14 +80,48 @@ impl<'a> Prepared<'a> {
 /// Panels with their places, and the size of the whole.
 struct Layout<'a> {
     panels: Vec<(Prepared<'a>, Rect)>,
+    /// The legend below all panels; empty where each has its own.
+    legend: Vec<Entry>,
+    /// What the colour bar right of all panels stands beside, if they have one for all.
+    bar: Option<Rect>,
     size: (f64, f64),
+}
+
+/// The one legend of several panels: that of one of them, which says what all others say.
+fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
+    let legends = || panels.iter().map(Prepared::legend).filter(|legend| !legend.is_empty());
+    let says = |all: &[Entry], entry: &Entry| {
+        all.iter().any(|other| other.name == entry.name && other.colour() == entry.colour())
+    };
+    let says_all = |all: &&[Entry]| legends().flatten().all(|entry| says(all, entry));
+    let longest = legends().filter(|_| legends().count() > 1).find(says_all);
+    longest.map_or(Vec::new(), <[Entry]>::to_vec)
+}
+
+/// Hides the colour bars of maps that all have the same one; its width.
+fn share_bar(panels: &mut [Prepared]) -> Option<f64> {
+    let maps: Option<Vec<&mut Particles>> = panels
+        .iter_mut()
+        .map(|panel| if let Prepared::Particles(map) = panel { Some(map) } else { None })
+        .collect();
+    let mut maps = maps.filter(|maps| maps.len() > 1)?;
+    if !maps.iter().all(|map| map.shares_bar_with(maps[0])) {
+        return None;
+    }
+    maps.iter_mut().for_each(|map| map.hide_bar());
+    Some(maps[0].bar_width())
 }
 
 /// Aligns the axes of all panels in a row and in a column.
 fn layout(figure: &Figure) -> Layout<'_> {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let room = (figure.panel_size.0.max(80.0), figure.panel_size.1.max(60.0));
-    let panels: Vec<_> = figure.panels.iter().map(|p| Prepared::new(p, room)).collect();
+    let mut panels: Vec<_> = figure.panels.iter().map(|p| Prepared::new(p, room)).collect();
+    let legend = shared_legend(&panels);
+    if !legend.is_empty() {
+        panels.iter_mut().for_each(Prepared::hide_legend);
+    }
+    let bar_width = share_bar(&mut panels);
     let margins: Vec<_> = panels.iter().map(Prepared::margins).collect();
     let sizes: Vec<_> = panels.iter().map(Prepared::size).collect();
     let rows = panels.len().div_ceil(columns);
@@ -107,8 +156,14 @@ fn layout(figure: &Figure) -> Layout<'_> {
             height: sizes[i].1,
         })
         .collect();
-    let size = (right.max(120.0).ceil(), bottom.max(60.0).ceil());
-    Layout { panels: panels.into_iter().zip(rects).collect(), size }
+    let bar = bar_width.and_then(|_| {
+        let (first, last) = (rects.first()?, rects.last()?);
+        let height = last.bottom() - first.top;
+        Some(Rect { left: 0.0, top: first.top, width: right - EDGE - 10.0, height })
+    });
+    let width = (right + bar_width.unwrap_or(0.0)).max(120.0).ceil();
+    let height = (bottom + legend::height_within(&legend, width)).max(60.0).ceil();
+    Layout { panels: panels.into_iter().zip(rects).collect(), legend, bar, size: (width, height) }
 }
 
 /// Where the inner part of each slot starts, and where all end.
@@ -123,7 +178,7 @@ fn starts(slots: impl Iterator<Item = [f64; 3]>, first: f64) -> (Vec<f64>, f64) 
     (starts, at + EDGE)
 }
 
-fn draw<B: DrawingBackend>(canvas: &mut Canvas<B>, figure: &Figure, layout: &Layout) {
+fn draw(canvas: &mut Canvas, figure: &Figure, layout: &Layout) {
     let (width, height) = layout.size;
     canvas.fill(Rect { left: 0.0, top: 0.0, width, height }, Colour::WHITE);
     let em = fit(&figure.title, TITLE_EM, width - 4.0 * EDGE);
@@ -131,86 +186,21 @@ fn draw<B: DrawingBackend>(canvas: &mut Canvas<B>, figure: &Figure, layout: &Lay
     for (panel, area) in &layout.panels {
         panel.draw(canvas, *area);
     }
+    let below = height - legend::height_within(&layout.legend, width) - EDGE;
+    legend::draw_within(canvas, &layout.legend, (EDGE, below), width);
+    if let (Some(beside), Some((Prepared::Particles(map), _))) = (layout.bar, layout.panels.first())
+    {
+        map.bar(canvas, beside);
+    }
 }
 
 /// The figure as an SVG element of its natural size that shrinks with its container.
-///
-/// # Panics
-/// Never for any data; only if plotters cannot write into a string.
 pub fn svg(figure: &Figure) -> String {
     let layout = layout(figure);
-    let (width, height) = layout.size;
-    let fine = ((FINE * width) as u32, (FINE * height) as u32);
-    let mut text = String::new();
-    let mut canvas = Canvas::new(SVGBackend::with_string(&mut text, fine), FINE, Kind::Vector);
+    let mut canvas = Canvas::Vector(Svg::default());
     draw(&mut canvas, figure, &layout);
-    canvas.finish().expect("drawing into a string does not fail");
     let name = if figure.title.is_empty() { &figure.id } else { &figure.title };
-    let head = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" \
-         width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {} {}\" \
-         font-family=\"{}\" stroke-linejoin=\"round\">\n",
-        super::inline::escape(name),
-        fine.0,
-        fine.1,
-        font::FAMILY
-    );
-    head + &compact(&text)
-}
-
-/// The elements of the SVG without what says nothing; the opening tag is left out.
-fn compact(text: &str) -> String {
-    let family = format!(" font-family=\"{}\"", font::FAMILY);
-    let body = text.split_once('\n').map_or("", |(_, body)| body);
-    let elements = body
-        .replace(&family, "")
-        .replace(" opacity=\"1\"", "")
-        .replace(" stroke=\"none\" stroke-width=\"1\"", "")
-        .replace(" stroke=\"none\"", "")
-        .replace(" \"/>", "\"/>")
-        .replace(">\n</text>", "></text>")
-        .replace("\n</text>", "</text>")
-        .lines()
-        .fold(String::new(), |mut out, line| {
-            out.push_str(line);
-            // A text's content starts on a line of its own: join them.
-            if !(line.starts_with("<text") && line.ends_with('>') && !line.contains("</text>")) {
-                out.push('\n');
-            }
-            out
-        });
-    joined(&elements)
-}
-
-/// Successive strokes of one style, as those of an axis or of error bars, are one path.
-fn joined(elements: &str) -> String {
-    let (mut out, mut style) = (String::new(), None);
-    let end = |style: &mut Option<&str>, out: &mut String| {
-        if style.take().is_some() {
-            out.push_str("\"/>\n");
-        }
-    };
-    for line in elements.lines() {
-        let stroke = line.strip_prefix("<polyline").and_then(|line| line.strip_suffix("\"/>"));
-        match stroke.and_then(|stroke| stroke.split_once(" points=\"")) {
-            Some((of, points)) => {
-                if style != Some(of) {
-                    end(&mut style, &mut out);
-                    out.push_str(&format!("<path{of} d=\""));
-                    style = Some(of);
-                }
-                out.push('M');
-                out.push_str(points);
-            }
-            None => {
-                end(&mut style, &mut out);
-                out.push_str(line);
-                out.push('\n');
-            }
-        }
-    }
-    end(&mut style, &mut out);
-    out
+    svg::opening(name, layout.size) + &canvas.finish().unwrap_or_default() + "</svg>\n"
 }
 
 /// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
@@ -222,7 +212,7 @@ pub(super) fn pixels(figure: &Figure, density: u32) -> Result<(Vec<u8>, u32, u32
     let (fine_width, fine_height) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
     let mut fine = vec![255; (fine_width * fine_height * 3) as usize];
     let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
-    let mut canvas = Canvas::new(backend, f64::from(scale), Kind::Raster);
+    let mut canvas = Canvas::Raster(Raster::new(backend, f64::from(scale)));
     draw(&mut canvas, figure, &layout);
     canvas.finish()?;
     Ok((downsample(&fine, width as usize, height as usize), width, height))
@@ -265,17 +255,6 @@ pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn strokes_of_one_style_are_one_path() {
-        let elements = "<polyline stroke=\"red\" points=\"1,2 3,4\"/>\n\
-                        <polyline stroke=\"red\" points=\"5,6 7,8\"/>\n<rect/>\n\
-                        <polyline stroke=\"red\" points=\"0,0 1,1\"/>\n\
-                        <polyline stroke=\"blue\" points=\"9,9 8,8\"/>\n";
-        let paths = "<path stroke=\"red\" d=\"M1,2 3,4M5,6 7,8\"/>\n<rect/>\n\
-                     <path stroke=\"red\" d=\"M0,0 1,1\"/>\n<path stroke=\"blue\" d=\"M9,9 8,8\"/>\n";
-        assert_eq!(joined(elements), paths);
-    }
 
     use crate::{Axis, CategoryMap, ColourMap, Layer, Legend, ParticleMap, Plot, Series, Shape};
 
