@@ -150,8 +150,10 @@ pub struct OrderGate {
 /// A result of another code.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Peer {
-    /// Code, scheme and resolution.
+    /// Code and scheme.
     pub name: String,
+    /// The resolution in words, such as `20 rows`.
+    pub label: String,
     /// Processor seconds \[s\].
     pub seconds: f64,
     /// Spacing, in the unit of [`Accuracy::spacing`].

@@ -7,8 +7,8 @@ use super::colour::Colour;
 use super::figure::{Align, Dash, Shape};
 use super::{font, svg::Svg};
 use plotters::prelude::{BitMapBackend, DrawingBackend, RGBColor, TextStyle};
+use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontTransform};
 
 /// A point in CSS pixels, y downwards.
 pub(super) type Point = (f64, f64);

@@ -334,6 +334,8 @@ pub struct Series {
     pub y_bars: Vec<(f64, f64)>,
     /// (lower, upper) end of the bar in x for each point; empty for none.
     pub x_bars: Vec<(f64, f64)>,
+    /// A short text beside each point, left out where there is no room; empty for none.
+    pub labels: Vec<String>,
 }
 
 impl Series {
@@ -351,6 +353,7 @@ impl Series {
             size: 6.5,
             y_bars: Vec::new(),
             x_bars: Vec::new(),
+            labels: Vec::new(),
         }
     }
 
@@ -410,6 +413,11 @@ impl Series {
     /// Bars in x, (lower, upper) for each point.
     pub fn x_bars(self, x_bars: Vec<(f64, f64)>) -> Self {
         Self { x_bars, ..self }
+    }
+
+    /// A short text beside each point.
+    pub fn labels(self, labels: impl IntoIterator<Item = String>) -> Self {
+        Self { labels: labels.into_iter().collect(), ..self }
     }
 }
 

@@ -149,7 +149,7 @@ impl<'a> Particles<'a> {
             );
         }
         canvas.frame(bar, Colour::BLACK, 1.0);
-        for (v, label) in &self.value_ticks.major {
+        for (v, _) in &self.value_ticks.major {
             let Some(t) = self.values.unit(*v) else { continue };
             let y = bar.bottom() - t * bar.height;
             canvas.line((bar.right(), y), (bar.right() + 4.0, y), Colour::BLACK, 1.0);

@@ -16,6 +16,9 @@ use super::ticks::{Ticks, minus, with_exponent};
 const NOTE_EM: f64 = 9.5;
 const RULE_EM: f64 = 10.5;
 const STRIP_ROW: f64 = 15.0;
+const MARK_EM: f64 = 9.0;
+/// How many points of lines, which lie a few pixels apart, the label of a point may hide.
+const MARK_HIDES: usize = 2;
 
 /// A plot with everything decided that the page around it must know.
 pub(super) struct Prepared<'a> {
@@ -30,9 +33,17 @@ pub(super) struct Prepared<'a> {
     strip: f64,
     slopes: Vec<Option<[Point; 3]>>,
     rules: Vec<Option<(Rect, Align)>>,
+    marks: Vec<Mark>,
     entries: Vec<Entry>,
     legend: Legend,
     note: String,
+}
+
+/// The label of a point, which starts in the middle of the left side of its room.
+struct Mark {
+    text: String,
+    room: Rect,
+    colour: Colour,
 }
 
 /// A failed run in the strip at the upper edge.
@@ -62,6 +73,7 @@ impl<'a> Prepared<'a> {
             strip: 0.0,
             slopes: Vec::new(),
             rules: Vec::new(),
+            marks: Vec::new(),
             legend: plot.legend,
             note: String::new(),
         };
@@ -73,6 +85,7 @@ impl<'a> Prepared<'a> {
         }
         this.place_slopes(&mut obstacles);
         this.place_rules(&mut obstacles);
+        this.place_marks(&mut obstacles);
         if this.entries.is_empty() {
             this.legend = Legend::Hidden;
         } else if this.legend == Legend::Auto {
@@ -147,6 +160,11 @@ impl<'a> Prepared<'a> {
                 _ => {}
             }
         }
+        for mark in &self.marks {
+            let room = shift_rect(mark.room, area);
+            let at = (room.left, room.top + 0.5 * room.height);
+            canvas.text(&mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
+        }
         self.failures(canvas, area);
         canvas.frame(area, Colour::BLACK, 1.0);
         if self.legend != Legend::Hidden {
@@ -179,12 +197,12 @@ impl<'a> Prepared<'a> {
             runs.retain(|r| (-1e-9..=1.0 + 1e-9).contains(&r.0));
             runs.sort_by(|a, b| a.0.total_cmp(&b.0));
             for (unit, reason) in runs {
-                let (x, width) =
-                    (unit * self.size.0, font::width(reason, NOTE_EM).min(0.8 * self.size.0));
-                let align = if x + width + 12.0 < self.size.0 { Align::Start } else { Align::End };
+                let (x, width) = (unit * self.size.0, font::width(reason, NOTE_EM));
+                let [before, after] = [x - 12.0, self.size.0 - x - 12.0];
+                let align = if width < after || after > before { Align::Start } else { Align::End };
                 let (from, to) = match align {
-                    Align::Start => (x - 8.0, x + 10.0 + width),
-                    _ => (x - 10.0 - width, x + 8.0),
+                    Align::Start => (x - 8.0, x + 10.0 + width.min(after)),
+                    _ => (x - 10.0 - width.min(before), x + 8.0),
                 };
                 let row = ends.iter().position(|&end| end < from).unwrap_or(ends.len());
                 match ends.get_mut(row) {
@@ -279,6 +297,51 @@ impl<'a> Prepared<'a> {
             }
             self.rules.push(best);
         }
+    }
+
+    /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
+    fn place_marks(&mut self, obstacles: &mut Vec<Point>) {
+        let labelled: Vec<(&Series, Look)> = (self.plot.layers.iter().zip(&self.looks))
+            .filter_map(|(layer, look)| match layer {
+                Layer::Series(series) => Some((series, (*look)?)),
+                _ => None,
+            })
+            .collect();
+        let markers: Vec<Point> = (labelled.iter().filter(|(series, _)| series.marked))
+            .flat_map(|(series, _)| series.points.iter().filter_map(|p| self.place(*p)))
+            .collect();
+        let last = |series: &Series| series.labels.len().saturating_sub(1);
+        let points = labelled.iter().flat_map(|(series, look)| {
+            let all = series.points.iter().zip(&series.labels).enumerate();
+            all.map(move |(k, (p, text))| ((k != last(series)), k != 0, *p, text, look.colour))
+        });
+        let mut points: Vec<_> = points.collect();
+        points.sort_by_key(|(is_not_last, is_not_first, ..)| *is_not_last && *is_not_first);
+        let mut found: Vec<(Point, Mark)> = Vec::new();
+        for (_, _, point, text, colour) in points {
+            let Some(at) = self.place(point) else { continue };
+            let is_same = |(other, mark): &(Point, Mark)| {
+                mark.text == *text && (other.0 - at.0).hypot(other.1 - at.1) < 6.0
+            };
+            if found.iter().any(is_same) {
+                continue;
+            }
+            let hidden = |room: &Rect| {
+                let area = self.data_area();
+                let inside = area.contains((room.left, room.top))
+                    && area.contains((room.right(), room.bottom()));
+                let hides = markers.iter().any(|p| room.grown(3.5).contains(*p));
+                let lines = obstacles.iter().filter(|&&p| room.contains(p)).count();
+                (inside && !hides && lines <= MARK_HIDES).then_some(lines)
+            };
+            let rooms = mark_rooms(at, font::width(text, MARK_EM)).into_iter();
+            let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
+            if let Some((_, room)) = free.min_by_key(|(lines, _)| *lines) {
+                sample_rect(obstacles, room);
+                found.push((at, Mark { text: text.clone(), room, colour }));
+            }
+        }
+        self.marks = found.into_iter().map(|(_, mark)| mark).collect();
     }
 
     /// The ends of a line across the plot.
@@ -478,7 +541,8 @@ impl<'a> Prepared<'a> {
             let at = (area.left + f.x, area.top + 2.0 + (f.row as f64 + 0.5) * STRIP_ROW);
             canvas.markers(&[at], Shape::Cross, 8.5, Colour::VERMILLION, false);
             let side = if f.align == Align::Start { 8.0 } else { -8.0 };
-            let em = fit(&f.reason, NOTE_EM, 0.8 * area.width);
+            let room = if f.align == Align::Start { area.width - f.x } else { f.x };
+            let em = fit(&f.reason, NOTE_EM, room - 12.0);
             let how = Type::new(em, f.align).colour(Colour(150, 60, 0));
             canvas.text(&f.reason, (at.0 + side, at.1), how);
         }
@@ -565,6 +629,8 @@ fn looks(layers: &[Layer]) -> Vec<Option<Look>> {
 fn entries(layers: &[Layer], looks: &[Option<Look>]) -> Vec<Entry> {
     let entry = |(layer, look): (&Layer, &Option<Look>)| {
         let (name, sample) = match layer {
+            // A run without a point would have a symbol in the legend and none in the plot.
+            Layer::Series(s) if s.points.is_empty() => return None,
             Layer::Series(s) => (&s.name, Sample::Series((*look)?)),
             Layer::Band { name, colour, .. } | Layer::Span { name, colour, .. } => {
                 (name, Sample::Patch(colour.tint(BAND)))
@@ -599,6 +665,24 @@ fn slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) {
     canvas.text(&number, (b.0 + side, 0.5 * (b.1 + c.1)), how(align));
     let below = if c.1 < b.1 { 8.5 } else { -8.5 };
     canvas.text("1", (0.5 * (a.0 + b.0), b.1 + below), how(Align::Middle));
+}
+
+/// Places for the label of a point: right, left, above, below, and between.
+fn mark_rooms((x, y): Point, width: f64) -> [Rect; 8] {
+    let (side, off) = (6.0, 5.0);
+    let [right, left, middle] = [x + side, x - side - width, x - 0.5 * width];
+    let [above, centred, below] = [y - off - MARK_EM, y - 0.5 * MARK_EM, y + off];
+    [
+        (right, centred),
+        (middle, above),
+        (middle, below),
+        (left, centred),
+        (right, above),
+        (right, below),
+        (left, above),
+        (left, below),
+    ]
+    .map(|(left, top)| Rect { left, top, width, height: MARK_EM })
 }
 
 /// Places for the label of a rule: both ends, both sides.

@@ -89,14 +89,28 @@ fn logarithmic(lo: f64, hi: f64, count: usize) -> Ticks {
         };
         (major, minor)
     } else {
-        let choices: [&'static [u8]; 4] = [all, &[1, 2, 3, 5], &[1, 2, 5], &[1]];
-        let fits = |of: &&&'static [u8]| multiples(of).filter(inside).count() <= count.max(2);
-        let labelled = choices.iter().find(fits).unwrap_or(&choices[2]);
-        let major: Vec<f64> = multiples(labelled).filter(inside).collect();
+        let choices: [&'static [u8]; 5] = [all, &[1, 2, 3, 5], &[1, 2, 5], &[1, 3], &[1]];
+        let mut choices: Vec<Vec<f64>> =
+            choices.iter().map(|of| multiples(of).filter(inside).collect()).collect();
+        if hi / lo < 10.0 {
+            let even = |count| linear(lo, hi, count).major.iter().map(|tick| tick.0).collect();
+            choices.extend((2..=count).rev().map(even));
+        }
+        let fits = |of: &&Vec<f64>| of.len() <= count.max(2);
+        let fitting = || choices.iter().filter(fits);
+        let best = fitting().find(|of| is_spread(of, lo, hi)).or_else(|| fitting().next());
+        let major = best.unwrap_or(&choices[2]).clone();
         let minor = multiples(all).filter(inside).filter(|v| !major.contains(v)).collect();
         (with_labels(major), minor)
     };
     Ticks { major, minor, exponent: 0 }
+}
+
+/// Are these at least three, and is no more than 0.45 of a logarithmic axis without one?
+fn is_spread(values: &[f64], lo: f64, hi: f64) -> bool {
+    let ends: Vec<f64> = [lo].iter().chain(values).chain(&[hi]).copied().collect();
+    let gap = |pair: &[f64]| (pair[1] / pair[0]).ln() / (hi / lo).ln();
+    values.len() >= 3 && ends.windows(2).all(|pair| gap(pair) < 0.45)
 }
 
 /// `10⁻³`.
@@ -204,6 +218,20 @@ mod tests {
             labels(&logarithmic(1.5e-5, 6e-5, 6)),
             ["2·10⁻⁵", "3·10⁻⁵", "4·10⁻⁵", "5·10⁻⁵", "6·10⁻⁵"]
         );
+    }
+
+    /// Axes from 0.65 to 1.95 and from 2 to 200 had no label in their upper half, and two.
+    #[test]
+    fn every_log_axis_has_three_labels_or_more() {
+        assert_eq!(labels(&logarithmic(0.65, 1.95, 6)), ["0.8", "1", "1.2", "1.4", "1.6", "1.8"]);
+        assert_eq!(labels(&logarithmic(2.0, 200.0, 6)), ["3", "10", "30", "100"]);
+        for decades in [0.05, 0.2, 0.5, 1.0, 1.5, 2.0, 2.5, 4.0, 9.0] {
+            for start in [1.0, 1.7, 3.2, 6.4, 9.9] {
+                let hi = start * 10f64.powf(decades);
+                let t = logarithmic(start, hi, 6);
+                assert!((3..=8).contains(&t.major.len()), "{start} {hi} {:?}", labels(&t));
+            }
+        }
     }
 
     #[test]

@@ -192,11 +192,14 @@ fn peers(flow: Flow, re: f64) -> Vec<Peer> {
         let (seconds, errors) = (table.optional("seconds")?, table.optional(column)?);
         let peer = |k: usize| {
             Some(Peer {
-                name: format!("{}, {}, {} rows", codes[k], schemes[k], rows[k]?),
+                name: format!("{}, {}", codes[k], schemes[k]),
+                label: format!("{} rows", rows[k]?),
                 seconds: seconds[k]?,
                 spacing: 1.0 / rows[k]?,
                 error: errors[k]? / 100.0,
-                timed: format!("2025–26, wall time, one thread, another machine of this class{at}"),
+                timed: format!(
+                    "wall time on one thread of another machine of this class, 2025–26{at}"
+                ),
             })
         };
         let is_like = |k: &usize| cases[*k] == flow.name() && reynolds[*k] == Some(re);

@@ -98,7 +98,8 @@ fn peers() -> Result<Vec<Peer>, ReferenceError> {
     let peer = |k: usize| {
         let side = sides[k];
         Some(Peer {
-            name: format!("{}, {}, {side} x {side}", codes[k], schemes[k]),
+            name: format!("{}, {}", codes[k], schemes[k]),
+            label: format!("{side} x {side}"),
             seconds: seconds[k]?,
             spacing: 1.0 / side,
             error: errors[k] / 100.0,

@@ -2,9 +2,7 @@
 //! made alone, and in pair interactions, which do not depend on the machine or on other programs.
 
 use base::record::{Status, median};
-use report::{
-    Axis, Cell, Colour, Column, Dash, Figure, Layer, Legend, Plot, Series, Shape, Table, seconds,
-};
+use report::{Axis, Cell, Colour, Column, Figure, Layer, Plot, Series, Shape, Table, seconds, sig};
 
 use crate::{
     columns::Columns,
@@ -30,7 +28,7 @@ pub struct Point {
     pub pairs: f64,
     /// Time steps.
     pub steps: u64,
-    /// Why there is no error, of a run that failed.
+    /// Ladder and resolution of a run that failed, which has no error.
     pub failure: Option<String>,
 }
 
@@ -65,7 +63,7 @@ pub fn points<'a>(
             let error = accuracy.error.value(record, runs);
             let name = format!("{}{}", ladder.variant, ladder.note);
             let has_failed = record.status != Status::Completed;
-            let failure = has_failed.then(|| format!("{name}, {}: {}", level.label, record.status));
+            let failure = has_failed.then(|| format!("{name}, {}", level.label));
             if error.is_none() && failure.is_none() {
                 continue; // the run that the others are compared with
             }
@@ -86,10 +84,13 @@ pub fn points<'a>(
     points
 }
 
-/// Points that no other point beats in both error and seconds, cheapest first.
-pub fn pareto(points: &[Point]) -> Vec<&Point> {
+/// What a run costs.
+type Cost = fn(&Point) -> f64;
+
+/// Points that no other point beats in both error and cost, cheapest first.
+fn pareto(points: &[Point], cost: Cost) -> Vec<&Point> {
     let mut sorted: Vec<&Point> = points.iter().filter(|p| p.error.is_finite()).collect();
-    sorted.sort_by(|a, b| a.median().total_cmp(&b.median()));
+    sorted.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     let mut front: Vec<&Point> = Vec::new();
     for point in sorted {
         if front.last().is_none_or(|best| point.error < best.error) {
@@ -129,44 +130,78 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
 }
 
 fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
-    let others = match accuracy.peers.first() {
-        Some(peer) => format!(" Grey: other codes ({}).", peer.timed),
-        None => String::new(),
-    };
+    let resolution = points.first().map_or(String::new(), |point| {
+        format!(
+            "a number at a point is its resolution ({} for {})",
+            short(&point.label),
+            point.label
+        )
+    });
+    let growth = work_growth(points);
+    let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
+    let triangle = slope.and(accuracy.slope).map_or(String::new(), |order| {
+        format!(
+            "; the triangle has the slope of order {order}, for work that grows as the spacing to the power \
+             −{}",
+            sig(growth, 2)
+        )
+    });
+    let others = accuracy.peers.first().map_or(String::new(), |peer| {
+        format!(" Grey: other codes, as stored with the references ({}).", peer.timed)
+    });
     let caption = format!(
-        "{} against the cost of the whole run. {} Left: processor seconds of the stepping, one run at a time \
-         on one thread, the median of its repetitions, with bars from the fastest to the slowest.{others} \
-         Right: pair interactions.",
-        accuracy.label, accuracy.about
+        "{} against processor seconds of the time stepping (left: one run at a time on one thread, median \
+         of its repetitions, bars from the fastest to the slowest) and against pair interactions (right). \
+         The pale band joins the points that none beats in both error and cost, and {resolution}\
+         {triangle}.{others}",
+        accuracy.label.trim_end_matches(" [-]"),
     );
-    let label = accuracy.label.as_str();
-    let median = |p: &Point| p.median();
-    let mut clock =
-        panel("Error against run time", "stepping, one core [s]", label, points, median);
-    clock.layers.splice(0..0, peer_layers(&accuracy.peers));
-    let front = pareto(points).iter().map(|p| (p.median(), p.error)).collect();
-    let line = Series::line("Pareto front", front).colour(Colour::GREY).dash(Dash::DashDot);
-    clock = clock.layer(line).legend(Legend::Outside);
+    let clock = panel(
+        "Error against run time",
+        "run time on one core [s]",
+        accuracy,
+        points,
+        Point::median,
+    );
+    let peers = peer_layers(&accuracy.peers);
+    let clock = peers.into_iter().fold(clock, Plot::layer);
     let pairs = |p: &Point| p.pairs;
-    let counted = panel("Error against work", "pair interactions [1]", label, points, pairs);
-    Figure::new(id, caption).panel(clock).panel(counted.legend(Legend::Hidden)).columns(2)
+    let counted = panel("Error against work", "pair interactions [-]", accuracy, points, pairs);
+    let with_slope = |plot: Plot| match slope {
+        Some(order) => plot.layer(Layer::Slope { order, anchor: None, factor: 5.0 }),
+        None => plot,
+    };
+    Figure::new(id, caption).panel(with_slope(clock)).panel(with_slope(counted)).columns(2)
 }
 
-fn panel(
-    title: &str,
-    cost_label: &str,
-    error_label: &str,
-    points: &[Point],
-    cost: impl Fn(&Point) -> f64,
-) -> Plot {
-    let mut plot = Plot::new(title, Axis::log(cost_label), Axis::log(error_label));
-    let mut ladders: Vec<&str> = points.iter().map(|p| p.ladder.as_str()).collect();
-    ladders.dedup();
-    for (k, ladder) in ladders.into_iter().enumerate() {
-        let own: Vec<&Point> =
-            points.iter().filter(|p| p.ladder == ladder && p.error.is_finite()).collect();
+/// The power of 1/spacing with which pair interactions grow: the median over the ladders.
+fn work_growth(points: &[Point]) -> f64 {
+    let growth = |ladder: &[Point]| {
+        let (first, last) = (ladder.first()?, ladder.last()?);
+        let growth = (last.pairs / first.pairs).ln() / (first.spacing / last.spacing).ln();
+        growth.is_finite().then_some(growth)
+    };
+    let ladders = points.chunk_by(|a, b| a.ladder == b.ladder);
+    let mut all: Vec<f64> = ladders.filter_map(growth).collect();
+    all.sort_by(f64::total_cmp);
+    median(&all).unwrap_or(f64::NAN)
+}
+
+/// The first number of a resolution in words.
+fn short(label: &str) -> String {
+    let is_number = |word: &&str| word.starts_with(|c: char| c.is_ascii_digit());
+    label.split_whitespace().find(is_number).unwrap_or(label).into()
+}
+
+fn panel(title: &str, cost_label: &str, of: &Accuracy, points: &[Point], cost: Cost) -> Plot {
+    let mut plot = Plot::new(title, Axis::log(cost_label), Axis::log(of.label.as_str()));
+    let front = pareto(points, cost).iter().map(|p| (cost(p), p.error)).collect();
+    plot = plot.layer(Series::line("Pareto front", front).colour(PALE).width(7.0));
+    for (k, ladder) in points.chunk_by(|a, b| a.ladder == b.ladder).enumerate() {
+        let own: Vec<&Point> = ladder.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let mut series = Series::line_markers(ladder, line).cycle(k);
+        let mut series = Series::line_markers(&ladder[0].ladder, line).cycle(k);
+        series = series.labels(own.iter().map(|p| short(&p.label)));
         if title.contains("time") {
             series = series.x_bars(own.iter().map(|p| p.spread()).collect());
         }
@@ -177,13 +212,18 @@ fn panel(
     if failed.is_empty() { plot } else { plot.layer(Layer::Failed(failed)) }
 }
 
-/// One series a code, so that each is named and has a symbol of its own.
+/// Behind everything else.
+const PALE: Colour = Colour(222, 222, 222);
+
+/// One series a code and scheme, so that each is named and has a symbol of its own.
 fn peer_layers(peers: &[Peer]) -> Vec<Layer> {
-    let layer = |(k, peer): (usize, &Peer)| {
-        let point = vec![(peer.seconds, peer.error)];
-        Series::markers(&peer.name, point).colour(Colour::GREY).shape(Shape::cycle(k)).into()
+    let layer = |(k, of): (usize, &[Peer])| {
+        let points = of.iter().map(|peer| (peer.seconds, peer.error)).collect();
+        let series = Series::line_markers(&of[0].name, points).width(0.6).colour(Colour::GREY);
+        let series = series.shape(Shape::cycle(k)).labels(of.iter().map(|peer| short(&peer.label)));
+        if k % 2 == 0 { series.into() } else { series.open().into() }
     };
-    peers.iter().enumerate().map(layer).collect()
+    peers.chunk_by(|a, b| a.name == b.name).enumerate().map(layer).collect()
 }
 
 const CHEAPEST: &str = "Cheapest setting that reaches an error. At a single level errors of time and \
@@ -226,7 +266,7 @@ fn peer_table<'a>(peers: &'a [Peer], points: &'a [Point]) -> Table {
         ours.map_or_else(dash, |p| Cell::num(peer.seconds / p.median(), 2))
     };
     Columns::<Row>::default()
-        .text("code", |(peer, ..)| &peer.name)
+        .text("code", |(peer, ..)| format!("{}, {}", peer.name, peer.label))
         .num(["its error", "-"], |(peer, ..)| Cell::percent(peer.error, 2))
         .num(["its time", "s"], |(peer, ..)| Cell::seconds(peer.seconds))
         .text("timed", |(peer, ..)| &peer.timed)
@@ -265,12 +305,25 @@ mod tests {
             point("slow and bad", 2e-2, &[1.5]),
             point("failed", f64::NAN, &[0.01]),
         ];
-        let names: Vec<_> = pareto(&points).iter().map(|p| p.ladder.as_str()).collect();
+        let names: Vec<_> =
+            pareto(&points, Point::median).iter().map(|p| p.ladder.as_str()).collect();
         assert_eq!(names, ["fast and bad", "slow and good"]);
         assert_eq!(points[0].median(), 2.0);
         assert_eq!(points[0].spread(), (1.0, 3.0));
         assert_eq!(cheapest(&points, 1e-2).map(|p| p.ladder.as_str()), Some("fast and bad"));
         assert!(cheapest(&points, 1e-5).is_none());
+    }
+
+    #[test]
+    fn work_is_seen_to_grow_as_it_does() {
+        let at =
+            |n: f64| Point { spacing: 1.0 / n, pairs: n.powi(3), ..point("cubic", 0.1, &[1.0]) };
+        assert!((work_growth(&[at(10.0), at(15.0), at(20.0)]) - 3.0).abs() < 1e-12);
+        assert!(work_growth(&[]).is_nan() && work_growth(&[at(10.0)]).is_nan());
+        assert_eq!(
+            ["20 rows", "H/dx = 10", "50 x 50", "fine"].map(short),
+            ["20", "10", "50", "fine"]
+        );
     }
 
     #[test]
