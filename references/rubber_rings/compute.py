@@ -20,6 +20,7 @@ SHARED = 16  # the mesh on which the half step and the rigid contact run
 SEEDS, SEEDED = (1, 2, 3, 4, 5), 8  # runs from disturbed starts, on the mesh of so many elements
 TOO_FAST = 0.12
 APART = 5.0  # contacts closer in time than this belong to one phase
+PICTURED = (32.0, 60.0, 80.0, 120.0, 200.0)  # times of the outlines
 LAW_MESHES = {"neo_hookean": 16, "saint_venant": 16, "jaumann": 16}  # compared with hencky on the same
 
 
@@ -233,6 +234,18 @@ def law_rows(folder):
                 yield [speed, law, mesh, name, "c0" if key == "v_c" else "L", "", number(greatest, 3)]
 
 
+def outline_rows(folder):
+    """Both faces of half of the ring, every fourth node, at the times of the report's pictures."""
+    speed, law = SPEEDS[0], "jaumann"
+    mesh = MESHES[law][-1]
+    run = dict(np.load(folder / file(law, speed, mesh)))
+    for t in PICTURED:
+        sample = int(round(t / ring.SAMPLE))
+        for face in ("outer", "inner"):
+            for x, y in run[face][sample].T[::4]:
+                yield [speed, law, mesh, fixed(t, 1), face, fixed(x, 4), fixed(y, 4)]
+
+
 def finer_rows(folder, row):
     """The finer run, with softer springs and a longer step, against the one that the tables hold."""
     speed, law = FINER["speed"], FINER["law"]
@@ -299,5 +312,5 @@ if __name__ == "__main__":
     package.write(Path(__file__).parent, {
         "series": series_rows(every_family), "summary": summary_rows(every_family),
         "phases": phase_rows(every_family), "laws": law_rows(options.runs),
-        "checks": check_rows(options.runs),
+        "outlines": outline_rows(options.runs), "checks": check_rows(options.runs),
     })

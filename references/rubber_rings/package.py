@@ -73,6 +73,14 @@ TABLES = {
         ("less_hencky", "number", "see column unit", "less that of hencky on the same mesh; for a "
          "_greatest_difference the greatest over time of the magnitude"),
     ],
+    "outlines": RUN + [
+        ("mesh", "integer", "-", "elements across the thickness"),
+        ("t", "number", TIME, "time"),
+        ("face", "string", "-", "outer or inner: the face of the ring that the point lies on"),
+        ("x", "number", "L", "distance of the point from the plane"),
+        ("y", "number", "L", "height of the point; rows go from the far pole at y = 0 to the near one, and the "
+         "other half of the ring is the mirror image"),
+    ],
     "checks": [
         ("check", "string", "-", "what is checked"),
         ("speed", "number", "c0", "initial speed, empty for a check without collision"),

@@ -299,4 +299,5 @@ def sample(ring, x, v):
         "hole_min": np.hypot(near[0][:, None] - far[0], near[1][:, None] - far[1]).min(),
         "hole_axis": x[0, 0, 0] - x[0, 0, -1], "pole": x[0, -1, -1],
         "j_min": j_min, "j_max": j_max, "log_strain": log_strain,
+        "outer": x[:, -1], "inner": x[:, 0],
     }

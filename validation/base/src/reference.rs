@@ -49,7 +49,7 @@ const EMBEDDED: &[Embedded] = embedded! {
         ["profiles.csv", "starts.csv", "wall.csv", "line.csv", "summary.csv", "checks.csv"],
     "periodic_hill_geometry": ["segments.csv"],
     "published_sph_errors": ["errors.csv"],
-    "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "checks.csv"],
+    "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "outlines.csv", "checks.csv"],
 };
 
 /// Why a reference was refused.

@@ -7,4 +7,5 @@
 
 pub mod cases;
 mod limitations;
+pub mod margins;
 pub mod page;

@@ -314,7 +314,7 @@ fn accuracy(tier: Tier) -> Accuracy {
         let levels = levels(tier).iter().map(|&n| level(variant, n));
         Ladder { order: Some(order), ..Ladder::new(variant, levels) }
     };
-    let label = "relative L2 error of the velocity around the axis [-]";
+    let label = "relative L2 error of the velocity [-]";
     Accuracy {
         about: "Steady flow from rest at t = 1 d^2/nu, Re = V d/nu = 0.5, outer radius twice the inner one."
             .into(),
@@ -328,9 +328,9 @@ fn accuracy(tier: Tier) -> Accuracy {
 fn profiles(tier: Tier) -> Curves {
     let finest = levels(tier).last().copied().unwrap_or_default();
     let caption = format!(
-        "Velocity around the axis over the radius at t = 1 d^2/nu, every seventeenth particle, {finest} \
-         spacings across the gap, on the exact line A r + B/r. Re = V d/nu = 0.5, outer radius twice the \
-         inner one."
+        "Velocity u around the axis between two cylinders, of which the inner one turns with speed V and \
+         the outer one, of twice its radius, rests: every seventeenth particle at t = d²/ν, {finest} \
+         spacings across the gap d, Re = V d/ν = 0.5. The line is the exact solution A r + B/r."
     );
     let points = |record: &Record| {
         let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));

@@ -440,8 +440,8 @@ pub struct ParticleMap {
     pub label: String,
     /// Diameter of a dot in units of x and y (the particle spacing, say); `None` guesses.
     pub diameter: Option<f64>,
-    /// Black lines over the dots, (x, y).
-    pub lines: Vec<Vec<(f64, f64)>>,
+    /// Lines over the dots.
+    pub lines: Vec<Series>,
 }
 
 impl ParticleMap {
@@ -464,8 +464,13 @@ impl ParticleMap {
     }
 
     /// Adds a black line over the dots.
-    pub fn line(mut self, points: Vec<(f64, f64)>) -> Self {
-        self.lines.push(points);
+    pub fn line(self, points: Vec<(f64, f64)>) -> Self {
+        self.curve(Series::line("", points).width(1.4))
+    }
+
+    /// Adds a line over the dots, black if it has no colour.
+    pub fn curve(mut self, line: Series) -> Self {
+        self.lines.push(line);
         self
     }
 

@@ -1,9 +1,9 @@
 //! Particle maps and category maps.
 
 use super::axis::{Axis, Mapping};
-use super::canvas::{Canvas, Rect, Type};
+use super::canvas::{Canvas, Point, Rect, Type};
 use super::colour::{Colour, ColourMap};
-use super::figure::{Align, CategoryMap, ParticleMap, Shape};
+use super::figure::{Align, CategoryMap, Dash, ParticleMap, Shape};
 use super::font;
 use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
 use super::geometry::{clip_line, thin};
@@ -117,14 +117,18 @@ impl<'a> Particles<'a> {
                 None => canvas.markers(&[at], Shape::Cross, 8.0, Colour::BLACK, false),
             }
         }
-        for (step, dots) in dots.into_iter().enumerate() {
+        for (step, mut dots) in dots.into_iter().enumerate() {
+            // Row by row, for near dots have short coordinates.
+            let row = |at: &Point| (at.1 / (4.0 * self.radius)).round() as i64;
+            dots.sort_by(|a, b| row(a).cmp(&row(b)).then(a.0.total_cmp(&b.0)));
             let colour = self.map.map.at((step as f64 + 0.5) / STEPS);
             dots.into_iter().for_each(|at| canvas.disc(at, self.radius, colour));
         }
         for line in &self.map.lines {
-            let points: Vec<_> = line.iter().filter_map(place).collect();
+            let points: Vec<_> = line.points.iter().filter_map(place).collect();
+            let (colour, dash) = (line.colour.unwrap_or(Colour::BLACK), line.line);
             for piece in clip_line(&thin(&points), area) {
-                canvas.path(&piece, Colour::BLACK, 1.4);
+                canvas.dashed(&piece, colour, line.width, dash.unwrap_or(Dash::Solid));
             }
         }
         canvas.frame(area, Colour::BLACK, 1.0);

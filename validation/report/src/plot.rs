@@ -246,6 +246,9 @@ impl<'a> Prepared<'a> {
                     let joined = s.line.is_some();
                     for run in runs(&s.points, |p| self.place(p)) {
                         all.extend_from_slice(&run);
+                        let r = if s.marked { 0.5 * s.size } else { 0.0 };
+                        let around = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)];
+                        all.extend(run.iter().flat_map(|p| around.map(|d| (p.0 + d.0, p.1 + d.1))));
                         let pairs = run.windows(2).take(if joined { usize::MAX } else { 0 });
                         for pair in pairs {
                             if let Some((a, b)) = self.data_area().clip(pair[0], pair[1]) {

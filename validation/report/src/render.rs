@@ -87,15 +87,22 @@ struct Layout<'a> {
     size: (f64, f64),
 }
 
-/// The one legend of several panels: that of one of them, which says what all others say.
+/// The one legend of several panels, in which a name has one colour and a look one name; empty if theirs
+/// do not agree or have nothing in common.
 fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
-    let legends = || panels.iter().map(Prepared::legend).filter(|legend| !legend.is_empty());
-    let says = |all: &[Entry], entry: &Entry| {
-        all.iter().any(|other| other.name == entry.name && other.colour() == entry.colour())
-    };
-    let says_all = |all: &&[Entry]| legends().flatten().all(|entry| says(all, entry));
-    let longest = legends().filter(|_| legends().count() > 1).find(says_all);
-    longest.map_or(Vec::new(), <[Entry]>::to_vec)
+    let legends: Vec<&[Entry]> =
+        panels.iter().map(Prepared::legend).filter(|legend| !legend.is_empty()).collect();
+    let mut all: Vec<Entry> = Vec::new();
+    for entry in legends.iter().copied().flatten() {
+        match all.iter().find(|other| other.name == entry.name) {
+            Some(other) if other.colour() != entry.colour() => return Vec::new(),
+            Some(_) => {}
+            None if all.iter().any(|other| other.sample == entry.sample) => return Vec::new(),
+            None => all.push(entry.clone()),
+        }
+    }
+    let total: usize = legends.iter().map(|legend| legend.len()).sum();
+    if all.len() < total { all } else { Vec::new() }
 }
 
 /// Hides the colour bars of maps that all have the same one; its width.

@@ -23,7 +23,11 @@ pub(super) struct Ticks {
 /// At most about `count` labelled ticks on `lo..hi`.
 pub(super) fn ticks(scale: Scale, lo: f64, hi: f64, count: usize) -> Ticks {
     match scale {
-        Scale::Linear => linear(lo, hi, count),
+        // A few more where so few leave one label.
+        Scale::Linear => (count..count + 4)
+            .map(|count| linear(lo, hi, count))
+            .find(|ticks| ticks.major.len() > 2)
+            .unwrap_or_else(|| linear(lo, hi, count)),
         Scale::Log => logarithmic(lo, hi, count),
     }
 }

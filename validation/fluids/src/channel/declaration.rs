@@ -234,9 +234,9 @@ fn curves(channel: Channel) -> Curves {
         id: format!("{}-profiles", flow.name()),
         title: "Velocity profiles".into(),
         caption: format!(
-            "Velocity across the channel at five times, Re = 0.5, 20 rows. Lines: exact series. Symbols: \
-             SPH, mean of each row of particles. Left the seed's settings, middle the variant `{best}`, \
-             right the error of the latter in units of V."
+            "Velocity u along the channel over the height y at five times, Re 0.5, 20 rows of particles: \
+             variant `seed` (left) and `{best}` (middle); symbols are means over a row, and lines the exact \
+             series. Right: the error of `{best}` in units of V, the speed of the wall or of the centre line."
         ),
         columns: 3,
         panels: vec![panel("seed"), panel(best), error],

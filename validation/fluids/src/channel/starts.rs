@@ -27,10 +27,12 @@ fn starts(tier: Tier, re: f64) -> &'static [f64] {
 /// How many starts a setting has, in words.
 pub fn in_words(tier: Tier) -> String {
     match tier {
-        Tier::Quick => "Each has one start, disordered by 1e-4 dx: one sample and no more.".into(),
+        Tier::Quick => {
+            "Each cell is one start, whose particles are displaced by up to 1e-4 dx.".into()
+        }
         Tier::Full => format!(
-            "Up to Re {MANY_STARTS} each has {} starts, disordered by {} dx; above one, 1e-4 dx, which is \
-             one sample and no more.",
+            "Up to Re {MANY_STARTS} a cell is {} starts, whose particles are displaced by up to {} dx; above \
+             that it is one, displaced by 1e-4 dx.",
             DISORDER.len(),
             disorder(&DISORDER)
         ),
@@ -104,6 +106,14 @@ impl Outcome {
             Self::Diverged(time) => time,
             Self::Reached(_) if self.fails() => 1e3,
             Self::Reached(_) => 1e6,
+        }
+    }
+
+    /// `0.54 %`, or `diverged at 0.55` for νt/L² of the divergence.
+    pub fn in_words(self) -> String {
+        match self {
+            Self::Diverged(time) => format!("diverged at {}", sig(time, 2)),
+            Self::Reached(_) => self.text(),
         }
     }
 

@@ -115,11 +115,16 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
                    2L/c0, up to the dispersion of the kernel and the gaps that disorder opens";
     let mut study = Study::new("poiseuille-h3", "H3: pressure waves between the walls");
     study = study.prose(h3(&found));
-    let caption = "Lowest pressure mode of the seed's Poiseuille flow at Re 20 against time before the \
-                   end of the run in crossings of the channel by sound, for two sound speeds, each the run \
-                   of the median period: equal periods on this axis are periods in proportion to 1/c0.";
-    let mut plot =
-        Plot::new("", Axis::linear("(t − t_end) c0/L [-]"), Axis::linear("pressure mode [ρV²]"));
+    let caption = "Amplitude of the lowest pressure mode across the channel, cos(πy/L), in Poiseuille flow of \
+                   variant `seed` at Re 20 for two sound speeds c0, each less its mean over 2L/c0, so that \
+                   waves are seen and not the slow drift. Time is in crossings of the channel by sound, up \
+                   to the end of the run: on this axis a wave that bounces between the walls has the period \
+                   2, whatever c0. Each is the run of the median period.";
+    let mut plot = Plot::new(
+        "",
+        Axis::linear("time before the end (t − t_end) c0/L [-]"),
+        Axis::linear("pressure mode less its drift [ρV²]"),
+    );
     for rings in found.iter().filter(|rings| rings.re == 20.0) {
         let id = format!("poiseuille.h3.period.c{}", rings.sound);
         let gate = Gate::new(id, "period", PERIOD, Evidence::Theory, because);
@@ -127,7 +132,7 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
         study = study.judge(gate, rings.median(|run| run.period));
         let Some(run) = rings.typical() else { continue };
         let name = format!("c0/V = {}", rings.sound);
-        plot = plot.layer(Series::line(name, run.series.clone()));
+        plot = plot.layer(Series::line(name, without_drift(&run.series)));
     }
     let plot = plot.layer(Layer::horizontal(0.0, "")).legend(Legend::Auto);
     let figure = Figure::new("poiseuille-waves", caption).panel(plot).panel_size(620.0, 260.0);
@@ -205,6 +210,23 @@ fn h3(found: &[Rings]) -> String {
     )
 }
 
+/// Each value less the mean over a period of a bouncing wave around it, where the series has one.
+fn without_drift(series: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    const HALF: f64 = 1.0;
+    let [Some(first), Some(last)] = [series.first(), series.last()].map(|end| end.map(|(t, _)| *t))
+    else {
+        return Vec::new();
+    };
+    let inside = |t: f64| t - HALF >= first && t + HALF <= last;
+    let less_mean = |&(t, value): &(f64, f64)| {
+        let from = series.partition_point(|(other, _)| *other < t - HALF);
+        let to = series.partition_point(|(other, _)| *other <= t + HALF);
+        let sum = series[from..to].iter().fold(0.0, |sum, (_, value)| sum + value);
+        (t, value - sum / (to - from) as f64)
+    };
+    series.iter().filter(|(t, _)| inside(*t)).map(less_mean).collect()
+}
+
 /// The series without its trend and with tapered ends, so that slow growth is not taken for a wave.
 fn tapered(series: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let n = series.len() as f64;
@@ -242,8 +264,19 @@ fn dominant_period(series: &[(f64, f64)]) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::dominant_period;
+    use super::{dominant_period, without_drift};
     use base::functions::sin;
+
+    #[test]
+    fn a_drift_is_taken_away_and_a_wave_stays() {
+        let wave = |t: f64| 0.1 * sin(std::f64::consts::PI * t);
+        let series: Vec<(f64, f64)> =
+            (0..=1000).map(|k| 0.01 * f64::from(k)).map(|t| (t, 5.0 + 0.3 * t + wave(t))).collect();
+        let found = without_drift(&series);
+        assert!((800..=802).contains(&found.len()));
+        assert!(found.iter().all(|(t, value)| (value - wave(*t)).abs() < 2e-3));
+        assert!(without_drift(&[]).is_empty());
+    }
 
     #[test]
     fn a_sine_on_a_trend_is_found_with_its_amplitude() {

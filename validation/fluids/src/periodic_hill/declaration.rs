@@ -7,7 +7,7 @@ use super::{
     BEST, HillSettings, NAME, VARIANTS,
     measure::{L2_U, POINTS, STATIONS},
     plan::{HillRun, REYNOLDS, best},
-    reference::{Reference, floor, reference, uncertainty},
+    reference::{Reference, Station, floor, reference, uncertainty},
     sensitivity, stability,
 };
 use base::{
@@ -156,19 +156,53 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
 
 /// Profiles at their stations, symbols on lines.
 fn profiles(tier: Tier) -> Curves {
-    let caption = "Velocity along x (left) and y (right) across ten stations, drawn from the place of the \
-                   station: a distance of 1 H is 1.25 U_b of u and 0.4 U_b of v. Lines: finite elements, and \
-                   the floor. Symbols: the finest run of variant `carried`, whose title says where it \
-                   started, every tenth of 200 points.";
+    let caption = "Velocity u along the channel (left) and v across it (middle) at ten stations: lines are \
+                   finite elements, symbols the finest run of variant `carried`, which began as the title \
+                   says. A velocity is drawn from the place of its station, and a distance of 1 H stands for \
+                   1.25 U_b of u or 0.4 U_b of v. Right: error of u, u less that of finite elements, where \
+                   1 H stands for 10 % of U_b.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         if let Some((run, reference)) = best(tier, re).last().zip(reference(re)) {
             panels.push(profile(run, &reference, "u", 0.8, |v| v.x));
             panels.push(profile(run, &reference, "v", 2.5, |v| v.y));
+            panels.push(errors(run, &reference));
         }
     }
     let (id, title) = ("periodic-hill-profiles".into(), "Profiles over finite elements".into());
-    Curves { id, title, caption: caption.into(), columns: 2, panels }
+    Curves { id, title, caption: caption.into(), columns: 3, panels }
+}
+
+/// Error of u over the stations.
+fn errors(run: &HillRun, reference: &Reference) -> CurvePanel {
+    const SCALE: f64 = 10.0;
+    let line = |(k, station): (usize, &Station)| {
+        let station = station.clone();
+        CurveOf {
+            name: String::new(),
+            spec: run.spec(),
+            points: Box::new(move |record| {
+                let found = record.column("stations", "u").iter().skip(k * POINTS);
+                let exact = station.v.iter().zip(&station.y);
+                let point = |(u, (exact, y)): (&f64, (&Vector2<f64>, &f64))| {
+                    (station.x + SCALE * (u - exact.x), *y)
+                };
+                found.zip(exact).map(point).collect()
+            }),
+        }
+    };
+    let at_stations = reference.stations.iter().map(|s| {
+        let end = |y: Option<&f64>| (s.x, y.copied().unwrap_or(f64::NAN));
+        (String::new(), vec![end(s.y.first()), end(s.y.last())])
+    });
+    CurvePanel {
+        title: format!("Re {}, {}: error of u", run.re, run.name()),
+        x: Axis::linear(format!("x/H + {SCALE} (u − u of finite elements)/U_b")),
+        y: Axis::linear("y/H").range(0.0, 3.1),
+        lines: reference.stations.iter().enumerate().map(line).collect(),
+        references: at_stations.chain([(String::new(), floor())]).collect(),
+        symbols: false,
+    }
 }
 
 /// One component of the velocity.
@@ -180,7 +214,7 @@ fn profile(
     component: fn(&Vector2<f64>) -> f64,
 ) -> CurvePanel {
     let line = |k: usize| CurveOf {
-        name: if k == 0 { "particles".into() } else { String::new() },
+        name: String::new(),
         spec: run.spec(),
         points: Box::new(move |record| station(record, k, name, scale)),
     };

@@ -14,6 +14,7 @@ mod sensitivity;
 mod setup;
 mod stability;
 mod steadiness;
+mod streamlines;
 mod studies;
 
 use harness::{

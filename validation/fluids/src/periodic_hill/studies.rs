@@ -9,7 +9,7 @@ use super::{
     },
     plan::{self, HillRun, QUICK, REYNOLDS, best},
     reference::{floor, reference},
-    stability,
+    stability, streamlines,
 };
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -22,7 +22,7 @@ use harness::{
     runs::Runs,
     study::Study,
 };
-use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, percent, sig};
+use report::{Axis, Cell, Colour, ColourMap, Figure, ParticleMap, Series, Table, percent, sig};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
@@ -90,25 +90,35 @@ fn all(tier: Tier, runs: &Runs) -> Study {
     Study::new("periodic-hill-runs", "All runs").block(table)
 }
 
-/// Particles by their velocity, with the line between bubble and stream of the reference.
+/// Particles by their velocity, with the streamlines of the reference.
 fn pictures(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Particles at the end of the finest run of variant `carried`, by their velocity along x. \
-                   Black: the floor, and the line between bubble and stream of the finite elements (Re 10 \
-                   has no bubble). Colours end at 0.5 U_b, so that the bubble shows.";
+    let caption = "Particles at the end of the finest run of variant `carried`, coloured by their velocity u \
+                   along the channel in units of the bulk velocity U_b; H is the height of a hill. Thin \
+                   lines are streamlines of the finite-element reference, and the thick black line is its \
+                   separation line, below which fluid circulates (there is none at Re 10). The green line is \
+                   the separation line of the particles, up to which their flux adds up to zero.";
     let mut figure = Figure::new("periodic-hill-pictures", caption);
-    for re in REYNOLDS {
-        let shown = best(tier, re).last().copied().zip(reference(re));
-        let Some((run, reference)) = shown else { continue };
-        let Some(record) = runs.completed(&run.spec()) else { continue };
-        let title = format!("Re {re}, {}", run.name());
-        let axes = (Axis::linear("x [H]"), Axis::linear("y [H]"));
+    let shown = REYNOLDS.into_iter().filter_map(|re| {
+        let (run, reference) = best(tier, re).last().copied().zip(reference(re))?;
+        Some((run, reference, runs.completed(&run.spec())?))
+    });
+    let shown: Vec<_> = shown.collect();
+    let velocities = shown.iter().flat_map(|(.., record)| record.column("particles", "u"));
+    let most = velocities.fold(0.0, |most: f64, u| most.max(u.abs()));
+    for (run, reference, record) in shown {
+        let title = format!("Re {}, {}", run.re, run.name());
+        let axes = (Axis::linear("x [H]").range(-0.1, 9.1), Axis::linear("y [H]").range(-0.1, 3.1));
         let points = pictures::points(record, "particles", "u");
+        let separation = streamlines::of_particles(&points, 1.0 / run.n as f64);
         let map = ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points)
-            .values(-0.5, 0.5)
+            .values(-most, most)
             .diameter(1.0 / run.n as f64)
             .line(floor())
-            .line(reference.line);
-        figure = figure.panel(map);
+            .curve(Series::line("", separation).colour(Colour::GREEN).width(2.2))
+            .curve(Series::line("", reference.line.clone()).width(2.2));
+        let lines = streamlines::of_reference(&reference).into_iter();
+        let thin = |map: ParticleMap, line| map.curve(Series::line("", line).width(0.7));
+        figure = figure.panel(lines.fold(map, thin));
     }
     Study::new("periodic-hill-pictures", "Pictures").block(figure.panel_size(640.0, 230.0))
 }

@@ -33,6 +33,20 @@ pub fn spec(variant: &str, n: usize, start: f64) -> RunSpec {
     if PICTURED.contains(&(variant, n, start)) { spec.keep_particles() } else { spec }
 }
 
+/// Largest error of the velocity that the best variant may have with n particles a side.
+pub fn most_error(n: usize) -> f64 {
+    match n {
+        100 => 0.01,
+        50 => 0.02,
+        _ => 0.02 * (50.0 / n as f64).powi(2),
+    }
+}
+
+/// Largest relative error of its kinetic energy, where that is judged.
+pub fn most_energy(n: usize) -> Option<f64> {
+    (n >= 50).then_some(0.01)
+}
+
 /// The run of the best variant whose settings the error budget changes, with such a change.
 pub fn changed(set: fn(&mut VortexSettings)) -> RunSpec {
     CASE.spec(BEST, |s| {
@@ -92,16 +106,11 @@ fn gates(variant: &str, n: usize, start: f64) -> Vec<Gate> {
     let mut gates = Vec::new();
     if variant == BEST {
         let second = "the goal of 2 % at 50 x 50, in the second order of its sums";
-        let (most, because) = match n {
-            100 => (0.01, best),
-            50 => (0.02, best),
-            _ => (0.02 * (50.0 / n as f64).powi(2), second),
-        };
-        gates.push(goal(most, because));
+        gates.push(goal(most_error(n), if n == 50 || n == 100 { best } else { second }));
         let energy =
             "1 % of the energy that is left is 0.3 % of the viscosity: e^-3.2 is left at the end";
-        if n >= 50 {
-            gates.push(gate(ENERGY, Bound::Within(-0.01, 0.01), Evidence::Analytic, energy));
+        if let Some(most) = most_energy(n) {
+            gates.push(gate(ENERGY, Bound::Within(-most, most), Evidence::Analytic, energy));
         }
         let apart = "shifting keeps particles apart: half a spacing is far from pairing";
         gates.push(gate(NEAREST, Bound::Above(0.5), Evidence::Invariant, apart));

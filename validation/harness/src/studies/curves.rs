@@ -10,20 +10,32 @@ use crate::{
 
 pub fn study(curves: &Curves, runs: &Runs) -> Study {
     let figure = Figure::new(&curves.id, &curves.caption).columns(curves.columns);
-    let figure = curves.panels.iter().fold(figure, |figure, of| figure.panel(panel(of, runs)));
+    let mut names: Vec<&str> = Vec::new();
+    for line in curves.panels.iter().flat_map(|panel| &panel.lines) {
+        if !names.contains(&line.name.as_str()) {
+            names.push(&line.name);
+        }
+    }
+    let panels = curves.panels.iter().map(|of| panel(of, &names, runs));
+    let figure = panels.fold(figure, Figure::panel);
     Study::new(&curves.id, &curves.title).block(figure.panel_size(360.0, 270.0))
 }
 
-fn panel(of: &CurvePanel, runs: &Runs) -> Plot {
+/// A name has one colour in all panels, which is that of its position among `names`.
+fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
     let mut plot = Plot::new(&of.title, of.x.clone(), of.y.clone());
+    let has_partners = of.symbols && of.references.len() >= of.lines.len();
     for (k, (name, points)) in of.references.iter().enumerate() {
-        let colour = if of.symbols { Colour::cycle(k) } else { Colour::BLACK };
-        let name = if of.symbols { "" } else { name };
+        let is_partner = has_partners && k < of.lines.len();
+        let colour = if is_partner { Colour::cycle(k) } else { Colour::BLACK };
+        let name = if is_partner { "" } else { name };
         plot = plot.layer(Series::line(name, points.clone()).colour(colour));
     }
     for (k, line) in of.lines.iter().enumerate() {
         let Some(record) = runs.record(&line.spec) else { continue };
         let points = (line.points)(record);
+        let named = names.iter().position(|name| !name.is_empty() && *name == line.name);
+        let k = named.unwrap_or(k);
         let (colour, shape) = (Colour::cycle(k), Shape::cycle(k));
         plot = plot.layer(match of.symbols {
             true => Series::markers(&line.name, points).colour(colour).shape(shape).open(),

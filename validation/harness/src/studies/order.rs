@@ -1,7 +1,7 @@
 //! The observed order of accuracy with its confidence interval.
 
-use base::gate::Gate;
-use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, Table, sig};
+use base::gate::{Bound, Evidence, Gate};
+use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, Table, exact, sig};
 
 use crate::{
     columns::Columns,
@@ -46,8 +46,15 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
             " The errors are distances between runs of successive spacings, drawn at the coarser one."
         }
     };
-    let slope = accuracy.slope.map_or(String::new(), |p| format!(" The triangle shows order {p}."));
-    let caption = format!("{} against spacing.{successive}{slope}", accuracy.label);
+    let slopes = slopes(accuracy);
+    let shown: Vec<String> = slopes.iter().map(|order| exact(*order)).collect();
+    let slope = match shown.as_slice() {
+        [] => String::new(),
+        [order] => format!(" The triangle shows order {order}."),
+        orders => format!(" The triangles show orders {}.", orders.join(" and ")),
+    };
+    let label = accuracy.label.trim_end_matches(" [-]");
+    let caption = format!("{label} against the particle spacing.{successive}{slope}");
     let mut plot = Plot::new("", Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
     let about = format!(
         "Observed order: least squares over all levels, with the 95 % interval of Student's t. {}",
@@ -69,11 +76,27 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
         let finest = points.last().map_or(f64::NAN, |p| p.value);
         rows.push((name, found, finest));
     }
-    if let Some(order) = accuracy.slope {
+    for order in slopes {
         plot = plot.layer(Layer::slope(order));
     }
     let figure = Figure::new(&id, caption).panel(plot.legend(Legend::Outside));
     study.block(figure).block(table(about, rows))
+}
+
+/// The orders that theory expects: that of the method, and the middle of what gates of ladders allow.
+fn slopes(accuracy: &Accuracy) -> Vec<f64> {
+    let gates = accuracy.ladders.iter().filter_map(|ladder| ladder.order.as_ref());
+    let expected = gates.filter_map(|gate| match (gate.bound, gate.evidence) {
+        (Bound::Within(low, high), Evidence::Theory) => Some(0.5 * (low + high)),
+        _ => None,
+    });
+    let mut slopes: Vec<f64> = accuracy.slope.into_iter().collect();
+    for order in expected {
+        if slopes.iter().all(|other| (other - order).abs() > 0.1) {
+            slopes.push((10.0 * order).round() / 10.0);
+        }
+    }
+    slopes
 }
 
 /// Name of a ladder, its order or why it has none, its finest error.

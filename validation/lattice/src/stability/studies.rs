@@ -142,9 +142,11 @@ fn figure(points: &[Point], limits: &[Limit], weak: &[[f64; 2]]) -> Figure {
     plot = plot.layer(Layer::vertical(INVISCID_AT, "ν = 0"));
     Figure::new(
         "time-step-limits",
-        "Left: symbols are bisected runs of 12 × 12 particles, lines linear stability of the same \
-         box; at c₀h/ν ≲ 3 viscosity decides, and both integrators have the same limit. Right: \
-         growth of the stiffest sound wave a step of the predictor-corrector without viscosity.",
+        "Left: longest stable time step, found by bisection on a periodic lattice of 12 × 12 particles \
+         (symbols) and by linear stability theory of the same lattice (lines); below c₀h/ν of about 3 \
+         viscosity decides, and both integrators have the same limit. The points at ν = 0 have no \
+         viscosity. Right: growth of the stiffest sound wave in one step of the predictor-corrector without \
+         viscosity, measured and in theory.",
     )
     .title("Stability of the time step")
     .panel(plot.legend(report::Legend::Outside))

@@ -70,7 +70,7 @@ pub fn shown(tier: Tier) -> &'static str {
 fn histories(tier: Tier) -> Curves {
     let variant = shown(tier);
     let reference = Reference::of(&RingSettings::default());
-    let labels = ["centre of mass [L]", "its velocity [c0]", "width [L]", "height [L]"];
+    let labels = ["centre of mass [L]", "velocity of it [c0]", "width [L]", "height [L]"];
     let panel = |(k, name): (usize, &'static str)| {
         let line = |spacing: &f64| CurveOf {
             name: format!("spacing {} L", sig(*spacing, 2)),
@@ -98,10 +98,10 @@ fn histories(tier: Tier) -> Curves {
         id: "rubber-rings-histories".into(),
         title: "Histories over finite elements".into(),
         caption: format!(
-            "One of two rings that collide at 0.059 c0 each, variant `{variant}`, at several spacings, \
-             against time in L/c0. Black: finite elements, one ring against a frictionless plane, the \
-             law of (10) to (12); their uncertainty is less than the width of the line. Centre of mass and \
-             its velocity, and the outer extents along the line of flight and across it."
+            "One of two rubber rings that collide at 0.059 c0 each, against time: the place of its centre of \
+             mass, the velocity of that, and its width along and height across the line of flight. Coloured: \
+             variant `{variant}` at several particle spacings. Black: finite elements with the same \
+             elastic law, whose uncertainty is less than the width of the line."
         ),
         columns: 2,
         panels: Reference::COLUMNS.into_iter().enumerate().map(panel).collect(),
@@ -251,9 +251,9 @@ fn outcome(records: &[&Record]) -> (usize, String) {
         None => (3, "diverged".into()),
         Some(Fate::Whole) => {
             let parted = record.value(RESTITUTION).map(|restitution| sig(restitution, 2));
-            (0, format!("whole; {}", parted.unwrap_or("in touch".into())))
+            (0, parted.map_or("in touch".into(), |restitution| format!("e = {restitution}")))
         }
-        Some(Fate::Torn) => (1, format!("torn at {}", sig(number(TORN_AT), 2))),
+        Some(Fate::Torn) => (1, format!("at {}", sig(number(TORN_AT), 2))),
         Some(Fate::InPieces) => (2, format!("{} pieces", number(PIECES_MOST))),
     }
 }
@@ -274,13 +274,14 @@ fn fracture_map(tier: Tier) -> Map {
     Map {
         id: "rubber-rings-fracture-map".into(),
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
-        caption: "What becomes of the two rings over the speed of each and the spacing. Whole: each is one \
-                  piece with a hole, at each of 100 counts; the restitution follows, or that they still \
-                  touch. Torn: a ring is cut through once, like a C, and one piece still; the time in L/c0 \
-                  follows. In pieces: how many there are at most."
+        caption: "What becomes of two colliding rubber rings over the speed of each and the particle spacing, \
+                  for three variants; an empty cell was not run. Whole rings show the coefficient of \
+                  restitution e, or that they still touch at t = 200 L/c0. Torn rings (cut through once, like \
+                  a C) show when that was first seen in units of L/c0, and rings in pieces the largest \
+                  number of pieces."
             .into(),
-        x: "speed [c0]".into(),
-        y: "spacing [L]".into(),
+        x: "speed of each ring [c0]".into(),
+        y: "particle spacing [L]".into(),
         outcomes: outcomes(),
         panels: ["seed", "no-artificial-stress", "componentwise"].map(panel).into(),
         outcome,
@@ -304,12 +305,13 @@ fn stress_map() -> Map {
     Map {
         id: "rubber-rings-stress-map".into(),
         title: "Stability over the artificial stress".into(),
-        caption: "What becomes of the two rings at 0.12 c0 each, spacing 0.2 L, over strength and exponent \
-                  of the artificial stress: for whole rings the restitution follows, for torn ones the time \
-                  in L/c0, for others the most pieces."
+        caption: "What becomes of two rubber rings that collide at 0.12 c0 each, spacing 0.2 L, over strength \
+                  and exponent of the artificial stress. Whole rings show the coefficient of restitution e, \
+                  torn ones the time of the first tear in units of L/c0, and others the largest number of \
+                  pieces."
             .into(),
-        x: "ξ [-]".into(),
-        y: "n [-]".into(),
+        x: "strength of the artificial stress ξ [-]".into(),
+        y: "exponent n [-]".into(),
         outcomes: outcomes(),
         panels: vec![MapPanel::over("", &XI, &N, cell)],
         outcome,
@@ -323,8 +325,11 @@ fn viscosity_map() -> Map {
     Map {
         id: "rubber-rings-viscosity-map".into(),
         title: "Stability over the artificial viscosity".into(),
-        caption: "The same over the artificial viscosity with β = 2α.".into(),
-        x: "α [-]".into(),
+        caption: "What becomes of two rubber rings that collide at 0.12 c0 each, spacing 0.2 L, over the \
+                  coefficient α of the artificial viscosity, with β = 2α. Whole rings show the coefficient of \
+                  restitution e, and torn ones the time of the first tear in units of L/c0."
+            .into(),
+        x: "artificial viscosity α [-]".into(),
         y: String::new(),
         outcomes: outcomes(),
         panels: vec![MapPanel::over("", &ALPHA, &[""], cell)],

@@ -58,6 +58,24 @@ pub struct Reference {
     pub strain: f64,
 }
 
+/// The faces of both rings at a time of the table \[L\]; empty at any other.
+pub fn outlines(speed: f64, time: f64) -> Result<Vec<Vec<(f64, f64)>>, ReferenceError> {
+    let package = Package::load("rubber_rings")?;
+    let table = package.table("outlines")?;
+    let (t, faces) = (table.numbers("t")?, table.texts("face")?);
+    let (x, y) = (table.numbers("x")?, table.numbers("y")?);
+    let rows = rows(table, speed)?;
+    let face = |name: &str| {
+        let of_face = rows.iter().filter(|&&k| (t[k] - time).abs() < 1e-9 && faces[k] == name);
+        let half: Vec<(f64, f64)> = of_face.map(|&k| (x[k], y[k])).collect();
+        let mirrored = half.iter().rev().map(|(x, y)| (*x, -y));
+        half.iter().copied().chain(mirrored).collect::<Vec<_>>()
+    };
+    let right = ["outer", "inner"].map(face);
+    let left = right.clone().map(|line| line.into_iter().map(|(x, y)| (-x, y)).collect());
+    Ok(right.into_iter().chain(left).filter(|line: &Vec<_>| !line.is_empty()).collect())
+}
+
 /// Why a run has no distance from finite elements.
 const NOT_COMPUTED: &str =
     "finite elements have rings of 3 and 4 L, 0.22 K, at 0.059 and 0.03 c0, to 200 L/c0";
@@ -201,6 +219,27 @@ const UNLIKE: &str =
 mod tests {
     use super::*;
     use crate::rings::metrics::RESTITUTION;
+
+    #[test]
+    fn outlines_have_the_extents_of_the_series() {
+        let paper = Reference::of(&RingSettings::default()).expect("the paper's speed");
+        for time in [32.0, 60.0, 80.0, 120.0, 200.0] {
+            let lines = outlines(0.059, time).expect("a table");
+            assert_eq!(lines.len(), 4);
+            let at = paper.times.iter().position(|t| *t == time).expect("a time of the series");
+            let extent = |of: fn(&(f64, f64)) -> f64| {
+                let all = || lines[0].iter().map(of);
+                all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+            };
+            let (width, height) = (paper.columns[2][at].0, paper.columns[3][at].0);
+            let (found_width, found_height) = (extent(|p| p.0), extent(|p| p.1));
+            // Every fourth node of the face is there.
+            assert!((found_width - width).abs() < 0.02, "{found_width} for {width} at {time}");
+            assert!((found_height - height).abs() < 0.02, "{found_height} for {height} at {time}");
+        }
+        assert!(outlines(0.059, 33.0).expect("a table").is_empty());
+        assert!(outlines(0.12, 32.0).expect("a table").is_empty());
+    }
 
     #[test]
     fn two_speeds_have_a_reference_and_others_have_none() {

@@ -5,7 +5,7 @@ use super::{
     RUBBER_RINGS, RingSettings, declaration, extremes,
     metrics::{self, *},
     plan::{self, FIVE_LAYERS, PICTURED, SPEED, TORN, collision},
-    reference::Reference,
+    reference::{self, Reference},
     run::PICTURES,
 };
 use base::{
@@ -16,8 +16,8 @@ use base::{
 };
 use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{
-    Axis, Cell, Colour, ColourMap, Column, Figure, Film, ParticleMap, Plot, Series, Table, percent,
-    sig,
+    Axis, Cell, Colour, ColourMap, Column, Figure, Film, ParticleMap, Plot, Series, Table, exact,
+    percent, sig,
 };
 
 /// What runs by hand say of speeds that are not of the plan.
@@ -85,10 +85,11 @@ fn distances(tier: Tier, runs: &Runs) -> Study {
 /// Energies of a run, and what each term has added.
 fn energies(record: &Record) -> Figure {
     let caption = format!(
-        "Energy of both rings over that at the start, variant `{}`, spacing {} L. Left: kinetic, compression \
-         and shear energy and their sum. Right: what each term has added. The elastic law itself adds a \
-         little, because stress rates integrated in time are not the slope of an energy at finite strain; \
-         XSPH has no work of its own. Sum on the left and works on the right close to {}.",
+        "Energies of two colliding rubber rings over the energy at the start, variant `{}`, spacing {} L. \
+         Left: kinetic, compression and shear energy and their sum; right: what each term of the equations \
+         has added, of which the elastic law adds a little, because the stress that follows from its rate is \
+         not the derivative of an energy at finite strain. The sum on the left is the sum of the works on \
+         the right up to {}.",
         record.variant,
         sig(settings(record).spacing, 2),
         percent(record.value(ENERGY_GAP).unwrap_or(f64::NAN), 2)
@@ -188,17 +189,24 @@ fn found_phases(record: &Record) -> Vec<Cell> {
     row
 }
 
-/// The rings at six times, coloured by the largest principal stress.
+/// The rings at five times, coloured by the largest principal stress, with those of finite elements.
 fn pictures(runs: &Runs) -> Study {
-    let caption = "Both rings at six times, spacing 0.2 L, variant `seed`, 0.059 c0 each, coloured by the \
-                   largest principal stress: tension is positive, colours end at ±0.05 K. L is the unit of \
-                   length, in which the radii are 3 and 4, and c0 the sound speed (K/ρ)^½.";
+    let caption = "Two rubber rings of inner radius 3 L and outer radius 4 L, which collide at 0.059 c0 each, \
+                   at five times: particles of variant `seed`, spacing 0.2 L, coloured by the largest \
+                   principal stress σ₁ in units of the bulk modulus K (tension is positive; c0 is the sound \
+                   speed). Black lines are the faces of the rings of finite elements at the same time.";
     let mut figure = Figure::new("rubber-rings-pictures", caption).columns(3);
     let (variant, spacing, speed) = PICTURED;
     if let Some(record) = runs.record(&collision(variant, spacing, speed)) {
-        let axes = axes(record, &PICTURES);
-        for share in PICTURES {
-            figure = figure.panel(picture(record, share, &time(share), axes.clone()));
+        // At the start there is neither stress nor deformation.
+        let shown = &PICTURES[1..];
+        let (axes, most) = (axes(record, shown), largest_stress(record, shown));
+        for share in shown {
+            let title = format!("{}, {}", time(*share), state(record, *share));
+            let map = picture(record, *share, &title, axes.clone(), most);
+            let outlines = reference::outlines(speed, 200.0 * share).unwrap_or_default();
+            let black = |map: ParticleMap, line| map.curve(Series::line("", line).width(0.9));
+            figure = figure.panel(outlines.into_iter().fold(map, black));
         }
     }
     let study =
@@ -210,13 +218,16 @@ fn pictures(runs: &Runs) -> Study {
     let (variant, spacing, speed) = TORN;
     let Some(record) = runs.completed(&collision(variant, spacing, speed)) else { return study };
     let caption = format!(
-        "Rings without artificial stress (`{variant}`) at spacing {} L and {} c0 each, at t = 200 L/c0: {} \
-         pieces, coloured by the largest principal stress. Rubber does not break; the method does.",
-        sig(spacing, 2),
-        sig(speed, 2),
+        "Two rubber rings after a collision at {} c0 each without artificial stress (variant `{variant}`), \
+         spacing {} L, coloured by the largest principal stress σ₁ in units of the bulk modulus K: they are in \
+         {} pieces. Rubber of this law does not break; the method does.",
+        exact(speed),
+        exact(spacing),
         record.value(PIECES).unwrap_or(f64::NAN)
     );
-    let map = picture(record, 1.0, "", axes(record, &[1.0]));
+    let title = format!("{}, {}", time(1.0), state(record, 1.0));
+    let most = largest_stress(record, &[1.0]);
+    let map = picture(record, 1.0, &title, axes(record, &[1.0]), most);
     let figure = Figure::new("rubber-rings-fracture", caption).panel(map);
     study.block(figure.panel_size(420.0, 320.0))
 }
@@ -226,19 +237,36 @@ fn film(runs: &Runs) -> Result<Film, String> {
     const LAST: usize = plan::FRAMES - 1;
     let record = runs.completed(&plan::film()).ok_or("its run did not reach its end")?;
     let shares: Vec<f64> = (0..=LAST).map(|k| k as f64 / LAST as f64).collect();
-    let axes = axes(record, &shares);
+    let (axes, most) = (axes(record, &shares), largest_stress(record, &shares));
     let frame = |share: &f64| {
-        let map = picture(record, *share, &time(*share), axes.clone());
+        let map = picture(record, *share, &time(*share), axes.clone(), most);
         Figure::new("frame", "").panel(map).panel_size(350.0, 175.0)
     };
     let frames: Vec<Figure> = shares.iter().map(frame).collect();
-    let caption = "The collision at 0.059 c0 each as a film: spacing 0.2 L, variant `leapfrog`, to t = 200 \
-                   L/c0, coloured by the largest principal stress; colours end at ±0.05 K.";
+    let caption = "The collision of two rubber rings at 0.059 c0 each as a film to t = 200 L/c0: spacing 0.2 \
+                   L, variant `leapfrog`, coloured by the largest principal stress σ₁ in units of the bulk \
+                   modulus K.";
     Film::new("rubber-rings-film", caption, &frames, 200)
 }
 
 fn time(share: f64) -> String {
-    format!("t = {} L/c0", sig(200.0 * share, 3))
+    format!("t = {} L/c0", exact((10.0 * 200.0 * share).round() / 10.0))
+}
+
+/// Whether the rings are whole at a share of the run.
+fn state(record: &Record, share: f64) -> &'static str {
+    let has_torn = record.value(TORN_AT).is_some_and(|time| time <= 200.0 * share);
+    match Fate::of(record) {
+        Some(fate) if has_torn => fate.name(),
+        _ => Fate::Whole.name(),
+    }
+}
+
+/// Largest magnitude of the stress in these pictures \[K\].
+fn largest_stress(record: &Record, shares: &[f64]) -> f64 {
+    let pictures = shares.iter().filter_map(|s| record.profiles.get(&format!("particles@{s}")));
+    let values = pictures.flat_map(|profile| profile.column("stress"));
+    values.fold(0.0, |most: f64, stress| most.max(stress.abs()))
 }
 
 /// Axes that hold the particles of all of these pictures.
@@ -252,11 +280,12 @@ fn axes(record: &Record, shares: &[f64]) -> (Axis, Axis) {
     (range("x"), range("y"))
 }
 
-fn picture(record: &Record, share: f64, title: &str, axes: (Axis, Axis)) -> ParticleMap {
+/// Colours end at ±`most`.
+fn picture(record: &Record, share: f64, title: &str, axes: (Axis, Axis), most: f64) -> ParticleMap {
     let points = pictures::points(record, &format!("particles@{share}"), "stress");
     ParticleMap::new(title, axes, "σ₁ [K]", ColourMap::Diverging, points)
         .diameter(settings(record).spacing)
-        .values(-0.05, 0.05)
+        .values(-most, most)
 }
 
 /// Claim M2: at which speed and spacing does each variant tear or break?
