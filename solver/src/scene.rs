@@ -6,7 +6,7 @@ use thiserror::Error;
 use crate::{
     domain::Domain,
     engine::Engine,
-    integrator::{Integrator, PhysicsOf, Scheme},
+    integrator::{PhysicsOf, Scheme},
     kernel::{Kernel, Smoothing},
     neighbours::Neighbours,
     numbers::Numbers,
@@ -143,12 +143,9 @@ impl<S: Scheme> Scene<S> {
     /// those of the scene; everything else must be the same as in that simulation.
     pub fn resume(mut self, from: &Checkpoint<S::Extra>) -> Result<Simulation<S>, SceneError> {
         self.particles = from.particles.iter().map(|(_, p)| *p).collect();
-        self.check()?;
-        check_order(from)?;
-        let mut engine = self.engine(&from.particles);
-        engine.build_lists(from.built_at.iter().copied());
-        engine.data.progress = from.progress;
-        Ok(Simulation { engine, integrator: S::Integrator::with_lag(from.lag) })
+        let mut simulation = self.build()?;
+        simulation.restore(from)?;
+        Ok(simulation)
     }
 
     /// The engine for the particles in the given order, without neighbour lists.
@@ -257,9 +254,10 @@ fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
     Ok(())
 }
 
-/// Checks that the particles of a checkpoint are stored in the way in which a simulation stores them.
-fn check_order<X>(checkpoint: &Checkpoint<X>) -> Checked {
+/// Checks the particles of a checkpoint, and that they are stored in the way in which a simulation stores them.
+pub(crate) fn check_checkpoint<X: Numbers>(checkpoint: &Checkpoint<X>) -> Checked {
     let Checkpoint { particles, built_at, .. } = checkpoint;
+    check_particles(&particles.iter().map(|(_, p)| *p).collect::<Vec<_>>())?;
     let mut ids: Vec<u32> = particles.iter().map(|(id, _)| *id).collect();
     ids.sort_unstable();
     let reason = if !(checkpoint.progress.time.is_finite() && checkpoint.lag.is_finite()) {

@@ -295,6 +295,9 @@ pub struct Cost {
     /// work; empty if the run was only made side by side with others
     #[serde(default, skip_serializing_if = "Vec::is_empty", with = "crate::number::list")]
     pub alone_s: Vec<f64>,
+    /// how often the run went on from a checkpoint; the times are then those of its parts together
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub resumed: u32,
 }
 
 impl Cost {

@@ -21,6 +21,7 @@
 
 use std::fmt::Write;
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Why particles cannot be written.
@@ -150,7 +151,7 @@ impl Particles {
 }
 
 /// The files of a run by time: the text of a `.pvd` file.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Collection {
     files: Vec<(f64, String)>,
 }
@@ -159,6 +160,16 @@ impl Collection {
     /// Adds a file, by its path relative to the collection.
     pub fn push(&mut self, time: f64, file: &str) {
         self.files.push((time, file.into()));
+    }
+
+    /// Number of files.
+    pub fn len(&self) -> usize {
+        self.files.len()
+    }
+
+    /// Is there no file yet?
+    pub fn is_empty(&self) -> bool {
+        self.files.is_empty()
     }
 
     /// The text of the `.pvd` file; write it again after every added file.

@@ -4,6 +4,7 @@ use base::{
     record::{Cost, Metric, Record, Status},
     spec::{Bisect, RunSpec, Task},
 };
+use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 
 use crate::{
@@ -91,6 +92,7 @@ pub fn add(sum: &mut Cost, run: &Cost) {
     sum.largest_dt_s = sum.largest_dt_s.max(run.largest_dt_s);
     sum.particles = sum.particles.max(run.particles);
     sum.solver_bytes = sum.solver_bytes.max(run.solver_bytes);
+    sum.resumed += run.resumed;
 }
 
 /// A step that is stable and a longer one that is not.
@@ -152,7 +154,7 @@ const BEYOND_DOUBT: f64 = 100.0;
 const LATE_GROWTH: f64 = 1.5;
 
 /// Watches an energy over a known number of steps.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Growth {
     start: f64,
     steps: u64,

@@ -5,7 +5,7 @@ use std::sync::{Mutex, atomic::AtomicBool};
 
 use base::{mutation::Mutation, record::Profile, spec::RunSpec};
 
-use crate::size::Size;
+use crate::{checkpoint::Checkpoints, size::Size};
 
 /// What a progress bar shows.
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +43,8 @@ pub struct Context<'a> {
     pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
     /// Called with the progress of the run.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
+    /// Where checkpoints go, and what the run goes on from; the last one is made at an interrupt.
+    pub checkpoints: Option<&'a Checkpoints<'a>>,
     /// Set by another thread to stop the run.
     pub interrupt: Option<&'a AtomicBool>,
 }

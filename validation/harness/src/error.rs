@@ -7,6 +7,7 @@ use base::{
 use thiserror::Error;
 
 use crate::{
+    checkpoint::CheckpointError,
     frames::FrameError,
     size::{MOST_BYTES, MOST_SECONDS, Size},
 };
@@ -116,6 +117,9 @@ pub enum RunError {
     /// A reference that the case needs could not be loaded.
     #[error("a reference that the case needs cannot be loaded: {0}")]
     Reference(String),
+    /// A checkpoint could not be written, or is not one of the run.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// A folder or file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
@@ -128,6 +132,9 @@ impl RunError {
     /// Was the run refused because of its settings? Otherwise a file or a reference is the reason, which is
     /// not a property of the run.
     pub fn is_refusal(&self) -> bool {
-        !matches!(self, Self::File(_) | Self::Frame(_) | Self::Reference(_))
+        !matches!(
+            self,
+            Self::File(_) | Self::Frame(_) | Self::Checkpoint(_) | Self::Reference(_)
+        )
     }
 }

@@ -9,19 +9,17 @@ use base::{
     record::Profile,
     vtk::{Collection, Particles, VtkError},
 };
-use solver::{Flow, Numbers, Particle, Stepper, Symmetric};
+use solver::{Numbers, Particle, Stepper, Symmetric};
 
 /// Writes `count` frames at equal intervals, each after the first step that reaches its time, and the last
 /// one at the end. In a leapfrog the velocities of a frame are half a step behind the places.
 pub struct Frames<'a> {
     folder: OutputFolder,
-    collection: Collection,
     /// Pressure \[Pa\] of a density \[kg/m³\].
     pressure: &'a dyn Fn(f64) -> f64,
     end: f64,
     count: usize,
-    written: usize,
-    failed: Option<FrameError>,
+    written: Collection,
 }
 
 impl<'a> Frames<'a> {
@@ -35,40 +33,41 @@ impl<'a> Frames<'a> {
         pressure: &'a dyn Fn(f64) -> f64,
     ) -> Result<Self, FileError> {
         let folder = OutputFolder::create(folder)?;
-        let (collection, count) = (Collection::default(), (*count).max(1));
-        Ok(Self { folder, collection, pressure, end, count, written: 0, failed: None })
+        let (written, count) = (Collection::default(), (*count).max(1));
+        Ok(Self { folder, pressure, end, count, written })
     }
 
-    /// The frame of the end, if the run reached it, and what went wrong with any of them.
-    ///
-    /// # Errors
-    /// The first frame that could not be written.
-    pub fn finish<X, D>(mut self, end: Option<&D>) -> Result<(), FrameError>
-    where
-        X: Numbers,
-        D: Stepper<X> + ?Sized,
-    {
-        match (self.failed.take(), end) {
-            (Some(error), _) => Err(error),
-            (None, Some(simulation)) => self.write(simulation),
-            (None, None) => Ok(()),
-        }
+    /// The frames so far.
+    pub fn written(&self) -> Collection {
+        self.written.clone()
+    }
+
+    /// Goes on after these frames of an earlier run.
+    pub fn go_on(&mut self, written: Collection) {
+        self.written = written;
     }
 
     /// Writes the frames whose time has come.
-    pub fn after_step<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        while self.failed.is_none() && self.is_due(simulation.time()) {
-            self.failed = self.write(simulation).err();
+    ///
+    /// # Errors
+    /// If one cannot be written.
+    pub fn after_step<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) -> Result<(), FrameError> {
+        while self.is_due(simulation.time()) {
+            self.write(simulation)?;
         }
-        if self.failed.is_some() { Flow::Stop } else { Flow::Continue }
+        Ok(())
     }
 
     fn is_due(&self, time: f64) -> bool {
-        let next = self.written + 1;
+        let next = self.written.len() + 1;
         next < self.count && time >= self.end * next as f64 / self.count as f64
     }
 
-    fn write<X: Numbers>(
+    /// Writes a frame: between steps one whose time has come, at the end the last one.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write<X: Numbers>(
         &mut self,
         simulation: &(impl Stepper<X> + ?Sized),
     ) -> Result<(), FrameError> {
@@ -88,11 +87,10 @@ impl<'a> Frames<'a> {
         if let Some(stress) = stress(&particles) {
             frame = frame.triple(STRESS, &stress)?;
         }
-        let name = format!("particles_{:04}.vtp", self.written);
+        let name = format!("particles_{:04}.vtp", self.written.len());
         self.folder.write(&name, frame.to_xml().as_bytes())?;
-        self.collection.push(simulation.time(), &name);
-        self.folder.write("particles.pvd", self.collection.to_xml().as_bytes())?;
-        self.written += 1;
+        self.written.push(simulation.time(), &name);
+        self.folder.write("particles.pvd", self.written.to_xml().as_bytes())?;
         Ok(())
     }
 }

@@ -9,6 +9,7 @@
 
 pub mod bisect;
 pub mod case;
+pub mod checkpoint;
 pub mod columns;
 pub mod composed;
 pub mod context;

@@ -11,6 +11,7 @@ use solver::{Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{
+    checkpoint::{self, CheckpointError, Checkpoints, Observed, Stage},
     error::RunError,
     frames::{self, Frames},
     size::Size,
@@ -19,87 +20,113 @@ use crate::{
 /// Wall time after which it is shown again how far a run is.
 const SHOW_EVERY: Duration = Duration::from_millis(200);
 
-/// Obeys an interrupt after every step, however long steps take, and shows how far a run is.
-struct Watch<'a> {
+/// A function that is called after every step with what is observed of the run.
+type AfterStep<'a, X, S> = &'a dyn Fn(&mut S, &dyn Stepper<X>) -> Flow;
+/// A function that is called at the k-th of the times of interest.
+type At<'a, D, S> = &'a dyn Fn(&mut S, &mut D, usize);
+
+/// The clocks of the way to one of the times of interest.
+struct Clocks {
+    wall: Instant,
+    thread: ThreadTime,
+    process: ProcessTime,
+    /// Time of observers, frames and checkpoints \[s\].
+    observing: f64,
+    /// Steps before it.
+    steps: u64,
+}
+
+impl Clocks {
+    fn start(steps: u64) -> Self {
+        let (thread, process) = (ThreadTime::now(), ProcessTime::now());
+        Self { wall: Instant::now(), thread, process, observing: 0.0, steps }
+    }
+}
+
+/// Sees every step: calls the observer, writes frames and checkpoints, shows how far the run is, and obeys an
+/// interrupt after every step, however long steps take.
+struct Watch<'a, X, S> {
     context: &'a Context<'a>,
     end: f64,
     shown: Instant,
+    saved: Instant,
+    seen: &'a mut S,
+    after_step: AfterStep<'a, X, S>,
+    frames: Option<Frames<'a>>,
+    /// Until the clocks were started.
+    cost: Cost,
+    clocks: Clocks,
+    /// How many of the times of interest were reached.
+    reached: usize,
+    /// Why the run cannot go on.
+    failed: Option<RunError>,
 }
 
-impl Watch<'_> {
-    fn show<X: Numbers>(&mut self, simulation: &(impl Stepper<X> + ?Sized), dt: f64) {
+impl<X: Numbers, S: Observed> Watch<'_, X, S> {
+    fn show(&mut self, simulation: &(impl Stepper<X> + ?Sized), dt: f64) {
         if let Some(show) = self.context.progress {
             let particle_steps = simulation.work().steps * simulation.fluid_count() as u64;
             show(Progress { time: simulation.time(), end: self.end, dt, particle_steps });
             self.shown = Instant::now();
         }
     }
-}
 
-impl<X: Numbers> Observer<X> for Watch<'_> {
-    #[inline]
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        if self.context.progress.is_some() && self.shown.elapsed() >= SHOW_EVERY {
-            self.show(simulation, simulation.dt());
-        }
-        match self.context.interrupt {
-            Some(flag) if flag.load(Ordering::Relaxed) => Flow::Stop,
-            _ => Flow::Continue,
-        }
+    fn is_interrupted(&self) -> bool {
+        self.context.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
-}
 
-/// Sums the time that observers and frames take.
-struct Timed<'a, 'f, X> {
-    observer: &'a mut dyn Observer<X>,
-    frames: &'a mut Option<Frames<'f>>,
-    seconds: f64,
-}
+    /// What the run took until now.
+    fn cost(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Cost {
+        let (mut cost, clocks) = (self.cost.clone(), &self.clocks);
+        if simulation.work().steps > clocks.steps {
+            cost.largest_dt_s = cost.largest_dt_s.max(simulation.dt());
+        }
+        // Runs side by side share a process, so the process's clock is only right for a run that
+        // itself has threads.
+        let cpu = if cost.threads > 1 { clocks.process.elapsed() } else { clocks.thread.elapsed() };
+        cost.wall_s += clocks.wall.elapsed().as_secs_f64() - clocks.observing;
+        cost.cpu_s += (cpu.as_secs_f64() - clocks.observing).max(0.0);
+        cost.observing_s += clocks.observing;
+        cost
+    }
 
-impl<X: Numbers> Observer<X> for Timed<'_, '_, X> {
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        let start = Instant::now();
-        let mut flow = self.observer.after_step(simulation);
-        if let Some(frames) = self.frames
-            && frames.after_step(simulation) == Flow::Stop
+    /// The run as bytes, after a step or at its end.
+    fn save(
+        &self,
+        simulation: &(impl Stepper<X> + ?Sized),
+        cost: Cost,
+        ended: Option<Status>,
+    ) -> Result<Vec<u8>, CheckpointError> {
+        let frames = self.frames.as_ref().map(Frames::written);
+        let stage = Stage { reached: self.reached, cost, frames, ended };
+        checkpoint::save(simulation, &stage, &*self.seen)
+    }
+
+    /// What the case observes, and what of it is written.
+    fn observe(&mut self, simulation: &dyn Stepper<X>) -> Result<Flow, RunError> {
+        let flow = (self.after_step)(self.seen, simulation);
+        if let Some(frames) = &mut self.frames {
+            frames.after_step(simulation)?;
+        }
+        // A run that ends here by itself has nothing to go on with.
+        if let (Some(checkpoints), Flow::Continue) = (self.context.checkpoints, flow)
+            && (self.saved.elapsed() >= checkpoints.every || self.is_interrupted())
         {
-            flow = Flow::Stop;
+            let bytes = self.save(simulation, self.cost(simulation), None)?;
+            checkpoints.write(bytes, self.is_interrupted())?;
+            self.saved = Instant::now();
         }
-        self.seconds += start.elapsed().as_secs_f64();
-        flow
+        Ok(flow)
     }
-}
 
-/// What all schemes with the same extra fields share of [`drive`].
-struct Run<'a, X> {
-    context: &'a Context<'a>,
-    dt: f64,
-    watch: Watch<'a>,
-    observer: &'a mut dyn Observer<X>,
-    frames: Option<Frames<'a>>,
-    cost: Cost,
-}
-
-impl<X: Numbers> Run<'_, X> {
     /// Steps to a time; how the run ended, if it did not get there.
-    fn step_to<D>(&mut self, simulation: &mut D, until: f64) -> Option<Status>
+    fn step_to<D>(&mut self, simulation: &mut D, until: f64, dt: f64) -> Option<Status>
     where
         D: Stepper<X> + ?Sized,
     {
-        let Self { dt, watch, observer, frames, cost, .. } = self;
-        let mut timed = Timed { observer: &mut **observer, frames, seconds: 0.0 };
-        let (wall, cpu, process) = (Instant::now(), ThreadTime::now(), ProcessTime::now());
-        let before = simulation.work().steps;
-        let outcome = simulation.advance(until, *dt, &mut (watch, &mut timed));
-        // Runs side by side share a process, so the process's clock is only right for a run that
-        // itself has threads.
-        if simulation.work().steps > before {
-            cost.largest_dt_s = cost.largest_dt_s.max(simulation.dt());
-        }
-        let elapsed = if cost.threads > 1 { process.elapsed() } else { cpu.elapsed() };
-        cost.wall_s += wall.elapsed().as_secs_f64() - timed.seconds;
-        cost.cpu_s += (elapsed.as_secs_f64() - timed.seconds).max(0.0);
-        cost.observing_s += timed.seconds;
+        self.clocks = Clocks::start(simulation.work().steps);
+        let outcome = simulation.advance(until, dt, self);
+        self.cost = self.cost(simulation);
         match outcome {
             Outcome::Reached => None,
             Outcome::Diverged(divergence) => Some(Status::Diverged {
@@ -116,25 +143,38 @@ impl<X: Numbers> Run<'_, X> {
         }
     }
 
-    /// The last frame of a run that reached its end, and what was counted.
-    fn finish<D>(self, simulation: &D, status: &Status) -> Result<Cost, RunError>
-    where
-        D: Stepper<X> + ?Sized,
-    {
-        if let Some(frames) = self.frames {
-            let has_ended = *status == Status::Completed;
-            frames.finish(has_ended.then_some(simulation))?;
-        }
+    /// What was counted.
+    fn counted(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Cost {
         let work = simulation.work();
-        Ok(Cost {
+        Cost {
             threads: self.context.threads.max(1),
             steps: work.steps,
             pair_interactions: work.pair_interactions,
             particle_rhs: work.right_hand_sides,
             particles: simulation.fluid_count(),
             solver_bytes: simulation.bytes() as u64,
-            ..self.cost
-        })
+            ..self.cost.clone()
+        }
+    }
+}
+
+impl<X: Numbers, S: Observed> Observer<X> for Watch<'_, X, S> {
+    #[inline]
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
+        if self.context.progress.is_some() && self.shown.elapsed() >= SHOW_EVERY {
+            self.show(simulation, simulation.dt());
+        }
+        let start = Instant::now();
+        let observed = self.observe(simulation);
+        self.clocks.observing += start.elapsed().as_secs_f64();
+        match observed {
+            Ok(Flow::Continue) if !self.is_interrupted() => Flow::Continue,
+            Ok(_) => Flow::Stop,
+            Err(error) => {
+                self.failed = Some(error);
+                Flow::Stop
+            }
+        }
     }
 }
 
@@ -157,50 +197,133 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
     Ok(())
 }
 
-/// Steps through `times` \[s\], ascending; `at(simulation, k)` is called at the k-th. Returns how the
-/// run ended, and its cost: that of the stepping, and separately that of the observers and of `at`.
+/// A simulation with what is observed of it on its way through the times of interest.
 ///
-/// `observer` is called after every step. Frames show `pressure` \[Pa\] as a function of density \[kg/m³\].
-///
-/// # Errors
-/// If it would take more time or memory than a run may, or a frame cannot be written: the run stops at once.
-pub fn drive<X: Numbers, D: Stepper<X> + ?Sized>(
-    simulation: &mut D,
+/// The functions of a case cannot change what they capture: all that changes is in `S`, which checkpoints
+/// hold.
+pub struct Drive<'a, X, D: ?Sized, S> {
+    simulation: &'a mut D,
     dt: f64,
-    times: &[f64],
-    context: &Context,
-    observer: &mut dyn Observer<X>,
-    pressure: &dyn Fn(f64) -> f64,
-    at: &mut dyn FnMut(&mut D, usize),
-) -> Result<(Status, Cost), RunError> {
-    let dt = context.mutation.map_or(dt, |mutation| dt * mutation.factor_of(Constant::TimeStep));
-    let end = times.last().copied().unwrap_or_default();
-    let size = Size::of(simulation, ((end - simulation.time()) / dt).max(times.len() as f64));
-    check_size(size, "the end, the time step or the spacing", context)?;
-    if let Some(tell) = context.estimate {
-        tell(&size);
+    times: &'a [f64],
+    pressure: &'a dyn Fn(f64) -> f64,
+    seen: &'a mut S,
+    after_step: AfterStep<'a, X, S>,
+    at: At<'a, D, S>,
+    resumed: &'a dyn Fn(&S, &mut D),
+}
+
+impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
+    /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show
+    /// `pressure` \[Pa\] as a function of density \[kg/m³\].
+    pub fn new(
+        simulation: &'a mut D,
+        dt: f64,
+        times: &'a [f64],
+        pressure: &'a dyn Fn(f64) -> f64,
+        seen: &'a mut S,
+    ) -> Self {
+        let after_step: AfterStep<'a, X, S> = &|_, _| Flow::Continue;
+        let (at, resumed): (At<'a, D, S>, &dyn Fn(&S, &mut D)) = (&|_, _, _| {}, &|_, _| {});
+        Self { simulation, dt, times, pressure, seen, after_step, at, resumed }
     }
-    let mut watch = Watch { context, end, shown: Instant::now() };
-    watch.show(simulation, dt);
-    let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
-    let cost = Cost { threads: context.threads.max(1), ..Cost::default() };
-    let mut run = Run { context, dt, watch, observer, frames: frames.transpose()?, cost };
-    let mut status = Status::Completed;
-    for (k, &until) in times.iter().enumerate() {
-        if let Some(ended) = run.step_to(simulation, until) {
-            status = ended;
-            break;
+
+    /// Calls a function after every step.
+    pub fn after_step(self, after_step: AfterStep<'a, X, S>) -> Self {
+        Self { after_step, ..self }
+    }
+
+    /// Calls a function at each of the times, with its number.
+    pub fn at(self, at: At<'a, D, S>) -> Self {
+        Self { at, ..self }
+    }
+
+    /// Calls a function when a run goes on from a checkpoint: for what a case has changed of a simulation and
+    /// what is no part of [`Stepper::checkpoint`], such as a force.
+    pub fn resumed(self, resumed: &'a dyn Fn(&S, &mut D)) -> Self {
+        Self { resumed, ..self }
+    }
+
+    /// Steps through the times. Returns how the run ended, and its cost: that of the stepping, and separately
+    /// that of what is observed.
+    ///
+    /// # Errors
+    /// If it would take more time or memory than a run may, or a frame or a checkpoint cannot be written: the
+    /// run stops at once.
+    pub fn run(self, context: &Context) -> Result<(Status, Cost), RunError> {
+        let Self { simulation, dt, times, pressure, seen, after_step, at, resumed } = self;
+        let dt =
+            context.mutation.map_or(dt, |mutation| dt * mutation.factor_of(Constant::TimeStep));
+        let end = times.last().copied().unwrap_or_default();
+        let size = Size::of(simulation, ((end - simulation.time()) / dt).max(times.len() as f64));
+        check_size(size, "the end, the time step or the spacing", context)?;
+        if let Some(tell) = context.estimate {
+            tell(&size);
         }
-        let start = Instant::now();
-        at(simulation, k);
-        run.cost.observing_s += start.elapsed().as_secs_f64();
+        let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
+        let mut watch = Watch {
+            context,
+            end,
+            shown: Instant::now(),
+            saved: Instant::now(),
+            seen,
+            after_step,
+            frames: frames.transpose()?,
+            cost: Cost { threads: context.threads.max(1), ..Cost::default() },
+            clocks: Clocks::start(0),
+            reached: 0,
+            failed: None,
+        };
+        let mut ended = None;
+        if let Some(bytes) = context.checkpoints.and_then(Checkpoints::next) {
+            let stage = checkpoint::restore(&bytes, simulation, watch.seen)?;
+            resumed(watch.seen, simulation);
+            (watch.cost, watch.reached, ended) = (stage.cost, stage.reached, stage.ended);
+            if ended == Some(Status::Completed) {
+                // Derives again what may be asked for at the end.
+                simulation.advance(end, dt, &mut ());
+            }
+            if ended.is_none() {
+                watch.cost.resumed += 1;
+                watch.cost.threads = context.threads.max(1);
+            }
+            if let (Some(frames), Some(written)) = (&mut watch.frames, stage.frames) {
+                frames.go_on(written);
+            }
+        }
+        watch.show(simulation, dt);
+        let (status, cost) = match ended {
+            Some(status) => (status, watch.cost.clone()),
+            None => {
+                let mut status = Status::Completed;
+                while let Some(&until) = times.get(watch.reached) {
+                    if let Some(ended) = watch.step_to(simulation, until, dt) {
+                        status = ended;
+                        break;
+                    }
+                    let start = Instant::now();
+                    at(watch.seen, simulation, watch.reached);
+                    watch.cost.observing_s += start.elapsed().as_secs_f64();
+                    watch.reached += 1;
+                }
+                if let Some(error) = watch.failed.take() {
+                    return Err(error);
+                }
+                if let (Some(frames), Status::Completed) = (&mut watch.frames, &status) {
+                    frames.write(simulation)?;
+                }
+                let cost = watch.counted(simulation);
+                (status, cost)
+            }
+        };
+        if let Some(checkpoints) = context.checkpoints {
+            checkpoints.keep(watch.save(simulation, cost.clone(), Some(status.clone()))?);
+        }
+        if let Some(at_the_end) = context.at_the_end {
+            let columns = frames::columns(&simulation.particles(), pressure);
+            *at_the_end.lock().unwrap_or_else(PoisonError::into_inner) = Some(columns);
+        }
+        Ok((status, cost))
     }
-    let cost = run.finish(simulation, &status)?;
-    if let Some(at_the_end) = context.at_the_end {
-        let columns = frames::columns(&simulation.particles(), pressure);
-        *at_the_end.lock().unwrap_or_else(PoisonError::into_inner) = Some(columns);
-    }
-    Ok((status, cost))
 }
 
 #[cfg(test)]
@@ -238,15 +361,13 @@ mod tests {
     /// Takes so long over each step, and does something at one of them.
     struct Slow<F> {
         each: Duration,
-        steps: u64,
         at: (u64, F),
     }
 
-    impl<F: Fn()> Observer<()> for Slow<F> {
-        fn after_step(&mut self, _: &dyn Stepper<()>) -> Flow {
+    impl<F: Fn()> Slow<F> {
+        fn after_step(&self, simulation: &dyn Stepper<()>) -> Flow {
             std::thread::sleep(self.each);
-            self.steps += 1;
-            if self.steps == self.at.0 {
+            if simulation.work().steps == self.at.0 {
                 (self.at.1)();
             }
             Flow::Continue
@@ -259,10 +380,12 @@ mod tests {
         let flag = AtomicBool::new(false);
         let context = Context { interrupt: Some(&flag), ..Context::default() };
         let set = || flag.store(true, Ordering::Relaxed);
-        let mut slow = Slow { each: Duration::ZERO, steps: 0, at: (3, set) };
+        let slow = Slow { each: Duration::ZERO, at: (3, set) };
         let (times, mut wave) = ([1000.0 * DT], wave());
-        let (status, cost) =
-            drive(&mut *wave, DT, &times, &context, &mut slow, &|_| 0.0, &mut |_, _| {}).unwrap();
+        let (status, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+            .after_step(&|_, simulation| slow.after_step(simulation))
+            .run(&context)
+            .unwrap();
         assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
         assert!(cost.steps <= 4, "{} steps", cost.steps);
     }
@@ -274,9 +397,12 @@ mod tests {
         let watched = Context { progress: Some(&show), ..Context::default() };
         let mut states = Vec::new();
         for context in [Context::default(), watched] {
-            let mut slow = Slow { each: Duration::from_millis(25), steps: 0, at: (0, || ()) };
+            let slow = Slow { each: Duration::from_millis(25), at: (0, || ()) };
             let (times, mut wave) = ([10.0 * DT, 40.0 * DT], wave());
-            drive(&mut *wave, DT, &times, &context, &mut slow, &|_| 0.0, &mut |_, _| {}).unwrap();
+            Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+                .after_step(&|_, simulation| slow.after_step(simulation))
+                .run(&context)
+                .unwrap();
             states.push((state(&wave.particles()), wave.work().steps));
         }
         assert_eq!(states[0], states[1]);

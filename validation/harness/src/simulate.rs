@@ -12,7 +12,7 @@ use crate::{
     error::RunError,
     method::{Medium, Method, Parts},
     rules::Rules,
-    runner::{check_size, drive},
+    runner::{Drive, check_size},
     size::Size,
 };
 
@@ -98,7 +98,7 @@ pub fn simulate<X: Numbers>(
     let mut simulation = (method.build)(parts)?;
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) =
-        drive(&mut *simulation, dt, &[end], context, &mut (), &pressure, &mut |_, _| {})?;
+        Drive::new(&mut *simulation, dt, &[end], &pressure, &mut ()).run(context)?;
     record.state = Some(state(&simulation.particles()));
     Ok(simulation)
 }

@@ -169,6 +169,10 @@ pub struct Motion {
     stress: Option<f64>,
 }
 
+harness::observed! {
+    Motion: changes(series, stress), parts(), stays(settings, momentum, total, energy)
+}
+
 impl Observer<Symmetric> for Motion {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
         let (mut momentum, mut first) = ([0.0; 2], 0.0);

@@ -25,7 +25,7 @@ use harness::{
     context::Context,
     declare::Declaration,
     method::{Method, Parts},
-    runner,
+    runner::Drive,
     runs::Runs,
     simulate,
     study::Study,
@@ -183,15 +183,11 @@ fn run(
     let numbers = [("h/dx", h_over_dx), ("dt [s]", dt)];
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
     let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
-    (record.status, record.cost) = runner::drive(
-        &mut *simulation,
-        dt,
-        &[dt * steps as f64],
-        context,
-        &mut watch,
-        &|density| RUBBER.eos().pressure(density),
-        &mut |_, _| {},
-    )?;
+    let (times, pressure) = ([dt * steps as f64], |density| RUBBER.eos().pressure(density));
+    (record.status, record.cost) =
+        Drive::new(&mut *simulation, dt, &times, &pressure, &mut watch)
+            .after_step(&Watch::after_step)
+            .run(context)?;
     let error = if settings.rotation {
         let particles = simulation.particles();
         let shear = particles[particles.len() / 2].extra.xy;
@@ -209,6 +205,8 @@ struct Watch {
     direction: Vector2<f64>,
     amplitudes: Vec<f64>,
 }
+
+harness::observed! { Watch: changes(amplitudes), parts(), stays(direction) }
 
 impl Watch {
     /// θ of a step, from a fit to all steps.

@@ -146,6 +146,10 @@ pub struct Tip {
     series: Vec<[f64; 2]>,
 }
 
+harness::observed! {
+    Tip: changes(until, series), parts(), stays(settings, material, columns, energy)
+}
+
 impl Observer<Symmetric> for Tip {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
         if self.until > 0 {

@@ -130,6 +130,11 @@ pub struct History {
     first: Option<([f64; 2], f64)>,
 }
 
+harness::observed! {
+    History:
+    changes(until, series, first), parts(), stays(settings, material, mass, every, interior)
+}
+
 impl History {
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
         let (mut mass, mut stress, mut radius) = (0.0, 0.0, 0.0);

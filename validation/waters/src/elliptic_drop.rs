@@ -20,7 +20,7 @@ use harness::{
     declare::{Accuracy, Declaration, ErrorOf, Ladder, Level},
     method::{Medium, Parts},
     pictures,
-    runner::{self, Context},
+    runner::{Context, Drive},
     runs::{Judged, Runs},
     simulate,
     study::Study,
@@ -171,6 +171,8 @@ struct History {
     free_fall: [f64; 2],
 }
 
+harness::observed! { History: changes(rows, free_fall), parts(), stays() }
+
 impl History {
     fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {
         let (t, g) = (simulation.time(), drop.medium.acceleration);
@@ -226,18 +228,14 @@ fn run(
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let pressure = |density| medium.eos.pressure(density);
-    (record.status, record.cost) = runner::drive(
-        &mut *simulation,
-        drop.rules.dt,
-        &times,
-        context,
-        &mut (),
-        &pressure,
-        &mut |simulation, _| {
-            history.sample(&drop, &*simulation);
-            ledger.sample(simulation);
-        },
-    )?;
+    let mut seen = (&mut history, &mut ledger);
+    (record.status, record.cost) =
+        Drive::new(&mut *simulation, drop.rules.dt, &times, &pressure, &mut seen)
+            .at(&|(history, ledger), simulation, _| {
+                history.sample(&drop, &*simulation);
+                ledger.sample(simulation);
+            })
+            .run(context)?;
     history.measure(&mut record);
     let start = shape(drop.particles.iter().map(evolved));
     let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;

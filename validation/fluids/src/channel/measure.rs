@@ -315,6 +315,10 @@ impl Series {
     }
 }
 
+harness::observed! {
+    Series: changes(next, rows, mode), parts(), stays(every, speed, pressure, eos, count, width)
+}
+
 impl Observer<()> for Series {
     #[inline]
     fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Going {

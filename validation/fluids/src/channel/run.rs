@@ -6,9 +6,10 @@ use harness::{
     composed::Program,
     context::Context,
     method::Method,
-    runner, simulate,
+    runner::Drive,
+    simulate,
 };
-use solver::EquationOfState;
+use solver::{EquationOfState, Observer};
 
 use super::{
     ChannelSettings, Flow, Setup,
@@ -48,17 +49,14 @@ fn run(
     let times: Vec<f64> = compared.iter().map(|tau| setup.time(*tau)).collect();
     let mut series = Series::new(setup, &*simulation);
     let pressure = |density| eos.pressure(density);
-    (record.status, record.cost) = runner::drive(
-        &mut *simulation,
-        setup.dt,
-        &times,
-        context,
-        &mut series,
-        &pressure,
-        &mut |simulation, k| {
-            measure::compare(setup, &Sample::of(setup, simulation), compared[k], &mut record);
-        },
-    )?;
+    let mut seen = (&mut series, &mut record);
+    let (status, cost) = Drive::new(&mut *simulation, setup.dt, &times, &pressure, &mut seen)
+        .after_step(&|(series, _), simulation| series.after_step(simulation))
+        .at(&|(_, record), simulation, k| {
+            measure::compare(setup, &Sample::of(setup, simulation), compared[k], record);
+        })
+        .run(context)?;
+    (record.status, record.cost) = (status, cost);
     if record.status == record::Status::Completed {
         let sample = Sample::of(setup, &*simulation);
         measure::at_the_end(setup, &sample, &mut record);

@@ -2,6 +2,7 @@
 
 use base::functions::exp;
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use solver::{BodyForce, Scheme, Simulation, Stepper};
 
 /// Forces with a body force that can be set.
@@ -40,7 +41,7 @@ impl<S: Scheme<Extra = (), Forces: Driven>> Driving for Simulation<S> {
 /// f = d whatever d is.
 ///
 /// With t = T/4 both roots are −2/T: the fastest without overshoot.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Controller {
     /// u* \[m/s\].
     pub wanted: f64,

@@ -1,6 +1,7 @@
 //! What is measured: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
+use serde::{Deserialize, Serialize};
 use solver::{EquationOfState, Role, Stepper};
 
 use super::{
@@ -125,7 +126,7 @@ impl<'a> Field<'a> {
 }
 
 /// Sums over samples of one part of the run.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Window {
     count: f64,
     /// u and v at the points of the stations.

@@ -1,5 +1,6 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
+use serde::{Deserialize, Serialize};
 use solver::EquationOfState;
 
 use super::{
@@ -8,7 +9,7 @@ use super::{
     measure::{self, Window},
 };
 use base::record::{Profile, Record, Status};
-use harness::{case::RunError, composed::Program, context::Context, runner, simulate};
+use harness::{case::RunError, composed::Program, context::Context, runner::Drive, simulate};
 
 /// Runs of the flow over hills.
 pub const PROGRAM: Program<HillSettings, HillMethod> =
@@ -23,6 +24,7 @@ const ENTRY: f64 = 0.5;
 const SAMPLES: f64 = 40.0;
 
 /// Times at equal intervals.
+#[derive(Serialize, Deserialize)]
 struct Schedule {
     next: f64,
     every: f64,
@@ -56,6 +58,10 @@ struct Monitor<'a> {
     sample: Schedule,
     /// t, force, flux, kinetic energy.
     series: Vec<[f64; 4]>,
+}
+
+harness::observed! {
+    Monitor<'_>: changes(controller, windows, entry, sample, series), parts(), stays(setup, area)
 }
 
 impl Monitor<'_> {
@@ -112,15 +118,12 @@ fn run(
     let entry = Schedule { next: 0.0, every: ENTRY };
     let sample = Schedule { next: 0.0, every: s.average * s.end / SAMPLES };
     let mut monitor = Monitor { setup, area, controller, windows, entry, sample, series };
-    (record.status, record.cost) = runner::drive(
-        &mut *simulation,
-        flow.rules.dt,
-        &times,
-        context,
-        &mut (),
-        &|density| flow.medium.eos.pressure(density),
-        &mut |simulation, _| monitor.look(simulation, stretch),
-    )?;
+    let pressure = |density| flow.medium.eos.pressure(density);
+    (record.status, record.cost) =
+        Drive::new(&mut *simulation, flow.rules.dt, &times, &pressure, &mut monitor)
+            .at(&|monitor, simulation, _| monitor.look(simulation, stretch))
+            .resumed(&|monitor, simulation| simulation.drive(monitor.controller.force))
+            .run(context)?;
     if record.status == Status::Completed {
         measure::measure(setup, &monitor.windows, area, &mut record);
         let (particles, outside) = measure::particles(setup, &*simulation);

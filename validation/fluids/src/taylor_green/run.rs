@@ -1,6 +1,7 @@
 //! One run of the vortices: scene, stepping, record.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
@@ -11,7 +12,8 @@ use base::{
     record::{Profile, Record, Status},
 };
 use harness::{
-    case::RunError, composed::Program, context::Context, method::Method, runner, simulate,
+    case::RunError, composed::Program, context::Context, method::Method, runner::Drive,
+    simulate,
 };
 use maths::exact::TaylorGreen;
 
@@ -90,15 +92,11 @@ fn run(
         Sample::of(&setup, simulation.time(), &simulation.particles())
     };
     let mut series = vec![sample(&*simulation)];
-    (record.status, record.cost) = runner::drive(
-        &mut *simulation,
-        flow.rules.dt,
-        &times,
-        context,
-        &mut (),
-        &|density| flow.medium.eos.pressure(density),
-        &mut |simulation, _| series.push(sample(simulation)),
-    )?;
+    let pressure = |density| flow.medium.eos.pressure(density);
+    (record.status, record.cost) =
+        Drive::new(&mut *simulation, flow.rules.dt, &times, &pressure, &mut series)
+            .at(&|series, simulation, _| series.push(sample(simulation)))
+            .run(context)?;
     if record.status == Status::Completed {
         measure(&setup, &simulation.particles(), &series, &mut record);
         if context.keep_particles {
@@ -111,7 +109,7 @@ fn run(
 }
 
 /// The flow at one time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Sample {
     time: f64,
     /// Relative L2 error of the velocity vector.
@@ -119,6 +117,7 @@ struct Sample {
     /// Kinetic energy over the exact one.
     energy: f64,
     /// Total momentum over total mass \[U\].
+    #[serde(with = "harness::checkpoint::vector")]
     momentum: Vector2<f64>,
 }
 

@@ -16,12 +16,13 @@ use solver::{CubicSpline, EquationOfState, Leapfrog, QuinticSpline, Stepper, Tai
 use crate::wave::plain;
 use base::{record::Record, settings::Settings};
 use harness::{
+    checkpoint::Observed,
     case::{RunError, Tier},
     composed::{self, Composed, Composition},
     context::Context,
     declare::Declaration,
     method::Method,
-    runner,
+    runner::Drive,
     runs::Runs,
     simulate,
     study::Study,
@@ -192,18 +193,19 @@ fn record_of(variant: &str, settings: &ExtremeSettings) -> Record {
 type Simulation = dyn Stepper<()>;
 
 /// Steps a simulation through `times` \[s\], at which `at` looks, to its end.
-fn drive(
+fn drive<S: Observed>(
     (method, variant, settings): (&Method, &str, &ExtremeSettings),
     simulation: &mut Simulation,
     (dt, times, eos): (f64, &[f64], Tait),
     context: &Context,
-    at: &mut dyn FnMut(&mut Simulation, usize),
+    seen: &mut S,
+    at: &dyn Fn(&mut S, &mut Simulation, usize),
 ) -> Result<Record, RunError> {
     let (name, serial) = ((EXTREMES.name, variant), Context::default());
     let mut record = simulate::begin(name, settings, method, &[("dt [s]", dt)], &serial);
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) =
-        runner::drive(simulation, dt, times, context, &mut (), &pressure, at)?;
+        Drive::new(simulation, dt, times, &pressure, seen).at(at).run(context)?;
     record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
 }

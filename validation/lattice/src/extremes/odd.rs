@@ -88,7 +88,7 @@ fn drive_to_end(
     let (run, times) = ((&method, variant, settings), [dt * steps as f64]);
     let mut simulation = (method.build)(parts(&method, 1.2, 0.0, particles))?;
     let stepping = (dt, &times[..], fluid(0.0));
-    let record = drive(run, &mut *simulation, stepping, context, &mut |_, _| ())?;
+    let record = drive(run, &mut *simulation, stepping, context, &mut (), &|_, _, _| ())?;
     Ok((record, simulation))
 }
 
@@ -103,14 +103,14 @@ pub fn rest(
     let done = |k: usize| (k + 1) * steps / 10;
     let times: Vec<f64> = (0..10).map(|k| done(k) as f64 * dt).collect();
     let mut late = 0.0f64;
-    let mut look = |simulation: &mut Simulation, k: usize| {
+    let look = |late: &mut f64, simulation: &mut Simulation, k: usize| {
         let is_on_time = simulation.work().steps == done(k) as u64;
         let off = (simulation.time() - times[k]).abs();
-        late = late.max(if is_on_time { off } else { f64::INFINITY });
+        *late = late.max(if is_on_time { off } else { f64::INFINITY });
     };
     let (run, eos) = ((method, variant, settings), fluid(background));
     let mut simulation = (method.build)(parts(method, h_over_dx, background, torus(n)))?;
-    let mut record = drive(run, &mut *simulation, (dt, &times, eos), context, &mut look)?;
+    let mut record = drive(run, &mut *simulation, (dt, &times, eos), context, &mut late, &look)?;
     record.put(HEAT, fastest(&simulation.particles()));
     record.put(CLOCK_ERROR, late);
     Ok(record)

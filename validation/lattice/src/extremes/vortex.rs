@@ -97,12 +97,12 @@ pub fn run(
     let times: Vec<f64> = (1..=20).map(|k| end * f64::from(k) / 20.0).collect();
     let mut simulation = (method.build)(vortex.parts(&method))?;
     let (start, mut peak) = (kinetic(&*simulation), 1.0f64);
-    let mut look = |simulation: &mut Simulation, _: usize| {
-        peak = peak.max(kinetic(simulation) / start);
+    let look = |peak: &mut f64, simulation: &mut Simulation, _: usize| {
+        *peak = peak.max(kinetic(simulation) / start);
     };
     let run = (&method, variant, settings);
     let stepping = (dt, &times[..], vortex.eos);
-    let mut record = drive(run, &mut *simulation, stepping, context, &mut look)?;
+    let mut record = drive(run, &mut *simulation, stepping, context, &mut peak, &look)?;
     if record.status == Status::Completed {
         let (mut difference, mut scale) = (0.0, 0.0);
         for particle in simulation.particles() {

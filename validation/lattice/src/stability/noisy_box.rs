@@ -19,7 +19,8 @@ use harness::{
     case::{Rules, RunError},
     context::Context,
     method::{Medium, Method, Parts},
-    runner, simulate,
+    runner::Drive,
+    simulate,
 };
 use maths::theory::{
     Stepping,
@@ -176,6 +177,8 @@ struct Watch {
     stopped: bool,
 }
 
+harness::observed! { Watch: changes(growth, stopped), parts(), stays(to_the_end) }
+
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
 fn energy(simulation: &dyn Stepper<()>) -> f64 {
     let of = |(mass, e): (f64, &solver::Evolved<()>)| {
@@ -290,18 +293,15 @@ impl NoisyBox {
         let growth = Growth::new(start, steps as u64);
         let mut watch = Watch { growth, to_the_end, stopped: false };
         let mut wave_growth = None;
-        let (mut status, cost) = runner::drive(
-            &mut *simulation,
-            dt,
-            &[dt * steps as f64],
-            context,
-            &mut watch,
-            &|density| Tait::new(1.0, 1.0).pressure(density),
-            &mut |simulation, _| {
+        let pressure = |density| Tait::new(1.0, 1.0).pressure(density);
+        let (times, mut seen) = ([dt * steps as f64], (&mut watch, &mut wave_growth));
+        let (mut status, cost) = Drive::new(&mut *simulation, dt, &times, &pressure, &mut seen)
+            .after_step(&|(watch, _), simulation| watch.after_step(simulation))
+            .at(&|(_, growth), simulation, _| {
                 let ratio = wave.energy(&simulation.particles()) / wave_start;
-                wave_growth = Some(0.5 * ln(ratio) / steps as f64);
-            },
-        )?;
+                **growth = Some(0.5 * ln(ratio) / steps as f64);
+            })
+            .run(context)?;
         if watch.stopped {
             status = Status::Completed;
         }

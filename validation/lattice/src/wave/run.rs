@@ -16,7 +16,8 @@ use harness::{
     case::{Rules, RunError},
     context::Context,
     method::{Medium, Method, Parts},
-    runner, simulate,
+    runner::{self, Drive},
+    simulate,
 };
 use maths::{exact::damped_mode::DampedMode, theory::time_step};
 
@@ -53,8 +54,10 @@ struct Projection<'a> {
     basis: Vec<[f64; 2]>,
     series: Vec<[f64; 3]>,
     /// Σ m v after the first step and the last \[kg m/s\].
-    momentum: Option<[Vector2<f64>; 2]>,
+    momentum: Option<[[f64; 2]; 2]>,
 }
+
+harness::observed! { Projection<'_>: changes(series, momentum), parts(), stays(wave, basis) }
 
 /// What was measured.
 pub struct Measured {
@@ -208,7 +211,7 @@ impl Observer<()> for Projection<'_> {
             sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
         }
         self.series.push(sums);
-        let momentum = simulation.momentum();
+        let momentum = simulation.momentum().into();
         self.momentum = Some([self.momentum.map_or(momentum, |[first, _]| first), momentum]);
         Flow::Continue
     }
@@ -240,17 +243,14 @@ fn project(
     let mut projection = Projection::new(wave);
     let pressure = |density: f64| wave.medium.eos.pressure(density);
     // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
-    let (status, cost) = runner::drive(
-        &mut *simulation,
-        wave.dt,
-        &[wave.end],
-        context,
-        &mut projection,
-        &pressure,
-        &mut |_, _| (),
-    )?;
+    let (status, cost) =
+        Drive::new(&mut *simulation, wave.dt, &[wave.end], &pressure, &mut projection)
+            .after_step(&Projection::after_step)
+            .run(context)?;
     Ok(Measured {
-        momentum_change: projection.momentum.map_or(f64::NAN, |[a, b]| (b - a).norm()),
+        momentum_change: projection
+            .momentum
+            .map_or(f64::NAN, |[a, b]| (Vector2::from(b) - Vector2::from(a)).norm()),
         series: projection.series,
         status,
         cost,

@@ -7,6 +7,7 @@
 //! what is left of them is the work of the walls. A body force is the slope of the potential energy and
 //! has no item.
 
+use serde::{Deserialize, Serialize};
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion,
     EquationOfState, Evolved, Pressure, Rate, Scheme, Simulation, Stepper, Term, Viscosity, Xsph,
@@ -142,22 +143,25 @@ where
 }
 
 /// Works since the first sample, by the trapezoidal rule over the powers of each sample.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Account {
-    last: Option<(f64, Items)>,
-    works: Items,
+    last: Option<(f64, Named)>,
+    works: Named,
 }
+
+/// Items that own their names.
+type Named = Vec<(String, f64)>;
 
 impl Account {
     /// Adds the powers at this time \[s\].
     pub fn add(&mut self, time: f64, powers: &[(&'static str, f64)]) {
-        let powers = merged(powers);
+        let powers = merged(powers.iter().copied());
         if let Some((before, old)) = self.last.take() {
             for (name, power) in &powers {
                 let was = of(&old, name);
-                self.works.push((name, 0.5 * (time - before) * (power + was)));
+                self.works.push((name.clone(), 0.5 * (time - before) * (power + was)));
             }
-            self.works = merged(&self.works);
+            self.works = merged(self.works.iter().map(|(name, work)| (name.as_str(), *work)));
         }
         self.last = Some((time, powers));
     }
@@ -173,17 +177,17 @@ impl Account {
     }
 }
 
-fn of(items: &[(&str, f64)], name: &str) -> f64 {
-    items.iter().find(|(known, _)| *known == name).map_or(0.0, |(_, value)| *value)
+fn of(items: &[(String, f64)], name: &str) -> f64 {
+    items.iter().find(|(known, _)| known == name).map_or(0.0, |(_, value)| *value)
 }
 
 /// Items of the same name added, in the order in which they first appear.
-fn merged(items: &[(&'static str, f64)]) -> Items {
-    let mut sums: Items = Vec::new();
+fn merged<'a>(items: impl Iterator<Item = (&'a str, f64)>) -> Named {
+    let mut sums = Named::new();
     for (name, value) in items {
         match sums.iter_mut().find(|(known, _)| known == name) {
             Some((_, sum)) => *sum += value,
-            None => sums.push((name, *value)),
+            None => sums.push((name.into(), value)),
         }
     }
     sums
@@ -271,7 +275,7 @@ mod tests {
         let meter = Meter::new(&simulation, &slope);
         let mut items = [forces.powers(&meter), drift.powers(&meter)].concat();
         items.push((WALLS, meter.wall_power()));
-        let items = merged(&items);
+        let items = merged(items.into_iter());
         assert_eq!(items.len(), 5);
         assert!(of(&items, VISCOSITY) < 0.0, "viscosity heats");
         let total: f64 = items.iter().map(|(_, power)| power).sum();

@@ -71,6 +71,8 @@ pub struct Budget {
     rows: Vec<[f64; 7]>,
 }
 
+harness::observed! { Budget: changes(account, rows), parts(), stays() }
+
 impl Budget {
     /// Takes a sample of a simulation that has been brought to a time.
     pub fn sample(&mut self, rings: &Rings, simulation: &dyn Metered) {

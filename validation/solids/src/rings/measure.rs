@@ -79,6 +79,12 @@ struct Wholeness {
     torn_at: Option<f64>,
 }
 
+harness::observed! {
+    Wholeness:
+    changes(pieces, holes, most_pieces, least_holes, torn_at), parts(),
+    stays(least_hole, bonds, is_seen)
+}
+
 impl Wholeness {
     fn new(rings: &Rings) -> Self {
         let least_hole = Topology::least_hole_of_ring(rings.settings.inner, rings.settings.outer);
@@ -145,6 +151,10 @@ pub struct Series<'a> {
     samples: usize,
     wholeness: Wholeness,
     rows: Vec<[f64; COLUMNS]>,
+}
+
+harness::observed! {
+    Series<'_>: changes(next, samples, rows), parts(wholeness), stays(rings, every)
 }
 
 const COLUMNS: usize = 12;

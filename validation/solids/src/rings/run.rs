@@ -1,6 +1,6 @@
 //! One run of the rings: scene, stepping, record.
 
-use solver::{EquationOfState, Particle, Stepper, Symmetric};
+use solver::{EquationOfState, Observer, Particle, Stepper, Symmetric};
 
 use super::{
     RingMethod, RingSettings, Rings,
@@ -15,7 +15,8 @@ use base::record::{Profile, Record, Status};
 use harness::{
     case::{Rules, RunError},
     context::Context,
-    runner, simulate,
+    runner::Drive,
+    simulate,
 };
 
 /// Times at which particles are kept for pictures, shares of the run.
@@ -54,20 +55,17 @@ pub fn run(
     let stops = stops(rings, context);
     let times: Vec<f64> = stops.iter().map(|stop| stop.time).collect();
     let eos = rings.material.eos();
-    let (status, cost) = runner::drive(
-        &mut *simulation,
-        rings.dt,
-        &times,
-        context,
-        &mut series,
-        &|density| eos.pressure(density),
-        &mut |s, k| {
+    let pressure = |density| eos.pressure(density);
+    let mut seen = (&mut series, &mut budget, &mut record);
+    let (status, cost) = Drive::new(&mut *simulation, rings.dt, &times, &pressure, &mut seen)
+        .after_step(&|(series, ..), simulation| series.after_step(simulation))
+        .at(&|(_, budget, record), s, k| {
             if stops[k].is_sample {
                 budget.sample(rings, s);
             }
-            keep(rings, s, times[k], context, &mut record);
-        },
-    )?;
+            keep(rings, s, times[k], context, record);
+        })
+        .run(context)?;
     let particles = measure::along_flight(rings, &*simulation);
     if status == Status::Completed {
         if series.last_time() < Some(simulation.time() * rings.c0) {

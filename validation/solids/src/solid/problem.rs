@@ -12,10 +12,12 @@ use base::{
 };
 use harness::{
     case::{Rules, RunError},
+    checkpoint::Observed,
     composed::{Composition, Program, Variants},
     context::Context,
     method::{Boundary, Medium, Method, Parts},
-    runner, simulate,
+    runner::{self, Drive},
+    simulate,
 };
 use maths::theory::time_step::Integrator;
 
@@ -59,7 +61,7 @@ pub trait Problem: SharedSettings {
 }
 
 /// Sees every step of a run and measures it.
-pub trait Watch: Observer<Symmetric> {
+pub trait Watch: Observer<Symmetric> + Observed {
     /// Puts metrics and profiles; `simulation` is at its end.
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
 }
@@ -137,15 +139,11 @@ fn run<P: Problem>(
     let mut watch = settings.watch(&particles);
     let mut simulation = (method.build)(Parts::new(medium, settings.domain(), particles, context))?;
     // No stop but the end: one would bring the leapfrog's velocities to a whole step.
-    (record.status, record.cost) = runner::drive(
-        &mut *simulation,
-        dt,
-        &[end],
-        context,
-        &mut watch,
-        &|density| eos.pressure(density),
-        &mut |_, _| {},
-    )?;
+    let pressure = |density| eos.pressure(density);
+    (record.status, record.cost) =
+        Drive::new(&mut *simulation, dt, &[end], &pressure, &mut watch)
+            .after_step(&P::Watch::after_step)
+            .run(context)?;
     record.state = Some(digest(&simulation.particles()));
     watch.measure(&*simulation, &mut record);
     Ok(record)

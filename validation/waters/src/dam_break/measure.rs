@@ -1,6 +1,8 @@
 //! What is measured of the water: front, heights, levels, momentum, and pressure on the far wall.
 
+use harness::checkpoint::vector;
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use solver::{EquationOfState, Evolved, Flow, Observer, Stepper, Tait};
 
 use super::{Dam, metrics, setup::near_the_floor};
@@ -56,7 +58,7 @@ fn foremost<'a>(
 
 /// One sample: t \[s\]; front, residual height, levels \[m\]; particles outside; kinetic Mach
 /// number; excursion of the density.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Sample {
     time: f64,
     front: f64,
@@ -79,14 +81,19 @@ pub struct Samples<'a> {
     balance: Option<Balance>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Balance {
     time: f64,
+    #[serde(with = "vector")]
     start: Vector2<f64>,
+    #[serde(with = "vector")]
     force: Vector2<f64>,
+    #[serde(with = "vector")]
     impulse: Vector2<f64>,
     gap: f64,
 }
+
+harness::observed! { Samples<'_>: changes(start, samples, balance), parts(), stays(dam) }
 
 impl<'a> Samples<'a> {
     /// None yet.
@@ -284,6 +291,8 @@ fn inside((support, weight): (f64, Weight), height: f64) -> f64 {
         .filter(|(_, y)| height + y > 0.0)
         .fold(0.0, |sum, (x, y)| sum + cell * cell * weight(x * x + y * y))
 }
+
+harness::observed! { Gauge: changes(rows), parts(), stays(eos, reach, sensors) }
 
 impl Observer<()> for Gauge {
     fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use solver::{EquationOfState, Particle, Role, Stepper};
+use solver::{EquationOfState, Observer, Particle, Role, Stepper};
 
 use super::{
     Dam, DamSettings, NAME,
@@ -14,7 +14,7 @@ use base::record::{Profile, Record, Status};
 use harness::{
     case::RunError,
     composed::Program,
-    runner::{self, Context},
+    runner::{Context, Drive},
     simulate,
 };
 
@@ -65,21 +65,18 @@ fn run(
     let filled = water_mass(&simulation.particles());
     let (times, pictures) = stops(dam, context);
     let pressure = |density| medium.eos.pressure(density);
-    (record.status, record.cost) = runner::drive(
-        &mut *simulation,
-        rules.dt,
-        &times,
-        context,
-        &mut gauge,
-        &pressure,
-        &mut |s, k| {
+    let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
+    let (status, cost) = Drive::new(&mut *simulation, rules.dt, &times, &pressure, &mut seen)
+        .after_step(&|(gauge, ..), simulation| gauge.after_step(simulation))
+        .at(&|(_, samples, ledger, record), s, k| {
             samples.sample(&*s);
             ledger.sample(s);
             if let Some(share) = pictures.get(&k) {
                 record.profiles.insert(format!("particles@{share}"), picture(dam, &*s));
             }
-        },
-    )?;
+        })
+        .run(context)?;
+    (record.status, record.cost) = (status, cost);
     record.put(metrics::REACHED, simulation.time() / times[times.len() - 1]);
     let particles = simulation.particles();
     let mass = water_mass(&particles);

@@ -1,5 +1,6 @@
 //! One run: scene, stepping, what is measured.
 
+use serde::{Deserialize, Serialize};
 use solver::{EquationOfState, Particle, Role, Stepper};
 
 use super::{HydrostaticSettings, NAME, column::Column};
@@ -8,7 +9,7 @@ use harness::{
     case::RunError,
     composed::Program,
     method::Method,
-    runner::{self, Context},
+    runner::{Context, Drive},
     simulate,
 };
 use maths::metrics::norms::{Scale, l2};
@@ -46,15 +47,10 @@ fn run(
     let mut history = History { column: &column, start, moments: Vec::new() };
     history.sample(&*simulation);
     let pressure = |density| medium.eos.pressure(density);
-    (record.status, record.cost) = runner::drive(
-        &mut *simulation,
-        rules.dt,
-        &times(&column),
-        context,
-        &mut (),
-        &pressure,
-        &mut |simulation, _| history.sample(&*simulation),
-    )?;
+    (record.status, record.cost) =
+        Drive::new(&mut *simulation, rules.dt, &times(&column), &pressure, &mut history)
+            .at(&|history, simulation, _| history.sample(&*simulation))
+            .run(context)?;
     if record.status == Status::Completed {
         history.metrics(&mut record);
         record.profiles.insert("pressure".into(), profile(&column, fluid(&*simulation)));
@@ -76,6 +72,7 @@ fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
 }
 
 /// What is measured of the water at one time.
+#[derive(Serialize, Deserialize)]
 struct Moment {
     /// t \[4 H/c₀\].
     time: f64,
@@ -96,6 +93,8 @@ struct History<'a> {
     start: [f64; 2],
     moments: Vec<Moment>,
 }
+
+harness::observed! { History<'_>: changes(moments), parts(), stays(column, start) }
 
 impl History<'_> {
     fn sample(&mut self, simulation: &dyn Stepper<()>) {

@@ -35,6 +35,8 @@ pub struct Ledger {
     rows: Vec<[f64; 9]>,
 }
 
+harness::observed! { Ledger: changes(account, rows), parts(), stays(water) }
+
 impl Ledger {
     /// An empty ledger of water of this medium.
     pub fn new(medium: &Medium) -> Self {

@@ -1,0 +1,275 @@
+//! Checkpoints: all that a run has come to, as bytes from which it goes on with the same bits.
+//!
+//! A run is one or several simulations, one after another. A checkpoint holds each that has ended, with what
+//! was observed of it, and the one that is under way. Going on, a case begins as always: it makes its scene
+//! and its observers, and each simulation then takes over its state and theirs, so that no case knows whether
+//! it goes on.
+
+use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use base::{
+    files::FileError,
+    record::{Cost, Record, Status},
+    vtk::Collection,
+};
+use serde::{Serialize, de::DeserializeOwned};
+use solver::{Checkpoint, Numbers, SceneError, Stepper};
+use thiserror::Error;
+
+/// Why there is no checkpoint, or why a run does not go on from one.
+#[derive(Debug, Error)]
+pub enum CheckpointError {
+    /// Something that was observed has no form as bytes.
+    #[error("a checkpoint cannot be made: {0}")]
+    Saved(#[from] rmp_serde::encode::Error),
+    /// The bytes are not those of the run.
+    #[error("the checkpoint is not one of this run: {0}")]
+    Read(#[from] rmp_serde::decode::Error),
+    /// The words of the state of the simulation are too few.
+    #[error("the checkpoint is not one of this run: it ends in the middle of its particles")]
+    State,
+    /// No simulation can have that state.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The file was not written.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+type Done = Result<(), CheckpointError>;
+
+/// Values one after another, as bytes (MessagePack); floats by their bits.
+#[derive(Default)]
+pub struct Saving(Vec<u8>);
+
+impl Saving {
+    /// Appends a value.
+    ///
+    /// # Errors
+    /// If the value refuses to be written.
+    pub fn put(&mut self, value: &impl Serialize) -> Done {
+        Ok(rmp_serde::encode::write_named(&mut self.0, value)?)
+    }
+}
+
+/// The values of [`Saving`] again.
+pub struct Restoring<'a>(&'a [u8]);
+
+impl Restoring<'_> {
+    /// The next value.
+    ///
+    /// # Errors
+    /// If it is not of this type, or there is none.
+    pub fn take<T: DeserializeOwned>(&mut self) -> Result<T, CheckpointError> {
+        Ok(rmp_serde::from_read(&mut self.0)?)
+    }
+}
+
+/// What is observed of a run: it can save what has changed since the start, and take it over again.
+/// [`observed!`](crate::observed!) implements it for a struct of observations.
+pub trait Observed {
+    /// Saves all that has changed.
+    ///
+    /// # Errors
+    /// If a value refuses to be written.
+    fn save(&self, to: &mut Saving) -> Done;
+
+    /// Takes it over.
+    ///
+    /// # Errors
+    /// If the bytes are not those of this observation.
+    fn restore(&mut self, from: &mut Restoring) -> Done;
+}
+
+/// Implements [`Observed`] for a struct: which of its fields change during a run and are values of serde,
+/// which are [`Observed`] themselves, and which stay as they were at the start. Every field must be named, so
+/// that a new one cannot be forgotten.
+#[macro_export]
+macro_rules! observed {
+    (
+        $Struct:ty:
+        changes($($change:ident),*), parts($($part:ident),*), stays($($stay:ident),*)
+    ) => {
+        impl $crate::checkpoint::Observed for $Struct {
+            fn save(
+                &self,
+                to: &mut $crate::checkpoint::Saving,
+            ) -> Result<(), $crate::checkpoint::CheckpointError> {
+                let Self { $($change,)* $($part,)* $($stay: _,)* } = self;
+                $(to.put($change)?;)*
+                $($part.save(to)?;)*
+                Ok(())
+            }
+            fn restore(
+                &mut self,
+                from: &mut $crate::checkpoint::Restoring,
+            ) -> Result<(), $crate::checkpoint::CheckpointError> {
+                let Self { $($change,)* $($part,)* $($stay: _,)* } = self;
+                $(*$change = from.take()?;)*
+                $($part.restore(from)?;)*
+                Ok(())
+            }
+        }
+    };
+}
+
+/// Implements [`Observed`] for values that change as a whole.
+macro_rules! values {
+    ($($Value:ty $(, $T:ident)?;)+) => {$(
+        impl$(<$T: Serialize + DeserializeOwned>)? Observed for $Value {
+            fn save(&self, to: &mut Saving) -> Done {
+                to.put(self)
+            }
+            fn restore(&mut self, from: &mut Restoring) -> Done {
+                *self = from.take()?;
+                Ok(())
+            }
+        }
+    )+};
+}
+
+values! { f64; Option<T>, T; Vec<T>, T; Record; }
+
+impl<O: Observed + ?Sized> Observed for &mut O {
+    fn save(&self, to: &mut Saving) -> Done {
+        (**self).save(to)
+    }
+    fn restore(&mut self, from: &mut Restoring) -> Done {
+        (**self).restore(from)
+    }
+}
+
+/// Implements [`Observed`] for a tuple, member by member.
+macro_rules! tuple {
+    ($($Member:ident $index:tt),*) => {
+        impl<$($Member: Observed),*> Observed for ($($Member,)*) {
+            fn save(&self, _to: &mut Saving) -> Done {
+                $(self.$index.save(_to)?;)*
+                Ok(())
+            }
+            fn restore(&mut self, _from: &mut Restoring) -> Done {
+                $(self.$index.restore(_from)?;)*
+                Ok(())
+            }
+        }
+    };
+}
+
+tuple!();
+tuple!(A 0, B 1);
+tuple!(A 0, B 1, C 2);
+tuple!(A 0, B 1, C 2, D 3);
+
+/// A vector of the plane as a value of serde, for `#[serde(with = "harness::checkpoint::vector")]`.
+pub mod vector {
+    use nalgebra::Vector2;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    /// Writes x and y.
+    pub fn serialize<S: Serializer>(vector: &Vector2<f64>, to: S) -> Result<S::Ok, S::Error> {
+        [vector.x, vector.y].serialize(to)
+    }
+
+    /// Reads x and y.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vector2<f64>, D::Error> {
+        <[f64; 2]>::deserialize(from).map(Vector2::from)
+    }
+}
+
+/// How far a simulation is, apart from its particles and from what is observed of it.
+pub(crate) struct Stage {
+    /// How many of its times were reached.
+    pub reached: usize,
+    /// What it took so far.
+    pub cost: Cost,
+    /// The frames of it.
+    pub frames: Option<Collection>,
+    /// How it ended, if it did.
+    pub ended: Option<Status>,
+}
+
+/// A simulation as bytes.
+pub(crate) fn save<X: Numbers>(
+    simulation: &(impl Stepper<X> + ?Sized),
+    stage: &Stage,
+    seen: &impl Observed,
+) -> Result<Vec<u8>, CheckpointError> {
+    let mut to = Saving::default();
+    to.put(&simulation.checkpoint().words())?;
+    let Stage { reached, cost, frames, ended } = stage;
+    to.put(&(reached, cost, frames, ended))?;
+    seen.save(&mut to)?;
+    Ok(to.0)
+}
+
+/// Gives a simulation of the same scene, and what was observed of it, their state from bytes.
+pub(crate) fn restore<X: Numbers>(
+    bytes: &[u8],
+    simulation: &mut (impl Stepper<X> + ?Sized),
+    seen: &mut impl Observed,
+) -> Result<Stage, CheckpointError> {
+    let mut from = Restoring(bytes);
+    let words: Vec<u64> = from.take()?;
+    simulation.restore(&Checkpoint::of_words(&words).ok_or(CheckpointError::State)?)?;
+    let (reached, cost, frames, ended) = from.take()?;
+    seen.restore(&mut from)?;
+    Ok(Stage { reached, cost, frames, ended })
+}
+
+/// Writes a checkpoint: the simulations of the run as bytes, one after another.
+pub type Write<'a> = &'a (dyn Fn(&[Vec<u8>]) -> Result<(), FileError> + Sync);
+
+/// The checkpoints of one run.
+pub struct Checkpoints<'a> {
+    /// Wall time from one to the next.
+    pub(crate) every: Duration,
+    write: Write<'a>,
+    simulations: Mutex<Simulations>,
+}
+
+struct Simulations {
+    /// Of the checkpoint that the run goes on from, as far as it has not come to them.
+    earlier: VecDeque<Vec<u8>>,
+    /// Those that have ended, in their order.
+    ended: Vec<Vec<u8>>,
+    /// Was the last checkpoint written?
+    is_over: bool,
+}
+
+impl<'a> Checkpoints<'a> {
+    /// Checkpoints every so often, of a run that goes on from the simulations of an earlier one, or that
+    /// begins if there are none.
+    pub fn new(every: Duration, earlier: Vec<Vec<u8>>, write: Write<'a>) -> Self {
+        let simulations = Simulations { earlier: earlier.into(), ended: Vec::new(), is_over: false };
+        Self { every, write, simulations: Mutex::new(simulations) }
+    }
+
+    fn simulations(&self) -> MutexGuard<'_, Simulations> {
+        self.simulations.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What the simulation that begins now goes on from, if it does.
+    pub(crate) fn next(&self) -> Option<Vec<u8>> {
+        self.simulations().earlier.pop_front()
+    }
+
+    /// Keeps a simulation that has ended for the checkpoints of those that follow it.
+    pub(crate) fn keep(&self, ended: Vec<u8>) {
+        self.simulations().ended.push(ended);
+    }
+
+    /// Writes a checkpoint: the simulations that have ended, and the one that is under way. After the last
+    /// one, that of an interrupt, none is written.
+    pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Done {
+        let mut simulations = self.simulations();
+        if simulations.is_over {
+            return Ok(());
+        }
+        simulations.is_over = is_last;
+        let mut all = simulations.ended.clone();
+        all.push(under_way);
+        Ok((self.write)(&all)?)
+    }
+}
