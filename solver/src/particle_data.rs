@@ -105,8 +105,7 @@ impl<X: Numbers> Checkpoint<X> {
         let Progress { time, dt, work, last_displacement, built_inside_a_step, span } =
             self.progress;
         let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-        let floats =
-            [time, dt, last_displacement, self.lag, span.start, span.until, span.dt_max];
+        let floats = [time, dt, last_displacement, self.lag, span.start, span.until, span.dt_max];
         let counts = [steps, pair_interactions, right_hand_sides, list_builds];
         let mut words = [&floats.map(f64::to_bits)[..], &counts].concat();
         words.extend([span.steps, span.made, u64::from(built_inside_a_step)]);

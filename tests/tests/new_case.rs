@@ -48,6 +48,7 @@ fn a_new_case_has_order_cost_budget_and_step_limit() {
         store: None,
         sources: &|_| "these".into(),
         reuse_other: false,
+        allow_long: false,
         progress: None,
         interrupt: None,
     };

@@ -1,5 +1,22 @@
 //! A run that goes on from a checkpoint has the bits of one that was never interrupted.
 
+use std::collections::BTreeSet;
+use std::sync::{
+    Mutex,
+    atomic::{AtomicBool, AtomicU64, Ordering},
+};
+use std::time::Duration;
+
+use base::{
+    record::{Cost, Record},
+    spec::{RunSpec, Task},
+};
+use harness::{
+    case::{Case, Tier},
+    checkpoint::Checkpoints,
+    context::Context,
+    plan,
+};
 use nalgebra::Vector2;
 use solver::{
     Checkpoint, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Integrator,
@@ -8,12 +25,13 @@ use solver::{
     lattice, walls::Walls,
 };
 use touchstone_tests::{bits, patch};
+use validation::cases;
 
 type Method<I, W = Open> =
     Compose<CubicSpline, (Pressure<Tait>, Viscosity), (Continuity, Shifting), W, I>;
 
 const H: f64 = 0.08;
-const DT: f64 = 1.0 / 64.0;
+const DT: f64 = 1.0 / 64.3;
 
 fn scene<I: Integrator<()>>() -> Scene<Method<I>> {
     scene_of(Domain::torus(1.0, 1.0), patch(16, 0.15, 7), Open)
@@ -54,25 +72,26 @@ impl<X: Numbers> Observer<X> for After {
     }
 }
 
-/// A checkpoint after each of 12 steps, between builds of the rows and just after them. dt is a
-/// power of two, so that the rest of the time divides into the same steps.
+/// A checkpoint after each of 12 steps, between builds of the rows and just after them, which goes through a
+/// file.
 fn check<S: Scheme<Extra = ()>>(scene: impl Fn() -> Scene<S>) {
     let until = 40.0 * DT;
     let mut whole = scene().build().unwrap();
     assert_eq!(whole.advance(until, DT, &mut ()), Outcome::Reached);
     let mut between_builds = 0;
-    for steps in 9..=20 {
+    for steps in (9..=20).chain([40]) {
         let mut first = scene().build().unwrap();
         assert_eq!(first.advance(until, DT, &mut After(steps)), Outcome::Stopped);
         let checkpoint = first.checkpoint();
         drop(first);
         let moved = checkpoint.particles.iter().zip(&checkpoint.built_at);
         between_builds += u32::from(moved.clone().any(|((_, p), at)| p.position != *at));
-        let mut second = scene().resume(&checkpoint).unwrap();
+        let mut second =
+            scene().resume(&Checkpoint::of_words(&checkpoint.words()).unwrap()).unwrap();
         assert_eq!(second.checkpoint(), checkpoint, "nothing is lost on the way");
         assert_eq!(second.advance(until, DT, &mut ()), Outcome::Reached);
         assert_eq!(bits(&second.particles()), bits(&whole.particles()), "from step {steps}");
-        assert_eq!((second.time(), second.dt()), (whole.time(), whole.dt()));
+        assert_eq!(second.checkpoint().progress, whole.checkpoint().progress);
         assert_eq!(second.work().steps, 40);
     }
     assert!(between_builds > 5, "rows were older than the state in {between_builds} checkpoints");
@@ -133,4 +152,73 @@ fn checkpoints_that_no_run_can_have_made_are_refused() {
     }
     let error = refused(&|c| c.particles[2].1.density = -1.0);
     assert!(matches!(error, SceneError::Particle { particle: 2, .. }), "{error}");
+}
+
+/// The simulations of a run that was interrupted after so many steps.
+fn interrupted_after(steps: u64, case: &dyn Case, spec: &RunSpec) -> Vec<Vec<u8>> {
+    let (interrupt, made, last) = (AtomicBool::new(false), AtomicU64::new(0), Mutex::default());
+    let write = |simulations: &[Vec<u8>]| {
+        if made.fetch_add(1, Ordering::Relaxed) + 1 >= steps {
+            interrupt.store(true, Ordering::Relaxed);
+        }
+        *last.lock().unwrap() = simulations.to_vec();
+        Ok(())
+    };
+    let checkpoints = Checkpoints::new(Duration::ZERO, Vec::new(), &write);
+    let context = Context {
+        checkpoints: Some(&checkpoints),
+        interrupt: Some(&interrupt),
+        ..Context::default()
+    };
+    case.run(spec, &context).unwrap();
+    last.into_inner().unwrap()
+}
+
+/// The record without what time and memory it took, which are of the machine.
+fn without_times(record: Record) -> Record {
+    let cost = Cost {
+        wall_s: 0.0,
+        cpu_s: 0.0,
+        observing_s: 0.0,
+        solver_bytes: 0,
+        resumed: 0,
+        ..record.cost
+    };
+    Record { cost, ..record }
+}
+
+/// Every variant of every case: a run that goes on from a checkpoint has the record of one that was not
+/// interrupted, with every metric, curve and series.
+#[test]
+fn every_case_goes_on_with_an_equal_record() {
+    let mut simulated = BTreeSet::new();
+    for case in cases::CASES {
+        let mut runs = plan::of_case(*case, Tier::Quick);
+        runs.retain(|run| run.spec.task == Task::Simulate);
+        runs.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        for variant in case.variants() {
+            let Some(run) = runs.iter().find(|run| run.spec.variant == variant.name) else {
+                continue;
+            };
+            let spec = run.spec.clone().keep_particles();
+            let Ok(whole) = case.run(&spec, &Context::default()) else { continue };
+            let name = format!("{} {}", case.name(), variant.name);
+            println!("{name}: {} steps, {:.2} s", whole.cost.steps, whole.cost.wall_s);
+            for steps in [1, (whole.cost.steps / 2).clamp(1, 150)] {
+                let simulations = interrupted_after(steps, *case, &spec);
+                if simulations.is_empty() {
+                    continue; // no step was made, or none that the run goes on after
+                }
+                let nowhere = |_: &[Vec<u8>]| Ok(());
+                let checkpoints = Checkpoints::new(Duration::MAX, simulations, &nowhere);
+                let context = Context { checkpoints: Some(&checkpoints), ..Context::default() };
+                let resumed = case.run(&spec, &context).unwrap();
+                assert!(resumed.cost.resumed == 1, "{name} after {steps} steps began anew");
+                let [whole, resumed] = [whole.clone(), resumed].map(without_times);
+                assert_eq!(resumed.to_json().unwrap(), whole.to_json().unwrap(), "{name}, {steps}");
+                simulated.insert(name.clone());
+            }
+        }
+    }
+    assert!(simulated.len() > 40, "only {simulated:?}");
 }

@@ -557,7 +557,7 @@ fn check_cells(name: &str, path: &str, table: &Table) -> Result<(), ReferenceErr
 }
 
 /// The SHA-256 digest in lowercase hexadecimal.
-pub(crate) fn sha256(bytes: &[u8]) -> String {
+pub fn sha256(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(64);
     for byte in Sha256::digest(bytes) {
         let _ = write!(text, "{byte:02x}");

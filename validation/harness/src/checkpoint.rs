@@ -242,7 +242,8 @@ impl<'a> Checkpoints<'a> {
     /// Checkpoints every so often, of a run that goes on from the simulations of an earlier one, or that
     /// begins if there are none.
     pub fn new(every: Duration, earlier: Vec<Vec<u8>>, write: Write<'a>) -> Self {
-        let simulations = Simulations { earlier: earlier.into(), ended: Vec::new(), is_over: false };
+        let simulations =
+            Simulations { earlier: earlier.into(), ended: Vec::new(), is_over: false };
         Self { every, write, simulations: Mutex::new(simulations) }
     }
 

@@ -132,9 +132,6 @@ impl RunError {
     /// Was the run refused because of its settings? Otherwise a file or a reference is the reason, which is
     /// not a property of the run.
     pub fn is_refusal(&self) -> bool {
-        !matches!(
-            self,
-            Self::File(_) | Self::Frame(_) | Self::Checkpoint(_) | Self::Reference(_)
-        )
+        !matches!(self, Self::File(_) | Self::Frame(_) | Self::Checkpoint(_) | Self::Reference(_))
     }
 }

@@ -51,7 +51,10 @@ impl<'a> Frames<'a> {
     ///
     /// # Errors
     /// If one cannot be written.
-    pub fn after_step<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) -> Result<(), FrameError> {
+    pub fn after_step<X: Numbers>(
+        &mut self,
+        simulation: &dyn Stepper<X>,
+    ) -> Result<(), FrameError> {
         while self.is_due(simulation.time()) {
             self.write(simulation)?;
         }

@@ -56,6 +56,8 @@ pub struct Making<'a> {
     pub sources: &'a (dyn Fn(&str) -> String + Sync),
     /// May records made by other sources be reused?
     pub reuse_other: bool,
+    /// May runs be long? Those that were refused are tried again then.
+    pub allow_long: bool,
     /// Told how far the runs are.
     pub progress: Option<&'a Progress<'a>>,
     /// Set by another thread to stop.
@@ -102,6 +104,13 @@ pub fn make(jobs: &[Job], making: &Making) -> Result<Made, RunError> {
         let sources = (making.sources)(&spec.case);
         let found = making.store.map_or(Found::Nothing, |store| store.find(spec, &sources));
         let record = match found {
+            // What was refused may have been so because it was long; to try again takes no time.
+            Found::Same(record)
+                if making.allow_long && matches!(record.status, Status::Refused { .. }) =>
+            {
+                missing.push(job);
+                continue;
+            }
             Found::Same(record) => record,
             Found::Other(record) if making.reuse_other => {
                 made.of_other_sources += 1;
@@ -231,7 +240,8 @@ impl Batch<'_> {
         // Of a bisection nobody knows how many simulations are left.
         let progress: Option<&(dyn Fn(context::Progress) + Sync)> =
             if spec.task == Task::Simulate { Some(&show) } else { None };
-        let context = Context { threads: 1, interrupt, progress, ..Context::default() };
+        let allow_long = self.making.allow_long;
+        let context = Context { threads: 1, allow_long, interrupt, progress, ..Context::default() };
         let mut record = run(job.case, &job.planned.spec, &context)?;
         record.manifest.sources = (self.making.sources)(job.case.name());
         Ok(record)
@@ -378,6 +388,7 @@ mod tests {
             store: Some(&store),
             sources: &|_| "abc".into(),
             reuse_other: false,
+            allow_long: false,
             progress: Some(&show),
             interrupt: None,
         };
@@ -443,6 +454,7 @@ mod tests {
             store: Some(&store),
             sources: &|_| "abc".into(),
             reuse_other: false,
+            allow_long: false,
             progress: None,
             interrupt: None,
         };

@@ -33,6 +33,7 @@ mod tests {
             store: None,
             sources: &sources,
             reuse_other: false,
+            allow_long: false,
             progress: None,
             interrupt: None,
         };

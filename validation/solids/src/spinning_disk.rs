@@ -145,6 +145,8 @@ impl History {
         }
         let energy = Energy::of(simulation, &self.material).total();
         let spin = angular_momentum(simulation);
+        // A sample after the last step, when the velocities of a leapfrog lag, gives way to that of the end.
+        self.series.pop_if(|row| row[0] == simulation.time());
         self.series.push([simulation.time(), spin, energy, stress / mass, radius / mass]);
     }
 }

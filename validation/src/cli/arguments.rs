@@ -60,7 +60,7 @@ fn threads() -> clap::builder::RangedI64ValueParser<u16> {
 }
 
 /// The options of `run` that apply to a single run and are refused with `--specs`.
-const OF_ONE_RUN: [&str; 10] = [
+const OF_ONE_RUN: [&str; 11] = [
     "case",
     "variant",
     "set",
@@ -70,13 +70,18 @@ const OF_ONE_RUN: [&str; 10] = [
     "vtk",
     "json",
     "allow_unstable",
-    "allow_long",
+    "checkpoint_every",
+    "resume",
 ];
+
+/// The options of `run` that a checkpoint holds.
+const OF_A_CHECKPOINT: [&str; 9] =
+    ["case", "variant", "set", "rows", "out", "overwrite", "vtk", "allow_unstable", "allow_long"];
 
 #[derive(Debug, Args)]
 pub struct Run {
     /// Name of the case, as `touchstone list` shows it
-    #[arg(required_unless_present = "specs")]
+    #[arg(required_unless_present_any = ["specs", "resume"])]
     pub case: Option<String>,
     /// Name of the variant; the default is `modern` or, if the case has none, the first variant listed
     #[arg(long)]
@@ -111,6 +116,14 @@ pub struct Run {
     /// Run even if it is estimated to take more than 24 hours on one core or 4 GB of memory
     #[arg(long)]
     pub allow_long: bool,
+    /// Write a checkpoint into the folder of --out after every so many seconds of wall time (at least 1), and
+    /// at an interrupt; it is removed at the end of the run
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub checkpoint_every: Option<u32>,
+    /// Go on with the run whose checkpoint is in this folder, with the options of that run: its record is the
+    /// one that the run would have had without the interruption, but for its wall times
+    #[arg(long, value_name = "DIR", conflicts_with_all = OF_A_CHECKPOINT)]
+    pub resume: Option<PathBuf>,
     /// Make the runs of this file of JSON lines, as `touchstone plan` prints them; `-` is standard input
     #[arg(long, value_name = "FILE", requires = "store", conflicts_with_all = OF_ONE_RUN)]
     pub specs: Option<PathBuf>,

@@ -13,6 +13,7 @@
 //! `--json`); messages and all other tables go to standard error.
 
 mod arguments;
+mod checkpoint;
 mod compare;
 mod doctor;
 #[cfg(test)]
@@ -162,6 +163,7 @@ impl World {
         tier: Tier,
         store: Option<&Store>,
         reuse_other: bool,
+        allow_long: bool,
         threads: Option<u16>,
     ) -> Result<Made, Failure> {
         let bar = progress::Bar::new();
@@ -171,6 +173,7 @@ impl World {
             store,
             sources: &self.sources,
             reuse_other,
+            allow_long,
             progress: Some(&show),
             interrupt: Some(self.interrupt),
         };

@@ -1,17 +1,20 @@
 //! `run`: one variant of one case.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, Once, PoisonError};
+use std::time::Duration;
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
 use base::{
     files::{Cell, CsvTable, FileError, OutputFolder},
-    record::{Column, Profile, Record, Status},
+    record::{Profile, Record, Status},
     spec::RunSpec,
 };
 use harness::{
     case::{self, Case},
+    checkpoint::Checkpoints,
     context::{Context, Progress},
     plan,
     runs::Judged,
@@ -21,21 +24,71 @@ use serde_json::Value;
 use validation::cases;
 
 use super::{
-    Exit, Failure, Outcome, World, arguments, judged, list::default_variant, on_threads, output,
-    progress::Bar, specs,
+    Exit, Failure, Outcome, World, arguments,
+    checkpoint::{self, CHECKPOINT},
+    judged,
+    list::default_variant,
+    on_threads, output,
+    progress::Bar,
+    specs,
 };
 
 pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     if let Some(file) = &arguments.specs {
         return specs::run(file, arguments, world);
     }
+    if let Some(path) = &arguments.resume {
+        let (asked, earlier) = checkpoint::read(path, world.sources).map_err(Failure::usage)?;
+        let case = cases::find_in(world.cases, &asked.spec.case)?;
+        let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
+        let order = Order {
+            case,
+            spec: asked.spec,
+            vtk: asked.vtk,
+            allow_long: asked.allow_long,
+            every: Some(arguments.checkpoint_every.unwrap_or(asked.every)),
+            earlier,
+        };
+        return carry_out(order, Some(folder), arguments, world);
+    }
     let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
     let mut spec = case::spec(case, variant, &set(arguments)?)?;
     spec.allow_unstable = arguments.allow_unstable;
+    if arguments.checkpoint_every.is_some() && arguments.out.is_none() {
+        let words =
+            "--checkpoint-every needs --out DIR, the folder that the checkpoints are written into";
+        return Err(Failure::usage(anyhow::anyhow!(words)));
+    }
     let folder = Folder::of(arguments, case.name(), variant)?;
+    let &arguments::Run { vtk, allow_long, checkpoint_every: every, .. } = arguments;
+    let order = Order { case, spec, vtk, allow_long, every, earlier: Vec::new() };
+    carry_out(order, folder, arguments, world)
+}
+
+/// A run that was asked for.
+struct Order {
+    case: &'static dyn Case,
+    spec: RunSpec,
+    /// Number of frames for ParaView.
+    vtk: Option<u16>,
+    allow_long: bool,
+    /// Wall time between checkpoints \[s\], if there are any.
+    every: Option<u32>,
+    /// The simulations of the checkpoint that it goes on from.
+    earlier: Vec<Vec<u8>>,
+}
+
+/// Computes, writes and judges.
+fn carry_out(
+    order: Order,
+    folder: Option<Folder>,
+    arguments: &arguments::Run,
+    world: &World,
+) -> Outcome {
+    let (case, spec, vtk) = (order.case, order.spec.clone(), order.vtk);
     let (record, last) = match on_threads(arguments.threads, || {
-        compute(case, &spec, arguments, folder.as_ref(), world)
+        compute(order, arguments.json, folder.as_ref(), world)
     }) {
         Ok(made) => made,
         Err(failure) => {
@@ -45,8 +98,13 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     };
     if let Status::Interrupted { step, time } = record.status {
         folder.iter().for_each(Folder::remove_if_new_and_empty);
-        let kept = if arguments.vtk.is_some() { "; frames so far are whole" } else { "" };
-        let what = format!("after {step} steps, at t = {time:.4e} s; no record is written{kept}");
+        let kept = if vtk.is_some() { "; frames so far are whole" } else { "" };
+        let checkpoint = folder.as_ref().filter(|folder| folder.has_checkpoint());
+        let goes_on = checkpoint.map_or(String::new(), |folder| {
+            format!("; touchstone run --resume {} goes on with it", folder.output.path().display())
+        });
+        let what =
+            format!("after {step} steps, at t = {time:.4e} s; no record is written{kept}{goes_on}");
         return Err(Failure::interrupted(what));
     }
     let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();
@@ -67,6 +125,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     let exit = conclude(&record, &verdicts);
     if let (Some(folder), Some(names)) = (&folder, written?) {
         output::say(&format!("{}: {}", folder.output.path().display(), names.join(", ")));
+        folder.remove_checkpoint()?;
     }
     printed?;
     Ok(exit)
@@ -101,36 +160,48 @@ fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
 
 /// The record, and all fields of the particles at the end if there is a folder for them.
 fn compute(
-    case: &dyn Case,
-    spec: &RunSpec,
-    arguments: &arguments::Run,
+    Order { case, spec, vtk, allow_long, every, earlier }: Order,
+    is_quiet: bool,
     folder: Option<&Folder>,
     world: &World,
 ) -> Result<(Record, Option<Profile>), Failure> {
+    let sources = (world.sources)(case.name());
     let bar = Bar::new();
     let last = Mutex::default();
     let told = Once::new(); // a run may consist of several simulations, the first of which is the longest
     let tell = |size: &Size| {
-        if !arguments.json {
+        if !is_quiet {
             told.call_once(|| output::say(&format!("estimate: {size}")));
         }
     };
     let show = |progress: Progress| bar.show_run(progress);
-    let frames = folder.zip(arguments.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
+    let frames = folder.zip(vtk).map(|(folder, count)| (folder.vtk(), count.into()));
+    let asked = |every| {
+        let (spec, sources) = (spec.clone(), sources.clone());
+        checkpoint::Asked { spec, sources, every, vtk, allow_long }
+    };
+    let asked = folder.zip(every.map(asked));
+    let write = |simulations: &[Vec<u8>]| match &asked {
+        Some((folder, asked)) => checkpoint::write(&folder.output, asked, simulations),
+        None => Ok(()),
+    };
+    let every = every.map(|seconds| Duration::from_secs(seconds.into()));
+    let checkpoints = every.map(|every| Checkpoints::new(every, earlier, &write));
     let context = Context {
         threads: rayon::current_num_threads(),
         frames,
-        allow_long: arguments.allow_long,
+        checkpoints: checkpoints.as_ref(),
+        allow_long,
         estimate: Some(&tell),
         at_the_end: folder.map(|_| &last),
         progress: Some(&show),
         interrupt: Some(world.interrupt),
         ..Context::default()
     };
-    let record = case.run(spec, &context);
+    let record = case.run(&spec, &context);
     bar.clear();
     let mut record = record?;
-    record.manifest.sources = (world.sources)(case.name());
+    record.manifest.sources = sources;
     Ok((record, last.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }
 
@@ -154,8 +225,31 @@ impl Folder {
                  it; name another folder by --out, or give --overwrite"
             )));
         }
-        let is_new = !path.exists();
-        Ok(Some(Folder { output: OutputFolder::create(&path)?, is_new }))
+        let (is_new, has_checkpoint) = (!path.exists(), path.join(CHECKPOINT).exists());
+        if has_checkpoint && !arguments.overwrite {
+            return Err(Failure::usage(anyhow::anyhow!(
+                "the folder {path:?} holds the checkpoint of a run that has not ended; touchstone run --resume \
+                 {} goes on with it, and --overwrite gives it up",
+                path.display()
+            )));
+        }
+        let folder = Folder { output: OutputFolder::create(&path)?, is_new };
+        folder.remove_checkpoint()?;
+        Ok(Some(folder))
+    }
+
+    fn has_checkpoint(&self) -> bool {
+        self.output.path().join(CHECKPOINT).exists()
+    }
+
+    fn remove_checkpoint(&self) -> Result<(), FileError> {
+        let path = self.output.path().join(CHECKPOINT);
+        match fs::remove_file(&path) {
+            Err(reason) if reason.kind() != io::ErrorKind::NotFound => {
+                Err(FileError::File { path, reason })
+            }
+            _ => Ok(()),
+        }
     }
 
     fn vtk(&self) -> PathBuf {
@@ -254,19 +348,13 @@ fn profile_csv(curves: &[Curve]) -> Result<Vec<u8>, FileError> {
     Ok(table.into_bytes())
 }
 
-/// The columns as they are; a number that is not finite leaves a gap. Of rows at the same time, the last one:
-/// a sample may fall on the end, of which there is another sample.
+/// The columns as they are; a number that is not finite leaves a gap.
 fn series_csv(series: &Profile) -> Result<Vec<u8>, FileError> {
     let heads: Vec<String> =
         series.columns.iter().map(|column| format!("{}[{}]", column.name, column.unit)).collect();
     let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
     let length = series.columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
     for k in 0..length {
-        let is_repeated =
-            |times: &&Column| times.name == "t" && times.values.get(k + 1) == times.values.get(k);
-        if series.columns.first().filter(is_repeated).is_some() {
-            continue;
-        }
         let cell =
             |number: f64| if number.is_finite() { Cell::Number(number) } else { Cell::Empty };
         let row: Vec<Cell> = series.columns.iter().map(|column| cell(column.values[k])).collect();

@@ -27,7 +27,8 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     let jobs = specs.into_iter().map(job).collect::<Result<Vec<Job>, Failure>>()?;
     let store = Store::open(path)?;
     let tier = Tier::Quick; // nothing is timed here
-    let made = world.make(&jobs, tier, Some(&store), false, arguments.threads)?;
+    let &arguments::Run { allow_long, threads, .. } = arguments;
+    let made = world.make(&jobs, tier, Some(&store), false, allow_long, threads)?;
     let ended = |of: fn(&Status) -> bool| made.records.values().filter(|r| of(&r.status)).count();
     let words = format!(
         "{} runs: {} completed, {} diverged, {} refused; {} of them were in the store before",

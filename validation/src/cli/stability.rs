@@ -36,7 +36,8 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         planned: Planned::new(limit.spec.clone()),
     };
     let jobs: Vec<Job> = declared.iter().map(job).collect();
-    let mut made = world.make(&jobs, arguments.tier.into(), None, false, arguments.threads)?;
+    let mut made =
+        world.make(&jobs, arguments.tier.into(), None, false, false, arguments.threads)?;
     if made.interrupted {
         return Err(Failure::interrupted("no limit was determined"));
     }

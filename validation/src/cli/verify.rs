@@ -90,7 +90,7 @@ pub fn run(
         }
     }
     let jobs = make::jobs(plans.clone());
-    let made = world.make(&jobs, tier, Some(store), reuse.any_build, threads)?;
+    let made = world.make(&jobs, tier, Some(store), reuse.any_build, false, threads)?;
     if world.is_interrupted() {
         return Err(Failure::interrupted(format!(
             "nothing is judged; {} of {} records are stored, and the same command makes the others",

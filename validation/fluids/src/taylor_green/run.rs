@@ -12,8 +12,7 @@ use base::{
     record::{Profile, Record, Status},
 };
 use harness::{
-    case::RunError, composed::Program, context::Context, method::Method, runner::Drive,
-    simulate,
+    case::RunError, composed::Program, context::Context, method::Method, runner::Drive, simulate,
 };
 use maths::exact::TaylorGreen;
 

@@ -16,8 +16,8 @@ use solver::{CubicSpline, EquationOfState, Leapfrog, QuinticSpline, Stepper, Tai
 use crate::wave::plain;
 use base::{record::Record, settings::Settings};
 use harness::{
-    checkpoint::Observed,
     case::{RunError, Tier},
+    checkpoint::Observed,
     composed::{self, Composed, Composition},
     context::Context,
     declare::Declaration,

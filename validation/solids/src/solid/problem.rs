@@ -140,10 +140,9 @@ fn run<P: Problem>(
     let mut simulation = (method.build)(Parts::new(medium, settings.domain(), particles, context))?;
     // No stop but the end: one would bring the leapfrog's velocities to a whole step.
     let pressure = |density| eos.pressure(density);
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, dt, &[end], &pressure, &mut watch)
-            .after_step(&P::Watch::after_step)
-            .run(context)?;
+    (record.status, record.cost) = Drive::new(&mut *simulation, dt, &[end], &pressure, &mut watch)
+        .after_step(&P::Watch::after_step)
+        .run(context)?;
     record.state = Some(digest(&simulation.particles()));
     watch.measure(&*simulation, &mut record);
     Ok(record)

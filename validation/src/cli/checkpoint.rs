@@ -1,0 +1,205 @@
+//! The file of a checkpoint in the folder of a run. Its first line names the format and has the digest of all
+//! that follows; the second line is what was asked for, as JSON; then come the simulations, as bytes.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use base::{
+    files::{FileError, OutputFolder},
+    reference::sha256,
+    spec::RunSpec,
+};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Name of the file.
+pub const CHECKPOINT: &str = "checkpoint";
+/// Begins the first line; the version of the format follows.
+const MAGIC: &str = "touchstone checkpoint";
+/// Version of the format.
+const FORMAT: u32 = 1;
+
+/// Why a run does not go on.
+#[derive(Debug, Error)]
+pub enum Refusal {
+    /// No file, or one that cannot be read.
+    #[error("the folder {folder:?} has no checkpoint that can be read: {reason}")]
+    Missing {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system says.
+        reason: io::Error,
+    },
+    /// Another file, or one of another version of this program.
+    #[error("{path:?} is not a checkpoint of format {FORMAT}: its first line is {line:?}")]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// The beginning of its first line.
+        line: String,
+    },
+    /// Not all of it is there, or not as it was written.
+    #[error(
+        "the checkpoint {path:?} is damaged or truncated: its content has not the digest that it states"
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+    },
+    /// What was asked for cannot be read.
+    #[error("what was asked for cannot be read from the checkpoint {path:?}: {reason}")]
+    Asked {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: serde_json::Error,
+    },
+    /// Made by other sources, with which the rest of the run would have other bits.
+    #[error(
+        "the checkpoint {path:?} was made by another build, of the sources {theirs}; this one is of {ours}"
+    )]
+    Build {
+        /// The file.
+        path: PathBuf,
+        /// Digest of its sources.
+        theirs: String,
+        /// Digest of these.
+        ours: String,
+    },
+}
+
+/// What was asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Asked {
+    /// The run.
+    pub spec: RunSpec,
+    /// Digest of the sources of the program.
+    pub sources: String,
+    /// Wall time between checkpoints [s].
+    pub every: u32,
+    /// Number of frames for ParaView.
+    pub vtk: Option<u16>,
+    /// May the run be long?
+    pub allow_long: bool,
+}
+
+/// The second line.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    asked: Asked,
+    /// Lengths of the simulations [bytes].
+    lengths: Vec<usize>,
+}
+
+/// Writes a checkpoint, in place of an earlier one.
+pub fn write(
+    folder: &OutputFolder,
+    asked: &Asked,
+    simulations: &[Vec<u8>],
+) -> Result<(), FileError> {
+    folder.write(CHECKPOINT, &bytes(asked, simulations))?;
+    Ok(())
+}
+
+fn bytes(asked: &Asked, simulations: &[Vec<u8>]) -> Vec<u8> {
+    let head = Head { asked: asked.clone(), lengths: simulations.iter().map(Vec::len).collect() };
+    let head = serde_json::to_value(head).unwrap_or_default();
+    let rest = [format!("{head}\n").into_bytes(), simulations.concat()].concat();
+    [format!("{MAGIC} {FORMAT} {}\n", sha256(&rest)).into_bytes(), rest].concat()
+}
+
+/// Reads the checkpoint of a folder: what was asked for, and the simulations. `sources` is the digest of this
+/// program's sources for a case.
+///
+/// # Errors
+/// If there is none, or it is damaged or of another build.
+pub fn read(folder: &Path, sources: fn(&str) -> String) -> Result<(Asked, Vec<Vec<u8>>), Refusal> {
+    let path = folder.join(CHECKPOINT);
+    let missing = |reason| Refusal::Missing { folder: folder.into(), reason };
+    parse(&fs::read(&path).map_err(missing)?, path, sources)
+}
+
+fn parse(
+    bytes: &[u8],
+    path: PathBuf,
+    sources: fn(&str) -> String,
+) -> Result<(Asked, Vec<Vec<u8>>), Refusal> {
+    let (first, rest) = split_line(bytes);
+    let line = String::from_utf8_lossy(first).into_owned();
+    let Some(digest) = line.strip_prefix(&format!("{MAGIC} {FORMAT} ")) else {
+        return Err(Refusal::Format { path, line: line.chars().take(40).collect() });
+    };
+    if digest != sha256(rest) {
+        return Err(Refusal::Damaged { path });
+    }
+    let (head, mut rest) = split_line(rest);
+    let Head { asked, lengths } = match serde_json::from_slice(head) {
+        Ok(head) => head,
+        Err(reason) => return Err(Refusal::Asked { path, reason }),
+    };
+    let ours = sources(&asked.spec.case);
+    if asked.sources != ours {
+        return Err(Refusal::Build { path, theirs: asked.sources, ours });
+    }
+    let mut simulations = Vec::new();
+    for length in lengths {
+        let Some((simulation, others)) = rest.split_at_checked(length) else {
+            return Err(Refusal::Damaged { path });
+        };
+        simulations.push(simulation.to_vec());
+        rest = others;
+    }
+    Ok((asked, simulations))
+}
+
+/// The first line without its end, and what follows it.
+fn split_line(bytes: &[u8]) -> (&[u8], &[u8]) {
+    let end = bytes.iter().position(|byte| *byte == b'\n').unwrap_or(bytes.len());
+    (&bytes[..end], bytes.get(end + 1..).unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn asked() -> Asked {
+        let settings = serde_json::json!({"rows": 20, "text": "two\nlines"});
+        let spec = RunSpec::new("couette", "seed", settings);
+        Asked { spec, sources: "abc".into(), every: 60, vtk: Some(4), allow_long: false }
+    }
+
+    fn parsed(bytes: &[u8]) -> Result<(Asked, Vec<Vec<u8>>), Refusal> {
+        parse(bytes, "f".into(), |_| "abc".into())
+    }
+
+    proptest! {
+        /// Every byte counts: a file that was cut or changed anywhere is refused, and never half of it used.
+        #[test]
+        fn a_checkpoint_is_read_as_it_was_written_or_refused(
+            simulations in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..40), 0..4),
+            place in any::<prop::sample::Index>(),
+            change in 1..=255_u8,
+        ) {
+            let mut file = bytes(&asked(), &simulations);
+            prop_assert_eq!(parsed(&file).unwrap(), (asked(), simulations));
+            let place = place.index(file.len());
+            prop_assert!(parsed(&file[..place]).is_err());
+            file[place] ^= change;
+            prop_assert!(parsed(&file).is_err());
+        }
+    }
+
+    #[test]
+    fn a_checkpoint_of_another_build_or_format_is_refused_by_name() {
+        let file = bytes(&asked(), &[]);
+        let refused = parse(&file, "f".into(), |_| "xyz".into()).unwrap_err().to_string();
+        assert!(refused.contains("another build, of the sources abc; this one is of xyz"));
+        let refused = parsed(b"touchstone checkpoint 2 abc\n").unwrap_err().to_string();
+        assert!(refused.contains("not a checkpoint of format 1"), "{refused}");
+        let refused = parsed(&file[..file.len() - 1]).unwrap_err().to_string();
+        assert!(refused.contains("damaged or truncated"), "{refused}");
+    }
+}
