@@ -254,7 +254,8 @@ fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
     Ok(())
 }
 
-/// Checks the particles of a checkpoint, and that they are stored in the way in which a simulation stores them.
+/// Checks the particles of a checkpoint, and that they are stored in the way in which a simulation stores
+/// them.
 pub(crate) fn check_checkpoint<X: Numbers>(checkpoint: &Checkpoint<X>) -> Checked {
     let Checkpoint { particles, built_at, .. } = checkpoint;
     check_particles(&particles.iter().map(|(_, p)| *p).collect::<Vec<_>>())?;

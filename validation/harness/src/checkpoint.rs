@@ -274,3 +274,42 @@ impl<'a> Checkpoints<'a> {
         Ok((self.write)(&all)?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::number;
+
+    struct Seen {
+        numbers: Vec<f64>,
+        record: Record,
+        width: f64,
+    }
+
+    observed! { Seen: changes(numbers), parts(record), stays(width) }
+
+    fn seen(numbers: Vec<f64>) -> Seen {
+        let record = Record::new("case", "variant", serde_json::json!({"n": 8, "x": 1.0}), 1);
+        Seen { numbers, record, width: 3.0 }
+    }
+
+    #[test]
+    fn what_was_observed_keeps_its_bits_whatever_the_numbers_are() {
+        let odd = [0.1, -0.0, f64::MIN_POSITIVE / 8.0, f64::NAN, -f64::NAN, f64::NEG_INFINITY];
+        let mut before = seen(odd.to_vec());
+        before.record.numerics.insert("odd".into(), number::json(f64::INFINITY));
+        before.record.put(base::record::MetricKey::new("m", "-", "1/3"), 1.0 / 3.0);
+        let mut saving = Saving::default();
+        before.save(&mut saving).unwrap();
+        let mut after = Seen { width: 5.0, ..seen(Vec::new()) };
+        after.restore(&mut Restoring(&saving.0)).unwrap();
+        let bits = |seen: &Seen| seen.numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&after), bits(&before));
+        assert_eq!(after.record, before.record);
+        assert_eq!(after.width, 5.0, "what stays is not saved");
+        // Whatever is missing at the end is missed.
+        for length in 0..saving.0.len() {
+            assert!(after.restore(&mut Restoring(&saving.0[..length])).is_err(), "{length}");
+        }
+    }
+}

@@ -143,6 +143,26 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         }
     }
 
+    /// Goes on from a checkpoint; how the simulation ended, if it did.
+    fn go_on<D>(&mut self, bytes: &[u8], simulation: &mut D) -> Result<Option<Status>, RunError>
+    where
+        D: Stepper<X> + ?Sized,
+    {
+        let Stage { reached, cost, frames, ended } =
+            checkpoint::restore(bytes, simulation, self.seen)?;
+        let resumed = cost.resumed + u32::from(ended.is_none());
+        self.cost = Cost { threads: self.cost.threads, resumed, ..cost };
+        self.reached = reached;
+        if let (Some(all), Some(written)) = (&mut self.frames, frames) {
+            all.go_on(written);
+        }
+        if ended == Some(Status::Completed) {
+            // No step: derives again what may be asked for at the end.
+            simulation.advance(self.end, 1.0, &mut ());
+        }
+        Ok(ended)
+    }
+
     /// What was counted.
     fn counted(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Cost {
         let work = simulation.work();
@@ -275,20 +295,8 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         };
         let mut ended = None;
         if let Some(bytes) = context.checkpoints.and_then(Checkpoints::next) {
-            let stage = checkpoint::restore(&bytes, simulation, watch.seen)?;
+            ended = watch.go_on(&bytes, simulation)?;
             resumed(watch.seen, simulation);
-            (watch.cost, watch.reached, ended) = (stage.cost, stage.reached, stage.ended);
-            if ended == Some(Status::Completed) {
-                // Derives again what may be asked for at the end.
-                simulation.advance(end, dt, &mut ());
-            }
-            if ended.is_none() {
-                watch.cost.resumed += 1;
-                watch.cost.threads = context.threads.max(1);
-            }
-            if let (Some(frames), Some(written)) = (&mut watch.frames, stage.frames) {
-                frames.go_on(written);
-            }
         }
         watch.show(simulation, dt);
         let (status, cost) = match ended {

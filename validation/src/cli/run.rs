@@ -228,8 +228,8 @@ impl Folder {
         let (is_new, has_checkpoint) = (!path.exists(), path.join(CHECKPOINT).exists());
         if has_checkpoint && !arguments.overwrite {
             return Err(Failure::usage(anyhow::anyhow!(
-                "the folder {path:?} holds the checkpoint of a run that has not ended; touchstone run --resume \
-                 {} goes on with it, and --overwrite gives it up",
+                "the folder {path:?} holds the checkpoint of a run that has not ended; \
+                 touchstone run --resume {} goes on with it, and --overwrite gives it up",
                 path.display()
             )));
         }

@@ -122,7 +122,12 @@ fn run(
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt, &times, &pressure, &mut monitor)
             .at(&|monitor, simulation, _| monitor.look(simulation, stretch))
-            .resumed(&|monitor, simulation| simulation.drive(monitor.controller.force))
+            .resumed(&|monitor, simulation| {
+                // Until its first look the force is that of the scene, which may have a deliberate error.
+                if !monitor.series.is_empty() {
+                    simulation.drive(monitor.controller.force);
+                }
+            })
             .run(context)?;
     if record.status == Status::Completed {
         measure::measure(setup, &monitor.windows, area, &mut record);
