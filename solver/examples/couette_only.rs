@@ -39,7 +39,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
 
     let (end, dt) = (2.0 * width * width / nu, 0.4 * h * h / nu);
     if let Outcome::Diverged(divergence) = flow.advance(end, dt, &mut ()) {
-        return Err(divergence.to_string().into());
+        return Err(divergence.into());
     }
     let error = |(_, p): (f64, &solver::Evolved<()>)| p.velocity.x / speed - p.position.y / width;
     let largest = flow.fluid().map(error).fold(0.0, |a: f64, e| a.max(e.abs()));

@@ -97,14 +97,15 @@ impl<P: Physics> Engine<P> {
     /// the state that the columns were refreshed for last. dx/dt is without v.
     pub(crate) fn rates<T: Term<P::Extra>>(&self, terms: &T) -> Vec<Rate<P::Extra>> {
         let (state, neighbours) = (&self.data.state, &self.data.neighbours);
-        let column = |(k, c): (usize, &Column<Derived<P>>)| {
+        let own = |(k, c): (usize, &Column<Derived<P>>)| {
             let Column { position, velocity, common, .. } = *c;
-            let extra = state.get(neighbours.particle(k)).map_or(P::Extra::default(), |e| e.extra);
+            let extra = state.get(k).map_or(P::Extra::default(), |e| e.extra);
             Column { position, velocity, common, derived: terms.derived(&common, &extra) }
         };
-        let columns: Vec<_> = self.columns.iter().enumerate().map(column).collect();
-        let (kernel, columns) = (&self.kernel, &columns[..]);
-        let sweep = Sweep { kernel, terms, columns, select: whole(), moving: false };
+        let mut columns: Vec<_> = self.columns.iter().enumerate().map(own).collect();
+        fill_images::<P, T>(neighbours, 0, &mut columns);
+        let (kernel, select) = (&self.kernel, whole());
+        let sweep = Sweep { kernel, terms, columns: &columns, select, moving: false };
         sweep::rates(&sweep, &neighbours.lists)
     }
 
@@ -206,21 +207,9 @@ impl<P: Physics> Engine<P> {
 
     /// Refreshes images, and what wall particles extrapolate.
     fn refresh_walls(&mut self, state: &State<P>) {
-        self.fill_images(0);
+        fill_images::<P, (P::Forces, P::Drift)>(&self.data.neighbours, 0, &mut self.columns);
         if P::Walls::EXTRAPOLATES && self.data.counts[1] > 0 {
             self.extrapolate(state);
-        }
-    }
-
-    /// Refills the images of the particles from `first` on; an image of an image belongs to both.
-    fn fill_images(&mut self, first: usize) {
-        let (real, neighbours) = (self.data.fixed.len(), &self.data.neighbours);
-        for (k, image) in neighbours.images.iter().enumerate() {
-            let source = image.source as usize;
-            if source >= first {
-                let map = &neighbours.maps[image.map as usize];
-                self.columns[real + k] = map.apply(&self.columns[source], P::Walls::SLIPS);
-            }
         }
     }
 
@@ -240,7 +229,27 @@ impl<P: Physics> Engine<P> {
             *column = derive(&self.terms, column.common.mass, implied);
         }
         self.extrapolated = implied;
-        self.fill_images(fluid);
+        fill_images::<P, (P::Forces, P::Drift)>(&self.data.neighbours, fluid, &mut self.columns);
+    }
+}
+
+/// Refills the images among these columns of the particles from `first` on; an image of an image belongs to
+/// both.
+fn fill_images<P: Physics, T: Term<P::Extra>>(
+    neighbours: &Neighbours,
+    first: usize,
+    columns: &mut [Column<T::Derived>],
+) {
+    let real = columns.len() - 1 - neighbours.images.len();
+    for (k, image) in neighbours.images.iter().enumerate() {
+        let source = image.source as usize;
+        if source >= first {
+            let (map, source) = (&neighbours.maps[image.map as usize], &columns[source]);
+            let mut image = map.apply(source, P::Walls::SLIPS);
+            let no_slip = map.apply(source, false).velocity;
+            T::no_slip(&mut image.derived, no_slip - image.velocity);
+            columns[real + k] = image;
+        }
     }
 }
 

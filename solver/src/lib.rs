@@ -52,7 +52,7 @@ pub use engine::Engine;
 pub use eos::{EquationOfState, Linear, Tait};
 pub use integrator::{Euler, Integrator, Leapfrog, PredictorCorrector, Scheme};
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
-pub use numbers::{Numbers, Symmetric};
+pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{Checkpoint, Fault, Limits, ParticleData, Progress, Span, Work};
 pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};
@@ -61,7 +61,9 @@ pub use simulation::{Divergence, Flow, Observer, Outcome, Simulation, Stepper};
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
     ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion,
-    Hydrostatic, JaumannRate, Pressure, PrincipalStress, ShiftAdvection, Shifting, Term, Viscosity,
-    Xsph,
+    Hydrostatic, JaumannRate, NoSlipImages, Pressure, PrincipalStress, ShiftAdvection, Shifting,
+    Term, Viscosity, Xsph,
 };
-pub use walls::{ExtrapolatingWall, Ghosts, InterfaceWall, NoSlip, Open, PlaneWall, SlipGhosts};
+pub use walls::{
+    ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall, SlipGhosts,
+};

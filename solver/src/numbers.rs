@@ -60,6 +60,9 @@ impl Numbers for f64 {
     }
 }
 
+/// The numbers of a set with a lane in place of each.
+pub type In<N, V> = <N as Numbers>::In<V>;
+
 /// Implements [`Numbers`] for a struct of numbers, field by field.
 macro_rules! fields_of_numbers {
     ($Struct:ident ($($field:ident),+), gather($read:ident) = $gather:expr) => {

@@ -25,7 +25,9 @@ pub enum Outcome {
 }
 
 /// When a run diverged, and at which particle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("diverged at step {step}, t = {time:.6e} s: {} {:.3e} of particle {}",
+    fault.field, fault.value, fault.particle)]
 pub struct Divergence {
     /// Number of steps completed.
     pub step: u64,
@@ -33,17 +35,6 @@ pub struct Divergence {
     pub time: f64,
     /// Particle, quantity and value.
     pub fault: Fault,
-}
-
-impl std::fmt::Display for Divergence {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Fault { particle, field, value } = self.fault;
-        let Self { step, time, .. } = self;
-        write!(
-            f,
-            "diverged at step {step}, t = {time:.6e} s: {field} {value:.3e} of particle {particle}"
-        )
-    }
 }
 
 /// Whether the run continues.

@@ -159,7 +159,7 @@ where
                 let r2 = r.x * r.x + r.y * r.y;
                 let f = kernel.f(r2);
                 let pair = Pair { r, r2, v, f, own: common, other, kernel };
-                terms.pair(&pair, own_derived, derived, &mut sum);
+                terms.pair(&pair, [own_derived, derived], &mut sum);
             }
             terms.finish(&own.common, shown, T::Sum::total::<V>(sum), rate);
         }

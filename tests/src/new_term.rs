@@ -19,7 +19,7 @@ impl<X> Term<X> for CentralViscosity {
     type Sum = Vector2<f64>; // what a particle sums over its neighbours
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
         let along = pair.v_dot_r() / (pair.r2 + V::all(self.eta2));
         *sum += pair.r * (pair.other.volume * pair.f * along);
     }

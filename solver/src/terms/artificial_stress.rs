@@ -1,4 +1,4 @@
-use super::{Kernel, Lane, Numbers, Pair};
+use super::{In, Kernel, Lane, Numbers, Pair};
 
 /// What [`super::Pressure`] adds to the pair pressure where p < 0: nothing, or an artificial stress.
 pub trait Tensile: Copy + Send + Sync + 'static {
@@ -7,12 +7,7 @@ pub trait Tensile: Copy + Send + Sync + 'static {
     /// From p/ρ² of a particle.
     fn derived(&self, pressure_over_density_squared: f64) -> Self::Derived;
     /// Rᵢⱼ φᵢⱼⁿ, in the unit of p/ρ².
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        own: <Self::Derived as Numbers>::In<V>,
-        other: <Self::Derived as Numbers>::In<V>,
-    ) -> V;
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, derived: [In<Self::Derived, V>; 2]) -> V;
 }
 
 impl Tensile for () {
@@ -20,7 +15,7 @@ impl Tensile for () {
     #[inline(always)]
     fn derived(&self, _: f64) {}
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: ()) -> V {
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2]) -> V {
         V::all(0.0)
     }
 }
@@ -52,7 +47,7 @@ impl Tensile for ArtificialStress {
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, own: V, other: V) -> V {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, [own, other]: [V; 2]) -> V {
         let phi = pair.w() * V::all(self.inverse_w);
         (0..self.n).fold(own + other, |product, _| product * phi)
     }

@@ -62,7 +62,7 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
         let h = V::all(pair.kernel.h());
         let mu = h * S::admit(pair.v_dot_r()) / (pair.r2 + V::all(self.eta2));
         let c = self.eos.sound_speed(pair.own.density) + self.eos.sound_speed(pair.other.density);

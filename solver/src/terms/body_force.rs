@@ -9,7 +9,7 @@ impl<X> Term<X> for BodyForce {
     type Sum = ();
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: (), _: &mut ()) {}
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2], _: &mut ()) {}
 
     #[inline(always)]
     fn finish(&self, _: &Common<f64>, _: Self::Derived, _: (), rate: &mut Rate<X>) {

@@ -1,6 +1,5 @@
 use super::{
-    Common, EquationOfState, Kernel, Lane, Numbers, Pair, Rate, Symmetric, TensileStress, Term,
-    Vector2,
+    Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Symmetric, TensileStress, Term, Vector2,
 };
 
 /// (9) dvᵢᵃ/dt = Σⱼ mⱼ (σᵢᵃᵇ/ρᵢ² + σⱼᵃᵇ/ρⱼ²) ∂Wᵢⱼ/∂xᵢᵇ \[m/s²\], (10) σᵃᵇ = −p δᵃᵇ + Sᵃᵇ, and the stress
@@ -33,11 +32,10 @@ impl<E: EquationOfState, R: TensileStress> Term<Symmetric> for CauchyStress<E, R
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Derived as Numbers>::In<V>,
-        other: <Self::Derived as Numbers>::In<V>,
+        [own, other]: [In<Self::Derived, V>; 2],
         sum: &mut Vector2<V>,
     ) {
-        let stress = own.0 + other.0 + self.tensile.pair(pair, own.1, other.1);
+        let stress = own.0 + other.0 + self.tensile.pair(pair, [own.1, other.1]);
         *sum -= stress.times(pair.r) * (pair.other.mass * pair.f);
     }
 

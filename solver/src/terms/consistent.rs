@@ -6,7 +6,7 @@
 //! conservation: the forces of a pair are not opposite any more, and nothing pushes crowded particles
 //! apart. They need [`super::Shifting`].
 
-use super::{Common, EquationOfState, Kernel, Lane, Numbers, Pair, Rate, Symmetric, Term, Vector2};
+use super::{Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 
 /// Least determinant of the moments: 1 inside a body of particles, 0 on a line.
 const SINGULAR: f64 = 1e-3;
@@ -49,9 +49,8 @@ impl<X, E: EquationOfState> Term<X> for ConsistentPressure<E> {
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: V,
-        other: V,
-        sum: &mut <Self::Sum as Numbers>::In<V>,
+        [own, other]: [V; 2],
+        sum: &mut In<Self::Sum, V>,
     ) {
         let (weight, moments) = weights(pair);
         sum.0 += weight * (own - other);
@@ -81,13 +80,7 @@ impl<X> Term<X> for ConsistentViscosity {
     type Sum = (Vector2<f64>, Vector2<f64>, Vector2<f64>, Vector2<f64>, Symmetric);
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        _: (),
-        _: (),
-        sum: &mut <Self::Sum as Numbers>::In<V>,
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut In<Self::Sum, V>) {
         let (weight, moments) = weights(pair);
         sum.0 += pair.v * (pair.other.volume * pair.f);
         sum.1 += weight;
@@ -118,13 +111,7 @@ impl<X> Term<X> for ConsistentContinuity {
     type Sum = (Vector2<f64>, Vector2<f64>, Symmetric);
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        _: (),
-        _: (),
-        sum: &mut <Self::Sum as Numbers>::In<V>,
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut In<Self::Sum, V>) {
         let (weight, moments) = weights(pair);
         sum.0 += pair.v * weight.x;
         sum.1 += pair.v * weight.y;

@@ -11,7 +11,7 @@ impl<X> Term<X> for Continuity {
     type Sum = f64;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut V) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut V) {
         *sum += pair.other.mass * pair.f * pair.v_dot_r();
     }
 

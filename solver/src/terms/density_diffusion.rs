@@ -69,7 +69,7 @@ impl<X, R: Rest> Term<X> for DensityDiffusion<R> {
     type Sum = f64;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut V) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut V) {
         *sum += pair.other.volume * pair.f * self.rest.excess(pair);
     }
 

@@ -25,8 +25,7 @@ impl Term<Symmetric> for JaumannRate {
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        _: Symmetric<V>,
-        _: Symmetric<V>,
+        _: [Symmetric<V>; 2],
         sum: &mut (Vector2<V>, Vector2<V>),
     ) {
         let gradient = pair.r * (pair.other.volume * pair.f);

@@ -12,6 +12,7 @@ mod consistent;
 mod continuity;
 mod density_diffusion;
 mod jaumann_rate;
+mod no_slip_images;
 mod pressure;
 mod shift_advection;
 mod shifting;
@@ -27,6 +28,7 @@ pub use consistent::{ConsistentContinuity, ConsistentPressure, ConsistentViscosi
 pub use continuity::Continuity;
 pub use density_diffusion::{DensityDiffusion, Hydrostatic, Rest};
 pub use jaumann_rate::JaumannRate;
+pub use no_slip_images::NoSlipImages;
 pub use pressure::Pressure;
 pub use shift_advection::ShiftAdvection;
 pub use shifting::Shifting;
@@ -43,7 +45,7 @@ use crate::{
     eos::EquationOfState,
     kernel::{Kernel, Smoothing},
     lane::Lane,
-    numbers::{Numbers, Symmetric},
+    numbers::{In, Numbers, Symmetric},
     particles::{Common, Rate},
 };
 
@@ -96,13 +98,15 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
         const { assert!(size_of::<Self::Derived>() == 0, "a term with derived numbers derives them") };
         Self::Derived::default()
     }
-    /// Adds the contributions of the neighbours of `pair` to the sum.
+    /// Tells the derived data of an image how its velocity would differ behind a no-slip wall \[m/s\].
+    #[inline(always)]
+    fn no_slip(_image: &mut Self::Derived, _difference: Vector2<f64>) {}
+    /// Adds the contributions of the neighbours of `pair`, given the derived data of both, to the sum.
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Derived as Numbers>::In<V>,
-        other: <Self::Derived as Numbers>::In<V>,
-        sum: &mut <Self::Sum as Numbers>::In<V>,
+        derived: [In<Self::Derived, V>; 2],
+        sum: &mut In<Self::Sum, V>,
     );
     /// Adds the rates that follow from the sum to `rate`.
     fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>);
@@ -125,14 +129,17 @@ macro_rules! tuple_of_terms {
                 ($(self.$index.derived(own, extra),)*)
             }
             #[inline(always)]
+            fn no_slip(image: &mut Self::Derived, difference: Vector2<f64>) {
+                $($member::no_slip(&mut image.$index, difference);)*
+            }
+            #[inline(always)]
             fn pair<V: Lane, K: Kernel>(
                 &self,
                 pair: &Pair<V, K>,
-                own: <Self::Derived as Numbers>::In<V>,
-                other: <Self::Derived as Numbers>::In<V>,
-                sum: &mut <Self::Sum as Numbers>::In<V>,
+                [own, other]: [In<Self::Derived, V>; 2],
+                sum: &mut In<Self::Sum, V>,
             ) {
-                $(self.$index.pair(pair, own.$index, other.$index, &mut sum.$index);)*
+                $(self.$index.pair(pair, [own.$index, other.$index], &mut sum.$index);)*
             }
             #[inline(always)]
             fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
@@ -190,18 +197,18 @@ mod tests {
     fn sum<V: Lane, K: Kernel, T: Term<()>>(
         term: &T,
         pair: &Pair<V, K>,
-        derived: impl Fn(&Common<V>) -> <T::Derived as Numbers>::In<V>,
-    ) -> <T::Sum as Numbers>::In<V> {
+        derived: impl Fn(&Common<V>) -> In<T::Derived, V>,
+    ) -> In<T::Sum, V> {
         let mut sum = T::Sum::default().spread::<V>();
-        term.pair(pair, derived(&pair.own), derived(&pair.other), &mut sum);
+        term.pair(pair, [&pair.own, &pair.other].map(derived), &mut sum);
         sum
     }
 
     /// Each lane of four neighbours at once has the bits of that neighbour alone.
     fn check<V: Lane, K: Kernel, T: Term<()>, const N: usize>(
         term: T,
-        read_wide: impl Fn(<T::Sum as Numbers>::In<V>) -> [V; N],
-        read: impl Fn(<T::Sum as Numbers>::In<f64>) -> [f64; N],
+        read_wide: impl Fn(In<T::Sum, V>) -> [V; N],
+        read: impl Fn(In<T::Sum, f64>) -> [f64; N],
     ) {
         let kernel = Smoothing::<K>::new(0.35);
         let at = |k: usize, mass: f64, density: f64| {

@@ -1,6 +1,5 @@
 use super::{
-    ArtificialStress, Common, EquationOfState, Kernel, Lane, Numbers, Pair, Rate, Tensile, Term,
-    Vector2,
+    ArtificialStress, Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Tensile, Term, Vector2,
 };
 
 /// (5) Pᵢ = −Σⱼ mⱼ (pᵢ/ρᵢ² + pⱼ/ρⱼ²) ∇ᵢWᵢⱼ \[m/s²\], and (14) with R ≠ ().
@@ -44,11 +43,10 @@ impl<X, E: EquationOfState, R: Tensile> Term<X> for Pressure<E, R> {
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Derived as Numbers>::In<V>,
-        other: <Self::Derived as Numbers>::In<V>,
+        [own, other]: [In<Self::Derived, V>; 2],
         sum: &mut Vector2<V>,
     ) {
-        let stress = own.0 + other.0 + self.tensile.pair(pair, own.1, other.1);
+        let stress = own.0 + other.0 + self.tensile.pair(pair, [own.1, other.1]);
         *sum += pair.r * (pair.other.mass * pair.f * stress);
     }
 

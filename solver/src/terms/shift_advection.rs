@@ -1,5 +1,5 @@
 use super::consistent::{inverse, weights};
-use super::{Common, Kernel, Lane, Numbers, Pair, Rate, Shifting, Symmetric, Term, Vector2};
+use super::{Common, In, Kernel, Lane, Pair, Rate, Shifting, Symmetric, Term, Vector2};
 
 /// What shifting must do to the velocity: dvᵢ/dt += (δuᵢ·∇)v \[m/s²\], δu the velocity of
 /// [`Shifting`].
@@ -22,13 +22,7 @@ impl<X> Term<X> for ShiftAdvection {
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        _: (),
-        _: (),
-        sum: &mut <Self::Sum as Numbers>::In<V>,
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut In<Self::Sum, V>) {
         let (weight, moments) = weights(pair);
         sum.0 += self.0.push(pair);
         sum.1 += pair.v * weight.x;

@@ -1,6 +1,6 @@
 use std::marker::PhantomData;
 
-use super::{Kernel, Lane, Numbers, Pair, Symmetric};
+use super::{In, Kernel, Lane, Numbers, Pair, Symmetric};
 
 /// What [`super::CauchyStress`] adds to the pair stress where the solid is in tension: nothing, or an
 /// artificial stress Rᵢⱼᵃᵇ φᵢⱼⁿ, (21) Rᵢⱼ = Rᵢ + Rⱼ.
@@ -13,8 +13,7 @@ pub trait TensileStress: Copy + Send + Sync + 'static {
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: <Self::Derived as Numbers>::In<V>,
-        other: <Self::Derived as Numbers>::In<V>,
+        derived: [In<Self::Derived, V>; 2],
     ) -> Symmetric<V>;
 }
 
@@ -23,7 +22,7 @@ impl TensileStress for () {
     #[inline(always)]
     fn derived(&self, _: Symmetric) {}
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: (), _: ()) -> Symmetric<V> {
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2]) -> Symmetric<V> {
         Symmetric { xx: V::all(0.0), yy: V::all(0.0), xy: V::all(0.0) }
     }
 }
@@ -96,8 +95,7 @@ impl<A: Axes> TensileStress for InTension<A> {
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        own: Symmetric<V>,
-        other: Symmetric<V>,
+        [own, other]: [Symmetric<V>; 2],
     ) -> Symmetric<V> {
         let phi = pair.w() * V::all(self.inverse_w);
         (own + other) * (0..self.n).fold(V::all(1.0), |product, _| product * phi)

@@ -17,7 +17,7 @@ impl<X> Term<X> for Viscosity {
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
         let weight = pair.other.volume * pair.f * (pair.r2 / (pair.r2 + V::all(self.eta2)));
         *sum += pair.v * weight;
     }

@@ -14,7 +14,7 @@ impl<X> Term<X> for Xsph {
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: (), _: (), sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
         *sum += pair.v * (pair.other.mass * pair.w() / (pair.own.density + pair.other.density));
     }
 

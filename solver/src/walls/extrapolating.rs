@@ -8,7 +8,7 @@ use crate::{
     eos::EquationOfState,
     kernel::Kernel,
     lane::Lane,
-    numbers::Numbers,
+    numbers::{In, Numbers},
     particles::{Common, Rate},
     terms::{Pair, Term},
 };
@@ -63,7 +63,7 @@ pub trait WallVelocity: Copy + Send + Sync + 'static {
     /// Σ (u_wall − u_f) W.
     type Sum: Numbers;
     /// Adds a fluid particle of weight `w`, with `v` = u_wall − u_f.
-    fn add<V: Lane>(v: Vector2<V>, w: V, sum: &mut <Self::Sum as Numbers>::In<V>);
+    fn add<V: Lane>(v: Vector2<V>, w: V, sum: &mut In<Self::Sum, V>);
     /// u_w − u_wall \[m/s\] from the sum and Σ W.
     fn beyond(sum: Self::Sum, weight: f64) -> Vector2<f64>;
 }
@@ -113,9 +113,8 @@ impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U>
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        _: (),
-        _: (),
-        (weight, pressure, velocity): &mut <Self::Sum as Numbers>::In<V>,
+        _: [(); 2],
+        (weight, pressure, velocity): &mut In<Self::Sum, V>,
     ) {
         let (w, density) = (pair.w(), pair.other.density);
         let a = self.acceleration;

@@ -43,45 +43,37 @@ pub(crate) fn corners(walls: &[PlaneWall]) -> impl Iterator<Item = [&PlaneWall; 
 }
 
 /// Walls represented by mirror (ghost) particles: each particle within the list radius of a wall has an
-/// image across the wall with the density and pressure of its original (inferred) and the velocity 2U − v
-/// + d² ∂²v/∂n². A particle that has crossed the wall has none, because it would lie in the fluid.
+/// image across the wall with the density and pressure of its original (inferred) and a velocity by `SLIPS`,
+/// see [`Ghosts`] and [`SlipGhosts`]. A particle that has crossed the wall has none, because it would lie in
+/// the fluid.
 ///
 /// Where two walls meet at a right angle, the fluid between them, a particle within that radius of both
 /// has an image across both as well: the mirror particle of its mirror particle, half a turn about the
-/// corner, with the velocity v. (One wall after the other gives v ± 2(U₁ − U₂), by the order; v is the mean.)
-/// Other angles are refused, because their images of images never end. Walls are of infinite length: a
-/// tank has a bottom and two sides, and is open at the top because there is no wall.
+/// corner. Other angles are refused, because their images of images never end. Walls are of infinite length:
+/// a tank has a bottom and two sides, and is open at the top because there is no wall.
 #[derive(Clone, Debug, Default)]
-pub struct Ghosts {
+pub struct Mirrors<const SLIPS: bool> {
     /// The walls.
     pub walls: Vec<PlaneWall>,
 }
 
-impl<X> Walls<X> for Ghosts {
-    type Terms = ();
-    fn terms(&self) {}
-    fn mirrors(&self) -> &[PlaneWall] {
-        &self.walls
-    }
-}
+/// Walls to which the fluid sticks: images have the velocity 2U − v + d² ∂²v/∂n², and across a corner v.
+/// (One wall after the other gives v ± 2(U₁ − U₂), by the order; v is the mean.)
+pub type Ghosts = Mirrors<false>;
 
-/// Walls represented by mirror particles along which the fluid slips: as [`Ghosts`], but an image is the
-/// mirror of the whole particle, velocity included, v − 2\[(v − U)·n\]n = v − 2(v·n)n, and across a
-/// corner −v. The motion U of a wall along itself, and its curvature, have no effect.
+/// Walls along which the fluid slips: an image is the mirror of the whole particle, velocity included,
+/// v − 2\[(v − U)·n\]n = v − 2(v·n)n, and across a corner −v. The motion U of a wall along itself, and its
+/// curvature, have no effect, except on the terms in [`crate::NoSlipImages`].
 ///
 /// Pressure (5) and continuity (3) then do no work on these walls, in any arrangement before them: what
 /// the image of j does to i is the mirror of what the image of i does to j. Images of a no-slip wall do work
 /// on the velocity along it (what is left of −2 Σ m m' (p'/ρ'²) v_t·∇W).
-#[derive(Clone, Debug, Default)]
-pub struct SlipGhosts {
-    /// The walls.
-    pub walls: Vec<PlaneWall>,
-}
+pub type SlipGhosts = Mirrors<true>;
 
-impl<X> Walls<X> for SlipGhosts {
+impl<X, const SLIPS: bool> Walls<X> for Mirrors<SLIPS> {
     type Terms = ();
     fn terms(&self) {}
-    const SLIPS: bool = true;
+    const SLIPS: bool = SLIPS;
     fn mirrors(&self) -> &[PlaneWall] {
         &self.walls
     }
@@ -92,7 +84,7 @@ mod tests {
     use super::*;
     use crate::{
         Compose, Continuity, Domain, EquationOfState, Leapfrog, Particle, Pressure, Scene, Tait,
-        WendlandC2,
+        Term, Viscosity, WendlandC2,
     };
 
     type Method<W> = Compose<WendlandC2, Pressure<Tait>, Continuity, W, Leapfrog>;
@@ -160,6 +152,66 @@ mod tests {
         assert!(rate < 1e-13, "{rate:e}");
         let [_, rate] = work_and_rate(Ghosts { walls: tank() }, along());
         assert!(rate > 0.1, "images with the opposite velocity sum disorder: {rate:e}");
+    }
+
+    /// The rates of disordered water by one term, between these walls.
+    fn rates<T: Term<()>, const SLIPS: bool>(
+        term: &T,
+        domain: Domain,
+        walls: &[PlaneWall],
+        particles: Vec<Particle>,
+    ) -> Vec<crate::Rate<()>> {
+        let (pressure, walls) = (Pressure::new(EOS), Mirrors::<SLIPS> { walls: walls.to_vec() });
+        let scene = Scene::<Method<_>>::new(0.15, domain, particles, pressure, Continuity, walls);
+        let mut simulation = scene.build().expect("a scene");
+        simulation.advance(0.0, 1.0, &mut ());
+        simulation.rates(term)
+    }
+
+    /// Across a moving wall, across a corner, and across a wall and a period.
+    #[test]
+    fn a_term_with_no_slip_images_has_the_forces_of_no_slip_walls_where_the_water_slips() {
+        let viscosity = Viscosity { mu: 0.3, eta2: 1e-4 };
+        let split = crate::NoSlipImages(viscosity);
+        let mut channel = vec![tank()[0], tank()[0]];
+        (channel[0].velocity, channel[1].velocity) = (Vector2::x() * 2.0, -Vector2::x());
+        (channel[1].point, channel[1].normal) = (Vector2::y() * 0.6, -Vector2::y());
+        channel[0].curvature = Vector2::x() * 5.0;
+        for (domain, walls) in [(Domain::open(), tank()), (Domain::channel(1.0), channel)] {
+            let water = || water(None);
+            let sticks = rates::<_, false>(&viscosity, domain, &walls, water());
+            let slips = rates::<_, true>(&viscosity, domain, &walls, water());
+            let found = rates::<_, true>(&split, domain, &walls, water());
+            let largest = sticks.iter().map(|rate| rate.velocity.norm()).fold(0.0, f64::max);
+            let off = |a: &[crate::Rate<()>]| {
+                let pairs = a.iter().zip(&sticks);
+                pairs.map(|(a, b)| (a.velocity - b.velocity).norm()).fold(0.0, f64::max) / largest
+            };
+            assert!(off(&found) < 1e-13, "{:e} of the largest force", off(&found));
+            assert!(off(&slips) > 0.1, "without it the walls do not drag: {:e}", off(&slips));
+        }
+    }
+
+    /// Continuity and pressure do not notice a layer that slides along the wall, whatever viscosity sees.
+    #[test]
+    fn a_layer_that_slides_along_a_wall_where_it_slips_is_neither_compressed_nor_pushed_along() {
+        let layer = || -> Vec<Particle> {
+            let place = |x| Particle::fluid(x, Vector2::x() * 3.0, 2.1, 0.01);
+            crate::lattice(Vector2::repeat(0.05), 0.1, 10, 2).map(place).collect()
+        };
+        let floor = &tank()[..1];
+        let of = |found: &[crate::Rate<()>], rate: fn(&crate::Rate<()>) -> f64| {
+            found.iter().map(|found| rate(found).abs()).fold(0.0, f64::max)
+        };
+        let torus = || Domain::channel(1.0);
+        let density = rates::<_, true>(&Continuity, torus(), floor, layer());
+        assert!(of(&density, |rate| rate.density) < 1e-13, "{density:?}");
+        let push = rates::<_, true>(&Pressure::new(EOS), torus(), floor, layer());
+        assert!(of(&push, |rate| rate.velocity.x) < 1e-12 * of(&push, |rate| rate.velocity.y));
+        let split = crate::NoSlipImages(Viscosity { mu: 0.3, eta2: 1e-4 });
+        let drag = rates::<_, true>(&split, torus(), floor, layer());
+        assert!(drag.iter().all(|rate| rate.velocity.x <= 0.0), "{drag:?}");
+        assert!(of(&drag, |rate| rate.velocity.x) > 1.0, "the wall drags: {drag:?}");
     }
 
     /// A particle behind the bottom repelled the water above it twice: from its own place, and as an image in

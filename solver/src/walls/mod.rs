@@ -8,7 +8,7 @@ mod image;
 mod interface;
 
 pub use extrapolating::{ExtrapolatingWall, NoSlip, WallVelocity};
-pub use ghosts::{Ghosts, PlaneWall, SlipGhosts};
+pub use ghosts::{Ghosts, Mirrors, PlaneWall, SlipGhosts};
 pub(crate) use ghosts::{RIGHT_ANGLE, corners};
 pub use image::Map;
 pub use interface::InterfaceWall;

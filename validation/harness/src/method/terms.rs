@@ -3,8 +3,8 @@
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion, ExtrapolatingWall,
-    Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, Open, PlaneWall, Pressure, ShiftAdvection,
-    Shifting, SlipGhosts, Tait, Viscosity, Xsph,
+    Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall, Pressure,
+    ShiftAdvection, Shifting, SlipGhosts, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension, Switch},
 };
 
@@ -65,6 +65,15 @@ impl<E: FromMedium, R: FromMedium> FromMedium for Pressure<E, R> {
     }
     fn uses() -> Vec<Knob> {
         R::uses()
+    }
+}
+
+impl<T: FromMedium> FromMedium for NoSlipImages<T> {
+    fn new(medium: &Medium) -> Self {
+        Self(T::new(medium))
+    }
+    fn uses() -> Vec<Knob> {
+        T::uses()
     }
 }
 

@@ -10,7 +10,8 @@
 use serde::{Deserialize, Serialize};
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, DensityDiffusion,
-    EquationOfState, Evolved, Pressure, Rate, Scheme, Simulation, Stepper, Term, Viscosity, Xsph,
+    EquationOfState, Evolved, NoSlipImages, Pressure, Rate, Scheme, Simulation, Stepper, Term,
+    Viscosity, Xsph,
     terms::{Rest, Switch},
 };
 
@@ -102,6 +103,7 @@ macro_rules! itemised {
 itemised! {
     Continuity {} = WALLS,
     ArtificialViscosity<E, W> { E: EquationOfState, W: Switch } = VISCOSITY,
+    NoSlipImages<ArtificialViscosity<E, W>> { E: EquationOfState, W: Switch } = VISCOSITY,
     Viscosity {} = "viscosity",
     Xsph {} = XSPH,
     DensityDiffusion<R> { R: Rest } = DIFFUSION,

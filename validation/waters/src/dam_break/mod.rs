@@ -21,8 +21,9 @@ mod studies;
 
 use harness::composed::{Composed, Composition, Variants};
 use solver::{
-    ArtificialStress, Compose, Continuity, CubicSpline, DensityDiffusion, ExtrapolatingWall,
-    Ghosts, InterfaceWall, Leapfrog, PredictorCorrector, SlipGhosts, Tait, WendlandC2, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
+    DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlipImages,
+    PredictorCorrector, Pressure, SlipGhosts, Tait, WendlandC2, Xsph,
 };
 
 pub use setup::Dam;
@@ -142,7 +143,19 @@ fn seed_ablations(all: All) -> All {
             method::<Seed<SlipGhosts>>(),
             seed,
         )
+        .with(
+            "ghosts-split",
+            "the seed with ghosts that keep the velocity along the wall, except for viscosity, which sees \
+             the opposite one and so drags the water along the wall",
+            method::<
+                Compose<CubicSpline, Split, (Continuity, Xsph), SlipGhosts, PredictorCorrector>,
+            >(),
+            seed,
+        )
 }
+
+/// The seed's forces, for whose viscosity alone images have the velocity of those behind a no-slip wall.
+type Split = (Pressure<Tait, ArtificialStress>, NoSlipImages<ArtificialViscosity<Tait>>, BodyForce);
 
 /// The modern variant with one part changed.
 fn modern_ablations(all: All) -> All {

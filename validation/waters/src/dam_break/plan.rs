@@ -4,7 +4,7 @@ use super::{
     NAME, ablation, limitations,
     metrics::{self, FRONT, HEIGHT, IMPULSE, LEVELS},
     reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS},
-    specs::{JUDGED, film, in_tank, martin_moyce, planned_free, planned_tank},
+    specs::{JUDGED, OTHER_IMAGES, film, in_tank, martin_moyce, planned_free, planned_tank},
     stability::{self, Extreme},
 };
 use crate::water::{gate, ledger};
@@ -25,6 +25,18 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
     for variant in JUDGED {
         for &n in in_tank(variant, tier) {
             runs.push(planned_tank(tier, variant, n).judged(tank_gates(variant, n)));
+        }
+    }
+    for variant in OTHER_IMAGES {
+        for &n in martin_moyce(variant, tier) {
+            let gates = invariants(&format!("{NAME}.martin-moyce.{variant}.{n}"));
+            let gates = gates.into_iter().map(|gate| limitations::of_free(gate, variant, n));
+            runs.push(planned_free(tier, variant, n).judged(gates.collect()));
+        }
+        for &n in in_tank(variant, tier) {
+            let gates = invariants(&format!("{NAME}.lobovsky.{variant}.{n}"));
+            let gates = gates.into_iter().map(|gate| limitations::in_tank(gate, variant, n));
+            runs.push(planned_tank(tier, variant, n).judged(gates.collect()));
         }
     }
     runs.push(Planned::new(film(tier)));

@@ -7,12 +7,17 @@ use harness::case::{Planned, Tier};
 /// The variants that are judged.
 pub const JUDGED: [&str; 3] = ["seed", "ghosts", "modern"];
 
+/// Walls that images with other velocities make, judged by what holds whatever the water does. They are not
+/// compared with the experiments: along the one the water slips, along the other artificial viscosity drags
+/// it, in a layer as thick as the support, and neither is the wall of the experiment.
+pub const OTHER_IMAGES: [&str; 2] = ["ghosts-slip", "ghosts-split"];
+
 /// Spacings along the width of the column of Martin & Moyce. At 80 the seed would take as long as half
 /// of all other runs of this case; three resolutions of it are 10, 20 and 40.
 pub fn martin_moyce(variant: &str, tier: Tier) -> &'static [usize] {
     match (tier, variant) {
         (Tier::Quick, "modern") => &[20, 40],
-        (Tier::Quick, _) | (Tier::Full, "ghosts") => &[20],
+        (Tier::Quick, _) | (Tier::Full, "ghosts" | "ghosts-slip" | "ghosts-split") => &[20],
         (Tier::Full, "modern") => &[10, 20, 40, 80],
         (Tier::Full, _) => &[10, 20, 40],
     }
@@ -22,7 +27,7 @@ pub fn martin_moyce(variant: &str, tier: Tier) -> &'static [usize] {
 pub fn in_tank(variant: &str, tier: Tier) -> &'static [usize] {
     match (tier, variant) {
         (Tier::Quick, "modern") => &[30],
-        (Tier::Quick, _) => &[],
+        (Tier::Quick, _) | (Tier::Full, "ghosts-slip") => &[],
         (Tier::Full, "modern") => &[30, 60, 120],
         (Tier::Full, _) => &[30],
     }

@@ -1,0 +1,37 @@
+use super::{Common, In, Kernel, Lane, Pair, Rate, Term, Vector2};
+
+/// A term for which the images behind walls along which the fluid slips ([`crate::SlipGhosts`]) have the
+/// velocity of those behind no-slip walls ([`crate::Ghosts`]). Each column carries the difference of the two
+/// \[m/s\], which is 0 for particles.
+#[derive(Clone, Copy, Debug)]
+pub struct NoSlipImages<T>(pub T);
+
+impl<X, T: Term<X>> Term<X> for NoSlipImages<T> {
+    type Derived = (T::Derived, Vector2<f64>);
+    type Sum = T::Sum;
+
+    fn prepare(&mut self, max_speed: f64) {
+        self.0.prepare(max_speed);
+    }
+    #[inline(always)]
+    fn derived(&self, own: &Common<f64>, extra: &X) -> Self::Derived {
+        (self.0.derived(own, extra), Vector2::zeros())
+    }
+    #[inline(always)]
+    fn no_slip(image: &mut Self::Derived, difference: Vector2<f64>) {
+        image.1 += difference;
+    }
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        [own, other]: [In<Self::Derived, V>; 2],
+        sum: &mut In<Self::Sum, V>,
+    ) {
+        self.0.pair(&Pair { v: pair.v - other.1, ..*pair }, [own.0, other.0], sum);
+    }
+    #[inline(always)]
+    fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: T::Sum, rate: &mut Rate<X>) {
+        self.0.finish(own, derived.0, sum, rate);
+    }
+}
