@@ -149,8 +149,6 @@ pub enum Evidence {
 pub enum Purpose {
     /// inside passes, outside fails
     Judge,
-    /// show the number and judge nothing
-    Report,
     /// a number outside is a known limitation as long as it is inside of the limitation's own bound
     Limitation(Known),
     /// a control that must lie outside its bound: inside fails
@@ -294,11 +292,6 @@ impl Gate {
         gate.sound()
     }
 
-    /// The number is shown and not judged.
-    pub fn reported(self) -> Self {
-        Gate { purpose: Purpose::Report, ..self }
-    }
-
     /// Lying outside is known, for a reason, as far as `known` reaches: a number outside of that, NaN and
     /// a missing metric fail.
     ///
@@ -366,7 +359,7 @@ impl Gate {
         if !bound.is_sound() {
             return Err(GateError::Bound { id: id(), bound: *bound });
         }
-        if self.may_end_early && matches!(purpose, Purpose::Judge | Purpose::Report) {
+        if self.may_end_early && *purpose == Purpose::Judge {
             return Err(GateError::EndsEarly { id: id() });
         }
         match purpose {
@@ -428,8 +421,6 @@ pub enum Verdict {
     Pass,
     /// outside, not finite, missing, or a control that passed
     Fail,
-    /// shown, not judged
-    Reported,
     /// outside, known for this reason
     Limitation(String),
     /// a control that failed, as it must
@@ -448,7 +439,6 @@ impl fmt::Display for Verdict {
         match self {
             Verdict::Pass => f.write_str("pass"),
             Verdict::Fail => f.write_str("FAIL"),
-            Verdict::Reported => f.write_str("reported, not judged"),
             Verdict::Limitation(reason) => write!(f, "known limitation: {reason}"),
             Verdict::ExpectedFailure => f.write_str("fails, as it must"),
         }
@@ -472,19 +462,18 @@ pub struct Judgement {
 
 /// Judges a metric. Whatever the gate is for, it passes only on a finite number inside its bound.
 ///
-/// | metric | `Judge` | `Report` | `Limitation` | `ExpectFailure` |
-/// |---|---|---|---|---|
-/// | finite, inside | pass | reported | pass | fail |
-/// | outside, inside the limitation's bound | fail | reported | limitation | expected failure |
-/// | outside of both | fail | reported | fail | expected failure |
-/// | NaN, infinite, missing | fail | fail | fail | fail |
+/// | metric | `Judge` | `Limitation` | `ExpectFailure` |
+/// |---|---|---|---|
+/// | finite, inside | pass | pass | fail |
+/// | outside, inside the limitation's bound | fail | limitation | expected failure |
+/// | outside of both | fail | fail | expected failure |
+/// | NaN, infinite, missing | fail | fail | fail |
 pub fn judge(gate: &Gate, value: Option<f64>) -> Judgement {
     let is_finite = value.is_some_and(f64::is_finite);
     let is_inside = value.is_some_and(|value| gate.bound.contains(value));
     let verdict = match &gate.purpose {
-        Purpose::Report if is_finite => Verdict::Reported,
         Purpose::ExpectFailure if is_finite && !is_inside => Verdict::ExpectedFailure,
-        Purpose::Report | Purpose::ExpectFailure => Verdict::Fail,
+        Purpose::ExpectFailure => Verdict::Fail,
         _ if is_inside => Verdict::Pass,
         Purpose::Limitation(known) if value.is_some_and(|value| known.bound.contains(value)) => {
             Verdict::Limitation(known.reason.clone())
@@ -537,14 +526,13 @@ mod tests {
 
     #[test]
     fn the_table_of_purposes_holds() {
-        use Verdict::{ExpectedFailure, Fail, Limitation, Pass, Reported};
+        use Verdict::{ExpectedFailure, Fail, Limitation, Pass};
         let plain = gate(Bound::Below(1.0));
         let limited = plain.clone().with_limitation(Bound::Below(2.0), "tensile instability");
         let known = Limitation("tensile instability".into());
         let expected = [
             (plain.clone(), [Pass, Fail, Fail, Fail]),
             (limited, [Pass, known, Fail, Fail]),
-            (plain.clone().reported(), [Reported, Reported, Reported, Fail]),
             (plain.expected_to_fail(), [Fail, ExpectedFailure, ExpectedFailure, Fail]),
         ];
         for (gate, [inside, outside, far, none]) in expected {
@@ -569,7 +557,7 @@ mod tests {
         record.status = Status::Interrupted { step: 3, time: 0.1 };
         let limited = plain.clone().with_limitation(Bound::Below(2.0), "it tears");
         let control = plain.clone().expected_to_fail();
-        for gate in [plain.clone(), plain.clone().reported(), limited.clone(), control.clone()] {
+        for gate in [plain.clone(), limited.clone(), control.clone()] {
             let judgement = gate.judge_record(&record);
             assert_eq!((judgement.verdict, judgement.value), (Verdict::Fail, None), "{gate:?}");
         }

@@ -7,5 +7,5 @@
 
 pub mod cases;
 mod limitations;
-pub mod margins;
+mod margins;
 pub mod page;

@@ -21,9 +21,8 @@ pub fn figure(suite: &Suite) -> Figure {
     );
     let mut dots: Vec<(Status, (f64, f64))> = Vec::new();
     for (row, case) in suite.cases.iter().rev().enumerate() {
-        let of_runs = case.runs.all().iter().flat_map(|run| &run.judged);
-        let judged = of_runs.chain(case.studies.iter().flat_map(|study| &study.judged));
-        dots.extend(stacked(row as f64, judged.filter_map(margin)));
+        let judged = case.judged().map(|(_, judged)| judged);
+        dots.extend(stacked(row as f64, judged.map(margin)));
     }
     let mut plot = Plot::new("", axes.0, axes.1).layer(Layer::vertical(0.0, ""));
     for (status, colour, shape) in LOOKS {
@@ -50,10 +49,9 @@ const LOOKS: [(Status, Colour, Shape); 4] = [
 ];
 
 /// What is drawn of a gate that is judged.
-fn margin(judged: &Judged) -> Option<(Status, f64)> {
-    let status = judged.status();
+fn margin(judged: &Judged) -> (Status, f64) {
     let margin = judged.judgement.margin.filter(|margin| margin.is_finite());
-    (status != Status::Reported).then(|| (status, margin.unwrap_or(OUTSIDE)))
+    (judged.status(), margin.unwrap_or(OUTSIDE))
 }
 
 /// Dots of a row: those of nearly one margin above and below each other, within the row.

@@ -20,7 +20,7 @@ use report::{
     Block, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS,
 };
 
-use crate::limitations;
+use crate::{limitations, margins};
 
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
@@ -136,6 +136,7 @@ fn verdicts(suite: &Suite) -> Section {
              limitation it is the share that is left until it fails. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
+        .block(margins::figure(suite))
 }
 
 fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Notes<'a>) -> GateRow {

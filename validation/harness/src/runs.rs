@@ -59,7 +59,6 @@ impl Judged {
         match self.judgement.verdict {
             Verdict::Pass => Status::Pass,
             Verdict::Fail => Status::Fail,
-            Verdict::Reported => Status::Pass,
             Verdict::Limitation(_) => Status::Limitation,
             Verdict::ExpectedFailure => Status::ExpectedFailure,
         }

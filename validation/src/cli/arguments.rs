@@ -307,8 +307,6 @@ pub enum Status {
     Limitation,
     /// A control that lies outside its bound, as it must
     ExpectedFailure,
-    /// Shown, not judged
-    Reported,
 }
 
 #[derive(Debug, Args)]

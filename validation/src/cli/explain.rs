@@ -124,7 +124,6 @@ fn is(verdict: &Verdict, status: arguments::Status) -> bool {
         Verdict::Fail => Status::Fail,
         Verdict::Limitation(_) => Status::Limitation,
         Verdict::ExpectedFailure => Status::ExpectedFailure,
-        Verdict::Reported => Status::Reported,
     };
     of_verdict == status
 }
@@ -186,7 +185,6 @@ fn evidence(evidence: Evidence) -> &'static str {
 fn purpose(purpose: &Purpose) -> String {
     match purpose {
         Purpose::Judge => "inside passes, outside fails".into(),
-        Purpose::Report => "reported, not judged".into(),
         Purpose::Limitation(known) => {
             format!("known limitation, may lie outside, but {}: {}", known.bound, known.reason)
         }

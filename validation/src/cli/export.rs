@@ -27,8 +27,8 @@ fn value(judgement: &Judgement) -> String {
     judgement.value.map_or("not measured".into(), |value| report::sig(value, 5))
 }
 
-/// A test case a gate, by case. Failing gates are failures; a limitation, an expected failure and a number
-/// that is only reported or not measured are skipped, with the verdict as the message.
+/// A test case a gate, by case. Failing gates are failures; a limitation and an expected failure are
+/// skipped, with the verdict as the message.
 fn junit(suite: &Suite) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
     for results in &suite.cases {

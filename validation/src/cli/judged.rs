@@ -157,7 +157,6 @@ fn counts(suite: &Suite) -> BTreeMap<String, usize> {
         let name = match judged.judgement.verdict {
             Verdict::Pass => "pass",
             Verdict::Fail => "fail",
-            Verdict::Reported => "reported",
             Verdict::Limitation(_) => "limitation",
             Verdict::ExpectedFailure => "expected failure",
         };

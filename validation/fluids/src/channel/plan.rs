@@ -56,7 +56,7 @@ const REYNOLDS: [(f64, f64); 9] = [
     (500.0, 1.0),
 ];
 
-/// Reynolds number above those, to see where the rule breaks: reported, not judged.
+/// Reynolds number above those, to see where the rule breaks: shown without a gate.
 const BEYOND: (f64, f64) = (1000.0, 0.5);
 
 /// The largest of them in a tier. Couette flow has no force that disorders rows, so that the lower ones are
