@@ -213,7 +213,7 @@ fn evidence(evidence: Evidence) -> &'static str {
 }
 
 fn settings_table(results: &CaseResults) -> Table {
-    let caption = "Settings, reachable by `--set key=value`; variants change some defaults.";
+    let caption = "Settings (`--set key=value`). Variants change some of the defaults.";
     Columns::<Field>::default()
         .code("setting", |field| field.name)
         .text("meaning", |field| field.doc)
@@ -224,7 +224,7 @@ fn settings_table(results: &CaseResults) -> Table {
 }
 
 fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
-    let caption = "Every run of the plan. Seconds alone are the median of timings with nothing else of this \
+    let caption = "All runs and their cost. Seconds alone are the median of timings with nothing else of this \
                    program at work; other seconds were taken side by side and are only rough. The state is a \
                    digest of the bits at the end: the same for any number of threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
@@ -234,7 +234,6 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
         .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))
         .steps()
         .num(["pair interactions", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))
-        .num(["right-hand sides", "1"], |r| Cell::sci(r.cost.particle_rhs as f64, 2))
         .num(["stepping, alone", "s"], alone)
         .num(["stepping", "s"], |record| Cell::seconds(record.cost.cpu_s))
         .num(["observers", "s"], |record| Cell::seconds(record.cost.observing_s))

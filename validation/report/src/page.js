@@ -15,7 +15,7 @@
     var body = row.closest("table").tBodies[0];
     var key = function (tr) {
       var cell = tr.children[column];
-      return cell.dataset.value === undefined ? cell.textContent.trim() : Number(cell.dataset.value);
+      return cell.dataset.v === undefined ? cell.textContent.trim() : Number(cell.dataset.v);
     };
     var compare = function (a, b) {
       var x = key(a), y = key(b);
@@ -53,6 +53,11 @@
     "status": function (row) { return row.dataset.status; },
     "evidence": function (row) { return text(row, 6); }
   };
+  // The name of a gate links to its row.
+  var link = function (row) {
+    var cell = row.children[1];
+    if (!cell.firstElementChild) { cell.replaceChildren(make("a", { href: "#" + row.id }, cell.textContent)); }
+  };
   var apply = function () {
     all("tr.why", table).forEach(function (tr) { tr.remove(); });
     var words = form.elements.q.value.toLowerCase().split(" ");
@@ -66,6 +71,7 @@
       });
       count += fits ? 1 : 0;
       row.hidden = fits ? count > most : true;
+      if (!row.hidden) { link(row); }
     });
     found.textContent = count + " of " + rows.length + " gates" + (count > most ? ", " + most + " shown" : "");
     more.hidden = most >= count;
@@ -81,11 +87,12 @@
   // The row of a gate, with its reasons below it.
   var open = function (row) {
     row.hidden = false;
+    link(row);
     all("tr.why", table).forEach(function (tr) { tr.remove(); });
     var why = make("tr", { class: "why" });
     var cell = make("td", { colspan: row.children.length });
-    all("a", row.lastElementChild).forEach(function (link) {
-      cell.appendChild(make("p", {}, document.querySelector(link.getAttribute("href")).textContent));
+    text(row, 7).split(" ").forEach(function (number) {
+      cell.appendChild(make("p", {}, document.getElementById("r" + number).textContent));
     });
     why.appendChild(cell);
     row.after(why);

@@ -7,7 +7,7 @@ use super::film::{self, Film};
 use super::font;
 use super::inline::{escape, inline};
 use super::render;
-use super::table::{Status, Table};
+use super::table::{Status, Table, first_sentence};
 use base::files;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
@@ -266,14 +266,16 @@ impl Page {
                         @if let Some(counts) = self.counts { (counts.html()) }
                         @for paragraph in &self.lead { p.lead { (inline(paragraph)) } }
                     }
-                    @if !self.cards.is_empty() {
-                        div.cards { @for card in &self.cards { (card.markup()) } }
-                    }
-                    @for note in &self.notes { p.note { (inline(note)) } }
                     @if self.sections.len() > 1 {
                         nav aria-label="Contents" { (contents(&self.sections)) }
                     }
-                    main { @for section in &self.sections { (writer.section(section, 2)) } }
+                    main {
+                        @if !self.cards.is_empty() {
+                            div.cards { @for card in &self.cards { (card.markup()) } }
+                        }
+                        @for note in &self.notes { p.note { (inline(note)) } }
+                        @for section in &self.sections { (writer.section(section, 2)) }
+                    }
                     @if !self.footer.is_empty() { footer { p { (inline(&self.footer)) } } }
                     script { (PreEscaped(SCRIPT)) }
                 }
@@ -373,7 +375,7 @@ impl Writer<'_> {
 
     fn block(&mut self, block: &Block) -> Markup {
         match block {
-            Block::Prose(paragraphs) => html! { @for p in paragraphs { p { (inline(p)) } } },
+            Block::Prose(paragraphs) => html! { @for p in paragraphs { (prose(p)) } },
             Block::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
             Block::Figure(figure) => self.figure(&figure.id, &figure.caption, drawing(figure)),
             Block::Film(film) => self.figure(&film.id, &film.caption, moving(film)),
@@ -413,6 +415,18 @@ impl Writer<'_> {
             }
         }
     }
+}
+
+/// Words of a paragraph that is shown at once; of a longer one the first sentence is.
+const LONG: usize = 45;
+
+/// A paragraph; what follows the first sentence of a long one opens by a click.
+fn prose(text: &str) -> Markup {
+    let (first, rest) = first_sentence(text);
+    if rest.is_empty() || text.split_whitespace().count() <= LONG {
+        return html! { p { (inline(text)) } };
+    }
+    html! { details.prose { summary { (inline(first)) } p { (inline(rest)) } } }
 }
 
 /// Bytes of an SVG beyond which a page has the figure in pixels: some thousand dots.
@@ -466,6 +480,13 @@ mod tests {
     fn the_script_is_plain_xml_text() {
         assert!(!SCRIPT.contains(['<', '&']) && !STYLE.contains(['<', '&']));
         assert!(SCRIPT.lines().count() < 200);
+    }
+
+    #[test]
+    fn a_long_paragraph_opens_by_a_click() {
+        let long = format!("It moves. {}.", "Word ".repeat(LONG));
+        assert!(prose(&long).into_string().starts_with("<details class=\"prose\"><summary>It moves."));
+        assert_eq!(prose("It moves. So it is.").into_string(), "<p>It moves. So it is.</p>");
     }
 
     #[test]

@@ -128,10 +128,7 @@ impl Cell {
         };
         html! {
             td class=[Some(class).filter(|c| !c.is_empty())]
-                data-value=[value] {
-                @if let Some(s) = self.status {
-                    span.mark title=(s.name()) { (s.mark()) } "\u{a0}"
-                }
+                data-v=[value] {
                 (inline(&self.text))
             }
         }
@@ -146,7 +143,7 @@ pub(super) fn first_sentence(text: &str) -> (&str, &str) {
     let is_end = |at: &usize| {
         let (before, after) = (&text[..*at], &text[at + 2..]);
         let word = before.rsplit([' ', '(']).next().unwrap_or_default();
-        after.starts_with(char::is_uppercase) && (word.chars().count() > 3 || word.ends_with(']'))
+        after.starts_with(char::is_uppercase) && !["al", "cf", "no", "e.g", "i.e"].contains(&word)
     };
     match text.match_indices(". ").map(|(at, _)| at).find(is_end) {
         Some(at) => (&text[..=at], &text[at + 2..]),
@@ -260,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_sentence_ends_before_a_capital_letter() {
-        assert_eq!(first_sentence("One a. Two b. Three."), ("One a. Two b. Three.", ""));
+        assert_eq!(first_sentence("See et al. There. Three."), ("See et al. There.", "Three."));
         assert_eq!(first_sentence("Errors fall. Orders too."), ("Errors fall.", "Orders too."));
         let text = "Front of Lobovsky et al. 2014, no. 3 [m]. Lines.";
         assert_eq!(first_sentence(text), ("Front of Lobovsky et al. 2014, no. 3 [m].", "Lines."));
@@ -286,11 +283,11 @@ mod tests {
             .row(vec![Cell::text("short"), Cell::sci(0.123456789, 2)])
             .row(vec![Cell::text("none"), Cell::text("–")]);
         let html = table.html();
-        assert!(html.contains("<td data-value=\"0.123457\">1.2·10⁻¹</td>"), "{html}");
+        assert!(html.contains("<td data-v=\"0.123457\">1.2·10⁻¹</td>"), "{html}");
         assert!(html.contains("<td class=\"number\">–</td>"));
         assert!(html.contains("a &lt; b"));
         assert!(html.contains("1.2·10⁻⁴"));
-        assert!(html.contains("data-value=\"0.00012\""));
+        assert!(html.contains("data-v=\"0.00012\""));
         assert!(html.contains("<tr data-status=\"fail\">"));
     }
 }

@@ -1,0 +1,137 @@
+// Opens a page of the report in Chromium, uses it as a reader does, and prints what it found:
+//
+//     node page.mjs PAGE [--full]
+//
+// search, filters, order and links of the table of verdicts, films, printing, and axe-core at two widths in
+// light and dark. With --full it also checks the limits of a whole report: height, words, bytes, printed pages.
+import { chromium } from "playwright-core";
+import axe from "axe-core";
+import { statSync } from "node:fs";
+import { resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [file, ...options] = process.argv.slice(2);
+const full = options.includes("--full");
+const url = pathToFileURL(resolve(file)).href;
+const wide = { width: 1400, height: 1000 };
+const narrow = { width: 390, height: 844 };
+let failures = 0;
+
+function check(what, holds, found = "") {
+  failures += holds ? 0 : 1;
+  console.log(`${holds ? "ok  " : "FAIL"} ${what}${found === "" ? "" : `: ${found}`}`);
+}
+
+const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
+
+async function open(settings, hash = "") {
+  const page = await browser.newPage(settings);
+  page.errors = [];
+  page.on("pageerror", (error) => page.errors.push(String(error)));
+  page.on("console", (message) => message.type() === "error" && page.errors.push(message.text()));
+  page.requests = [];
+  page.on("request", (request) => page.requests.push(request.url()));
+  await page.goto(url + hash);
+  return page;
+}
+const shown = (page) => page.locator("#gates tbody tr:visible:not(.why)").count();
+
+// Layout and accessibility.
+for (const viewport of [wide, narrow]) {
+  for (const colorScheme of ["light", "dark"]) {
+    const page = await open({ viewport, colorScheme });
+    const at = `${viewport.width} px, ${colorScheme}`;
+    const size = await page.evaluate(() => ({
+      height: document.documentElement.scrollHeight,
+      width: document.documentElement.scrollWidth,
+      words: document.body.innerText.split(/\s+/).length,
+    }));
+    check(`no error and no request (${at})`, page.errors.length === 0 && page.requests.length === 1, page.errors.join());
+    check(`nothing is wider than the page (${at})`, size.width <= viewport.width, size.width);
+    await page.evaluate(axe.source);
+    const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+    const seen = found.violations.map((v) => `${v.id} at ${v.nodes[0].target}`).join("; ");
+    check(`axe-core finds nothing (${at})`, found.violations.length === 0, seen);
+    if (full && colorScheme === "light") {
+      check(`height (${at})`, size.height < (viewport === wide ? 60_000 : 90_000), size.height);
+      if (viewport === wide) check("words", size.words < 12_000, size.words);
+    }
+    await page.close();
+  }
+}
+
+// The table of verdicts.
+const page = await open({ viewport: wide });
+const all = await page.locator("#gates tbody tr").count();
+const first = await shown(page);
+check("some verdicts are shown first", first > 0 && first <= all, `${first} of ${all}`);
+const id = await page.locator("#gates tbody tr").last().getAttribute("id");
+await page.locator(".filters input[name=q]").fill(id);
+check("the search finds a gate by its name", (await shown(page)) >= 1 && (await page.locator(`tr[id="${id}"]`).isVisible()));
+check("the address keeps the search", page.url().includes("q="), page.url().split("#")[1]);
+const again = await open({ viewport: wide }, "#" + page.url().split("#")[1]);
+check("the address brings the search back", (await shown(again)) === (await shown(page)));
+await again.close();
+await page.locator(".filters input[name=q]").fill("");
+const status = await page.locator("#gates tbody tr").first().getAttribute("data-status");
+await page.locator(".filters select[name=status]").selectOption(status);
+const kept = await page.locator("#gates tbody tr:visible").evaluateAll((rows) => rows.map((row) => row.dataset.status));
+check("the filter keeps one verdict", kept.length > 0 && kept.every((one) => one === status), status);
+const head = page.locator("#gates thead th").nth(1);
+await head.locator("button").focus();
+await page.keyboard.press("Enter");
+check("a column is sorted by the keyboard", (await head.getAttribute("aria-sort")) === "ascending");
+const names = await page.locator("#gates tbody tr:visible td:nth-child(2)").allInnerTexts();
+check("it is in order", names.every((name, k) => k === 0 || names[k - 1].localeCompare(name) <= 0));
+const linked = await open({ viewport: wide }, "#" + encodeURIComponent(id));
+check("a link to a gate shows it with its reasons", (await linked.locator(`tr[id="${id}"]`).isVisible())
+  && (await linked.locator("tr.why p").first().innerText()).length > 10);
+await linked.close();
+const chip = page.locator(".subject .counts a").first();
+if (await chip.count()) {
+  await chip.click();
+  const wanted = new URLSearchParams((await chip.getAttribute("href")).split("?")[1]);
+  const form = page.locator(".filters");
+  check("a count on a card filters the verdicts",
+    (await form.locator("select[name=status]").inputValue()) === wanted.get("status")
+    && (await form.locator("select[name=case]").inputValue()) === wanted.get("case"));
+}
+const figure = await page.locator("figure").first().getAttribute("id");
+const atFigure = await open({ viewport: wide }, "#" + figure);
+check("a link to a figure leads to it", await atFigure.locator(`figure[id="${figure}"]`).evaluate((one) => {
+  const box = one.getBoundingClientRect();
+  return box.top < innerHeight && box.bottom > 0;
+}), figure);
+await atFigure.close();
+
+// Films.
+const film = page.locator(".film").first();
+if (await film.count()) {
+  const play = page.locator(".controls button").first();
+  const place = () => film.locator("img").evaluate((image) => image.style.transform);
+  if ((await play.innerText()) === "Play") await play.click();
+  await page.waitForTimeout(700);
+  const moved = (await place()) !== "";
+  await play.press("Enter");
+  const stopped = await place();
+  await page.waitForTimeout(600);
+  check("a film plays, and stops by the keyboard", moved && (await place()) === stopped);
+}
+
+// Printing.
+const pdf = await page.pdf({ format: "A4" });
+const pages = (pdf.toString("latin1").match(/\/Type\s*\/Page\b/g) ?? []).length;
+check("it prints", pages > 0 && (!full || pages <= 60), `${pages} pages`);
+await page.emulateMedia({ media: "print" });
+await page.setViewportSize({ width: 703, height: 1000 }); // what is left of A4 between its margins
+const cut = await page.locator("table:visible").evaluateAll((tables) => tables
+  .filter((table) => table.getBoundingClientRect().right > 704).map((table) => table.innerText.slice(0, 40)));
+check("no column is cut off in print", cut.length === 0, cut.join("; "));
+if (full) {
+  const bytes = statSync(file).size;
+  check("size", bytes < (all > 1000 ? 5_000_000 : 2_000_000), `${bytes} bytes`);
+}
+await browser.close();
+console.log(failures === 0 ? "the page works" : `${failures} failed`);
+process.exit(failures === 0 ? 0 : 1);
