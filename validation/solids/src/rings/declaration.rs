@@ -17,7 +17,7 @@ use base::{
     spec::RunSpec,
 };
 use harness::{
-    case::{Case, Planned, Tier},
+    case::{Case, Planned, Rules, Tier},
     declare::{
         Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
         Ladder, Level, Map, MapPanel, StepLimit, StepLimits,
@@ -213,24 +213,20 @@ fn limits(tier: Tier) -> StepLimits {
     let about = "Rings of 4 layers collide at 0.059 c0 each, to t = 100 L/c0. Stable: the energy never rises \
                  by more than 1 %. Theory: a stress-free lattice with artificial viscosity on every pair; \
                  rings have it on approaching pairs alone.";
-    StepLimits::new(
-        "rubber-rings",
-        about,
-        variants.iter().filter_map(|variant| step_limit(variant)),
-    )
+    StepLimits::new("rubber-rings", about, variants.iter().map(|variant| step_limit(variant)))
 }
 
-fn step_limit(variant: &'static str) -> Option<StepLimit> {
+fn step_limit(variant: &'static str) -> StepLimit {
     // A sample or a picture would shorten the step before it.
     let set = |s: &mut RingSettings| (s.spacing, s.end, s.samples) = (0.25, 100.0, 1);
     let spec = RUBBER_RINGS.spec(variant, set).keep_pictures(1);
-    let rules = RUBBER_RINGS.rules(&spec).ok()?;
+    let rules = RUBBER_RINGS.rules(&spec).unwrap_or(Rules::REFUSED);
     let because = "nothing drives the rings: at the default step their energy does not rise";
     let id = format!("rubber_rings.{variant}.step_limit");
     let bound = Bound::Above(1.0);
     let gate = Gate::new(id, "stable dt/default dt", bound, Evidence::Invariant, because);
     let limit = StepLimit::proportional(variant, "collision", spec, ("dt", rules.dt_limit), &rules);
-    Some(StepLimit { of_default: vec![gate], ..limit })
+    StepLimit { of_default: vec![gate], ..limit }
 }
 
 /// What a collision can come to.
@@ -334,5 +330,22 @@ fn viscosity_map() -> Map {
         outcomes: outcomes(),
         panels: vec![MapPanel::over("", &ALPHA, &[""], cell)],
         outcome,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use harness::runs::Runs;
+
+    /// It was left out with its gate, so that a report passed without them.
+    #[test]
+    fn a_step_limit_whose_run_is_refused_keeps_its_gate_and_fails_it() {
+        let limits = Some(StepLimits::new("rubber-rings", "", [step_limit("no such variant")]));
+        let declared = Declaration { limits, ..Declaration::default() };
+        let studies = harness::studies::of("rubber_rings", &declared, &Runs::default());
+        let judged: Vec<_> = studies.iter().flat_map(|study| &study.judged).collect();
+        assert_eq!(judged.len(), 1);
+        assert!(judged[0].judgement.verdict.is_failure());
     }
 }

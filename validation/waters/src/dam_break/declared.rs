@@ -165,12 +165,8 @@ pub fn theory(Rules { dt, dt_limit, .. }: Rules) -> f64 {
     dt / (dt / dt_limit)
 }
 
-/// In place of the rules of a scene that is refused: nothing stable is found at a limit of 1 s, so its gate
-/// fails.
-const REFUSED: Rules = Rules { dt: 1.0, dt_limit: 1.0, sound_speed: 1.0 };
-
 fn limit(variant: &'static str, scene: &str, spec: RunSpec) -> StepLimit {
-    let rules = DAM_BREAK.rules(&spec).unwrap_or(REFUSED);
+    let rules = DAM_BREAK.rules(&spec).unwrap_or(Rules::REFUSED);
     let because = "R1 to R5: a resting lattice; the moving, disordered water is expected between 0.7 and \
                    1.0 of its limit, and the step of the case must be below what is measured. At 1.2 of it \
                    leapfrog lets the stiffest mode grow 3.5-fold a step: a run that ends there would tell of \
@@ -181,4 +177,23 @@ fn limit(variant: &'static str, scene: &str, spec: RunSpec) -> StepLimit {
     let setting = ("dt", theory(rules));
     let limit = StepLimit::proportional(variant, scene, spec, setting, &rules);
     StepLimit { of_theory: vec![gate], ..limit }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use harness::runs::Runs;
+
+    /// Its gate was left out, so that a report passed without it.
+    #[test]
+    fn a_step_limit_whose_run_is_refused_keeps_its_gate_and_fails_it() {
+        let refused = limit("no such variant", "tank", DAM_BREAK.spec("no such variant", |_| ()));
+        assert_eq!(refused.of_theory.len(), 1);
+        let limits = Some(StepLimits::new("dam-break", "", [refused]));
+        let declared = Declaration { limits, ..Declaration::default() };
+        let studies = harness::studies::of(NAME, &declared, &Runs::default());
+        let judged: Vec<_> = studies.iter().flat_map(|study| &study.judged).collect();
+        assert_eq!(judged.len(), 1);
+        assert!(judged[0].judgement.verdict.is_failure());
+    }
 }
