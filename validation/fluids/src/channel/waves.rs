@@ -105,14 +105,16 @@ impl Rings {
     }
 }
 
-/// Periods \[2L/c0\] that count as those of a bouncing wave.
+/// Periods \[2L/c0\] that count as those of a bouncing wave: the next modes have 0.5 and, between a wall and a
+/// free surface, 2. How far disorder lengthens the period is not known from theory.
 const PERIOD: Bound = Bound::Within(0.8, 1.25);
 
 /// The study.
 pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
     let found = SETTINGS.map(|setting| Rings::of(case, setting, tier, runs));
-    let because = "H3: waves bounce between the ghost walls, so the lowest mode has the period \
-                   2L/c0, up to the dispersion of the kernel and the gaps that disorder opens";
+    let because = "H3: waves bounce between the ghost walls, so the lowest mode has about the period 2L/c0. \
+                   By how much disorder lengthens it has no theory: a median of 1.16 was found at c0/V = 10, \
+                   of 1.09 at 20, and a change beyond 0.8 to 1.25 is one of the program";
     let mut study = Study::new("poiseuille-h3", "H3: pressure waves between the walls");
     study = study.prose(h3(&found));
     let caption = "Amplitude of the lowest pressure mode across the channel, cos(πy/L), in Poiseuille flow of \
@@ -127,7 +129,7 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
     );
     for rings in found.iter().filter(|rings| rings.re == 20.0) {
         let id = format!("poiseuille.h3.period.c{}", rings.sound);
-        let gate = Gate::new(id, "period", PERIOD, Evidence::Theory, because);
+        let gate = Gate::new(id, "period", PERIOD, Evidence::Regression, because);
         // NaN, which fails, if no run filled its window.
         study = study.judge(gate, rings.median(|run| run.period));
         let Some(run) = rings.typical() else { continue };
