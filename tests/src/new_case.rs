@@ -2,7 +2,8 @@
 
 use base::functions::{exp, sin};
 use base::record::{MetricKey, Record};
-use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate::*};
+use harness::{case::*, composed::*, context::Context, declare::*, method::*};
+use harness::{rules::PLANNED_DT, simulate::*};
 use nalgebra::Vector2;
 use solver::*;
 use std::f64::consts::TAU;
@@ -38,7 +39,7 @@ fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record
     let places = lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n);
     let particles = places.map(|x| Particle::fluid(x, wave(x), 1.0, dx * dx)).collect();
     let parts = Parts::new(medium, Domain::torus(1.0, 1.0), particles, context);
-    let mut record = begin((DECAY.name, variant), s, m, &[("dt [s]", dt)], context);
+    let mut record = begin((DECAY.name, variant), s, m, &[(PLANNED_DT, dt)], context);
     let all = simulate(m, parts, [dt, s.end], context, &mut record)?.particles();
     let projected = all.iter().map(|p| p.velocity.x * sin(TAU * p.position.y));
     let amplitude = 2e3 * projected.sum::<f64>() / all.len() as f64;

@@ -1,9 +1,6 @@
 //! The quantities that a case derives from its settings: time step, its limit, and sound speed.
 
-use std::collections::BTreeMap;
-
 use base::{number, record::Record};
-use serde_json::Value;
 
 /// The quantities that the rules of a case determine before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,35 +25,27 @@ impl Rules {
             ("h/dx", h_over_dx),
             ("dx [m]", dx),
             ("c0 [m/s]", sound_speed),
-            (DT, dt),
-            (DT_OVER_LIMIT, dt / dt_limit),
+            (PLANNED_DT, dt),
+            (PLANNED_DT_OVER_LIMIT, dt / dt_limit),
         ]
     }
 }
 
-/// Name of the time step among what a run chose.
-const DT: &str = "dt [s]";
-/// Name of the time step over its limit.
-const DT_OVER_LIMIT: &str = "dt/limit";
+/// Name of the time step \[s\] that a run chose, among what it chose.
+pub const PLANNED_DT: &str = "dt [s] planned";
+/// Name of that step over its theoretical limit.
+pub const PLANNED_DT_OVER_LIMIT: &str = "dt/limit planned";
 
-/// Calls the time step of a record and its share of the limit, which were planned, by that name, and states
-/// beside them the largest step that was taken: steps are shortened to reach the times of samples and the
-/// end.
+/// States the largest step that was taken beside the planned one of a record: steps are shortened to reach
+/// the times of samples and the end.
 pub fn state_steps(record: &mut Record) {
-    let numerics = &mut record.numerics;
-    let planned = |numerics: &mut BTreeMap<String, Value>, name: &str| {
-        let value = numerics.remove(name)?;
-        let number = value.as_f64();
-        numerics.insert(format!("{name} planned"), value);
-        number
-    };
-    let (Some(dt), limit) = (planned(numerics, DT), planned(numerics, DT_OVER_LIMIT)) else {
-        return;
-    };
+    let planned = |name: &str| record.numerics.get(name).and_then(|value| value.as_f64());
+    let (Some(dt), limit) = (planned(PLANNED_DT), planned(PLANNED_DT_OVER_LIMIT)) else { return };
     let used = record.cost.largest_dt_s;
     if used > 0.0 {
-        numerics.insert(DT.into(), number::json(used));
-        numerics.extend(limit.map(|ratio| (DT_OVER_LIMIT.into(), number::json(ratio * used / dt))));
+        let ratio = limit.map(|ratio| ("dt/limit", ratio * used / dt));
+        let taken = [("dt [s]", used)].into_iter().chain(ratio);
+        record.numerics.extend(taken.map(|(name, value)| (name.into(), number::json(value))));
     }
 }
 

@@ -120,7 +120,9 @@ impl Palette {
 
     /// The pixels as places in the palette.
     fn indices(&self, pixels: &[u8]) -> Vec<u8> {
-        coarse_colours(pixels).map(|colour| self.index.get(&colour).copied().unwrap_or_default()).collect()
+        coarse_colours(pixels)
+            .map(|colour| self.index.get(&colour).copied().unwrap_or_default())
+            .collect()
     }
 }
 

@@ -485,7 +485,9 @@ mod tests {
     #[test]
     fn a_long_paragraph_opens_by_a_click() {
         let long = format!("It moves. {}.", "Word ".repeat(LONG));
-        assert!(prose(&long).into_string().starts_with("<details class=\"prose\"><summary>It moves."));
+        assert!(
+            prose(&long).into_string().starts_with("<details class=\"prose\"><summary>It moves.")
+        );
         assert_eq!(prose("It moves. So it is.").into_string(), "<p>It moves. So it is.</p>");
     }
 

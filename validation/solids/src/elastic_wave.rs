@@ -25,6 +25,7 @@ use harness::{
     context::Context,
     declare::Declaration,
     method::{Method, Parts},
+    rules::PLANNED_DT,
     runner::Drive,
     runs::Runs,
     simulate,
@@ -180,7 +181,7 @@ fn run(
         true => (ANGLE, 1),
         false => (0.02 / omega * TAU, STEPS),
     };
-    let numbers = [("h/dx", h_over_dx), ("dt [s]", dt)];
+    let numbers = [("h/dx", h_over_dx), (PLANNED_DT, dt)];
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
     let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
     let (times, pressure) = ([dt * steps as f64], |density| RUBBER.eos().pressure(density));

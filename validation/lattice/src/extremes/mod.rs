@@ -22,6 +22,7 @@ use harness::{
     context::Context,
     declare::Declaration,
     method::Method,
+    rules::PLANNED_DT,
     runner::Drive,
     runs::Runs,
     simulate,
@@ -202,7 +203,7 @@ fn drive<S: Observed>(
     at: &dyn Fn(&mut S, &mut Simulation, usize),
 ) -> Result<Record, RunError> {
     let (name, serial) = ((EXTREMES.name, variant), Context::default());
-    let mut record = simulate::begin(name, settings, method, &[("dt [s]", dt)], &serial);
+    let mut record = simulate::begin(name, settings, method, &[(PLANNED_DT, dt)], &serial);
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) =
         Drive::new(simulation, dt, times, &pressure, seen).at(at).run(context)?;

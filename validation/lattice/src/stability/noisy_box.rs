@@ -19,6 +19,7 @@ use harness::{
     case::{Rules, RunError},
     context::Context,
     method::{Medium, Method, Parts},
+    rules::{PLANNED_DT, PLANNED_DT_OVER_LIMIT},
     runner::Drive,
     simulate,
 };
@@ -361,8 +362,8 @@ pub fn run(
         ("h/dx", fluid.h_over_dx),
         ("c0 [m/s]", sound_speed),
         ("c0 h/nu", fluid.stiffness),
-        ("dt [s]", dt),
-        ("dt/limit", dt / dt_limit),
+        (PLANNED_DT, dt),
+        (PLANNED_DT_OVER_LIMIT, dt / dt_limit),
     ];
     let serial = Context::default();
     let mut record =

@@ -16,6 +16,7 @@ use harness::{
     case::{Rules, RunError},
     context::Context,
     method::{Medium, Method, Parts},
+    rules::PLANNED_DT,
     runner::{self, Drive},
     simulate,
 };
@@ -284,7 +285,7 @@ pub(super) fn run(
         ("h/dx", s.h_over_dx),
         ("c0 [m/s]", sound_speed),
         ("c0 h/nu", sound_speed * h / s.nu),
-        ("dt [s]", wave.dt),
+        (PLANNED_DT, wave.dt),
         ("omega dt", wave.sound.omega * wave.dt),
     ];
     let mut record = simulate::begin((case.name, variant), s, method, &numbers, context);

@@ -16,6 +16,7 @@ use harness::{
     composed::{Composition, Program, Variants},
     context::Context,
     method::{Boundary, Medium, Method, Parts},
+    rules::PLANNED_DT,
     runner::{self, Drive},
     simulate,
 };
@@ -131,7 +132,7 @@ fn run<P: Problem>(
         ("mu [Pa]", material.shear),
         ("c0 [m/s]", material.sound_speed()),
         ("c_p [m/s]", material.p_wave_speed()),
-        ("dt [s]", dt),
+        (PLANNED_DT, dt),
         ("dt c_p/h", dt * material.p_wave_speed() / medium.h),
     ];
     let mut record = simulate::begin((P::NAME, variant), settings, method, &numbers, context);
