@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Continuity, Domain, ExtrapolatingWall, InterfaceWall, NoSlip, Particle, Pressure, Role,
-    Stepper, Tait, Viscosity,
+    Continuity, Domain, ExtrapolatingWall, InterfaceWall, NoSlip, Particle, Pressure, Role, Tait,
+    Viscosity,
 };
 
 use base::{
@@ -153,14 +153,13 @@ fn run(
     let until = [cylinders.rules.dt, cylinders.end()];
     let simulation = simulate::simulate(method, parts, until, context, &mut record)?;
     if record.status == Status::Completed {
-        measure(&cylinders.flow, &*simulation, &mut record);
+        measure(&cylinders.flow, &simulation.particles(), &mut record);
     }
     Ok(record)
 }
 
-fn measure(flow: &TaylorCouette, simulation: &dyn Stepper<()>, record: &mut Record) {
-    let mut fluid: Vec<[f64; 3]> = simulation
-        .particles()
+fn measure(flow: &TaylorCouette, particles: &[Particle], record: &mut Record) {
+    let mut fluid: Vec<[f64; 3]> = particles
         .iter()
         .filter(|p| p.role == Role::Fluid)
         .map(|p| {
@@ -356,4 +355,66 @@ fn profiles(tier: Tier) -> Curves {
     };
     let (id, title) = ("taylor-couette-profiles".into(), "Velocity between the cylinders".into());
     Curves { id, title, caption, columns: 1, panels: vec![panel] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn value(record: &Record, metric: base::record::MetricKey) -> f64 {
+        record.value(metric).expect("a metric")
+    }
+
+    /// Made-up particles 2 % too fast, drifting inwards by 1 % of V, one of them inside of the inner cylinder,
+    /// two beyond the outer one, and wall particles that do not count.
+    #[test]
+    fn errors_drift_and_escaped_particles_are_those_of_made_up_particles() {
+        let flow = TaylorCouette { inner: 1e-3, outer: 2e-3, speed: 0.5 };
+        let at = |k: usize, r: f64| {
+            let angle = 0.7 * k as f64;
+            let out = Vector2::new(base::functions::cos(angle), base::functions::sin(angle));
+            let velocity = Vector2::new(-out.y, out.x) * (1.02 * flow.velocity(r)) - out * 5e-3;
+            Particle::fluid(out * r, velocity, 1000.0, 1e-8)
+        };
+        let radii = [1.5e-3, 2.01e-3, 1.9e-3, 0.99e-3, 1.1e-3, 2.3e-3, 1.999e-3];
+        let mut particles: Vec<Particle> = (0..).zip(radii).map(|(k, r)| at(k, r)).collect();
+        particles.extend([at(9, 0.5e-3), at(10, 2.5e-3)].map(|p| p.with_role(Role::Wall)));
+        let mut record = Record::new(NAME, INTERFACE, serde_json::json!({}), 1);
+        measure(&flow, &particles, &mut record);
+        assert_relative_eq!(value(&record, L2), 0.02, max_relative = 1e-12);
+        assert_relative_eq!(value(&record, RADIAL_RMS), 0.01, max_relative = 1e-12);
+        assert_eq!(value(&record, OUTSIDE), 3.0);
+        let column = |name| record.column("velocity", name).to_vec();
+        let (r, u, exact) = (column("r"), column("u"), column("u_exact"));
+        assert!(r.len() == 7 && r.is_sorted());
+        assert_relative_eq!(r[2], 1.5, max_relative = 1e-12);
+        // A r + B/r with A = -1/3 and B = 4/3 of V and the inner radius.
+        assert_relative_eq!(exact[2], 7.0 / 18.0, max_relative = 1e-12);
+        assert_relative_eq!(u[2], 1.02 * 7.0 / 18.0, max_relative = 1e-12);
+    }
+
+    /// Re = V d/nu, and a run ends at a multiple of d^2/nu.
+    #[test]
+    fn speed_radii_and_end_follow_from_the_settings() {
+        let method = Method::of::<With<InterfaceWall>>();
+        let settings = CylinderSettings { end: 0.5, ratio: 3.0, ..CylinderSettings::default() };
+        let cylinders = Cylinders::new(&settings, &method, &Context::of_rules()).expect("a flow");
+        assert_relative_eq!(cylinders.flow.speed, 0.5e-3, max_relative = 1e-12);
+        assert_relative_eq!(cylinders.flow.inner, 0.5e-3, max_relative = 1e-12);
+        assert_relative_eq!(cylinders.flow.outer, 1.5e-3, max_relative = 1e-12);
+        assert_relative_eq!(cylinders.end(), 0.5, max_relative = 1e-12);
+        let particles = cylinders.particles(&method);
+        let turning = |p: &&Particle| p.role != Role::Fluid && p.position.norm() < 0.6e-3;
+        let walls: Vec<&Particle> = particles.iter().filter(turning).collect();
+        assert!(!walls.is_empty());
+        for p in walls {
+            let around = p.position.perp(&p.velocity) / p.position.norm();
+            assert_relative_eq!(around, 0.5e-3, max_relative = 1e-9);
+        }
+        let fluid: f64 = particles.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum();
+        let area = std::f64::consts::PI * (1.5e-3 * 1.5e-3 - 0.5e-3 * 0.5e-3);
+        // Interface particles on both cylinders have half a row each.
+        assert_relative_eq!(fluid / (1000.0 * area), 15.0 / 16.0, max_relative = 0.01);
+    }
 }

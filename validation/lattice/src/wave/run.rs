@@ -351,3 +351,88 @@ fn compare(
     let error = largest(&|n, k| (series[n][k] - predicted[n][k]).abs());
     record.put(TRAJECTORY_ERROR, error / wave.settings.amplitude);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{super::plain, *};
+    use approx::assert_relative_eq;
+    use solver::{CubicSpline, Leapfrog};
+
+    /// A damped wave and its method.
+    fn wave(polarisation: Polarisation) -> (Wave, Method) {
+        let method = plain::<CubicSpline, Leapfrog>();
+        let settings = WaveSettings { kx: 2, ky: 1, nu: 1e-3, ..WaveSettings::default() };
+        let wave = Wave::new(polarisation, &settings, &method, &Context::of_rules());
+        (wave.expect("a wave"), method)
+    }
+
+    /// Made-up particles: density −0.003 sin, velocity 0.02 cos along and −0.005 cos across, over a mean
+    /// flow that the projection must not see.
+    #[test]
+    fn amplitudes_are_those_of_made_up_particles() {
+        let (wave, method) = wave(Polarisation::Sound);
+        let mut parts = wave.parts(&Context::default());
+        let Medium { density, sound_speed, .. } = wave.medium;
+        for (particle, phase) in parts.particles.iter_mut().zip(wave.phases()) {
+            particle.density = density * (1.0 - 0.003 * sin(phase));
+            let own = wave.along * (0.02 * cos(phase)) - wave.across() * (0.005 * cos(phase));
+            particle.velocity = own * sound_speed + Vector2::new(0.3, -0.1);
+        }
+        let momentum: Vector2<f64> = parts.particles.iter().map(|p| p.velocity * p.mass).sum();
+        let simulation = (method.build)(parts).expect("a scene");
+        let mut projection = Projection::new(&wave);
+        projection.after_step(&*simulation);
+        let [p, along, across] = projection.series[0];
+        assert_relative_eq!(p, 0.003, max_relative = 1e-9);
+        assert_relative_eq!(along, 0.02, max_relative = 1e-9);
+        assert_relative_eq!(across, -0.005, max_relative = 1e-9);
+        let [first, last] = projection.momentum.expect("a momentum");
+        assert!((first - momentum).norm() < 1e-9 * momentum.norm() && first == last);
+    }
+
+    /// The metric of a record.
+    fn value(record: &Record, metric: MetricKey) -> f64 {
+        record.value(metric).expect("a metric")
+    }
+
+    /// A series that obeys another frequency or damping than theory is as far off as these are.
+    #[test]
+    fn errors_are_those_of_a_made_up_series() {
+        let leapfrog = time_step::Integrator::Leapfrog;
+        let record = || Record::new("c", "v", serde_json::json!({}), 1);
+        let (wave, _) = wave(Polarisation::Sound);
+        let mut other = wave.clone();
+        (other.sound.omega, other.sound.gamma) = (1.01 * wave.sound.omega, 0.97 * wave.sound.gamma);
+        let mut found = record();
+        compare(&wave, leapfrog, &other.predicted(leapfrog, 50), &mut found);
+        assert_relative_eq!(value(&found, FREQUENCY_ERROR), 0.01, max_relative = 1e-6);
+        assert_relative_eq!(value(&found, DECAY_ERROR), 0.03, max_relative = 1e-6);
+        assert_relative_eq!(value(&found, DECAY), 0.5 * other.sound.gamma, max_relative = 1e-8);
+        let (c, s) = (wave.medium.sound_speed, &wave.settings);
+        let k = std::f64::consts::TAU * 5.0_f64.sqrt() / s.length;
+        assert_relative_eq!(
+            value(&found, SOUND_FACTOR),
+            other.sound.omega / (c * k),
+            max_relative = 1e-8
+        );
+
+        let mut series = wave.predicted(leapfrog, 50);
+        series[30][1] -= 0.04 * s.amplitude;
+        let mut found = record();
+        compare(&wave, leapfrog, &series, &mut found);
+        assert_relative_eq!(value(&found, TRAJECTORY_ERROR), 0.04, max_relative = 1e-6);
+        series[7][0] = f64::NAN;
+        compare(&wave, leapfrog, &series, &mut found);
+        assert!(value(&found, TRAJECTORY_ERROR).is_nan());
+
+        let (wave, _) = self::wave(Polarisation::Shear);
+        let mut other = wave.clone();
+        other.shear = 1.02 * wave.shear;
+        let mut found = record();
+        compare(&wave, leapfrog, &other.predicted(leapfrog, 50), &mut found);
+        assert_relative_eq!(value(&found, SHEAR_DECAY_ERROR), 0.02, max_relative = 1e-6);
+        assert_relative_eq!(value(&found, SHEAR_DECAY), other.shear, max_relative = 1e-8);
+        let viscous = other.shear / (1e-3 * k * k);
+        assert_relative_eq!(value(&found, VISCOUS_FACTOR), viscous, max_relative = 1e-8);
+    }
+}
