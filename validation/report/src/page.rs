@@ -266,14 +266,14 @@ impl Page {
                         @if let Some(counts) = self.counts { (counts.html()) }
                         @for paragraph in &self.lead { p.lead { (inline(paragraph)) } }
                     }
-                    @if self.sections.len() > 1 {
-                        nav aria-label="Contents" { (contents(&self.sections)) }
-                    }
                     main {
                         @if !self.cards.is_empty() {
                             div.cards { @for card in &self.cards { (card.markup()) } }
                         }
                         @for note in &self.notes { p.note { (inline(note)) } }
+                        @if self.sections.len() > 1 {
+                            nav aria-label="Contents" { (contents(&self.sections)) }
+                        }
                         @for section in &self.sections { (writer.section(section, 2)) }
                     }
                     @if !self.footer.is_empty() { footer { p { (inline(&self.footer)) } } }

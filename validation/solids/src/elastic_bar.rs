@@ -149,6 +149,7 @@ impl Problem for BarSettings {
             momentum: start.iter().map(|p| p.velocity * p.mass).sum(),
             total: start.iter().map(|p| p.velocity.norm() * p.mass).sum(),
             energy: Energy::of_all(start, &self.material()).total(),
+            start: row(0.0, start.iter().map(|p| (p.mass, p.position.x, p.velocity.x))),
             series: Vec::new(),
             stress: None,
         }
@@ -163,6 +164,8 @@ pub struct Motion {
     total: f64,
     /// Energy at the start \[J/m\].
     energy: f64,
+    /// The row of the series at the start, which no metric reads.
+    start: [f64; 4],
     /// t \[s\], centre of the velocity \[m\], mean velocities left and right of x = 0 \[m/s\].
     series: Vec<[f64; 4]>,
     /// Mean −σˣˣ within L/2 of the contact when the bars have come to rest \[Pa\].
@@ -170,23 +173,29 @@ pub struct Motion {
 }
 
 harness::observed! {
-    Motion: changes(series, stress), parts(), stays(settings, momentum, total, energy)
+    Motion: changes(series, stress), parts(), stays(settings, momentum, total, energy, start)
+}
+
+/// A row of the series from masses, places and velocities along x.
+fn row(time: f64, particles: impl Iterator<Item = (f64, f64, f64)>) -> [f64; 4] {
+    let (mut momentum, mut first) = ([0.0; 2], 0.0);
+    let mut mass = [0.0; 2];
+    for (m, x, v) in particles {
+        let side = usize::from(x >= 0.0);
+        mass[side] += m;
+        momentum[side] += m * v;
+        first += m * v * x;
+    }
+    let mean = [0, 1].map(|k| momentum[k] / mass[k]);
+    [time, first / (momentum[0] + momentum[1]), mean[0], mean[1]]
 }
 
 impl Observer<Symmetric> for Motion {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
-        let (mut momentum, mut first) = ([0.0; 2], 0.0);
-        let mut mass = [0.0; 2];
-        for (m, p) in simulation.fluid() {
-            let side = usize::from(p.position.x >= 0.0);
-            mass[side] += m;
-            momentum[side] += m * p.velocity.x;
-            first += m * p.velocity.x * p.position.x;
-        }
-        let mean = [0, 1].map(|k| momentum[k] / mass[k]);
-        let centre = first / (momentum[0] + momentum[1]);
-        self.series.push([simulation.time(), centre, mean[0], mean[1]]);
-        if self.settings.collide && self.stress.is_none() && mean[0] <= 0.0 {
+        let all = simulation.fluid().map(|(m, p)| (m, p.position.x, p.velocity.x));
+        let row = row(simulation.time(), all);
+        self.series.push(row);
+        if self.settings.collide && self.stress.is_none() && row[2] <= 0.0 {
             self.stress = Some(self.contact_stress(simulation));
         }
         Flow::Continue
@@ -275,7 +284,14 @@ impl Watch for Motion {
             ("left mean velocity", "m/s"),
             ("right mean velocity", "m/s"),
         ];
-        let profile = Profile::of_rows(&columns, &self.series);
+        let rows = [&[self.start], &self.series[..]].concat();
+        // Bars that collide have no momentum together, and so no centre of it; a pulse has one side.
+        let kept: &[usize] = if self.settings.collide { &[0, 2, 3] } else { &[0, 1] };
+        let add = |profile: Profile, &k: &usize| {
+            let (name, unit) = columns[k];
+            profile.with(name, unit, rows.iter().map(|row| row[k]).collect())
+        };
+        let profile = kept.iter().fold(Profile::default(), add);
         record.profiles.insert("motion".into(), profile);
     }
 }
@@ -569,6 +585,22 @@ mod tests {
         let [_, _, left, right] = watch.series[0];
         assert_relative_eq!(left, -0.2, max_relative = 1e-9);
         assert_relative_eq!(right, 0.5, max_relative = 1e-9);
+    }
+
+    /// The series began after the first step, and that of bars that collide had the centre of a momentum of 0,
+    /// places of 1e14 m and infinite ones, and that of a pulse the mean of no particles.
+    #[test]
+    fn the_series_begins_at_the_start_and_is_finite() {
+        for collide in [false, true] {
+            let spec =
+                ELASTIC_BAR.spec("bare", |s| (s.n, s.collide, s.end) = (8, collide, Some(0.2)));
+            let record = ELASTIC_BAR.run(&spec, &Context::default()).expect("a run");
+            let motion = &record.profiles["motion"];
+            assert_eq!(motion.column("t")[0], 0.0);
+            let all = motion.columns.iter().flat_map(|column| &column.values);
+            assert!(all.clone().count() > 6 && all.clone().all(|value| value.is_finite()));
+            assert_eq!(motion.columns.len(), if collide { 3 } else { 2 });
+        }
     }
 
     #[test]

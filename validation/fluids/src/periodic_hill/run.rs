@@ -83,9 +83,7 @@ impl Monitor<'_> {
         self.controller.look(mean, stretch);
         simulation.drive(self.controller.force);
         if self.entry.has_come(time) {
-            let energy: f64 =
-                simulation.fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum();
-            self.series.push([time, force, flux, energy]);
+            self.series.push([time, force, flux, kinetic_energy(simulation)]);
         }
         if self.sample.has_come(time) {
             let setup = self.setup;
@@ -94,6 +92,11 @@ impl Monitor<'_> {
             }
         }
     }
+}
+
+/// Σ m v²/2 of the fluid.
+fn kinetic_energy(simulation: &dyn Driving) -> f64 {
+    simulation.fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum()
 }
 
 fn run(
@@ -114,7 +117,8 @@ fn run(
     let wanted = setup.flux() * setup.hill.period() / area;
     let last = measure::mean_velocity(&*simulation, area);
     let controller = Controller { wanted, response: s.response, force: s.force, last };
-    let (windows, series) = (Default::default(), Vec::new());
+    let start = [0.0, s.force, last * area / setup.hill.period(), kinetic_energy(&*simulation)];
+    let (windows, series) = (Default::default(), vec![start]);
     let entry = Schedule { next: 0.0, every: ENTRY };
     let sample = Schedule { next: 0.0, every: s.average * s.end / SAMPLES };
     let mut monitor = Monitor { setup, area, controller, windows, entry, sample, series };

@@ -1,5 +1,7 @@
 //! One run of a mode: scene, stepping, projection, record.
 
+use std::iter::once;
+
 use nalgebra::Vector2;
 use solver::{Domain, EquationOfState, Flow, Observer, Particle, Stepper, Tait};
 
@@ -292,8 +294,12 @@ pub(super) fn run(
     compare(wave, method.theory, &measured.series, &mut record);
     let scale = density * s.length * s.length * s.amplitude * sound_speed;
     record.put(MOMENTUM_ERROR, measured.momentum_change / scale);
-    let column = |k: usize| measured.series.iter().map(|a| a[k]).collect();
-    let times = (1..=measured.series.len()).map(|k| k as f64 * wave.dt).collect();
+    let start = match wave.polarisation {
+        Polarisation::Sound => [0.0, s.amplitude, 0.0],
+        Polarisation::Shear => [0.0, 0.0, s.amplitude],
+    };
+    let column = |k: usize| once(&start).chain(&measured.series).map(|a| a[k]).collect();
+    let times = (0..=measured.series.len()).map(|k| k as f64 * wave.dt).collect();
     let profile = Profile::default()
         .with("t", "s", times)
         .with("p", "rho c0^2", column(0))
