@@ -23,10 +23,6 @@ pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 
     fn advanced(self, dt: f64, rate: Self) -> Self;
     /// Whether every number is finite.
     fn is_finite(&self) -> bool;
-    /// Appends the bits of every number.
-    fn write(&self, to: &mut Vec<u64>);
-    /// The set with these bits; `None` if they are too few.
-    fn read(from: &mut impl Iterator<Item = u64>) -> Option<Self>;
 }
 
 impl Numbers for f64 {
@@ -51,12 +47,6 @@ impl Numbers for f64 {
     #[inline(always)]
     fn is_finite(&self) -> bool {
         f64::is_finite(*self)
-    }
-    fn write(&self, to: &mut Vec<u64>) {
-        to.push(self.to_bits());
-    }
-    fn read(from: &mut impl Iterator<Item = u64>) -> Option<Self> {
-        from.next().map(f64::from_bits)
     }
 }
 
@@ -88,14 +78,6 @@ macro_rules! fields_of_numbers {
             #[inline(always)]
             fn is_finite(&self) -> bool {
                 true $(&& self.$field.is_finite())+
-            }
-            fn write(&self, to: &mut Vec<u64>) {
-                $(self.$field.write(to);)+
-            }
-            fn read(from: &mut impl Iterator<Item = u64>) -> Option<Self> {
-                let mut set = Self::default();
-                $(set.$field = f64::read(from)?;)+
-                Some(set)
             }
         }
     };
@@ -180,12 +162,6 @@ macro_rules! tuple_of_numbers {
             #[inline(always)]
             fn is_finite(&self) -> bool {
                 true $(&& self.$index.is_finite())*
-            }
-            fn write(&self, to: &mut Vec<u64>) {
-                $(self.$index.write(to);)*
-            }
-            fn read(from: &mut impl Iterator<Item = u64>) -> Option<Self> {
-                Some(($($member::read(from)?,)*))
             }
         }
     };

@@ -62,26 +62,14 @@ pub struct Progress {
     pub last_displacement: f64,
     /// Whether the lists were built inside a step, for particles neither sorted nor wrapped.
     pub built_inside_a_step: bool,
-    /// The steps that a stop left undone.
-    pub span: Span,
-}
-
-/// The equal steps from one time to another. One with a `dt_max` of 0 has no steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Span {
-    /// Time before the first step \[s\].
-    pub start: f64,
-    /// Time after the last step \[s\].
-    pub until: f64,
-    /// The longest step that was allowed \[s\].
-    pub dt_max: f64,
-    /// Number of steps.
-    pub steps: u64,
-    /// How many of them were made.
+    /// Where the present call of [`crate::Stepper::advance`] began, where it ends and its largest step
+    /// \[s\]; zeros once it has reached its end.
+    pub call: [f64; 3],
+    /// Steps that this call has made.
     pub made: u64,
 }
 
-/// Everything that determines the rest of a run, as data: [`crate::Scene::resume`] continues it with the
+/// Everything that determines the rest of a run, as data: [`crate::Stepper::restore`] continues it with the
 /// same bits as if it had not been interrupted.
 ///
 /// Sums are added in the order of the neighbour lists, so the order of storage belongs to it, and the
@@ -99,57 +87,22 @@ pub struct Checkpoint<X = ()> {
     pub built_at: Vec<Vector2<f64>>,
 }
 
-impl<X: Numbers> Checkpoint<X> {
-    /// All of it as 64-bit words, for a file: counts, and floats by their bits.
-    pub fn words(&self) -> Vec<u64> {
-        let Progress { time, dt, work, last_displacement, built_inside_a_step, span } =
-            self.progress;
-        let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-        let floats = [time, dt, last_displacement, self.lag, span.start, span.until, span.dt_max];
-        let counts = [steps, pair_interactions, right_hand_sides, list_builds];
-        let mut words = [&floats.map(f64::to_bits)[..], &counts].concat();
-        words.extend([span.steps, span.made, u64::from(built_inside_a_step)]);
-        for ((id, particle), built_at) in self.particles.iter().zip(&self.built_at) {
-            let Particle { role, position, velocity, density, mass, extra } = particle;
-            words.extend([u64::from(*id), *role as u64]);
-            position.write(&mut words);
-            velocity.write(&mut words);
-            words.extend([density, mass].map(|number| number.to_bits()));
-            extra.write(&mut words);
-            built_at.write(&mut words);
-        }
-        words
-    }
-
-    /// A checkpoint from its words; `None` if these are not the words of one.
-    pub fn of_words(words: &[u64]) -> Option<Self> {
-        let mut words = words.iter().copied().peekable();
-        let mut floats = [0.0; 7];
-        for float in &mut floats {
-            *float = f64::read(&mut words)?;
-        }
-        let [time, dt, last_displacement, lag, start, until, dt_max] = floats;
-        let mut count = || words.next();
-        let (steps, pair_interactions) = (count()?, count()?);
-        let (right_hand_sides, list_builds) = (count()?, count()?);
-        let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
-        let span = Span { start, until, dt_max, steps: count()?, made: count()? };
-        let built_inside_a_step = count()? != 0;
-        let progress = Progress { time, dt, work, last_displacement, built_inside_a_step, span };
-        let (mut particles, mut built_at) = (Vec::new(), Vec::new());
-        while words.peek().is_some() {
-            let id = u32::try_from(words.next()?).ok()?;
-            let role = words.next()?;
-            let role = [Role::Fluid, Role::Wall, Role::Interface]
-                .into_iter()
-                .find(|known| *known as u64 == role)?;
-            let (position, velocity) = (Vector2::read(&mut words)?, Vector2::read(&mut words)?);
-            let (density, mass) = (f64::read(&mut words)?, f64::read(&mut words)?);
-            let extra = X::read(&mut words)?;
-            particles.push((id, Particle { role, position, velocity, density, mass, extra }));
-            built_at.push(Vector2::read(&mut words)?);
-        }
-        Some(Self { progress, lag, particles, built_at })
+impl<X> Checkpoint<X> {
+    /// Checks that it is stored in the way in which a simulation stores it; else says what is wrong.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        let Self { progress, lag, particles, built_at } = self;
+        let mut ids: Vec<u32> = particles.iter().map(|(id, _)| *id).collect();
+        ids.sort_unstable();
+        let is_positive = particles.iter().all(|(_, p)| p.density > 0.0 && p.mass > 0.0);
+        let sum = built_at.iter().fold(progress.time + lag, |sum, p| sum + p.x + p.y);
+        let all = [
+            (sum.is_finite(), "a time, a lag or a place that is not finite"),
+            (built_at.len() == particles.len(), "a number of places that is not that of particles"),
+            (is_positive, "a density or a mass that is not above 0"),
+            (particles.is_sorted_by_key(|(_, p)| p.role), "particles not sorted by their roles"),
+            (ids.into_iter().eq(0..particles.len() as u32), "numbers of another scene"),
+        ];
+        all.into_iter().find(|(is_met, _)| !is_met).map_or(Ok(()), |(_, wrong)| Err(wrong))
     }
 }
 
@@ -191,18 +144,11 @@ pub struct ParticleData<X = ()> {
     pub(crate) reach2: f64,
     pub(crate) parallel: bool,
     pub(crate) progress: Progress,
-    order: Vec<u32>,
+    pub(crate) order: Vec<u32>,
 }
 
 impl<X: Numbers> ParticleData<X> {
-    /// Particles in this order, with their numbers in the scene, without neighbour lists.
-    pub(crate) fn new(particles: &[(u32, Particle<X>)], neighbours: Neighbours) -> Self {
-        let mut data = Self { neighbours, ..Self::default() };
-        data.put(particles);
-        data
-    }
-
-    /// Replaces the particles by these.
+    /// Puts particles in this order, with their numbers in the scene, in place of those that are there.
     pub(crate) fn put(&mut self, particles: &[(u32, Particle<X>)]) {
         let count = |role| particles.iter().filter(|(_, p)| p.role == role).count();
         let evolved = |(_, p): &(u32, Particle<X>)| {

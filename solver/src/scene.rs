@@ -10,7 +10,7 @@ use crate::{
     kernel::{Kernel, Smoothing},
     neighbours::Neighbours,
     numbers::Numbers,
-    particle_data::{Checkpoint, Limits, ParticleData},
+    particle_data::{Limits, ParticleData},
     particles::{Particle, Role},
     simulation::Simulation,
     walls::{PlaneWall, RIGHT_ANGLE, Walls},
@@ -63,12 +63,6 @@ pub enum SceneError {
         value: f64,
         /// What is allowed.
         range: &'static str,
-    },
-    /// A checkpoint that no simulation of this scene can have written.
-    #[error("the checkpoint has {reason}")]
-    Checkpoint {
-        /// What is wrong with it.
-        reason: &'static str,
     },
     /// A period so short that two particles would be neighbours twice, once directly and once as an image.
     #[error(
@@ -139,15 +133,6 @@ impl<S: Scheme> Scene<S> {
         Ok(Simulation { engine, integrator: S::Integrator::default() })
     }
 
-    /// Continues from a checkpoint of a simulation of this scene. The particles of the checkpoint replace
-    /// those of the scene; everything else must be the same as in that simulation.
-    pub fn resume(mut self, from: &Checkpoint<S::Extra>) -> Result<Simulation<S>, SceneError> {
-        self.particles = from.particles.iter().map(|(_, p)| *p).collect();
-        let mut simulation = self.build()?;
-        simulation.restore(from)?;
-        Ok(simulation)
-    }
-
     /// The engine for the particles in the given order, without neighbour lists.
     fn engine(self, particles: &[(u32, Particle<S::Extra>)]) -> Engine<PhysicsOf<S>> {
         let kernel = Smoothing::new(self.h);
@@ -157,8 +142,8 @@ impl<S: Scheme> Scene<S> {
         // The root of the largest number: its square is finite.
         let half_period = 0.5 * periods.fold(f64::MAX.sqrt(), |a, b| a.min(*b));
         let neighbours = Neighbours::new(radius, self.domain, self.walls.mirrors());
-        let mut data = ParticleData::new(particles, neighbours);
-        data.limits = self.limits;
+        let mut data = ParticleData { neighbours, limits: self.limits, ..Default::default() };
+        data.put(particles);
         [data.slack2, data.reach2] = [slack * slack, half_period * half_period];
         data.parallel = particles.len() >= self.parallel_from;
         Engine::new(kernel, (self.forces, self.drift), &self.walls, data)
@@ -252,29 +237,6 @@ fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
         return Err(SceneError::Particle { particle, field, value, range });
     }
     Ok(())
-}
-
-/// Checks the particles of a checkpoint, and that they are stored in the way in which a simulation stores
-/// them.
-pub(crate) fn check_checkpoint<X: Numbers>(checkpoint: &Checkpoint<X>) -> Checked {
-    let Checkpoint { particles, built_at, .. } = checkpoint;
-    check_particles(&particles.iter().map(|(_, p)| *p).collect::<Vec<_>>())?;
-    let mut ids: Vec<u32> = particles.iter().map(|(id, _)| *id).collect();
-    ids.sort_unstable();
-    let reason = if !(checkpoint.progress.time.is_finite() && checkpoint.lag.is_finite()) {
-        "a time or a lag that is not finite"
-    } else if built_at.len() != particles.len() {
-        "a number of places that differs from the number of particles"
-    } else if !built_at.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
-        "a place that is not finite"
-    } else if !particles.is_sorted_by_key(|(_, p)| p.role) {
-        "particles that are not sorted by their roles"
-    } else if !ids.into_iter().eq(0..particles.len() as u32) {
-        "particle numbers that are not those of a scene"
-    } else {
-        return Ok(());
-    };
-    Err(SceneError::Checkpoint { reason })
 }
 
 /// A square lattice of `columns` × `rows` points with spacing `dx`, the first at `first`.

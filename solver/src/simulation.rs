@@ -6,10 +6,9 @@ use crate::{
     engine::Engine,
     integrator::{Integrator, PhysicsOf, Scheme},
     kernel::Smoothing,
-    particle_data::{Checkpoint, Fault, ParticleData, Span},
+    particle_data::{Checkpoint, Fault, ParticleData},
     particles::{Column, Rate},
     physics::Derived,
-    scene::{SceneError, check_checkpoint},
     terms::Term,
 };
 
@@ -79,11 +78,12 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     fn advance(&mut self, until: f64, dt_max: f64, observer: &mut dyn Observer<X>) -> Outcome;
     /// Everything that is needed to continue from here with bitwise equal results.
     fn checkpoint(&self) -> Checkpoint<X>;
-    /// Goes back or on to a checkpoint of a simulation of the same scene, see [`Simulation::restore`].
+    /// Goes back or on to a checkpoint of a simulation of the same scene: its particles replace the present
+    /// ones, and what follows has the bits of that simulation.
     ///
     /// # Errors
-    /// If no simulation can have written the checkpoint; then nothing has changed.
-    fn restore(&mut self, from: &Checkpoint<X>) -> Result<(), SceneError>;
+    /// What is wrong with a checkpoint that no simulation can have made; then nothing has changed.
+    fn restore(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str>;
     /// The kernel W(r) \[1/m²\] from r² \[m²\].
     fn weight(&self, r2: f64) -> f64;
     /// The derived data of particles and of their images, as pair sweeps read them, after
@@ -107,8 +107,13 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn checkpoint(&self) -> Checkpoint<S::Extra> {
         self.engine.data.checkpoint(self.integrator.lag())
     }
-    fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), SceneError> {
-        self.restore(from)
+    fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
+        from.check()?;
+        self.engine.data.put(&from.particles);
+        self.engine.build_lists(from.built_at.iter().copied());
+        self.engine.data.progress = from.progress;
+        self.integrator = S::Integrator::with_lag(from.lag);
+        Ok(())
     }
     fn weight(&self, r2: f64) -> f64 {
         self.engine.kernel.w(r2)
@@ -141,31 +146,14 @@ impl<S: Scheme> Deref for Simulation<S> {
     }
 }
 
-impl Span {
-    /// Equal steps of at most `dt_max` \[s\] from `start` to `until` \[s\].
-    fn new(start: f64, until: f64, dt_max: f64) -> Self {
-        let length = until - start;
-        // A rounding error of the quotient must not add a step, which would change the length of every step.
-        let steps = (length / dt_max * (1.0 - 1e-12)).ceil();
-        assert!(length >= 0.0 && length.is_finite(), "from {start} s a run cannot reach {until} s");
-        assert!(dt_max > 0.0 && steps < 1e15, "steps of {dt_max} s never reach {until} s");
-        Self { start, until, dt_max, steps: steps as u64, made: 0 }
-    }
-
-    /// Length of a step \[s\]; `None` if there are none.
-    fn dt(&self) -> Option<f64> {
-        (self.steps > 0).then(|| (self.until - self.start) / self.steps as f64)
-    }
-
-    /// Time after the steps that were made \[s\].
-    fn time(&self) -> f64 {
-        let (made, steps) = (self.made as f64, self.steps as f64);
-        if made == steps {
-            self.until
-        } else {
-            self.start + (self.until - self.start) * (made / steps)
-        }
-    }
+/// The number of equal steps of at most `dt_max` \[s\] from `start` to `until` \[s\].
+fn count_steps(start: f64, until: f64, dt_max: f64) -> u64 {
+    let span = until - start;
+    // A rounding error of the quotient must not add a step, which would change the length of every step.
+    let steps = (span / dt_max * (1.0 - 1e-12)).ceil();
+    assert!(span >= 0.0 && span.is_finite(), "from {start} s a run cannot reach {until} s");
+    assert!(dt_max > 0.0 && steps < 1e15, "steps of {dt_max} s never reach {until} s");
+    steps as u64
 }
 
 impl<S: Scheme> Simulation<S> {
@@ -185,42 +173,31 @@ impl<S: Scheme> Simulation<S> {
         dt_max: f64,
         observer: &mut dyn Observer<S::Extra>,
     ) -> Outcome {
-        let left = self.engine.data.progress.span;
-        let is_left = (left.until, left.dt_max) == (until, dt_max);
-        let mut span = if is_left { left } else { Span::new(self.time(), until, dt_max) };
-        let dt = span.dt().unwrap_or(self.dt());
-        self.engine.data.progress.dt = dt;
-        while span.made < span.steps {
+        let now = &mut self.engine.data.progress;
+        if now.call[1..] != [until, dt_max] {
+            (now.call, now.made) = ([now.time, until, dt_max], 0);
+        }
+        let (start, made) = (now.call[0], now.made);
+        let (span, steps) = (until - start, count_steps(start, until, dt_max));
+        now.dt = if steps > 0 { span / steps as f64 } else { now.dt };
+        let dt = now.dt;
+        for k in made + 1..=steps {
             let mut state = take(&mut self.engine.data.state);
             let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
             self.engine.data.state = state;
             if let Err(fault) = stepped {
                 return self.diverged(fault);
             }
-            span.made += 1;
             let now = &mut self.engine.data.progress;
-            (now.time, now.span) = (span.time(), span);
+            now.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
+            now.made = k;
             now.work.steps += 1;
             if observer.after_step(self) == Flow::Stop {
                 return Outcome::Stopped;
             }
         }
-        self.engine.data.progress.span = Span::default();
+        self.engine.data.progress.call = [0.0; 3];
         self.synchronise()
-    }
-
-    /// Goes back or on to a checkpoint of a simulation of the same scene: what follows has the bits of that
-    /// simulation. The particles of the checkpoint replace those of this one.
-    ///
-    /// # Errors
-    /// If no simulation can have written the checkpoint; then nothing has changed.
-    pub fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), SceneError> {
-        check_checkpoint(from)?;
-        self.engine.data.put(&from.particles);
-        self.engine.build_lists(from.built_at.iter().copied());
-        self.engine.data.progress = from.progress;
-        self.integrator = S::Integrator::with_lag(from.lag);
-        Ok(())
     }
 
     /// Brings every quantity to the same time, and refreshes the derived data.

@@ -274,7 +274,7 @@ const SHORT: [&str; 17] = [
     "acoustic_wave",
     "shear_wave --set span=0.2",
     "elastic_bar --set n=12",
-    "spinning_disk --variant bare --set n=8",
+    "spinning_disk --variant bare --set n=8 --set end=0.1 --set courant=0.8",
     "oscillating_plate --set n=4 --set end=0.1",
     "elastic_wave",
     "extremes --set steps=40",

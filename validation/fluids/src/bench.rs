@@ -22,6 +22,7 @@ use crate::{
 };
 use harness::{
     case::RunError,
+    checkpoint::CheckpointError,
     context::Context,
     method::{self, Boundary, FromMedium, Method, Standard},
 };
@@ -253,8 +254,9 @@ where
     // The flow at work, not the lattice at rest, and each time the same: later, some flows diverge.
     let _ = whole.advance(setup.time(START), setup.dt, &mut ());
     let start = whole.checkpoint();
-    let mut pair = |steps| -> Result<Share, SceneError> {
-        let mut whole = scene().resume(&start)?;
+    let mut pair = |steps| -> Result<Share, RunError> {
+        let mut whole = scene().build()?;
+        whole.restore(&start).map_err(CheckpointError::State)?;
         let (step, sweeps) =
             (batch(&mut whole, setup.dt, steps), batch(&mut bare, setup.dt, steps));
         Ok(Share { step, sweeps })

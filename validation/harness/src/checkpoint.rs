@@ -5,6 +5,7 @@
 //! and its observers, and each simulation then takes over its state and theirs, so that no case knows whether
 //! it goes on.
 
+use std::any::Any;
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -14,8 +15,9 @@ use base::{
     record::{Cost, Record, Status},
     vtk::Collection,
 };
+use nalgebra::Vector2;
 use serde::{Serialize, de::DeserializeOwned};
-use solver::{Checkpoint, Numbers, SceneError, Stepper};
+use solver::{Checkpoint, Numbers, Particle, Progress, Role, Stepper, Symmetric, Work};
 use thiserror::Error;
 
 /// Why there is no checkpoint, or why a run does not go on from one.
@@ -27,12 +29,12 @@ pub enum CheckpointError {
     /// The bytes are not those of the run.
     #[error("the checkpoint is not one of this run: {0}")]
     Read(#[from] rmp_serde::decode::Error),
-    /// The words of the state of the simulation are too few.
-    #[error("the checkpoint is not one of this run: it ends in the middle of its particles")]
-    State,
+    /// The particles have other extra fields than those of the cases, none or a deviatoric stress.
+    #[error("particles with these extra fields have no checkpoint")]
+    Extra,
     /// No simulation can have that state.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
+    #[error("the checkpoint has {0}")]
+    State(&'static str),
     /// The file was not written.
     #[error(transparent)]
     File(#[from] FileError),
@@ -190,6 +192,58 @@ pub(crate) struct Stage {
     pub ended: Option<Status>,
 }
 
+/// Id, role, position, velocity, density and mass of a particle, where it was when the neighbour lists were
+/// built, and its extra fields.
+type Stored = (u32, u8, [f64; 8], Vec<f64>);
+
+/// The state of a simulation.
+fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Saving) -> Done {
+    let Checkpoint { progress, lag, particles, built_at } = state;
+    let &Progress { time, dt, work, last_displacement, built_inside_a_step, call, made } = progress;
+    let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
+    to.put(&([time, dt, last_displacement, *lag], call))?;
+    to.put(&[steps, pair_interactions, right_hand_sides, list_builds, made])?;
+    to.put(&built_inside_a_step)?;
+    let stored = |((id, p), at): (&(u32, Particle<X>), &Vector2<f64>)| {
+        let (x, v) = (p.position, p.velocity);
+        let extra: &dyn Any = &p.extra;
+        let extra = match extra.downcast_ref::<Symmetric>() {
+            Some(s) => vec![s.xx, s.yy, s.xy],
+            None if size_of::<X>() == 0 => Vec::new(),
+            None => return Err(CheckpointError::Extra),
+        };
+        Ok((*id, p.role as u8, [x.x, x.y, v.x, v.y, p.density, p.mass, at.x, at.y], extra))
+    };
+    let all = particles.iter().zip(built_at).map(stored);
+    to.put(&all.collect::<Result<Vec<Stored>, _>>()?)
+}
+
+fn restore_state<X: Numbers>(from: &mut Restoring) -> Result<Checkpoint<X>, CheckpointError> {
+    let ([time, dt, last_displacement, lag], call) = from.take()?;
+    let [steps, pair_interactions, right_hand_sides, list_builds, made] = from.take()?;
+    let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
+    let built_inside_a_step = from.take()?;
+    let progress = Progress { time, dt, work, last_displacement, built_inside_a_step, call, made };
+    let stored: Vec<Stored> = from.take()?;
+    let (mut particles, mut built_at) = (Vec::new(), Vec::new());
+    for (id, role, [x, y, u, v, density, mass, at_x, at_y], numbers) in stored {
+        let roles = [Role::Fluid, Role::Wall, Role::Interface];
+        let role = roles.into_iter().find(|known| *known as u8 == role);
+        let role = role.ok_or(CheckpointError::State("a particle of an unknown role"))?;
+        let mut extra = X::default();
+        let symmetric: &mut dyn Any = &mut extra;
+        match (symmetric.downcast_mut::<Symmetric>(), &numbers[..]) {
+            (Some(s), &[xx, yy, xy]) => *s = Symmetric { xx, yy, xy },
+            (None, []) if size_of::<X>() == 0 => {}
+            _ => return Err(CheckpointError::Extra),
+        }
+        let (position, velocity) = (Vector2::new(x, y), Vector2::new(u, v));
+        particles.push((id, Particle { role, position, velocity, density, mass, extra }));
+        built_at.push(Vector2::new(at_x, at_y));
+    }
+    Ok(Checkpoint { progress, lag, particles, built_at })
+}
+
 /// A simulation as bytes.
 pub(crate) fn save<X: Numbers>(
     simulation: &(impl Stepper<X> + ?Sized),
@@ -197,7 +251,7 @@ pub(crate) fn save<X: Numbers>(
     seen: &impl Observed,
 ) -> Result<Vec<u8>, CheckpointError> {
     let mut to = Saving::default();
-    to.put(&simulation.checkpoint().words())?;
+    save_state(&simulation.checkpoint(), &mut to)?;
     let Stage { reached, cost, frames, ended } = stage;
     to.put(&(reached, cost, frames, ended))?;
     seen.save(&mut to)?;
@@ -211,8 +265,7 @@ pub(crate) fn restore<X: Numbers>(
     seen: &mut impl Observed,
 ) -> Result<Stage, CheckpointError> {
     let mut from = Restoring(bytes);
-    let words: Vec<u64> = from.take()?;
-    simulation.restore(&Checkpoint::of_words(&words).ok_or(CheckpointError::State)?)?;
+    simulation.restore(&restore_state(&mut from)?).map_err(CheckpointError::State)?;
     let (reached, cost, frames, ended) = from.take()?;
     seen.restore(&mut from)?;
     Ok(Stage { reached, cost, frames, ended })

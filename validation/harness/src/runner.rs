@@ -24,6 +24,8 @@ const SHOW_EVERY: Duration = Duration::from_millis(200);
 type AfterStep<'a, X, S> = &'a dyn Fn(&mut S, &dyn Stepper<X>) -> Flow;
 /// A function that is called at the k-th of the times of interest.
 type At<'a, D, S> = &'a dyn Fn(&mut S, &mut D, usize);
+/// A function that is called when a run goes on from a checkpoint.
+type Resumed<'a, D, S> = &'a dyn Fn(&S, &mut D);
 
 /// The clocks of the way to one of the times of interest.
 struct Clocks {
@@ -229,7 +231,7 @@ pub struct Drive<'a, X, D: ?Sized, S> {
     seen: &'a mut S,
     after_step: AfterStep<'a, X, S>,
     at: At<'a, D, S>,
-    resumed: &'a dyn Fn(&S, &mut D),
+    resumed: Resumed<'a, D, S>,
 }
 
 impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
@@ -243,7 +245,8 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         seen: &'a mut S,
     ) -> Self {
         let after_step: AfterStep<'a, X, S> = &|_, _| Flow::Continue;
-        let (at, resumed): (At<'a, D, S>, &dyn Fn(&S, &mut D)) = (&|_, _, _| {}, &|_, _| {});
+        let at: At<'a, D, S> = &|_, _, _| {};
+        let resumed: Resumed<'a, D, S> = &|_, _| {};
         Self { simulation, dt, times, pressure, seen, after_step, at, resumed }
     }
 
@@ -259,7 +262,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
 
     /// Calls a function when a run goes on from a checkpoint: for what a case has changed of a simulation and
     /// what is no part of [`Stepper::checkpoint`], such as a force.
-    pub fn resumed(self, resumed: &'a dyn Fn(&S, &mut D)) -> Self {
+    pub fn resumed(self, resumed: Resumed<'a, D, S>) -> Self {
         Self { resumed, ..self }
     }
 

@@ -179,8 +179,8 @@ impl Account {
     }
 }
 
-fn of(items: &[(String, f64)], name: &str) -> f64 {
-    items.iter().find(|(known, _)| known == name).map_or(0.0, |(_, value)| *value)
+fn of<N: AsRef<str>>(items: &[(N, f64)], name: &str) -> f64 {
+    items.iter().find(|(known, _)| known.as_ref() == name).map_or(0.0, |(_, value)| *value)
 }
 
 /// Items of the same name added, in the order in which they first appear.
