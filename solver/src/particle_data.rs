@@ -91,14 +91,12 @@ impl<X> Checkpoint<X> {
     /// Checks that it is stored in the way in which a simulation stores it; else says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         let Self { progress, lag, particles, built_at } = self;
-        let mut ids: Vec<u32> = particles.iter().map(|(id, _)| *id).collect();
-        ids.sort_unstable();
-        let is_positive = particles.iter().all(|(_, p)| p.density > 0.0 && p.mass > 0.0);
+        let ids: std::collections::BTreeSet<u32> = particles.iter().map(|(id, _)| *id).collect();
         let sum = built_at.iter().fold(progress.time + lag, |sum, p| sum + p.x + p.y);
         let all = [
             (sum.is_finite(), "a time, a lag or a place that is not finite"),
             (built_at.len() == particles.len(), "a number of places that is not that of particles"),
-            (is_positive, "a density or a mass that is not above 0"),
+            (particles.iter().all(|(_, p)| p.density > 0.0 && p.mass > 0.0), "no density or mass"),
             (particles.is_sorted_by_key(|(_, p)| p.role), "particles not sorted by their roles"),
             (ids.into_iter().eq(0..particles.len() as u32), "numbers of another scene"),
         ];

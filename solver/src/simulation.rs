@@ -190,8 +190,7 @@ impl<S: Scheme> Simulation<S> {
             }
             let now = &mut self.engine.data.progress;
             now.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
-            now.made = k;
-            now.work.steps += 1;
+            (now.made, now.work.steps) = (k, now.work.steps + 1);
             if observer.after_step(self) == Flow::Stop {
                 return Outcome::Stopped;
             }

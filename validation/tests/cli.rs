@@ -321,8 +321,8 @@ fn watching_does_not_change_a_run() {
     }
 }
 
-/// The last sample of the rings was the one before it once more, as was that of a disk that the leapfrog steps,
-/// and a table that begins with a number that is not finite was empty.
+/// The last sample of the rings was the one before it once more, as was that of a disk of the leapfrog, and a
+/// table that begins with a number that is not finite was empty.
 #[test]
 fn no_table_repeats_a_time_or_ends_early() {
     for run in SHORT {
