@@ -315,7 +315,8 @@ fn accuracy(tier: Tier) -> Accuracy {
     };
     let label = "relative L2 error of the velocity [-]";
     Accuracy {
-        about: "Steady flow from rest at t = 1 d^2/nu, Re = V d/nu = 0.5, outer radius twice the inner one."
+        about: "Flow between cylinders, the outer one of twice the inner radius, from rest to t = d²/ν, when \
+                it is steady, at Re = V d/ν = 0.5."
             .into(),
         spacing: "dx/d [-]",
         ladders: ORDERS.map(ladder).into(),

@@ -34,3 +34,4 @@ pub mod store;
 pub mod studies;
 pub mod study;
 pub mod suite;
+mod words;

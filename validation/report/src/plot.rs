@@ -489,7 +489,7 @@ impl<'a> Prepared<'a> {
             };
             let corners = match anchor {
                 Some(anchor) => self.triangle(*order, *anchor, *factor),
-                None => [1.0, 0.7, 0.5]
+                None => [1.0, 0.7, 0.5, 0.35, 0.25]
                     .iter()
                     .find_map(|&part| self.free_triangle(*order, factor.powf(part), obstacles)),
             };

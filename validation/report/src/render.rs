@@ -87,8 +87,8 @@ struct Layout<'a> {
     size: (f64, f64),
 }
 
-/// The one legend of several panels, in which a name has one colour and a look one name; empty if theirs
-/// do not agree or have nothing in common.
+/// The one legend of several panels, in which a name has one colour and a look one name. Empty if theirs do
+/// not agree, or if several of them have nothing in common.
 fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
     let legends: Vec<&[Entry]> =
         panels.iter().map(Prepared::legend).filter(|legend| !legend.is_empty()).collect();
@@ -102,7 +102,8 @@ fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
         }
     }
     let total: usize = legends.iter().map(|legend| legend.len()).sum();
-    if all.len() < total { all } else { Vec::new() }
+    let is_for_all = legends.len() == 1 && panels.len() > 1;
+    if all.len() < total || is_for_all { all } else { Vec::new() }
 }
 
 /// Hides the colour bars of maps that all have the same one; its width.

@@ -63,6 +63,14 @@ fn card(channel: Channel, accuracy: &Accuracy) -> Card {
     }
 }
 
+/// The flow, at the beginning of a sentence.
+fn title(flow: Flow) -> &'static str {
+    match flow {
+        Flow::Couette => "Couette flow",
+        Flow::Poiseuille => "Poiseuille flow",
+    }
+}
+
 /// The error that ladders are judged by, and its name.
 fn error(flow: Flow) -> (MetricName, String) {
     let tau = flow.compared_at();
@@ -132,9 +140,11 @@ fn at_half(channel: Channel, tier: Tier) -> Accuracy {
         id: flow.name().into(),
         error: ErrorOf::Metric(metric),
         label,
-        about: "The whole run goes to νt/L² = 1, at Re 0.5. Of the other codes the plain scalar \
-                reimplementation is no package, but a program of this method, written for this comparison."
-            .into(),
+        about: format!(
+            "{} at Re 0.5, run to νt/L² = 1. Of the other codes the plain scalar reimplementation is no \
+             package, but a program of this method, written for this comparison.",
+            title(flow)
+        ),
         spacing: "Δx/L [-]",
         slope: Some(2.0),
         ladders,
@@ -168,7 +178,10 @@ fn like_peers(channel: Channel) -> Accuracy {
         id: "poiseuille-like-peers".into(),
         error: ErrorOf::Metric(metric),
         label,
-        about: format!("Re {PEERS_RE}, at which most other codes were timed, to νt/L² = 1."),
+        about: format!(
+            "{} at Re {PEERS_RE}, at which most other codes were timed, run to νt/L² = 1.",
+            title(channel.flow)
+        ),
         spacing: "Δx/L [-]",
         slope: Some(2.0),
         ladders: LIKE_PEERS.map(ladder).into(),

@@ -79,8 +79,8 @@ pub fn declared(case: &ChannelCase, tier: Tier) -> Map {
     let caption = format!(
         "How Poiseuille flow of variant `seed`, 20 rows, ends over the Reynolds number and the sound speed \
          c0 in units of the centre-line velocity V, {rules_in_words}. A cell shows the worst relative L2 \
-         error of the velocity between νt/L² = 0.1 and {END}, or the νt/L² at which the run diverged, of the \
-         median start; a run fails if it diverges or if that error exceeds 5 %. {}",
+         error of the velocity between νt/L² = 0.1 and {END}, or after t the νt/L² at which it diverged, of \
+         the median start; a run fails if it diverges or if that error exceeds 5 %. {}",
         starts::in_words(tier),
     );
     let panel = |step: &Step| MapPanel {
@@ -122,7 +122,7 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     };
     let text = match kind {
         2 => format!("{} of {} fail", starts.failed(), starts.count()),
-        _ => starts.median().map_or("refused".into(), Outcome::in_words),
+        _ => starts.median().map_or("refused".into(), Outcome::text),
     };
     (kind, text)
 }

@@ -109,18 +109,10 @@ impl Outcome {
         }
     }
 
-    /// `0.54 %`, or `diverged at 0.55` for νt/L² of the divergence.
-    pub fn in_words(self) -> String {
+    /// `0.54 %`, or `t = 0.55` for νt/L² of the divergence.
+    pub fn text(self) -> String {
         match self {
-            Self::Diverged(time) => format!("diverged at {}", sig(time, 2)),
-            Self::Reached(_) => self.text(),
-        }
-    }
-
-    /// `0.54 %`, or `t 0.55` for νt/L² of the divergence.
-    fn text(self) -> String {
-        match self {
-            Self::Diverged(time) => format!("t {}", sig(time, 2)),
+            Self::Diverged(time) => format!("t = {}", sig(time, 2)),
             Self::Reached(error) => percent(error, 2),
         }
     }
@@ -180,7 +172,7 @@ impl Starts {
         self.0.get(self.count().saturating_sub(1) / 2).copied()
     }
 
-    /// `2/3: t 0.55`: how many failed, and the median outcome.
+    /// `2/3: t = 0.55`: how many failed, and the median outcome.
     pub fn text(&self) -> String {
         match self.median() {
             Some(median) => format!("{}/{}: {}", self.failed(), self.count(), median.text()),
@@ -220,7 +212,7 @@ mod tests {
         assert!(starts.mostly_fails());
         assert_eq!(starts.text(), "2/3: 8.0\u{a0}%");
         let starts = Starts::new(vec![Reached(0.004), Diverged(0.7), Diverged(0.5)]);
-        assert_eq!(starts.text(), "2/3: t 0.70");
+        assert_eq!(starts.text(), "2/3: t = 0.70");
         assert!(!Starts::new(vec![Reached(0.01), Reached(0.01), Diverged(0.5)]).mostly_fails());
         assert!(Reached(f64::NAN).fails() && Starts::default().mostly_fails());
     }

@@ -74,15 +74,15 @@ fn ladder<const N: usize>(runs: [HillRun; N]) -> Ladder {
 fn accuracy(tier: Tier) -> Accuracy {
     let (about, ladders) = match tier {
         Tier::Quick => (
-            "Re 10, from rest to 10 H/U_b, where about 0.3 % of U_b is left of the start: rms over ten \
-             stations against finite elements.",
+            "Flow over periodic hills at Re 10 from rest to 10 H/U_b, where about 0.3 % of U_b is left of \
+             the start, rms over ten stations against finite elements.",
             ["interface-wall", "modern", BEST]
                 .map(|variant| ladder([4, 5, 7].map(|n| quick(variant, n))))
                 .into(),
         ),
         Tier::Full => (
-            "Re 50, from rest to 40 H/U_b, which is what it takes to become steady: rms over ten stations \
-             against finite elements.",
+            "Flow over periodic hills at Re 50 from rest to 40 H/U_b, which is what it takes to become \
+             steady, rms over ten stations against finite elements.",
             VARIANTS.map(full_ladder).into(),
         ),
     };
@@ -159,8 +159,8 @@ fn profiles(tier: Tier) -> Curves {
     let caption = "Velocity u along the channel (left) and v across it (middle) at ten stations: lines are \
                    finite elements, symbols the finest run of variant `carried`, which began as the title \
                    says. A velocity is drawn from the place of its station, and a distance of 1 H stands for \
-                   1.25 U_b of u or 0.4 U_b of v. Right: error of u, u less that of finite elements, where \
-                   1 H stands for 10 % of U_b.";
+                   1.25 U_b of u or 0.4 U_b of v. Right: error of u, u less that of finite elements, magnified as the \
+                   axis says.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         if let Some((run, reference)) = best(tier, re).last().zip(reference(re)) {
@@ -175,7 +175,8 @@ fn profiles(tier: Tier) -> Curves {
 
 /// Error of u over the stations.
 fn errors(run: &HillRun, reference: &Reference) -> CurvePanel {
-    const SCALE: f64 = 10.0;
+    // At 40 spacings in H errors are below 1 %.
+    let scale = if run.n >= 40 { 50.0 } else { 10.0 };
     let line = |(k, station): (usize, &Station)| {
         let station = station.clone();
         CurveOf {
@@ -185,7 +186,7 @@ fn errors(run: &HillRun, reference: &Reference) -> CurvePanel {
                 let found = record.column("stations", "u").iter().skip(k * POINTS);
                 let exact = station.v.iter().zip(&station.y);
                 let point = |(u, (exact, y)): (&f64, (&Vector2<f64>, &f64))| {
-                    (station.x + SCALE * (u - exact.x), *y)
+                    (station.x + scale * (u - exact.x), *y)
                 };
                 found.zip(exact).map(point).collect()
             }),
@@ -197,7 +198,7 @@ fn errors(run: &HillRun, reference: &Reference) -> CurvePanel {
     });
     CurvePanel {
         title: format!("Re {}, {}: error of u", run.re, run.name()),
-        x: Axis::linear(format!("x/H + {SCALE} (u − u of finite elements)/U_b")),
+        x: Axis::linear(format!("x/H + {scale} (u − u of finite elements)/U_b")),
         y: Axis::linear("y/H").range(0.0, 3.1),
         lines: reference.stations.iter().enumerate().map(line).collect(),
         references: at_stations.chain([(String::new(), floor())]).collect(),
@@ -241,9 +242,9 @@ fn station(record: &Record, k: usize, name: &str, scale: f64) -> Vec<(f64, f64)>
 
 /// Shear stress along hill and lid.
 fn shear(tier: Tier) -> Curves {
-    let caption = "Shear stress along the hill (left) and the lid (right), variant `carried`, over finite \
-                   elements (black). Where it is negative on the hill the flow goes backwards. The crest is \
-                   at x = 0 and 9 H.";
+    let caption = "Shear stress on the hill (left) and on the lid (right) of variant `carried` at several \
+                   spacings and of finite elements (black), in units of ρ U_b². Where the stress on the hill \
+                   is negative the flow goes backwards; the crests are at x = 0 and 9 H.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         let runs = best(tier, re);

@@ -6,7 +6,7 @@ use super::reference::Reference;
 
 /// Length of the channel \[H\], and sections in it.
 const PERIOD: f64 = 9.0;
-const SECTIONS: usize = 180;
+const SECTIONS: usize = 720;
 
 /// A line, (x, y) \[H\].
 type Line = Vec<(f64, f64)>;
@@ -119,7 +119,7 @@ mod tests {
         };
         // The flux y²/2 - y/2 is zero at 1.
         let line = of_particles(&at(|y| y - 0.5), 0.1);
-        assert!(line.len() > 170 && line.iter().all(|(_, y)| (y - 1.0).abs() < 0.1), "{line:?}");
+        assert!(line.len() > 700 && line.iter().all(|(_, y)| (y - 1.0).abs() < 0.1), "{line:?}");
         assert!(of_particles(&at(|_| 1.0), 0.1).is_empty());
     }
 }

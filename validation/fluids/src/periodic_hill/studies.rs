@@ -114,11 +114,11 @@ fn pictures(tier: Tier, runs: &Runs) -> Study {
             .values(-most, most)
             .diameter(1.0 / run.n as f64)
             .line(floor())
-            .curve(Series::line("", separation).colour(Colour::GREEN).width(2.2))
-            .curve(Series::line("", reference.line.clone()).width(2.2));
+            .curve(Series::line("", reference.line.clone()).width(2.4));
         let lines = streamlines::of_reference(&reference).into_iter();
         let thin = |map: ParticleMap, line| map.curve(Series::line("", line).width(0.7));
-        figure = figure.panel(lines.fold(map, thin));
+        let green = Series::line("", separation).colour(Colour::GREEN).width(1.2);
+        figure = figure.panel(lines.fold(map, thin).curve(green));
     }
     Study::new("periodic-hill-pictures", "Pictures").block(figure.panel_size(640.0, 230.0))
 }

@@ -70,7 +70,9 @@ fn best_ladder(start: f64) -> Ladder {
 fn accuracy(id: &str, start: f64, ladders: Vec<Ladder>) -> Accuracy {
     let from = start_of(start);
     Accuracy {
-        about: format!("Velocity vector over the particles at t = 2 L/U, Re 100, from the {from}."),
+        about: format!(
+            "Taylor-Green vortices at Re 100 from the {from}, velocities of the particles at t = 2 L/U."
+        ),
         spacing: "dx/L [-]",
         ladders,
         ..Accuracy::new(id, ErrorOf::Metric(L2.into()), ERROR)

@@ -9,6 +9,7 @@ use crate::{
     declare::{Accuracy, Ladder, Peer},
     runs::Runs,
     study::Study,
+    words::{first_sentence, name_of_error},
 };
 
 /// One run of a cost diagram.
@@ -131,30 +132,29 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
 
 fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
     let resolution = points.first().map_or(String::new(), |point| {
-        format!(
-            "a number at a point is its resolution ({} for {})",
-            short(&point.label),
-            point.label
-        )
+        format!("a number is the resolution ({} for {}), ", short(&point.label), point.label)
     });
     let growth = work_growth(points);
     let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
     let triangle = slope.and(accuracy.slope).map_or(String::new(), |order| {
         format!(
-            "; the triangle has the slope of order {order}, for work that grows as the spacing to the power \
-             −{}",
+            ", and the triangle has the slope of order {order} for work that grows as the spacing to the \
+             power −{}",
             sig(growth, 2)
         )
     });
+    let failed = points.iter().any(|point| point.failure.is_some());
+    let crosses = if failed { " Crosses above are runs that failed." } else { "" };
     let others = accuracy.peers.first().map_or(String::new(), |peer| {
         format!(" Grey: other codes, as stored with the references ({}).", peer.timed)
     });
     let caption = format!(
-        "{} against processor seconds of the time stepping (left: one run at a time on one thread, median \
-         of its repetitions, bars from the fastest to the slowest) and against pair interactions (right). \
-         The pale band joins the points that none beats in both error and cost, and {resolution}\
-         {triangle}.{others}",
-        accuracy.label.trim_end_matches(" [-]"),
+        "{} {} against run time (left: processor seconds of the time stepping on one thread, median of the \
+         repetitions, bars from the fastest to the slowest) and against pair interactions (right): \
+         {resolution}the pale band joins the points that none beats in both error and cost{triangle}.\
+         {crosses}{others}",
+        first_sentence(&accuracy.about),
+        name_of_error(&accuracy.label),
     );
     let clock = panel(
         "Error against run time",

@@ -27,9 +27,13 @@ fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
     let has_partners = of.symbols && of.references.len() >= of.lines.len();
     for (k, (name, points)) in of.references.iter().enumerate() {
         let is_partner = has_partners && k < of.lines.len();
-        let colour = if is_partner { Colour::cycle(k) } else { Colour::BLACK };
-        let name = if is_partner { "" } else { name };
-        plot = plot.layer(Series::line(name, points.clone()).colour(colour));
+        let line = Series::line(if is_partner { "" } else { name }, points.clone());
+        plot = plot.layer(match is_partner {
+            true => line.colour(Colour::cycle(k)),
+            // A guide.
+            false if name.is_empty() => line.colour(Colour::GREY).width(0.8),
+            false => line.colour(Colour::BLACK),
+        });
     }
     for (k, line) in of.lines.iter().enumerate() {
         let Some(record) = runs.record(&line.spec) else { continue };

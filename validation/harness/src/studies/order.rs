@@ -9,6 +9,7 @@ use crate::{
     declare::{Accuracy, ErrorOf, Ladder},
     runs::Runs,
     study::Study,
+    words::{first_sentence, name_of_error},
 };
 
 /// The points that the order of a ladder is fitted to.
@@ -43,7 +44,7 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     let successive = match accuracy.error {
         ErrorOf::Metric(_) => "",
         ErrorOf::Distance { .. } => {
-            " The errors are distances between runs of successive spacings, drawn at the coarser one."
+            " An error is the distance between runs of successive spacings, drawn at the coarser one."
         }
     };
     let slopes = slopes(accuracy);
@@ -53,8 +54,9 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
         [order] => format!(" The triangle shows order {order}."),
         orders => format!(" The triangles show orders {}.", orders.join(" and ")),
     };
-    let label = accuracy.label.trim_end_matches(" [-]");
-    let caption = format!("{label} against the particle spacing.{successive}{slope}");
+    let about_it = first_sentence(&accuracy.about);
+    let label = name_of_error(&accuracy.label);
+    let caption = format!("{about_it} {label} against the particle spacing.{successive}{slope}");
     let mut plot = Plot::new("", Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
     let about = format!(
         "Observed order: least squares over all levels, with the 95 % interval of Student's t. {}",

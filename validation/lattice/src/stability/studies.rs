@@ -105,8 +105,8 @@ fn figure(points: &[Point], limits: &[Limit], weak: &[[f64; 2]]) -> Figure {
     use time_step::Integrator::{Leapfrog as LeapfrogTheory, PredictorCorrector as MidpointTheory};
     let mut plot = Plot::new(
         "Longest stable step",
-        Axis::log("sound against viscosity c₀h/ν [1]").ticks([1.0, 3.0, 10.0, 30.0, 100.0]),
-        Axis::log("longest stable step c₀ dt/h [1]").ticks([0.3, 0.5, 1.0, 2.0]),
+        Axis::log("sound over viscosity c₀h/ν [-]").ticks([1.0, 3.0, 10.0, 30.0, 100.0]),
+        Axis::log("longest stable step c₀ dt/h [-]").ticks([0.3, 0.5, 1.0, 2.0]),
     );
     let both = [LeapfrogTheory, MidpointTheory];
     let kernels = [
@@ -161,8 +161,8 @@ fn weak_plot(weak: &[[f64; 2]]) -> Plot {
     let line = |f: &dyn Fn(f64) -> f64| (0..=40).map(|k| (wave(k), f(wave(k)))).collect();
     Plot::new(
         "Weak instability of the predictor-corrector",
-        Axis::log("ω dt of the stiffest wave [1]").ticks([0.2, 0.3, 0.4, 0.5, 0.6, 0.8]),
-        Axis::log("growth of the amplitude a step [1]"),
+        Axis::log("ω dt of the stiffest wave [-]").ticks([0.2, 0.3, 0.4, 0.5, 0.6, 0.8]),
+        Axis::log("growth of the amplitude per step [-]"),
     )
     .layer(Series::line("½ ln(1 + (ω dt)⁴/4)", line(&theory_of_weak_growth)).colour(Colour::BLACK))
     .layer(

@@ -23,7 +23,7 @@ use harness::{
         Ladder, Level, Map, MapPanel, StepLimit, StepLimits,
     },
 };
-use report::{Axis, Colour, sig};
+use report::{Axis, Colour, exact, sig};
 
 /// Everything that the harness draws and judges.
 pub fn declaration(tier: Tier) -> Declaration {
@@ -73,7 +73,7 @@ fn histories(tier: Tier) -> Curves {
     let labels = ["centre of mass [L]", "velocity of it [c0]", "width [L]", "height [L]"];
     let panel = |(k, name): (usize, &'static str)| {
         let line = |spacing: &f64| CurveOf {
-            name: format!("spacing {} L", sig(*spacing, 2)),
+            name: format!("spacing {} L", exact(*spacing)),
             spec: collision(variant, *spacing, SPEED),
             points: Box::new(move |record| {
                 let [t, y] = ["t", name].map(|name| record.column("series", name));

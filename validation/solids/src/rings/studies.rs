@@ -91,7 +91,7 @@ fn energies(record: &Record) -> Figure {
          not the derivative of an energy at finite strain. The sum on the left is the sum of the works on \
          the right up to {}.",
         record.variant,
-        sig(settings(record).spacing, 2),
+        exact(settings(record).spacing),
         percent(record.value(ENERGY_GAP).unwrap_or(f64::NAN), 2)
     );
     let empty = Profile::default();
@@ -191,26 +191,30 @@ fn found_phases(record: &Record) -> Vec<Cell> {
 
 /// The rings at five times, coloured by the largest principal stress, with those of finite elements.
 fn pictures(runs: &Runs) -> Study {
-    let caption = "Two rubber rings of inner radius 3 L and outer radius 4 L, which collide at 0.059 c0 each, \
-                   at five times: particles of variant `seed`, spacing 0.2 L, coloured by the largest \
-                   principal stress σ₁ in units of the bulk modulus K (tension is positive; c0 is the sound \
-                   speed). Black lines are the faces of the rings of finite elements at the same time.";
-    let mut figure = Figure::new("rubber-rings-pictures", caption).columns(3);
+    let caption = "The right one of two rubber rings of inner radius 3 L and outer radius 4 L, which collide \
+                   at 0.059 c0 each and meet at x = 0, at five times; c0 is the sound speed. Particles of \
+                   variant `seed`, spacing 0.2 L, are coloured by the largest principal stress σ₁ in units \
+                   of the bulk modulus K, where tension is positive. Black lines are the faces of the ring \
+                   of finite elements at the same time.";
+    let mut figure = Figure::new("rubber-rings-pictures", caption).columns(5);
     let (variant, spacing, speed) = PICTURED;
     if let Some(record) = runs.record(&collision(variant, spacing, speed)) {
         // At the start there is neither stress nor deformation.
         let shown = &PICTURES[1..];
-        let (axes, most) = (axes(record, shown), largest_stress(record, shown));
+        let most = largest_stress(record, shown);
+        let axes =
+            (Axis::linear("x [L]").range(-0.4, 11.9), Axis::linear("y [L]").range(-5.6, 5.6));
         for share in shown {
             let title = format!("{}, {}", time(*share), state(record, *share));
-            let map = picture(record, *share, &title, axes.clone(), most);
+            let mut map = picture(record, *share, &title, axes.clone(), most);
+            map.points.retain(|(x, ..)| *x > 0.0);
             let outlines = reference::outlines(speed, 200.0 * share).unwrap_or_default();
             let black = |map: ParticleMap, line| map.curve(Series::line("", line).width(0.9));
             figure = figure.panel(outlines.into_iter().fold(map, black));
         }
     }
     let study =
-        Study::new("rubber-rings-pictures", "Pictures").block(figure.panel_size(330.0, 250.0));
+        Study::new("rubber-rings-pictures", "Pictures").block(figure.panel_size(185.0, 170.0));
     let study = match film(runs) {
         Ok(film) => study.block(film),
         Err(why) => study.prose(format!("There is no film: {why}.")),
