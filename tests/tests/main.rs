@@ -9,6 +9,7 @@ mod identities;
 mod integration;
 mod invariance;
 mod layers;
+mod margins;
 mod new_case;
 mod pairs;
 mod plans;

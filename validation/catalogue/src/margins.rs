@@ -72,21 +72,3 @@ fn stacked(
     let placed: Vec<_> = margins.chunk_by(|a, b| step(a) == step(b)).flat_map(place).collect();
     placed.into_iter()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn each_gate_has_its_own_place_within_its_row() {
-        let margins = [0.5, 0.5, 0.5, 1.0, OUTSIDE].map(|margin| (Status::Pass, margin));
-        let dots: Vec<_> = stacked(3.0, margins.into_iter()).map(|dot| dot.1).collect();
-        assert_eq!(dots.len(), 5);
-        assert!(dots.iter().all(|(_, y)| (y - 3.0).abs() < 0.5));
-        for (k, dot) in dots.iter().enumerate() {
-            assert!(dots[..k].iter().all(|other| other != dot), "{dots:?}");
-        }
-        let many = vec![(Status::Pass, 1.0); 200];
-        assert!(stacked(0.0, many.into_iter()).all(|(_, (_, y))| y.abs() < 0.5));
-    }
-}

@@ -12,8 +12,8 @@ use super::ticks::{Scale, Ticks, with_exponent};
 
 const BAR_GAP: f64 = 12.0;
 const BAR_WIDTH: f64 = 13.0;
-/// Colours between the ends of a bar.
-const STEPS: f64 = 64.0;
+/// Colours of a bar and of the dots: each is one more element.
+const STEPS: f64 = 32.0;
 
 /// A particle map with its scales decided.
 pub(super) struct Particles<'a> {

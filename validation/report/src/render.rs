@@ -347,7 +347,7 @@ mod tests {
         let points = (0..2000).map(|i| (f64::from(i % 50), f64::from(i / 50), f64::from(i)));
         let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
         let map = ParticleMap::new("", axes, "p [Pa]", ColourMap::Sequential, points.collect());
-        assert!(svg(&figure(map)).len() < 150_000);
+        assert!(svg(&figure(map)).len() < 30_000);
     }
 
     #[test]
