@@ -175,7 +175,8 @@ mod tests {
         svg.text("c", (3.0, 2.0), Type::new(11.0, Align::End));
         let expected = "<path stroke=\"#000\" stroke-width=\"4\" d=\"m0 4h8l4-2m-8 2v4\"/>\n\
                         <path fill=\"#0072b2\" d=\"m4 4h4v4zm-4-4h4v4z\"/>\n\
-                        <path stroke=\"#0072b2\" stroke-width=\"16\" stroke-linecap=\"round\" d=\"m20 20h0\"/>\n\
+                        <path stroke=\"#0072b2\" stroke-width=\"16\" stroke-linecap=\"round\" \
+                        d=\"m20 20h0\"/>\n\
                         <g fill=\"#000\" font-size=\"44\" text-anchor=\"end\">\n\
                         <text x=\"4\" y=\"8\">a &lt; b</text>\n<text x=\"12\" y=\"8\">c</text>\n</g>\n";
         assert_eq!(svg.finish(), expected);

@@ -91,9 +91,10 @@ fn snapshot(flow: Flow, record: &Record) -> Figure {
     let id = format!("{}-particles", flow.name());
     let settings: ChannelSettings = record.settings_as();
     let dx = settings.width / settings.rows as f64;
-    let caption = "Particles of variant `seed` at νt/L² = 1, Re 0.5, 20 rows across the channel, in a section \
-                   that is periodic in x. Left: velocity u along the channel. Right: pressure p, which is \
-                   exactly zero in this flow; what is left of it comes from rows that slide past each other.";
+    let caption = "Particles of variant `seed` at νt/L² = 1, Re 0.5, 20 rows across the channel, in a \
+                   section that is periodic in x. Left: velocity u along the channel. Right: pressure p, \
+                   which is exactly zero in this flow; what is left of it comes from rows that slide past \
+                   each other.";
     let map = |title: &str, field: &str, label: &str, colours| {
         let points = pictures::points(record, "particles", field);
         let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));

@@ -117,11 +117,11 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
                    of 1.09 at 20, and a change beyond 0.8 to 1.25 is one of the program";
     let mut study = Study::new("poiseuille-h3", "H3: pressure waves between the walls");
     study = study.prose(h3(&found));
-    let caption = "Amplitude of the lowest pressure mode across the channel, cos(πy/L), in Poiseuille flow of \
-                   variant `seed` at Re 20 for two sound speeds c0, each less its mean over 2L/c0, so that \
-                   waves are seen and not the slow drift. Time is in crossings of the channel by sound, up \
-                   to the end of the run: on this axis a wave that bounces between the walls has the period \
-                   2, whatever c0. Each is the run of the median period.";
+    let caption = "Amplitude of the lowest pressure mode across the channel, cos(πy/L), in Poiseuille flow \
+                   of variant `seed` at Re 20 for two sound speeds c0, each less its mean over 2L/c0, so \
+                   that waves are seen and not the slow drift. Time is in crossings of the channel by sound, \
+                   up to the end of the run: on this axis a wave that bounces between the walls has the \
+                   period 2, whatever c0. Each is the run of the median period.";
     let mut plot = Plot::new(
         "",
         Axis::linear("time before the end (t − t_end) c0/L [-]"),

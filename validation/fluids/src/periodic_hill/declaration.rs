@@ -159,8 +159,8 @@ fn profiles(tier: Tier) -> Curves {
     let caption = "Velocity u along the channel (left) and v across it (middle) at ten stations: lines are \
                    finite elements, symbols the finest run of variant `carried`, which began as the title \
                    says. A velocity is drawn from the place of its station, and a distance of 1 H stands for \
-                   1.25 U_b of u or 0.4 U_b of v. Right: error of u, u less that of finite elements, magnified as the \
-                   axis says.";
+                   1.25 U_b of u or 0.4 U_b of v. Right: error of u, u less that of finite elements, \
+                   magnified as the axis says.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         if let Some((run, reference)) = best(tier, re).last().zip(reference(re)) {

@@ -67,7 +67,7 @@ fn closed(sections: &[Section], flux: f64) -> Line {
 fn crossing(pair: &[(f64, f64)], flux: f64) -> Option<f64> {
     let [(low, a), (high, b)] = [pair[0], pair[1]];
     let share = (flux - a) / (b - a);
-    (0.0..1.0).contains(&share).then(|| low + share * (high - low))
+    (0.0..1.0).contains(&share).then_some(low + share * (high - low))
 }
 
 /// The separation line of particles x, y, u, one a square of `dx`: the height up to which those of a section

@@ -35,10 +35,10 @@ fn table(runs: &Runs) -> Table {
 
 /// Particles at the end, by speed and by error.
 fn pictures(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Particles in the lower half of the periodic box of Taylor-Green vortices at t = 2 L/U, \
-                   Re 100, coloured by their speed (left) and by the logarithm of the error of their velocity (right), where −2 stands for 1 %. \
-                   Both are over the largest exact speed of that time. Variant `plain` has no stabiliser, \
-                   and `consistent` is the best variant.";
+    let caption = "Particles in the lower half of the periodic box of Taylor-Green vortices at t = 2 L/U, Re \
+                   100, coloured by their speed (left) and by the logarithm of the error of their velocity \
+                   (right), where −2 stands for 1 %. Both are over the largest exact speed of that time. \
+                   Variant `plain` has no stabiliser, and `consistent` is the best variant.";
     let mut figure = Figure::new("taylor-green-pictures", caption).columns(2);
     let of_tier = plan::judged(tier);
     for (variant, n, start) in PICTURED.into_iter().filter(|run| of_tier.contains(run)) {

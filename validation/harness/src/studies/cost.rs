@@ -1,6 +1,7 @@
 //! Error against cost: which settings reach an error with the least work, in seconds of a run that was
 //! made alone, and in pair interactions, which do not depend on the machine or on other programs.
 
+use base::functions::ln;
 use base::record::{Status, median};
 use report::{Axis, Cell, Colour, Column, Figure, Layer, Plot, Series, Shape, Table, seconds, sig};
 
@@ -178,7 +179,7 @@ fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
 fn work_growth(points: &[Point]) -> f64 {
     let growth = |ladder: &[Point]| {
         let (first, last) = (ladder.first()?, ladder.last()?);
-        let growth = (last.pairs / first.pairs).ln() / (first.spacing / last.spacing).ln();
+        let growth = ln(last.pairs / first.pairs) / ln(first.spacing / last.spacing);
         growth.is_finite().then_some(growth)
     };
     let ladders = points.chunk_by(|a, b| a.ladder == b.ladder);

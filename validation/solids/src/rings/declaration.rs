@@ -270,10 +270,10 @@ fn fracture_map(tier: Tier) -> Map {
     Map {
         id: "rubber-rings-fracture-map".into(),
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
-        caption: "What becomes of two colliding rubber rings over the speed of each and the particle spacing, \
-                  for three variants; an empty cell was not run. Whole rings show the coefficient of \
-                  restitution e, or that they still touch at t = 200 L/c0. Torn rings (cut through once, like \
-                  a C) show when that was first seen in units of L/c0, and rings in pieces the largest \
+        caption: "What becomes of two colliding rubber rings over the speed of each and the particle \
+                  spacing, for three variants; an empty cell was not run. Whole rings show the coefficient \
+                  of restitution e, or that they still touch at t = 200 L/c0. Torn rings (cut through once, \
+                  like a C) show when that was first seen in units of L/c0, and rings in pieces the largest \
                   number of pieces."
             .into(),
         x: "speed of each ring [c0]".into(),
@@ -301,10 +301,10 @@ fn stress_map() -> Map {
     Map {
         id: "rubber-rings-stress-map".into(),
         title: "Stability over the artificial stress".into(),
-        caption: "What becomes of two rubber rings that collide at 0.12 c0 each, spacing 0.2 L, over strength \
-                  and exponent of the artificial stress. Whole rings show the coefficient of restitution e, \
-                  torn ones the time of the first tear in units of L/c0, and others the largest number of \
-                  pieces."
+        caption: "What becomes of two rubber rings that collide at 0.12 c0 each, spacing 0.2 L, over \
+                  strength and exponent of the artificial stress. Whole rings show the coefficient of \
+                  restitution e, torn ones the time of the first tear in units of L/c0, and others the \
+                  largest number of pieces."
             .into(),
         x: "strength of the artificial stress ξ [-]".into(),
         y: "exponent n [-]".into(),
@@ -322,8 +322,8 @@ fn viscosity_map() -> Map {
         id: "rubber-rings-viscosity-map".into(),
         title: "Stability over the artificial viscosity".into(),
         caption: "What becomes of two rubber rings that collide at 0.12 c0 each, spacing 0.2 L, over the \
-                  coefficient α of the artificial viscosity, with β = 2α. Whole rings show the coefficient of \
-                  restitution e, and torn ones the time of the first tear in units of L/c0."
+                  coefficient α of the artificial viscosity, with β = 2α. Whole rings show the coefficient \
+                  of restitution e, and torn ones the time of the first tear in units of L/c0."
             .into(),
         x: "artificial viscosity α [-]".into(),
         y: String::new(),

@@ -223,8 +223,8 @@ fn pictures(runs: &Runs) -> Study {
     let Some(record) = runs.completed(&collision(variant, spacing, speed)) else { return study };
     let caption = format!(
         "Two rubber rings after a collision at {} c0 each without artificial stress (variant `{variant}`), \
-         spacing {} L, coloured by the largest principal stress σ₁ in units of the bulk modulus K: they are in \
-         {} pieces. Rubber of this law does not break; the method does.",
+         spacing {} L, coloured by the largest principal stress σ₁ in units of the bulk modulus K: they are \
+         in {} pieces. Rubber of this law does not break; the method does.",
         exact(speed),
         exact(spacing),
         record.value(PIECES).unwrap_or(f64::NAN)
