@@ -6,12 +6,10 @@
 use super::colour::Colour;
 use super::figure::{Align, Dash, Shape};
 use super::{font, svg::Svg};
+pub(super) use super::{font::Type, svg::Point};
 use plotters::prelude::{BitMapBackend, DrawingBackend, RGBColor, TextStyle};
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-
-/// A point in CSS pixels, y downwards.
-pub(super) type Point = (f64, f64);
 
 /// A rectangle in CSS pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,30 +76,6 @@ impl Rect {
         }
         let at = |t: f64| (a.0 + t * dx, a.1 + t * dy);
         (enter <= leave).then(|| (at(enter), at(leave)))
-    }
-}
-
-/// How a text is set.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Type {
-    pub em: f64,
-    pub colour: Colour,
-    pub align: Align,
-    /// Reads upwards.
-    pub upright: bool,
-}
-
-impl Type {
-    pub fn new(em: f64, align: Align) -> Self {
-        Self { em, colour: Colour::BLACK, align, upright: false }
-    }
-
-    pub fn colour(self, colour: Colour) -> Self {
-        Self { colour, ..self }
-    }
-
-    pub fn upright(self) -> Self {
-        Self { upright: true, ..self }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The one font of the figures: a subset of DejaVu Sans, embedded in the program.
 
+use super::colour::Colour;
+use super::figure::Align;
 use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 use std::sync::OnceLock;
 
@@ -14,6 +16,30 @@ pub(super) const HEIGHT_PER_EM: f64 = (1901.0 + 483.0) / 2048.0;
 
 /// Height of a digit over the em.
 pub(super) const DIGIT_HEIGHT: f64 = 1493.0 / 2048.0;
+
+/// How a text is set.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Type {
+    pub em: f64,
+    pub colour: Colour,
+    pub align: Align,
+    /// Reads upwards.
+    pub upright: bool,
+}
+
+impl Type {
+    pub fn new(em: f64, align: Align) -> Self {
+        Self { em, colour: Colour::BLACK, align, upright: false }
+    }
+
+    pub fn colour(self, colour: Colour) -> Self {
+        Self { colour, ..self }
+    }
+
+    pub fn upright(self) -> Self {
+        Self { upright: true, ..self }
+    }
+}
 
 /// A font description of the given size, in the rasteriser's sense of size.
 pub(super) fn desc(size: f64) -> FontDesc<'static> {

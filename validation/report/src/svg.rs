@@ -1,13 +1,16 @@
 //! SVG text in few bytes: whole numbers, relative coordinates, and one element for successive shapes of one
 //! style.
 
-use super::canvas::{Point, Type};
 use super::colour::Colour;
 use super::figure::{Align, Dash};
-use super::{font, inline};
+use super::font::{self, Type};
+use super::inline;
+
+/// A point in CSS pixels, y downwards.
+pub(super) type Point = (f64, f64);
 
 /// Units of the drawing per CSS pixel: coordinates are quarters of a pixel.
-pub(super) const FINE: f64 = 4.0;
+const FINE: f64 = 4.0;
 
 /// Elements drawn so far, without the tag around them.
 #[derive(Default)]
