@@ -67,6 +67,7 @@ fn declaration(_: Tier) -> Declaration {
 /// The case: add it to `CASES` of its crate.
 pub const DECAY: Composed<Decay> = Composed {
     name: "decay",
+    problem: "A shear wave decays in a periodic box",
     about: "A shear wave in a periodic box decays as exp(-ν(2π)²t).",
     variants: || {
         Variants::of(&Program { run, rules })

@@ -24,8 +24,6 @@ use crate::{limitations, margins};
 
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
-    let counts =
-        Counts { diverged: suite.diverged(), ..Counts::of(suite.judged().map(Judged::status)) };
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
     let mut cards = Vec::new();
     let mut others = Vec::new();
@@ -57,7 +55,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
             reused(suite),
             provenance(&manifest)
         )],
-        counts: Some(counts),
+        counts: Some(suite.counts()),
         cards,
         notes,
         sections,

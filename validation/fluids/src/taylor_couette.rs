@@ -203,6 +203,7 @@ fn variants() -> Vec<Composition<CylinderSettings>> {
 
 static CASE: Composed<CylinderSettings> = Composed {
     name: NAME,
+    problem: "Flow between two cylinders, the inner one turning",
     about: "Viscous flow from rest between two cylinders, the inner one turning, until it is steady: u = A r \
             + B/r, exact. Both walls are curved, the inner one convex and the outer one concave, and made of \
             rows of particles that are spaced by their own arc length.",

@@ -28,6 +28,8 @@ pub struct Variant {
 pub trait Case: Sync {
     /// Name on the command line.
     fn name(&self) -> &'static str;
+    /// The problem in at most ten words, for lists.
+    fn problem(&self) -> &'static str;
     /// The problem in words, a paragraph.
     fn about(&self) -> &'static str;
     /// The variants to compare.

@@ -140,6 +140,8 @@ pub fn no_studies(_: Tier, _: &Runs) -> Vec<Study> {
 pub struct Composed<T> {
     /// Name on the command line.
     pub name: &'static str,
+    /// The problem in at most ten words.
+    pub problem: &'static str,
     /// The problem in words.
     pub about: &'static str,
     /// The variants.
@@ -221,6 +223,10 @@ impl<T: Settings + 'static> Composed<T> {
 impl<T: Settings + 'static> Case for Composed<T> {
     fn name(&self) -> &'static str {
         self.name
+    }
+
+    fn problem(&self) -> &'static str {
+        self.problem
     }
 
     fn about(&self) -> &'static str {

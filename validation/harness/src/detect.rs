@@ -171,6 +171,9 @@ mod tests {
         fn name(&self) -> &'static str {
             "balance"
         }
+        fn problem(&self) -> &'static str {
+            "A force is weighed"
+        }
         fn about(&self) -> &'static str {
             "A force is weighed."
         }

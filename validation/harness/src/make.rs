@@ -347,6 +347,9 @@ mod tests {
         fn name(&self) -> &'static str {
             "quick"
         }
+        fn problem(&self) -> &'static str {
+            "Nothing moves"
+        }
         fn about(&self) -> &'static str {
             "Nothing moves."
         }

@@ -8,7 +8,7 @@ use base::{
     spec::RunKey,
 };
 use rayon::prelude::*;
-use report::Card;
+use report::{Card, Counts};
 
 use crate::{
     case::{Case, Planned, RunError, Tier},
@@ -16,7 +16,7 @@ use crate::{
     plan,
     runs::{Judged, JudgedRun, Runs},
     store::StoreError,
-    studies,
+    studies::{self, Headline},
     study::Study,
 };
 
@@ -30,6 +30,8 @@ pub struct CaseResults {
     pub studies: Vec<Study>,
     /// What is said of it first.
     pub card: Option<Card>,
+    /// The error of the best variant and of the paper's, if the case declares a card.
+    pub headlines: Vec<Headline>,
 }
 
 impl CaseResults {
@@ -83,6 +85,11 @@ impl Suite {
     pub fn diverged(&self) -> usize {
         let records = self.cases.iter().flat_map(|case| case.runs.simulations());
         records.filter(|record| matches!(record.status, Status::Diverged { .. })).count()
+    }
+
+    /// How all gates ended, and how many simulations diverged.
+    pub fn counts(&self) -> Counts {
+        Counts { diverged: self.diverged(), ..Counts::of(self.judged().map(Judged::status)) }
     }
 
     /// Gates that passed.
@@ -139,8 +146,9 @@ pub fn judge(plans: Vec<(&'static dyn Case, Vec<Planned>)>, tier: Tier, mut made
         let mut studies = case.studies(tier, &runs);
         studies.extend(studies::of(case.name(), &declared, &runs));
         let card = studies::card(case.name(), &declared, &studies, &runs);
+        let headlines = Headline::all(&declared, &runs);
         studies.extend(unplanned(case, &runs));
-        CaseResults { case, runs, studies, card }
+        CaseResults { case, runs, studies, card, headlines }
     };
     suite.cases = of_plans.into_par_iter().map(study).collect();
     suite

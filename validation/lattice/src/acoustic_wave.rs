@@ -13,6 +13,7 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = wave::case::<Acoustic>();
 impl Kind for Acoustic {
     const CASE: &'static WaveCase = &WaveCase {
         name: "acoustic_wave",
+        problem: "A small standing sound wave in a periodic box",
         about: "A standing sound wave of infinitesimal amplitude in a periodic box, p'' + nu lambda p' \
             + (c0 |g|)^2 p = 0. On a lattice the sums of the method are the symbols g(k) and \
             lambda(k), known exactly: whatever the kernel, a correct program has their frequency \

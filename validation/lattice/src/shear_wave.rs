@@ -13,6 +13,7 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = wave::case::<Shear>();
 impl Kind for Shear {
     const CASE: &'static WaveCase = &WaveCase {
         name: "shear_wave",
+        problem: "A small shear wave decays in a periodic box",
         about: "A shear wave of infinitesimal amplitude in a periodic box decays as exp(-nu lambda t), \
             lambda(k) the symbol of the viscous sum, known exactly on a lattice. Sound and pressure \
             stay exactly zero to first order.",

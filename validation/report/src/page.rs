@@ -73,7 +73,7 @@ impl Counts {
     }
 
     /// What came of all gates, failures first, and of the runs, in a sentence.
-    fn headline(self) -> String {
+    pub fn headline(self) -> String {
         let of = |count: usize, one: &str, many: &str| match count {
             0 => None,
             1 => Some(format!("1 {one}")),

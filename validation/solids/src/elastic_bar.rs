@@ -43,6 +43,7 @@ crate::solid_settings! {
 /// Elastic bars.
 pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
     name: BarSettings::NAME,
+    problem: "A pulse in an elastic bar; two bars collide",
     about: "Elastic bars along x, periodic in y, so that they strain along x only and every wave runs at c_p \
             = ((K + 4 mu/3)/rho)^(1/2). A pulse runs through one bar; or two equal bars at speeds V and -V \
             meet: the contact bears rho c_p V (the jump conditions at finite V) for 2 L/c_p, and then both \

@@ -48,6 +48,7 @@ base::settings! {
 /// Waves of rubber.
 pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
     name: NAME,
+    problem: "A small wave in rubber; a block that rotates",
     about: "A wave of rubber (shear modulus 0.22 K) of infinitesimal amplitude along a stress-free lattice \
             of 16 particles: its frequency is known exactly from the gradient symbol of the kernel, once the \
             time step is divided out. In place of a wave: a block under a little stress that begins to \

@@ -41,6 +41,7 @@ crate::solid_settings! {
 /// An oscillating plate.
 pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
     name: PlateSettings::NAME,
+    problem: "An elastic cantilever swings",
     about: "An elastic plate, held at one end by particles that continue it and stand still, starts flat \
             with the velocity of its first mode (Landau & Lifshitz; Gray, Monaghan & Swift 2001). Its period \
             against that of a thin plate, 0.254 s.",

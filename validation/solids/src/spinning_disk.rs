@@ -39,6 +39,7 @@ crate::solid_settings! {
 /// A spinning disk.
 pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     name: DiskSettings::NAME,
+    problem: "A free elastic disk spins",
     about: "A free elastic disk spins, at the start without stress. Angular momentum stays, and the stress \
             stays of the order rho U^2 of the speed U of the rim: what else appears is rotation that the \
             method mistook for strain.",

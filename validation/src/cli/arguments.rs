@@ -208,6 +208,9 @@ pub struct Verify {
     pub reuse: Reuse,
     #[command(flatten)]
     pub export: Export,
+    /// Print every gate, before the line that each case has
+    #[arg(long, conflicts_with = "json")]
+    pub all: bool,
     /// Print the verdicts as JSON on standard output
     #[arg(long)]
     pub json: bool,
@@ -231,6 +234,9 @@ pub struct Judge {
     pub any_build: bool,
     #[command(flatten)]
     pub export: Export,
+    /// Print every gate, before the line that each case has
+    #[arg(long, conflicts_with = "json")]
+    pub all: bool,
     /// Print the verdicts as JSON on standard output
     #[arg(long)]
     pub json: bool,

@@ -1,19 +1,24 @@
 //! `explain`: what a gate checks and why.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::Path;
 
 use ::report;
-use base::gate::{Evidence, Gate, Purpose, Verdict};
+use base::gate::{Cause, Evidence, Gate, Purpose, Verdict};
 use base::record;
 use base::settings::by_similarity;
-use harness::case::{Tier, changed};
+use base::spec::RunSpec;
+use harness::case::{Case, Tier, changed};
 use harness::plan;
+use harness::runs;
+use harness::store::Store;
+use harness::suite::{self, Of};
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
     judged::{Judged, Verdicts, tier_name},
-    output,
+    output, verify,
 };
 
 /// A gate, what it is judged on, and what came of it last.
@@ -26,17 +31,22 @@ struct Known {
 }
 
 pub fn explain(arguments: &arguments::Explain, world: &World) -> Outcome {
-    let path = arguments.reports.join("verdicts.json");
-    let text = fs::read_to_string(&path).unwrap_or_default();
-    let verdicts: Option<Verdicts> = serde_json::from_str(&text).ok(); // of another version: none
     let asked = arguments.gate.as_deref().unwrap_or_default();
+    let verdicts = last_verdicts(&arguments.reports, asked, world)?;
     if let Some(status) = arguments.status {
         let Some(verdicts) = verdicts else {
-            let words =
-                format!("{} holds no verdicts; touchstone report writes them", path.display());
+            let words = format!(
+                "{} holds no verdicts; touchstone verify or touchstone report makes them",
+                arguments.reports.display()
+            );
             return Err(Failure::usage(anyhow::anyhow!(words)));
         };
-        output::print(&listed(&verdicts, status, asked))?;
+        let begins = |judged: &&Judged| judged.gate.id.starts_with(asked);
+        let of_name: Vec<&Judged> = verdicts.judged().filter(begins).collect();
+        if of_name.is_empty() {
+            return Err(unknown(asked, &all(world, Some(&verdicts))));
+        }
+        output::print(&listed(of_name, status))?;
         return Ok(Exit::Pass);
     }
     let gates = all(world, verdicts.as_ref());
@@ -58,16 +68,67 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Outcome {
     }
 }
 
+/// The verdicts of the last report or, without one, those on the records that `verify` keeps: of the cases
+/// whose gates may begin with `asked`, if all runs of the quick tier are there.
+fn last_verdicts(
+    reports: &Path,
+    asked: &str,
+    world: &World,
+) -> Result<Option<Verdicts>, Failure> {
+    let text = fs::read_to_string(reports.join("verdicts.json")).unwrap_or_default();
+    if let Ok(verdicts) = serde_json::from_str(&text) {
+        return Ok(Some(verdicts)); // of another version: none
+    }
+    let store = Store::to_read(&reports.join("records"));
+    let mut all: Option<Verdicts> = None;
+    for case in world.cases {
+        let name = case.name();
+        if !(name.starts_with(asked) || asked.starts_with(name)) {
+            continue;
+        }
+        let plans = suite::plans(&[*case], Tier::Quick);
+        let (made, lacking) = verify::stored(&plans, &store, false, world);
+        if lacking == [0, 0] {
+            let of_case = Verdicts::of(&suite::judge(plans, Tier::Quick, made));
+            match &mut all {
+                None => all = Some(of_case),
+                Some(all) => {
+                    all.runs.extend(of_case.runs);
+                    all.studies.extend(of_case.studies);
+                }
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// A judgement, with all that is known of its gate.
+pub fn in_full(case: &dyn Case, of: Of, judged: &runs::Judged) -> String {
+    let (on, status) = match of {
+        Of::Run(run) => (command(case, &run.planned.spec), Some(run.record.status.clone())),
+        Of::Study(study) => (of_study(&study.title, case.name()), None),
+    };
+    let gate = judged.gate.clone();
+    words(&Known { gate, tiers: Vec::new(), on, last: Some(judged.into()), status })
+}
+
+/// The command that makes a run.
+fn command(case: &dyn Case, spec: &RunSpec) -> String {
+    let set: String = changed(case, spec).iter().map(|set| format!(" --set {set}")).collect();
+    format!("touchstone run {} --variant {}{set}", case.name(), spec.variant)
+}
+
+fn of_study(title: &str, case: &str) -> String {
+    format!("the study \"{title}\" of {case}")
+}
+
 /// Gates of the plans; then those on many runs, which only a report names.
 fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     let mut gates: Vec<Known> = Vec::new();
     for case in world.cases {
         for tier in [Tier::Quick, Tier::Full] {
             for planned in plan::of_case(*case, tier) {
-                let spec = &planned.spec;
-                let set: String =
-                    changed(*case, spec).iter().map(|set| format!(" --set {set}")).collect();
-                let on = format!("touchstone run {} --variant {}{set}", case.name(), spec.variant);
+                let on = command(*case, &planned.spec);
                 for gate in planned.gates {
                     match gates.iter_mut().find(|known| known.gate.id == gate.id) {
                         Some(known) => known.tiers.push(tier_name(tier)),
@@ -91,7 +152,7 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
         }
     }
     for study in verdicts.iter().flat_map(|verdicts| &verdicts.studies) {
-        let on = format!("the study \"{}\" of {}", study.title, study.case);
+        let on = of_study(&study.title, &study.case);
         gates.extend(study.judged.iter().map(|judged| Known {
             gate: judged.gate.clone(),
             tiers: Vec::new(),
@@ -103,18 +164,47 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     gates
 }
 
-/// The gates whose name begins with `asked` and that have this verdict, one per line.
-fn listed(verdicts: &Verdicts, status: arguments::Status, begins: &str) -> String {
-    let of_runs = verdicts.runs.iter().flat_map(|run| &run.judged);
-    let all = of_runs.chain(verdicts.studies.iter().flat_map(|study| &study.judged));
-    let chosen = all.filter(|judged| {
-        judged.gate.id.starts_with(begins) && is(&judged.judgement.verdict, status)
-    });
-    let row = |judged: &Judged| {
+/// Those of the gates that have this verdict, one per line; limitations by cause.
+fn listed(gates: Vec<&Judged>, status: arguments::Status) -> String {
+    let has = |judged: &&Judged| is(&judged.judgement.verdict, status);
+    let chosen: Vec<&Judged> = gates.into_iter().filter(has).collect();
+    if chosen.is_empty() {
+        return "no gate has this verdict\n".into();
+    }
+    if status == arguments::Status::Limitation { by_cause(&chosen) } else { table(&chosen) }
+}
+
+fn table(gates: &[&Judged]) -> String {
+    let row = |judged: &&Judged| {
         let value = judged.judgement.value.map_or("-".into(), |value| report::sig(value, 5));
         vec![judged.gate.id.clone(), value, judged.gate.bounds()]
     };
-    output::table(&["gate", "value", "bound"], &chosen.map(row).collect::<Vec<_>>())
+    output::table(&["gate", "value", "bound"], &gates.iter().map(row).collect::<Vec<_>>())
+}
+
+/// Each cause, that of most gates first, with what would remove it and its gates.
+fn by_cause(gates: &[&Judged]) -> String {
+    let mut causes: BTreeMap<Option<&Cause>, Vec<&Judged>> = BTreeMap::new();
+    for judged in gates {
+        if let Purpose::Limitation(known) = &judged.gate.purpose {
+            causes.entry(known.cause.as_ref()).or_default().push(judged);
+        }
+    }
+    let mut causes: Vec<_> = causes.into_iter().collect();
+    causes.sort_by_key(|(_, gates)| std::cmp::Reverse(gates.len()));
+    let mut text = String::new();
+    for (cause, gates) in causes {
+        let words = match cause {
+            Some(Cause { what, mend, since }) => {
+                format!("{what} What would remove it: {mend} Known since {since}.")
+            }
+            None => "Gates with a cause of their own, which `touchstone explain GATE` states:".into(),
+        };
+        text += &output::wrap(&words, 100, "");
+        text += &table(&gates).lines().map(|line| format!("    {line}\n")).collect::<String>();
+        text.push('\n');
+    }
+    text + "`touchstone explain GATE` gives the reason of each bound and a command that shows it.\n"
 }
 
 fn is(verdict: &Verdict, status: arguments::Status) -> bool {

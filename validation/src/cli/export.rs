@@ -7,7 +7,7 @@ use base::{
 };
 use harness::suite::Suite;
 
-use super::{Failure, arguments, judged};
+use super::{Failure, arguments};
 
 /// Writes the files that were asked for; if the first one cannot be written, the other one is all the same.
 pub fn write(suite: &Suite, export: &arguments::Export) -> Result<(), Failure> {
@@ -74,7 +74,7 @@ fn escaped(text: &str) -> String {
 
 /// Counts, then a table of every gate that did not simply pass.
 fn markdown(suite: &Suite) -> String {
-    let mut text = format!("# Verdicts\n\n{}\n\n", judged::in_words(suite));
+    let mut text = format!("# Verdicts\n\n{}\n\n", suite.counts().headline());
     text += "| verdict | gate | value | bound |\n|---|---|---|---|\n";
     let mut rows: Vec<_> =
         suite.judged().filter(|j| j.judgement.verdict != Verdict::Pass).collect();

@@ -14,10 +14,10 @@ use serde::{Deserialize, Serialize};
 
 use super::output;
 
-/// Judgements as a table: what fails comes last, next to the prompt. Reasons of limitations are notes.
+/// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
 pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
     let mut judged: Vec<&runs::Judged> = all.into_iter().collect();
-    judged.sort_by_key(|j| j.judgement.verdict.is_failure());
+    judged.sort_by_key(|judged| judged.status());
     let mut notes = Notes::default();
     let mut word = |verdict: &'a Verdict| {
         let Verdict::Limitation(reason) = verdict else { return verdict.to_string() };
@@ -116,6 +116,12 @@ pub fn tier_name(tier: Tier) -> &'static str {
 }
 
 impl Verdicts {
+    /// Every judgement.
+    pub fn judged(&self) -> impl Iterator<Item = &Judged> {
+        let of_runs = self.runs.iter().flat_map(|run| &run.judged);
+        of_runs.chain(self.studies.iter().flat_map(|study| &study.judged))
+    }
+
     /// The verdicts of a suite.
     pub fn of(suite: &Suite) -> Self {
         let judged = |all: &[runs::Judged]| all.iter().map(Judged::from).collect::<Vec<_>>();
@@ -163,16 +169,4 @@ fn counts(suite: &Suite) -> BTreeMap<String, usize> {
         *counts.entry(name.to_string()).or_default() += 1;
     }
     counts
-}
-
-/// `12 pass, 1 fail; 3 runs diverged`.
-pub fn in_words(suite: &Suite) -> String {
-    let counts: Vec<String> =
-        counts(suite).iter().map(|(name, count)| format!("{count} {name}")).collect();
-    let gates = if counts.is_empty() { "no gate was judged".into() } else { counts.join(", ") };
-    match suite.diverged() {
-        0 => gates,
-        1 => gates + "; 1 run diverged",
-        n => format!("{gates}; {n} runs diverged"),
-    }
 }

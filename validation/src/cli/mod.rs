@@ -30,6 +30,7 @@ mod report;
 mod run;
 mod specs;
 mod stability;
+mod summary;
 #[cfg(test)]
 mod tests;
 mod verify;

@@ -9,8 +9,10 @@ use validation::page;
 
 use super::{
     Failure, Outcome, World, arguments, export,
-    judged::{self, Verdicts},
-    output, verify,
+    judged::Verdicts,
+    output,
+    summary::summary,
+    verify,
 };
 
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
@@ -42,20 +44,14 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let failures: Vec<Failure> =
         [exported, written.map(drop), page_written].into_iter().filter_map(Result::err).collect();
     if !failures.is_empty() {
-        output::say(&judged::table(suite.judged()));
-        output::say(&judged::in_words(&suite));
+        output::print(&summary(&suite))?;
         let reasons: Vec<String> =
             failures.iter().map(|failure| failure.reason.to_string()).collect();
         return Err(Failure::usage(anyhow::anyhow!(reasons.join("\n"))));
     }
     let took = report::seconds(start.elapsed().as_secs_f64());
-    let records: usize = suite.cases.iter().map(|results| results.runs.all().len()).sum();
-    output::say(&format!(
-        "{}{}\nreport: {} from {records} records, in {took}",
-        judged::in_words(&suite),
-        verify::reused(&suite),
-        path.display()
-    ));
+    output::print(&format!("{}\n{}\n", suite.counts().headline(), path.display()))?;
+    output::say(&format!("the page shows {} in {took}", verify::runs(&suite)));
     match sound {
         Ok(_) => Ok(verify::exit(&suite)),
         Err(reason) => Err(Failure::bug(anyhow::anyhow!(

@@ -38,7 +38,10 @@ impl Case for Staged {
         self.name
     }
 
-    fn about(&self) -> &'static str {
+    fn problem(&self) -> &'static str {
+            "Nothing moves"
+        }
+        fn about(&self) -> &'static str {
         "Nothing moves."
     }
 
@@ -259,7 +262,7 @@ fn records_are_reused_judged_rendered_and_compared() {
     assert_eq!(good(&format!("touchstone judge --store OUT/a/records {export}")), Exit::Pass);
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
     assert!(read("junit.xml").contains("<testcase classname=\"right\" name=\"staged.error\">"));
-    assert!(read("verdicts.md").starts_with("# Verdicts\n\n2 pass"));
+    assert!(read("verdicts.md").starts_with("# Verdicts\n\n2 gates pass"));
     assert_eq!(good("touchstone report --store OUT/a/records --out OUT/b"), Exit::Pass);
     assert_eq!(good("touchstone compare OUT/a OUT/b"), Exit::Pass);
     assert_eq!(on(&SOUND, "touchstone report --out OUT/c"), Exit::GateFailed);

@@ -3,9 +3,8 @@
 use std::time::Instant;
 
 use ::report;
-use base::record::Status;
 use harness::{
-    case::{self, Case, Tier},
+    case::{Case, Planned, Tier},
     make::{self, Made},
     store::{Found, Store},
     suite::{self, Suite},
@@ -15,6 +14,7 @@ use super::{
     Exit, Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
     output,
+    summary::summary,
 };
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
@@ -23,7 +23,8 @@ pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
     let store = Store::open(&arguments.store)?;
     let (tier, reuse) = (arguments.tier.into(), arguments.reuse);
     let suite = run(&cases, tier, &store, reuse, arguments.threads, world)?;
-    show(&suite, arguments.json, &arguments.export, start)
+    let &arguments::Verify { json, all, .. } = arguments;
+    show(&suite, (json, all), &arguments.export, start)
 }
 
 pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
@@ -31,36 +32,41 @@ pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
     let start = Instant::now();
     let suite =
         of_store(&cases, arguments.tier.into(), &arguments.store, arguments.any_build, world)?;
-    show(&suite, arguments.json, &arguments.export, start)
+    let &arguments::Judge { json, all, .. } = arguments;
+    show(&suite, (json, all), &arguments.export, start)
 }
 
-fn show(suite: &Suite, json: bool, export: &arguments::Export, start: Instant) -> Outcome {
+/// The results on standard output; how they came about on standard error.
+fn show(
+    suite: &Suite,
+    (json, all): (bool, bool),
+    export: &arguments::Export,
+    start: Instant,
+) -> Outcome {
     let exported = export::write(suite, export);
-    let printed = match json {
-        true => output::print_whole(&(serde_json::to_string_pretty(&Verdicts::of(suite))? + "\n")),
-        false => Ok(()),
+    let text = match (json, all) {
+        (true, _) => serde_json::to_string_pretty(&Verdicts::of(suite))? + "\n",
+        (false, true) => judged::table(suite.judged()) + "\n" + &summary(suite),
+        (false, false) => summary(suite),
     };
-    if !json || printed.is_err() {
-        output::say(&judged::table(suite.judged()));
-    }
+    let printed = if json { output::print_whole(&text) } else { output::print(&text) };
     let took = report::seconds(start.elapsed().as_secs_f64());
-    output::say(&format!("{}{}, in {took}", judged::in_words(suite), reused(suite)));
-    output::say(&reasons(suite));
+    output::say(&format!("{} in {took}", runs(suite)));
     exported?;
     printed?;
     Ok(exit(suite))
 }
 
-/// `; 12 of 206 runs were in the store`, if any were.
-pub fn reused(suite: &Suite) -> String {
+/// `206 runs, 12 of them from the store`.
+pub fn runs(suite: &Suite) -> String {
     let all: usize = suite.cases.iter().map(|results| results.runs.all().len()).sum();
     let other = match suite.of_other_sources {
         0 => String::new(),
-        count => format!(", {count} of them made by a build of other sources"),
+        count => format!(", {count} of these made by a build of other sources"),
     };
     match suite.reused {
-        0 => String::new(),
-        count => format!("; {count} of {all} runs were in the store{other}"),
+        0 => format!("{all} runs"),
+        count => format!("{all} runs, {count} of them from the store{other},"),
     }
 }
 
@@ -115,6 +121,25 @@ pub fn of_store(
     }
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);
+    let (made, [missing, other]) = stored(&plans, &store, any_build, world);
+    if missing + other > 0 {
+        let all = made.reused + missing + other;
+        output::say(&format!(
+            "note: of {all} runs of the {} tier the store lacks {missing}, and {other} were made by a build \
+             of other sources (--any-build accepts them); the gates of both fail",
+            judged::tier_name(tier)
+        ));
+    }
+    Ok(suite::judge(plans, tier, made))
+}
+
+/// The records of plans that a store has, and how many runs it lacks or has of other sources alone.
+pub fn stored(
+    plans: &[(&'static dyn Case, Vec<Planned>)],
+    store: &Store,
+    any_build: bool,
+    world: &World,
+) -> (Made, [usize; 2]) {
     let (mut made, mut missing, mut other) = (Made::default(), 0, 0);
     for spec in plans.iter().flat_map(|(_, plan)| plan).map(|planned| &planned.spec) {
         let record = match store.find(spec, &(world.sources)(&spec.case)) {
@@ -135,32 +160,5 @@ pub fn of_store(
         made.reused += 1;
         made.records.insert(spec.key(), *record);
     }
-    if missing + other > 0 {
-        let all = made.reused + missing + other;
-        output::say(&format!(
-            "note: of {all} runs of the {} tier the store lacks {missing}, and {other} were made by a build \
-             of other sources (--any-build accepts them); the gates of both fail",
-            judged::tier_name(tier)
-        ));
-    }
-    Ok(suite::judge(plans, tier, made))
-}
-
-/// Why each failed gate has its bound, and which runs diverged.
-fn reasons(suite: &Suite) -> String {
-    let mut text = String::new();
-    for judged in suite.judged().filter(|j| j.judgement.verdict.is_failure()) {
-        text += &format!("{} fails; its bound: {}\n", judged.gate.id, judged.gate.because);
-    }
-    for results in &suite.cases {
-        for run in results.runs.all().iter().filter(|run| !run.judged.is_empty()) {
-            let status = &run.record.status;
-            if matches!(status, Status::Diverged { .. }) {
-                let (name, variant) = (results.case.name(), &run.planned.spec.variant);
-                let set = case::changed(results.case, &run.planned.spec).join(" ");
-                text += &format!("{name} {variant} {set}: {status}\n");
-            }
-        }
-    }
-    text
+    (made, [missing, other])
 }

@@ -265,6 +265,7 @@ fn finish(drop: &Drop, simulation: &dyn Stepper<()>, context: &Context, record: 
 /// The drop.
 pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     name: NAME,
+    problem: "A free drop is strained into an ellipse",
     about: "A free drop in two dimensions, at first a circle, pulled into an ellipse by the uniform strain \
             that it starts with; its semi-axes follow an ordinary differential equation exactly. No wall and \
             no gravity, or gravity in which it falls freely, which must change nothing.",

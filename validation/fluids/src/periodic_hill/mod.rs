@@ -134,6 +134,7 @@ const BEST: &str = "carried";
 
 static CASE: Composed<HillSettings> = Composed {
     name: NAME,
+    problem: "Flow over a row of hills, with separation",
     about: "A channel with hills on its floor, one every nine heights, and a flat lid. A body force drives a \
             given flux through it. From Re 50 on the flow leaves the wall behind the crest and comes back \
             to it in the trough, or on the next hill: steady, laminar, with curved walls that are convex at \

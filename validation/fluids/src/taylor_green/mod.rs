@@ -104,6 +104,7 @@ const NAME: &str = "taylor_green";
 
 static CASE: Composed<VortexSettings> = Composed {
     name: NAME,
+    problem: "Periodic vortices decay by viscosity",
     about: "A periodic array of vortices decays by viscosity without changing its shape: an exact solution \
             of the incompressible equations. Particles go round with the flow and are stretched at its \
             stagnation points, so that whatever order the start had is soon lost: the test of what a method \

@@ -23,7 +23,8 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     let judged: Vec<&Judged> = of_runs.chain(studies.iter().flat_map(|s| &s.judged)).collect();
     let mut facts = vec![("Error:".to_string(), error(card))];
     for (name, spec) in ["Best, ", "Paper's, "].into_iter().zip(&card.runs) {
-        facts.push((format!("{name}`{}`:", spec.variant), result(card, spec, runs)));
+        let found = runs.record(spec).map(|record| Headline::of(card, record));
+        facts.push((format!("{name}`{}`:", spec.variant), result(found)));
     }
     let stable = stable(declared, &card.runs, runs);
     facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
@@ -45,13 +46,63 @@ fn error(card: &declare::Card) -> String {
 }
 
 /// The error of a run and what it cost.
-fn result(card: &declare::Card, spec: &RunSpec, runs: &Runs) -> String {
-    let Some(record) = runs.record(spec) else { return "not run".into() };
-    let Some(value) = record.value(card.metric.clone()) else { return record.status.to_string() };
-    let cost = &record.cost;
-    let time = cost.alone_median().unwrap_or(cost.cpu_s);
-    let pairs = sci(cost.pair_interactions as f64, 2);
-    format!("**{}** in {} on one core, {pairs} pairs", percent(value, 2), seconds(time))
+fn result(found: Option<Headline>) -> String {
+    let Some(found) = found else { return "not run".into() };
+    match found.error() {
+        Ok(error) => format!("**{error}** in {}", found.cost()),
+        Err(status) => status,
+    }
+}
+
+/// The headline error of a run, and what it cost.
+#[derive(Clone, Debug)]
+pub struct Headline {
+    /// Name of the variant.
+    pub variant: String,
+    /// The error, if it was measured.
+    pub value: Option<f64>,
+    /// How the run ended.
+    pub status: Status,
+    /// Processor time for stepping \[s\], with the machine for itself if the run was timed so.
+    pub seconds: f64,
+    /// Pair interactions.
+    pub pairs: f64,
+}
+
+impl Headline {
+    /// Of a record of the case that declares the card.
+    pub fn of(card: &declare::Card, record: &Record) -> Self {
+        let cost = &record.cost;
+        Self {
+            variant: record.variant.clone(),
+            value: record.value(card.metric.clone()),
+            status: record.status.clone(),
+            seconds: cost.alone_median().unwrap_or(cost.cpu_s),
+            pairs: cost.pair_interactions as f64,
+        }
+    }
+
+    /// The best run of a case and that of the paper's variant, as far as they were made.
+    pub fn all(declared: &Declaration, runs: &Runs) -> Vec<Self> {
+        let of_card = |card: &declare::Card| -> Vec<Self> {
+            let records = runs.records(card.runs.iter().cloned());
+            records.into_iter().map(|record| Self::of(card, record)).collect()
+        };
+        declared.card.as_ref().map(of_card).unwrap_or_default()
+    }
+
+    /// The error in per cent, or how the run ended.
+    ///
+    /// # Errors
+    /// If the error was not measured.
+    pub fn error(&self) -> Result<String, String> {
+        self.value.map(|value| percent(value, 2)).ok_or_else(|| self.status.to_string())
+    }
+
+    /// The cost in words.
+    pub fn cost(&self) -> String {
+        format!("{} on one core, {} pairs", seconds(self.seconds), sci(self.pairs, 2))
+    }
 }
 
 /// The largest stable time steps over their theoretical limits.

@@ -9,7 +9,7 @@ mod map;
 mod order;
 mod sensitivity;
 
-pub use card::card;
+pub use card::{Headline, card};
 pub use limit::of_theory as limit_of_theory;
 
 use crate::{declare::Declaration, runs::Runs, study::Study};

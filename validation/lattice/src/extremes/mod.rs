@@ -62,6 +62,7 @@ base::settings! {
 /// Settings far outside of the usual.
 pub static EXTREMES: Composed<ExtremeSettings> = Composed {
     name: "extremes",
+    problem: "Extreme settings and scenes: does the program stay sound?",
     about: "What breaks a naive program: a lattice at rest for very long, particles on top of each other or \
             far from all others, a block at a thousand times the speed of sound, scenes that are none, \
             vortices with sound too slow and too fast and on disturbed lattices, smoothing lengths from too \

@@ -78,6 +78,7 @@ pub const WAVE_ANGLE: MetricKey =
 /// A lattice at rest.
 pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     name: "resting_box",
+    problem: "Small noise at rest: is the time step stable?",
     about: "A periodic lattice at rest with velocity noise of 1e-8 c0: every wave of the box at once, too \
             small to be anything but linear. Whether its energy grows says whether the time step is \
             stable, and linear theory of the same box says where the limit is.",

@@ -88,6 +88,8 @@ pub enum Polarisation {
 pub struct WaveCase {
     /// Name on the command line.
     pub name: &'static str,
+    /// The problem in at most ten words.
+    pub problem: &'static str,
     /// The problem in words.
     pub about: &'static str,
     /// Which wave.
@@ -207,6 +209,7 @@ pub fn plain<K: Kernel, I: Stepping>() -> Method {
 pub const fn case<P: Kind>() -> Composed<WaveSettings> {
     Composed {
         name: P::CASE.name,
+        problem: P::CASE.problem,
         about: P::CASE.about,
         variants: variants::<P>,
         is_stable: composed::completed,

@@ -128,6 +128,7 @@ fn variants() -> Vec<Composition<RingSettings>> {
 /// Colliding rubber rings.
 pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     name: NAME,
+    problem: "Two rubber rings collide and bounce",
     about: "Two rubber rings, inner radius 3, outer radius 4, fly at each other at 0.059 of the bulk sound \
             speed each, touch, flatten, and part. Plane strain, shear modulus 0.22 K. By symmetry it is one \
             ring against a frictionless plane, which finite elements have computed independently. Momentum \

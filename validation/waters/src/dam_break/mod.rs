@@ -190,6 +190,7 @@ fn modern_ablations(all: All) -> All {
 /// Collapsing columns.
 pub static DAM_BREAK: Composed<DamSettings> = Composed {
     name: NAME,
+    problem: "A column of water collapses on a dry floor",
     about: "A column of water, held by a wall on its left, is released at once and collapses on a dry floor \
             (Martin & Moyce 1952: twice as high as wide, on an endless floor; Lobovsky et al. 2014: 600 mm \
             by 300 mm in a tank of 1610 mm, whose far wall it strikes). Front, residual height, levels, \

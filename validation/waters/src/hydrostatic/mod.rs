@@ -141,6 +141,7 @@ const NAME: &str = "hydrostatic";
 /// Water at rest in an open tank.
 pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
     name: NAME,
+    problem: "Water at rest in an open tank",
     about: "Water at rest in an open tank, compressed by its own weight by g H/c0^2. The exact solution is \
             rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing moves. After \
             20 acoustic periods 4 H/c0: the pressure, the level, the kinetic energy that should be 0, the \

@@ -1,0 +1,84 @@
+//! What a suite comes to, as a person reads it in one screen: a line a case, then what needs attention.
+
+use ::report;
+use harness::{
+    runs::Judged,
+    suite::{CaseResults, Suite},
+};
+use report::{Counts, Status};
+
+use super::{explain, output};
+
+/// Failures that are told in full; of more the names are.
+const IN_FULL: usize = 5;
+
+/// A line a case; then the failures in full, the number of limitations, and all counts in a sentence.
+pub fn summary(suite: &Suite) -> String {
+    let heads =
+        ["case", "fail", "limited", "control", "pass", "error", "by", "cost", "worst gate", "left"];
+    let rows: Vec<Vec<String>> = suite.cases.iter().map(row).collect();
+    let mut text = output::table(&heads, &rows);
+    text += &failures(suite);
+    let counts = suite.counts();
+    if counts.limitation > 0 {
+        text += &format!(
+            "\n{} outside their bounds for known reasons; `touchstone explain --status limitation` lists them \
+             by cause.\n",
+            gates(counts.limitation)
+        );
+    }
+    text + &format!("\n{}\n", counts.headline())
+}
+
+fn gates(count: usize) -> String {
+    if count == 1 { "1 gate is".into() } else { format!("{count} gates are") }
+}
+
+/// How the gates of a case ended, the error of its best variant with the cost, and the gate that is the
+/// closest to failing, with the unused share of its bound.
+fn row(results: &CaseResults) -> Vec<String> {
+    let counts = Counts::of(results.judged().map(|(_, judged)| judged.status()));
+    let mut row = vec![results.case.name().to_string()];
+    let by_verdict = [counts.fail, counts.limitation, counts.expected_failure, counts.pass];
+    row.extend(by_verdict.map(|count| count.to_string()));
+    row.extend(match results.headlines.first() {
+        Some(best) => [
+            best.error().unwrap_or_else(|_| "none".into()),
+            best.variant.clone(),
+            report::seconds(best.seconds),
+        ],
+        None => Default::default(),
+    });
+    let worst = worst(results.judged().map(|(_, judged)| judged));
+    row.push(worst.map_or(String::new(), |judged| judged.gate.id.clone()));
+    let margin = worst.and_then(|judged| judged.judgement.margin);
+    row.push(margin.map_or(String::new(), |margin| report::percent(margin, 2)));
+    row
+}
+
+/// The judgement of the worst verdict and, among equals, of the least margin.
+pub fn worst<'a>(all: impl Iterator<Item = &'a Judged>) -> Option<&'a Judged> {
+    let margin = |judged: &Judged| judged.judgement.margin.unwrap_or(f64::INFINITY);
+    all.min_by(|a, b| {
+        b.status().cmp(&a.status()).then_with(|| margin(a).total_cmp(&margin(b)))
+    })
+}
+
+fn failures(suite: &Suite) -> String {
+    let of_case = |results| {
+        let judged = CaseResults::judged(results).filter(|(_, j)| j.status() == Status::Fail);
+        judged.map(move |(of, judged)| (results.case, of, judged))
+    };
+    let all: Vec<_> = suite.cases.iter().flat_map(of_case).collect();
+    let mut text: String = all
+        .iter()
+        .take(IN_FULL)
+        .map(|(case, of, judged)| format!("\n{}", explain::in_full(*case, *of, judged)))
+        .collect();
+    let more: Vec<&str> = all.iter().skip(IN_FULL).map(|(_, _, j)| j.gate.id.as_str()).collect();
+    if !more.is_empty() {
+        let words = format!("{} more gates fail: {}", more.len(), more.join(", "));
+        text += &format!("\n{}", output::wrap(&words, 100, ""));
+    }
+    text
+}
