@@ -7,15 +7,19 @@ use harness::case;
 
 /// Measures how wrong a particle method (SPH) is, what smaller errors cost, and when it breaks.
 #[derive(Debug, Parser)]
-#[command(name = "touchstone", version, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "touchstone", version, arg_required_else_help = true, after_help = AFTER_HELP)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 pass, 1 a gate failed, 2 invalid command or setting, or a \
-                          file cannot be written, 3 the simulation diverged, 4 a bug in touchstone, \
-                          130 interrupted.";
+const AFTER_HELP: &str = "\
+Start with:
+  touchstone run couette       one run: its errors, its cost, and what to try next
+  touchstone verify couette    the runs of one case, judged against bounds with reasons
+
+Exit codes: 0 pass, 1 a gate failed, 2 invalid command or setting, or a file cannot be written, 3 the simulation \
+diverged, 4 a bug in touchstone, 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -41,6 +45,8 @@ pub enum Command {
     Doctor(Doctor),
     /// Print a completion script for a shell
     Completions(Completions),
+    /// Print the manual page, or write the pages of all commands into a folder
+    Man(Man),
 }
 
 #[derive(Debug, Args)]
@@ -60,7 +66,7 @@ fn threads() -> clap::builder::RangedI64ValueParser<u16> {
 }
 
 /// The options of `run` that apply to a single run and are refused with `--specs`.
-const OF_ONE_RUN: [&str; 11] = [
+const OF_ONE_RUN: [&str; 12] = [
     "case",
     "variant",
     "set",
@@ -69,6 +75,7 @@ const OF_ONE_RUN: [&str; 11] = [
     "overwrite",
     "vtk",
     "json",
+    "all",
     "allow_unstable",
     "checkpoint_every",
     "resume",
@@ -106,6 +113,9 @@ pub struct Run {
     /// Print only the record, as JSON, on standard output
     #[arg(long)]
     pub json: bool,
+    /// Print every gate, not only those that did not pass
+    #[arg(long, conflicts_with = "json")]
+    pub all: bool,
     /// Number of threads inside the run, 1 to 1024, used from 10,000 particles on; with --specs, number
     /// of runs made in parallel. The default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
@@ -329,4 +339,10 @@ pub struct Doctor {
 pub struct Completions {
     /// The shell
     pub shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct Man {
+    /// Folder for the pages, such as `~/.local/share/man/man1`; without it the page of the program is printed
+    pub dir: Option<PathBuf>,
 }

@@ -33,7 +33,9 @@ pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
         };
         output::print(&format!("{what:<11} {mark} {words}\n"))?;
         if world.is_interrupted() {
-            return Err(Failure::interrupted("the checks are not complete"));
+            return Err(Failure::interrupted(
+                "the checks are not complete; the same command begins again",
+            ));
         }
     }
     if !is_sound {
@@ -136,7 +138,9 @@ fn bench(world: &World) -> Result<(), Failure> {
             }
             row.extend([speed.rate, speed.list_rate].map(|rate| report::sig(rate / 1e6, 3)));
             if world.is_interrupted() {
-                return Err(Failure::interrupted("the measurements are not complete"));
+                return Err(Failure::interrupted(
+                    "the measurements are not complete; the same command begins again",
+                ));
             }
         }
         rows.push(row);

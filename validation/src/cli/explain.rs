@@ -70,11 +70,7 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Outcome {
 
 /// The verdicts of the last report or, without one, those on the records that `verify` keeps: of the cases
 /// whose gates may begin with `asked`, if all runs of the quick tier are there.
-fn last_verdicts(
-    reports: &Path,
-    asked: &str,
-    world: &World,
-) -> Result<Option<Verdicts>, Failure> {
+fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Verdicts>, Failure> {
     let text = fs::read_to_string(reports.join("verdicts.json")).unwrap_or_default();
     if let Ok(verdicts) = serde_json::from_str(&text) {
         return Ok(Some(verdicts)); // of another version: none
@@ -198,7 +194,9 @@ fn by_cause(gates: &[&Judged]) -> String {
             Some(Cause { what, mend, since }) => {
                 format!("{what} What would remove it: {mend} Known since {since}.")
             }
-            None => "Gates with a cause of their own, which `touchstone explain GATE` states:".into(),
+            None => {
+                "Gates with a cause of their own, which `touchstone explain GATE` states:".into()
+            }
         };
         text += &output::wrap(&words, 100, "");
         text += &table(&gates).lines().map(|line| format!("    {line}\n")).collect::<String>();

@@ -1,6 +1,6 @@
 //! `list`: cases, variants and settings.
 
-use harness::case::Case;
+use harness::case::{Case, Tier};
 use serde_json::{Value, json};
 use validation::cases;
 
@@ -36,24 +36,63 @@ fn pretty(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
+/// A line a case: the problem, and the variants for it.
 fn overview(world: &World) -> String {
-    let mut text = String::new();
-    for case in world.cases {
-        let names: Vec<_> = case.variants().iter().map(|variant| variant.name).collect();
-        text += &format!("{}\n", case.name());
-        text += &output::wrap(case.about(), 100, "    ");
-        text += &output::wrap(&format!("variants: {}", names.join(", ")), 100, "    ");
+    let row = |case: &&dyn Case| {
+        let shown = Shown::of(*case);
+        let name = |variant: &Option<String>| variant.clone().unwrap_or_default();
+        vec![
+            case.name().to_string(),
+            case.problem().to_string(),
+            shown.default.to_string(),
+            name(&shown.best),
+            name(&shown.papers),
+        ]
+    };
+    let rows: Vec<Vec<String>> = world.cases.iter().map(row).collect();
+    let heads = ["case", "problem", "variant that runs", "best", "the paper's"];
+    output::table(&heads, &rows)
+        + "\nThe best variant is the one that the report shows first, for its error and cost. `touchstone list \
+           CASE`\nshows all variants and settings of a case, `touchstone run CASE` runs it.\n"
+}
+
+/// The variants of a case that have a name of their own.
+struct Shown {
+    /// Runs unless another one is named.
+    default: &'static str,
+    /// The first of the card of the case, if it has one.
+    best: Option<String>,
+    /// The second of it.
+    papers: Option<String>,
+}
+
+impl Shown {
+    fn of(case: &dyn Case) -> Self {
+        let card = case.declaration(Tier::Quick).card;
+        let mut runs = card.into_iter().flat_map(|card| card.runs).map(|spec| spec.variant);
+        Self { default: default_variant(case), best: runs.next(), papers: runs.next() }
     }
-    text + "\ntouchstone list CASE shows variants and settings, touchstone run CASE runs one\n"
+
+    /// What a variant is, in words.
+    fn marks(&self, variant: &str) -> String {
+        let is = |of: &Option<String>| of.as_deref() == Some(variant);
+        let marks = [
+            (self.default == variant, "runs by default"),
+            (is(&self.best), "best"),
+            (is(&self.papers), "the paper's"),
+        ];
+        let words: Vec<&str> = marks.into_iter().filter(|(is, _)| *is).map(|(_, w)| w).collect();
+        if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
+    }
 }
 
 fn details(case: &dyn Case) -> String {
     let mut text = format!("{}\n{}\n", case.name(), output::wrap(case.about(), 100, "    "));
-    let default = default_variant(case);
-    text += "variants (* by default)\n";
+    let shown = Shown::of(case);
+    text += "variants\n";
     for variant in case.variants() {
-        let mark = if variant.name == default { "*" } else { " " };
-        text += &format!("{mark} {:<18} {}\n", variant.name, variant.about);
+        let marks = shown.marks(variant.name);
+        text += &format!("  {:<18} {}{marks}\n", variant.name, variant.about);
         let differs = differences(case, variant.name).join(" ");
         if !differs.is_empty() {
             text += &output::wrap(&differs, 100, &" ".repeat(21));
@@ -104,8 +143,10 @@ fn json(case: &dyn Case) -> Value {
             })
         })
         .collect();
+    let Shown { default, best, papers } = Shown::of(case);
     json!({
-        "name": case.name(), "about": case.about(), "default_variant": default_variant(case),
+        "name": case.name(), "problem": case.problem(), "about": case.about(),
+        "default_variant": default, "best_variant": best, "papers_variant": papers,
         "variants": variants, "settings": settings,
     })
 }

@@ -9,8 +9,7 @@
 //! | 4 | a bug in touchstone |
 //! | 130 | interrupted; files may have been written, and each is complete |
 //!
-//! Results go to standard output (`list`, `plan`, `explain`, `compare`, `doctor`, and everything with
-//! `--json`); messages and all other tables go to standard error.
+//! Results go to standard output; progress, estimates and messages go to standard error.
 
 mod arguments;
 mod checkpoint;
@@ -23,6 +22,8 @@ mod export;
 mod interrupt;
 mod judged;
 mod list;
+mod man;
+mod outcome;
 mod output;
 mod plan;
 mod progress;
@@ -303,6 +304,7 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
         Command::Explain(arguments) => explain::explain(arguments, world),
         Command::Doctor(arguments) => doctor::doctor(arguments, world),
         Command::Completions(arguments) => completions(arguments),
+        Command::Man(arguments) => man::man(arguments),
     }
 }
 

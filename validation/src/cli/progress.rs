@@ -18,8 +18,6 @@ pub struct Bar {
 
 /// Between two looks.
 const EVERY: Duration = Duration::from_millis(100);
-/// Part of the work that must be done before it is said how long the rest will take.
-const FIRST_ESTIMATE: f64 = 0.1;
 /// Parts that the work is divided into.
 const PARTS: u64 = 1000;
 
@@ -63,13 +61,12 @@ impl Bar {
 
     /// Shows how far the runs of a plan are.
     pub fn show_runs(&self, done: Done) {
-        let Done { runs, all, share, last } = done;
+        let Done { runs, all, share, left, last } = done;
         let mut words = format!("{runs} of {all} runs");
         if runs > 0 {
             words += &format!(", last {last}");
         }
-        if share >= FIRST_ESTIMATE {
-            let left = self.start.elapsed().as_secs_f64() * (1.0 - share).max(0.0) / share;
+        if let Some(left) = left {
             words += &format!(", {} left", report::seconds(left));
         }
         self.bar.set_position((share * PARTS as f64) as u64);

@@ -8,11 +8,7 @@ use harness::store::Store;
 use validation::page;
 
 use super::{
-    Failure, Outcome, World, arguments, export,
-    judged::Verdicts,
-    output,
-    summary::summary,
-    verify,
+    Failure, Outcome, World, arguments, export, judged::Verdicts, output, summary::summary, verify,
 };
 
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, Once, PoisonError};
 use std::time::Duration;
 
-use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
+use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series, Status as Verdict};
 use base::{
     files::{Cell, CsvTable, FileError, OutputFolder},
     record::{Profile, Record, Status},
@@ -28,7 +28,9 @@ use super::{
     checkpoint::{self, CHECKPOINT},
     judged,
     list::default_variant,
-    on_threads, output,
+    on_threads,
+    outcome::outcome,
+    output,
     progress::Bar,
     specs,
 };
@@ -100,7 +102,9 @@ fn carry_out(
         folder.iter().for_each(Folder::remove_if_new_and_empty);
         let kept = if vtk.is_some() { "; frames so far are whole" } else { "" };
         let checkpoint = folder.as_ref().filter(|folder| folder.has_checkpoint());
-        let goes_on = checkpoint.map_or(String::new(), |folder| {
+        let again = "; the same command begins again, and with --out DIR --checkpoint-every SECONDS an \
+                     interrupted run can go on";
+        let goes_on = checkpoint.map_or(again.to_string(), |folder| {
             format!("; touchstone run --resume {} goes on with it", folder.output.path().display())
         });
         let what =
@@ -114,13 +118,17 @@ fn carry_out(
         .collect();
     // What was computed is not lost with a file that cannot be written: then the record is printed, and where
     // that is refused, too, its numbers are told.
-    let is_printed = arguments.json || written.is_err();
-    let printed = if is_printed { output::print_whole(&record.to_json()?) } else { Ok(()) };
-    if !arguments.json || printed.is_err() {
-        output::say(&summary(&record));
-        if !verdicts.is_empty() {
-            output::say(&format!("\n{}", judged::table(&verdicts)));
-        }
+    let shown: Vec<&Judged> =
+        verdicts.iter().filter(|j| arguments.all || j.status() != Verdict::Pass).collect();
+    let table = if shown.is_empty() { String::new() } else { judged::table(shown) + "\n" };
+    let end = outcome(case, &spec, &record, &verdicts);
+    let text = format!("{}\n{table}{end}", summary(&record));
+    let printed = match arguments.json || written.is_err() {
+        true => output::print_whole(&record.to_json()?),
+        false => output::print(&text),
+    };
+    if printed.is_err() || (written.is_err() && !arguments.json) {
+        output::say(&text);
     }
     let exit = conclude(&record, &verdicts);
     if let (Some(folder), Some(names)) = (&folder, written?) {

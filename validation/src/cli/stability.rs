@@ -39,7 +39,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     let mut made =
         world.make(&jobs, arguments.tier.into(), None, false, false, arguments.threads)?;
     if made.interrupted {
-        return Err(Failure::interrupted("no limit was determined"));
+        return Err(Failure::interrupted("no limit was determined; the same command begins again"));
     }
     let found = jobs.into_iter().filter_map(|job| {
         let record = made.records.remove(&job.planned.spec.key())?;
@@ -50,7 +50,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         let all = declared.iter().map(|declared| json(declared, &runs)).collect();
         output::print_whole(&format!("{:#}\n", Value::Array(all)))?;
     } else {
-        output::say(&table(&declared, &runs));
+        output::print(&(table(&declared, &runs) + "\n"))?;
     }
     Ok(Exit::Pass)
 }

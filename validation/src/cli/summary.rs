@@ -59,9 +59,7 @@ fn row(results: &CaseResults) -> Vec<String> {
 /// The judgement of the worst verdict and, among equals, of the least margin.
 pub fn worst<'a>(all: impl Iterator<Item = &'a Judged>) -> Option<&'a Judged> {
     let margin = |judged: &Judged| judged.judgement.margin.unwrap_or(f64::INFINITY);
-    all.min_by(|a, b| {
-        b.status().cmp(&a.status()).then_with(|| margin(a).total_cmp(&margin(b)))
-    })
+    all.min_by(|a, b| b.status().cmp(&a.status()).then_with(|| margin(a).total_cmp(&margin(b))))
 }
 
 fn failures(suite: &Suite) -> String {

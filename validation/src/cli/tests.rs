@@ -39,9 +39,9 @@ impl Case for Staged {
     }
 
     fn problem(&self) -> &'static str {
-            "Nothing moves"
-        }
-        fn about(&self) -> &'static str {
+        "Nothing moves"
+    }
+    fn about(&self) -> &'static str {
         "Nothing moves."
     }
 

@@ -72,10 +72,15 @@ pub struct Headline {
 impl Headline {
     /// Of a record of the case that declares the card.
     pub fn of(card: &declare::Card, record: &Record) -> Self {
+        Self::new(record, record.value(card.metric.clone()))
+    }
+
+    /// Of a record whose error is this.
+    pub fn new(record: &Record, value: Option<f64>) -> Self {
         let cost = &record.cost;
         Self {
             variant: record.variant.clone(),
-            value: record.value(card.metric.clone()),
+            value,
             status: record.status.clone(),
             seconds: cost.alone_median().unwrap_or(cost.cpu_s),
             pairs: cost.pair_interactions as f64,

@@ -1,0 +1,36 @@
+//! `man`: pages for the manual.
+
+use base::files::OutputFolder;
+use clap::CommandFactory;
+use clap_mangen::Man;
+
+use super::{
+    Exit, Failure, Outcome,
+    arguments::{self, Arguments},
+    output,
+};
+
+/// Prints the page of the program, or writes it and those of all commands into a folder.
+pub fn man(arguments: &arguments::Man) -> Outcome {
+    let mut program = Arguments::command();
+    program.build(); // gives each command its full name
+    let Some(path) = &arguments.dir else {
+        output::print(&String::from_utf8_lossy(&page(&Man::new(program))?))?;
+        return Ok(Exit::Pass);
+    };
+    let folder = OutputFolder::create(path)?;
+    let commands = program.get_subcommands().filter(|command| command.get_name() != "help");
+    let pages: Vec<Man> =
+        std::iter::once(&program).chain(commands).cloned().map(Man::new).collect();
+    for man in &pages {
+        folder.write(&man.get_filename(), &page(man)?)?;
+    }
+    output::say(&format!("{} pages in {}", pages.len(), path.display()));
+    Ok(Exit::Pass)
+}
+
+fn page(man: &Man) -> Result<Vec<u8>, Failure> {
+    let mut text = Vec::new();
+    man.render(&mut text).map_err(Failure::bug)?;
+    Ok(text)
+}

@@ -1,0 +1,120 @@
+//! How `run` ends, for a person who reads ten seconds: the headline error, its bound, its cost, and a command to
+//! go on with.
+
+use ::report;
+use base::{
+    gate::Verdict,
+    record::{Record, Status},
+    spec::RunSpec,
+};
+use harness::{
+    case::{self, Case, Tier},
+    declare::Declaration,
+    runs::Judged,
+    studies::Headline,
+};
+use report::Counts;
+
+use super::{output, summary};
+
+/// The lines after the tables of a run.
+pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Judged]) -> String {
+    let declared = case.declaration(Tier::Quick);
+    let (error, metric) = error(&declared, record, verdicts);
+    let lines = [
+        ("error", error),
+        ("bound", bound(verdicts, &metric)),
+        ("gates", gates(verdicts)),
+        ("cost", Headline::new(record, None).cost()),
+        ("next", next(case, &declared, spec, record, verdicts)),
+    ];
+    let line = |(head, words): &(&str, String)| {
+        format!("{head:<7}{}", output::wrap(words, 100, "       ").trim_start())
+    };
+    lines.iter().filter(|(_, words)| !words.is_empty()).map(line).collect()
+}
+
+/// The error that the card of the case shows, if the run has it, and otherwise the first number that is judged;
+/// and the name of its metric.
+fn error(declared: &Declaration, record: &Record, verdicts: &[Judged]) -> (String, String) {
+    if let Some(card) = &declared.card
+        && let Ok(error) = Headline::of(card, record).error()
+    {
+        let words = format!("{error}, {}, against {}", card.error, card.against);
+        return (words, card.metric.name().to_string());
+    }
+    let first = verdicts.iter().find(|judged| judged.judgement.value.is_some());
+    let found = first.and_then(|judged| record.metrics.get_key_value(&judged.gate.metric));
+    found.map_or_else(Default::default, |(name, metric)| {
+        let value = report::sig(metric.value, 4);
+        (format!("{name} = {value} [{}], {}", metric.unit, metric.formula), name.clone())
+    })
+}
+
+/// The bound of that metric, with the verdict.
+fn bound(verdicts: &[Judged], metric: &str) -> String {
+    let of_metric = verdicts.iter().filter(|judged| judged.gate.metric == metric);
+    let Some(Judged { gate, judgement }) = summary::worst(of_metric) else {
+        return "none: no plan has a gate on this number for this variant with these settings"
+            .into();
+    };
+    let margin = judgement.margin.map(|m| format!(", {} of it left", report::percent(m, 2)));
+    let verdict = match &judgement.verdict {
+        Verdict::Limitation(_) => "known limitation".to_string(),
+        other => other.to_string(),
+    };
+    format!("{}: {verdict}{} ({})", gate.bounds(), margin.unwrap_or_default(), gate.id)
+}
+
+fn gates(verdicts: &[Judged]) -> String {
+    match verdicts.is_empty() {
+        true => String::new(),
+        false => Counts::of(verdicts.iter().map(Judged::status)).headline(),
+    }
+}
+
+/// The command to try next.
+fn next(
+    case: &dyn Case,
+    declared: &Declaration,
+    spec: &RunSpec,
+    record: &Record,
+    verdicts: &[Judged],
+) -> String {
+    let name = case.name();
+    let worst = summary::worst(verdicts.iter()).filter(|judged| {
+        matches!(judged.judgement.verdict, Verdict::Fail | Verdict::Limitation(_))
+    });
+    match (worst, &record.status) {
+        (Some(judged), _) => format!("touchstone explain {}", judged.gate.id),
+        (None, Status::Diverged { .. }) if declared.limits.is_some() => {
+            format!("touchstone stability {name}")
+        }
+        (None, Status::Diverged { .. }) => format!("touchstone list {name}"),
+        (None, _) if verdicts.is_empty() => {
+            format!("touchstone verify {name} (makes and judges the runs that have gates)")
+        }
+        (None, _) => finer(case, declared, spec).unwrap_or_default(),
+    }
+}
+
+/// The run with half the spacing: by the setting in which the levels of a ladder differ.
+fn finer(case: &dyn Case, declared: &Declaration, spec: &RunSpec) -> Option<String> {
+    let ladders = declared.accuracy.iter().flat_map(|accuracy| &accuracy.ladders);
+    let ladder = ladders.into_iter().find(|ladder| ladder.levels.len() > 1)?;
+    let [coarse, fine] =
+        [ladder.levels.first()?, ladder.levels.last()?].map(|level| &level.run.spec.settings);
+    let names = case.fields().iter().map(|field| field.name);
+    let (name, is_count) = names.into_iter().find_map(|name| {
+        let [coarse, fine] = [coarse, fine].map(|settings| settings[name].as_f64());
+        (coarse? != fine?).then_some((name, coarse < fine))
+    })?;
+    let now = spec.settings[name].as_f64()?;
+    let half_the_spacing = if is_count { 2.0 * now } else { 0.5 * now };
+    let mut set = case::changed(case, spec);
+    set.retain(|assignment| assignment.split('=').next() != Some(name));
+    set.push(format!("{name}={half_the_spacing}"));
+    case::spec(case, &spec.variant, &set).ok()?;
+    let set: String = set.iter().map(|assignment| format!(" --set {assignment}")).collect();
+    Some(format!("touchstone run {} --variant {}{set}", case.name(), spec.variant))
+}
