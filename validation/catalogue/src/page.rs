@@ -1,7 +1,7 @@
 //! The report: from a judged suite to one page.
 
 use base::{
-    gate::{Evidence, Verdict},
+    gate::{Evidence, Purpose, Verdict},
     manifest::{Known, Manifest},
     record::Record,
     reference::{Reference, ReferenceError},
@@ -140,8 +140,11 @@ fn verdicts(suite: &Suite) -> Section {
 fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Notes<'a>) -> GateRow {
     let Judged { gate, judgement } = judged;
     let mut reasons = vec![notes.number(&gate.because)];
-    if let Verdict::Limitation(reason) = &judgement.verdict {
-        reasons.push(notes.number(reason));
+    if let (Verdict::Limitation(_), Purpose::Limitation(known)) =
+        (&judgement.verdict, &gate.purpose)
+    {
+        let cause = known.cause.as_ref().map(|cause| &*cause.what);
+        reasons.extend(cause.into_iter().chain([&*known.reason]).map(|text| notes.number(text)));
     }
     let of = match of {
         Of::Run(run) => {

@@ -4,7 +4,7 @@
 //! records of these runs into studies.
 
 use base::{
-    gate::{Bound, Evidence, Gate},
+    gate::{Bound, Cause, Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
     record::{MetricName, Record, Status},
     spec::{Bisect, RunSpec},
@@ -344,13 +344,22 @@ pub struct Sensitivity {
 pub struct Watched {
     /// The constant.
     pub constant: Constant,
-    /// Where the gates do not detect the largest error that is allowed: the error that they do detect, 1 for
-    /// none up to 30 %, and the reason.
-    pub blind: Option<(f64, &'static str)>,
+    /// Where the gates do not detect the largest error that is allowed: what they do detect, and why.
+    pub blind: Option<Blind>,
     /// Is the allowed error tried in the quick tier too?
     pub is_quick: bool,
     /// Factors of gross faults, such as -1 for a wrong sign and 0 for a term that is missing.
     pub faults: Vec<f64>,
+}
+
+/// How blind the gates are to errors of a constant.
+pub struct Blind {
+    /// The relative error that they do detect, 1 for none up to 30 % \[-\].
+    pub up_to: f64,
+    /// The reason for this constant.
+    pub why: &'static str,
+    /// The cause that it shares with other constants.
+    pub cause: &'static Cause,
 }
 
 impl Watched {
@@ -369,9 +378,15 @@ impl Watched {
         Self { faults: factors.to_vec(), ..self }
     }
 
-    /// A constant to which the gates are blind up to an error, 1 if they are up to 30 %, for a reason.
-    pub fn blind_up_to(constant: Constant, detected: f64, why: &'static str) -> Self {
-        Self { blind: Some((detected, why)), ..Self::new(constant) }
+    /// A constant to which the gates are blind up to an error, 1 if they are up to 30 %, for a reason and by
+    /// a cause of [`crate::studies::causes`].
+    pub fn blind_up_to(
+        constant: Constant,
+        up_to: f64,
+        why: &'static str,
+        cause: &'static Cause,
+    ) -> Self {
+        Self { blind: Some(Blind { up_to, why, cause }), ..Self::new(constant) }
     }
 }
 

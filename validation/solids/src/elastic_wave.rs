@@ -152,12 +152,14 @@ impl WaveSettings {
     /// The gate on a run with this kernel.
     pub fn gate(&self, kernel: &str) -> Gate {
         let (kind, because) = if self.rotation {
-            let because = "the Jaumann rate turns the stress with the body, by the factor of gradients on a \
-                           lattice; one step of 1e-5 leaves 1e-10, and round-off of the strain 1e-7";
+            let because = "The Jaumann rate rotates the stress with the body, times the factor of gradients \
+                           on a lattice. One step of 1e-5 rad leaves an error of 1e-10, and round-off of the \
+                           strain 1e-7.";
             ("turning", because)
         } else {
-            let because = "the gradient symbol is exact on a stress-free lattice; at amplitude 1e-6 what is \
-                           not linear is of order 1e-12, and the fit over 400 steps leaves 1e-9 or less";
+            let because = "The gradient symbol of the kernel is exact on a stress-free lattice. At an \
+                           amplitude of 1e-6, what is not linear is of order 1e-12, and the fit over 400 \
+                           steps leaves 1e-9 or less.";
             (if self.transverse { "transverse" } else { "longitudinal" }, because)
         };
         let id = format!("elastic_waves.{kernel}.h{}.{kind}", self.h_over_dx);

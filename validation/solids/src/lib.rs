@@ -1,5 +1,6 @@
 //! Elastic solids.
 
+mod causes;
 pub mod elastic_bar;
 pub mod elastic_wave;
 pub mod oscillating_plate;

@@ -4,7 +4,10 @@ use nalgebra::Vector2;
 use solver::{Flow, Observer, Particle, Role, Stepper, Symmetric};
 use std::f64::consts::TAU;
 
-use super::solid::{self, Clamp, Energy, Material, Problem, SharedSettings, Watch, faces};
+use super::{
+    causes::{FREE_FACES, NO_VISCOSITY, STRESS_ADDS_ENERGY, VISCOSITY},
+    solid::{self, Clamp, Energy, Material, Problem, SharedSettings, Watch, faces},
+};
 use base::functions::{cos, cosh, sin, sinh};
 use base::{
     gate::{Bound, Evidence},
@@ -215,27 +218,25 @@ impl Tip {
 }
 
 /// Why the coarse plates swing too slowly.
-const FACES: &str = "velocity gradients are not corrected, so that (11) sees less strain than there is in \
-    particles within 2 h = 3 dx of a face, where bending strains most; with 5 or 10 particles through the \
-    thickness these are all or more than half of them. The error falls as h/H does: the same gate holds \
-    with 20. The sums over the layers that there are say 30 % with 5 and 15 % with 10; the bound is that and \
-    the 7 % of published plates";
+const FACES: &str = "Bending strains a plate most near its faces, and with 5 or 10 particles through the \
+    thickness all or more than half of them are within 2 h = 3 dx of a face. The bound: sums over the layers \
+    that there are lengthen the period by 30 % with 5 layers and by 15 % with 10, and published plates of \
+    many layers by another 7 %. The error falls as h/H does: with 20 layers the same gate holds.";
 
 /// Why the plate without stabilisation does.
-const BARE: &str = "the same at faces, and more the finer the plate is, 35 % and 42 % with 5 and 10 \
-    particles: without viscosity and artificial stress, motion at the scale of the spacing takes up the \
-    energy. Why it grows with n is not known; the bound is the 7 points of a doubling more";
+const BARE: &str = "The period is 35 % too long with 5 particles through the thickness and 42 % with 10, of \
+    which free faces explain 30 and 15 %. Why the error grows with the number of particles is not known. The \
+    bound: 42 %, and once more the 7 points that a doubling of the particles added.";
 
 /// Why coarse plates end with less energy than they began with.
-const LOSES: &str = "artificial viscosity takes energy, the more the coarser the plate is: 8.2 % with 5 \
-    particles through the thickness and 2.4 % with 10. The bound: 8.5 % with 4 (--set n=4)";
+const LOSES: &str = "The plate loses 8.2 % of its energy with 5 particles through the thickness and 2.4 % \
+    with 10. The bound: 8.5 % with 4 particles (--set n=4).";
 
 /// Why the finest plate ends with more energy than it began with.
-const GAINS: &str = "artificial stress gives energy to particles in tension, in proportion to the stress, \
-    and viscosity takes it in proportion to the spacing: at 20 particles through the thickness the former \
-    wins. It cannot be left out: with xi = 0 this plate loses 58 % of its energy and has no period. The \
-    bound: it takes at most xi = 0.3 from the pull in the half that is in tension, so the strain energy by \
-    the stress is there at most 1/0.7 of the work that was done";
+const GAINS: &str = "With 20 particles through the thickness, artificial stress adds more energy than \
+    viscosity takes. Without it (xi = 0) this plate loses 58 % of its energy and has no period. The bound: \
+    artificial stress takes at most the share xi = 0.3 of the tension in the stretched half, so the strain \
+    energy of that half is at most 1/0.7 of the work that was done.";
 
 /// A plate of so many particles through its thickness.
 fn swing_spec(variant: &str, n: usize) -> RunSpec {
@@ -250,15 +251,18 @@ fn swing(variant: &str, n: usize) -> Planned {
         PERIOD_EXCESS,
         Bound::Within(0.0, 0.15),
         Evidence::Reference,
-        "published SPH of this plate swings 7 to 12 % too slowly, thin-plate theory leaves out shear and \
-         rotary inertia, which at H/L = 0.1 make it some per cent slower; faster than theory is wrong",
+        "Published SPH of this plate has periods that are 7 to 12 % too long. Thin-plate theory leaves out \
+         shear and rotary inertia, which lengthen the period by some per cent where the thickness is 0.1 of \
+         the length. A period shorter than in theory is wrong.",
     );
     let period = match (variant, n) {
         (_, 20..) => period,
-        ("bare", 10..) => period.with_limitation(Bound::Within(0.0, 0.49), BARE),
+        ("bare", 10..) => {
+            period.with_limitation(Bound::Within(0.0, 0.49), BARE).because_of(&NO_VISCOSITY)
+        }
         _ => {
             let softer = faces::known_excess(n, PlateSettings::default().h_over_dx);
-            period.with_limitation(Bound::Within(0.0, softer), FACES)
+            period.with_limitation(Bound::Within(0.0, softer), FACES).because_of(&FREE_FACES)
         }
     };
     let amplitude = OSCILLATING_PLATE.gate(
@@ -266,21 +270,23 @@ fn swing(variant: &str, n: usize) -> Planned {
         AMPLITUDE_RATIO,
         Bound::Within(0.9, 1.02),
         Evidence::Theory,
-        "a plate that starts at v swings to v T/(2 pi), no farther but for the 2 % by which thin-plate \
-         theory has another first mode, and less far by what the first quarter of a period takes of the \
-         energy: a fifth of it is a tenth of the amplitude",
+        "A plate whose tip starts at the speed v swings to v T/(2 pi), T being its period. It may swing 2 % \
+         farther, by which the first mode of thin-plate theory differs, and 10 % less far, which is a loss \
+         of a fifth of the energy in the first quarter of a period.",
     );
     let energy = OSCILLATING_PLATE.gate(
         &id,
         ENERGY_CHANGE,
         Bound::Within(-0.01, 0.01),
         Evidence::Invariant,
-        "nothing drives the plate and nothing in an elastic body dissipates: its energy stays",
+        "nothing drives the plate and nothing in an elastic body dissipates, so its energy stays",
     );
     let energy = match (variant, n) {
         ("bare", _) => energy,
-        (_, 20..) => energy.with_limitation(Bound::Within(-0.01, 0.5 * 0.3 / 0.7), GAINS),
-        _ => energy.with_limitation(Bound::Within(-0.086, 0.01), LOSES),
+        (_, 20..) => energy
+            .with_limitation(Bound::Within(-0.01, 0.5 * 0.3 / 0.7), GAINS)
+            .because_of(&STRESS_ADDS_ENERGY),
+        _ => energy.with_limitation(Bound::Within(-0.086, 0.01), LOSES).because_of(&VISCOSITY),
     };
     Planned::new(swing_spec(variant, n)).judged(vec![period, amplitude, energy])
 }
@@ -350,7 +356,7 @@ fn study(tier: Tier, runs: &Runs) -> Study {
                   particles in tension without a store of its own, so that (kinetic + strain) energy rises \
                   with the deflection; the run with xi = 0 in the full tier shows the difference.";
     Study::new("oscillating-plate-period", "Period against resolution")
-        .prose(format!("Why it is too long: {FACES}."))
+        .prose(format!("Why it is too long: {} {FACES}", FREE_FACES.what))
         .prose(stress)
         .prose(incompressible(tier, runs))
         .block(table)
@@ -403,8 +409,8 @@ fn extremes(runs: &Runs) -> Study {
     )
     .because(
         Evidence::Theory,
-        "dt follows 1/c_p, that is sqrt((1 + nu)(1 - 2 nu)/(1 - nu)); the tip's 0.01 c0 beside c_p leaves \
-         0.3 %",
+        "the time step follows 1/c_p, that is sqrt((1 + nu)(1 - 2 nu)/(1 - nu)) at the Poisson ratio nu, and \
+         the speed of the tip, 0.01 c0, changes it by 0.3 %",
     );
     // NaN of a run that failed must not pass.
     let step = |nu: f64| {

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 use solver::{Flow, Observer, Open, Particle, Stepper, Symmetric};
 use std::f64::consts::TAU;
 
+use super::causes::FREE_FACES;
 use super::solid::{
     self, Energy, Material, Problem, SharedSettings, Watch, angular_momentum, norm_squared,
 };
@@ -255,25 +256,27 @@ fn metrics(series: &[[f64; 5]], revolutions: f64, scale: f64, record: &mut Recor
 }
 
 /// Why drift is what it is; measured beside it: `rim_strain`, and no dependence on dt.
-const RIM: &str = "the velocity gradient in (11) is a sum over neighbours that is not corrected: of a \
-    rotation with spin W it makes W e M with M = sum V r grad W, which is a number times the unit matrix \
-    inside and is not in the rim, 2 h wide, where neighbours are missing. There a rotation is taken for \
-    shear, in axes that turn with the body, so the stress grows from the first step on, and its forces, \
-    which are not central, brake the disk. It is of space and not of time; \
-    the drift falls with finer spacing, but slower than the share of the rim";
+const RIM: &str = "The velocity gradient in the rate of stress, equation (11), is a sum over neighbours that \
+    is not corrected. Of a rotation this sum makes no strain inside, and a strain in the rim, 2 h wide, \
+    where neighbours are missing. There the rotation is taken for shear in axes that turn with the body, so \
+    the stress grows from the first step on, and its forces, which are not central, brake the disk. The \
+    error does not depend on the time step. It falls with finer spacing, but more slowly than the share of \
+    the rim.";
 
 /// How fast a disk is braked at first.
-const BRAKED: &str = "The bound: falling at least as the width of the rim, dx/R, from what disks of 4 \
-    spacings lose in a tenth of a revolution (--set n=4 --set end=0.2), 1.9 % without viscosity and 13 % \
-    with it";
+const BRAKED: &str = "The stress in the rim brakes the disk from the first step on. The bound: disks of 4 \
+    spacings lose 1.9 % of their angular momentum in a tenth of a revolution without viscosity and 13 % with \
+    it (--set n=4 --set end=0.2), and the loss falls at least as fast as the width of the rim, dx/R.";
 
 /// How far the angular momentum can be from what it was.
-const REVERSED: &str = "The bound: L^2 is at most 2 I T, and the energy grows by 5 % at most, so that a disk \
-    that springs back has not lost more than 2.1 of what it had";
+const REVERSED: &str = "Within one revolution the disk is not only braked but can spring back. The bound: \
+    the square of the angular momentum is at most twice the moment of inertia times the energy, which grows \
+    by at most 5 %, so the change is at most 2.1 times the initial angular momentum.";
 
 /// How large the stress can become.
-const ALL_SHEAR: &str = "The bound: all of the kinetic energy, rho U^2/4 for each area, and 5 % more, as \
-    energy of shear S:S/(4 mu) at U = 0.05 c0";
+const ALL_SHEAR: &str = "The stress in the rim grows as long as there is kinetic energy to feed it. The \
+    bound: all of the kinetic energy, rho U^2/4 per area at the rim speed U = 0.05 c0, and 5 % more, stored \
+    as energy of shear, S:S/(4 mu), S being the deviatoric stress and mu the shear modulus.";
 
 /// One revolution of a disk of so many spacings.
 fn spin_spec(variant: &str, n: usize) -> RunSpec {
@@ -291,36 +294,41 @@ fn spin(variant: &str, n: usize) -> Planned {
         gate(
             MOMENTUM_ERROR,
             Bound::Below(1e-12),
-            "forces of pairs are equal and opposite, central or not: what is left is round-off of some \
-             thousand steps",
+            "forces of pairs are equal and opposite, central or not, so only the round-off of some thousand \
+             steps is left",
         ),
         gate(
             INTERIOR_STRAIN,
             Bound::Below(1e-10),
-            "on a lattice whose neighbours are all there M is a number times the unit matrix, so a \
-             rotation has no strain: round-off of a sum of 28 neighbours over the phase W dt of 1e-3",
+            "Where no neighbour on the lattice is missing, the sum over neighbours sees no strain in a \
+             rotation. What is left is the round-off of a sum over 28 neighbours, divided by the angle of \
+             one step, 1e-3 rad.",
         ),
         gate(
             ANGULAR_MOMENTUM_TENTH,
             Bound::Within(-0.001, 0.001),
-            "a free body keeps its angular momentum; 1 % a revolution is what two rings that collide and \
-             turn by a fraction of one would not notice",
+            "A free body keeps its angular momentum. A change of 1 % per revolution, or of 0.1 % in a tenth \
+             of it, would not be noticed in colliding rings, which turn by a fraction of a revolution.",
         )
-        .with_limitation(Bound::Within(-braked / n as f64, 0.001), format!("{RIM}. {BRAKED}")),
+        .with_limitation(Bound::Within(-braked / n as f64, 0.001), BRAKED)
+        .because_of(&FREE_FACES),
         gate(
             ANGULAR_MOMENTUM_DRIFT,
             Bound::Below(0.01),
-            "a free body keeps its angular momentum; 1 % a revolution is what two rings that collide and \
-             turn by a fraction of one would not notice",
+            "A free body keeps its angular momentum. A change of 1 % per revolution, or of 0.1 % in a tenth \
+             of it, would not be noticed in colliding rings, which turn by a fraction of a revolution.",
         )
-        .with_limitation(Bound::Below(2.1), format!("{RIM}. {REVERSED}")),
+        .with_limitation(Bound::Below(2.1), REVERSED)
+        .because_of(&FREE_FACES),
         gate(
             STRESS_DRIFT,
             Bound::Below(0.4),
-            "a spinning disk of plane strain has (mean S:S)^(1/2) of about 0.1 rho U^2 (nu/(1 - nu) = \
-             0.66), twice that while it swings about it, as after a start without stress; twice that again",
+            "A disk that spins steadily in plane strain has a root-mean-square deviatoric stress of about \
+             0.1 rho U^2, at a Poisson ratio nu with nu/(1 - nu) = 0.66. After a start without stress it \
+             swings up to twice that, and the bound allows twice that again.",
         )
-        .with_limitation(Bound::Below(9.6), format!("{RIM}. {ALL_SHEAR}")),
+        .with_limitation(Bound::Below(9.6), ALL_SHEAR)
+        .because_of(&FREE_FACES),
     ];
     Planned::new(spin_spec(variant, n)).judged(gates)
 }
@@ -389,11 +397,12 @@ fn study(tier: Tier, runs: &Runs) -> Study {
         "relative difference of angular_momentum_drift",
         Bound::Below(0.05),
         Evidence::Theory,
-        "the leapfrog is of second order, and the spin turns by 0.05 dt c0/R = 1e-3 to 1e-2 rad a step: \
-         what it makes of a rotation is of 1e-4; 5 % for the sound that the start without stress makes",
+        "The leapfrog is of second order, and the disk turns by 0.05 dt c0/R = 1e-3 to 1e-2 rad a step, so \
+         the time step changes the drift by about 1e-4. Allowed are 5 %, for the sound that the start \
+         without stress makes.",
     );
     Study::new("spinning-disk-drift", "Drift against spacing and time step")
-        .prose(format!("Why: {RIM}."))
+        .prose(format!("Why: {RIM}"))
         .block(table)
         .prose(
             "The gate is on the largest difference of the drift at Courant numbers 0.1, 0.4 and 0.8 in a \

@@ -274,7 +274,13 @@ fn purpose(purpose: &Purpose) -> String {
     match purpose {
         Purpose::Judge => "inside passes, outside fails".into(),
         Purpose::Limitation(known) => {
-            format!("known limitation, may lie outside, but {}: {}", known.bound, known.reason)
+            let cause = known.cause.as_ref().map_or("", |cause| &cause.what);
+            let reasons = format!("{cause} {}", known.reason);
+            format!(
+                "known limitation, may lie outside, but {}: {}",
+                known.bound,
+                reasons.trim_start()
+            )
         }
         Purpose::ExpectFailure => "a control, which must lie outside".into(),
     }

@@ -2,6 +2,7 @@
 
 mod budget;
 mod card;
+pub mod causes;
 mod cost;
 mod curves;
 mod limit;

@@ -11,7 +11,7 @@ use report::Cell;
 
 use crate::{
     columns::Columns,
-    declare::{Sensitivity, Watched},
+    declare::{Blind, Sensitivity, Watched},
     detect::{DETECTED, GATES, UNDETECTED},
     runs::Runs,
     study::Study,
@@ -83,7 +83,7 @@ pub fn study(sensitivity: &Sensitivity, runs: &Runs) -> Study {
         .num(["not detected", "-"], move |row| row.undetected.map_or(Cell::text("–"), percent))
         .text("gates that detect it", Row::gates)
         .text("gates that detect a gross fault", faults)
-        .text("why not smaller", |row| row.watched.blind.map_or("", |(_, why)| why))
+        .text("why not smaller", |row| row.watched.blind.as_ref().map_or("", |blind| blind.why))
         .table(ABOUT, &rows);
     study.block(table)
 }
@@ -127,8 +127,8 @@ fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> 
 /// The gate on the number of gates that detect a gross fault.
 fn fault_gate(sensitivity: &Sensitivity, of: Constant, factor: f64) -> Gate {
     let id = format!("{}.detects.{}_x_{factor}", sensitivity.case, of.name());
-    let because = "a wrong sign, a missing term, or a constant that is wrong by a factor is a fault of the \
-                   program";
+    let because = "a wrong sign, a missing term, and a constant that is wrong by a factor are faults of the \
+                   program, which some gate must detect";
     Gate::new(id, "gates that fail", Bound::Above(1.0), Evidence::Theory, because)
 }
 
@@ -136,13 +136,15 @@ fn fault_gate(sensitivity: &Sensitivity, of: Constant, factor: f64) -> Gate {
 fn gate(sensitivity: &Sensitivity, watched: &Watched) -> Gate {
     let id = format!("{}.detects.{}", sensitivity.case, watched.constant.name());
     let because = match watched.constant.is_physical() {
-        true => "a result whose physical constant is wrong by 3 % is wrong",
+        true => "a result with a physical constant that is wrong by 3 % is wrong",
         false => "an ingredient of the method that is wrong by 10 % is a fault of the program",
     };
     let bound = Bound::Below(watched.constant.allowed());
     let gate = Gate::new(id, DETECTED, bound, Evidence::Theory, because);
-    match watched.blind {
-        Some((error, why)) => gate.with_limitation(Bound::Below(error), why),
+    match &watched.blind {
+        Some(Blind { up_to, why, cause }) => {
+            gate.with_limitation(Bound::Below(*up_to), *why).because_of(cause)
+        }
         None => gate,
     }
 }
@@ -153,7 +155,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::planned::Tier;
+    use crate::{planned::Tier, studies::causes::NOT_MEASURED};
 
     /// A search that was not made counted as one that found nothing, which a limitation allows.
     #[test]
@@ -161,7 +163,7 @@ mod tests {
         let run = RunSpec::new("case", "seed", json!({}));
         let watched = [
             Watched::new(Constant::Height).faults(&[0.0]),
-            Watched::blind_up_to(Constant::Speed, 1.0, "nothing depends on it"),
+            Watched::blind_up_to(Constant::Speed, 1.0, "nothing depends on it", &NOT_MEASURED),
         ];
         let of = Sensitivity::new("case", Tier::Full, [run], watched);
         let study = study(&of, &Runs::new(Vec::new()));

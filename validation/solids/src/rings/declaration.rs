@@ -221,7 +221,7 @@ fn step_limit(variant: &'static str) -> StepLimit {
     let set = |s: &mut RingSettings| (s.spacing, s.end, s.samples) = (0.25, 100.0, 1);
     let spec = RUBBER_RINGS.spec(variant, set).keep_pictures(1);
     let rules = RUBBER_RINGS.rules(&spec).unwrap_or(Rules::REFUSED);
-    let because = "nothing drives the rings: at the default step their energy does not rise";
+    let because = "nothing drives the rings, so at the default step their energy does not rise";
     let id = format!("rubber_rings.{variant}.step_limit");
     let bound = Bound::Above(1.0);
     let gate = Gate::new(id, "stable dt/default dt", bound, Evidence::Invariant, because);

@@ -1,0 +1,39 @@
+//! Why gates do not detect an error of a constant, whatever the case.
+
+use base::gate::Cause;
+
+/// What is measured does not depend on the constant.
+pub static NOT_MEASURED: Cause = Cause::new(
+    "Some constants, such as the density of an incompressible flow, hardly affect what is measured, so no \
+     gate detects an error in them.",
+    "Gates on quantities that depend on these constants, such as stresses in pascals.",
+    "2026-11-23",
+);
+
+/// The effect of the error is inside the bounds.
+pub static WIDE_BOUNDS: Cause = Cause::new(
+    "Coarse spacing and uncertain references make some bounds wider than the effect of a small error in a \
+     constant.",
+    "Finer spacing in the runs that are judged, and references with a smaller uncertainty.",
+    "2026-11-23",
+);
+
+/// The constant is chosen with a margin.
+pub static SAFETY_MARGIN: Cause = Cause::new(
+    "Time step and neighbour lists have a safety margin, so an error of some ten per cent in them hardly \
+     changes a result.",
+    "A gate on the error of time integration alone, and one on neighbours that a list misses.",
+    "2026-11-23",
+);
+
+/// Why no gate detects an error of the time step.
+pub const STEP: &str =
+    "The time step contributes far less to the error than the spacing, as the error budget shows.";
+
+/// The term does its work with another strength too.
+pub static ENOUGH_OR_IDLE: Cause = Cause::new(
+    "Terms that keep particles evenly spread or together have little to do in some flows, and in others a \
+     weaker term suffices.",
+    "Gates on each term alone, in a scene made for it, such as the decay of a disturbed lattice.",
+    "2026-11-23",
+);

@@ -1,0 +1,66 @@
+//! Why elastic bodies lie outside of their bounds.
+
+use base::gate::Cause;
+
+/// Sums miss neighbours at free faces.
+pub static FREE_FACES: Cause = Cause::new(
+    "Velocity gradients are not corrected where neighbours are missing, so free faces of an elastic body are \
+     too soft and mistake rotation for strain.",
+    "Corrected gradients at free faces, or a total Lagrangian form of the equations.",
+    "2026-11-21",
+);
+
+/// Bodies act on each other before they touch.
+pub static SOFT_CONTACT: Cause = Cause::new(
+    "Bodies push each other as soon as their kernels overlap, so contact begins before they touch and yields \
+     like a spring.",
+    "A law of contact between the surfaces of bodies, or finer spacing.",
+    "2026-11-21",
+);
+
+/// Bodies that touch are one.
+pub static ONE_LATTICE: Cause = Cause::new(
+    "Two bodies whose particles stand on one lattice are one body to the equations, so their contact can \
+     pull as well as push.",
+    "A law of contact between bodies, which pushes and does not pull.",
+    "2026-11-21",
+);
+
+/// What artificial viscosity does beside damping shocks.
+pub static VISCOSITY: Cause = Cause::new(
+    "Artificial viscosity, which is proportional to the spacing, takes energy from motion and shifts and \
+     widens the front of a wave.",
+    "Viscosity that acts in shocks alone, a Riemann solver with reconstruction, or finer spacing.",
+    "2026-11-21",
+);
+
+/// What its absence does.
+pub static NO_VISCOSITY: Cause = Cause::new(
+    "Without artificial viscosity and artificial stress, motion at the scale of the particle spacing takes \
+     up energy and slows a plate.",
+    "Artificial viscosity and artificial stress, as the variant `plain` has them.",
+    "2026-11-21",
+);
+
+/// Artificial stress is not elastic.
+pub static STRESS_ADDS_ENERGY: Cause = Cause::new(
+    "Artificial stress weakens tension and stores no energy for it, so it adds energy to a body that bends.",
+    "A total Lagrangian form of the equations, which needs no artificial stress.",
+    "2026-11-21",
+);
+
+/// Artificial stress does not hold everything.
+pub static TEARING: Cause = Cause::new(
+    "Artificial stress delays the tensile instability without removing it, so rubber tears at high speeds or \
+     fine spacing, which real rubber would not.",
+    "A total Lagrangian form of the equations, which has no tensile instability.",
+    "2026-11-21",
+);
+
+/// Known in part alone.
+pub static SHARED_IMPULSE: Cause = Cause::new(
+    "Rings share the impulse between the two phases of contact differently from finite elements; artificial \
+     viscosity explains a part, and the rest is unexplained.",
+    "This is not known, because XSPH, softness in bending and softness of the contact do not explain it.",
+    "2026-11-21",
+);
