@@ -383,7 +383,7 @@ impl<X: Numbers> Term<X> for Carousel {
     type Derived = ();
     type Sum = ();
     fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2], _: &mut ()) {}
-    fn finish(&self, _: &Common<f64>, _: [(); 2], rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common<f64>, _: (), _: (), rate: &mut Rate<X>) {
         rate.velocity += Vector2::new(-rate.position.y, rate.position.x) * self.omega;
     }
 }

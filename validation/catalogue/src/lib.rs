@@ -7,5 +7,5 @@
 
 pub mod cases;
 mod limitations;
-mod margins;
+pub mod margins;
 pub mod page;

@@ -392,7 +392,7 @@ mod tests {
         assert_relative_eq!(p, 0.003, max_relative = 1e-9);
         assert_relative_eq!(along, 0.02, max_relative = 1e-9);
         assert_relative_eq!(across, -0.005, max_relative = 1e-9);
-        let [first, last] = projection.momentum.expect("a momentum");
+        let [first, last] = projection.momentum.expect("a momentum").map(Vector2::from);
         assert!((first - momentum).norm() < 1e-9 * momentum.norm() && first == last);
     }
 
