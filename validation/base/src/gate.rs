@@ -572,7 +572,7 @@ mod tests {
     #[test]
     fn a_limitation_has_a_bound_that_is_wider_than_the_gates() {
         let known = |bound: Bound, known: Bound| {
-            let known = Known { bound: known, reason: "it is soft".into() };
+            let known = Known { bound: known, reason: "it is soft".into(), cause: None };
             Gate { purpose: Purpose::Limitation(known), ..gate(bound) }.check()
         };
         let within = Bound::Within(-0.1, 0.1);
@@ -629,7 +629,7 @@ mod tests {
             refused(silent).to_string(),
             "gate case.metric does not say why its bound has this value"
         );
-        let known = Known { bound: Bound::Below(2.0), reason: String::new() };
+        let known = Known { bound: Bound::Below(2.0), reason: String::new(), cause: None };
         let causeless = Gate { purpose: Purpose::Limitation(known), ..sound.clone() };
         assert!(matches!(refused(causeless), GateError::NoReason { .. }));
         let nameless = Gate { metric: String::new(), ..sound.clone() };
