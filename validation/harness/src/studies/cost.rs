@@ -132,28 +132,15 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
 }
 
 fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
-    let resolution = points.first().map_or(String::new(), |point| {
-        format!("a number is the resolution ({} for {}), ", short(&point.label), point.label)
-    });
     let growth = work_growth(points);
     let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
-    let triangle = slope.and(accuracy.slope).map_or(String::new(), |order| {
-        format!(
-            ", and the triangle has the slope of order {order} for work that grows as the spacing to the \
-             power −{}",
-            sig(growth, 2)
-        )
-    });
     let failed = points.iter().any(|point| point.failure.is_some());
     let crosses = if failed { " Crosses above are runs that failed." } else { "" };
     let others = accuracy.peers.first().map_or(String::new(), |peer| {
-        format!(" Grey: other codes, as stored with the references ({}).", peer.timed)
+        format!(" Grey: other codes, stored with the references ({}).", peer.timed)
     });
     let caption = format!(
-        "{} {} against run time (left: processor seconds of the time stepping on one thread, median of the \
-         repetitions, bars from the fastest to the slowest) and against pair interactions (right): \
-         {resolution}the pale band joins the points that none beats in both error and cost{triangle}.\
-         {crosses}{others}",
+        "{} {} against run time on one core (left) and pair interactions (right).{crosses}{others}",
         first_sentence(&accuracy.about),
         name_of_error(&accuracy.label),
     );
