@@ -6,6 +6,7 @@
 // light and dark. With --full it also checks the limits of a whole report: height, words, bytes, printed pages.
 import { chromium } from "playwright-core";
 import axe from "axe-core";
+import { execFileSync } from "node:child_process";
 import { statSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -22,7 +23,8 @@ function check(what, holds, found = "") {
   console.log(`${holds ? "ok  " : "FAIL"} ${what}${found === "" ? "" : `: ${found}`}`);
 }
 
-const executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+const found = execFileSync("sh", ["-c", "command -v chromium"], { encoding: "utf8" }).trim();
+const executablePath = process.env.CHROMIUM ?? found;
 const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
 
 async function open(settings, hash = "") {

@@ -36,7 +36,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
         // Cargo puts this tag into what it builds into, wherever that is.
         let is_output = folder.ends_with("..") && ["target", "reports"].contains(&&*name)
             || path.join("CACHEDIR.TAG").exists();
-        if path.is_dir() && name != ".git" && !is_output {
+        if path.is_dir() && ![".git", "node_modules"].contains(&&*name) && !is_output {
             found.extend(files(&path));
         } else if path.is_file() && name != ".git" {
             found.push(path);

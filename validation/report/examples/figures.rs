@@ -5,8 +5,9 @@
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 
 use report::{
-    Axis, Block, CategoryMap, Cell, Colour, ColourMap, Column, Counts, Dash, Figure, Layer, Legend,
-    Page, ParticleMap, Plot, Section, Series, Shape, Status, Table, check_page,
+    Axis, Block, Card, CategoryMap, Cell, Colour, ColourMap, Column, Counts, Dash, Explorer,
+    Figure, Film, GateRow, Layer, Legend, Page, ParticleMap, Plot, Section, Series, Shape, Status,
+    Table, VERDICTS, check_page,
 };
 use std::error::Error;
 use std::path::PathBuf;
@@ -14,7 +15,7 @@ use std::path::PathBuf;
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map(PathBuf::from).ok_or("which folder?")?;
     std::fs::create_dir_all(&folder)?;
-    let page = page();
+    let page = page()?;
     page.write(&folder.join("index.html"))?;
     for section in &page.sections {
         for block in &section.blocks {
@@ -297,7 +298,48 @@ fn table() -> Table {
     )
 }
 
-fn page() -> Page {
+fn card() -> Card {
+    Card {
+        id: "curves".into(),
+        title: "Curves".into(),
+        picture: Some(small()),
+        facts: vec![("Error:".into(), "**1.2 %** in 3 s".into())],
+        counts: Counts::of([Status::Pass, Status::Limitation]),
+        limitations: vec!["It is made up.".into()],
+    }
+}
+
+/// Forty verdicts, each fifth outside of its bound.
+fn explorer() -> Explorer {
+    let gate = |k: usize| {
+        let case = ["curves", "maps"][k % 2];
+        GateRow {
+            id: format!("{case}.gate{k}"),
+            status: if k % 5 == 0 { Status::Limitation } else { Status::Pass },
+            of: format!("`seed` n={k}"),
+            value: Cell::num(k as f64, 2),
+            bound: "at most 30".into(),
+            margin: Cell::percent(1.0 - k as f64 / 40.0, 2),
+            evidence: if k % 3 == 0 { "theory" } else { "analytic" },
+            reasons: vec![1 + k % 2],
+        }
+    };
+    let reasons = ["An even number.", "An odd number of *some* size."].map(String::from);
+    Explorer { gates: (0..40).map(gate).collect(), reasons: reasons.into() }
+}
+
+fn film() -> Result<Film, String> {
+    let frame = |k: u32| {
+        let points = sampled(40, 0.0, 6.0, |x| (x + f64::from(k)).sin());
+        let plot = Plot::new("", Axis::linear("x [m]"), Axis::linear("y [m]").range(-1.0, 1.0));
+        Figure::new("frame", "")
+            .panel(plot.layer(Series::line("", points)))
+            .panel_size(200.0, 100.0)
+    };
+    Film::new("film", "A wave that moves.", &(0..8).map(frame).collect::<Vec<_>>(), 120)
+}
+
+fn page() -> Result<Page, String> {
     let formula = "<math><mfrac><mrow><mi>d</mi><mi>ρ</mi></mrow><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>\
                    <mo>=</mo><mo>−</mo><mi>ρ</mi><mo>∇</mo><mo>⋅</mo><mi mathvariant=\"bold\">u</mi></math>";
     let outcomes_seen = [Status::Pass, Status::Fail, Status::ExpectedFailure, Status::Limitation];
@@ -314,14 +356,16 @@ fn page() -> Page {
     let details = Block::Details { summary: "All settings".into(), blocks: vec![table().into()] };
     let data =
         Block::DataJson { id: "data".into(), data: serde_json::json!({"a": [1.5, "</script>"]}) };
-    Page {
+    Ok(Page {
         title: "Demo of the report".into(),
         lead: vec!["Every block once, from made-up data. **Not a result.**".into()],
         counts: Some(Counts::of(outcomes_seen)),
-        cards: Vec::new(),
-        notes: Vec::new(),
+        cards: vec![card()],
+        notes: vec!["A note below the cards.".into()],
         sections: vec![
-            Section::new("gates", "Gates")
+            Section::new(VERDICTS, "Verdicts").block(Block::Explorer(explorer())),
+            Section::new("table", "A table")
+                .block(film()?)
                 .block(table())
                 .block(Block::List(vec!["one".into(), "two".into()])),
             section.child(Section::new("below", "A section below").prose("With little in it.")),
@@ -329,5 +373,5 @@ fn page() -> Page {
         ],
         footer: "Commit `0000000`, clean; four threads.".into(),
         png_folder: "figures".into(),
-    }
+    })
 }

@@ -3,7 +3,7 @@
 
 use base::functions::ln;
 use base::record::{Status, median};
-use report::{Axis, Cell, Colour, Column, Figure, Layer, Plot, Series, Shape, Table, seconds, sig};
+use report::{Axis, Cell, Colour, Column, Figure, Layer, Plot, Series, Shape, Table, seconds};
 
 use crate::{
     columns::Columns,

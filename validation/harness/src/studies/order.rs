@@ -58,10 +58,7 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     let label = name_of_error(&accuracy.label);
     let caption = format!("{about_it} {label} against the particle spacing.{successive}{slope}");
     let mut plot = Plot::new("", Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
-    let about = format!(
-        "Observed order: least squares over all levels, with the 95 % interval of Student's t. {}",
-        accuracy.about
-    );
+    let about = format!("Observed orders of accuracy. {}", accuracy.about);
     let mut rows = Vec::new();
     let mut study = Study::new(&id, "Order of accuracy");
     for (k, ladder) in accuracy.ladders.iter().enumerate() {
