@@ -315,12 +315,12 @@ fn explorer() -> Explorer {
         let case = ["curves", "maps"][k % 2];
         GateRow {
             id: format!("{case}.gate{k}"),
-            status: if k % 5 == 0 { Status::Limitation } else { Status::Pass },
+            status: if k.is_multiple_of(5) { Status::Limitation } else { Status::Pass },
             of: format!("`seed` n={k}"),
             value: Cell::num(k as f64, 2),
             bound: "at most 30".into(),
             margin: Cell::percent(1.0 - k as f64 / 40.0, 2),
-            evidence: if k % 3 == 0 { "theory" } else { "analytic" },
+            evidence: if k.is_multiple_of(3) { "theory" } else { "analytic" },
             reasons: vec![1 + k % 2],
         }
     };
