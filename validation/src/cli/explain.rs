@@ -161,7 +161,7 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
 }
 
 /// Those of the gates that have this verdict, one per line; limitations by cause.
-fn listed(gates: Vec<&Judged>, status: arguments::Status) -> String {
+pub fn listed(gates: Vec<&Judged>, status: arguments::Status) -> String {
     let has = |judged: &&Judged| is(&judged.judgement.verdict, status);
     let chosen: Vec<&Judged> = gates.into_iter().filter(has).collect();
     if chosen.is_empty() {
@@ -187,7 +187,7 @@ fn by_cause(gates: &[&Judged]) -> String {
         }
     }
     let mut causes: Vec<_> = causes.into_iter().collect();
-    causes.sort_by_key(|(_, gates)| std::cmp::Reverse(gates.len()));
+    causes.sort_by_key(|(cause, gates)| (cause.is_none(), std::cmp::Reverse(gates.len())));
     let mut text = String::new();
     for (cause, gates) in causes {
         let words = match cause {

@@ -99,7 +99,7 @@ fn next(
 }
 
 /// The run with half the spacing: by the setting in which the levels of a ladder differ.
-fn finer(case: &dyn Case, declared: &Declaration, spec: &RunSpec) -> Option<String> {
+pub fn finer(case: &dyn Case, declared: &Declaration, spec: &RunSpec) -> Option<String> {
     let ladders = declared.accuracy.iter().flat_map(|accuracy| &accuracy.ladders);
     let ladder = ladders.into_iter().find(|ladder| ladder.levels.len() > 1)?;
     let [coarse, fine] =

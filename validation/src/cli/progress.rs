@@ -14,6 +14,8 @@ pub struct Bar {
     start: Instant,
     /// Before this there is nothing new to show.
     next: Mutex<Instant>,
+    /// Part of the run that was done at the start: more than 0 of one that goes on from a checkpoint.
+    first: Mutex<Option<f64>>,
 }
 
 /// Between two looks.
@@ -37,7 +39,7 @@ impl Bar {
             bar.enable_steady_tick(2 * EVERY); // time goes on while a long run does
         }
         let start = Instant::now();
-        Bar { bar, start, next: Mutex::new(start) }
+        Bar { bar, start, next: Mutex::new(start), first: Mutex::new(None) }
     }
 
     /// Shows how far a run is.
@@ -49,10 +51,10 @@ impl Bar {
         let elapsed = self.start.elapsed().as_secs_f64();
         let done = (time / end).clamp(0.0, 1.0);
         let rate = particle_steps as f64 / elapsed / 1e6;
-        let left = match done > 0.0 {
-            true => format!(", {} left", report::seconds(elapsed * (1.0 - done) / done)),
-            false => String::new(),
-        };
+        let first = *self.first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(done);
+        let left = left(elapsed, first, done);
+        let left = left.map(|seconds| format!(", {} left", report::seconds(seconds)));
+        let left = left.unwrap_or_default();
         self.bar.set_position((done * PARTS as f64) as u64);
         self.bar.set_message(format!(
             "t {time:.3e} of {end:.3e} s, dt {dt:.2e} s, {rate:.2} M particle steps/s{left}"
@@ -86,5 +88,24 @@ impl Bar {
             *next = now + EVERY;
         }
         is_time
+    }
+}
+
+/// The time that the rest of a run takes \[s\], of which this part was done at the start and is done now.
+fn left(elapsed: f64, first: f64, done: f64) -> Option<f64> {
+    (done > first).then(|| elapsed * (1.0 - done) / (done - first))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::left;
+
+    /// Half a run done at the start and nothing since then was told as nearly no time left.
+    #[test]
+    fn the_time_left_of_a_run_that_goes_on_is_by_what_it_did_since() {
+        assert_eq!(left(10.0, 0.0, 0.25), Some(30.0));
+        assert_eq!(left(10.0, 0.5, 0.75), Some(10.0));
+        assert_eq!(left(10.0, 0.5, 0.5), None);
+        assert_eq!(left(10.0, 0.0, 1.0), Some(0.0));
     }
 }

@@ -14,10 +14,22 @@ const IN_FULL: usize = 5;
 
 /// A line a case; then the failures in full, the number of limitations, and all counts in a sentence.
 pub fn summary(suite: &Suite) -> String {
-    let heads =
-        ["case", "fail", "limited", "control", "pass", "error", "by", "cost", "worst gate", "left"];
+    let heads = [
+        "case",
+        "fail",
+        "limited",
+        "control",
+        "pass",
+        "error",
+        "variant",
+        "cost",
+        "worst gate",
+        "margin",
+    ];
     let rows: Vec<Vec<String>> = suite.cases.iter().map(row).collect();
     let mut text = output::table(&heads, &rows);
+    text += "The error is that of the best variant, its cost that on one core; the margin is the unused share of \
+             the\nbound of the worst gate, of a limited one until it fails.\n";
     text += &failures(suite);
     let counts = suite.counts();
     if counts.limitation > 0 {
@@ -56,10 +68,16 @@ fn row(results: &CaseResults) -> Vec<String> {
     row
 }
 
-/// The judgement of the worst verdict and, among equals, of the least margin.
+/// The judgement that is closest to failing: of the worst verdict and, among equals, of the least margin. A
+/// control that fails as it must has none.
 pub fn worst<'a>(all: impl Iterator<Item = &'a Judged>) -> Option<&'a Judged> {
+    let rank = |judged: &Judged| match judged.status() {
+        Status::Fail => 0,
+        Status::Limitation => 1,
+        Status::Pass | Status::ExpectedFailure => 2,
+    };
     let margin = |judged: &Judged| judged.judgement.margin.unwrap_or(f64::INFINITY);
-    all.min_by(|a, b| b.status().cmp(&a.status()).then_with(|| margin(a).total_cmp(&margin(b))))
+    all.min_by(|a, b| rank(a).cmp(&rank(b)).then_with(|| margin(a).total_cmp(&margin(b))))
 }
 
 fn failures(suite: &Suite) -> String {

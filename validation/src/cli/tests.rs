@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use ::report::check_page;
 use base::{
-    gate::{Bound, Evidence, Gate},
+    gate::{Bound, Cause, Evidence, Gate},
     record::{MetricKey, Record, Status},
     reference::{Reference, ReferenceError},
     settings::Field,
@@ -15,10 +15,13 @@ use clap::Parser;
 use harness::{
     case::{self, Case, Planned, RunError, Tier, Variant},
     context::Context,
+    make::Making,
     runs::{Judged, Runs},
     study::Study,
+    suite::{self, Suite},
 };
 use serde_json::{Value, json};
+use validation::cases;
 
 use super::{Exit, World, arguments::Arguments, conclude, dispatch, judged::Verdicts};
 
@@ -374,4 +377,115 @@ fn tables_are_aligned() {
     let text = super::output::table(&["name", "value"], &rows);
     assert_eq!(text, "name   value\na       −1.5\nνt/L²     10\n");
     assert_eq!(super::output::wrap("one two three", 9, "  "), "  one two\n  three\n");
+}
+
+/// The suite of some cases, made and judged.
+fn judged(cases: &[&'static dyn Case]) -> Suite {
+    let making = Making {
+        tier: Tier::Quick,
+        store: None,
+        sources: &sources,
+        reuse_other: false,
+        allow_long: false,
+        progress: None,
+        interrupt: None,
+    };
+    suite::run(cases, &making).expect("staged runs")
+}
+
+/// 706 lines on standard error were what `verify` said of 606 gates.
+#[test]
+fn verify_is_a_line_a_case_then_each_failure_in_full() {
+    let text = super::summary::summary(&judged(&SOUND));
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[1].starts_with("right ") && lines[1].contains("staged.error"), "{text}");
+    assert!(lines[2].starts_with("wrong "), "{text}");
+    let counts: Vec<&str> = lines[2].split_whitespace().skip(1).take(4).collect();
+    assert_eq!(counts, ["1", "0", "0", "2"], "fail, limited, control, pass: {text}");
+    assert_eq!(lines[6], "staged.error", "{text}");
+    for part in ["at most 2", "the error of a run that is staged is 1", "3: fail"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert!(text.ends_with("1 gate fails, 4 gates pass\n"), "{text}");
+    assert!(!text.contains("explain"), "nothing is limited: {text}");
+}
+
+fn limited(id: &str, cause: &Cause) -> Judged {
+    let gate = Gate::new(id, "error", Bound::Below(2.0), Evidence::Theory, "staged");
+    Judged::new(gate.with_limitation(Bound::Below(4.0), "why").because_of(cause), Some(3.0))
+}
+
+#[test]
+fn limitations_are_listed_by_cause_those_of_most_gates_first() {
+    let causes = [("One.", "Mend one."), ("Two.", "Mend two.")];
+    let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend, "2026-11-01"));
+    let all = [limited("a", &one), limited("b", &two), limited("c", &two)];
+    let all: Vec<super::judged::Judged> = all.iter().map(Into::into).collect();
+    let status = super::arguments::Status::Limitation;
+    let text = super::explain::listed(all.iter().collect(), status);
+    let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
+    assert!(at("Two. What would remove it: Mend two. Known since 2026-11-01.") < at("    b"));
+    assert!(at("    b") < at("    c") && at("    c") < at("One."), "{text}");
+}
+
+#[test]
+fn a_run_ends_with_error_bound_cost_and_the_next_command() {
+    let couette = cases::find("couette").expect("a case");
+    let spec = |set: &str| case::spec(couette, "plain", &[set.to_string()]).expect("settings");
+    let mut record = Record::new("couette", "plain", spec("rows=20").settings, 1);
+    let of = |metric: &str, most: f64| {
+        let because = "staged";
+        Gate::new("couette.staged", metric, Bound::Below(most), Evidence::Theory, because)
+    };
+    let card = couette.declaration(Tier::Quick).card.expect("a card");
+    record.put(card.metric.clone(), 0.0123);
+    let end = |gates: Vec<Gate>| {
+        let judged = gates.into_iter().map(|gate| Judged::of_record(gate, &record));
+        let judged: Vec<Judged> = judged.collect();
+        super::outcome::outcome(couette, &spec("rows=20"), &record, &judged)
+    };
+    let has = |text: &str, parts: &[&str]| {
+        for part in parts {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+    };
+    let metric = card.metric.name();
+    let finer = "next   touchstone run couette --variant plain --set rows=40";
+    has(&end(vec![of(metric, 0.0246)]), &["error  1.2\u{a0}%", "at most 0.0246: pass, 50", finer]);
+    has(&end(vec![of(metric, 0.01)]), &["fail", "next   touchstone explain couette.staged"]);
+    has(&end(Vec::new()), &["bound  none", "next   touchstone verify couette"]);
+}
+
+/// Every case with a ladder of resolutions has a finer run, whichever setting is its resolution.
+#[test]
+fn the_next_run_has_half_the_spacing() {
+    for (name, finer) in [("rubber_rings", "spacing=0.1"), ("dam_break", "n=40")] {
+        let case = cases::find(name).expect("a case");
+        let declared = case.declaration(Tier::Quick);
+        let spec = case::spec(case, super::list::default_variant(case), &[]).expect("settings");
+        let words = super::outcome::finer(case, &declared, &spec);
+        assert!(words.as_ref().is_some_and(|words| words.ends_with(finer)), "{name}: {words:?}");
+    }
+}
+
+#[test]
+fn the_problem_of_a_case_has_at_most_ten_words() {
+    for case in cases::CASES {
+        let words = case.problem().split_whitespace().count();
+        assert!((2..=10).contains(&words), "{}: {}", case.name(), case.problem());
+    }
+}
+
+#[test]
+fn every_command_has_a_page_of_the_manual_and_every_shell_its_completions() {
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(exit_with(&NEVER, "man OUT", folder.path()), Exit::Pass);
+    for name in ["touchstone.1", "touchstone-run.1", "touchstone-verify.1"] {
+        let page = std::fs::read_to_string(folder.path().join(name)).expect(name);
+        assert!(page.contains(".SH OPTIONS"), "{name}: {page}");
+    }
+    assert!(!folder.path().join("touchstone-help.1").exists());
+    for shell in ["bash", "zsh", "fish"] {
+        assert_eq!(exit(&format!("completions {shell}")), Exit::Pass);
+    }
 }
