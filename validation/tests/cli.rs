@@ -81,7 +81,7 @@ fn help_version_and_lists_are_results() {
         assert!(!output.stdout.is_empty() && output.stderr.is_empty(), "{arguments:?}");
     }
     let text = stdout(&touchstone(&["list", "couette"]));
-    for word in ["* modern", "h_over_dx", "0.8 to 5.0 [-]", "Reynolds number"] {
+    for word in ["(runs by default, best)", "h_over_dx", "0.8 to 5.0 [-]", "Reynolds number"] {
         assert!(text.contains(word), "{word}: {text}");
     }
     let json = |arguments: &[&str]| -> Value {
@@ -199,12 +199,31 @@ fn a_time_step_beyond_the_limit_needs_a_word_and_may_diverge() {
 fn a_run_prints_its_record_or_its_metrics() {
     let output = touchstone(&short("couette", &[]));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(output.stdout.is_empty() && stderr(&output).contains("l2_worst"));
+    let (text, words) = (stdout(&output), stderr(&output));
+    for part in ["l2_worst", "\nerror  ", "\nbound  ", "\ncost   ", "\nnext   touchstone "] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert!(!words.contains("l2_worst"), "results go to standard output: {words}");
     let output = touchstone(&short("couette", &["--json", "--threads", "2"]));
     assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
     let record = Record::from_json(&stdout(&output)).unwrap();
     assert_eq!((record.status, record.settings["rows"].as_u64()), (Status::Completed, Some(8)));
     assert!(record.metrics["l2@0.1"].value < 0.05);
+}
+
+#[test]
+fn verdicts_are_results_and_how_they_came_about_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let output = touchstone_in(folder.path(), &["judge", "couette", "--store", "empty"]);
+    let (text, words) = (stdout(&output), stderr(&output));
+    assert_eq!(output.status.code(), Some(1), "{text}{words}");
+    assert!(text.starts_with("case ") && text.contains("\ncouette "), "{text}");
+    assert!(text.contains(" more gates fail: ") && text.lines().count() < 110, "{text}");
+    assert!(words.contains("note: of ") && words.contains(" runs in "), "{words}");
+    let all = touchstone_in(folder.path(), &["judge", "couette", "--store", "empty", "--all"]);
+    let gates = stdout(&all).lines().filter(|line| line.starts_with("FAIL ")).count();
+    assert!(gates > 20 && stdout(&all).ends_with(&text), "{gates} gates, then the same");
 }
 
 #[test]

@@ -17,6 +17,7 @@ mod compare;
 mod doctor;
 #[cfg(test)]
 mod documents;
+mod estimate;
 mod explain;
 mod export;
 mod interrupt;
@@ -179,7 +180,9 @@ impl World {
             progress: Some(&show),
             interrupt: Some(self.interrupt),
         };
-        let made = on_threads(threads, || Ok(make::make(jobs, &making)?));
+        let made = on_threads(threads, || {
+            Ok(make::make(&estimate::estimated(jobs, store, self.sources), &making)?)
+        });
         bar.clear();
         let made = made?;
         if let Some(reason) = made.not_kept.values().next() {

@@ -31,9 +31,15 @@ struct Staged {
     planned: &'static [&'static str],
 }
 
-fn gate(metric: &str) -> Gate {
+fn gate(case: &str, metric: &str) -> Gate {
     let because = "the error of a run that is staged is 1";
-    Gate::new(format!("staged.{metric}"), metric, Bound::Below(2.0), Evidence::Theory, because)
+    Gate::new(
+        format!("staged.{case}.{metric}"),
+        metric,
+        Bound::Below(2.0),
+        Evidence::Theory,
+        because,
+    )
 }
 
 impl Case for Staged {
@@ -79,7 +85,8 @@ impl Case for Staged {
     fn plan(&self, _: Tier) -> Vec<Planned> {
         let set = ["re=1".to_string()];
         let spec = |variant: &str| case::spec(self, variant, &set).expect("staged settings");
-        let planned = |variant: &&str| Planned::new(spec(variant)).judged(vec![gate("error")]);
+        let planned =
+            |variant: &&str| Planned::new(spec(variant)).judged(vec![gate(self.name, "error")]);
         self.planned.iter().map(planned).collect()
     }
 
@@ -87,7 +94,7 @@ impl Case for Staged {
         let count = runs.all().len() as f64;
         let id = format!("{}-count", self.name);
         let study = Study::new(&id, "How many").prose("Runs are counted.");
-        vec![study.judge(gate("count"), count)]
+        vec![study.judge(gate(self.name, "count"), count)]
     }
 }
 
@@ -177,10 +184,10 @@ fn a_report_is_whole_and_explain_reads_it() {
         assert_eq!(Record::from_json(&read(&name)).expect("a record").key().to_string(), run.key);
     }
     for (gate, expected) in [
-        ("staged.error", Exit::Pass),
-        ("staged.count", Exit::Pass), // of a study: known from the report
+        ("staged.right.error", Exit::Pass),
+        ("staged.right.count", Exit::Pass), // of a study: known from the report
         ("staged", Exit::Pass),
-        ("staged.eror", Exit::Usage),
+        ("staged.right.eror", Exit::Usage),
     ] {
         let line = format!("explain {gate} --reports OUT");
         assert_eq!(in_folder(&line), expected, "{gate}");
@@ -264,7 +271,9 @@ fn records_are_reused_judged_rendered_and_compared() {
     let export = "--junit OUT/junit.xml --markdown OUT/verdicts.md";
     assert_eq!(good(&format!("touchstone judge --store OUT/a/records {export}")), Exit::Pass);
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
-    assert!(read("junit.xml").contains("<testcase classname=\"right\" name=\"staged.error\">"));
+    assert!(
+        read("junit.xml").contains("<testcase classname=\"right\" name=\"staged.right.error\">")
+    );
     assert!(read("verdicts.md").starts_with("# Verdicts\n\n2 gates pass"));
     assert_eq!(good("touchstone report --store OUT/a/records --out OUT/b"), Exit::Pass);
     assert_eq!(good("touchstone compare OUT/a OUT/b"), Exit::Pass);
@@ -337,7 +346,7 @@ fn gates_are_listed_by_their_last_verdict() {
     assert_eq!(in_folder(line), Exit::Usage, "there is no report yet");
     assert_eq!(in_folder("report --out OUT"), Exit::GateFailed);
     assert_eq!(in_folder(line), Exit::Pass);
-    assert_eq!(in_folder("explain staged.e --status pass --reports OUT"), Exit::Pass);
+    assert_eq!(in_folder("explain staged.right.e --status pass --reports OUT"), Exit::Pass);
 }
 
 #[test]
@@ -398,12 +407,12 @@ fn judged(cases: &[&'static dyn Case]) -> Suite {
 fn verify_is_a_line_a_case_then_each_failure_in_full() {
     let text = super::summary::summary(&judged(&SOUND));
     let lines: Vec<&str> = text.lines().collect();
-    assert!(lines[1].starts_with("right ") && lines[1].contains("staged.error"), "{text}");
+    assert!(lines[1].starts_with("right ") && lines[1].contains("staged.right.error"), "{text}");
     assert!(lines[2].starts_with("wrong "), "{text}");
     let counts: Vec<&str> = lines[2].split_whitespace().skip(1).take(4).collect();
     assert_eq!(counts, ["1", "0", "0", "2"], "fail, limited, control, pass: {text}");
-    assert_eq!(lines[6], "staged.error", "{text}");
-    for part in ["at most 2", "the error of a run that is staged is 1", "3: fail"] {
+    assert_eq!(lines[6], "staged.wrong.error", "{text}");
+    for part in ["at most 2", "the error of a run that is staged is 1", "3.0000: FAIL"] {
         assert!(text.contains(part), "{part}: {text}");
     }
     assert!(text.ends_with("1 gate fails, 4 gates pass\n"), "{text}");
@@ -451,7 +460,7 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
     };
     let metric = card.metric.name();
     let finer = "next   touchstone run couette --variant plain --set rows=40";
-    has(&end(vec![of(metric, 0.0246)]), &["error  1.2\u{a0}%", "at most 0.0246: pass, 50", finer]);
+    has(&end(vec![of(metric, 0.0246)]), &["error  1.2 %", "at most 0.0246: pass, 50", finer]);
     has(&end(vec![of(metric, 0.01)]), &["fail", "next   touchstone explain couette.staged"]);
     has(&end(Vec::new()), &["bound  none", "next   touchstone verify couette"]);
 }
@@ -459,7 +468,7 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
 /// Every case with a ladder of resolutions has a finer run, whichever setting is its resolution.
 #[test]
 fn the_next_run_has_half_the_spacing() {
-    for (name, finer) in [("rubber_rings", "spacing=0.1"), ("dam_break", "n=40")] {
+    for (name, finer) in [("rubber_rings", "spacing=0.05"), ("dam_break", "n=40")] {
         let case = cases::find(name).expect("a case");
         let declared = case.declaration(Tier::Quick);
         let spec = case::spec(case, super::list::default_variant(case), &[]).expect("settings");
