@@ -12,8 +12,9 @@ use harness::{
 };
 use rayon::prelude::*;
 
-/// Simulations of a bisection or of a search for the smallest error that is detected, about.
-const SIMULATIONS: f64 = 8.0;
+/// Whole simulations that a bisection takes as long as, or a search for the smallest error that is detected,
+/// about: most of the ten or so that it makes diverge early or are of a short time.
+const SIMULATIONS: f64 = 3.0;
 
 /// The jobs, those that the store lacks with the estimate that each run makes before its first step.
 pub fn estimated(jobs: &[Job], store: Option<&Store>, sources: fn(&str) -> String) -> Vec<Job> {

@@ -31,15 +31,9 @@ struct Staged {
     planned: &'static [&'static str],
 }
 
-fn gate(case: &str, metric: &str) -> Gate {
+fn gate(of: &str, metric: &str) -> Gate {
     let because = "the error of a run that is staged is 1";
-    Gate::new(
-        format!("staged.{case}.{metric}"),
-        metric,
-        Bound::Below(2.0),
-        Evidence::Theory,
-        because,
-    )
+    Gate::new(format!("staged.{of}.{metric}"), metric, Bound::Below(2.0), Evidence::Theory, because)
 }
 
 impl Case for Staged {
@@ -85,8 +79,10 @@ impl Case for Staged {
     fn plan(&self, _: Tier) -> Vec<Planned> {
         let set = ["re=1".to_string()];
         let spec = |variant: &str| case::spec(self, variant, &set).expect("staged settings");
-        let planned =
-            |variant: &&str| Planned::new(spec(variant)).judged(vec![gate(self.name, "error")]);
+        let planned = |variant: &&str| {
+            let name = format!("{}.{variant}", self.name);
+            Planned::new(spec(variant)).judged(vec![gate(&name, "error")])
+        };
         self.planned.iter().map(planned).collect()
     }
 
@@ -184,10 +180,10 @@ fn a_report_is_whole_and_explain_reads_it() {
         assert_eq!(Record::from_json(&read(&name)).expect("a record").key().to_string(), run.key);
     }
     for (gate, expected) in [
-        ("staged.right.error", Exit::Pass),
+        ("staged.right.right.error", Exit::Pass),
         ("staged.right.count", Exit::Pass), // of a study: known from the report
         ("staged", Exit::Pass),
-        ("staged.right.eror", Exit::Usage),
+        ("staged.right.right.eror", Exit::Usage),
     ] {
         let line = format!("explain {gate} --reports OUT");
         assert_eq!(in_folder(&line), expected, "{gate}");
@@ -272,7 +268,8 @@ fn records_are_reused_judged_rendered_and_compared() {
     assert_eq!(good(&format!("touchstone judge --store OUT/a/records {export}")), Exit::Pass);
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
     assert!(
-        read("junit.xml").contains("<testcase classname=\"right\" name=\"staged.right.error\">")
+        read("junit.xml")
+            .contains("<testcase classname=\"right\" name=\"staged.right.right.error\">")
     );
     assert!(read("verdicts.md").starts_with("# Verdicts\n\n2 gates pass"));
     assert_eq!(good("touchstone report --store OUT/a/records --out OUT/b"), Exit::Pass);
@@ -346,7 +343,7 @@ fn gates_are_listed_by_their_last_verdict() {
     assert_eq!(in_folder(line), Exit::Usage, "there is no report yet");
     assert_eq!(in_folder("report --out OUT"), Exit::GateFailed);
     assert_eq!(in_folder(line), Exit::Pass);
-    assert_eq!(in_folder("explain staged.right.e --status pass --reports OUT"), Exit::Pass);
+    assert_eq!(in_folder("explain staged.right.r --status pass --reports OUT"), Exit::Pass);
 }
 
 #[test]
@@ -407,11 +404,14 @@ fn judged(cases: &[&'static dyn Case]) -> Suite {
 fn verify_is_a_line_a_case_then_each_failure_in_full() {
     let text = super::summary::summary(&judged(&SOUND));
     let lines: Vec<&str> = text.lines().collect();
-    assert!(lines[1].starts_with("right ") && lines[1].contains("staged.right.error"), "{text}");
+    assert!(
+        lines[1].starts_with("right ") && lines[1].contains("staged.right.right.error"),
+        "{text}"
+    );
     assert!(lines[2].starts_with("wrong "), "{text}");
     let counts: Vec<&str> = lines[2].split_whitespace().skip(1).take(4).collect();
     assert_eq!(counts, ["1", "0", "0", "2"], "fail, limited, control, pass: {text}");
-    assert_eq!(lines[6], "staged.wrong.error", "{text}");
+    assert_eq!(lines[6], "staged.wrong.wrong.error", "{text}");
     for part in ["at most 2", "the error of a run that is staged is 1", "3.0000: FAIL"] {
         assert!(text.contains(part), "{part}: {text}");
     }
