@@ -162,8 +162,8 @@ fn took(job: &Job, making: &Making, start: Instant) -> f64 {
     of_batch(job, making, start.elapsed().as_secs_f64())
 }
 
-/// What a run that lasts so long takes of the wall time of the batch \[s\]: all of it if it has the machine for
-/// itself, with its repetitions, and otherwise its part of the time of all threads.
+/// What a run that lasts so long takes of the wall time of the batch \[s\]: all of it if it has the machine
+/// for itself, with its repetitions, and otherwise its part of the time of all threads.
 fn of_batch(job: &Job, making: &Making, seconds: f64) -> f64 {
     match job.planned.timed {
         true if seconds < timed_again_below(making.tier) => REPETITIONS as f64 * seconds,
@@ -177,7 +177,7 @@ const FIRST_ESTIMATE: f64 = 0.1;
 /// Part of the work whose times weigh as much in the estimate of a case as the times of all cases.
 const OF_ALL_CASES: f64 = 0.02;
 
-/// Wall times \[s\]: of all that is to be done as it was expected, of what is done as expected, and as it was.
+/// Wall times \[s\]: of all that is to be done as expected, of what is done as expected, and as it was.
 #[derive(Clone, Copy, Debug, Default)]
 struct Times {
     expected: f64,
@@ -229,8 +229,8 @@ impl Tally {
         if expected > 0.0 { done / expected } else { 1.0 }
     }
 
-    /// What is left of each case is expected to take longer or shorter than was planned, as what is done of it
-    /// did; with little of it done, as what is done of all cases did.
+    /// What is left of each case is expected to take longer or shorter than was planned, as what is done of
+    /// it did; with little of it done, as what is done of all cases did.
     fn left(&self) -> Option<f64> {
         let cases = self.times();
         let all = sum(&cases);
@@ -488,8 +488,8 @@ mod tests {
         assert_eq!(shown.lock().unwrap()[0], (0, 3), "shown before the first run ends");
     }
 
-    /// Runs of three cases, the longest first: planned and actual seconds differ by a factor of the case and by
-    /// 30 % more. The time that is left was told as 34.8 min after 20 s, for runs that took two minutes.
+    /// Runs of three cases, the longest first: planned and actual seconds differ by a factor of the case and
+    /// by 30 % more. The time that is left was told as 34.8 min after 20 s, for runs that took two minutes.
     #[test]
     fn the_time_left_is_right_within_a_factor_of_two_after_a_tenth_of_the_work() {
         let factors = [("right", 1.0), ("too long", 0.1), ("too short", 6.0)];
@@ -524,8 +524,8 @@ mod tests {
         assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "it goes forward");
     }
 
-    /// What was planned to be a twentieth of the work is nearly all of it: as soon as one such run is done, the
-    /// time that is left is that of its case. By the times of all cases alone it is 8 times too short.
+    /// What was planned to be a twentieth of the work is nearly all of it: as soon as one such run is done,
+    /// the time that is left is that of its case. By the times of all cases alone it is 8 times too short.
     #[test]
     fn a_case_that_takes_far_longer_than_planned_is_seen_by_its_own_times() {
         let mut tally = Tally::default();

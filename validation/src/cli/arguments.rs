@@ -18,8 +18,8 @@ Start with:
   touchstone run couette       one run: its errors, its cost, and what to try next
   touchstone verify couette    the runs of one case, judged against bounds with reasons
 
-Exit codes: 0 pass, 1 a gate failed, 2 invalid command or setting, or a file cannot be written, 3 the simulation \
-diverged, 4 a bug in touchstone, 130 interrupted.";
+Exit codes: 0 pass, 1 a gate failed, 2 invalid command or setting, or a file cannot be written, 3 the \
+simulation diverged, 4 a bug in touchstone, 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {

@@ -18,7 +18,8 @@ use harness::suite::{self, Of};
 use super::{
     Exit, Failure, Outcome, World, arguments,
     judged::{Judged, Verdicts, tier_name},
-    output, verify,
+    output,
+    stored::stored,
 };
 
 /// A gate, what it is judged on, and what came of it last.
@@ -83,7 +84,7 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
             continue;
         }
         let plans = suite::plans(&[*case], Tier::Quick);
-        let (made, lacking) = verify::stored(&plans, &store, false, world);
+        let (made, lacking) = stored(&plans, &store, false, world);
         if lacking == [0, 0] {
             let of_case = Verdicts::of(&suite::judge(plans, Tier::Quick, made));
             match &mut all {

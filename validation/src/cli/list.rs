@@ -52,8 +52,8 @@ fn overview(world: &World) -> String {
     let rows: Vec<Vec<String>> = world.cases.iter().map(row).collect();
     let heads = ["case", "problem", "variant that runs", "best", "the paper's"];
     output::table(&heads, &rows)
-        + "\nThe best variant is the one that the report shows first, for its error and cost. `touchstone list \
-           CASE`\nshows all variants and settings of a case, `touchstone run CASE` runs it.\n"
+        + "\nThe best variant is the one that the report shows first, for its error and cost.\n\
+           `touchstone list CASE` shows all variants and settings of a case, `touchstone run CASE` runs it.\n"
 }
 
 /// The variants of a case that have a name of their own.

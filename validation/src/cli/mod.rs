@@ -32,6 +32,7 @@ mod report;
 mod run;
 mod specs;
 mod stability;
+mod stored;
 mod summary;
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,5 @@
-//! How `run` ends, for a person who reads ten seconds: the headline error, its bound, its cost, and a command to
-//! go on with.
+//! How `run` ends, for a person who reads ten seconds: the headline error, its bound, its cost, and a command
+//! to go on with.
 
 use ::report;
 use base::{
@@ -34,8 +34,8 @@ pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Jud
     lines.iter().filter(|(_, words)| !words.is_empty()).map(line).collect()
 }
 
-/// The error that the card of the case shows, if the run has it, and otherwise the first number that is judged;
-/// and the name of its metric.
+/// The error that the card of the case shows, if the run has it, and otherwise the first number that is
+/// judged; and the name of its metric.
 fn error(declared: &Declaration, record: &Record, verdicts: &[Judged]) -> (String, String) {
     if let Some(card) = &declared.card
         && let Ok(error) = Headline::of(card, record).error()

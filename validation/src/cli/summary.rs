@@ -28,14 +28,14 @@ pub fn summary(suite: &Suite) -> String {
     ];
     let rows: Vec<Vec<String>> = suite.cases.iter().map(row).collect();
     let mut text = output::table(&heads, &rows);
-    text += "The error is that of the best variant, its cost that on one core; the margin is the unused share of \
-             the\nbound of the worst gate, of a limited one until it fails.\n";
+    text += "The error is that of the best variant, its cost that on one core; the margin is the unused share\n\
+             of the bound of the worst gate, of a limited one until it fails.\n";
     text += &failures(suite);
     let counts = suite.counts();
     if counts.limitation > 0 {
         text += &format!(
-            "\n{} outside their bounds for known reasons; `touchstone explain --status limitation` lists them \
-             by cause.\n",
+            "\n{} outside their bounds for known reasons; `touchstone explain --status limitation` lists \
+             them by cause.\n",
             gates(counts.limitation)
         );
     }

@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use ::report;
 use harness::{
-    case::{Case, Planned, Tier},
-    make::{self, Made},
-    store::{Found, Store},
+    case::{Case, Tier},
+    make,
+    store::Store,
     suite::{self, Suite},
 };
 
@@ -14,6 +14,7 @@ use super::{
     Exit, Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
     output,
+    stored::stored,
     summary::summary,
 };
 
@@ -131,34 +132,4 @@ pub fn of_store(
         ));
     }
     Ok(suite::judge(plans, tier, made))
-}
-
-/// The records of plans that a store has, and how many runs it lacks or has of other sources alone.
-pub fn stored(
-    plans: &[(&'static dyn Case, Vec<Planned>)],
-    store: &Store,
-    any_build: bool,
-    world: &World,
-) -> (Made, [usize; 2]) {
-    let (mut made, mut missing, mut other) = (Made::default(), 0, 0);
-    for spec in plans.iter().flat_map(|(_, plan)| plan).map(|planned| &planned.spec) {
-        let record = match store.find(spec, &(world.sources)(&spec.case)) {
-            Found::Same(record) => record,
-            Found::Other(record) if any_build => {
-                made.of_other_sources += 1;
-                record
-            }
-            Found::Other(_) => {
-                other += 1;
-                continue;
-            }
-            Found::Nothing => {
-                missing += 1;
-                continue;
-            }
-        };
-        made.reused += 1;
-        made.records.insert(spec.key(), *record);
-    }
-    (made, [missing, other])
 }

@@ -1,4 +1,4 @@
-//! What the report says first of a case: errors and costs of two variants, how far they were driven, verdicts.
+//! What the report says first of a case: errors and costs of two variants, how far they got, verdicts.
 
 use std::collections::BTreeMap;
 
