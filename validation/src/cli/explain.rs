@@ -230,7 +230,7 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
     };
     Failure::usage(anyhow::anyhow!(
         "no gate is called {asked:?}, and no name begins with it; {hint} (gates of studies are known \
-         only after touchstone report)"
+         only after touchstone verify or report)"
     ))
 }
 
