@@ -1,5 +1,6 @@
 //! Water with a free surface.
 
+mod causes;
 pub mod dam_break;
 pub mod elliptic_drop;
 pub mod hydrostatic;

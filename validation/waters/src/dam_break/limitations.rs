@@ -5,9 +5,12 @@ use super::{
     metrics::{self, FRONT, HEIGHT, IMPULSE, LEVELS, Z},
     reference::PEERS,
 };
-use crate::water::ledger;
+use crate::{
+    causes::{NO_SLIP_IMAGES, PRESSED_THROUGH, TENSION, TWO_DIMENSIONS, VISCOSITY},
+    water::ledger,
+};
 use base::{
-    gate::{Bound, Evidence, Gate},
+    gate::{Bound, Cause, Evidence, Gate},
     record::MetricName,
 };
 
@@ -16,22 +19,29 @@ fn is_on(gate: &Gate, metric: impl Into<MetricName>) -> bool {
     gate.metric == metric.into().name()
 }
 
+/// Why a gate has a wider bound, and where that comes from.
+type Why = (&'static Cause, &'static str);
+
+fn limited(gate: Gate, known: Bound, (cause, reason): Why) -> Gate {
+    gate.with_limitation(known, reason).because_of(cause)
+}
+
 /// Known to be low, down to this number.
-fn down_to(gate: Gate, low: f64, reason: &str) -> Gate {
+fn down_to(gate: Gate, low: f64, why: Why) -> Gate {
     let known = match gate.bound {
         Bound::Within(_, high) => Bound::Within(low, high),
         _ => Bound::Above(low),
     };
-    gate.with_limitation(known, reason)
+    limited(gate, known, why)
 }
 
 /// Known to be high, up to this number.
-fn up_to(gate: Gate, high: f64, reason: &str) -> Gate {
+fn up_to(gate: Gate, high: f64, why: Why) -> Gate {
     let known = match gate.bound {
         Bound::Within(low, _) => Bound::Within(low, high),
         _ => Bound::Below(high),
     };
-    gate.with_limitation(known, reason)
+    limited(gate, known, why)
 }
 
 /// The gate of a column that runs out freely, with its limitation, if it has one.
@@ -55,14 +65,14 @@ pub fn in_tank(gate: Gate, variant: &str, n: usize) -> Gate {
         ("ghosts", _) => of_ghosts_in_tank(gate, sensor),
         ("ghosts-split", _) => may_lose(gate, 5.0),
         ("seed", None) if is_on(&gate, FRONT.rms_shifted) => up_to(gate, 0.22, SPENT),
-        ("seed", Some(3)) => down_to(gate, -1.35, TENSION),
+        ("seed", Some(3)) => down_to(gate, -1.35, PULLED),
         ("seed", Some(k)) => down_to(gate, [-0.86, -0.65, -0.52][k], SPENT),
         ("modern", None) if is_on(&gate, FRONT.rms_shifted) && n > 60 => up_to(gate, 0.12, FAST),
         // Those at H/dx = 30 and 60 that are within the bound have no limitation.
         ("modern", Some(k)) if [n < 60, n > 60, true, true][k] => {
             let limit = [-0.13, -0.27, -0.26, -0.53][k];
             let spacing = 1.25 * 0.105 * 120.0 / n as f64;
-            gate.with_limitation(Bound::Within(limit - spacing, limit + spacing), TONGUE)
+            limited(gate, Bound::Within(limit - spacing, limit + spacing), TONGUE)
         }
         _ => gate,
     }
@@ -71,7 +81,7 @@ pub fn in_tank(gate: Gate, variant: &str, n: usize) -> Gate {
 /// So many particles may be behind a wall of mirror particles.
 fn may_lose(gate: Gate, particles: f64) -> Gate {
     match is_on(&gate, metrics::OUTSIDE) {
-        true => gate.with_limitation(Bound::Within(0.0, particles), CROSSED),
+        true => limited(gate, Bound::Within(0.0, particles), CROSSED),
         false => gate,
     }
 }
@@ -124,56 +134,63 @@ fn of_ghosts_in_tank(gate: Gate, sensor: Option<usize>) -> Gate {
     }
 }
 
-const MIRRORED: &str = "ghosts carry the opposite velocity, as the paper has it, along the wall too: along a \
-                        wall that water runs past they double the difference that (3) sums, and in disorder \
-                        that is noise of the density, which does work. At a/dx 10, 14, 28 and 40 it is 0.64, \
-                        0.66, 0.43 and 0.30 of M g H/2, with a mean and two standard deviations of 0.84, and \
-                        the energy not accounted for is 0.013 so; the front at 14, the farthest of them, has \
-                        Z = 2.31 and 3.32 and a shift of -0.15; in the tank the Mach number is 0.60. \
-                        `ghosts-slip`, which differs in that alone, has 0.001 of work, Z = 2.58 and 4.00, \
-                        and Mach 0.12";
-const CROSSED: &str = "in the plane of a ghost wall the water and its images push a particle alike from both \
-                       sides, and its own image not at all: pressed that near, it may cross, and nothing \
-                       beyond turns it back. `ghosts-slip` loses 1 here and 5 in the tank, `ghosts-split` \
-                       none and 3, and `ghosts` without XSPH 11 there";
-const ENDS: &str = "the noise of the density that ghosts with the opposite velocity along the wall make \
-                    grows until the run ends as diverged: at 54 % of the time at H/dx 20, which is 36 % at \
-                    30 if it is proportional to the spacing. Until then it does at most what it does there \
-                    without XSPH, until 76 %: walls add 1.11 M g H/2 and 0.096 are not accounted for; \
-                    momentum 0.035 and Mach number 0.60 are those with XSPH. `ghosts-slip` reaches the end \
-                    at 20, and 89 % of it at 30. If the run reached its end, its errors would be at most \
-                    those of `seed` at h/dx 1.2 and of `ghosts-slip`, the farthest with these terms. \
-                    `ghosts-split`, whose images have the opposite velocity for viscosity alone, reaches the \
-                    end at 20 and at 30: walls add 0.003 of work, 0.0001 are not accounted for, and the Mach \
-                    number is 0.13 at 30; but the floor drags it, so that it strikes the far wall at 3.94 \
-                    instead of 2.44 (`seed`: 3.04)";
-const THICK: &str = "artificial viscosity, proportional to alpha c0 h, slows the water, by half as much at \
-                     a/dx 40 as at 20. `modern` at 20 with 1.4 times as much of it as this run has at 40 \
-                     (20), at c0 = 50 (100), has Z = 2.44 (2.35) at T = 2 and 3.68 (3.51) at T = 3, and a \
-                     shift of 0.05 (-0.05): so far it explains what is missing";
-const LAYER: &str = "particles next to the back wall lag, in a layer of a few spacings that at a/dx 20 \
-                     reaches the probe at 0.2 a: at tau 2.45 the height over 2a is 0.10 more than measured \
-                     there, 0.05 at 0.3 a and 0.02 at 0.5 a; at a/dx 40 0.05, 0.03 and 0.01. The shift is \
-                     proportional to the artificial viscosity: -0.053 with half of alpha and -0.187 with \
-                     twice c0 are -0.106 and -0.094 at that of this run at 20, and half of it at 40; \
-                     without artificial stress it stays";
-const SPENT: &str = "artificial viscosity takes 73 % of the energy until the end, so what reaches the far \
-                     wall is late, at 3.04 instead of 2.44, and slow. With alpha 0.2 at H/dx 20, three times \
-                     the viscosity of this run, the front is 0.22 H off, and P1, P2 and P3 lack 85, 57 and \
-                     36 %; what remains is 5, 17 and 25 % less in the finest run of `modern`: together 86, \
-                     65 and 52 %";
-const TENSION: &str = "the impulse is negative, a net tension: what little water comes to 80 mm has lost \
-                       density there, and nothing cuts the equation of state at 0. How much is noise: five \
-                       runs at H/dx 20 that differ in alpha or in XSPH alone have -0.12 to -1.03; their mean \
-                       less twice their standard deviation is -1.35";
-const FAST: &str = "water in two dimensions, without gate and friction, runs faster than measured: 1.56, \
-                    1.62 and 1.67 (g H)^(1/2) at H/dx 30, 60 and 120, where the experiment has 1.515. The \
-                    distance of its front after the shift, 0.064, 0.075 and 0.089, has the limit 0.103 if it \
-                    is of first order; 0.12 is that with the last difference";
-const TONGUE: &str = "water in two dimensions, without gate and friction, comes as a tongue that is 9 to 13 \
-                      % thinner than measured (metric `tongue`) and rises to 80 mm 0.20 (H/g)^(1/2) later \
-                      after its arrival; from that on it lacks 25 % there, as at 30 mm. Errors at 60 and 120 \
-                      have the limits -13, -27, -26 and -53 % at P1 to P4 if they are of first order, and \
-                      differ by up to 10.5 % from each other: the limit is what this water does, and the \
-                      difference in proportion to the spacing, times the usual factor of safety 1.25, what \
-                      the spacing adds";
+const MIRRORED: Why = (
+    &NO_SLIP_IMAGES,
+    "At a/dx = 10, 14, 28 and 40 the walls do work of 0.64, 0.66, 0.43 and 0.30 M g H/2 on the water, and \
+     at 14 the front is slowest, with Z = 2.31 at T = 2 and 3.32 at T = 3. The bounds: mean plus two \
+     standard deviations of these runs for work (0.84) and energy (0.013), their farthest values for front \
+     and height, and the Mach number of the tank, 0.60. `ghosts-slip`, whose images keep the velocity along \
+     the wall, has 0.001 of work, Z = 2.58 and 4.00, and Mach 0.12.",
+);
+const CROSSED: Why = (
+    &PRESSED_THROUGH,
+    "`ghosts-slip` loses 1 particle on the endless floor and 5 in the tank, `ghosts-split` none and 3, and \
+     `ghosts` without XSPH 11 in the tank. The bound: 11 for `ghosts` in the tank, and 5 elsewhere.",
+);
+const ENDS: Why = (
+    &NO_SLIP_IMAGES,
+    "At H/dx = 20 the run diverges after 54 % of its time, which is 36 % at 30 if it is proportional to the \
+     spacing; the bounds of work (1.11 M g H/2) and energy (0.096) are those at 20 without XSPH, of \
+     momentum (0.035) and Mach number (0.60) with it. Those of front, levels and impulses are the largest \
+     errors of `seed` at h/dx = 1.2 and of `ghosts-slip`. `ghosts-split` reaches the end at 20 and 30, but \
+     its floor drags the water, which strikes the far wall at 3.94 instead of 2.44 √(H/g).",
+);
+const THICK: Why = (
+    &VISCOSITY,
+    "The bounds are what `modern` has at a/dx = 20 with 1.4 times the artificial viscosity of this run, by \
+     sound speeds of 100 √(g H) for a/dx = 20 and 50 for 40. It has Z = 2.35 and 2.44 at T = 2, Z = 3.51 \
+     and 3.68 at T = 3, and shifts of the front of -0.05 and 0.05.",
+);
+const LAYER: Why = (
+    &VISCOSITY,
+    "Particles next to the back wall lag: at 0.2 a from it and τ = 2.45 the height is too large by 0.10 \
+     (unit 2a) at a/dx = 20 and by 0.05 at 40. The shift is proportional to artificial viscosity: -0.053 \
+     with half of alpha and -0.187 with twice the sound speed are -0.106 and -0.094 with that of this run \
+     at 20. The bound: -0.11 at 20 and half of it at 40.",
+);
+const SPENT: Why = (
+    &VISCOSITY,
+    "Viscosity takes 73 % of the energy, and the water strikes the far wall at 3.04 instead of 2.44 √(H/g). \
+     With alpha = 0.2 at H/dx = 20, three times this viscosity, the front is 0.22 H off, and the impulses \
+     on P1, P2 and P3 lack 85, 57 and 36 %. The bounds: these, and of the impulse that remains the 5, 17 \
+     and 25 % that the finest run of `modern` lacks.",
+);
+const PULLED: Why = (
+    &TENSION,
+    "The little water that rises to 80 mm has lost density, and the impulse on P4 is negative, an error \
+     below -100 %. Five runs at H/dx = 20 that differ in alpha or in XSPH alone have errors of -12 \
+     to -103 %. The bound: their mean less twice their standard deviation, -135 %.",
+);
+const FAST: Why = (
+    &TWO_DIMENSIONS,
+    "The front runs at 1.56, 1.62 and 1.67 √(g H) at H/dx = 30, 60 and 120, and at 1.515 in the experiment. \
+     Its distances after the shift, 0.064, 0.075 and 0.089 H, tend to 0.103 H if they are of first order. \
+     The bound: this limit and the last difference.",
+);
+const TONGUE: Why = (
+    &TWO_DIMENSIONS,
+    "The layer of water at H4 (metric `tongue`) is 9 to 13 % thinner than measured, and after its arrival \
+     it takes 0.20 √(H/g) longer to rise to 80 mm. If errors at H/dx = 60 and 120 are of first order, they \
+     tend to -13, -27, -26 and -53 % at P1 to P4. The bound: this limit, and 1.25 times the largest \
+     difference of these runs (10.5 %) in proportion to the spacing.",
+);

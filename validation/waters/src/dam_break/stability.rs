@@ -6,9 +6,12 @@ use super::{
     metrics::{DENSITY_LEAST, DENSITY_MOST, FRONT, MACH, OUTSIDE_END, REACHED, Z},
     specs,
 };
-use crate::water::{
-    gate,
-    ledger::{ENERGY_GAP, WORK_VISCOSITY},
+use crate::{
+    causes::RATE_OF_DENSITY,
+    water::{
+        gate,
+        ledger::{ENERGY_GAP, WORK_VISCOSITY},
+    },
 };
 use base::{
     gate::{Bound, Evidence},
@@ -78,7 +81,11 @@ impl Extreme {
         let gates = if self.holds {
             let lost = judged(OUTSIDE_END, Bound::Equals(0.0), stays);
             let is_crowded = self.name == CROWDED;
-            let lost = if is_crowded { lost.with_limitation(SLIPS, SLIP) } else { lost };
+            let lost = if is_crowded {
+                lost.with_limitation(SLIPS, SLIP).because_of(&RATE_OF_DENSITY)
+            } else {
+                lost
+            };
             vec![lost, judged(ENERGY_GAP, Bound::Below(0.01), closes)]
         } else {
             vec![judged(REACHED, Bound::Below(0.5), grows).even_if_diverged()]
@@ -89,9 +96,8 @@ impl Extreme {
 
 const CROWDED: &str = "water that starts on the surface of the walls";
 const SLIPS: Bound = Bound::Within(0.0, 29.0);
-const SLIP: &str = "(3) knows how the density changes, not what it is: water half a spacing too near to a \
-                    wall has the pressure it was given, and particles slip between those of the wall, of the \
-                    lowest row and of the column at the back wall, which have 29";
+const SLIP: &str = "Particles slip between those of the wall. The bound: the 29 particles of the lowest row \
+                    and of the column at the back wall.";
 
 /// Spacings along the width of the column with nothing extreme about it.
 pub const USUAL: usize = 10;

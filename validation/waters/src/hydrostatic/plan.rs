@@ -5,7 +5,7 @@ use super::{
     HYDROSTATIC, HydrostaticSettings, NAME,
     run::{GAP, KINETIC, LEVEL_DRIFT, OUTSIDE, P_L2},
 };
-use crate::water::gate;
+use crate::{causes::MIRRORED_PRESSURE, water::gate};
 use base::{
     gate::{Bound, Evidence, Gate},
     mutation::Constant,
@@ -111,10 +111,9 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
     let id = format!("{NAME}.{variant}.{compressibility}");
     let known = "the pressure of water at rest is known exactly; 2 % of its rms is a fifth of the weight of \
                  one of 20 rows";
-    let mirrored = "a mirror repeats the pressure of the water before the bottom where it should go on \
-                    rising, so the lowest row bears 0.8 rho g dx more than its own; (5) does not feel a \
-                    pressure that alternates between rows, so the rows above alternate with it, the less the \
-                    more is damped. At most rho g dx in every row is 8.7 % of the rms at 20 rows";
+    let mirrored = "The lowest row bears 0.8 ρ g dx too much, and errors of rows above alternate in sign, \
+                    because the pressure force (5) does not act against a pressure that alternates between \
+                    rows. The bound: an error of ρ g dx in every row, which is 8.7 % of the rms at 20 rows.";
     let stays = "the level of water at rest stays: a tenth of one of 20 spacings is what the surface may \
                  settle by, as the kernel sees no water above it";
     let lowest = "the lowest row starts where it belongs: a wall that pushes it away by a quarter of a \
@@ -125,7 +124,7 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
     let pressure = exact(P_L2, Bound::Below(0.02), known);
     vec![
         if variant == "ghosts" {
-            pressure.with_limitation(Bound::Below(0.087), mirrored)
+            pressure.with_limitation(Bound::Below(0.087), mirrored).because_of(&MIRRORED_PRESSURE)
         } else {
             pressure
         },

@@ -1,0 +1,67 @@
+//! Why water lies outside of its bounds.
+
+use base::gate::Cause;
+
+/// Images behind a ghost wall with the opposite velocity.
+pub static NO_SLIP_IMAGES: Cause = Cause::new(
+    "Ghost particles carry the opposite velocity along their wall, which the continuity equation (3) takes \
+     for changes of density where particles are disordered.",
+    "Images that reverse the velocity for viscosity alone, as in `ghosts-split`, or walls that extrapolate \
+     the pressure, as in `modern`.",
+    "2026-11-21",
+);
+
+/// Nothing holds a particle in the plane of a ghost wall.
+pub static PRESSED_THROUGH: Cause = Cause::new(
+    "A particle that is pressed into the plane of a ghost wall feels equal forces from both sides and may \
+     cross it.",
+    "Walls of particles, as in `modern`, or a rule that returns particles that cross.",
+    "2026-11-21",
+);
+
+/// What artificial viscosity does beside damping noise.
+pub static VISCOSITY: Cause = Cause::new(
+    "Artificial viscosity, which is proportional to spacing and sound speed, takes energy from the water and \
+     slows its front.",
+    "Finer spacing, or less artificial viscosity together with density diffusion, as in `modern`.",
+    "2026-11-21",
+);
+
+/// The equations are not the experiment.
+pub static TWO_DIMENSIONS: Cause = Cause::new(
+    "Two-dimensional water without gate, friction and air is not the experiment: it runs faster, in a \
+     thinner layer.",
+    "A computation in three dimensions with the moving gate, friction at the walls and air.",
+    "2026-11-21",
+);
+
+/// Water that pulls.
+pub static TENSION: Cause = Cause::new(
+    "Pressure is not cut off at zero, so water that is less dense than at rest pulls at the walls.",
+    "Walls that cannot pull, as in `modern`, or pressure that is cut off at zero.",
+    "2026-11-21",
+);
+
+/// Sums over too few neighbours.
+pub static SHORT_KERNEL: Cause = Cause::new(
+    "The strain moves rows of particles two initial spacings apart, and a smoothing length of 1.5 spacings \
+     is too short for accurate sums there.",
+    "A smoothing length of 2.5 initial spacings, as in `modern`.",
+    "2026-11-21",
+);
+
+/// A mirror knows no gravity.
+pub static MIRRORED_PRESSURE: Cause = Cause::new(
+    "Ghost particles mirror the pressure of the water at the bottom, where it should go on rising, so the \
+     lowest row bears too much.",
+    "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
+    "2026-11-21",
+);
+
+/// Density from its rate alone.
+pub static RATE_OF_DENSITY: Cause = Cause::new(
+    "The continuity equation (3) knows changes of density alone, so water that starts too near to a wall is \
+     not pushed away.",
+    "Water that starts half a spacing from the walls, or density as a sum over neighbours.",
+    "2026-11-21",
+);
