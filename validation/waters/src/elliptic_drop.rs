@@ -414,10 +414,10 @@ fn study(tier: Tier, runs: &Runs) -> Study {
 }
 
 fn figure(tier: Tier, runs: &Runs) -> Figure {
-    let caption = "Left: semi-axes of the drop over time, 40 particles across, and the exact ones (`seed` in \
-                   the full tier only). Right: the drop of the variant `modern` at the end, coloured by \
-                   pressure over the exact pressure at its centre at the start; dots have the size of an \
-                   initial spacing, and the strain has left two of them between rows.";
+    let caption = "Left: semi-axes of the drop over time at 40 particles across, and the exact ones (`seed` \
+                   in the full tier only). Right: the drop of `modern` at the end, coloured by pressure \
+                   over the exact initial pressure at its centre. Dots have the size of an initial spacing; \
+                   rows are two of these apart.";
     let axes = (Axis::linear("A t [-]"), Axis::linear("semi-axis [R]"));
     let mut plot = Plot::new("", axes.0, axes.1);
     let at_40 = |variant: &str| {
@@ -462,10 +462,8 @@ fn picture(record: &Record) -> ParticleMap {
 }
 
 fn table(runs: &Runs) -> Table {
-    let caption = "Largest errors of the semi-axes until A t = 0.8, where the drop is four times as long \
-                   as wide and its rows of particles are two spacings apart: a kernel that does not reach \
-                   across them has an error that no spacing takes away. Energies in units of the initial \
-                   kinetic one.";
+    let caption = "Largest relative errors of the semi-axes until A t = 0.8, when the drop is four times as \
+                   long as wide. Energies are over the initial kinetic energy.";
     let s = |record: &Record| record.settings_as::<DropSettings>();
     let digits = |digits| move |value| Cell::num(value, digits);
     Columns::of_variants()

@@ -112,10 +112,9 @@ fn pairs(record: &Record) -> f64 {
 
 fn table(runs: &Runs) -> Table {
     let caption = format!(
-        "One thing changed at a time, in the tank of Lobovsky et al. at H/dx = {N}, until t √(g/H) = {END}. \
-         Errors of front and levels: rms after the best shift; of the impulse: mean over P1 to P3, for one \
-         √(H/g) from the arrival. Noise: rms distance of P2 from its running mean after that. Pairs: \
-         neighbours visited, exact.",
+        "The tank of Lobovsky et al. at H/dx = {N} until t √(g/H) = {END}, with one thing changed at a \
+         time. Errors are of front and levels after the best shift (rms), and of the impulses on P1 to P3 \
+         during one √(H/g) (mean). Noise is the rms distance of P2 from its running mean.",
     );
     let changed = |record: &Record| {
         let is_it = |row: &&(&str, Change)| spec(row.0, row.1).key() == record.key();

@@ -52,7 +52,7 @@ fn order([coarse, middle, fine]: [&Curve; 3]) -> [f64; 3] {
 pub fn orders(tier: Tier, runs: &Runs) -> Study {
     let caption = format!(
         "Observed order of the front: log2 of the ratio of the rms of successive differences of Z(T), 1 ≤ T \
-         ≤ 3.3, and as its error the range over thirds of that time. The limit is Richardson's with that \
+         ≤ 3.3, with its range over thirds of that time. The limit is Richardson's extrapolation with that \
          order. Three other codes have {} to {} at T = 3.",
         PEERS[1].1, PEERS[1].2
     );

@@ -42,8 +42,8 @@ pub fn at_speed(c0: f64) -> RunSpec {
 
 /// The sound speed: Mach number, excursion of the density, front.
 pub fn sound(runs: &Runs) -> Study {
-    let caption = "The column of Martin & Moyce at a/dx = 20, variant `modern`, over the sound speed. \
-                   Artificial viscosity is proportional to it.";
+    let caption = "Mach number, density and front of the column of Martin & Moyce at a/dx = 20, variant \
+                   `modern`, over the sound speed c0, to which artificial viscosity is proportional.";
     let c0 = |record: &Record| record.settings_as::<DamSettings>().c0;
     let table = Columns::default()
         .of(["c0", "√(g H)"], c0, |value| Cell::num(value, 3))
@@ -130,7 +130,8 @@ pub fn extremes(tier: Tier) -> impl Iterator<Item = Extreme> {
 
 /// What came of them.
 pub fn extreme_settings(tier: Tier, runs: &Runs) -> Study {
-    let caption = "The collapse, variant `modern`, with settings far outside of the usual.";
+    let caption = "The collapsing column, variant `modern`, with settings far outside of the usual, and \
+                   what must come of each.";
     let all: Vec<Extreme> = extremes(tier).collect();
     let of = |record: &Record| all.iter().find(|extreme| extreme.spec.key() == record.key());
     let must = |holds: bool| if holds { "keep water and energy" } else { "end as diverged" };

@@ -103,12 +103,10 @@ fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
     let labels =
         [["T = t √(2g/a) [-]", "front Z [a]"], ["τ = t √(g/a) [-]", "residual height [2a]"]];
     let spreads = [FRONT_SPREAD, 0.5 / 18.0];
-    let caption = "A column of water of width a = 57.15 mm and height 2a, released at once. Left: place of \
-                   its front from the back wall; right: height left at the back wall, computed as the depth \
-                   0.2 a from it, beyond the layer of a few spacings that lags there. Circles: Martin & \
-                   Moyce 1952, released by a diaphragm; bands: ± 0.1 a, the spread of digitised curves, and \
-                   half of the distance of stations. Diamonds: what three other SPH codes agree on. No clock \
-                   is shifted; the table has the shifts.";
+    let caption = "Front from the back wall (left) and height at the back wall (right) of a water column of \
+                   width a = 57.15 mm and height 2a. Circles are the experiment of Martin & Moyce 1952 \
+                   (grey: its spread), diamonds three other SPH codes. The computed height is the depth at \
+                   0.2 a, and no clock is shifted.";
     let mut figure = Figure::new("dam-break-martin-moyce", caption).columns(2);
     for (k, measured) in [&front, &height].into_iter().enumerate() {
         let end = if k == 0 { 3.6 } else { 2.6 };
@@ -144,13 +142,10 @@ fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
 }
 
 fn free_table(records: &[&Record]) -> Table {
-    let caption = "Distance from Martin & Moyce, as released and after the best shift of the clock; the \
-                   computation's clock is put forward by it. Front and height are on one clock, on which a \
-                   shift of 1 τ is one of √2 T: where the two differ, a late diaphragm alone does not \
-                   explain the distance, and a negative one it cannot explain at all. `seed` is not run at \
-                   a/dx = 80, where it would take half as long as all other runs of this case. The \
-                   experiment has Z = 2.36 at T = 2 and 3.70 at T = 3; three other SPH \
-                   codes have 2.62 to 2.66 and 3.97 to 4.00.";
+    let caption = "Distance from Martin & Moyce, as released and after the shift of the computed clock that \
+                   makes it least. A late diaphragm explains positive shifts that agree (1 τ is √2 T), and \
+                   no others. The experiment has Z = 2.36 and 3.70 at T = 2 and 3, three other codes 2.62 \
+                   to 2.66 and 3.97 to 4.00.";
     columns("a/dx")
         .number("Z at T = 2", "a", metrics::Z.at(2))
         .number("Z at T = 3", "a", metrics::Z.at(3))
@@ -178,6 +173,9 @@ fn tank(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
         .block(impulses(&records, &lobovsky))
         .block(tank_table(&records))
         .block(impact_table(&records));
+    if let Some(away) = away(&records) {
+        study = study.prose(away);
+    }
     if let Some(record) = finest {
         study = study.block(pictures(record, "dam-break-lobovsky-pictures", (1.61 / 0.3, 2.0)));
     }
@@ -188,11 +186,9 @@ fn tank(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
 }
 
 fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
-    let caption = "Water 300 mm deep and 600 mm long in a tank of 1610 mm. Front of the water, and depth at \
-                   four stations from the back wall, over the experiment of Lobovsky et al. (black; two \
-                   series where there are two, the band between them). Front and H1 have no band: their \
-                   uncertainty is not stated by the source, and there is one series of each. Times count \
-                   from the release and from the first motion of the gate; no clock is shifted.";
+    let caption = "Front of the water, and its depth at four stations from the back wall, of a column 600 \
+                   mm long and 300 mm high in a tank of 1610 mm. Black is the experiment of Lobovsky et \
+                   al.; at H2 to H4 there are two series, with the band between them. No clock is shifted.";
     let mut figure = Figure::new("dam-break-levels", caption).columns(3);
     let end = 6.0;
     let axis = |label: String| (Axis::linear("t √(g/H) [-]"), Axis::linear(label));
@@ -231,12 +227,9 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
 /// Pressures of the finest run.
 fn pressures(finest: &Record, lobovsky: &Lobovsky) -> Figure {
     let caption = format!(
-        "Pressure on the far wall at four heights, mean over a sensor of 4.2 mm and over 0.01 √(H/g), of \
-         {} (blue), against the time since the wave arrives at P1. Black: one event of the experiment, \
-         means over 0.5 ms; grey in P2: a second sensor at the same height in the same event. Axes are cut \
-         at 3.5 ρ g H: peaks are those of a nearly incompressible impact between particles, last as long as \
-         sound takes across a few spacings, and scatter in the experiment too. Impulses, the next figure, \
-         are judged.",
+        "Pressure on four sensors in the far wall, {} (blue), after the wave arrives at P1. Black is the \
+         experiment of Lobovsky et al., and grey a second sensor at the height of P2. Peaks are cut at 3.5 \
+         ρ g H because they scatter in both; impulses are judged instead.",
         name_of(finest, "H")
     );
     let mut figure = Figure::new("dam-break-pressures", caption).columns(2);
@@ -276,11 +269,10 @@ fn since(curve: &Curve, arrival: f64) -> Curve {
 
 /// Impulses since the arrival of all runs.
 fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
-    let caption = "Impulse on the same sensors since the wave arrives at P1, the integral of the pressure. \
-                   Black: the experiment; band: ± the difference of two sensors at the height of P2, side by \
-                   side in one event, at each time, in every panel. Impulses are judged at 1, where that is \
-                   6.0 % of P2, within twice the standard uncertainty of one sensor, 8.5 %. A run that \
-                   diverged has no curve.";
+    let caption = "Impulse (integral of the pressure over time) on four sensors in the far wall after the \
+                   wave arrives at P1. Black is the experiment of Lobovsky et al.; the band is the \
+                   difference of two sensors at the height of P2. Impulses at 1 √(H/g) are judged, within \
+                   8.5 %.";
     let mut figure = Figure::new("dam-break-impulses", caption).columns(2);
     let so_far = |curve: &Curve, arrival: f64| -> Curve {
         let later = since(curve, arrival).into_iter().filter(|(t, _)| *t >= 0.0);
@@ -312,13 +304,10 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
 }
 
 fn tank_table(records: &[&Record]) -> Table {
-    let caption = "Distance from Lobovsky et al., as released and after the best shift of the clock; the \
-                   computation's clock is put forward by it. Front and levels share one clock in the \
-                   experiment, yet their best shifts differ: no one delay explains both distances. Speed \
-                   of the front: slope of a straight line through it from t = 1 to 2.3 √(H/g), which no \
-                   shift of the clock hides. Tongue: relative error of the mean level at H4 for one \
-                   √(H/g) from its arrival. `seed` is not run at 60 and 120, where it would take 2.5 times \
-                   as long as `modern`, whose run at 120 is the longest of this case.";
+    let caption = "Distance from Lobovsky et al., as released and after the shift of the computed clock \
+                   that makes it least. The speed of the front is its slope from t = 1 to 2.3 √(H/g). \
+                   Tongue is the relative error of the mean level at H4 during one √(H/g) after the water \
+                   arrives there.";
     columns("H/dx")
         .number("rms of front", "H", FRONT.rms)
         .number("after shift", "H", FRONT.rms_shifted)
@@ -329,11 +318,11 @@ fn tank_table(records: &[&Record]) -> Table {
         .number("after shift", "H", LEVELS.rms_shifted)
         .number("levels shift", "√(H/g)", LEVELS.shift)
         .percent("tongue at H4", "-", metrics::TONGUE, 1.0)
-        .table(caption.to_string() + &away(records), records.iter().copied())
+        .table(caption, records.iter().copied())
 }
 
 /// That finer runs are farther from the experiment, if they are.
-fn away(records: &[&Record]) -> String {
+fn away(records: &[&Record]) -> Option<String> {
     let ladder: Vec<&Record> = records.iter().copied().filter(|r| r.variant == "modern").collect();
     let each = |of: &dyn Fn(&Record) -> String| -> String {
         ladder.iter().map(|record| of(record)).collect::<Vec<_>>().join(", ")
@@ -341,30 +330,27 @@ fn away(records: &[&Record]) -> String {
     let value = |r: &Record, metric: MetricName| r.value(metric).unwrap_or(f64::NAN);
     let number = |metric: MetricName| each(&|r| sig(value(r, metric.clone()), 3));
     let error = |r: Option<&&Record>| r.and_then(|r| r.value(FRONT.rms_shifted));
-    if error(ladder.last()) > error(ladder.first()) {
+    let is_away = error(ladder.last()) > error(ladder.first());
+    is_away.then(|| {
         format!(
-            " Finer runs of `modern` are not nearer to the experiment: at H/dx = {} its front is {} H away \
-             after the shift, at a speed of {} √(g H), and the impulse on P2 is {} in error. What they \
-             approach is water in two dimensions, without gate and friction; where a coarse one agrees, its \
-             errors and what it lacks cancel.",
+            "Finer runs of `modern` are not nearer to the experiment: at H/dx = {} the front is {} H away \
+             after the shift, its speed is {} √(g H), and the impulse on P2 is {} in error. They approach \
+             two-dimensional water without gate and friction, so a coarse run that agrees has errors that \
+             cancel.",
             each(&|r| n(r).to_string()),
             number(FRONT.rms_shifted.into()),
             number(metrics::FRONT_SPEED.into()),
             each(&|r| percent(value(r, metrics::IMPULSE[1].at(1)), 2)),
         )
-    } else {
-        String::new()
-    }
+    })
 }
 
 /// What strikes the far wall.
 fn impact_table(records: &[&Record]) -> Table {
-    let caption = "Impulses on the far wall: relative error against Lobovsky et al. from the arrival at P1 \
-                   on, for 1 and for 2.5 √(H/g); two sensors of the experiment at the height of P2 differ by \
-                   6.0 % and 13.5 % in them. Only those to 1, when the jet has risen, are judged. The wave \
-                   arrives at P1 at 2.44 on the clock of the measured pressures, and would at about 2.6 by \
-                   the measured front. Noise of P2 in the experiment: 0.020. A negative pressure is \
-                   tension, and an error below −100 % a negative impulse.";
+    let caption = "Relative errors of impulses on the far wall during 1 (judged) and 2.5 √(H/g) after the \
+                   arrival at P1. Two sensors of Lobovsky et al. at the height of P2 differ by 6.0 and 13.5 \
+                   %. The experiment arrives at 2.44 √(H/g) with a noise of 0.020 at P2; an error below \
+                   −100 % is tension.";
     let mut table = columns("H/dx").number("arrival at P1", "√(H/g)", metrics::ARRIVAL);
     for window in reference::WINDOWS {
         for (k, impulse) in metrics::IMPULSE.into_iter().enumerate() {
@@ -385,9 +371,9 @@ fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
         false => ("The tank of Lobovsky et al.", "H"),
     };
     let caption = format!(
-        "{scene} at six times, {}, coloured by pressure, which is cut at 0 and 1 ρ g H: tension and impact \
-         have the end colours. Dots have the size of a spacing. A spike at x = 0 is particles that lag at \
-         the back wall; the measured depth is not read there.",
+        "{scene} at six times, {}, coloured by pressure, which is cut at 0 and 1 ρ g H. Dots have the size \
+         of a spacing. The spike at x = 0 is particles that lag at the back wall; the depth is measured \
+         beyond them.",
         name_of(record, side)
     );
     let mut figure = Figure::new(id, caption).columns(2);
@@ -418,7 +404,7 @@ fn film(tier: Tier, runs: &Runs) -> Result<Film, String> {
     };
     let frames: Vec<Figure> = (0..FRAMES).map(frame).collect();
     let caption = format!(
-        "The water in the tank of Lobovsky et al. as a film, variant `modern`, H/dx = {FILM_ROWS}, coloured \
+        "Film of the water in the tank of Lobovsky et al., variant `modern`, H/dx = {FILM_ROWS}, coloured \
          by pressure, which is cut at 0 and 1 ρ g H."
     );
     Film::new("dam-break-film", caption, &frames, 160)
@@ -426,12 +412,10 @@ fn film(tier: Tier, runs: &Runs) -> Result<Film, String> {
 
 /// Where the energy goes.
 fn energies(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Energy of the column of Martin & Moyce, a/dx = 20, over M g H/2, the potential energy of \
-                   a column that stands on the floor. That of `seed` starts at 1.03: particles that stand on \
-                   the floor raise its water by half a spacing, which is 0.025, and it starts compressed. \
-                   Lines: what the water has; dashed: what each term has taken so far, summed from its \
-                   power, where it is more than 1e-4. The black line is the sum of all, which must \
-                   stay at its first value.";
+    let caption = "Energy of the column of Martin & Moyce at a/dx = 20, over M g H/2, its potential energy \
+                   on the floor. Solid lines are what the water has, and dashed lines what each term has \
+                   taken so far, where that is more than 1e-4. Black is the sum, which must stay at its \
+                   first value.";
     let mut figure = Figure::new("dam-break-energy", caption).columns(2);
     for variant in ["seed", "modern"] {
         if let Some(record) = runs.record(&specs::free(tier, variant, 20)) {
@@ -477,9 +461,9 @@ fn energy_plot(record: &Record) -> Plot {
 }
 
 fn energy_table(tier: Tier, runs: &Runs) -> Table {
-    let caption = "What each term has added to the energy until the end, over M g H/2 at the start; below \
-                   0 it took energy. The work of the walls is what their pressure does beyond what they \
-                   store. Momentum over M √(g H).";
+    let caption = "Energy that each term has added until the end, over M g H/2 at the start; below 0 it \
+                   took energy. The work of the walls is what their pressure does beyond what they store. \
+                   Momentum is over M √(g H).";
     let scene = |record: &Record| if is_free(record) { "Martin & Moyce" } else { "Lobovsky" };
     let sci = |value| Cell::sci(value, 2);
     let mut columns = Columns::of_variants().text("case", move |record| scene(record)).of(

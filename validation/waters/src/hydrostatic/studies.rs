@@ -14,7 +14,7 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let pressures = Study::new("hydrostatic-pressure", "Pressure of water at rest")
         .block(pressures(runs))
         .block(table(
-            "All runs after 20 acoustic periods.",
+            "Errors of all runs of water at rest after 20 acoustic periods, unless another time is given.",
             runs.all().iter().map(|run| &run.record),
         ));
     let mut studies = vec![pressures];
@@ -22,8 +22,8 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         let of = |variant: &'static str| {
             runs.records(COMPRESSIBILITIES.map(|(c, _)| plan::plain(variant, c)))
         };
-        let caption =
-            "Every wall with every density treatment, Wendland C2, h/dx 1.5, leapfrog, 20 rows.";
+        let caption = "Every wall with every treatment of density, for water at rest with Wendland C2, h/dx = 1.5, \
+             leapfrog and 20 rows.";
         let by_wall = table(caption, TABLE.into_iter().flat_map(of));
         let study = Study::new("hydrostatic-walls", "Walls and density treatments");
         studies.push(study.block(by_wall));
@@ -33,12 +33,10 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 
 /// p over y of the variants at g H/c₀² = 0.01, and how far it is from exact.
 fn pressures(runs: &Runs) -> Figure {
-    let caption = "Pressure of every particle over its height after 20 acoustic periods, g H/c0^2 = 0.01, 20 \
-                   rows by 10 columns, on the exact line (left), and its distance from the exact pressure \
-                   at the particle's place (right). The lines differ by the place of the surface, half a \
-                   spacing lower where the particles stand on the bottom's surface: each has the colour of \
-                   its variant. `seed` and `ghosts` are the paper's two walls, `modern` \
-                   has walls that extrapolate pressure.";
+    let caption = "Pressure of every particle over its height after 20 acoustic periods, and its distance \
+                   from the exact pressure there, at g H/c0² = 0.01, 20 rows by 10 columns. `seed` and \
+                   `ghosts` are the paper's two walls, and `modern` has walls that extrapolate pressure. \
+                   Exact lines differ because the surface is half a spacing lower in `seed`.";
     let mut over = Plot::new("", Axis::linear("p/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
     let mut error =
         Plot::new("", Axis::linear("(p - p_exact)/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
