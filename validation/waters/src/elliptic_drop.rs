@@ -358,8 +358,8 @@ fn plan(tier: Tier) -> Vec<Planned> {
 const FALL: f64 = 1.0;
 
 fn gates(id: &str, n: usize) -> Vec<Gate> {
-    let axes = "semi-axes within 1 % at 40 particles across; the surface is known to a share of the \
-                spacing, so of first order in it";
+    let axes = "The surface is known to a fraction of the spacing, so the error of the semi-axes is of \
+                first order in it: 1 % at 40 particles across.";
     let bound = Bound::Below(0.01 * (40.0 / n as f64).max(0.5));
     let mut gates = invariants(id);
     let known = [Bound::Below(0.058), Bound::Below(0.64 / n as f64)];
@@ -380,10 +380,10 @@ const SHORT: &str = "`modern` with this h/dx of 1.5 has an error of a of 5.8 % a
                      instead of 4.0 and 3.1 %.";
 
 fn invariants(id: &str) -> Vec<Gate> {
-    let round_off = "forces of pairs are equal and opposite, and the only other force is gravity, which \
-                     both integrators integrate exactly: round-off of some thousand steps";
-    let closes = "pressure and (3) exchange energy exactly and every other term is accounted for: 0.1 % is \
-                  for the time step and for sampling the powers";
+    let round_off = "Forces of pairs are equal and opposite, and both integrators integrate gravity \
+                     exactly, so only round-off of some thousand steps is left.";
+    let closes = "Pressure and the continuity equation (3) exchange energy exactly, and every other term \
+                  reports its power. The bound of 0.1 % is for the time step and for sampling the powers.";
     let id = &format!("{NAME}.{id}");
     vec![
         gate(id, MOMENTUM_ERROR, Bound::Below(1e-11), Evidence::Invariant, round_off),
@@ -402,8 +402,8 @@ fn study(tier: Tier, runs: &Runs) -> Study {
             let (still, falling) = both?;
             Some((still.value(metric)? - falling.value(metric)?).abs())
         };
-        let because = "gravity acts on all particles alike, so a drop that falls deforms like one that \
-                       does not; round-off of its places, in a flow that is smooth";
+        let because = "Gravity acts on all particles alike, so a falling drop deforms like one that does \
+                       not fall. Only round-off of positions is left.";
         let id = format!("{NAME}.{variant}.falls-in-shape");
         let (what, bound) = ("difference of a_end and b_end", Bound::Below(1e-9));
         let gate = Gate::new(id, what, bound, Evidence::Invariant, because);

@@ -167,10 +167,10 @@ pub fn theory(Rules { dt, dt_limit, .. }: Rules) -> f64 {
 
 fn limit(variant: &'static str, scene: &str, spec: RunSpec) -> StepLimit {
     let rules = DAM_BREAK.rules(&spec).unwrap_or(Rules::REFUSED);
-    let because = "R1 to R5: a resting lattice; the moving, disordered water is expected between 0.7 and \
-                   1.0 of its limit, and the step of the case must be below what is measured. At 1.2 of it \
-                   leapfrog lets the stiffest mode grow 3.5-fold a step: a run that ends there would tell of \
-                   a limit that is not that of this water";
+    let because = "Theory is the limit of a lattice at rest; moving, disordered water is expected at 0.7 to \
+                   1.0 of it, and the step of the case must be below what is measured. A run that holds at \
+                   1.2 would measure another limit, because the stiffest mode of leapfrog grows 3.5-fold a \
+                   step there.";
     let id = format!("{NAME}.limit.{variant}.{}", scene.split(' ').next().unwrap_or_default());
     let bound = Bound::Within(rules.dt / rules.dt_limit, 1.2);
     let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);

@@ -71,10 +71,9 @@ pub fn orders(tier: Tier, runs: &Runs) -> Study {
             _ => None,
         };
         if variant == "modern" {
-            let because = "artificial viscosity, the place of a surface and what a wall sees of it are of \
-                           first order in dx. The front is the place of a particle, known to a quarter of a \
-                           spacing: 0.013 and 0.006 a of differences of 0.048 and 0.026, by which an order \
-                           is uncertain by 0.5";
+            let because = "Artificial viscosity, the place of a surface and what a wall sees of it are of \
+                           first order in dx. The front is known to a quarter of a spacing, 0.013 and 0.006 \
+                           a, of differences of 0.048 and 0.026 a, so the order is uncertain by 0.5.";
             let bound = Bound::Within(0.5, 1.5);
             let id = "dam_break.martin-moyce.modern.front.order";
             let gate = Gate::new(id, "order of the front", bound, Evidence::Theory, because);

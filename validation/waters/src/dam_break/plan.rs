@@ -51,18 +51,18 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
 
 /// What holds whatever the water does.
 fn invariants(id: &str) -> Vec<Gate> {
-    let tight = "a wall that lets water through is none; a splash may dent one of particles, whose surface \
-                 lies half a spacing before the first of them: beyond that it is through";
-    let kept = "particles keep their masses, and none comes or goes";
-    let closes = "pressure and (3) exchange energy exactly, and each other term reports its power: what is \
-                  left is the time step and the sampling of the powers";
-    let momentum =
-        "what walls and gravity give is what the water has; the rest is sampling the force";
-    let slow = "weakly compressible: Mach 0.3, beyond which density changes by 5 % and the speed of sound \
-                by a sixth, is no water";
-    let still =
-        "walls that stand still do no work; 5 % is for what their pressure stores and gives back";
-    let ends = "a run of water that does not reach its end says nothing of what comes then";
+    let tight = "No particle may pass a wall. A splash may dent a wall of particles by half a spacing, \
+                 because its surface lies that far before the first of them.";
+    let kept = "Particles keep their masses, and none is added or removed.";
+    let closes = "Pressure and the continuity equation (3) exchange energy exactly, and each other term \
+                  reports its power. Only errors of the time step and of sampling the powers remain.";
+    let momentum = "The momentum of the water is what walls and gravity give it. Only the error of sampling \
+                    the force remains.";
+    let slow = "Above Mach 0.3 the density changes by 5 % and the speed of sound by a sixth, and the flow \
+                is no longer that of nearly incompressible water.";
+    let still = "Walls at rest do no work. The bound of 5 % is for the energy that their pressure stores \
+                 and gives back.";
+    let ends = "A run that ends early says nothing about what comes later.";
     let invariant =
         |metric: MetricKey, bound, because| gate(id, metric, bound, Evidence::Invariant, because);
     vec![
@@ -90,13 +90,16 @@ fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
 fn free_references(id: &str) -> Vec<Gate> {
     let reference =
         |metric: MetricName, bound, because| gate(id, metric, bound, Evidence::Reference, because);
-    let peers = "three other codes agree within 0.04 that the front of two-dimensional water released at \
-                 once is there; 0.1 is the spread of digitised curves of the experiment, which is slower";
-    let front = "the spread of digitised curves of the experiment is 0.1 a";
-    let late = "the diaphragm takes time to open and a film of real water sticks: the experiment is late, \
-                by 0.175 as it is customary to assume, and by 0.25 against other codes; never early";
-    let height = "stations of the height are 1/18 of the column apart";
-    let clock = "a diaphragm that takes time to open can only delay: the height, as the front";
+    let peers = "Three other codes agree within 0.04 on this place of the front of two-dimensional water \
+                 that is released at once. The bound adds 0.1, the spread of digitised curves of the \
+                 experiment, which is slower.";
+    let front = "The spread of digitised curves of the experiment is 0.1 a.";
+    let late = "The experiment is late and never early, because the diaphragm takes time to open and a film \
+                of real water sticks. Its delay is usually assumed to be 0.175, and is 0.25 against other \
+                codes.";
+    let height = "The height is measured at stations that are 1/18 of the column apart.";
+    let clock =
+        "A diaphragm that takes time to open can only delay the height, as it delays the front.";
     let at = |(t, low, high): (f64, f64, f64)| {
         let bound = Bound::Within(low - FRONT_SPREAD, high + FRONT_SPREAD);
         reference(metrics::Z.at(t), bound, peers)
@@ -115,13 +118,14 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
     let id = format!("{NAME}.lobovsky.{variant}.{n}");
     let reference =
         |metric: MetricName, bound, because| gate(&id, metric, bound, Evidence::Reference, because);
-    let front = "water of two series of the experiment arrives at H2, H3 and H4 up to 0.038 (H/g)^(1/2) \
-                 apart, over 2^(1/2) the standard uncertainty of one; twice that at the measured speed of \
-                 1.515 (g H)^(1/2) is 0.08 H";
-    let levels = "twice the distance between two series of the experiment at H4 (rms 0.024 H)";
-    let impulse = "two sensors at 15 mm, side by side in one event, differ by 6 % in this window, over \
-                   2^(1/2) the standard uncertainty of one; twice that is 8.5 %, taken for the other \
-                   heights too, for which none is known";
+    let front = "In two series of the experiment, water arrives at H2, H3 and H4 up to 0.038 √(H/g) apart, \
+                 which is √2 times the standard uncertainty of one series. Twice this uncertainty at the \
+                 measured speed of 1.515 √(g H) is 0.08 H.";
+    let levels =
+        "The bound is twice the rms distance of two series of the experiment at H4, 0.024 H.";
+    let impulse = "Two sensors side by side at 15 mm differ by 6 % in one event in this window, which is √2 \
+                   times the standard uncertainty of one. The bound is twice this uncertainty, 8.5 %, for \
+                   the other heights too, where none is known.";
     let spread = 2.0 * IMPULSE_SPREAD / 2.0_f64.sqrt();
     let mut gates = invariants(&id);
     gates.push(reference(FRONT.rms_shifted.into(), Bound::Below(0.08), front));

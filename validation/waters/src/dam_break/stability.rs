@@ -71,11 +71,12 @@ impl Extreme {
     /// The run with its gates.
     pub fn planned(self) -> Planned {
         let id = format!("{NAME}.extreme.{}", self.name.replace(' ', "-"));
-        let stays = "it is water in a tank: it stays there";
-        let closes = "pressure and (3) exchange energy exactly, and every other term is accounted for: 1 % \
-                      is for a coarse spacing and for the sampling of the powers";
-        let grows =
-            "twice the limit grows without bound, which is a typed failure with step and particle";
+        let stays = "Water in a tank stays in it.";
+        let closes = "Pressure and the continuity equation (3) exchange energy exactly, and every other \
+                      term reports its power. The bound of 1 % is for a coarse spacing and for sampling the \
+                      powers.";
+        let grows = "At twice the limit of the time step errors grow without bound, so the run must end as \
+             diverged.";
         let judged =
             |metric, bound, because| gate(&id, metric, bound, Evidence::Invariant, because);
         let gates = if self.holds {

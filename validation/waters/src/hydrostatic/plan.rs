@@ -91,8 +91,8 @@ pub fn declaration(tier: Tier) -> Declaration {
         Ladder::new(variant, ladder(tier, variant).iter().map(|rows| level(variant, *rows)))
     };
     let error = ErrorOf::Metric(P_L2.into());
-    let about = "rms distance from the exact pressure after 20 acoustic periods, g H/c0^2 = 0.01, over its \
-                 rms.";
+    let about = "Rms distance from the exact pressure after 20 acoustic periods at g H/c0² = 0.01, over the \
+                 rms of the pressure.";
     let accuracy = Accuracy {
         about: about.into(),
         spacing: "dx/H [-]",
@@ -109,17 +109,17 @@ pub fn declaration(tier: Tier) -> Declaration {
 
 fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
     let id = format!("{NAME}.{variant}.{compressibility}");
-    let known = "the pressure of water at rest is known exactly; 2 % of its rms is a fifth of the weight of \
-                 one of 20 rows";
+    let known = "The pressure of water at rest is known exactly. The bound of 2 % of its rms is a fifth of \
+                 the weight of one of 20 rows.";
     let mirrored = "The lowest row bears 0.8 ρ g dx too much, and errors of rows above alternate in sign, \
                     because the pressure force (5) does not act against a pressure that alternates between \
                     rows. The bound: an error of ρ g dx in every row, which is 8.7 % of the rms at 20 rows.";
-    let stays = "the level of water at rest stays: a tenth of one of 20 spacings is what the surface may \
-                 settle by, as the kernel sees no water above it";
-    let lowest = "the lowest row starts where it belongs: a wall that pushes it away by a quarter of a \
-                  spacing leaves a gap that is seen";
-    let still = "nothing moves: less than the energy that raises the surface by a tenth of a spacing, (0.1 \
-                 dx/H)^2 of M g H at 20 rows";
+    let stays = "The level of water at rest stays. The surface may settle by a tenth of one of 20 spacings, \
+                 because the kernel finds no water above it.";
+    let lowest = "The lowest row stays where it starts. A wall that pushes it away by a quarter of a \
+                  spacing leaves a visible gap.";
+    let still = "Nothing moves. The bound is the energy that raises the surface by a tenth of a spacing, \
+                 (0.1 dx/H)² M g H at 20 rows.";
     let exact = |metric, bound, because| gate(&id, metric, bound, Evidence::Analytic, because);
     let pressure = exact(P_L2, Bound::Below(0.02), known);
     vec![
@@ -131,14 +131,14 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
         exact(LEVEL_DRIFT, Bound::Within(-0.005, 0.005), stays),
         exact(GAP, Bound::Within(-0.25, 0.25), lowest),
         exact(KINETIC, Bound::Below(2.5e-5), still),
-        gate(&id, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, "no particle passes a wall"),
+        gate(&id, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, "No particle passes a wall."),
     ]
 }
 
 /// A wall that extrapolates the pressure as if nothing weighed: it lacks half a spacing of water.
 fn control() -> Gate {
-    let because = "control: without g in the extrapolation the bottom bears the mean pressure of the water \
-                   before it instead of that at its own depth, and the water sinks";
+    let because = "Control: without gravity in the extrapolation the bottom bears the mean pressure of the \
+                   water before it instead of the pressure at its own depth, and the water sinks.";
     let id = format!("{NAME}.modern.no-wall-gravity");
     gate(&id, P_L2, Bound::Below(0.02), Evidence::Analytic, because).expected_to_fail()
 }

@@ -22,8 +22,8 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         let of = |variant: &'static str| {
             runs.records(COMPRESSIBILITIES.map(|(c, _)| plan::plain(variant, c)))
         };
-        let caption = "Every wall with every treatment of density, for water at rest with Wendland C2, h/dx = 1.5, \
-             leapfrog and 20 rows.";
+        let caption = "Every wall with every treatment of density, for water at rest with Wendland C2, \
+                           h/dx = 1.5, leapfrog and 20 rows.";
         let by_wall = table(caption, TABLE.into_iter().flat_map(of));
         let study = Study::new("hydrostatic-walls", "Walls and density treatments");
         studies.push(study.block(by_wall));
