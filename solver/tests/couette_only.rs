@@ -15,7 +15,7 @@ fn the_example_reaches_the_end() {
 #[test]
 fn a_program_has_no_symbol_of_what_its_scheme_does_not_name() {
     use symbols::held;
-    for named in ["QuinticSpline", "Viscosity", "Continuity", "Ghosts", "Leapfrog"] {
+    for named in ["QuinticSpline", "Viscosity", "Continuity", "Mirrors", "Leapfrog"] {
         assert!(held(named) > 0, "{named} is not seen, so nothing would be");
     }
     // The search of neighbours, the forces and the drift: mirror particles need no wall sweep.

@@ -2,8 +2,7 @@
 
 use base::functions::{exp, sin};
 use base::record::{MetricKey, Record};
-use harness::{case::*, composed::*, context::Context, declare::*, method::*};
-use harness::{rules::PLANNED_DT, simulate::*};
+use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate::*};
 use nalgebra::Vector2;
 use solver::*;
 use std::f64::consts::TAU;
@@ -56,10 +55,9 @@ fn declaration(_: Tier) -> Declaration {
     let budgets =
         Budgets::of(&accuracy, vec![Budget { variant: "cubic", changes: vec![none, halved] }]);
     let long = DECAY.spec("cubic", |s| s.end = 5.0);
-    let limit = DECAY
-        .rules(&long)
-        .map(|rules| StepLimit::proportional("cubic", "the wave", long, ("step", 1.0), &rules));
-    let limits = StepLimits::new("decay", "Stable is what reaches its end.", limit.ok());
+    let rules = DECAY.rules(&long).unwrap_or(Rules::REFUSED);
+    let limit = StepLimit::proportional("cubic", "the wave", long, ("step", 1.0), &rules);
+    let limits = StepLimits::new("decay", "Stable is what reaches its end.", [limit]);
     let (budgets, limits, accuracy) = (Some(budgets), Some(limits), vec![accuracy]);
     Declaration { budgets, limits, accuracy, ..Declaration::default() }
 }

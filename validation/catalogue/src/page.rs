@@ -36,10 +36,10 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
     let notes = vec![
         format!("**Supporting cases:** {}.", others.join("; ")),
         "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
-         limitation if it lies outside for a known reason and not farther than this reason explains, and fails \
-         otherwise; controls must lie outside. [All verdicts](#verdicts) can be searched and \
-         [limitations](#limitations) are grouped by cause. Errors, orders and costs come from the runs of this \
-         report; results of other codes and reference data are stored with their source, see \
+         limitation if it lies outside for a known reason and not farther than this reason explains, and \
+         fails otherwise; controls must lie outside. [All verdicts](#verdicts) can be searched and \
+         [limitations](#limitations) are grouped by cause. Errors, orders and costs come from the runs of \
+         this report; results of other codes and reference data are stored with their source, see \
          [references](#references)."
             .to_string(),
     ];
@@ -130,8 +130,8 @@ fn verdicts(suite: &Suite) -> Section {
     let reasons = notes.all().map(|(_, reason)| reason.to_string()).collect();
     Section::new(VERDICTS, "All verdicts")
         .prose(
-            "The margin is the unused share of what a bound allows: 100 % is far inside, 0 % is at the bound. Of a \
-             limitation it is the share that is left until it fails. Select a gate to read its reasons.",
+            "The margin is the unused share of what a bound allows: 100 % is far inside, 0 % is at the bound. \
+             Of a limitation it is the share that is left until it fails. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
         .block(margins::figure(suite))
@@ -241,9 +241,9 @@ fn settings_table(results: &CaseResults) -> Table {
 }
 
 fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
-    let caption = "All runs and their cost. Seconds alone are the median of timings with nothing else of this \
-                   program at work; other seconds were taken side by side and are only rough. The state is a \
-                   digest of the bits at the end: the same for any number of threads.";
+    let caption = "All runs and their cost. Seconds alone are the median of timings with nothing else of \
+                   this program at work; other seconds were taken side by side and are only rough. The state \
+                   is a digest of the bits at the end: the same for any number of threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
     Columns::of_variants()
         .text("set", |record| what(case, &record.spec()))

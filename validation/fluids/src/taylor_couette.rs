@@ -368,8 +368,8 @@ mod tests {
         record.value(metric).expect("a metric")
     }
 
-    /// Made-up particles 2 % too fast, drifting inwards by 1 % of V, one of them inside of the inner cylinder,
-    /// two beyond the outer one, and wall particles that do not count.
+    /// Made-up particles 2 % too fast, drifting inwards by 1 % of V, one of them inside of the inner
+    /// cylinder, two beyond the outer one, and wall particles that do not count.
     #[test]
     fn errors_drift_and_escaped_particles_are_those_of_made_up_particles() {
         let flow = TaylorCouette { inner: 1e-3, outer: 2e-3, speed: 0.5 };

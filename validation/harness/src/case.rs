@@ -12,7 +12,7 @@ use crate::{context::Context, declare::Declaration, runs::Runs, study::Study};
 pub use crate::{
     error::RunError,
     planned::{Planned, Tier},
-    rules::Rules,
+    rules::{PLANNED_DT, Rules},
 };
 
 /// One named composition of types with its default settings.

@@ -1,9 +1,10 @@
 //! The first screen of a page: one card a subject, with a picture, numbers and verdicts.
 
+use super::counts::Counts;
 use super::explorer::verdicts_where;
 use super::figure::Figure;
 use super::inline::inline;
-use super::page::{Counts, drawing};
+use super::picture::drawing;
 use maud::{Markup, html};
 
 /// What is said first of one subject.

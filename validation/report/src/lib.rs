@@ -11,6 +11,7 @@ mod canvas;
 mod card;
 mod check;
 mod colour;
+mod counts;
 mod explorer;
 mod figure;
 mod film;
@@ -22,6 +23,7 @@ mod legend;
 mod maps;
 mod number;
 mod page;
+mod picture;
 mod plot;
 mod render;
 mod svg;
@@ -32,6 +34,7 @@ pub use axis::Axis;
 pub use card::Card;
 pub use check::{Summary, check_page};
 pub use colour::{Colour, ColourMap};
+pub use counts::Counts;
 pub use explorer::{Explorer, GateRow, VERDICTS, verdicts_where};
 pub use figure::{
     Align, CategoryMap, Dash, Figure, Layer, Legend, Orientation, Panel, ParticleMap, Plot, Series,
@@ -39,7 +42,7 @@ pub use figure::{
 };
 pub use film::Film;
 pub use number::{exact, percent, sci, seconds, sig};
-pub use page::{Block, Counts, Page, Section};
+pub use page::{Block, Page, Section};
 pub use render::{png, svg};
 pub use table::{Cell, Column, Status, Table};
 pub use ticks::Scale;

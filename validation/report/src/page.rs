@@ -1,11 +1,13 @@
 //! One self-contained page: opens from disk, loads nothing, prints.
 
 use super::card::Card;
+use super::counts::Counts;
 use super::explorer::{Explorer, verdicts_where};
 use super::figure::Figure;
-use super::film::{self, Film};
+use super::film::Film;
 use super::font;
-use super::inline::{escape, inline};
+use super::inline::inline;
+use super::picture::{drawing, image};
 use super::render;
 use super::table::{Status, Table, first_sentence};
 use base::files;
@@ -36,103 +38,6 @@ pub struct Page {
     pub footer: String,
     /// Folder of the figures' PNG files beside the page; empty writes and links none.
     pub png_folder: String,
-}
-
-/// How many gates ended how, and how many runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
-    /// Judged and inside.
-    pub pass: usize,
-    /// Judged and outside.
-    pub fail: usize,
-    /// Outside for a known reason.
-    pub limitation: usize,
-    /// Outside, as it should be.
-    pub expected_failure: usize,
-    /// Runs that diverged.
-    pub diverged: usize,
-}
-
-impl Counts {
-    /// The counts of the given outcomes.
-    pub fn of(outcomes: impl IntoIterator<Item = Status>) -> Self {
-        let mut counts = Self::default();
-        for outcome in outcomes {
-            *counts.slot(outcome) += 1;
-        }
-        counts
-    }
-
-    fn slot(&mut self, status: Status) -> &mut usize {
-        match status {
-            Status::Pass => &mut self.pass,
-            Status::Fail => &mut self.fail,
-            Status::Limitation => &mut self.limitation,
-            Status::ExpectedFailure => &mut self.expected_failure,
-        }
-    }
-
-    /// What came of all gates, failures first, and of the runs, in a sentence.
-    pub fn headline(self) -> String {
-        let of = |count: usize, one: &str, many: &str| match count {
-            0 => None,
-            1 => Some(format!("1 {one}")),
-            n => Some(format!("{n} {many}")),
-        };
-        let parts = [
-            of(self.fail, "gate fails", "gates fail"),
-            of(self.pass, "gate passes", "gates pass"),
-            of(
-                self.limitation,
-                "is outside its bound for a known reason",
-                "are outside their bounds for known reasons",
-            ),
-            of(self.expected_failure, "control fails as it must", "controls fail as they must"),
-            of(self.diverged, "run diverged", "runs diverged"),
-        ];
-        let text = parts.into_iter().flatten().collect::<Vec<_>>().join(", ");
-        if text.is_empty() { "Nothing was judged".into() } else { text }
-    }
-
-    /// Marks and counts, worst first: `△ 2 ✓ 30`.
-    pub fn short(self) -> String {
-        let some = Status::ALL.into_iter().rev().filter(|status| self.count(*status) > 0);
-        let parts: Vec<String> =
-            some.map(|status| format!("{} {}", status.mark(), self.count(status))).collect();
-        parts.join(" ")
-    }
-
-    /// The worst outcome, if there is any.
-    pub fn worst(self) -> Option<Status> {
-        Status::ALL.into_iter().rev().find(|status| self.count(*status) > 0)
-    }
-
-    fn count(mut self, status: Status) -> usize {
-        *self.slot(status)
-    }
-
-    /// The outcomes that there are, worst first, each a link to `target(class)`.
-    pub(super) fn chips(self, target: impl Fn(&str) -> String) -> Markup {
-        let some = Status::ALL.into_iter().rev().filter(|status| self.count(*status) > 0);
-        html! {
-            p.counts {
-                @for status in some {
-                    a class=(status.class()) href=(target(status.class())) {
-                        (status.mark()) " " (self.count(status)) " " (status.name())
-                    }
-                }
-            }
-        }
-    }
-
-    fn html(self) -> Markup {
-        let worst = self.worst().unwrap_or(Status::Pass);
-        html! {
-            div class=(format!("banner {}", worst.class())) {
-                p.verdict { span.mark { (worst.mark()) } " " (self.headline()) }
-            }
-        }
-    }
 }
 
 /// A heading with blocks, and sections below it.
@@ -429,24 +334,6 @@ fn prose(text: &str) -> Markup {
     html! { details.prose { summary { (inline(first)) } p { (inline(rest)) } } }
 }
 
-/// Bytes of an SVG beyond which a page has the figure in pixels: some thousand dots.
-const LARGEST_SVG: usize = 150_000;
-
-/// The figure as SVG, or as pixels where that would be too large.
-pub(super) fn drawing(figure: &Figure) -> Markup {
-    let svg = render::svg(figure);
-    match (svg.len() > LARGEST_SVG).then(|| film::still(figure)) {
-        Some(Ok(png)) => image(&figure.caption, &png),
-        _ => PreEscaped(svg),
-    }
-}
-
-/// An image inside the page. The page is XML too: every element is closed.
-fn image(caption: &str, png: &[u8]) -> Markup {
-    let (caption, data) = (escape(caption), font::base64(png));
-    PreEscaped(format!("<img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"/>"))
-}
-
 /// The frames of a film one below the other; the script shows them one after the other.
 fn moving(film: &Film) -> Markup {
     let (width, height) = film.size;
@@ -489,22 +376,5 @@ mod tests {
             prose(&long).into_string().starts_with("<details class=\"prose\"><summary>It moves.")
         );
         assert_eq!(prose("It moves. So it is.").into_string(), "<p>It moves. So it is.</p>");
-    }
-
-    #[test]
-    fn counts_add_up() {
-        let counts = Counts::of([Status::Pass, Status::Pass, Status::ExpectedFailure]);
-        assert_eq!((counts.pass, counts.fail, counts.expected_failure), (2, 0, 1));
-        assert_eq!(counts.headline(), "2 gates pass, 1 control fails as it must");
-        let all = Counts { fail: 1, limitation: 2, diverged: 3, ..counts };
-        let headline = "1 gate fails, 2 gates pass, 2 are outside their bounds for known reasons, 1 control \
-                        fails as it must, 3 runs diverged";
-        assert_eq!(
-            (all.worst(), counts.worst()),
-            (Some(Status::Fail), Some(Status::ExpectedFailure))
-        );
-        assert_eq!(all.headline(), headline);
-        assert!(all.html().into_string().contains(headline));
-        assert_eq!(Counts::default().headline(), "Nothing was judged");
     }
 }

@@ -597,8 +597,8 @@ mod tests {
         assert_relative_eq!(right, 0.5, max_relative = 1e-9);
     }
 
-    /// The series began after the first step, and that of bars that collide had the centre of a momentum of 0,
-    /// places of 1e14 m and infinite ones, and that of a pulse the mean of no particles.
+    /// The series began after the first step, and that of bars that collide had the centre of a momentum of
+    /// 0, places of 1e14 m and infinite ones, and that of a pulse the mean of no particles.
     #[test]
     fn the_series_begins_at_the_start_and_is_finite() {
         for collide in [false, true] {

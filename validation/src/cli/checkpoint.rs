@@ -77,7 +77,7 @@ pub struct Asked {
     pub spec: RunSpec,
     /// Digest of the sources of the program.
     pub sources: String,
-    /// Wall time between checkpoints [s].
+    /// Wall time between checkpoints \[s\].
     pub every: u32,
     /// Number of frames for ParaView.
     pub vtk: Option<u16>,

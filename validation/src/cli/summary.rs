@@ -28,8 +28,8 @@ pub fn summary(suite: &Suite) -> String {
     ];
     let rows: Vec<Vec<String>> = suite.cases.iter().map(row).collect();
     let mut text = output::table(&heads, &rows);
-    text += "The error is that of the best variant, its cost that on one core; the margin is the unused share\n\
-             of the bound of the worst gate, of a limited one until it fails.\n";
+    text += "The error is that of the best variant, its cost that on one core; the margin is the unused\n\
+             share of the bound of the worst gate, of a limited one until it fails.\n";
     text += &failures(suite);
     let counts = suite.counts();
     if counts.limitation > 0 {

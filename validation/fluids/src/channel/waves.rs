@@ -105,8 +105,8 @@ impl Rings {
     }
 }
 
-/// Periods \[2L/c0\] that count as those of a bouncing wave: the next modes have 0.5 and, between a wall and a
-/// free surface, 2. How far disorder lengthens the period is not known from theory.
+/// Periods \[2L/c0\] that count as those of a bouncing wave: the next modes have 0.5 and, between a wall
+/// and a free surface, 2. How far disorder lengthens the period is not known from theory.
 const PERIOD: Bound = Bound::Within(0.8, 1.25);
 
 /// The study.

@@ -48,8 +48,8 @@ fn beyond(pair: Pair, stiffness: Option<f64>, factor: f64) -> Experiment {
         let because = "ln(c₀/noise)/growth a step. The run may end earlier, by ln(4/0.3) of that logarithm: \
                        the largest of 800 normal numbers is 4 times their deviation, and 30 % of compression \
                        end the run as well. It may end later, by ln(20 · 20 · 2): the noise of 20 × 20 \
-                       particles leaves 1/20 of itself to a wave, of 800 waves one starts 20 times lower with \
-                       a chance of 1/400, and a speed of 2 c₀ ends the run";
+                       particles leaves 1/20 of itself to a wave, of 800 waves one starts 20 times lower \
+                       with a chance of 1/400, and a speed of 2 c₀ ends the run";
         let share = |times: f64| ln(times) / ln(1.0 / NOISE);
         let bound = Bound::Within(1.0 - share(4.0 / 0.3), 1.0 + share(800.0));
         let steps = match record.status {
