@@ -37,10 +37,9 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         format!("**Supporting cases:** {}.", others.join("; ")),
         "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
          limitation if it lies outside for a known reason and not farther than this reason explains, and \
-         fails otherwise; controls must lie outside. [All verdicts](#verdicts) can be searched and \
-         [limitations](#limitations) are grouped by cause. Errors, orders and costs come from the runs of \
-         this report; results of other codes and reference data are stored with their source, see \
-         [references](#references)."
+         fails otherwise; controls must lie outside. [All verdicts](#verdicts) can be searched, and \
+         [limitations](#limitations) are grouped by cause. Results of other codes and [reference \
+         data](#references) are stored; all else comes from the runs of this report."
             .to_string(),
     ];
     let mut sections: Vec<Section> = vec![verdicts(suite), limitations::section(suite)];
@@ -192,10 +191,14 @@ fn case_section(results: &CaseResults) -> Section {
         section = section.child(study_section(study));
     }
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
-    section
-        .block(Block::Details { summary: "Variants".into(), blocks: vec![Block::List(variants)] })
-        .block(settings_table(results))
-        .block(run_table(case, results.runs.all()))
+    section.block(Block::Details {
+        summary: "Variants, settings, all runs".into(),
+        blocks: vec![
+            Block::List(variants),
+            settings_table(results).into(),
+            run_table(case, results.runs.all()).into(),
+        ],
+    })
 }
 
 /// Sections and figures share a name space; figures are named by their study.

@@ -11,8 +11,8 @@ const DENSITY: u32 = 1;
 /// Bits of a colour channel that are kept: edges stay smooth, and the file is a third smaller.
 const BITS: u8 = 4;
 
-/// Colours of an image: with 32 of them a film takes three quarters of what it takes with 256.
-const COLOURS: usize = 32;
+/// Colours of an image: with 24 of them a film takes two thirds of what it takes with 256.
+const COLOURS: usize = 24;
 /// One pixel of so many is looked at to choose them.
 const SAMPLED: i32 = 10;
 

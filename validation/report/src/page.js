@@ -40,7 +40,7 @@
   // All verdicts: search, filters and order, which the address keeps.
   var table = document.getElementById("gates");
   var rows = table ? Array.from(table.tBodies[0].rows) : [];
-  var most = 12;
+  var most = 10;
   var form = make("form", { class: "filters", "aria-label": "Filter the verdicts" });
   var found = make("p", { class: "found", role: "status" });
   var more = make("button", { type: "button", class: "more" });
@@ -133,7 +133,7 @@
     box.before(form, found);
     box.after(more);
     form.addEventListener("submit", function (event) { event.preventDefault(); });
-    form.addEventListener("input", function () { most = 12; apply(); remember(); });
+    form.addEventListener("input", function () { most = 10; apply(); remember(); });
     more.addEventListener("click", function () { most = rows.length; apply(); });
     var before = most;
     addEventListener("beforeprint", function () { before = most; most = rows.length; apply(); });

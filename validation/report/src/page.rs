@@ -269,7 +269,8 @@ impl Writer<'_> {
                 }
                 @for block in &section.blocks { (self.block(block)) }
                 @if level == 2 { @if section.children.len() > 1 {
-                    nav.inside aria-label=(format!("In {}", section.title)) {
+                    details.inside {
+                        summary { "Contents of this part" }
                         (contents(&section.children))
                     }
                 } }

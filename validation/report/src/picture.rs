@@ -6,7 +6,7 @@ use super::{film, font, render};
 use maud::{Markup, PreEscaped};
 
 /// Bytes of an SVG beyond which a page has the figure in pixels: some thousand dots.
-const LARGEST_SVG: usize = 150_000;
+const LARGEST_SVG: usize = 100_000;
 
 /// The figure as SVG, or as pixels where that would be too large.
 pub(super) fn drawing(figure: &Figure) -> Markup {

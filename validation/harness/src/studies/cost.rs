@@ -189,8 +189,8 @@ fn panel(title: &str, cost_label: &str, of: &Accuracy, points: &[Point], cost: C
         let own: Vec<&Point> = ladder.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
         let mut series = Series::line_markers(&ladder[0].ladder, line).cycle(k);
-        series = series.labels(own.iter().map(|p| short(&p.label)));
         if title.contains("time") {
+            series = series.labels(own.iter().map(|p| short(&p.label)));
             series = series.x_bars(own.iter().map(|p| p.spread()).collect());
         }
         plot = plot.layer(series);
