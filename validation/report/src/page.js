@@ -114,7 +114,8 @@
     } else if (rows.includes(target)) { form.reset(); apply(); open(target); }
     else if (target) {
       var closed = target.closest("details");
-      if (closed) { closed.open = true; target.scrollIntoView(); }
+      if (closed) { closed.open = true; }
+      target.scrollIntoView();
     }
   };
   if (table) {
