@@ -101,10 +101,12 @@ if (await chip.count()) {
 }
 const figure = await page.locator("figure").first().getAttribute("id");
 const atFigure = await open({ viewport: wide }, "#" + figure);
-check("a link to a figure leads to it", await atFigure.locator(`figure[id="${figure}"]`).evaluate((one) => {
-  const box = one.getBoundingClientRect();
+// The page scrolls smoothly, which takes a while on a busy machine.
+const arrived = await atFigure.waitForFunction((id) => {
+  const box = document.getElementById(id).getBoundingClientRect();
   return box.top < innerHeight && box.bottom > 0;
-}), figure);
+}, figure, { timeout: 10_000 }).then(() => true, () => false);
+check("a link to a figure leads to it", arrived, figure);
 await atFigure.close();
 
 // Films.
