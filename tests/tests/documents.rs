@@ -11,15 +11,13 @@ use serde_json::Value;
 use touchstone_tests::snapshot;
 use validation::cases;
 
+use crate::tidy::{assert_none, root};
+
 /// Words that README may have outside of code blocks and comments.
 const README_WORDS: usize = 900;
 /// Folders whose paths, in backquotes, must exist.
 const FOLDERS: [&str; 7] =
     ["solver", "validation", "tests", "references", "docs", ".ci", ".github"];
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
 
 fn read(path: &str) -> String {
     fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
@@ -72,11 +70,6 @@ fn links(text: &str) -> Vec<String> {
     let text = without(&prose(text), "`", "`");
     let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     targets.filter(|target| !target.contains("://")).map(String::from).collect()
-}
-
-#[track_caller]
-fn assert_none(rule: &str, found: Vec<String>) {
-    assert!(found.is_empty(), "{rule}:\n  {}", found.join("\n  "));
 }
 
 #[test]

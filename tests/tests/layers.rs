@@ -5,6 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::tidy::root;
+
 /// A crate, its folder, and the crates of this project that it may know.
 const LAYERS: [(&str, &str, &[&str]); 12] = [
     ("solver", "solver", &[]),
@@ -34,10 +36,6 @@ const WITH_VALIDATION: [&str; 10] = [
     "lattice",
     "validation",
 ];
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
 
 /// Names in the section `[dependencies]` of a manifest.
 fn dependencies(manifest: &str) -> BTreeSet<String> {

@@ -21,7 +21,8 @@ const BANNED: &[&str] = &[
 const MACHINE_PATHS: &[&str] =
     &[concat!("/wo", "rk/"), concat!("/tm", "p/wt"), concat!("/ro", "ot/")];
 
-fn root() -> PathBuf {
+/// The folder of the project.
+pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
@@ -185,8 +186,9 @@ fn without_tests(source: &str) -> Vec<String> {
     kept
 }
 
+/// Fails with the rule if anything breaks it.
 #[track_caller]
-fn assert_none(rule: &str, found: Vec<String>) {
+pub fn assert_none(rule: &str, found: Vec<String>) {
     assert!(found.is_empty(), "{rule}:\n  {}", found.join("\n  "));
 }
 

@@ -82,9 +82,6 @@ fn simulation(found: &Found, spec: &RunSpec) -> Option<String> {
     if spec.task != Task::Simulate || spec.mutation.is_some() {
         return Some(format!("touchstone explain {}", found.judged.gate.id));
     }
-    let set: String = case::changed(found.results.case, spec)
-        .iter()
-        .map(|assignment| format!(" --set {assignment}"))
-        .collect();
-    Some(format!("touchstone run {} --variant {}{set}", spec.case, spec.variant))
+    let case = found.results.case;
+    Some(case::command(case, &spec.variant, &case::changed(case, spec)))
 }

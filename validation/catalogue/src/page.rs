@@ -65,7 +65,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
 
 /// A supporting case: how its gates ended.
 fn line(results: &CaseResults) -> String {
-    let counts = Counts::of(results.judged().map(|(_, judged)| judged.status()));
+    let counts = results.counts();
     format!("[{0}](#{0}) {1}", results.case.name(), counts.short())
 }
 
@@ -183,7 +183,7 @@ fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Not
 
 fn case_section(results: &CaseResults) -> Section {
     let case = results.case;
-    let counts = Counts::of(results.judged().map(|(_, judged)| judged.status()));
+    let counts = results.counts();
     let mut section = Section::new(case.name(), case.name())
         .block(Block::Outcome { counts, words: case.name().into() })
         .prose(case.about());

@@ -64,6 +64,12 @@ pub fn spec(case: &dyn Case, variant: &str, set: &[String]) -> Result<RunSpec, R
     Ok(RunSpec::new(case.name(), variant, case.settings(variant, set)?))
 }
 
+/// The command that makes a run with these `key=value` texts.
+pub fn command(case: &dyn Case, variant: &str, set: &[String]) -> String {
+    let set: String = set.iter().map(|assignment| format!(" --set {assignment}")).collect();
+    format!("touchstone run {} --variant {variant}{set}", case.name())
+}
+
 /// `key=value` of the settings in which a run differs from the defaults of its variant.
 pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
     let defaults = case.settings(&spec.variant, &[]).unwrap_or_default();

@@ -67,6 +67,21 @@ pub struct Making<'a> {
     pub interrupt: Option<&'a AtomicBool>,
 }
 
+impl<'a> Making<'a> {
+    /// Makes every run and keeps the records in memory alone.
+    pub fn new(tier: Tier, sources: &'a (dyn Fn(&str) -> String + Sync)) -> Self {
+        Making {
+            tier,
+            store: None,
+            sources,
+            reuse_other: false,
+            allow_long: false,
+            progress: None,
+            interrupt: None,
+        }
+    }
+}
+
 /// Records of a plan, and where they come from.
 #[derive(Debug, Default)]
 pub struct Made {
@@ -469,13 +484,9 @@ mod tests {
         let shown = Mutex::new(Vec::new());
         let show = |done: Done| shown.lock().unwrap().push((done.runs, done.all));
         let making = Making {
-            tier: Tier::Quick,
             store: Some(&store),
-            sources: &|_| "abc".into(),
-            reuse_other: false,
-            allow_long: false,
             progress: Some(&show),
-            interrupt: None,
+            ..Making::new(Tier::Quick, &|_| "abc".into())
         };
         let suite = suite::run(&[&Quick], &making).unwrap();
         let values = suite.cases[0].runs.all().iter().map(|run| run.record.value(ERROR));
@@ -546,15 +557,7 @@ mod tests {
         let store = Store::open(&folder.path().join("records")).unwrap();
         std::fs::remove_dir(store.path()).unwrap();
         let jobs = jobs(suite::plans(&[&Quick], Tier::Quick));
-        let making = Making {
-            tier: Tier::Quick,
-            store: Some(&store),
-            sources: &|_| "abc".into(),
-            reuse_other: false,
-            allow_long: false,
-            progress: None,
-            interrupt: None,
-        };
+        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &|_| "abc".into()) };
         let made = make(&jobs, &making).unwrap();
         assert_eq!((made.records.len(), made.not_kept.len()), (3, 0));
         assert_eq!(Store::all(store.path()).unwrap().len(), 3);

@@ -35,6 +35,11 @@ pub struct CaseResults {
 }
 
 impl CaseResults {
+    /// How its gates ended.
+    pub fn counts(&self) -> Counts {
+        Counts::of(self.judged().map(|(_, judged)| judged.status()))
+    }
+
     /// Every judgement on the case, with the run that was judged, or the study.
     pub fn judged(&self) -> impl Iterator<Item = (Of<'_>, &Judged)> {
         let of_run = |run| move |judged| (Of::Run(run), judged);

@@ -1,10 +1,5 @@
 //! Words for captions.
 
-/// The first sentence of a text.
-pub fn first_sentence(text: &str) -> &str {
-    text.find(". ").map_or(text, |end| &text[..=end])
-}
-
 /// The label of an axis without the mark of a number without unit, as the beginning of a sentence.
 pub fn name_of_error(label: &str) -> String {
     let name = label.trim_end_matches(" [-]");
@@ -20,11 +15,12 @@ pub fn name_of_error(label: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use report::first_sentence;
 
     #[test]
     fn captions_begin_with_a_whole_sentence() {
-        assert_eq!(first_sentence("A run to 0.5 s. More of it."), "A run to 0.5 s.");
-        assert_eq!(first_sentence("A run."), "A run.");
+        assert_eq!(first_sentence("A run to 0.5 s. More of it.").0, "A run to 0.5 s.");
+        assert_eq!(first_sentence("A run.").0, "A run.");
         assert_eq!(name_of_error("relative error of u [-]"), "Relative error of u");
         assert_eq!(name_of_error("rms error of u [U_b]"), "The rms error of u [U_b]");
     }

@@ -28,15 +28,7 @@ mod tests {
     /// The judgements of the quick tier of some cases.
     pub fn judged(cases: &[&'static dyn Case]) -> Vec<Judged> {
         let sources = |_: &str| String::new();
-        let making = Making {
-            tier: Tier::Quick,
-            store: None,
-            sources: &sources,
-            reuse_other: false,
-            allow_long: false,
-            progress: None,
-            interrupt: None,
-        };
+        let making = Making::new(Tier::Quick, &sources);
         suite::run(cases, &making).expect("runs").judged().cloned().collect()
     }
 }

@@ -139,7 +139,7 @@ impl Cell {
 const SHORT: usize = 12;
 
 /// A text up to the end of its first sentence, and the rest.
-pub(super) fn first_sentence(text: &str) -> (&str, &str) {
+pub fn first_sentence(text: &str) -> (&str, &str) {
     let is_end = |at: &usize| {
         let (before, after) = (&text[..*at], &text[at + 2..]);
         let word = before.rsplit([' ', '(']).next().unwrap_or_default();

@@ -9,7 +9,7 @@ use base::gate::{Cause, Evidence, Gate, Purpose, Verdict};
 use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
-use harness::case::{Case, Tier, changed};
+use harness::case::{self, Case, Tier};
 use harness::plan;
 use harness::runs;
 use harness::store::Store;
@@ -111,8 +111,7 @@ pub fn in_full(case: &dyn Case, of: Of, judged: &runs::Judged) -> String {
 
 /// The command that makes a run.
 fn command(case: &dyn Case, spec: &RunSpec) -> String {
-    let set: String = changed(case, spec).iter().map(|set| format!(" --set {set}")).collect();
-    format!("touchstone run {} --variant {}{set}", case.name(), spec.variant)
+    case::command(case, &spec.variant, &case::changed(case, spec))
 }
 
 fn of_study(title: &str, case: &str) -> String {

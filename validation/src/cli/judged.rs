@@ -160,13 +160,7 @@ impl Verdicts {
 fn counts(suite: &Suite) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
     for judged in suite.judged() {
-        let name = match judged.judgement.verdict {
-            Verdict::Pass => "pass",
-            Verdict::Fail => "fail",
-            Verdict::Limitation(_) => "limitation",
-            Verdict::ExpectedFailure => "expected failure",
-        };
-        *counts.entry(name.to_string()).or_default() += 1;
+        *counts.entry(judged.status().name().to_string()).or_default() += 1;
     }
     counts
 }

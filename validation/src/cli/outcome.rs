@@ -115,6 +115,5 @@ pub fn finer(case: &dyn Case, declared: &Declaration, spec: &RunSpec) -> Option<
     set.retain(|assignment| assignment.split('=').next() != Some(name));
     set.push(format!("{name}={half_the_spacing}"));
     case::spec(case, &spec.variant, &set).ok()?;
-    let set: String = set.iter().map(|assignment| format!(" --set {assignment}")).collect();
-    Some(format!("touchstone run {} --variant {}{set}", case.name(), spec.variant))
+    Some(case::command(case, &spec.variant, &set))
 }

@@ -5,7 +5,7 @@ use harness::{
     runs::Judged,
     suite::{CaseResults, Suite},
 };
-use report::{Counts, Status};
+use report::Status;
 
 use super::{explain, output};
 
@@ -49,7 +49,7 @@ fn gates(count: usize) -> String {
 /// How the gates of a case ended, the error of its best variant with the cost, and the gate that is the
 /// closest to failing, with the unused share of its bound.
 fn row(results: &CaseResults) -> Vec<String> {
-    let counts = Counts::of(results.judged().map(|(_, judged)| judged.status()));
+    let counts = results.counts();
     let mut row = vec![results.case.name().to_string()];
     let by_verdict = [counts.fail, counts.limitation, counts.expected_failure, counts.pass];
     row.extend(by_verdict.map(|count| count.to_string()));

@@ -387,15 +387,7 @@ fn tables_are_aligned() {
 
 /// The suite of some cases, made and judged.
 fn judged(cases: &[&'static dyn Case]) -> Suite {
-    let making = Making {
-        tier: Tier::Quick,
-        store: None,
-        sources: &sources,
-        reuse_other: false,
-        allow_long: false,
-        progress: None,
-        interrupt: None,
-    };
+    let making = Making::new(Tier::Quick, &sources);
     suite::run(cases, &making).expect("staged runs")
 }
 

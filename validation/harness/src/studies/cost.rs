@@ -3,14 +3,16 @@
 
 use base::functions::ln;
 use base::record::{Status, median};
-use report::{Axis, Cell, Colour, Column, Figure, Layer, Plot, Series, Shape, Table, seconds};
+use report::{
+    Axis, Cell, Colour, Column, Figure, Layer, Plot, Series, Shape, Table, first_sentence, seconds,
+};
 
 use crate::{
     columns::Columns,
     declare::{Accuracy, Ladder, Peer},
     runs::Runs,
     study::Study,
-    words::{first_sentence, name_of_error},
+    words::name_of_error,
 };
 
 /// One run of a cost diagram.
@@ -141,7 +143,7 @@ fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
     });
     let caption = format!(
         "{} {} against run time on one core (left) and pair interactions (right).{crosses}{others}",
-        first_sentence(&accuracy.about),
+        first_sentence(&accuracy.about).0,
         name_of_error(&accuracy.label),
     );
     let clock = panel(

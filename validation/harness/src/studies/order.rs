@@ -1,7 +1,7 @@
 //! The observed order of accuracy with its confidence interval.
 
 use base::gate::{Bound, Evidence, Gate};
-use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, Table, exact, sig};
+use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, Table, exact, first_sentence, sig};
 
 use crate::{
     columns::Columns,
@@ -9,7 +9,7 @@ use crate::{
     declare::{Accuracy, ErrorOf, Ladder},
     runs::Runs,
     study::Study,
-    words::{first_sentence, name_of_error},
+    words::name_of_error,
 };
 
 /// The points that the order of a ladder is fitted to.
@@ -54,7 +54,7 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
         [order] => format!(" The triangle shows order {order}."),
         orders => format!(" The triangles show orders {}.", orders.join(" and ")),
     };
-    let about_it = first_sentence(&accuracy.about);
+    let about_it = first_sentence(&accuracy.about).0;
     let label = name_of_error(&accuracy.label);
     let caption = format!("{about_it} {label} against the particle spacing.{successive}{slope}");
     let mut plot = Plot::new("", Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
