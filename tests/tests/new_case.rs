@@ -47,8 +47,7 @@ fn a_new_case_has_order_cost_budget_and_step_limit() {
     let suite = suite::run(&[&DECAY], &making).expect("runs");
     let [results] = &suite.cases[..] else { panic!("one case") };
     let ids: Vec<&str> = results.studies.iter().map(|study| study.id.as_str()).collect();
-    let expected =
-        ["decay-convergence", "decay-work-precision", "decay-error-budget", "decay-time-step"];
+    let expected = ["decay-work-precision", "decay-error-budget", "decay-time-step"];
     assert_eq!(ids, expected);
     for run in results.runs.all() {
         let record = &run.record;

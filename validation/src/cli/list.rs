@@ -6,11 +6,14 @@ use validation::cases;
 
 use super::{Exit, Outcome, World, arguments, output};
 
-/// The variant that runs unless another one is named.
+/// The variant that runs unless another one is named: the best one of the card of the case, else `modern`.
 pub fn default_variant(case: &dyn Case) -> &'static str {
+    let card = case.declaration(Tier::Quick).card;
+    let best = card.and_then(|card| card.runs.into_iter().next()).map(|spec| spec.variant);
+    let preferred = best.as_deref().unwrap_or("modern");
     let variants = case.variants();
-    let preferred = variants.iter().find(|variant| variant.name == "modern");
-    preferred.or(variants.first()).map_or("", |variant| variant.name)
+    let found = variants.iter().find(|variant| variant.name == preferred);
+    found.or(variants.first()).map_or("", |variant| variant.name)
 }
 
 pub fn list(arguments: &arguments::List, world: &World) -> Outcome {

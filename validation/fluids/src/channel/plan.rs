@@ -139,6 +139,11 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
                        compressibility may move the rest by less than (V/c0)^2 = 1.3e-4";
         gates.push(error(L2.at(1), 1e-4, because));
     }
+    if (flow, variant, rows) == (Flow::Couette, "modern", 20) {
+        let because = "the larger error of the row-reduced matrices of the walls, 6.6e-4, and as much again \
+                       for shifting and density diffusion, which the matrices leave out";
+        gates.push(error(L2.at(flow.compared_at()), 1.3e-3, because));
+    }
     if (flow, variant, rows) == (Flow::Poiseuille, "curved", 20) {
         let because = "the goal of 0.03 %, between the row-reduced matrices of rows that slid past each \
                        other, 9e-5, and of rows in columns, 8e-4: at Re 0.5 they slide by ten spacings";

@@ -1,5 +1,6 @@
-//! Error against cost: which settings reach an error with the least work, in seconds of a run that was
-//! made alone, and in pair interactions, which do not depend on the machine or on other programs.
+//! Errors and their cost: the order in the spacing, and which settings reach an error with the least work,
+//! in seconds of a run that was made alone, and in pair interactions, which do not depend on the machine or on
+//! other programs.
 
 use base::functions::ln;
 use base::record::{Status, median};
@@ -11,6 +12,7 @@ use crate::{
     columns::Columns,
     declare::{Accuracy, Ladder, Peer},
     runs::Runs,
+    studies::order::orders,
     study::Study,
     words::name_of_error,
 };
@@ -124,8 +126,13 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     let id = format!("{}-work-precision", accuracy.id);
     let all = accuracy.ladders.iter().chain(&accuracy.more);
     let (drawn, listed) = (points(accuracy, &accuracy.ladders, runs), points(accuracy, all, runs));
-    let study = Study::new(&id, "Error against run time")
-        .block(figure(&id, accuracy, &drawn))
+    let orders = orders(accuracy, runs);
+    let study = Study::new(&id, "Error against spacing and run time");
+    let study =
+        orders.judged.into_iter().fold(study, |study, (gate, order)| study.judge(gate, order));
+    let study = study
+        .block(figure(&id, accuracy, &drawn, (orders.panel, orders.caption)))
+        .block(orders.table)
         .block(cheapest_table(&listed));
     if accuracy.peers.is_empty() {
         return study;
@@ -133,7 +140,13 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     study.block(peer_table(&accuracy.peers, &listed))
 }
 
-fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
+/// Beside the panel of orders and what its caption explains.
+fn figure(
+    id: &str,
+    accuracy: &Accuracy,
+    points: &[Point],
+    (orders, explained): (Plot, String),
+) -> Figure {
     let growth = work_growth(points);
     let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
     let failed = points.iter().any(|point| point.failure.is_some());
@@ -142,7 +155,8 @@ fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
         format!(" Grey: other codes, stored with the references ({}).", peer.timed)
     });
     let caption = format!(
-        "{} {} against run time on one core (left) and pair interactions (right).{crosses}{others}",
+        "{} {} against particle spacing (left), run time on one core (middle) and pair interactions \
+         (right).{explained}{crosses}{others}",
         first_sentence(&accuracy.about).0,
         name_of_error(&accuracy.label),
     );
@@ -161,7 +175,9 @@ fn figure(id: &str, accuracy: &Accuracy, points: &[Point]) -> Figure {
         Some(order) => plot.layer(Layer::Slope { order, anchor: None, factor: 5.0 }),
         None => plot,
     };
-    Figure::new(id, caption).panel(with_slope(clock)).panel(with_slope(counted)).columns(2)
+    let panels = [orders, with_slope(clock), with_slope(counted)];
+    let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
+    panels.into_iter().fold(figure, Figure::panel)
 }
 
 /// The power of 1/spacing with which pair interactions grow: the median over the ladders.

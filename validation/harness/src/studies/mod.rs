@@ -19,10 +19,7 @@ use crate::{declare::Declaration, runs::Runs, study::Study};
 pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     let mut studies: Vec<Study> =
         declared.curves.iter().map(|curves| curves::study(curves, runs)).collect();
-    for accuracy in &declared.accuracy {
-        studies.push(order::study(accuracy, runs));
-        studies.push(cost::study(accuracy, runs));
-    }
+    studies.extend(declared.accuracy.iter().map(|accuracy| cost::study(accuracy, runs)));
     studies.extend(declared.budgets.iter().map(|budgets| budget::study(budgets, runs)));
     studies.extend(declared.limits.iter().map(|limits| limit::study(case, limits, runs)));
     let sensitivity = declared.sensitivity.iter().filter(|sensitivity| !sensitivity.of.is_empty());

@@ -1,15 +1,14 @@
-//! The observed order of accuracy with its confidence interval.
+//! The observed order of accuracy with its confidence interval: a panel, a table and gates, which the study
+//! of errors and their cost shows.
 
 use base::gate::{Bound, Evidence, Gate};
-use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, Table, exact, first_sentence, sig};
+use report::{Axis, Cell, Layer, Legend, Plot, Series, Table, exact, sig};
 
 use crate::{
     columns::Columns,
     convergence::{Convergence, ConvergenceError, Label, Level as Point, convergence},
     declare::{Accuracy, ErrorOf, Ladder},
     runs::Runs,
-    study::Study,
-    words::name_of_error,
 };
 
 /// The points that the order of a ladder is fitted to.
@@ -39,47 +38,53 @@ pub fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
     }
 }
 
-pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
-    let id = format!("{}-convergence", accuracy.id);
+/// What is found of the orders of all ladders.
+pub struct Orders {
+    /// Error against spacing.
+    pub panel: Plot,
+    /// What the caption of the panel has to explain, beginning with a space.
+    pub caption: String,
+    /// Orders, intervals, floors.
+    pub table: Table,
+    /// Gates of ladders with their orders.
+    pub judged: Vec<(Gate, f64)>,
+}
+
+pub fn orders(accuracy: &Accuracy, runs: &Runs) -> Orders {
     let successive = match accuracy.error {
         ErrorOf::Metric(_) => "",
         ErrorOf::Distance { .. } => {
-            " An error is the distance between runs of successive spacings, drawn at the coarser one."
+            " Against the spacing, an error is the distance between runs of successive spacings, drawn at \
+             the coarser one."
         }
     };
     let slopes = slopes(accuracy);
     let shown: Vec<String> = slopes.iter().map(|order| exact(*order)).collect();
     let slope = match shown.as_slice() {
         [] => String::new(),
-        [order] => format!(" The triangle shows order {order}."),
-        orders => format!(" The triangles show orders {}.", orders.join(" and ")),
+        [order] => format!(" The left triangle shows order {order}."),
+        orders => format!(" The left triangles show orders {}.", orders.join(" and ")),
     };
-    let about_it = first_sentence(&accuracy.about).0;
-    let label = name_of_error(&accuracy.label);
-    let caption = format!("{about_it} {label} against the particle spacing.{successive}{slope}");
-    let mut plot = Plot::new("", Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
-    let about = format!("Observed orders of accuracy. {}", accuracy.about);
-    let mut rows = Vec::new();
-    let mut study = Study::new(&id, "Order of accuracy");
+    let axes = (Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
+    let mut panel = Plot::new("Error against spacing", axes.0, axes.1).legend(Legend::Hidden);
+    let (mut rows, mut judged) = (Vec::new(), Vec::new());
     for (k, ladder) in accuracy.ladders.iter().enumerate() {
         let points = points(accuracy, ladder, runs);
         let usable = points.iter().filter(|p| p.value.is_finite());
         let line = usable.map(|p| (p.spacing, p.value)).collect();
         let name = format!("{}{}", ladder.variant, ladder.note);
-        plot = plot.layer(Series::line_markers(&name, line).cycle(k));
+        panel = panel.layer(Series::line_markers(&name, line).cycle(k));
         let found = convergence(&points);
         if let Some(order) = ladder.order.clone() {
             let gate = Gate::new(order.id, "order", order.bound, order.evidence, order.because);
-            study = study.judge(gate, found.as_ref().map_or(f64::NAN, |c| c.order));
+            judged.push((gate, found.as_ref().map_or(f64::NAN, |c| c.order)));
         }
         let finest = points.last().map_or(f64::NAN, |p| p.value);
         rows.push((name, found, finest));
     }
-    for order in slopes {
-        plot = plot.layer(Layer::slope(order));
-    }
-    let figure = Figure::new(&id, caption).panel(plot.legend(Legend::Outside));
-    study.block(figure).block(table(about, rows))
+    let panel = slopes.into_iter().fold(panel, |panel, order| panel.layer(Layer::slope(order)));
+    let table = table(format!("Observed orders of accuracy. {}", accuracy.about), rows);
+    Orders { panel, caption: format!("{successive}{slope}"), table, judged }
 }
 
 /// The orders that theory expects: that of the method, and the middle of what gates of ladders allow.
