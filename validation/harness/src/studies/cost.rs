@@ -160,17 +160,11 @@ fn figure(
         first_sentence(&accuracy.about).0,
         name_of_error(&accuracy.label),
     );
-    let clock = panel(
-        "Error against run time",
-        "run time on one core [s]",
-        accuracy,
-        points,
-        Point::median,
-    );
+    let clock = panel("Error against run time", "run time on one core [s]", points, Point::median);
     let peers = peer_layers(&accuracy.peers);
     let clock = peers.into_iter().fold(clock, Plot::layer);
     let pairs = |p: &Point| p.pairs;
-    let counted = panel("Error against work", "pair interactions [-]", accuracy, points, pairs);
+    let counted = panel("Error against work", "pair interactions [-]", points, pairs);
     let with_slope = |plot: Plot| match slope {
         Some(order) => plot.layer(Layer::Slope { order, anchor: None, factor: 5.0 }),
         None => plot,
@@ -199,8 +193,9 @@ fn short(label: &str) -> String {
     label.split_whitespace().find(is_number).unwrap_or(label).into()
 }
 
-fn panel(title: &str, cost_label: &str, of: &Accuracy, points: &[Point], cost: Cost) -> Plot {
-    let mut plot = Plot::new(title, Axis::log(cost_label), Axis::log(of.label.as_str()));
+fn panel(title: &str, cost_label: &str, points: &[Point], cost: Cost) -> Plot {
+    // The error is named at the panel on the left.
+    let mut plot = Plot::new(title, Axis::log(cost_label), Axis::log(""));
     let front = pareto(points, cost).iter().map(|p| (cost(p), p.error)).collect();
     plot = plot.layer(Series::line("Pareto front", front).colour(PALE).width(7.0));
     for (k, ladder) in points.chunk_by(|a, b| a.ladder == b.ladder).enumerate() {
@@ -258,9 +253,9 @@ fn cheapest_table(points: &[Point]) -> Table {
 
 /// At the error of each peer, the cheapest of ours and how many times faster it is.
 fn peer_table<'a>(peers: &'a [Peer], points: &'a [Point]) -> Table {
-    let caption = "Other codes on the same work, against our cheapest setting with no more error, and \
-                   against the most accurate of ours at the same resolution. At equal error, points of ours \
-                   count whose finer levels have no more error either.";
+    let caption = "Other codes against our cheapest setting with no more error, and against our best at the \
+                   same resolution. At equal error, points of ours count whose finer levels have no more \
+                   error either.";
     type Row<'a> = (&'a Peer, Option<&'a Point>, Option<&'a Point>);
     let dash = || Cell::text("–");
     let row =
