@@ -4,10 +4,11 @@
 mod declaration;
 mod plan;
 mod run;
+mod sound;
 mod studies;
 
 use harness::{
-    case::Case,
+    case::{Case, Planned, Tier},
     composed::{self, Composed, Composition, Variants},
     method::Method,
 };
@@ -100,6 +101,10 @@ fn variants() -> Vec<Composition<VortexSettings>> {
         .all
 }
 
+fn plan(tier: Tier) -> Vec<Planned> {
+    plan::plan(tier).into_iter().chain(sound::plan(tier)).collect()
+}
+
 const NAME: &str = "taylor_green";
 
 static CASE: Composed<VortexSettings> = Composed {
@@ -112,7 +117,7 @@ static CASE: Composed<VortexSettings> = Composed {
     variants,
     is_stable: composed::completed,
     declaration: declaration::declaration,
-    plan: plan::plan,
+    plan,
     studies: studies::studies,
 };
 
