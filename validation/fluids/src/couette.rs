@@ -6,9 +6,9 @@ use super::channel::{self, Channel, ChannelCase, Flow, variants};
 pub static COUETTE: ChannelCase = ChannelCase {
     name: "couette",
     problem: "Water between two plates, one of which starts to move",
-    about: "Water at rest between two infinite plates L = 1 mm apart. At t = 0 the upper plate \
-            starts at constant speed V = Re nu/L, Re = 0.5. The exact velocity is a Fourier series; \
-            pressure and cross-flow are exactly zero.",
+    about: "Water rests between two infinite plates, L = 1 mm apart, until the upper one starts at t = 0 \
+            with constant speed V = Re nu/L, Re = 0.5. The exact velocity is a Fourier series; pressure \
+            and cross-flow are exactly zero.",
     variants: || variants::<()>(&channel::COUETTE),
     is_stable: channel::is_stable,
     declaration: |tier| channel::declaration(CHANNEL, tier),

@@ -8,10 +8,9 @@ use super::channel::{self, Channel, ChannelCase, Flow, variants};
 pub static POISEUILLE: ChannelCase = ChannelCase {
     name: "poiseuille",
     problem: "Water between two plates, driven by a body force",
-    about: "Water at rest between two infinite plates L = 1 mm apart. At t = 0 a body force \
-            F = 8 nu V/L^2 along the plates sets in; V = Re nu/L is the centre-line velocity of the \
-            steady parabola. The exact velocity is a Fourier series; pressure and cross-flow are \
-            exactly zero.",
+    about: "Water rests between two infinite plates, L = 1 mm apart. At t = 0 a body force F = 8 nu V/L^2 \
+            along the plates sets in; V = Re nu/L is the centre-line velocity of the steady parabola. The \
+            exact velocity is a Fourier series; pressure and cross-flow are exactly zero.",
     variants: || variants::<BodyForce>(&channel::POISEUILLE),
     is_stable: channel::is_stable,
     declaration: |tier| channel::declaration(CHANNEL, tier),

@@ -188,7 +188,7 @@ fn variants() -> Vec<Composition<CylinderSettings>> {
     Variants::of(&PROGRAM)
         .with(
             INTERFACE,
-            "interface and wall particles of the paper, on and behind both cylinders",
+            "interface and wall particles (section 4.2 of the paper) on and behind both cylinders",
             Method::of::<With<InterfaceWall>>(),
             |_| {},
         )
@@ -204,9 +204,9 @@ fn variants() -> Vec<Composition<CylinderSettings>> {
 static CASE: Composed<CylinderSettings> = Composed {
     name: NAME,
     problem: "Flow between two cylinders, the inner one turning",
-    about: "Viscous flow from rest between two cylinders, the inner one turning, until it is steady: u = A r \
-            + B/r, exact. Both walls are curved, the inner one convex and the outer one concave, and made of \
-            rows of particles that are spaced by their own arc length.",
+    about: "Viscous flow between two cylinders, of which the inner one turns, starts from rest and becomes \
+            steady with the exact velocity u = A r + B/r. Both walls are curved, the inner one convex and \
+            the outer one concave, and made of rows of particles that are spaced by their own arc length.",
     variants,
     is_stable: composed::completed,
     declaration,
@@ -222,16 +222,16 @@ const ORDERS: [(&str, f64, &str); 2] = [
     (
         INTERFACE,
         1.0,
-        "interface particles carry the velocity of the wall, and so do the rows behind: first order, as in \
-         the row-reduced matrix of flat walls; 0.3 either way tells it from second order, whatever the \
-         number of levels",
+        "Interface particles and the rows behind them carry the velocity of the wall, which is of first \
+         order, as in the row-reduced matrix of flat walls. A tolerance of 0.3 tells this from second \
+         order, whatever the number of levels.",
     ),
     (
         EXTRAPOLATING,
         2.0,
-        "walls that extrapolate linearly: second order, as in the row-reduced matrix of flat walls; 0.3 \
-         either way tells it from first order, whatever the number of levels, and not from an order that \
-         falls slowly",
+        "Walls that extrapolate linearly are of second order, as in the row-reduced matrix of flat walls. \
+         A tolerance of 0.3 tells this from first order, whatever the number of levels, but not from an \
+         order that falls slowly.",
     ),
 ];
 
@@ -265,30 +265,30 @@ fn gates(variant: &str, layers: usize) -> Vec<Gate> {
             "l2",
             Bound::Below(most),
             Evidence::Theory,
-            "curved walls cost no more than flat ones: the error of plane Poiseuille flow, which bends more, \
-             by the row-reduced matrix of the same wall, 1.9/N^2 where it extrapolates, 0.22/N with \
-             interface particles",
+            "Curved walls must have no larger error than flat ones. The bound is the error of plane \
+             Poiseuille flow, whose profile is more curved, by the row-reduced matrix of the same wall: \
+             1.9/N^2 where it extrapolates, 0.22/N with interface particles.",
         ),
         Gate::new(
             id("outside"),
             "outside",
             Bound::Equals(0.0),
             Evidence::Invariant,
-            "no particle passes a cylinder",
+            "No particle passes a cylinder.",
         ),
     ]
 }
 
 /// What is known of the local orders, measured once outside of the plan.
-const FALLING: &str = "From one spacing to the next the order of walls that extrapolate falls, from \
-     1.9 at 8 to 11 spacings to 1.6 at 22 to 32, and the scatter of a fit through all levels does not say \
-     so. Part of it is the start: run by hand to 2 d^2/nu, where nothing of it is left, the orders from 8 to \
-     16 and from 16 to 32 are 1.89 and 1.76, and the error at 32 is 0.00045 in place of 0.00048. The rest \
-     depends on how many neighbours a sum has: at h/dx = 1.1, 1.2 and 1.5 the two orders are 1.93 and 1.82, \
-     1.99 and 1.98, 2.06 and 1.80. So it is an error of the discrete sums, which a smaller spacing at the \
-     same h/dx does not lessen, in a layer that does become thinner, near the walls or where rings meet; \
-     which of these is not known, and 1.2 may be a place where parts cancel. A sound speed twice as high \
-     moves the errors at 16 and 22 by 0.1 %, half the time step by 0.3 %.";
+const FALLING: &str = "The order of walls that extrapolate falls from 1.9 between 8 and 11 spacings to 1.6 \
+     between 22 and 32. The scatter of a fit through all levels does not show this. Part of it is due to \
+     the start: in runs by hand to 2 d^2/nu, where nothing of the start is left, the orders from 8 to 16 \
+     and from 16 to 32 are 1.89 and 1.76, and the error at 32 is 0.00045 in place of 0.00048. The rest \
+     depends on how many neighbours a sum has: at h/dx = 1.1, 1.2 and 1.5 the two orders are 1.93 and \
+     1.82, 1.99 and 1.98, 2.06 and 1.80. So the sums have an error that a smaller spacing at the same h/dx \
+     does not reduce, in a layer that becomes thinner, near the walls or where rings meet; which of these \
+     is not known, and at 1.2 parts may cancel. A sound speed twice as high moves the errors at 16 and 22 \
+     by 0.1 %, half the time step by 0.3 %.";
 
 fn declaration(tier: Tier) -> Declaration {
     Declaration {
@@ -316,8 +316,8 @@ fn accuracy(tier: Tier) -> Accuracy {
     };
     let label = "relative L2 error of the velocity [-]";
     Accuracy {
-        about: "Flow between cylinders, the outer one of twice the inner radius, from rest to t = d²/ν, when \
-                it is steady, at Re = V d/ν = 0.5."
+        about: "Flow between cylinders, steady after t = d²/ν, at Re = V d/ν = 0.5; the gap d equals the \
+                inner radius."
             .into(),
         spacing: "dx/d [-]",
         ladders: ORDERS.map(ladder).into(),
@@ -329,9 +329,9 @@ fn accuracy(tier: Tier) -> Accuracy {
 fn profiles(tier: Tier) -> Curves {
     let finest = levels(tier).last().copied().unwrap_or_default();
     let caption = format!(
-        "Velocity u around the axis between two cylinders, of which the inner one turns with speed V and \
-         the outer one, of twice its radius, rests: every seventeenth particle at t = d²/ν, {finest} \
-         spacings across the gap d, Re = V d/ν = 0.5. The line is the exact solution A r + B/r."
+        "Velocity u around the axis between two cylinders at t = d²/ν, Re = V d/ν = 0.5, with {finest} \
+         spacings across the gap d. The inner cylinder turns with speed V and the outer one, of twice its \
+         radius, rests. Symbols are every seventeenth particle, and the line is the exact A r + B/r."
     );
     let points = |record: &Record| {
         let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));

@@ -70,9 +70,9 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
         columns = columns.with(head, move |(_, _, row)| outcome(&row[k]));
     }
     let caption = format!(
-        "Cures of the instability at 20 rows, c0 by Morris' rule, to νt/L² = {END}. {} A cell \
-         says how many failed, and the median outcome: worst relative L2 error from νt/L² = 0.1 on, or, \
-         after a t, the νt/L² of the divergence. A run fails when it diverges or its error exceeds 5 %.",
+        "Cures of the instability at 20 rows, c0 by Morris' rule, to νt/L² = {END}. {} A cell shows how \
+         many failed, and the median outcome: the largest relative L2 error from νt/L² = 0.1 on, or after \
+         t the νt/L² of the divergence. A run fails if it diverges or if its error exceeds 5 %.",
         starts::in_words(tier),
     );
     let table = columns.table(caption, &found);
@@ -93,13 +93,13 @@ fn cures_in_words(fails: impl Fn(&str) -> bool) -> String {
     };
     let mut words = vec![
         format!(
-            "From most starts these hold every Reynolds number of the table: {}.",
+            "From most starts, these changes hold at every Reynolds number of the table: {}.",
             names(false)
         ),
-        format!("These fail from most starts at some: {}.", names(true)),
+        format!("These fail from most starts at some Reynolds number: {}.", names(true)),
     ];
     if fails("seed") {
-        words.insert(0, "The seed as it is fails.".into());
+        words.insert(0, "The unchanged `seed` fails from most starts.".into());
     }
     if fails("seed") && fails("cure-leapfrog") {
         let text = "Time integration alone is not the cause: the leapfrog, which neither damps nor \
@@ -107,16 +107,16 @@ fn cures_in_words(fails: impl Fn(&str) -> bool) -> String {
         words.push(text.into());
     }
     if fails("seed") && !fails("cure-shifting") && !fails("cure-background") {
-        let text = "What keeps particles apart cures it (shifting), and so does what keeps the pressure \
-                    positive (background pressure), which points to the tensile instability where p < 0. \
-                    A background pressure in proportion to ρc0² pushes where the particles are not in \
-                    order, and its error in the table is the price.";
+        let text = "Shifting, which keeps particles apart, cures the instability, and so does background \
+                    pressure, which keeps the pressure positive. This points to the tensile instability \
+                    where p < 0. A background pressure in proportion to ρc0² pushes where the particles \
+                    are not in order, which causes its error in the table.";
         words.push(text.into());
     }
     if !fails("cure-shifting") && fails("cure-background") {
-        let text = "What keeps particles apart cures it (shifting). A background pressure of 0.05 ρc0² \
-                    does not do so from most starts, so that the tensile instability where p < 0 is the \
-                    cause is not shown here.";
+        let text = "Shifting, which keeps particles apart, cures the instability. A background pressure of \
+                    0.05 ρc0² does not from most starts, so the tensile instability where p < 0 is not \
+                    shown to be the cause.";
         words.push(text.into());
     }
     words.join(" ")

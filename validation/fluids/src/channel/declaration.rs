@@ -117,8 +117,8 @@ fn rows_of(channel: Channel, variant: &'static str, rows: &[usize]) -> Ladder {
         bound: Bound::Within(1.8, 2.2),
         evidence: Evidence::Theory,
         because:
-            "mirrored walls and the kernel are second order; finer levels than the floor of the \
-                  lattice are not in the ladder"
+            "Mirrored walls and the kernel are of second order. Levels whose error is near what the \
+                  lattice leaves at any spacing are not in the fit."
                 .into(),
     });
     Ladder { variant, note: String::new(), levels, order }
@@ -179,7 +179,7 @@ fn like_peers(channel: Channel) -> Accuracy {
         error: ErrorOf::Metric(metric),
         label,
         about: format!(
-            "{} at Re {PEERS_RE}, at which most other codes were timed, run to νt/L² = 1.",
+            "{} at Re {PEERS_RE}, as most other codes were timed, run to νt/L² = 1.",
             title(channel.flow)
         ),
         spacing: "Δx/L [-]",
@@ -211,7 +211,7 @@ fn peers(flow: Flow, re: f64) -> Vec<Peer> {
                 spacing: 1.0 / rows[k]?,
                 error: errors[k]? / 100.0,
                 timed: format!(
-                    "wall time on one thread of another machine of this class, 2025–26{at}"
+                    "wall time, one thread of a similar machine, 2025–26{at}"
                 ),
             })
         };
@@ -247,9 +247,9 @@ fn curves(channel: Channel) -> Curves {
         id: format!("{}-profiles", flow.name()),
         title: "Velocity profiles".into(),
         caption: format!(
-            "Velocity u along the channel over the height y at five times, Re 0.5, 20 rows of particles: \
-             variant `seed` (left) and `{best}` (middle); symbols are means over a row, and lines the exact \
-             series. Right: the error of `{best}` in units of V, the speed of the wall or of the centre line."
+            "Velocity u along the channel at five times, Re 0.5, 20 rows of particles, for variants `seed` \
+             (left) and `{best}` (middle). Symbols are means over a row, and lines the exact series. \
+             Right: error of `{best}` over V, the speed of the wall or of the centre line."
         ),
         columns: 3,
         panels: vec![panel("seed"), panel(best), error],
@@ -295,7 +295,8 @@ fn budgets(channel: Channel, tier: Tier) -> Budgets {
         error: ErrorOf::Metric(metric),
         label,
         about: format!(
-            "20 rows, Re 0.5. Twice the terms of the exact series move it by {} V at most.",
+            "Runs have 20 rows and Re 0.5. With twice as many terms, the exact series changes by {} V at \
+             most.",
             report::sci(series_moves(flow), 2)
         ),
         of: variants.iter().map(of).collect(),

@@ -39,8 +39,8 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
     extremes::study("couette-extremes", "Extreme settings", LEAD, entries.concat())
 }
 
-const LEAD: &str = "What breaks a naive program: a vanishing Reynolds number, sound a thousand times too \
-    fast, smoothing lengths that are too short or too long.";
+const LEAD: &str = "A vanishing Reynolds number, sound a thousand times too fast, and smoothing lengths \
+    that are too short or too long.";
 
 /// The error of a run that completed.
 fn error(runs: &Runs, spec: &RunSpec) -> Option<f64> {
@@ -129,8 +129,8 @@ fn slow(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
             "quintic-pc" => matrix_error::<QuinticSpline>(rows, 1.0, 1e-6),
             _ => case.rules(&spec).ok().and_then(|rules| stepped_error(rows, rules.dt)),
         };
-        let because = "the row-reduced matrix is the exact answer of the sums, for `modern` with its own \
-                       steps; 10 % for the time step";
+        let because = "The row-reduced matrix gives the exact error of the sums, for `modern` with its own \
+                       time steps. The bound adds 10 % for the time step.";
         let what =
             ["Couette flow that creeps".into(), format!("Re 10⁻⁴, {rows} rows, `{variant}`")];
         let (name, bound) = (format!("slow.{variant}.{rows}"), Bound::Within(0.9, 1.1));
@@ -164,10 +164,10 @@ fn sound_specs(case: &ChannelCase, re: f64, tier: Tier) -> [RunSpec; 2] {
 }
 
 fn sound(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
-    let still = "sound does not enter the exact flow, nor that of rows in their places, but for the step: \
-                 its part of the error is below 5 %";
-    let sliding = "a control: rows that slide by a spacing swing the density, and c₀² makes that force, so \
-                   that a sound speed without a rule must spoil the flow";
+    let still = "Sound enters neither the exact flow nor that of rows in their places, except by the time \
+                 step, whose part of the error is below 5 %.";
+    let sliding = "Control: rows that slide by a spacing make the density oscillate, and the force from it \
+                   is proportional to c₀², so a sound speed without a rule must spoil the flow.";
     let entry = |re: &f64| {
         let specs = sound_specs(case, *re, tier);
         let [usual, fast] = specs.each_ref().map(|spec| error(runs, spec));
@@ -216,8 +216,9 @@ fn smoothed_matrix(case: &ChannelCase, (variant, ratio): (&'static str, f64)) ->
 }
 
 fn smoothing(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
-    let because = "the row-reduced matrix with the steps of the leapfrog, the worse one of rows in columns \
-                   and of rows that slid past each other; 10 % for the rows' motion";
+    let because = "The bound is the error by the row-reduced matrix with the steps of the leapfrog, for \
+                   rows in columns or slid past each other, whichever is larger, and 10 % for the motion \
+                   of the rows.";
     let entry = |of: (&'static str, f64)| {
         let (variant, ratio) = of;
         let (found, matrix) = (error(runs, &smoothed_spec(case, of)), smoothed_matrix(case, of));

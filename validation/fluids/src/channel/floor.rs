@@ -81,7 +81,7 @@ impl LatticeFloor {
             (false, _) => "*open*, see the error budget",
         };
         let [with, without] = [with, without].map(|error| percent(error, 2));
-        format!("{part}: the viscosity of {lattice} makes {with}, without η² {without}")
+        format!("{part}: the viscosity of {lattice} causes {with}, without η² {without}")
     }
 }
 
@@ -90,8 +90,9 @@ pub fn study(channel: Channel, tier: Tier, runs: &Runs) -> Study {
     let flow = channel.flow;
     let tau = flow.compared_at();
     let caption = format!(
-        "Errors of u at νt/L² = {tau} that the viscosity of a square lattice makes at any spacing, in place \
-         and with rows that shear has slid past each other, and the error at which a ladder stops."
+        "Errors of u at νt/L² = {tau} that refinement leaves. The viscosity of a square lattice causes an \
+         error at any spacing, another one with rows in place than with rows that shear has slid past each \
+         other. The fitted error is the one that the runs of a variant tend to."
     );
     let row = |variant: &'static str| {
         let records = levels(tier)
@@ -114,9 +115,9 @@ pub fn study(channel: Channel, tier: Tier, runs: &Runs) -> Study {
     };
     let table = Columns::<(&str, LatticeFloor, Option<f64>)>::default()
         .code("variant", |(variant, ..)| *variant)
-        .num(["lattice in place makes", "-"], |(_, of, _)| Cell::percent(of.in_place, 2))
-        .num(["slid rows make", "-"], |(_, of, _)| Cell::percent(of.slid, 2))
-        .num(["fitted floor", "-"], |(.., floor)| fitted(*floor))
+        .num(["of a lattice in place", "-"], |(_, of, _)| Cell::percent(of.in_place, 2))
+        .num(["of slid rows", "-"], |(_, of, _)| Cell::percent(of.slid, 2))
+        .num(["fitted", "-"], |(.., floor)| fitted(*floor))
         .text("cause", |(_, of, floor)| floor.map_or("–".into(), |floor| of.cause(floor)))
         .table(caption, ladder(flow).iter().filter_map(|variant| row(variant)));
     Study::new(&format!("{}-floor", flow.name()), "The error that refinement leaves").block(table)

@@ -37,10 +37,10 @@ pub fn limits(channel: Channel, tier: Tier) -> StepLimits {
     StepLimits {
         id: format!("{}-time-step", channel.flow.name()),
         about: format!(
-            "The default step of each variant, and how much longer it could be: 20 rows, walls and all, \
-             the lattice disturbed by {DISORDER:e} dx, {STEPS} steps. A run that diverges, or whose \
-             cross-flow or error exceeds V, is unstable. Theory is that of the periodic lattice with sound, \
-             viscosity and what else damps; it knows neither walls nor motion nor stabilisers."
+            "The default step of each variant, and how many times longer it could be, for 20 rows between \
+             walls on a lattice disturbed by {DISORDER:e} dx, over {STEPS} steps. A run is unstable if it \
+             diverges, or if its cross-flow or error exceeds V. Theory is that of the periodic lattice \
+             with sound, viscosity and other damping, without walls, motion and stabilisers."
         ),
         of: of.collect(),
     }
@@ -75,7 +75,7 @@ fn limit(Channel { flow, case }: Channel, variant: &'static str) -> StepLimit {
         Flow::Couette => format!("stability.default.{variant}"),
         Flow::Poiseuille => format!("poiseuille.time-step.{variant}"),
     };
-    let because = "a default step beyond the stability limit is no default";
+    let because = "The default time step must be below the measured limit of stability.";
     let (of_default, bound) = ("longest stable dt/default dt", Bound::Above(1.0));
     let stable = Gate::new(format!("{name}.stable"), of_default, bound, Evidence::Theory, because);
     let before = BEFORE.iter().find(|(known, _)| flow == Flow::Couette && *known == variant);
@@ -100,8 +100,8 @@ fn limit(Channel { flow, case }: Channel, variant: &'static str) -> StepLimit {
 /// A limit may be this much below what it was: the resolution of the bisections.
 const SLACK: f64 = 0.99;
 
-const BECAUSE: &str = "what this study measured when its baseline was set, less 1 % for the \
-                       resolution of the bisection";
+const BECAUSE: &str = "The bound is what this study measured when its baseline was set, less 1 % for the \
+                       resolution of the bisection.";
 
 /// Variant of Couette flow at 20 rows: longest stable dt over the default dt, and over the theory of the
 /// periodic lattice, as they were measured when they were first written down: not the truth, but nothing may

@@ -83,7 +83,8 @@ fn at_reynolds(channel: Channel, variant: &str, (re, end): (f64, f64)) -> RunSpe
 
 /// The modern variant over the Reynolds number.
 pub fn reynolds(channel: Channel, tier: Tier) -> Vec<Planned> {
-    let because = "one rule for the settings holds every Reynolds number of the list within 1 %";
+    let because = "One rule for the settings must hold at every Reynolds number of the list, with an error \
+                   of at most 1 %.";
     let judged = |run: (f64, f64)| {
         let id = format!("{}.modern.re{}.l2_worst", channel.flow.name(), run.0);
         let gate = Gate::new(id, L2_WORST, Bound::Below(0.01), Evidence::Analytic, because);
@@ -106,8 +107,8 @@ const EXTRAPOLATED: [(usize, [f64; 2]); 4] = [
 ];
 
 fn extrapolated(Channel { flow, case }: Channel, rows: usize, flat: [f64; 2]) -> Planned {
-    let because = "the error of these walls by the row-reduced matrix of this flow, and 8e-4 more: by as \
-                   much the viscosity of rows that slide differs from that of rows in columns";
+    let because = "The bound is the error of these walls by the row-reduced matrix of this flow, and 8e-4 \
+                   more, by which the viscosity of rows that slide differs from that of rows in columns.";
     let of = format!("{}.extrapolating-wall.{rows}", flow.name());
     let most = flat[usize::from(flow == Flow::Poiseuille)] + 8e-4;
     let error = gate(&of, L2.at(1), Bound::Below(most), Evidence::Theory, because);
@@ -129,14 +130,15 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
     if variant == "plain" {
         gates.extend(between_matrices(flow, rows).map(|bound| {
             let metric = L2.at(flow.compared_at());
-            let because = "the row-reduced matrices of rows in columns and of rows that slid past each \
-                           other, with the steps of the leapfrog, enclose the error of rows that slide";
+            let because = "The error of rows that slide lies between those by the row-reduced matrices of \
+                           rows in columns and of rows slid past each other, with the steps of the \
+                           leapfrog.";
             gate(&of, metric, bound, Evidence::Theory, because)
         }));
     }
     if (flow, variant, rows) == (Flow::Couette, "plain", 20) {
-        let because = "a linear profile is exact on mirrored rows, and of the start 1e-6 is left: \
-                       compressibility may move the rest by less than (V/c0)^2 = 1.3e-4";
+        let because = "A linear profile is exact on mirrored rows, and 1e-6 of the start is left. \
+                       Compressibility may add less than (V/c0)^2 = 1.3e-4.";
         gates.push(error(L2.at(1), 1e-4, because));
     }
     if (flow, variant, rows) == (Flow::Couette, "modern", 20) {
@@ -145,8 +147,9 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
         gates.push(error(L2.at(flow.compared_at()), 1.3e-3, because));
     }
     if (flow, variant, rows) == (Flow::Poiseuille, "curved", 20) {
-        let because = "the goal of 0.03 %, between the row-reduced matrices of rows that slid past each \
-                       other, 9e-5, and of rows in columns, 8e-4: at Re 0.5 they slide by ten spacings";
+        let because = "The bound is the goal of 0.03 %. It lies between the errors by the row-reduced \
+                       matrices of rows slid past each other, 9e-5, and of rows in columns, 8e-4, because \
+                       at Re 0.5 rows slide by ten spacings.";
         gates.push(error(L2.at(1), 3e-4, because));
     }
     if variant == "seed" && rows == 20 {
@@ -156,8 +159,8 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
         gates.push(error(
             L2_WORST.into(),
             0.02,
-            "claim M4: walls of particles are as good as ghosts, to the 1.9 % by which eta and the \
-             kernel on this lattice change the viscosity",
+            "Claim M4: walls of particles are as good as ghosts. The bound is the 1.9 % by which eta and \
+             the kernel on this lattice change the viscosity.",
         ));
     }
     if variant == "plain" && rows == 20 {
@@ -186,12 +189,12 @@ fn between_matrices(flow: Flow, rows: usize) -> Option<Bound> {
 fn hypothesis_gates(flow: Flow, of: &str) -> Vec<Gate> {
     let because = match flow {
         Flow::Couette => {
-            "H1: the transient profiles follow the series, to the 1.9 % by which eta and the \
-             kernel on this lattice change the viscosity"
+            "H1: the transient profiles follow the series. The bound is the 1.9 % by which eta and the \
+             kernel on this lattice change the viscosity."
         }
         Flow::Poiseuille => {
-            "H2: the parabola follows the analytic solution, to the 1.9 % by which eta and the \
-             kernel on this lattice change the viscosity"
+            "H2: the parabola follows the analytic solution. The bound is the 1.9 % by which eta and the \
+             kernel on this lattice change the viscosity."
         }
     };
     TIMES
@@ -212,30 +215,31 @@ fn invariant_gates(flow: Flow, of: &str) -> Vec<Gate> {
             0.985,
             1.015,
             Evidence::Analytic,
-            "the fluid has the viscosity it was given: lattice and eta account for 0.1 %, the wall \
-             and the step for 1 %",
+            "The fluid must have the viscosity that it was given. The lattice and eta account for 0.1 %, \
+             the wall and the time step for 1 %.",
         ),
         within(
             VOLUME_DRIFT.into(),
             -1e-3,
             1e-3,
             Evidence::Invariant,
-            "continuity density follows the volume: it may swing by less than Ma^2 = 1e-3",
+            "Density by the continuity equation (3) follows the volume, which may oscillate by less than \
+             Ma^2 = 1e-3.",
         ),
         gate(
             of,
             P_RMS.into(),
             Bound::Below(0.1),
             Evidence::Analytic,
-            "the exact pressure is 0, on the scale rho V^2",
+            "The exact pressure is 0; the bound is in units of rho V^2.",
         ),
-        gate(of, V_RMS.into(), Bound::Below(1e-3), Evidence::Analytic, "the exact cross-flow is 0"),
+        gate(of, V_RMS.into(), Bound::Below(1e-3), Evidence::Analytic, "The exact cross-flow is 0."),
         gate(
             of,
             OUTSIDE.into(),
             Bound::Equals(0.0),
             Evidence::Invariant,
-            "no particle passes a plate",
+            "No particle passes a plate.",
         ),
     ];
     match flow {
@@ -245,7 +249,7 @@ fn invariant_gates(flow: Flow, of: &str) -> Vec<Gate> {
                 -1e-3,
                 1e-3,
                 Evidence::Analytic,
-                "a linear profile is exact on mirrored rows, whatever the kernel",
+                "A linear profile is exact on mirrored rows, whatever the kernel.",
             )
         })),
         Flow::Poiseuille => gates.push(within(
@@ -253,7 +257,7 @@ fn invariant_gates(flow: Flow, of: &str) -> Vec<Gate> {
             -1e-10,
             1e-10,
             Evidence::Invariant,
-            "the scene is symmetric about the middle: cross momentum stays round-off",
+            "The scene is symmetric about the middle, so momentum across the channel stays at round-off.",
         )),
     }
     gates

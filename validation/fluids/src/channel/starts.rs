@@ -28,11 +28,11 @@ fn starts(tier: Tier, re: f64) -> &'static [f64] {
 pub fn in_words(tier: Tier) -> String {
     match tier {
         Tier::Quick => {
-            "Each cell is one start, whose particles are displaced by up to 1e-4 dx.".into()
+            "A cell is one start, with particles displaced by up to 1e-4 dx.".into()
         }
         Tier::Full => format!(
-            "Up to Re {MANY_STARTS} a cell is {} starts, whose particles are displaced by up to {} dx; above \
-             that it is one, displaced by 1e-4 dx.",
+            "Up to Re {MANY_STARTS} a cell is {} starts, with particles displaced by up to {} dx, and \
+             above one, by 1e-4 dx.",
             DISORDER.len(),
             disorder(&DISORDER)
         ),

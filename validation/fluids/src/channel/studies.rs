@@ -47,11 +47,12 @@ fn claims(channel: Channel, runs: &Runs) -> Study {
     }
 }
 
-const ASSUMED: &str = "Assumed where the paper is silent or its scan is damaged: plates 1 mm apart, water \
-    (ρ = 1000 kg/m³, ν = 10⁻⁶ m²/s), V from Re = V L/ν, in Poiseuille flow the speed of the centre line; a \
-    periodic section as short as two supports allow, for the flow does not depend on x; the \
-    predictor-corrector read as the explicit midpoint rule; a square lattice at rest, rows half a spacing \
-    from ghost walls, and on the plates where there are interface particles.";
+const ASSUMED: &str = "These assumptions fill gaps of the paper and of its scan. The plates are 1 mm \
+    apart, and the fluid is water (ρ = 1000 kg/m³, ν = 10⁻⁶ m²/s). V follows from Re = V L/ν; in \
+    Poiseuille flow it is the speed of the centre line. The section is periodic and as short as two \
+    supports allow, because the flow does not depend on x. The predictor-corrector is read as the explicit \
+    midpoint rule. Particles start at rest on a square lattice, with rows half a spacing from ghost walls, \
+    or on the plates where there are interface particles.";
 
 /// H1, H2 and M4 of the paper in words.
 fn verdicts(channel: Channel, runs: &Runs) -> Vec<String> {
@@ -71,14 +72,14 @@ fn verdicts(channel: Channel, runs: &Runs) -> Vec<String> {
     };
     vec![
         format!(
-            "**{name}** ({what}) **{}**: variant `seed`, 20 rows, Re 0.5: worst relative L2 error from \
-             νt/L² = 0.1 on {}, of which the lattice and η² may explain 1.9 %.",
+            "**{name}** ({what}) is **{}**: the largest relative L2 error of `seed` from νt/L² = 0.1 on is \
+             {}; the lattice and η² can cause 1.9 %.",
             said(&[seed]),
             shown(seed)
         ),
         format!(
-            "**M4** (both wall models work) **{}** for this flow: ghosts with {}, interface and wall \
-             particles with {} as worst error.",
+            "**M4** (both wall models work) is **{}** for this flow: the largest errors are {} with \
+             ghosts, and {} with interface and wall particles.",
             said(&[seed, walls]),
             shown(seed),
             shown(walls)
@@ -91,10 +92,9 @@ fn snapshot(flow: Flow, record: &Record) -> Figure {
     let id = format!("{}-particles", flow.name());
     let settings: ChannelSettings = record.settings_as();
     let dx = settings.width / settings.rows as f64;
-    let caption = "Particles of variant `seed` at νt/L² = 1, Re 0.5, 20 rows across the channel, in a \
-                   section that is periodic in x. Left: velocity u along the channel. Right: pressure p, \
-                   which is exactly zero in this flow; what is left of it comes from rows that slide past \
-                   each other.";
+    let caption = "Particles of variant `seed` at νt/L² = 1, Re 0.5, 20 rows across the channel. Left: \
+                   velocity u along the channel. Right: pressure p, which is exactly zero in theory; rows \
+                   that slide past each other disturb it.";
     let map = |title: &str, field: &str, label: &str, colours| {
         let points = pictures::points(record, "particles", field);
         let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
@@ -109,10 +109,11 @@ fn snapshot(flow: Flow, record: &Record) -> Figure {
 /// The modern variant over the Reynolds number.
 fn reynolds(channel: Channel, tier: Tier, runs: &Runs) -> Study {
     let id = format!("{}-reynolds", channel.flow.name());
-    let caption = "Variant `modern` at 20 rows over the Reynolds number, all settings by one rule: quintic \
-                   spline, h = dx, density diffusion 0.1, shifting 0.5, no background pressure, c0 by \
-                   Morris' rule with 1 % density variation and at least 2.2 ν/h, Courant number 1 and \
-                   viscous number 0.4. The quick tier leaves higher Re to the full tier.";
+    let caption = "Variant `modern` at 20 rows over the Reynolds number, with one rule for all settings. \
+                   The rule is the quintic spline, h = dx, density diffusion 0.1, shifting 0.5, no \
+                   background pressure, c0 by Morris' rule with 1 % density variation and at least 2.2 \
+                   ν/h, Courant number 1 and viscous number 0.4. The quick tier leaves higher Re to the \
+                   full tier.";
     type Row<'a> = (&'a Record, Rules, ChannelSettings);
     let row = |planned: Planned| {
         let record = runs.record(&planned.spec)?;

@@ -56,7 +56,7 @@ fn methods<B: Drive>(all: All) -> All {
     )
     .with(
         "interface-wall",
-        "seed with interface and wall particles (4.2) for ghosts",
+        "seed with interface and wall particles (section 4.2 of the paper) in place of ghosts",
         Method::of::<Seed<Fluid<B>, Continuity, InterfaceWall>>(),
         |_| {},
     )
@@ -148,19 +148,19 @@ fn cures<B: Drive>(all: All) -> All {
     )
     .with(
         "cure-stress",
-        "seed with artificial stress (18)(19)",
+        "seed with artificial stress, equations (18) and (19)",
         Method::of::<Seed<Fluid<B, ArtificialStress>, Continuity>>(),
         |_| {},
     )
     .with(
         "cure-viscosity",
-        "seed with artificial viscosity (16)(17), alpha 0.1",
+        "seed with artificial viscosity, equations (16) and (17), alpha 0.1",
         Method::of::<Seed<Damped<B>, Continuity>>(),
         |_| {},
     )
     .with(
         "cure-xsph",
-        "seed with XSPH (22), epsilon 0.5",
+        "seed with XSPH, equation (22), epsilon 0.5",
         Method::of::<Seed<Fluid<B>, (Continuity, Xsph)>>(),
         |_| {},
     )

@@ -112,16 +112,16 @@ const PERIOD: Bound = Bound::Within(0.8, 1.25);
 /// The study.
 pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
     let found = SETTINGS.map(|setting| Rings::of(case, setting, tier, runs));
-    let because = "H3: waves bounce between the ghost walls, so the lowest mode has about the period 2L/c0. \
-                   By how much disorder lengthens it has no theory: a median of 1.16 was found at c0/V = 10, \
-                   of 1.09 at 20, and a change beyond 0.8 to 1.25 is one of the program";
+    let because = "H3 says that waves bounce between the ghost walls, so the lowest mode has about the \
+                   period 2L/c0. No theory says by how much disorder lengthens it. The median was 1.16 at \
+                   c0/V = 10 and 1.09 at 20, and a value outside of 0.8 to 1.25 is a change of the \
+                   program.";
     let mut study = Study::new("poiseuille-h3", "H3: pressure waves between the walls");
     study = study.prose(h3(&found));
-    let caption = "Amplitude of the lowest pressure mode across the channel, cos(πy/L), in Poiseuille flow \
-                   of variant `seed` at Re 20 for two sound speeds c0, each less its mean over 2L/c0, so \
-                   that waves are seen and not the slow drift. Time is in crossings of the channel by sound, \
-                   up to the end of the run: on this axis a wave that bounces between the walls has the \
-                   period 2, whatever c0. Each is the run of the median period.";
+    let caption = "Lowest pressure mode cos(πy/L) across the channel in Poiseuille flow of variant `seed` \
+                   at Re 20, less its mean over 2L/c0. Time is in crossings of the channel by sound, so a \
+                   wave that bounces between the walls has the period 2. Each line is the run of the \
+                   median period.";
     let mut plot = Plot::new(
         "",
         Axis::linear("time before the end (t − t_end) c0/L [-]"),
@@ -143,9 +143,9 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
 
 fn waves_table(tier: Tier, found: &[Rings]) -> Table {
     let caption = format!(
-        "The lowest pressure mode cos(πy/L) of the seed's Poiseuille flow over the last 60 L/c0 of a run, \
-         which ends by divergence or at νt/L² = {WATCHED}: medians of runs whose initial places are \
-         disordered by {} dx, without those that are over too soon. In the flow the mode is exactly 0. A \
+        "The lowest pressure mode cos(πy/L) in Poiseuille flow of `seed` over the last 60 L/c0 of a run. A \
+         run ends by divergence or at νt/L² = {WATCHED}. Numbers are medians of runs whose initial places \
+         are disordered by {} dx, without those that end too soon. In the exact flow the mode is 0, and a \
          wave that bounces between the walls has the period 2L/c0. Growth is the amplitude at the dominant \
          period in the last 30 L/c0 over that in the 30 before.",
         disorder(wave_starts(tier))
@@ -170,7 +170,7 @@ fn h3(found: &[Rings]) -> String {
     let at = |re: f64, sound: f64| found.iter().find(|r| (r.re, r.sound) == (re, sound));
     let (Some(slow), Some(low), Some(high)) = (at(5.0, 10.0), at(20.0, 10.0), at(20.0, 20.0))
     else {
-        return "**H3 open**: nothing was measured.".into();
+        return "**H3** is **open**: nothing was measured.".into();
     };
     let period = |rings: &Rings| sig(rings.median(|run| run.period), 3);
     let amplitude = |rings: &Rings| rings.median(|run| run.amplitude);
@@ -180,7 +180,7 @@ fn h3(found: &[Rings]) -> String {
         _ => "open",
     };
     let slow_rings =
-        if slow.bounces() { "rings with that period as well" } else { "does not have that period" };
+        if slow.bounces() { "has this period as well" } else { "does not have this period" };
     let growth: Vec<String> = found
         .iter()
         .map(|r| (r, r.median(|run| run.growth)))
@@ -197,11 +197,11 @@ fn h3(found: &[Rings]) -> String {
         })
         .collect();
     format!(
-        "**H3** (pressure waves leave the ghost-particle walls and keep bouncing between them) \
-         **{verdict}**: at Re 20 the median period of the lowest mode is {} times 2L/c0 at c0 = 10 V and {} \
-         times at 20 V, and 1 is the period of a wave that bounces between the walls. At Re 5 and c0 = 10 V \
-         the mode {slow_rings} ({} times 2L/c0); its amplitude there is {} ρV², and {} ρV² at Re 20, {} \
-         times as much. From the last but one 30 L/c0 to the last, {}.",
+        "**H3** (pressure waves leave the ghost-particle walls and keep bouncing between them) is \
+         **{verdict}**. At Re 20 the median period of the lowest mode is {} times 2L/c0 at c0 = 10 V and \
+         {} times at 20 V; 1 is the period of a wave that bounces between the walls. At Re 5 and c0 = 10 V \
+         the mode {slow_rings} ({} times 2L/c0). Its amplitude is {} ρV² there, and {} ρV² at Re 20, {} \
+         times as much. From the last but one interval of 30 L/c0 to the last, {}.",
         period(low),
         period(high),
         period(slow),

@@ -75,15 +75,15 @@ fn ladder<const N: usize>(runs: [HillRun; N]) -> Ladder {
 fn accuracy(tier: Tier) -> Accuracy {
     let (about, ladders) = match tier {
         Tier::Quick => (
-            "Flow over periodic hills at Re 10 from rest to 10 H/U_b, where about 0.3 % of U_b is left of \
-             the start, rms over ten stations against finite elements.",
+            "Flow over periodic hills at Re 10 after 10 H/U_b, against finite elements at ten stations. \
+             About 0.3 % of U_b is left of the start from rest.",
             ["interface-wall", "modern", BEST]
                 .map(|variant| ladder([4, 5, 7].map(|n| quick(variant, n))))
                 .into(),
         ),
         Tier::Full => (
-            "Flow over periodic hills at Re 50 from rest to 40 H/U_b, which is what it takes to become \
-             steady, rms over ten stations against finite elements.",
+            "Flow over periodic hills at Re 50, steady after 40 H/U_b, against finite elements at ten \
+             stations.",
             VARIANTS.map(full_ladder).into(),
         ),
     };
@@ -100,8 +100,8 @@ fn full_ladder(variant: &'static str) -> Ladder {
         id: format!("{NAME}.{BEST}.50.order"),
         bound: Bound::Above(1.0),
         evidence: Evidence::Theory,
-        because: "the walls are of first order on disordered particles, their sums of second: the goal of 2 \
-                  % at 20 spacings and 1 % at 40 is first order"
+        because: "The walls are of first order on disordered particles, and their sums of second. The goal \
+                  of 2 % at 20 spacings and 1 % at 40 is first order."
             .into(),
     };
     Ladder { order: Some(order), ..ladder([4, 5, 7, 10, 20].map(|n| HillRun::rest(BEST, n))) }
@@ -127,8 +127,8 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
             (about, quick(BEST, 5), quick(BEST, 7), &CHANGES[..3])
         }
         Tier::Full => (
-            "Re 50, H/dx = 10 and 20, from rest. What moves less than the start does is within what disorder \
-             does.",
+            "Re 50, H/dx = 10 and 20, from rest. A change smaller than that by the start is within the \
+             effect of disorder.",
             HillRun::rest(BEST, 10),
             HillRun::rest(BEST, 20),
             &CHANGES[..],
@@ -158,10 +158,9 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
 /// Profiles at their stations, symbols on lines.
 fn profiles(tier: Tier) -> Curves {
     let caption = "Velocity u along the channel (left) and v across it (middle) at ten stations: lines are \
-                   finite elements, symbols the finest run of variant `carried`, which began as the title \
-                   says. A velocity is drawn from the place of its station, and a distance of 1 H stands for \
-                   1.25 U_b of u or 0.4 U_b of v. Right: error of u, u less that of finite elements, \
-                   magnified as the axis says.";
+                   finite elements, symbols the finest run of variant `carried`. A velocity is drawn from \
+                   the place of its station, where 1 H stands for 1.25 U_b of u or 0.4 U_b of v. Right: \
+                   error of u, magnified as the axis says.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         if let Some((run, reference)) = best(tier, re).last().zip(reference(re)) {
@@ -243,9 +242,9 @@ fn station(record: &Record, k: usize, name: &str, scale: f64) -> Vec<(f64, f64)>
 
 /// Shear stress along hill and lid.
 fn shear(tier: Tier) -> Curves {
-    let caption = "Shear stress on the hill (left) and on the lid (right) of variant `carried` at several \
-                   spacings and of finite elements (black), in units of ρ U_b². Where the stress on the hill \
-                   is negative the flow goes backwards; the crests are at x = 0 and 9 H.";
+    let caption = "Shear stress over ρ U_b² on the hill (left) and on the lid (right), variant `carried` \
+                   at several spacings and finite elements (black). Where it is negative the flow goes \
+                   backwards; the crests are at x = 0 and 9 H.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         let runs = best(tier, re);

@@ -93,7 +93,7 @@ fn variants() -> Vec<Composition<HillSettings>> {
         )
         .with(
             "interface-wall",
-            "modern with interface and wall particles (4.2)",
+            "modern with interface and wall particles (section 4.2 of the paper)",
             method::<Quintic<Pairs, Stabilised, InterfaceWall>>(),
             |_| {},
         )
@@ -135,11 +135,11 @@ const BEST: &str = "carried";
 static CASE: Composed<HillSettings> = Composed {
     name: NAME,
     problem: "Flow over a row of hills, with separation",
-    about: "A channel with hills on its floor, one every nine heights, and a flat lid. A body force drives a \
-            given flux through it. From Re 50 on the flow leaves the wall behind the crest and comes back \
-            to it in the trough, or on the next hill: steady, laminar, with curved walls that are convex at \
-            the crest and concave at the foot. The reference is a finite-element computation of this \
-            project, for none is published.",
+    about: "A body force keeps a given flux through a channel with hills on its floor, one every nine \
+            heights, and a flat lid. From Re 50 on the flow leaves the wall behind the crest and comes \
+            back to it in the trough, or on the next hill. It is steady and laminar, along walls that are \
+            convex at the crest and concave at the foot. The reference is a finite-element computation of \
+            this project, because none is published.",
     variants,
     is_stable: stability::is_stable,
     declaration: declaration::declaration,

@@ -153,8 +153,8 @@ fn flat() -> Planned {
         FORCE,
         Bound::Within(0.99 * exact, 1.01 * exact),
         Evidence::Analytic,
-        "plane Poiseuille flow: 12 nu Q/D^3; the walls stand within 1 % of a spacing, which is 0.1 % of the \
-         force, and 30 spacings across a parabola are good for 0.5 %",
+        "The force of plane Poiseuille flow is 12 nu Q/D^3. The walls stand within 1 % of a spacing, which \
+         is 0.1 % of the force, and 30 spacings resolve a parabola to 0.5 %.",
     );
     let flat = rest(10).changed(|s| s.crest = 0.0);
     Planned::new(flat).judged(vec![force]).taking(seconds(10, END))
@@ -168,15 +168,15 @@ fn gates(HillRun { variant, re, n, from_reference, .. }: HillRun) -> Vec<Gate> {
         Gate::new(id, metric, bound, evidence, because)
     };
     let none_outside =
-        gate(OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, "no particle passes a wall");
+        gate(OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, "No particle passes a wall.");
     let goal = match n {
         40.. => 0.01,
         20.. => 0.02,
         _ => 0.04,
     };
     if variant == "plain" {
-        let because = "a control, held to the goal of the best: without density diffusion and shifting the \
-                       run diverges before the flow is steady";
+        let because = "Control, with the bound of the best variant: without density diffusion and shifting \
+                       the run diverges before the flow is steady.";
         let control = gate(L2_U, Bound::Below(goal), Evidence::Reference, because);
         return vec![control.expected_to_fail().may_end_early()];
     }
@@ -185,27 +185,28 @@ fn gates(HillRun { variant, re, n, from_reference, .. }: HillRun) -> Vec<Gate> {
         return vec![none_outside];
     }
     let reach = if n >= 20 { 0.1 } else { 0.2 };
-    let because = "the goal: 2 % of U_b at 20 spacings, 1 % at 40, so of first order, and 4 % at 10; the \
-                   reference is known to 0.02 %";
+    let because = "The goal is 4 % of U_b at 10 spacings, 2 % at 20 and 1 % at 40, which is first order. \
+                   The reference is known to 0.02 %.";
     let mut gates = vec![
         gate(L2_U, Bound::Below(goal), Evidence::Reference, because),
         gate(
             FORCE_ERROR,
             Bound::Within(-goal, goal),
             Evidence::Reference,
-            "the force goes with the velocity at the walls: the same goal as for the velocity",
+            "The force follows the velocity at the walls, so it has the same goal as the velocity.",
         ),
         none_outside,
     ];
     gates.extend(balances(&gate, n, goal));
     if re > 10.0 {
-        let because = "a tenth of H, the goal at 20 spacings: two spacings";
+        let because = "The goal is a tenth of H, which is two spacings at 20 spacings a hill.";
         let bound = Bound::Within(-reach, reach);
         gates.push(gate(REATTACHMENT_ERROR, bound, Evidence::Reference, because));
     }
     if re > 10.0 && n >= 20 {
-        let because = "where the flow leaves the wall is held to the goal of where it comes back, a tenth of \
-                       H: two spacings at 20; the reference is known to 7e-4 H";
+        let because = "The point where the flow leaves the wall has the same goal as the one where it \
+                       comes back, a tenth of H, which is two spacings at 20. The reference is known to \
+                       7e-4 H.";
         let bound = Bound::Within(-reach, reach);
         gates.push(gate(SEPARATION_ERROR, bound, Evidence::Reference, because));
     }
@@ -223,38 +224,39 @@ fn balances(
             WALL_OFFSET,
             Bound::Below(0.05),
             Evidence::Invariant,
-            "rows follow the curve to a hundredth of a spacing, and more only at the kink of the crest: a \
-             hill 2 % too high is a fifth of a spacing at ten, which the velocity does not show, for the \
-             error of the method there is as large and of the other sign",
+            "Rows follow the curve of the wall to a hundredth of a spacing, and less closely only at the \
+             kink of the crest. A hill that is 2 % too high is off by a fifth of a spacing at ten, which \
+             the velocity does not show, because the error of the method there is as large and has the \
+             opposite sign.",
         ),
         gate(
             SECTION_FLUX,
             Bound::Below(if n >= 20 { 0.005 } else { 0.012 }),
             Evidence::Invariant,
-            "a steady flow has the same flux through every section, but for Mach's density variation of \
-             (1.3/15)^2/2 = 0.4 %: 0.5 %. At ten spacings 0.8 % more: the line fitted to the field lies \
-             below a parabola by 0.27 h^2 |u''|",
+            "A steady flow has the same flux through every section, except for the density variation of \
+             (1.3/15)^2/2 = 0.4 % at this Mach number, so the bound is 0.5 %. At ten spacings it is 0.8 % \
+             more, because the line fitted to the field lies below a parabola by 0.27 h^2 |u''|.",
         ),
         gate(
             FLUX,
             Bound::Within(-1e-3, 1e-3),
             Evidence::Invariant,
-            "the controller integrates: the flux it holds is the one wanted",
+            "The controller integrates, so the flux that it holds is the one wanted.",
         ),
         gate(
             DRAG_BALANCE,
             if n >= 20 { Bound::Within(-0.01, 0.01) } else { Bound::Within(-0.04, 0.04) },
             Evidence::Invariant,
-            "in steady flow the walls take what the force gives; stress at the wall from the field, not \
-             from the sums that move particles: 1 %, at ten spacings four times that, for its slope is \
-             found to second order",
+            "In steady flow the walls take what the force gives. The stress at the wall is that of the \
+             field, not of the sums that move particles. The bound is 1 %, and four times that at ten \
+             spacings, because the slope at the wall is found to second order.",
         ),
         gate(
             UNSTEADY,
             Bound::Below(0.25 * goal),
             Evidence::Theory,
-            "what is left of a decay, extrapolated from three windows, without the change that disorder \
-             explains: a quarter of the goal",
+            "The bound is a quarter of the goal. It limits what is left of the decay, extrapolated from \
+             three windows, without the change that disorder explains.",
         ),
     ]
 }

@@ -55,11 +55,11 @@ pub fn is_stable(record: &Record) -> bool {
 /// The longest stable step over the theoretical one, by bisection.
 pub fn limits(tier: Tier) -> StepLimits {
     let (n, tried) = match tier {
-        Tier::Quick => (QUICK_N, "Of six variants one: the best."),
+        Tier::Quick => (QUICK_N, "One of six variants was tried, the best."),
         Tier::Full => (
             N,
-            "Of six variants three: one each with sums over pairs, with shifted velocities and with \
-             consistent sums; `plain`, `interface-wall` and `mixed` were not tried.",
+            "Three of six variants were tried, one each with sums over pairs, with shifted velocities and \
+             with consistent sums; `plain`, `interface-wall` and `mixed` were not.",
         ),
     };
     let of = match tier {
@@ -96,15 +96,16 @@ fn judged(limit: StepLimit, margin: f64) -> StepLimit {
         "measured/theory",
         Bound::Within(default, 1.2),
         Evidence::Theory,
-        "the default must be stable, and nothing in disorder makes sound slower or the stencil softer by a \
-         fifth: a limit far above that of the lattice would be a wrong theory",
+        "The default step must be stable. Disorder makes neither sound slower nor the stencil softer by a \
+         fifth, so a limit far above that of the lattice would show a wrong theory.",
     );
     let kept = gate(
         "margin",
         "longest stable dt/default dt",
         Bound::Above(margin - RESOLUTION / default),
         Evidence::Regression,
-        "what was measured when this study was introduced, less the resolution of the bisection",
+        "The bound is what was measured when this study was introduced, less the resolution of the \
+         bisection.",
     );
     StepLimit { of_theory: vec![theory], of_default: vec![kept], ..limit }
 }
@@ -125,12 +126,12 @@ pub fn tried() -> [(RunSpec, f64); 6] {
 /// A Reynolds number that variants hold.
 pub fn reynolds(runs: &Runs) -> Study {
     let caption = format!(
-        "Every variant at the highest Reynolds number that the setting allows, 1000, a lower bound of what \
-         it holds, and `plain` at 10, the lowest tried: H/dx = 10, from rest to {TRIED_TO} H/U_b. A variant \
-         holds a Reynolds number if its run completes with no particle behind a wall and a force along the \
-         flow. Force, ripple and flux are of the last {window} H/U_b; windows differ by: rms over ten \
-         stations of the change of mean u from the {window} H/U_b before them. The flow still develops \
-         then, and these numbers say nothing of its accuracy.",
+        "Every variant at Re 1000, the highest that the setting allows, and `plain` at Re 10, the lowest \
+         tried: H/dx = 10, from rest to {TRIED_TO} H/U_b. A variant holds a Reynolds number if its run \
+         completes with no particle behind a wall and a force along the flow. Force, ripple and flux are \
+         of the last {window} H/U_b. Windows differ by the rms over ten stations of the change of mean u \
+         from the {window} H/U_b before. The flow still develops then, so these numbers do not show its \
+         accuracy.",
         window = TRIED_TO / 5.0,
     );
     let re = |record: &Record| record.settings_as::<HillSettings>().re;
@@ -153,9 +154,9 @@ pub fn reynolds(runs: &Runs) -> Study {
             "highest Re held",
             Bound::Above(re),
             Evidence::Regression,
-            "what was measured to 20 H/U_b when this study was introduced must not fall, here to 12 for \
-             time. Without shifting and density diffusion not even Re 10, the lowest tried, is held, a \
-             control",
+            "The Reynolds number that was held to 20 H/U_b when this study was introduced must not fall; \
+             here runs last 12 H/U_b to save time. Control: without shifting and density diffusion not \
+             even Re 10, the lowest tried, is held.",
         );
         let gate = if variant == "plain" { gate.expected_to_fail() } else { gate };
         study = study.judge(gate, held);

@@ -54,14 +54,14 @@ fn table(caption: &str, texts: &[&str], metrics: &[Shown], rows: Vec<Row>) -> Ta
 
 /// Every run, after what finite elements have.
 fn all(tier: Tier, runs: &Runs) -> Study {
-    let caption = "All runs, after what finite elements have. Errors are rms over the points of ten \
-                   stations against finite elements; force and ripple (rms) over the last fifth of the run; \
-                   error of shear is rms over the hill, of the largest shear there; flux of sections is the \
-                   largest error of ten; drag balance is the stress at the walls over the force, less 1; \
-                   unsteady is what is left of the decay, extrapolated, without the change that disorder \
-                   explains. A dash: a run that diverged, no bubble, or no finite elements to compare \
-                   with. Runs from the reference start within 0.04 % of U_b of it: their error says that \
-                   the flow stays there, and unsteady how far it would still go.";
+    let caption = "All runs, below the values of finite elements. Errors of u and v are rms over the \
+                   points of ten stations. Force and ripple (rms) are over the last fifth of the run. The \
+                   error of shear is rms over the hill, relative to the largest shear there. Flux of \
+                   sections is the largest error of ten. Drag balance is the stress at the walls over the \
+                   force, less 1. Unsteady is what is left of the decay, extrapolated, without the change \
+                   that disorder explains. A dash stands for a run that diverged, for no bubble, or for no \
+                   finite elements to compare with. Runs from the reference start within 0.04 % of U_b of \
+                   it: their error says that the flow stays there, and unsteady how far it would still go.";
     let shown = REYNOLDS.into_iter().filter(|&re| !best(tier, re).is_empty());
     let mut rows: Vec<Row> = Vec::new();
     for (re, reference) in shown.filter_map(|re| Some((re, reference(re)?))) {
@@ -92,11 +92,11 @@ fn all(tier: Tier, runs: &Runs) -> Study {
 
 /// Particles by their velocity, with the streamlines of the reference.
 fn pictures(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Particles at the end of the finest run of variant `carried`, coloured by their velocity u \
-                   along the channel in units of the bulk velocity U_b; H is the height of a hill. Thin \
-                   lines are streamlines of the finite-element reference, and the thick black line is its \
-                   separation line, below which fluid circulates (there is none at Re 10). The green line is \
-                   the separation line of the particles, up to which their flux adds up to zero.";
+    let caption = "Particles of variant `carried` at the end of its finest run, coloured by their velocity \
+                   u along the channel over the bulk velocity U_b; H is the height of a hill. Thin lines \
+                   are streamlines of finite elements, and the thick black line is their separation line, \
+                   below which fluid circulates (none at Re 10). The green line is that of the particles, \
+                   up to which their flux adds up to zero.";
     let mut figure = Figure::new("periodic-hill-pictures", caption);
     let shown = REYNOLDS.into_iter().filter_map(|re| {
         let (run, reference) = best(tier, re).last().copied().zip(reference(re))?;
@@ -125,12 +125,12 @@ fn pictures(tier: Tier, runs: &Runs) -> Study {
 
 /// What the drag of each variant is made of.
 fn drags(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Drag by its parts, Re 50, H/dx = 10: integrals over the walls of what the field has \
-                   there. Shear agrees with finite elements to some percent in every variant. What \
-                   breaks the drag balance of `interface-wall` and `modern` is the pressure on the hill: \
-                   the force that holds the flux, and so the drag that the particles feel, is within 4 % of \
-                   finite elements, but the pressure that the field has at the wall is not the one of the \
-                   sums that move particles.";
+    let caption = "Parts of the drag at Re 50, H/dx = 10: stresses of the field, integrated over the \
+                   walls. Shear agrees with finite elements to some per cent in every variant. In \
+                   `interface-wall` and `modern` the drag balance fails by the pressure on the hill. The \
+                   force that holds the flux, and so the drag that the particles feel, is within 4 % of \
+                   finite elements, but the pressure of the field at the wall is not that of the sums that \
+                   move particles.";
     let mut rows: Vec<Row> = Vec::new();
     if let Some(reference) = reference(50.0) {
         let about = vec!["finite elements".into()];
@@ -171,8 +171,8 @@ fn starts(runs: &Runs) -> Study {
             "rms over stations of the difference of u [U_b]",
             Bound::Below(0.005),
             Evidence::Invariant,
-            "both starts must lead to the same steady flow, but for what disorder leaves in averages over \
-             a fifth of the run, 3 H/U_b and more",
+            "Both starts must lead to the same steady flow, except for what disorder leaves in averages \
+             over a fifth of the run, at least 3 H/U_b.",
         );
         let Some((rest, other)) = rest.zip(other) else {
             study = study.judge(gate, f64::NAN);
@@ -185,8 +185,8 @@ fn starts(runs: &Runs) -> Study {
         });
         let force = moved(FORCE).map_or(f64::NAN, |(other, rest)| other / rest - 1.0);
         let text = format!(
-            "Re {re}, H/dx = 10: profiles of u from rest and from the reference differ by {} of U_b (rms \
-             over ten stations), forces by {}{bubble}.",
+            "Re {re}, H/dx = 10, start from rest and from the reference: u differs by {} of U_b (rms), the \
+             force by {}{bubble}.",
             percent(difference, 2),
             percent(force, 2),
         );
@@ -198,9 +198,9 @@ fn starts(runs: &Runs) -> Study {
 /// Why the best variant is the best, and how near to the goal it comes.
 fn reasons(runs: &Runs) -> Study {
     let study = Study::new("periodic-hill-best", "Why this variant is the best").prose(format!(
-        "`{BEST}` is not the one with the least error of u at every spacing (table of all runs). It is held \
-         to the goals for its force and its drag balance: `modern` misses both, and those of `consistent` \
-         are no closer, for terms that take more work a pair."
+        "`{BEST}` is chosen for its force and its drag balance, not for the least error of u at every \
+         spacing (table of all runs). `modern` misses the goals of both, and `consistent` comes no closer \
+         to them, with terms that take more work a pair."
     ));
     of_finest(runs).into_iter().fold(study, Study::prose)
 }
@@ -211,10 +211,10 @@ fn of_finest(runs: &Runs) -> Option<String> {
     let record = runs.completed(&run.spec())?;
     let (error, left) = (record.value(L2_U)?, record.value(UNSTEADY)?);
     Some(format!(
-        "The run at {} began near the answer and ended at {} H/U_b, before it was steady: its error may be \
-         low by what is left of the way from there to its own steady flow, and it is no part of the order \
-         and of the cost diagram. Its error and what is left, which may not add, come to {} + {} = {} of \
-         U_b; the goal is 1 %.",
+        "The run at {} ended at {} H/U_b, before it was steady. It began near the answer, so its error may \
+         be too low by what is left of the way to its own steady flow, and neither the order nor the cost \
+         diagram has it. Its error and what is left, which may not add, come to {} + {} = {} of U_b; the \
+         goal is 1 %.",
         run.name(),
         sig(run.end, 3),
         percent(error, 2),

@@ -58,10 +58,10 @@ fn best_ladder(start: f64) -> Ladder {
         id: format!("taylor_green.{BEST}.{start}.order"),
         bound: Bound::Within(1.6, 2.3),
         evidence: Evidence::Regression,
-        because: "what this program computed before, 1.95 from the disturbed lattice and 1.91 from the \
-                  square one, with 0.3 either way. Sums that are exact for linear fields let errors fall \
-                  as h^2, but those of the sound speed and the step fall otherwise and partly cancel them \
-                  (the error budget), so that theory gives no order at these spacings"
+        because: "The bound is what this program computed before, 1.95 from the disturbed lattice and 1.91 \
+                  from the square one, with 0.3 either way. With sums that are exact for linear fields \
+                  errors fall as h^2, but those of the sound speed and the time step fall otherwise and \
+                  partly cancel them, so theory gives no order at these spacings."
             .into(),
     };
     Ladder { order: Some(order), ..ladder(BEST, &SIDES, start) }
@@ -71,7 +71,7 @@ fn accuracy(id: &str, start: f64, ladders: Vec<Ladder>) -> Accuracy {
     let from = start_of(start);
     Accuracy {
         about: format!(
-            "Taylor-Green vortices at Re 100 from the {from}, velocities of the particles at t = 2 L/U."
+            "Taylor-Green vortices at Re 100 from the {from}, at t = 2 L/U."
         ),
         spacing: "dx/L [-]",
         ladders,
@@ -127,10 +127,10 @@ fn budgets(accuracy: &Accuracy) -> Budgets {
         changed("seed=2", "disorder", |s| s.seed = 2),
     ];
     Budgets {
-        about: "50 x 50 particles from the disturbed lattice, Re 100, at t = 2 L/U. Another disturbance \
-                (last row) says what is chance. A shorter step, faster sound and less diffusion all raise \
-                the error: their parts have the sign opposite to that of the spacing and cancel some of \
-                it, so that the error as it is says less than the parts do."
+        about: "Runs have 50 x 50 particles from the disturbed lattice at Re 100, to t = 2 L/U. The last \
+                row, with another disturbance, shows what is chance. A shorter step, faster sound and less \
+                diffusion all raise the error, because their parts have the sign opposite to that of the \
+                spacing and cancel some of it."
             .into(),
         ..Budgets::of(accuracy, vec![Budget { variant: BEST, changes }])
     }
@@ -142,10 +142,10 @@ const SHOWN: usize = 50;
 /// Energy and error through time.
 fn histories(tier: Tier) -> Curves {
     let caption = format!(
-        "Taylor-Green vortices at Re 100 against time in L/U, each variant at the most particles a side \
-         that ran, up to {SHOWN}. Left: relative error of the kinetic energy, |E/E_exact − 1|, which dips \
-         where its sign changes; right: relative L2 error of the velocity over the particles. Black marks \
-         the bounds that variant `{BEST}` is judged by, which apply at the end, t = 2 L/U."
+        "Taylor-Green vortices at Re 100 over time, each variant at the most particles a side that ran, up \
+         to {SHOWN}. Left: relative error of the kinetic energy, |E/E_exact − 1|, which dips where its \
+         sign changes; right: relative L2 error of the velocity. Black marks the bounds of variant \
+         `{BEST}`, which apply at t = 2 L/U."
     );
     let panels = STARTS.into_iter().flat_map(|start| {
         let of_start = || plan::judged(tier).into_iter().filter(move |run| run.2 == start);

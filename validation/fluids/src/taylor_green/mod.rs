@@ -112,8 +112,8 @@ static CASE: Composed<VortexSettings> = Composed {
     problem: "Periodic vortices decay by viscosity",
     about: "A periodic array of vortices decays by viscosity without changing its shape: an exact solution \
             of the incompressible equations. Particles go round with the flow and are stretched at its \
-            stagnation points, so that whatever order the start had is soon lost: the test of what a method \
-            does with disorder. Started from a square lattice and from one that is disturbed.",
+            stagnation points, so that the order of the start is soon lost. The case therefore shows what \
+            a method does with disorder. Runs start from a square lattice or from a disturbed one.",
     variants,
     is_stable: composed::completed,
     declaration: declaration::declaration,

@@ -101,32 +101,32 @@ fn gates(variant: &str, n: usize, start: f64) -> Vec<Gate> {
         Gate::new(id, metric, bound, evidence, because)
     };
     let goal = |most: f64, because: &str| gate(L2, Bound::Below(most), Evidence::Analytic, because);
-    let best = "the best of the codes measured has 2.2 % at 50 x 50 and 1.5 % at 100 x 100 after the same \
-                time: the goal is to be better than that from either start";
+    let best = "The best of the codes measured has 2.2 % at 50 x 50 and 1.5 % at 100 x 100 after the same \
+                time. The goal is a smaller error from either start.";
     let mut gates = Vec::new();
     if variant == BEST {
-        let second = "the goal of 2 % at 50 x 50, in the second order of its sums";
+        let second = "The bound is the goal of 2 % at 50 x 50, scaled with the second order of the sums.";
         gates.push(goal(most_error(n), if n == 50 || n == 100 { best } else { second }));
         let energy =
-            "1 % of the energy that is left is 0.3 % of the viscosity: e^-3.2 is left at the end";
+            "A share of e^-3.2 of the energy is left at the end, so 1 % of it is 0.3 % of the viscosity.";
         if let Some(most) = most_energy(n) {
             gates.push(gate(ENERGY, Bound::Within(-most, most), Evidence::Analytic, energy));
         }
-        let apart = "shifting keeps particles apart: half a spacing is far from pairing";
+        let apart = "Shifting keeps particles apart, and half a spacing is far from pairing.";
         gates.push(gate(NEAREST, Bound::Above(0.5), Evidence::Invariant, apart));
-        let drift = "nothing pushes the whole; terms that are exact for linear fields are not \
-                     conservative, and may add what their error of about 1 % adds";
+        let drift = "No force acts on the whole. Terms that are exact for linear fields do not conserve \
+                     momentum, and may add what their error of about 1 % adds.";
         gates.push(gate(MOMENTUM_ADDED, Bound::Below(0.01), Evidence::Invariant, drift));
     } else {
-        let pairs = "forces of pairs are opposite: the momentum of a disturbed start stays, and shifting \
-                     changes no velocity; round-off of some thousand steps";
+        let pairs = "Forces of pairs are opposite and shifting changes no velocity, so the momentum of a \
+                     disturbed start stays, except for the round-off of some thousand steps.";
         if ["plain", "shifting", "modern", "strong"].contains(&variant) {
             gates.push(gate(MOMENTUM_ADDED, Bound::Below(1e-12), Evidence::Invariant, pairs));
         }
     }
     if variant == "plain" {
         gates.push(
-            goal(0.02, "a control: without shifting strings and voids form").expected_to_fail(),
+            goal(0.02, "Control: without shifting, strings and voids form.").expected_to_fail(),
         );
     }
     gates

@@ -19,9 +19,9 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 
 /// Every run.
 fn table(runs: &Runs) -> Table {
-    let caption = "All runs at their end, t = 2 L/U where the settings say no other. Viscosity found: from \
-                   the fall of kinetic energy. Momentum added: the change of the total one from start to end \
-                   over the total mass, exactly 0; that of a disturbed start does not count.";
+    let caption = "All runs at their end, by default t = 2 L/U. The viscosity found follows from the fall \
+                   of the kinetic energy. Momentum added is the change of the total momentum from start to \
+                   end over the total mass, exactly 0 in theory; that of a disturbed start does not count.";
     Columns::of_variants()
         .changed("settings", &CASE)
         .ended()
@@ -36,10 +36,10 @@ fn table(runs: &Runs) -> Table {
 
 /// Particles at the end, by speed and by error.
 fn pictures(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Particles in the lower half of the periodic box of Taylor-Green vortices at t = 2 L/U, Re \
-                   100, coloured by their speed (left) and by the logarithm of the error of their velocity \
-                   (right), where −2 stands for 1 %. Both are over the largest exact speed of that time. \
-                   Variant `plain` has no stabiliser, and `consistent` is the best variant.";
+    let caption = "Particles in half of the periodic box of Taylor-Green vortices at t = 2 L/U, Re 100, \
+                   for variant `plain`, without stabilisers, and the best one, `consistent`. Left: speed; \
+                   right: logarithm of the error of the velocity, where −2 is 1 %. Both are over the \
+                   largest exact speed of that time.";
     let mut figure = Figure::new("taylor-green-pictures", caption).columns(2);
     let of_tier = plan::judged(tier);
     for (variant, n, start) in PICTURED.into_iter().filter(|run| of_tier.contains(run)) {
