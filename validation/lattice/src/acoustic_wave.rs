@@ -14,38 +14,39 @@ impl Kind for Acoustic {
     const CASE: &'static WaveCase = &WaveCase {
         name: "acoustic_wave",
         problem: "A small standing sound wave in a periodic box",
-        about: "A standing sound wave of infinitesimal amplitude in a periodic box, p'' + nu lambda p' \
-            + (c0 |g|)^2 p = 0. On a lattice the sums of the method are the symbols g(k) and \
-            lambda(k), known exactly: whatever the kernel, a correct program has their frequency \
-            and decay.",
+        about: "A standing sound wave of infinitesimal amplitude in a periodic box follows p'' + nu lambda \
+            p' + (c0 |g|)^2 p = 0. On a lattice, the symbols g(k) and lambda(k) of the sums of the method \
+            are known exactly. A correct program has the frequency and decay that follow from them, \
+            whatever the kernel.",
         polarisation: Polarisation::Sound,
         set: |_| (),
         gates: &[
             (
                 wave::FREQUENCY_ERROR,
-                "the gradient symbol is exact on a lattice; at amplitude 1e-6 \
-                             nonlinearity and round-off measure 1e-11 or less",
+                "The gradient symbol is exact on a lattice. At an amplitude of 1e-6, nonlinearity and \
+                             round-off were measured as 1e-11 or less.",
             ),
             (
                 wave::DECAY_ERROR,
-                "the Laplacian symbol is exact on a lattice; gamma is a difference of \
-                         amplitudes, so round-off counts by 1/(gamma dt): 6e-9 measured at most",
+                "The Laplacian symbol is exact on a lattice. The decay rate gamma is a difference of \
+                         amplitudes, so round-off counts by 1/(gamma dt), which was measured as 6e-9 at \
+                         most.",
             ),
             (
                 wave::TRAJECTORY_ERROR,
-                "every amplitude of every step follows from the symbols and the \
-                              closed form of one step; 3e-10 measured at most",
+                "Every amplitude of every step follows from the symbols and the closed form of one step. \
+                              The largest difference measured was 3e-10.",
             ),
         ],
         compressed: Some((
             wave::FREQUENCY_ERROR,
-            "the sound speed of the Tait equation rises as (rho/rho0)^3, which no wave at rho0 shows: the \
-         exponent is seen by the curvature of p(rho) alone",
+            "The sound speed of the Tait equation rises as (rho/rho0)^3, which no wave at rho0 shows. The \
+         exponent shows in the curvature of p(rho) alone.",
         )),
         disordered: Some((
             wave::MOMENTUM_ERROR,
-            "forces of pairs are equal and opposite wherever particles are; on a lattice symmetry would hide \
-         a pressure that is not, 0.1 dx of disorder shows it",
+            "Forces of pairs are equal and opposite wherever particles are. On a lattice, symmetry would \
+         hide a pressure force that is not, which a disorder of 0.1 dx shows.",
         )),
     };
 }

@@ -20,8 +20,7 @@ pub static SOFT_CONTACT: Cause = Cause::new(
 
 /// Bodies that touch are one.
 pub static ONE_LATTICE: Cause = Cause::new(
-    "Two bodies whose particles stand on one lattice are one body to the equations, so their contact can \
-     pull as well as push.",
+    "Two bodies on one lattice are one body to the equations, so their contact can pull as well as push.",
     "A law of contact between bodies, which pushes and does not pull.",
     "2026-11-21",
 );
@@ -51,16 +50,16 @@ pub static STRESS_ADDS_ENERGY: Cause = Cause::new(
 
 /// Artificial stress does not hold everything.
 pub static TEARING: Cause = Cause::new(
-    "Artificial stress delays the tensile instability without removing it, so rubber tears at high speeds or \
-     fine spacing, which real rubber would not.",
+    "Artificial stress delays the tensile instability without removing it, so rubber tears at high speeds \
+     or fine spacing.",
     "A total Lagrangian form of the equations, which has no tensile instability.",
     "2026-11-21",
 );
 
 /// Known in part alone.
 pub static SHARED_IMPULSE: Cause = Cause::new(
-    "Rings share the impulse between the two phases of contact differently from finite elements; artificial \
-     viscosity explains a part, and the rest is unexplained.",
-    "This is not known, because XSPH, softness in bending and softness of the contact do not explain it.",
+    "The two phases of contact share the impulse differently from finite elements; artificial viscosity \
+     explains a part, and the rest is unexplained.",
+    "This is not known: XSPH, softness in bending and softness of the contact do not explain it.",
     "2026-11-21",
 );

@@ -47,10 +47,10 @@ crate::solid_settings! {
 pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
     name: BarSettings::NAME,
     problem: "A pulse in an elastic bar; two bars collide",
-    about: "Elastic bars along x, periodic in y, so that they strain along x only and every wave runs at c_p \
-            = ((K + 4 mu/3)/rho)^(1/2). A pulse runs through one bar; or two equal bars at speeds V and -V \
-            meet: the contact bears rho c_p V (the jump conditions at finite V) for 2 L/c_p, and then both \
-            have exchanged their velocities.",
+    about: "Elastic bars along x are periodic in y, so they strain along x only and every wave runs at c_p \
+            = ((K + 4 mu/3)/rho)^(1/2). In one test a pulse runs through a bar. In the other two equal \
+            bars meet at speeds V and -V: the contact bears rho c_p V (the jump conditions at finite V) \
+            for 2 L/c_p, and then both have exchanged their velocities.",
     variants: solid::variants::<_, Open>,
     is_stable: composed::completed,
     declaration,
@@ -313,8 +313,8 @@ fn gate(id: &str, metric: MetricKey, bound: Bound, because: &str) -> Gate {
 }
 
 fn momentum(id: &str) -> Gate {
-    let because = "forces of pairs are equal and opposite, so only the round-off of some thousand steps is \
-                   left";
+    let because = "Forces of pairs are equal and opposite, so only the round-off of some thousand steps is \
+                   left.";
     ELASTIC_BAR.gate(id, MOMENTUM_ERROR, Bound::Below(1e-12), Evidence::Invariant, because)
 }
 
@@ -398,16 +398,16 @@ fn touching(variant: &str, (name, speed): (&str, f64)) -> Planned {
             &id,
             STRESS_ERROR,
             near,
-            "the jump conditions hold whatever dissipates in the front, and the speed of waves on the \
-             lattice is within 2 % of c_p",
+            "The jump conditions hold whatever dissipates in the front. The speed of waves on the lattice \
+             is within 2 % of c_p.",
         ),
         time,
         gate(
             &id,
             EXCHANGE,
             Bound::Within(0.98, 1.02),
-            "equal elastic bars exchange their velocities; 2 % are allowed for the lattice, as for stress \
-             and time",
+            "Equal elastic bars exchange their velocities. The bound allows 2 % for the lattice, as for \
+             stress and time.",
         )
         .with_limitation(Bound::Within(least, 1.02), welded)
         .because_of(&ONE_LATTICE),
@@ -435,8 +435,8 @@ fn separate(variant: &str, (name, speed): (&str, f64), end: f64) -> Planned {
     let stress = Bound::Within(stress[0], stress[1]);
     let restitution =
         Bound::Within(if variant == "bare" { 0.79 } else { restitution }, 1.0 + LATTICE);
-    let goal = "equal elastic bars exchange their velocities, and the contact bears the stress rho c_p V; 2 \
-                % are allowed for the lattice, as for bars in touch";
+    let goal = "Equal elastic bars exchange their velocities, and the contact bears the stress rho c_p V. \
+                The bound allows 2 % for the lattice, as for bars in touch.";
     let gates = vec![
         gate(&id, STRESS_ERROR, Bound::Within(-LATTICE, LATTICE), goal)
             .with_limitation(stress, soft)

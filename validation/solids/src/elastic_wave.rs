@@ -49,10 +49,10 @@ base::settings! {
 pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
     name: NAME,
     problem: "A small wave in rubber; a block that rotates",
-    about: "A wave of rubber (shear modulus 0.22 K) of infinitesimal amplitude along a stress-free lattice \
-            of 16 particles: its frequency is known exactly from the gradient symbol of the kernel, once the \
-            time step is divided out. In place of a wave: a block under a little stress that begins to \
-            rotate, whose stress has to rotate with it.",
+    about: "The frequency of an infinitesimal wave in rubber on a stress-free lattice is known exactly \
+            from the gradient symbol of the kernel. The shear modulus is 0.22 K, the wave has 16 \
+            particles, and the effect of the time step is divided out. A second test is a block under a \
+            little stress that begins to rotate, whose stress has to rotate with it.",
     variants,
     is_stable: composed::completed,
     declaration: |_| Declaration::default(),
@@ -274,9 +274,9 @@ fn study(runs: &Runs) -> Study {
         let record = runs.record(&spec(run));
         record.and_then(|record| record.value(run.1.metric())).unwrap_or(f64::NAN)
     };
-    let caption = "Waves of rubber (shear modulus 0.22 K) along a stress-free lattice of 16 particles, with \
-                   the time step divided out: frequency against the gradient symbol. Last: how far the \
-                   stress of a block rotates with it.";
+    let caption = "Waves in rubber on a stress-free lattice of 16 particles: frequency against the \
+                   gradient symbol. The shear modulus is 0.22 K, and the effect of the time step is \
+                   divided out. The last column says how far the stress of a block rotates with it.";
     let table = Columns::<Run>::default()
         .text("kernel", |(kernel, _)| *kernel)
         .num(["h/dx", "-"], |(_, settings)| Cell::num(settings.h_over_dx, 2))

@@ -45,9 +45,9 @@ crate::solid_settings! {
 pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
     name: PlateSettings::NAME,
     problem: "An elastic cantilever swings",
-    about: "An elastic plate, held at one end by particles that continue it and stand still, starts flat \
-            with the velocity of its first mode (Landau & Lifshitz; Gray, Monaghan & Swift 2001). Its period \
-            against that of a thin plate, 0.254 s.",
+    about: "An elastic plate, held at one end by particles at rest, starts flat with the velocity of its \
+            first mode (Landau & Lifshitz; Gray, Monaghan & Swift 2001). Its period is compared with 0.254 \
+            s of thin-plate theory.",
     variants: solid::variants::<_, Clamp>,
     is_stable: composed::completed,
     declaration,
@@ -279,7 +279,7 @@ fn swing(variant: &str, n: usize) -> Planned {
         ENERGY_CHANGE,
         Bound::Within(-0.01, 0.01),
         Evidence::Invariant,
-        "nothing drives the plate and nothing in an elastic body dissipates, so its energy stays",
+        "Nothing drives the plate and nothing in an elastic body dissipates, so its energy stays.",
     );
     let energy = match (variant, n) {
         ("bare", _) => energy,
@@ -352,11 +352,12 @@ fn study(tier: Tier, runs: &Runs) -> Study {
         .percent("energy, change", "", ENERGY_CHANGE, 1.0)
         .num(["time", "s"], |r| Cell::seconds(r.cost.cpu_s))
         .table(caption, runs.records(swings(tier).into_iter().map(|planned| planned.spec)));
-    let stress = "Energy: viscosity takes it, and artificial stress gives some back. It weakens the pull of \
-                  particles in tension without a store of its own, so that (kinetic + strain) energy rises \
-                  with the deflection; the run with xi = 0 in the full tier shows the difference.";
+    let stress = "Viscosity takes energy from the plate, and artificial stress gives some back. Artificial \
+                  stress weakens the pull of particles in tension without a store of its own, so the \
+                  kinetic and strain energy rises with the deflection; the run with xi = 0 in the full \
+                  tier shows the difference.";
     Study::new("oscillating-plate-period", "Period against resolution")
-        .prose(format!("Why it is too long: {} {FACES}", FREE_FACES.what))
+        .prose(format!("The period is too long for a known reason. {} {FACES}", FREE_FACES.what))
         .prose(stress)
         .prose(incompressible(tier, runs))
         .block(table)
@@ -365,7 +366,7 @@ fn study(tier: Tier, runs: &Runs) -> Study {
 /// What becomes of the period towards Poisson's ratio 1/2, from the numbers.
 fn incompressible(tier: Tier, runs: &Runs) -> String {
     if tier == Tier::Quick {
-        return "The full tier has other ratios of Poisson, and a plate without artificial stress."
+        return "The full tier has other values of Poisson's ratio, and a plate without artificial stress."
             .into();
     }
     let Some(rubber) = runs.record(&swing_spec("plain", 5)) else { return String::new() };
@@ -383,10 +384,10 @@ fn incompressible(tier: Tier, runs: &Runs) -> String {
     let list = RATIOS.into_iter().filter_map(other).collect::<Vec<String>>().join("; ");
     let base = excess(rubber);
     format!(
-        "Poisson's ratio towards 1/2 at 5 particles through the thickness: at 0.3975 the period is {base} \
-         too long; {list}. The step shrinks as sqrt(1 - 2 nu) does. Artificial viscosity is in proportion to \
-         c0 = sqrt(K/rho), which grows as 1/sqrt(1 - 2 nu): accuracy is lost to damping, and a period that \
-         comes closer to theory on the way is no gain."
+        "Towards Poisson's ratio 1/2, accuracy is lost to damping. At 5 particles through the thickness \
+         the period is {base} too long at 0.3975; {list}. The step shrinks as sqrt(1 - 2 nu) does. \
+         Artificial viscosity is in proportion to c0 = sqrt(K/rho), which grows as 1/sqrt(1 - 2 nu), so a \
+         period that comes closer to theory on the way is no gain."
     )
 }
 
@@ -409,8 +410,8 @@ fn extremes(runs: &Runs) -> Study {
     )
     .because(
         Evidence::Theory,
-        "the time step follows 1/c_p, that is sqrt((1 + nu)(1 - 2 nu)/(1 - nu)) at the Poisson ratio nu, and \
-         the speed of the tip, 0.01 c0, changes it by 0.3 %",
+        "The time step follows 1/c_p, which is sqrt((1 + nu)(1 - 2 nu)/(1 - nu)) at the Poisson ratio nu. \
+         The speed of the tip, 0.01 c0, changes it by 0.3 %.",
     );
     // NaN of a run that failed must not pass.
     let step = |nu: f64| {

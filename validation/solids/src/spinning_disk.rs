@@ -41,9 +41,9 @@ crate::solid_settings! {
 pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     name: DiskSettings::NAME,
     problem: "A free elastic disk spins",
-    about: "A free elastic disk spins, at the start without stress. Angular momentum stays, and the stress \
-            stays of the order rho U^2 of the speed U of the rim: what else appears is rotation that the \
-            method mistook for strain.",
+    about: "A free elastic disk begins to spin without stress. Angular momentum must stay, and stress must \
+            stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
+            for strain.",
     variants: solid::variants::<_, Open>,
     is_stable: composed::completed,
     declaration,
@@ -256,12 +256,12 @@ fn metrics(series: &[[f64; 5]], revolutions: f64, scale: f64, record: &mut Recor
 }
 
 /// Why drift is what it is; measured beside it: `rim_strain`, and no dependence on dt.
-const RIM: &str = "The velocity gradient in the rate of stress, equation (11), is a sum over neighbours that \
-    is not corrected. Of a rotation this sum makes no strain inside, and a strain in the rim, 2 h wide, \
-    where neighbours are missing. There the rotation is taken for shear in axes that turn with the body, so \
-    the stress grows from the first step on, and its forces, which are not central, brake the disk. The \
-    error does not depend on the time step. It falls with finer spacing, but more slowly than the share of \
-    the rim.";
+const RIM: &str = "The disk drifts because the velocity gradient in the rate of stress, equation (11), is \
+    a sum over neighbours that is not corrected. For a rotation this sum gives no strain inside, but a \
+    strain in the rim, 2 h wide, where neighbours are missing. There the rotation is taken for shear in \
+    axes that turn with the body, so the stress grows from the first step on, and its forces, which are \
+    not central, brake the disk. The error does not depend on the time step. It falls with finer spacing, \
+    but more slowly than the share of the rim.";
 
 /// How fast a disk is braked at first.
 const BRAKED: &str = "The stress in the rim brakes the disk from the first step on. The bound: disks of 4 \
@@ -294,8 +294,8 @@ fn spin(variant: &str, n: usize) -> Planned {
         gate(
             MOMENTUM_ERROR,
             Bound::Below(1e-12),
-            "forces of pairs are equal and opposite, central or not, so only the round-off of some thousand \
-             steps is left",
+            "Forces of pairs are equal and opposite, central or not, so only the round-off of some \
+             thousand steps is left.",
         ),
         gate(
             INTERIOR_STRAIN,
@@ -374,8 +374,8 @@ fn declaration(tier: Tier) -> Declaration {
 }
 
 fn study(tier: Tier, runs: &Runs) -> Study {
-    let caption = "A disk without stress that begins to spin, rim at 0.05 c0. What is 0 in a perfect \
-                   method: the change of angular momentum, and the strain that one step sees in the rim.";
+    let caption = "A disk without stress that begins to spin, its rim at 0.05 c0. The change of angular \
+                   momentum, and the strain that one step sees in the rim, are 0 in a perfect method.";
     let revolutions = |r: &Record| r.settings_as::<DiskSettings>().end;
     let table = Columns::default()
         .text("variant", |r: &Record| r.variant.clone())
@@ -402,11 +402,11 @@ fn study(tier: Tier, runs: &Runs) -> Study {
          without stress makes.",
     );
     Study::new("spinning-disk-drift", "Drift against spacing and time step")
-        .prose(format!("Why: {RIM}"))
+        .prose(RIM)
         .block(table)
         .prose(
-            "The gate is on the largest difference of the drift at Courant numbers 0.1, 0.4 and 0.8 in a \
-             tenth of a revolution, relative to that at 0.1: the error is of space.",
+            "The gate compares the drift over a tenth of a revolution at Courant numbers 0.1, 0.4 and 0.8. \
+             Equal drifts show an error of the spacing, not of the time step.",
         )
         .judge(same, difference)
 }

@@ -29,9 +29,9 @@ pub static VISCOSITY: Cause = Cause::new(
 
 /// The equations are not the experiment.
 pub static TWO_DIMENSIONS: Cause = Cause::new(
-    "Two-dimensional water without gate, friction and air is not the experiment: it runs faster, in a \
-     thinner layer.",
-    "A computation in three dimensions with the moving gate, friction at the walls and air.",
+    "Water in two dimensions, released at once and without friction and air, runs faster than in the \
+     experiment, in a thinner layer.",
+    "A computation in three dimensions with the moving wall of the experiment, friction and air.",
     "2026-11-21",
 );
 

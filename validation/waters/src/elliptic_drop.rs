@@ -269,9 +269,9 @@ fn finish(drop: &Drop, simulation: &dyn Stepper<()>, context: &Context, record: 
 pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     name: NAME,
     problem: "A free drop is strained into an ellipse",
-    about: "A free drop in two dimensions, at first a circle, pulled into an ellipse by the uniform strain \
-            that it starts with; its semi-axes follow an ordinary differential equation exactly. No wall and \
-            no gravity, or gravity in which it falls freely, which must change nothing.",
+    about: "A free circular drop starts with a uniform strain rate and becomes an ellipse, whose semi-axes \
+            follow an ordinary differential equation exactly. It is two-dimensional, without walls, and \
+            without gravity or with gravity in which it falls freely, which must change nothing.",
     variants,
     is_stable: completed,
     declaration,
@@ -414,10 +414,9 @@ fn study(tier: Tier, runs: &Runs) -> Study {
 }
 
 fn figure(tier: Tier, runs: &Runs) -> Figure {
-    let caption = "Left: semi-axes of the drop over time at 40 particles across, and the exact ones (`seed` \
+    let caption = "Left: semi-axes of a drop of 40 particles across over time, with the exact ones (`seed` \
                    in the full tier only). Right: the drop of `modern` at the end, coloured by pressure \
-                   over the exact initial pressure at its centre. Dots have the size of an initial spacing; \
-                   rows are two of these apart.";
+                   over the exact initial pressure at its centre; its rows are two initial spacings apart.";
     let axes = (Axis::linear("A t [-]"), Axis::linear("semi-axis [R]"));
     let mut plot = Plot::new("", axes.0, axes.1);
     let at_40 = |variant: &str| {

@@ -210,9 +210,7 @@ fn peers(flow: Flow, re: f64) -> Vec<Peer> {
                 seconds: seconds[k]?,
                 spacing: 1.0 / rows[k]?,
                 error: errors[k]? / 100.0,
-                timed: format!(
-                    "wall time, one thread of a similar machine, 2025–26{at}"
-                ),
+                timed: format!("wall time, one thread of a similar machine, 2025–26{at}"),
             })
         };
         let is_like = |k: &usize| cases[*k] == flow.name() && reynolds[*k] == Some(re);

@@ -199,7 +199,7 @@ impl Found {
             _ => "open",
         };
         format!(
-            "**H4** (with rising Re the waves grow until the run is unstable) is **{verdict}**: at c0 = \
+            "**H4** (with rising Re the waves grow until the run is unstable) is **{verdict}**. At c0 = \
              {JUDGED_SOUND} V and fixed Courant number, {} starts fail. That waves are the reason is not \
              shown.",
             counts.join(", ")

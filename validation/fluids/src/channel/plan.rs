@@ -233,7 +233,13 @@ fn invariant_gates(flow: Flow, of: &str) -> Vec<Gate> {
             Evidence::Analytic,
             "The exact pressure is 0; the bound is in units of rho V^2.",
         ),
-        gate(of, V_RMS.into(), Bound::Below(1e-3), Evidence::Analytic, "The exact cross-flow is 0."),
+        gate(
+            of,
+            V_RMS.into(),
+            Bound::Below(1e-3),
+            Evidence::Analytic,
+            "The exact cross-flow is 0.",
+        ),
         gate(
             of,
             OUTSIDE.into(),

@@ -27,9 +27,7 @@ fn starts(tier: Tier, re: f64) -> &'static [f64] {
 /// How many starts a setting has, in words.
 pub fn in_words(tier: Tier) -> String {
     match tier {
-        Tier::Quick => {
-            "A cell is one start, with particles displaced by up to 1e-4 dx.".into()
-        }
+        Tier::Quick => "A cell is one start, with particles displaced by up to 1e-4 dx.".into(),
         Tier::Full => format!(
             "Up to Re {MANY_STARTS} a cell is {} starts, with particles displaced by up to {} dx, and \
              above one, by 1e-4 dx.",

@@ -70,9 +70,7 @@ fn best_ladder(start: f64) -> Ladder {
 fn accuracy(id: &str, start: f64, ladders: Vec<Ladder>) -> Accuracy {
     let from = start_of(start);
     Accuracy {
-        about: format!(
-            "Taylor-Green vortices at Re 100 from the {from}, at t = 2 L/U."
-        ),
+        about: format!("Taylor-Green vortices at Re 100 from the {from}, at t = 2 L/U."),
         spacing: "dx/L [-]",
         ladders,
         ..Accuracy::new(id, ErrorOf::Metric(L2.into()), ERROR)

@@ -105,10 +105,11 @@ fn gates(variant: &str, n: usize, start: f64) -> Vec<Gate> {
                 time. The goal is a smaller error from either start.";
     let mut gates = Vec::new();
     if variant == BEST {
-        let second = "The bound is the goal of 2 % at 50 x 50, scaled with the second order of the sums.";
+        let second =
+            "The bound is the goal of 2 % at 50 x 50, scaled with the second order of the sums.";
         gates.push(goal(most_error(n), if n == 50 || n == 100 { best } else { second }));
         let energy =
-            "A share of e^-3.2 of the energy is left at the end, so 1 % of it is 0.3 % of the viscosity.";
+            "At the end e^-3.2 of the energy is left, so 1 % of it is 0.3 % of the viscosity.";
         if let Some(most) = most_energy(n) {
             gates.push(gate(ENERGY, Bound::Within(-most, most), Evidence::Analytic, energy));
         }

@@ -63,10 +63,11 @@ base::settings! {
 pub static EXTREMES: Composed<ExtremeSettings> = Composed {
     name: "extremes",
     problem: "Extreme settings and scenes: does the program stay sound?",
-    about: "What breaks a naive program: a lattice at rest for very long, particles on top of each other or \
-            far from all others, a block at a thousand times the speed of sound, scenes that are none, \
-            vortices with sound too slow and too fast and on disturbed lattices, smoothing lengths from too \
-            short to too long. Each variant is an experiment of its own.",
+    about: "Extreme scenes and settings must end well, or be refused with a reason. They are a lattice at \
+            rest for very long, particles on top of each other or far from all others, a block at a \
+            thousand times the speed of sound, impossible scenes, vortices with sound too slow and too \
+            fast and on disturbed lattices, and smoothing lengths from too short to too long. Each variant \
+            is an experiment of its own.",
     variants,
     is_stable: composed::completed,
     declaration: |_| Declaration::default(),
@@ -176,11 +177,10 @@ fn experiments(tier: Tier) -> Vec<Experiment> {
     .collect()
 }
 
-const LEAD: &str = "What breaks a naive program: sound a thousand times too fast, particles on top of \
-    each other or far from all others, a flow that compresses. Each entry has a criterion of its own; where \
-    a run cannot succeed, the criterion is that it says so, in time. Of a disturbed lattice only the energy \
-    is judged, which must not rise; the errors of energy and velocity beside it are reported. Steps beyond \
-    the limit, creeping flows and rubber at its extremes are with their own cases.";
+const LEAD: &str = "Each entry has a criterion of its own. Where a run cannot succeed, it must say so in \
+    time. On a disturbed lattice only the energy is judged, which must not rise; the errors of energy and \
+    velocity beside it are reported. Steps beyond the limit, creeping flows and rubber at its extremes are \
+    with their own cases.";
 
 fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     vec![study(["extremes", "Extreme settings"], LEAD, experiments(tier), runs)]

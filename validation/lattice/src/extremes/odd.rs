@@ -140,10 +140,10 @@ fn rested(kernel: &str, record: &Record) -> Vec<Entry> {
     let what = |what: &str| [what.to_string(), setting.clone()];
     let cold = Bound::Below(1e-20);
     let energy = Entry::new(&name("energy"), what("lattice at rest"), "½v²/c₀²", cold)
-        .because(Evidence::Invariant, "round-off of forces that cancel must not heat the lattice");
+        .because(Evidence::Invariant, "Round-off of forces that cancel must not heat the lattice.");
     let exact = Bound::Equals(0.0);
     let time = Entry::new(&name("time"), what("clock of a long run"), "|t - n dt|", exact)
-        .because(Evidence::Invariant, "the time is counted in whole steps, so it does not drift");
+        .because(Evidence::Invariant, "Time is counted in whole steps, so it does not drift.");
     let clock = format!("; t = {} after {} steps", steps as f64 * dt, record.cost.steps);
     vec![measured(energy, record, HEAT, ""), measured(time, record, CLOCK_ERROR, &clock)]
 }
@@ -183,7 +183,8 @@ pub fn close() -> Vec<Experiment> {
             let entry = Entry::new(&name, what, "momentum error/Σm|v|", Bound::Below(1e-12));
             let entry = entry.because(
                 Evidence::Invariant,
-                "no 0/0: finite for 400 steps, and every pair force has its opposite",
+                "The distance 0 must not be divided by. The run stays finite for 400 steps, and every pair \
+                 force has its opposite.",
             );
             let [speed, gap] = [FASTEST, GAP].map(|key| completed(record, key));
             let more = format!("; fastest {} c₀, {} dx between them", sci(speed), sci(gap));
@@ -224,7 +225,7 @@ pub fn far() -> Vec<Experiment> {
             let setting = format!("{count} in an open domain");
             let what = ["particles without neighbours".to_string(), setting];
             let (name, metric) = (format!("alone.{count}"), "distance from x₀ + v t over |v t|");
-            let because = "free flight; density stays, for nothing changes it";
+            let because = "Particles out of reach fly freely, and nothing changes their density.";
             let entry = Entry::new(&name, what, metric, Bound::Below(1e-12))
                 .because(Evidence::Analytic, because);
             measured(entry, record, FLIGHT_ERROR, " after 1000 steps")
@@ -266,8 +267,8 @@ pub fn fast_blocks() -> Vec<Experiment> {
             let entry = Entry::new(&format!("bullet.{name}"), what, metric, Bound::Below(1e-12));
             let entry = entry.because(
                 Evidence::Invariant,
-                "finite with exact momentum. With steps for sound the blocks pass through each other unseen, \
-                 so there it is finiteness alone",
+                "The run stays finite with exact momentum. With time steps for sound the blocks pass \
+                 through each other without a force, so there only finiteness is judged.",
             );
             let speed = completed(record, FASTEST);
             match speed {
@@ -323,7 +324,7 @@ pub fn no_scenes() -> Vec<Experiment> {
         let setting =
             "NaN place, infinite speed, negative mass, no density, period of 4 dx, no particle";
         let what = ["what is not a scene".to_string(), setting.into()];
-        let because = "each with its reason, by type, before the first step";
+        let because = "Each scene is refused for its own reason, by type, before the first step.";
         let entry = Entry::new("refused", what, "refusals", Bound::Equals(6.0))
             .because(Evidence::Invariant, because);
         measured(entry, record, REFUSALS, " of 6 refused")

@@ -94,7 +94,7 @@ fn smoothed(variant: &str, kernel: &'static str, ratio: f64) -> Experiment {
         let what = ["smoothing length".to_string(), format!("{}, h/dx = {ratio}", kernel)];
         let name = format!("smoothing.{}.{ratio}", kernel);
         let entry = Entry::new(&name, what, "distance from the symbols", Bound::Below(1e-3))
-            .because(Evidence::Theory, "symbols of the lattice are exact");
+            .because(Evidence::Theory, "The symbols of the lattice are exact.");
         let [sound, viscous, distance] = [SOUND, VISCOUS, DISTANCE].map(|key| record.value(key));
         let found = match (sound, viscous) {
             (Some(sound), Some(viscous)) => format!(

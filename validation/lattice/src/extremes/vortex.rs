@@ -135,8 +135,11 @@ pub fn fast() -> Vec<Experiment> {
             "Mach 0.5, Re 100, lattice disturbed by 10 %".to_string(),
         ];
         let metric = "error more than at Mach 0.1";
-        let entry = Entry::new("mach", what, metric, Bound::Below(0.25))
-            .because(Evidence::Theory, "compressibility costs the square of the Mach number");
+        let entry = Entry::new("mach", what, metric, Bound::Below(0.25)).because(
+            Evidence::Theory,
+            "Compressibility adds an error proportional to the square of the \
+                                        Mach number.",
+        );
         let [slow, usual] = [0, 1].map(|k| completed(records[k], VELOCITY_ERROR));
         let entry = match slow.zip(usual) {
             Some((slow, usual)) => {
@@ -158,8 +161,8 @@ pub fn stiff_sound(tier: Tier) -> Vec<Experiment> {
     let judge = move |records: &[&Record]| {
         let setting = format!("Taylor-Green, Mach 10⁻⁴, t = {end}");
         let what = ["c₀ a thousand times too fast".to_string(), setting];
-        let because = "the flow does not know c₀: 1 % after a few steps is noise; at Mach 0.1 the sound \
-                       of the start is more";
+        let because = "The incompressible flow does not depend on c₀. After a few steps 1 % is noise; at \
+                       Mach 0.1 the sound of the start is more.";
         let usual = format!("; at Mach 0.1 {}", sci(completed(records[1], VELOCITY_ERROR)));
         let entry = Entry::new("sound.vortex", what, "error of the velocity", Bound::Below(0.01))
             .because(Evidence::Theory, because);
@@ -176,7 +179,7 @@ pub fn jittered() -> Vec<Experiment> {
             let what = ["disturbed lattice".to_string(), setting];
             let name = format!("jitter.{jitter}");
             let metric = "largest kinetic energy/initial";
-            let because = "viscosity only takes energy, and pressure starts at 0";
+            let because = "Viscosity only takes energy, and pressure starts at 0.";
             let entry = Entry::new(&name, what, metric, Bound::Below(1.01))
                 .because(Evidence::Invariant, because);
             let value = |metric| completed(record, metric);

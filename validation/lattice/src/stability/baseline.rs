@@ -79,8 +79,8 @@ const LIMITS: &[(&str, f64)] = &[
     ("stability.wendland-c2.h2.leapfrog.stiffnessinf.alpha0.1.delta0", 1.703),
 ];
 
-const BECAUSE: &str = "what this study measured when its baseline was set, less 1 % for the \
-                       resolution of the bisection";
+const BECAUSE: &str = "The bound is what this study measured when its baseline was set, less 1 % for the \
+                       resolution of the bisection.";
 
 /// The gate that a limit must not shrink; `None` if it was never measured.
 pub fn limit_gate(id: &str) -> Option<Gate> {

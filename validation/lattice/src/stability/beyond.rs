@@ -11,9 +11,8 @@ use harness::extremes::Entry;
 use maths::theory::time_step;
 
 pub const TITLE: [&str; 2] = ["steps-beyond-the-limit", "Steps beyond the limit"];
-pub const LEAD: &str = "A box of 20 × 20 particles at a step beyond its limit must not hide it: it diverges \
-    after the number of steps that the growth of its fastest wave needs from the noise to the speed of \
-    sound.";
+pub const LEAD: &str = "A box of 20 × 20 particles at a time step beyond its limit must diverge, in the \
+    number of steps in which its fastest wave grows from the noise to the speed of sound.";
 
 /// The noisy box at 1.05 and 2 times its limit.
 pub fn experiments() -> Vec<Experiment> {
@@ -45,11 +44,12 @@ fn beyond(pair: Pair, stiffness: Option<f64>, factor: f64) -> Experiment {
         let what =
             ["step beyond the limit".into(), format!("{factor} limits, {integrator}, {sound}")];
         let name = format!("step.{integrator}.{}.{factor}", stiffness.unwrap_or(f64::INFINITY));
-        let because = "ln(c₀/noise)/growth a step. The run may end earlier, by ln(4/0.3) of that logarithm: \
-                       the largest of 800 normal numbers is 4 times their deviation, and 30 % of compression \
-                       end the run as well. It may end later, by ln(20 · 20 · 2): the noise of 20 × 20 \
-                       particles leaves 1/20 of itself to a wave, of 800 waves one starts 20 times lower \
-                       with a chance of 1/400, and a speed of 2 c₀ ends the run";
+        let because = "The expected number of steps is ln(c₀/noise)/growth. The run may end earlier, by \
+                       ln(4/0.3) of that logarithm, because the largest of 800 normal numbers is 4 times \
+                       their deviation and 30 % of compression end the run as well. It may end later, by \
+                       ln(20 · 20 · 2), because the noise of 20 × 20 particles leaves 1/20 of itself to a \
+                       wave, of 800 waves one starts 20 times lower with a chance of 1/400, and a speed of \
+                       2 c₀ ends the run.";
         let share = |times: f64| ln(times) / ln(1.0 / NOISE);
         let bound = Bound::Within(1.0 - share(4.0 / 0.3), 1.0 + share(800.0));
         let steps = match record.status {

@@ -79,9 +79,9 @@ pub const WAVE_ANGLE: MetricKey =
 pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     name: "resting_box",
     problem: "Small noise at rest: is the time step stable?",
-    about: "A periodic lattice at rest with velocity noise of 1e-8 c0: every wave of the box at once, too \
-            small to be anything but linear. Whether its energy grows says whether the time step is \
-            stable, and linear theory of the same box says where the limit is.",
+    about: "Velocity noise of 1e-8 c0 on a periodic lattice at rest excites every wave of the box. It is \
+            too small for nonlinear effects. Its energy grows if the time step is unstable, and linear \
+            theory of the same box predicts the largest stable step.",
     variants,
     is_stable,
     declaration: |_| Declaration::default(),
@@ -281,7 +281,8 @@ pub fn ratio_gate(point: &Point) -> Gate {
         "measured limit/theory",
         Bound::Within(0.97, 1.03),
         Evidence::Theory,
-        "linear theory of the same box is exact; bisection resolves 0.4 %, growth 0.5 %",
+        "Linear theory of the same box is exact. Bisection resolves 0.4 %, and the criterion of growth 0.5 \
+         %.",
     )
 }
 
@@ -292,8 +293,8 @@ pub fn weak_gate(courant: f64) -> Gate {
         "growth a step/theory",
         Bound::Within(0.999, 1.001),
         Evidence::Theory,
-        "the energy of one wave grows by 1 + (omega dt)^4/4 a step whatever its phase; noise of \
-         1e-8 c0 leaves 1e-8 for round-off and nonlinearity",
+        "The energy of one wave grows by the factor 1 + (omega dt)^4/4 a step, whatever its phase. Noise \
+         of 1e-8 c0 leaves 1e-8 for round-off and nonlinearity.",
     )
 }
 

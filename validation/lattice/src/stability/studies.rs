@@ -50,17 +50,16 @@ fn limits(tier: Tier, runs: &Runs) -> Study {
     study
 }
 
-const METHOD: &str = "A periodic lattice of 12 × 12 particles at rest, cubic or other kernel, \
-    η² = 0.01 h², velocity noise of 10⁻⁸ c₀: every wave of the box, too small to be anything but \
-    linear. The longest stable dt is bisected to 0.4 %; a run grows if its energy exceeds a hundred \
-    times the start, or if its mean over the last quarter exceeds that over the second by half. \
-    Theory is linear stability of the same box (every wave vector, the coupled limit of sound and \
-    damping, not the smaller of two limits). The predictor-corrector has no limit without damping: \
-    it grows at every dt. Its limits at c₀h/ν above 10, where weak growth takes thousands of steps to \
-    show, are left to the full tier.";
-const WEAK_TEXT: &str = "Without damping the predictor-corrector amplifies sound by \
-    ½ ln(1 + (ω dt)⁴/4) ≈ (ω dt)⁴/8 a step. Measured on the stiffest wave of the box, cubic spline, \
-    h/dx = 1.3, over 300 steps; dt/h c₀ is the Courant number.";
+const METHOD: &str = "The longest stable dt is found by bisection to 0.4 %. The box is a periodic lattice \
+    of 12 × 12 particles at rest, with the cubic or another kernel, η² = 0.01 h², and velocity noise of \
+    10⁻⁸ c₀, which excites every wave and is too small for nonlinear effects. A run grows if its energy \
+    exceeds a hundred times the start, or if its mean over the last quarter exceeds that over the second \
+    by half. Theory is linear stability of the same box, with every wave vector and with sound and damping \
+    together. The predictor-corrector has no limit without damping, because it grows at every dt. Its \
+    limits at c₀h/ν above 10, where weak growth takes thousands of steps to show, are left to the full \
+    tier.";
+const WEAK_TEXT: &str = "Without damping the predictor-corrector amplifies sound by ½ ln(1 + (ω dt)⁴/4) ≈ \
+    (ω dt)⁴/8 a step.";
 
 fn limits_table(points: &[Point], limits: &[Limit]) -> Table {
     Columns::<(&Point, &Limit)>::default()
@@ -76,7 +75,9 @@ fn limits_table(points: &[Point], limits: &[Limit]) -> Table {
 }
 
 fn weak_table(weak: &[[f64; 2]]) -> Table {
-    let caption = "Weak instability of the predictor-corrector without damping.";
+    let caption = "Weak instability of the predictor-corrector without damping. It is measured on the \
+                   stiffest wave of the box, for the cubic spline and h/dx = 1.3, over 300 steps; the \
+                   Courant number is c₀ dt/h.";
     Columns::<(&f64, &[f64; 2])>::default()
         .num(["Courant number", ""], |(courant, _)| Cell::num(**courant, 2))
         .num(["ω dt", ""], |(_, [_, wdt])| Cell::num(*wdt, 4))
@@ -142,11 +143,10 @@ fn figure(points: &[Point], limits: &[Limit], weak: &[[f64; 2]]) -> Figure {
     plot = plot.layer(Layer::vertical(INVISCID_AT, "ν = 0"));
     Figure::new(
         "time-step-limits",
-        "Left: longest stable time step, found by bisection on a periodic lattice of 12 × 12 particles \
-         (symbols) and by linear stability theory of the same lattice (lines); below c₀h/ν of about 3 \
-         viscosity decides, and both integrators have the same limit. The points at ν = 0 have no \
-         viscosity. Right: growth of the stiffest sound wave in one step of the predictor-corrector without \
-         viscosity, measured and in theory.",
+        "Left: longest stable time step by bisection on a periodic lattice of 12 × 12 particles (symbols), \
+         and by linear stability theory of the same lattice (lines). Below c₀h/ν of about 3 viscosity \
+         decides, and both integrators have the same limit; ν = 0 is without viscosity. Right: growth of \
+         the stiffest sound wave a step in the predictor-corrector without viscosity.",
     )
     .title("Stability of the time step")
     .panel(plot.legend(report::Legend::Outside))

@@ -98,10 +98,10 @@ fn histories(tier: Tier) -> Curves {
         id: "rubber-rings-histories".into(),
         title: "Histories over finite elements".into(),
         caption: format!(
-            "One of two rubber rings that collide at 0.059 c0 each, against time: the place of its centre of \
-             mass, the velocity of that, and its width along and height across the line of flight. Coloured: \
-             variant `{variant}` at several particle spacings. Black: finite elements with the same \
-             elastic law, whose uncertainty is less than the width of the line."
+            "One of two rubber rings that collide at 0.059 c0 each: position and velocity of its centre of \
+             mass, and its width along and height across the line of flight. Coloured: variant `{variant}` \
+             at several spacings. Black: finite elements with the same elastic law, whose uncertainty is \
+             less than the width of the line."
         ),
         columns: 2,
         panels: Reference::COLUMNS.into_iter().enumerate().map(panel).collect(),
@@ -154,8 +154,8 @@ fn accuracy(tier: Tier) -> Vec<Accuracy> {
             (ErrorOf::Metric(metric.into()), format!("relative error of the {what} [-]"));
         Accuracy {
             about: format!(
-                "The {what} of a ring against finite elements, in a collision at 0.059 c0 each to t = 200 \
-                 L/c0; the thickness of a ring is 1 L."
+                "Rubber rings of thickness L collide at 0.059 c0 each; the reference is finite elements. \
+                 The {what} is compared in runs to t = 200 L/c0."
             ),
             spacing: "spacing [L]",
             slope: Some(1.0),
@@ -199,7 +199,8 @@ fn budgets(tier: Tier) -> Budgets {
         error: ErrorOf::Metric(WIDTH_MIN_ERROR.into()),
         label: "relative error of the least width".into(),
         about: format!(
-            "The collision at 0.059 c0 each at spacing {spacing} L; the least width against finite elements."
+            "Rings collide at 0.059 c0 each at spacing {spacing} L. The error is that of the least width \
+             against finite elements."
         ),
         of: variants.iter().map(budget).collect(),
     }
@@ -210,9 +211,9 @@ fn limits(tier: Tier) -> StepLimits {
         Tier::Quick => &["leapfrog"],
         Tier::Full => &["seed", "leapfrog", "no-artificial-stress", "componentwise"],
     };
-    let about = "Rings of 4 layers collide at 0.059 c0 each, to t = 100 L/c0. Stable: the energy never rises \
-                 by more than 1 %. Theory: a stress-free lattice with artificial viscosity on every pair; \
-                 rings have it on approaching pairs alone.";
+    let about = "Rings of 4 layers collide at 0.059 c0 each, to t = 100 L/c0. A time step counts as stable \
+                 if the energy never rises by more than 1 %. Theory is that of a stress-free lattice with \
+                 artificial viscosity on every pair; rings have it on approaching pairs alone.";
     StepLimits::new("rubber-rings", about, variants.iter().map(|variant| step_limit(variant)))
 }
 
@@ -221,7 +222,7 @@ fn step_limit(variant: &'static str) -> StepLimit {
     let set = |s: &mut RingSettings| (s.spacing, s.end, s.samples) = (0.25, 100.0, 1);
     let spec = RUBBER_RINGS.spec(variant, set).keep_pictures(1);
     let rules = RUBBER_RINGS.rules(&spec).unwrap_or(Rules::REFUSED);
-    let because = "nothing drives the rings, so at the default step their energy does not rise";
+    let because = "Nothing drives the rings, so at the default step their energy must not rise.";
     let id = format!("rubber_rings.{variant}.step_limit");
     let bound = Bound::Above(1.0);
     let gate = Gate::new(id, "stable dt/default dt", bound, Evidence::Invariant, because);
@@ -270,11 +271,10 @@ fn fracture_map(tier: Tier) -> Map {
     Map {
         id: "rubber-rings-fracture-map".into(),
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
-        caption: "What becomes of two colliding rubber rings over the speed of each and the particle \
-                  spacing, for three variants; an empty cell was not run. Whole rings show the coefficient \
-                  of restitution e, or that they still touch at t = 200 L/c0. Torn rings (cut through once, \
-                  like a C) show when that was first seen in units of L/c0, and rings in pieces the largest \
-                  number of pieces."
+        caption: "Outcome of collisions of two rubber rings over speed and particle spacing, for three \
+                  variants; an empty cell was not run. Whole rings show the coefficient of restitution e, \
+                  or that they still touch at t = 200 L/c0. Torn rings (cut through once, like a C) show \
+                  the time of the tear in L/c0, and rings in pieces the largest number of pieces."
             .into(),
         x: "speed of each ring [c0]".into(),
         y: "particle spacing [L]".into(),
@@ -301,10 +301,9 @@ fn stress_map() -> Map {
     Map {
         id: "rubber-rings-stress-map".into(),
         title: "Stability over the artificial stress".into(),
-        caption: "What becomes of two rubber rings that collide at 0.12 c0 each, spacing 0.2 L, over \
-                  strength and exponent of the artificial stress. Whole rings show the coefficient of \
-                  restitution e, torn ones the time of the first tear in units of L/c0, and others the \
-                  largest number of pieces."
+        caption: "Outcome of a collision of two rubber rings at 0.12 c0 each, spacing 0.2 L, over strength \
+                  and exponent of the artificial stress. Whole rings show the coefficient of restitution \
+                  e, torn ones the time of the tear in L/c0, and others the largest number of pieces."
             .into(),
         x: "strength of the artificial stress ξ [-]".into(),
         y: "exponent n [-]".into(),
@@ -321,9 +320,9 @@ fn viscosity_map() -> Map {
     Map {
         id: "rubber-rings-viscosity-map".into(),
         title: "Stability over the artificial viscosity".into(),
-        caption: "What becomes of two rubber rings that collide at 0.12 c0 each, spacing 0.2 L, over the \
-                  coefficient α of the artificial viscosity, with β = 2α. Whole rings show the coefficient \
-                  of restitution e, and torn ones the time of the first tear in units of L/c0."
+        caption: "Outcome of a collision of two rubber rings at 0.12 c0 each, spacing 0.2 L, over the \
+                  coefficient α of the artificial viscosity (β = 2α). Whole rings show the coefficient of \
+                  restitution e, and torn ones the time of the tear in L/c0."
             .into(),
         x: "artificial viscosity α [-]".into(),
         y: String::new(),

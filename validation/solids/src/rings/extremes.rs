@@ -31,8 +31,8 @@ pub fn study(tier: Tier, runs: &Runs) -> Study {
     let mut entries = vec![stiffer(runs), fast(runs)];
     entries.extend(STILL.map(|still| still.entry(tier, runs)));
     entries.push(overlapping(runs));
-    let lead = "Rubber far outside of what the method is for. Nothing hangs, nothing panics, and a run that \
-                leaves its bounds ends as diverged with step, time, particle and quantity.";
+    let lead = "No run may hang or crash, and a run that leaves its bounds must end as diverged, with \
+                step, time, particle and quantity.";
     extremes::study("rubber-rings-extremes", "Extremes of rubber", lead, entries)
 }
 
@@ -47,13 +47,15 @@ fn of_stiffness(bulk_modulus: f64) -> RunSpec {
 fn stiffer(runs: &Runs) -> Entry {
     let entry = Entry::new(
         "rings.stiffer",
-        ["rings a hundred times stiffer", "K = 1 and K = 100, 3 layers, t = 80 L/c0"].map(String::from),
+        ["rings a hundred times stiffer", "K = 1 and K = 100, 3 layers, t = 80 L/c0"]
+            .map(String::from),
         "distance [L, c0]",
         Bound::Below(1e-10),
     )
     .because(
         Evidence::Invariant,
-        "nothing but K has a unit of stress, so motion in units of L and c0 is the same but for round-off",
+        "Only K has a unit of stress, so motion in units of L and c0 must be the same, except for \
+         round-off.",
     );
     let [soft, stiff] = [1.0, 100.0].map(|k| runs.completed(&of_stiffness(k)));
     let Some((soft, stiff)) = soft.zip(stiff) else { return entry };
@@ -87,8 +89,8 @@ fn fast(runs: &Runs) -> Entry {
     )
     .because(
         Evidence::Invariant,
-        "the run completes with its momentum exact, or ends as diverged with step, time and particle; \
-         what the rings look like is not judged",
+        "The run must complete with exact momentum, or end as diverged with step, time and particle. What \
+         the rings look like is not judged.",
     );
     let Some(record) = runs.record(&fast_spec()) else { return entry };
     match &record.status {
@@ -122,14 +124,15 @@ const STILL: [Still; 2] = [
         what: "rings at rest",
         steps: [5_000, 100_000],
         speed: 0.0,
-        because: "no stress, no motion: nothing may start by itself",
+        because: "Without stress and motion nothing may start by itself.",
     },
     Still {
         name: "rings.flight",
         what: "rings in free flight",
         steps: [5_000, 20_000],
         speed: 0.02,
-        because: "a uniform velocity strains nothing: shape is kept to the round-off of places 9000 L away",
+        because: "A uniform velocity strains nothing, so the shape is kept to the round-off of positions \
+                  9000 L away.",
     },
 ];
 
@@ -184,7 +187,7 @@ fn overlapping(runs: &Runs) -> Entry {
     )
     .because(
         Evidence::Invariant,
-        "two bodies in one place are a mistake of the settings, and named so",
+        "Two bodies in one place are an error of the settings, which the message must say.",
     );
     let Some(record) = runs.record(&overlapping_spec()) else { return entry };
     let Status::Refused { reason } = &record.status else { return entry.found(0.0, "it ran") };

@@ -145,8 +145,8 @@ fn reference(id: &str, metric: impl Into<MetricName>, bound: Bound, because: &st
 fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
     let id = &format!("{variant}.s{spacing}");
     let mut gates = invariants(variant, id);
-    let because = "a ring is one piece, because rubber does not break and finite elements find no strain \
-                   that comes near to it";
+    let because = "A ring is one piece, because rubber does not break at strains like those in finite \
+                   elements.";
     gates.extend(whole(id, because).map(|gate| match (variant, spacing) {
         // M2 at the paper's speed; at spacing 0.2 L the rings hold all the same.
         ("no-artificial-stress", ..0.15) => gate.expected_to_fail(),
@@ -264,7 +264,7 @@ impl Distance<'_> {
     /// Begin, end and impulse of the phases of contact.
     fn of_contact(&self) -> Vec<Gate> {
         let because =
-            "in finite elements the rings touch twice, and fly freely for 15 L/c0 in between";
+            "In finite elements the rings touch twice, and fly freely for 15 L/c0 in between.";
         let phases = reference(self.id, PHASES, Bound::Equals(2.0), because);
         let is_one = self.spacing > 0.1;
         let phases = match is_one {
@@ -333,8 +333,8 @@ impl Distance<'_> {
     /// The largest distance of particles that were neighbours at the start.
     fn of_stretch(&self) -> Gate {
         let most = NEIGHBOURS * exp(self.exact.strain);
-        let because = "neighbours at the start are at most 1.2 dx apart, and no line becomes longer than the \
-                       largest principal strain of finite elements makes it";
+        let because = "Neighbours at the start are at most 1.2 dx apart, and no line becomes longer than \
+                       by the largest principal strain in finite elements.";
         let gate = reference(self.id, STRETCH_MOST, Bound::Below(most), because);
         match self.spacing < 0.1 {
             true => gate.with_limitation(
@@ -364,7 +364,7 @@ const EXACT_MIRROR: &str = "The scene is its own mirror image to the last bit. S
     in another order, and this round-off of 1e-16 grows while rings bend, the faster the finer they are.";
 
 fn invariants(variant: &str, id: &str) -> Vec<Gate> {
-    let momentum = "forces of pairs are equal and opposite, so only round-off is left";
+    let momentum = "Forces of pairs are equal and opposite, so only round-off is left.";
     let gained = "Nothing drives the rings, and artificial stress gives less energy than viscosity takes. \
                   Integration of stress rates in time leaves 1 %.";
     let budget = "The energy changes by what all terms add. Powers at 200 times, integrated by the \

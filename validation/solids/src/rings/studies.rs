@@ -21,12 +21,12 @@ use report::{
 };
 
 /// What runs by hand say of speeds that are not of the plan.
-const BETWEEN: &str = "Between the speeds of the plan, by hand: rings of ten layers hold at 0.06 and 0.08 \
-                       c0, and at 0.09 and 0.10 c0 they tear open at the rear pole, like a C; rings of \
-                       five hold at 0.08 and are torn at 0.09, though they hold at 0.12. A tear begins at \
-                       the inner face, 20 to 80 L/c0 before it is through: from 0.08 c0 on some neighbours \
-                       are more than two spacings apart; up to 0.06 c0 none are more than 1.5 in rings of \
-                       five and ten layers, but 2.7 in rings of twenty at 0.059.";
+const BETWEEN: &str = "In runs by hand between the speeds of the plan, rings of ten layers hold at 0.06 \
+                       and 0.08 c0, and at 0.09 and 0.10 c0 they tear open at the rear pole, like a C; \
+                       rings of five hold at 0.08 and are torn at 0.09, though they hold at 0.12. A tear \
+                       begins at the inner face, 20 to 80 L/c0 before it is through: from 0.08 c0 on some \
+                       neighbours are more than two spacings apart; up to 0.06 c0 none are more than 1.5 \
+                       in rings of five and ten layers, but 2.7 in rings of twenty at 0.059.";
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
@@ -85,11 +85,10 @@ fn distances(tier: Tier, runs: &Runs) -> Study {
 /// Energies of a run, and what each term has added.
 fn energies(record: &Record) -> Figure {
     let caption = format!(
-        "Energies of two colliding rubber rings over the energy at the start, variant `{}`, spacing {} L. \
-         Left: kinetic, compression and shear energy and their sum; right: what each term of the equations \
-         has added, of which the elastic law adds a little, because the stress that follows from its rate is \
-         not the derivative of an energy at finite strain. The sum on the left is the sum of the works on \
-         the right up to {}.",
+        "Energies of two colliding rubber rings over the initial energy, variant `{}`, spacing {} L. Left: \
+         kinetic, compression and shear energy and their sum; right: what each term of the equations has \
+         added, which agrees with that sum up to {}. The elastic law adds a little, because the stress \
+         that follows from its rate has no exact energy at finite strain.",
         record.variant,
         exact(settings(record).spacing),
         percent(record.value(ENERGY_GAP).unwrap_or(f64::NAN), 2)
@@ -191,11 +190,10 @@ fn found_phases(record: &Record) -> Vec<Cell> {
 
 /// The rings at five times, coloured by the largest principal stress, with those of finite elements.
 fn pictures(runs: &Runs) -> Study {
-    let caption = "The right one of two rubber rings of inner radius 3 L and outer radius 4 L, which collide \
-                   at 0.059 c0 each and meet at x = 0, at five times; c0 is the sound speed. Particles of \
-                   variant `seed`, spacing 0.2 L, are coloured by the largest principal stress σ₁ in units \
-                   of the bulk modulus K, where tension is positive. Black lines are the faces of the ring \
-                   of finite elements at the same time.";
+    let caption = "The right one of two rubber rings (radii 3 L and 4 L) that collide at 0.059 c0 each and \
+                   meet at x = 0, at five times. Particles of variant `seed`, spacing 0.2 L, are coloured \
+                   by the largest principal stress σ₁ over the bulk modulus K; tension is positive. Black \
+                   lines are the faces of the ring in finite elements.";
     let mut figure = Figure::new("rubber-rings-pictures", caption).columns(5);
     let (variant, spacing, speed) = PICTURED;
     if let Some(record) = runs.record(&collision(variant, spacing, speed)) {
@@ -223,8 +221,8 @@ fn pictures(runs: &Runs) -> Study {
     let Some(record) = runs.completed(&collision(variant, spacing, speed)) else { return study };
     let caption = format!(
         "Two rubber rings after a collision at {} c0 each without artificial stress (variant `{variant}`), \
-         spacing {} L, coloured by the largest principal stress σ₁ in units of the bulk modulus K: they are \
-         in {} pieces. Rubber of this law does not break; the method does.",
+         spacing {} L, in {} pieces. Colour is the largest principal stress σ₁ over the bulk modulus K. \
+         Rubber of this law does not break; the method does.",
         exact(speed),
         exact(spacing),
         record.value(PIECES).unwrap_or(f64::NAN)
@@ -247,9 +245,8 @@ fn film(runs: &Runs) -> Result<Film, String> {
         Figure::new("frame", "").panel(map).panel_size(350.0, 175.0)
     };
     let frames: Vec<Figure> = shares.iter().map(frame).collect();
-    let caption = "The collision of two rubber rings at 0.059 c0 each as a film to t = 200 L/c0: spacing 0.2 \
-                   L, variant `leapfrog`, coloured by the largest principal stress σ₁ in units of the bulk \
-                   modulus K.";
+    let caption = "Film of two rubber rings that collide at 0.059 c0 each, variant `leapfrog`, spacing 0.2 \
+                   L, coloured by the largest principal stress σ₁ over the bulk modulus K.";
     Film::new("rubber-rings-film", caption, &frames, 200)
 }
 
@@ -318,20 +315,24 @@ fn fracture(tier: Tier, runs: &Runs) -> Study {
         (false, true) => "holds in part",
         _ => "is refuted here",
     };
-    let but = if others.is_empty() { String::new() } else { format!(": {}", others.join("; ")) };
+    let but = if others.is_empty() {
+        String::new()
+    } else {
+        format!("; the other runs are {}", others.join("; "))
+    };
     let more = match tier {
         Tier::Quick => "The full tier has more speeds and spacing 0.05.",
         Tier::Full => {
-            "Whole is not right: see the energy lost in the rows with ξ = 0.1, and with h/dx = 1.2, where \
-             kernels reach less far."
+            "Rings that stay whole are not right for that reason: see the energy lost in the rows with ξ = \
+             0.1, and with h/dx = 1.2, where kernels reach less far."
         }
     };
     let verdict = format!(
-        "**M2 {said}** for the solid: with artificial stress (ξ 0.3, n 4, principal axes) {whole} of {seeds} \
-         runs keep both rings whole{but}. Without it {without} runs tear or break, at spacings and speeds in \
-         the table. {BETWEEN} The answer of the artificial stress component by component depends on the \
-         axes: the distance from the mirror image is round-off where the method is its own mirror image. \
-         {more}"
+        "**M2 {said}** for the solid: with artificial stress, {whole} of {seeds} runs keep both rings \
+         whole. The artificial stress has ξ 0.3, n 4 and principal axes{but}. Without it {without} runs \
+         tear or break, at spacings and speeds in the table. {BETWEEN} With artificial stress component by \
+         component the outcome depends on the axes. The distance from the mirror image is round-off where \
+         the method is its own mirror image. {more}"
     );
     Study::new("rubber-rings-fracture-claim", "M2: artificial stress and fracture")
         .prose(verdict)
@@ -340,11 +341,12 @@ fn fracture(tier: Tier, runs: &Runs) -> Study {
 
 /// What becomes of the rings in every collision of the plan.
 fn fates_table(tier: Tier, runs: &Runs) -> Table {
-    let caption = "What becomes of the rings; unless changed the spacing is 0.1 L and the speed 0.059 c0. A \
-                   particle stands for a disc of 0.75 spacings: rings are whole as long as a closed chain \
-                   of discs goes around the hole of each, torn where there is none, and in pieces where \
-                   discs are no longer connected. Counted 100 times in a run. Largest stretch: the largest \
-                   distance of two particles that were within 1.2 spacings at the start.";
+    let caption = "What becomes of the rings; unless changed the spacing is 0.1 L and the speed 0.059 c0. \
+                   A particle stands for a disc of 0.75 spacings: rings are whole as long as a closed \
+                   chain of discs goes around the hole of each, torn where there is none, and in pieces \
+                   where discs are no longer connected. This is counted 100 times in a run. The largest \
+                   stretch is the largest distance of two particles that were within 1.2 spacings at the \
+                   start.";
     Columns::of_variants()
         .changed("changed", &RUBBER_RINGS)
         .text("rings are", |r| Fate::of(r).map_or("diverged", Fate::name))
@@ -363,9 +365,9 @@ fn collisions_table(tier: Tier, runs: &Runs) -> Table {
         let exact = exact.map(|(value, spread)| format!("{} ± {}", sig(value, 4), sig(spread, 1)));
         exact.unwrap_or("–".into())
     };
-    let caption = "Every collision; unless changed the spacing is 0.1 L and the speed 0.059 c0. Pieces: \
-                   particles within 1.5 spacings of each other hold together, so two rings are 2, each \
-                   whole or cut through once: see the table of M2. Restitution: speed of the centre of mass \
+    let caption = "Every collision; unless changed the spacing is 0.1 L and the speed 0.059 c0. Particles \
+                   within 1.5 spacings of each other count as one piece, so two rings are 2, each whole or \
+                   cut through once (see the table of M2). Restitution is the speed of the centre of mass \
                    at t = 200 L/c0 over the initial one, with the uncertainty of finite elements. A ring \
                    keeps part of its energy as vibration, which no dissipation has taken; energy lost is \
                    what stabilisation took.";
@@ -400,8 +402,8 @@ fn rates(tier: Tier, runs: &Runs) -> Study {
     let rhs = |r: &Record| 1e9 * r.cost.cpu_s / r.cost.particle_rhs as f64;
     let memory = |r: &Record| r.cost.solver_bytes as f64 / r.cost.particles as f64;
     let three = |value| Cell::num(value, 3);
-    let caption = "What a particle of rubber costs: one right-hand side (stress, artificial viscosity, \
-                   density, stress rate, XSPH), timed with nothing else at work.";
+    let caption = "Cost of one right-hand side of a particle of rubber. It has stress, artificial \
+                   viscosity, density, stress rate and XSPH, and is timed with nothing else at work.";
     let table = Columns::of_variants()
         .num(["spacing", "L"], |r| three(settings(r).spacing))
         .num(["particles", "1"], |r| Cell::count(r.cost.particles as u64))
@@ -432,8 +434,8 @@ fn rotated(runs: &Runs) -> Study {
         .num(["difference", "-"], |(_, [a, b])| Cell::sci((a - b).abs(), 2))
         .table(caption, found);
     for (variant, [a, b]) in found {
-        let because = "no direction is special: artificial stress in principal axes rotates with the \
-                       scene, and round-off of the rotated places grows while rings bend";
+        let because = "No direction is special. Artificial stress in principal axes rotates with the \
+                       scene, and the round-off of rotated positions grows while rings bend.";
         let id = format!("rubber_rings.{variant}.turned");
         let bound = Bound::Below(1e-6);
         let gate = Gate::new(id, "change of restitution", bound, Evidence::Invariant, because);
@@ -446,10 +448,10 @@ fn rotated(runs: &Runs) -> Study {
 /// What another constitutive law would change, by finite elements.
 fn constitutive_law() -> Study {
     let study = Study::new("rubber-rings-constitutive-law", "What the constitutive law changes");
-    let text = "The reference is finite elements with the law that is solved, equations (10) to (12), \
-                `jaumann`. The same mesh with other laws of the same small-strain moduli, less `hencky`, \
-                which has logarithmic strain and a strain energy: between any two of the first three the \
-                restitution differs by 0.005 at most.";
+    let text = "The reference is finite elements with the same elastic law, equations (10) to (12), which \
+                is `jaumann` in the table. The last column is the difference from `hencky`, a law with \
+                logarithmic strain and a strain energy, on the same mesh with the same small-strain \
+                moduli. Between any two of the first three laws the restitution differs by 0.005 at most.";
     match law_table() {
         Ok(table) => study.prose(text).block(table),
         Err(error) => study.prose(error.to_string()),
@@ -464,6 +466,6 @@ fn law_table() -> Result<Table, base::reference::ReferenceError> {
         let texts = laws.texts(&field.name)?;
         columns = columns.text(&field.name, move |k| texts[*k]);
     }
-    let caption = "Finite elements with several laws, see the reference's page.";
+    let caption = "Finite elements with several elastic laws.";
     Ok(columns.table(caption, 0..laws.len()))
 }

@@ -187,33 +187,33 @@ fn falls(runs: &Runs, ladder: &Ladder) -> bool {
 
 /// The claims M1 to M4 of the paper, answered from the rows.
 fn claims(runs: &Runs) -> String {
-    let shown = |holds: bool| if holds { "holds" } else { "not shown here" };
+    let shown = |holds: bool| if holds { "holds" } else { "is not shown here" };
     let damps = |ladder: &Ladder, name: &str| match falls(runs, ladder) {
         true => String::new(),
         false => format!(
-            ": over {name} the noise does not fall from each row to the next, so that two rows differ is \
-             no evidence"
+            ": over {name} the noise does not fall from each row to the next, so a difference of two rows \
+             is no evidence"
         ),
     };
     let seed = ("seed", NOTHING);
     let m1 = format!(
-        "M1, artificial viscosity damps unphysical oscillation: **{}**{}; noise of P2 in ρ g H over α is \
-         {}, and viscosity adds {} to the energy.",
+        "**M1** (artificial viscosity damps unphysical oscillation) **{}**{}. The noise of P2 in ρ g H \
+         over α is {}; viscosity adds {} to the energy.",
         shown(falls(runs, ALPHAS)),
         damps(ALPHAS, "α"),
         list(runs, ALPHAS, NOISE, sig),
         list(runs, ALPHAS, WORK_VISCOSITY, percent),
     );
     let m2 = format!(
-        "M2, artificial stress in the fluid: it adds {} to the energy, and noise is {} with it and {} \
-         without.",
+        "**M2** (artificial stress in the fluid): it adds {} to the energy, and the noise is {} with it \
+         and {} without.",
         quoted(runs, seed, WORK_STRESS, percent),
         quoted(runs, seed, NOISE, sig),
         quoted(runs, ("seed-no-stress", NOTHING), NOISE, sig),
     );
     let m3 = format!(
-        "M3, XSPH prevents unphysical motion: **{}**{}; noise over ε is {}, and the least excursion of the \
-         density {}.",
+        "**M3** (XSPH prevents unphysical motion) **{}**{}. The noise over ε is {}, and the least \
+         excursion of the density {}.",
         shown(falls(runs, EPSILONS)),
         damps(EPSILONS, "ε"),
         list(runs, EPSILONS, NOISE, sig),
@@ -244,9 +244,9 @@ fn walls(runs: &Runs) -> String {
             _ => "not run".into(),
         };
     format!(
-        "M4, both walls work: **interface walls {}, sticking ghosts {}, slipping ghosts {}, ghosts that \
-         stick for viscosity alone {}**; with interface and wall particles {}; with ghosts {}; with ghosts \
-         that keep the velocity along the wall {}; with those except for viscosity {}.",
+        "**M4** (both walls work): **interface walls {}, sticking ghosts {}, slipping ghosts {}, ghosts \
+         that stick for viscosity alone {}**. With interface and wall particles {}; with ghosts {}; with \
+         ghosts that keep the velocity along the wall {}; with those except for viscosity {}.",
         works("seed"),
         works("ghosts"),
         works("ghosts-slip"),

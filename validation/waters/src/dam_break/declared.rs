@@ -87,8 +87,8 @@ fn accuracy(tier: Tier) -> Accuracy {
     };
     let about = format!(
         "Front Z(T), 1 ≤ T ≤ 3.3, of the column of Martin & Moyce; per cent are of its width a. An error \
-         is the rms distance from the front of `modern` at a/dx = {n}, which is itself short of the \
-         limit: a point nearer to it than the last of its ladder says no more."
+         is the rms distance from the front of `modern` at a/dx = {n}, which is itself short of the limit, \
+         so an error smaller than the last one of its own series says no more."
     );
     Accuracy {
         about,
@@ -154,9 +154,9 @@ fn limits(tier: Tier) -> StepLimits {
     let most = if tier == Tier::Quick { 1 } else { usize::MAX };
     let all =
         ["modern", "modern-bare", "seed-leapfrog", "seed"].into_iter().flat_map(of).take(most);
-    let about = "Stable is a collapse that ends with its energy accounted for within 2 %. Theory is the \
-                 limit of a resting lattice. Water that moves, is compressed and loses its lattice is \
-                 expected at 0.7 to 1.0 of it.";
+    let about = "A time step counts as stable if the collapse ends with its energy accounted for within 2 \
+                 %. Theory is the limit of a lattice at rest. Water that moves, is compressed and loses \
+                 its lattice is expected at 0.7 to 1.0 of it.";
     StepLimits::new("dam-break", about, all)
 }
 
@@ -167,10 +167,10 @@ pub fn theory(Rules { dt, dt_limit, .. }: Rules) -> f64 {
 
 fn limit(variant: &'static str, scene: &str, spec: RunSpec) -> StepLimit {
     let rules = DAM_BREAK.rules(&spec).unwrap_or(Rules::REFUSED);
-    let because = "Theory is the limit of a lattice at rest; moving, disordered water is expected at 0.7 to \
-                   1.0 of it, and the step of the case must be below what is measured. A run that holds at \
-                   1.2 would measure another limit, because the stiffest mode of leapfrog grows 3.5-fold a \
-                   step there.";
+    let because = "Theory is the limit of a lattice at rest. Moving, disordered water is expected at 0.7 \
+                   to 1.0 of it, and the step of the case must be below what is measured. A run that holds \
+                   at 1.2 would measure another limit, because the stiffest mode of leapfrog grows \
+                   3.5-fold a step there.";
     let id = format!("{NAME}.limit.{variant}.{}", scene.split(' ').next().unwrap_or_default());
     let bound = Bound::Within(rules.dt / rules.dt_limit, 1.2);
     let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);

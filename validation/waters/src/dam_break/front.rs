@@ -51,9 +51,9 @@ fn order([coarse, middle, fine]: [&Curve; 3]) -> [f64; 3] {
 /// The observed order of the front, variant by variant, from the three finest judged runs of each.
 pub fn orders(tier: Tier, runs: &Runs) -> Study {
     let caption = format!(
-        "Observed order of the front: log2 of the ratio of the rms of successive differences of Z(T), 1 ≤ T \
-         ≤ 3.3, with its range over thirds of that time. The limit is Richardson's extrapolation with that \
-         order. Three other codes have {} to {} at T = 3.",
+        "Observed order of the front: log2 of the ratio of successive rms differences of Z(T), 1 ≤ T ≤ \
+         3.3, with its range over thirds of that time. The limit is Richardson's extrapolation. Three \
+         other codes have {} to {} at T = 3.",
         PEERS[1].1, PEERS[1].2
     );
     let z = |record: &Record| record.value(metrics::Z.at(3)).unwrap_or(f64::NAN);

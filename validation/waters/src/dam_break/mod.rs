@@ -191,11 +191,11 @@ fn modern_ablations(all: All) -> All {
 pub static DAM_BREAK: Composed<DamSettings> = Composed {
     name: NAME,
     problem: "A column of water collapses on a dry floor",
-    about: "A column of water, held by a wall on its left, is released at once and collapses on a dry floor \
-            (Martin & Moyce 1952: twice as high as wide, on an endless floor; Lobovsky et al. 2014: 600 mm \
-            by 300 mm in a tank of 1610 mm, whose far wall it strikes). Front, residual height, levels, \
-            pressures and impulses are compared with the experiments; energy and momentum are accounted for \
-            term by term.",
+    about: "A column of water, held by a wall on its left, is released at once and collapses on a dry \
+            floor. In Martin & Moyce 1952 it is twice as high as wide, on an endless floor. In Lobovsky et \
+            al. 2014 it is 600 mm by 300 mm in a tank of 1610 mm, whose far wall it strikes. Front, \
+            residual height, levels, pressures and impulses are compared with the experiments; energy and \
+            momentum are accounted for term by term.",
     variants,
     is_stable: stability::is_stable,
     declaration: declared::declaration,

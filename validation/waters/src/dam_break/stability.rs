@@ -42,8 +42,9 @@ pub fn at_speed(c0: f64) -> RunSpec {
 
 /// The sound speed: Mach number, excursion of the density, front.
 pub fn sound(runs: &Runs) -> Study {
-    let caption = "Mach number, density and front of the column of Martin & Moyce at a/dx = 20, variant \
-                   `modern`, over the sound speed c0, to which artificial viscosity is proportional.";
+    let caption = "Mach number, density and front of the column of Martin & Moyce over the sound speed c0, \
+                   variant `modern`. The column has 20 spacings across, and artificial viscosity is \
+                   proportional to c0.";
     let c0 = |record: &Record| record.settings_as::<DamSettings>().c0;
     let table = Columns::default()
         .of(["c0", "√(g H)"], c0, |value| Cell::num(value, 3))

@@ -100,13 +100,14 @@ fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
     let [front, height] = reference::martin_moyce()?;
     let band = |curve: &Curve, by: f64| curve.iter().map(|(t, y)| (*t, y - by, y + by)).collect();
     let legend = [Legend::TopLeft, Legend::Hidden];
-    let labels =
-        [["T = t √(2g/a) [-]", "front Z [a]"], ["τ = t √(g/a) [-]", "residual height [2a]"]];
+    let labels = [
+        ["time T = t √(2g/a) [-]", "front Z [a]"],
+        ["time τ = t √(g/a) [-]", "residual height [2a]"],
+    ];
     let spreads = [FRONT_SPREAD, 0.5 / 18.0];
-    let caption = "Front from the back wall (left) and height at the back wall (right) of a water column of \
-                   width a = 57.15 mm and height 2a. Circles are the experiment of Martin & Moyce 1952 \
-                   (grey: its spread), diamonds three other SPH codes. The computed height is the depth at \
-                   0.2 a, and no clock is shifted.";
+    let caption = "Front from the back wall (left) and height near it, at 0.2 a (right), of a water column \
+                   of width a = 57.15 mm and height 2a. Circles are the experiment of Martin & Moyce 1952 \
+                   with its spread (grey), diamonds three other SPH codes. No clock is shifted.";
     let mut figure = Figure::new("dam-break-martin-moyce", caption).columns(2);
     for (k, measured) in [&front, &height].into_iter().enumerate() {
         let end = if k == 0 { 3.6 } else { 2.6 };
@@ -186,12 +187,12 @@ fn tank(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
 }
 
 fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
-    let caption = "Front of the water, and its depth at four stations from the back wall, of a column 600 \
-                   mm long and 300 mm high in a tank of 1610 mm. Black is the experiment of Lobovsky et \
-                   al.; at H2 to H4 there are two series, with the band between them. No clock is shifted.";
+    let caption = "Front of the water, and depth at four stations, of a column 600 mm long and 300 mm high \
+                   in a tank of 1610 mm. Black is the experiment of Lobovsky et al., with the band between \
+                   its two series at H2 to H4. No clock is shifted.";
     let mut figure = Figure::new("dam-break-levels", caption).columns(3);
     let end = 6.0;
-    let axis = |label: String| (Axis::linear("t √(g/H) [-]"), Axis::linear(label));
+    let axis = |label: String| (Axis::linear("time [√(H/g)]"), Axis::linear(label));
     let (x, y) = axis("front from the gate [H]".into());
     let plot = Plot::new("front", x.range(0.0, 2.8), y).legend(Legend::Auto);
     let plot = with_runs(plot, records, "H", |record| {
@@ -228,15 +229,15 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
 fn pressures(finest: &Record, lobovsky: &Lobovsky) -> Figure {
     let caption = format!(
         "Pressure on four sensors in the far wall, {} (blue), after the wave arrives at P1. Black is the \
-         experiment of Lobovsky et al., and grey a second sensor at the height of P2. Peaks are cut at 3.5 \
-         ρ g H because they scatter in both; impulses are judged instead.",
+         experiment of Lobovsky et al., grey its second sensor at the height of P2. Peaks scatter in both \
+         and are cut at 3.5 ρ g H; impulses are judged instead.",
         name_of(finest, "H")
     );
     let mut figure = Figure::new("dam-break-pressures", caption).columns(2);
     let at = reference::arrival(&lobovsky.pressure[0]);
     for (k, height) in SENSORS.iter().enumerate() {
         let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
-        let x = Axis::linear("(t − arrival) √(g/H) [-]");
+        let x = Axis::linear("time since arrival [√(H/g)]");
         let y = Axis::linear("pressure [ρ g H]").range(-0.2, 3.5);
         let mut plot = Plot::new(title, x, y).legend(Legend::Hidden);
         let points = since(&pressure(finest, k), arrival(finest));
@@ -270,9 +271,8 @@ fn since(curve: &Curve, arrival: f64) -> Curve {
 /// Impulses since the arrival of all runs.
 fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let caption = "Impulse (integral of the pressure over time) on four sensors in the far wall after the \
-                   wave arrives at P1. Black is the experiment of Lobovsky et al.; the band is the \
-                   difference of two sensors at the height of P2. Impulses at 1 √(H/g) are judged, within \
-                   8.5 %.";
+                   wave arrives at P1. Black is the experiment of Lobovsky et al., with the band between \
+                   its two sensors at the height of P2. Impulses at 1 √(H/g) are judged, within 8.5 %.";
     let mut figure = Figure::new("dam-break-impulses", caption).columns(2);
     let so_far = |curve: &Curve, arrival: f64| -> Curve {
         let later = since(curve, arrival).into_iter().filter(|(t, _)| *t >= 0.0);
@@ -287,7 +287,7 @@ fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let [two, aside] = [&lobovsky.pressure[1], &lobovsky.aside].map(|curve| so_far(curve, at));
     for (k, height) in SENSORS.iter().enumerate() {
         let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
-        let x = Axis::linear("(t − arrival) √(g/H) [-]");
+        let x = Axis::linear("time since arrival [√(H/g)]");
         let y = Axis::linear("impulse [ρ g H √(H/g)]");
         let legend = if k == 3 { Legend::Auto } else { Legend::Hidden };
         let measured = so_far(&lobovsky.pressure[k], at);
@@ -333,10 +333,10 @@ fn away(records: &[&Record]) -> Option<String> {
     let is_away = error(ladder.last()) > error(ladder.first());
     is_away.then(|| {
         format!(
-            "Finer runs of `modern` are not nearer to the experiment: at H/dx = {} the front is {} H away \
-             after the shift, its speed is {} √(g H), and the impulse on P2 is {} in error. They approach \
-             two-dimensional water without gate and friction, so a coarse run that agrees has errors that \
-             cancel.",
+            "Finer runs of `modern` are not nearer to the experiment. At H/dx = {} the front is {} H away \
+             after the shift, its speed is {} √(g H), and the impulse on P2 is {} in error. These runs \
+             approach two-dimensional water without friction, released at once, so a coarse run that \
+             agrees has errors that cancel.",
             each(&|r| n(r).to_string()),
             number(FRONT.rms_shifted.into()),
             number(metrics::FRONT_SPEED.into()),
@@ -371,9 +371,8 @@ fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
         false => ("The tank of Lobovsky et al.", "H"),
     };
     let caption = format!(
-        "{scene} at six times, {}, coloured by pressure, which is cut at 0 and 1 ρ g H. Dots have the size \
-         of a spacing. The spike at x = 0 is particles that lag at the back wall; the depth is measured \
-         beyond them.",
+        "{scene} at six times, {}, coloured by pressure, cut at 0 and 1 ρ g H. Particles that lag at the \
+         back wall make the spike at x = 0; the depth is measured beyond them.",
         name_of(record, side)
     );
     let mut figure = Figure::new(id, caption).columns(2);
@@ -388,7 +387,7 @@ fn picture(record: &Record, share: f64, (width, height): (f64, f64)) -> Particle
     let points = pictures::points(record, &format!("particles@{share}"), "p");
     let s = settings(record);
     let axes = (Axis::linear("x [H]").range(0.0, width), Axis::linear("y [H]").range(0.0, height));
-    let title = format!("t √(g/H) = {}", sig(s.end * share, 3));
+    let title = format!("time {} √(H/g)", sig(s.end * share, 3));
     let dx = s.width.min(s.height) / s.n as f64 / s.height;
     ParticleMap::new(&title, axes, "p [ρ g H]", ColourMap::Sequential, points)
         .diameter(dx)
@@ -405,17 +404,16 @@ fn film(tier: Tier, runs: &Runs) -> Result<Film, String> {
     let frames: Vec<Figure> = (0..FRAMES).map(frame).collect();
     let caption = format!(
         "Film of the water in the tank of Lobovsky et al., variant `modern`, H/dx = {FILM_ROWS}, coloured \
-         by pressure, which is cut at 0 and 1 ρ g H."
+         by pressure, cut at 0 and 1 ρ g H."
     );
     Film::new("dam-break-film", caption, &frames, 160)
 }
 
 /// Where the energy goes.
 fn energies(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Energy of the column of Martin & Moyce at a/dx = 20, over M g H/2, its potential energy \
-                   on the floor. Solid lines are what the water has, and dashed lines what each term has \
-                   taken so far, where that is more than 1e-4. Black is the sum, which must stay at its \
-                   first value.";
+    let caption = "Energy of the column of Martin & Moyce at a/dx = 20, over its potential energy on the \
+                   floor, M g H/2. Solid lines are what the water has, and dashed lines what each term has \
+                   taken so far, if more than 1e-4. Black is the sum, which must keep its first value.";
     let mut figure = Figure::new("dam-break-energy", caption).columns(2);
     for variant in ["seed", "modern"] {
         if let Some(record) = runs.record(&specs::free(tier, variant, 20)) {
@@ -434,7 +432,7 @@ fn energy_plot(record: &Record) -> Plot {
     let of = |name: &str, sign: f64| curve(record, "energy", ["t", name], [time, sign * energy]);
     let mut plot = Plot::new(
         record.variant.as_str(),
-        Axis::linear("t √(g/H) [-]"),
+        Axis::linear("time [√(H/g)]"),
         Axis::linear("energy [M g H/2]"),
     )
     .legend(Legend::Outside);
@@ -462,7 +460,7 @@ fn energy_plot(record: &Record) -> Plot {
 
 fn energy_table(tier: Tier, runs: &Runs) -> Table {
     let caption = "Energy that each term has added until the end, over M g H/2 at the start; below 0 it \
-                   took energy. The work of the walls is what their pressure does beyond what they store. \
+                   took energy. The work of the walls is that of their pressure beyond what they store. \
                    Momentum is over M √(g H).";
     let scene = |record: &Record| if is_free(record) { "Martin & Moyce" } else { "Lobovsky" };
     let sci = |value| Cell::sci(value, 2);

@@ -142,10 +142,10 @@ const NAME: &str = "hydrostatic";
 pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
     name: NAME,
     problem: "Water at rest in an open tank",
-    about: "Water at rest in an open tank, compressed by its own weight by g H/c0^2. The exact solution is \
-            rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing moves. After \
-            20 acoustic periods 4 H/c0: the pressure, the level, the kinetic energy that should be 0, the \
-            gap between water and bottom, particles outside of the tank.",
+    about: "Water rests in an open tank and is compressed by g H/c0^2 by its own weight. The exact \
+            solution is rho = rho0 (1 + (gamma - 1) g d/c0^2)^(1/(gamma - 1)) at the depth d, and nothing \
+            moves. After 20 acoustic periods 4 H/c0 the pressure, the level, the kinetic energy, the gap \
+            between water and bottom, and the particles outside of the tank are compared with it.",
     variants,
     is_stable: completed,
     declaration: plan::declaration,

@@ -91,8 +91,8 @@ pub fn declaration(tier: Tier) -> Declaration {
         Ladder::new(variant, ladder(tier, variant).iter().map(|rows| level(variant, *rows)))
     };
     let error = ErrorOf::Metric(P_L2.into());
-    let about = "Rms distance from the exact pressure after 20 acoustic periods at g H/c0² = 0.01, over the \
-                 rms of the pressure.";
+    let about = "Water at rest after 20 acoustic periods, g H/c0² = 0.01; errors are rms, over the rms of \
+                 the pressure.";
     let accuracy = Accuracy {
         about: about.into(),
         spacing: "dx/H [-]",
@@ -137,8 +137,8 @@ fn gates(variant: &str, compressibility: &str) -> Vec<Gate> {
 
 /// A wall that extrapolates the pressure as if nothing weighed: it lacks half a spacing of water.
 fn control() -> Gate {
-    let because = "Control: without gravity in the extrapolation the bottom bears the mean pressure of the \
-                   water before it instead of the pressure at its own depth, and the water sinks.";
+    let because = "Control: without gravity in the extrapolation, the bottom bears the mean pressure of \
+                   the water before it instead of the pressure at its own depth, and the water sinks.";
     let id = format!("{NAME}.modern.no-wall-gravity");
     gate(&id, P_L2, Bound::Below(0.02), Evidence::Analytic, because).expected_to_fail()
 }

@@ -33,10 +33,10 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 
 /// p over y of the variants at g H/c₀² = 0.01, and how far it is from exact.
 fn pressures(runs: &Runs) -> Figure {
-    let caption = "Pressure of every particle over its height after 20 acoustic periods, and its distance \
-                   from the exact pressure there, at g H/c0² = 0.01, 20 rows by 10 columns. `seed` and \
-                   `ghosts` are the paper's two walls, and `modern` has walls that extrapolate pressure. \
-                   Exact lines differ because the surface is half a spacing lower in `seed`.";
+    let caption = "Pressure of every particle over its height after 20 acoustic periods (left), and its \
+                   error (right), at g H/c0² = 0.01 with 20 rows by 10 columns. Variants `seed` and \
+                   `ghosts` have the paper's two walls, and `modern` walls that extrapolate pressure. \
+                   Exact lines differ because the surface of `seed` is half a spacing lower.";
     let mut over = Plot::new("", Axis::linear("p/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
     let mut error =
         Plot::new("", Axis::linear("(p - p_exact)/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
