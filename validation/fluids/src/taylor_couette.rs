@@ -204,9 +204,10 @@ fn variants() -> Vec<Composition<CylinderSettings>> {
 static CASE: Composed<CylinderSettings> = Composed {
     name: NAME,
     problem: "Flow between two cylinders, the inner one turning",
-    about: "Viscous flow between two cylinders, of which the inner one turns, starts from rest and becomes \
-            steady with the exact velocity u = A r + B/r. Both walls are curved, the inner one convex and \
-            the outer one concave, and made of rows of particles that are spaced by their own arc length.",
+    about: "Viscous flow between two cylinders, of which the inner one turns, becomes steady with the \
+            exact velocity u = A r + B/r. It starts from rest. Both walls are curved, the inner one convex \
+            and the outer one concave, and made of rows of particles that are spaced by their own arc \
+            length.",
     variants,
     is_stable: composed::completed,
     declaration,
@@ -329,9 +330,9 @@ fn accuracy(tier: Tier) -> Accuracy {
 fn profiles(tier: Tier) -> Curves {
     let finest = levels(tier).last().copied().unwrap_or_default();
     let caption = format!(
-        "Velocity u around the axis between two cylinders at t = d²/ν, Re = V d/ν = 0.5, with {finest} \
-         spacings across the gap d. The inner cylinder turns with speed V and the outer one, of twice its \
-         radius, rests. Symbols are every seventeenth particle, and the line is the exact A r + B/r."
+        "Velocity u around the axis between two cylinders at t = d²/ν, Re = 0.5: every seventeenth \
+         particle, with {finest} spacings across the gap d, and the exact A r + B/r (line). The inner \
+         cylinder turns with speed V, and the outer one, of twice its radius, rests."
     );
     let points = |record: &Record| {
         let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));

@@ -353,9 +353,9 @@ fn plan(tier: Tier) -> Vec<Planned> {
 fn declaration(tier: Tier) -> Declaration {
     let error = ErrorOf::Metric(ANGULAR_MOMENTUM_DRIFT.into());
     let accuracy = Accuracy {
-        about: "A free disk, rim at 0.05 c0, makes one revolution; angular momentum is exactly conserved \
-                in the equations."
-            .into(),
+        about:
+            "A free disk, rim at 0.05 c0, makes one revolution; exactly, angular momentum stays."
+                .into(),
         spacing: "dx/R [-]",
         slope: None,
         ..Accuracy::new("spinning-disk", error, "change of angular momentum a revolution [-]")

@@ -270,8 +270,8 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     name: NAME,
     problem: "A free drop is strained into an ellipse",
     about: "A free circular drop starts with a uniform strain rate and becomes an ellipse, whose semi-axes \
-            follow an ordinary differential equation exactly. It is two-dimensional, without walls, and \
-            without gravity or with gravity in which it falls freely, which must change nothing.",
+            follow an ordinary differential equation exactly. Gravity, in which it falls freely, must \
+            change nothing.",
     variants,
     is_stable: completed,
     declaration,
@@ -327,7 +327,7 @@ fn declaration(tier: Tier) -> Declaration {
     };
     let error = ErrorOf::Metric(B_ERROR.into());
     let accuracy = Accuracy {
-        about: "The semi-axis that grows, until A t = 0.8, against the exact one.".into(),
+        about: "A free drop until A t = 0.8, when it is four times as long as wide.".into(),
         spacing: "dx/R [-]",
         slope: Some(1.0),
         ladders: VARIANTS.map(of).into(),
@@ -414,9 +414,9 @@ fn study(tier: Tier, runs: &Runs) -> Study {
 }
 
 fn figure(tier: Tier, runs: &Runs) -> Figure {
-    let caption = "Left: semi-axes of a drop of 40 particles across over time, with the exact ones (`seed` \
-                   in the full tier only). Right: the drop of `modern` at the end, coloured by pressure \
-                   over the exact initial pressure at its centre; its rows are two initial spacings apart.";
+    let caption = "Left: semi-axes of a drop of 40 particles across over time, with the exact ones. Right: \
+                   the drop of `modern` at the end, coloured by pressure over the exact initial pressure \
+                   at its centre; its rows are two initial spacings apart.";
     let axes = (Axis::linear("A t [-]"), Axis::linear("semi-axis [R]"));
     let mut plot = Plot::new("", axes.0, axes.1);
     let at_40 = |variant: &str| {
@@ -461,8 +461,8 @@ fn picture(record: &Record) -> ParticleMap {
 }
 
 fn table(runs: &Runs) -> Table {
-    let caption = "Largest relative errors of the semi-axes until A t = 0.8, when the drop is four times as \
-                   long as wide. Energies are over the initial kinetic energy.";
+    let caption = "Largest relative errors of the semi-axes until A t = 0.8. The drop is then four times \
+                   as long as wide. Energies are over the initial kinetic energy.";
     let s = |record: &Record| record.settings_as::<DropSettings>();
     let digits = |digits| move |value| Cell::num(value, digits);
     Columns::of_variants()

@@ -247,7 +247,7 @@ fn curves(channel: Channel) -> Curves {
         caption: format!(
             "Velocity u along the channel at five times, Re 0.5, 20 rows of particles, for variants `seed` \
              (left) and `{best}` (middle). Symbols are means over a row, and lines the exact series. \
-             Right: error of `{best}` over V, the speed of the wall or of the centre line."
+             Right: error of `{best}`."
         ),
         columns: 3,
         panels: vec![panel("seed"), panel(best), error],

@@ -160,7 +160,7 @@ fn profiles(tier: Tier) -> Curves {
     let caption = "Velocity u along the channel (left) and v across it (middle) at ten stations: lines are \
                    finite elements, symbols the finest run of variant `carried`. A velocity is drawn from \
                    the place of its station, where 1 H stands for 1.25 U_b of u or 0.4 U_b of v. Right: \
-                   error of u, magnified as the axis says.";
+                   error of u, magnified.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         if let Some((run, reference)) = best(tier, re).last().zip(reference(re)) {

@@ -126,8 +126,8 @@ pub fn tried() -> [(RunSpec, f64); 6] {
 /// A Reynolds number that variants hold.
 pub fn reynolds(runs: &Runs) -> Study {
     let caption = format!(
-        "Every variant at Re 1000, the highest that the setting allows, and `plain` at Re 10, the lowest \
-         tried: H/dx = 10, from rest to {TRIED_TO} H/U_b. A variant holds a Reynolds number if its run \
+        "Every variant at Re 1000, the highest that the setting allows, and `plain` at Re 10. Runs have \
+         H/dx = 10 and go from rest to {TRIED_TO} H/U_b. A variant holds a Reynolds number if its run \
          completes with no particle behind a wall and a force along the flow. Force, ripple and flux are \
          of the last {window} H/U_b. Windows differ by the rms over ten stations of the change of mean u \
          from the {window} H/U_b before. The flow still develops then, so these numbers do not show its \

@@ -92,11 +92,10 @@ fn all(tier: Tier, runs: &Runs) -> Study {
 
 /// Particles by their velocity, with the streamlines of the reference.
 fn pictures(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Particles of variant `carried` at the end of its finest run, coloured by their velocity \
-                   u along the channel over the bulk velocity U_b; H is the height of a hill. Thin lines \
-                   are streamlines of finite elements, and the thick black line is their separation line, \
-                   below which fluid circulates (none at Re 10). The green line is that of the particles, \
-                   up to which their flux adds up to zero.";
+    let caption = "Particles of the finest run of variant `carried`, coloured by their velocity u along \
+                   the channel over the bulk velocity U_b; H is the height of a hill. Thin lines are \
+                   streamlines of finite elements. Thick lines enclose the fluid that circulates, black in \
+                   finite elements (none at Re 10) and green for the particles.";
     let mut figure = Figure::new("periodic-hill-pictures", caption);
     let shown = REYNOLDS.into_iter().filter_map(|re| {
         let (run, reference) = best(tier, re).last().copied().zip(reference(re))?;
@@ -185,8 +184,8 @@ fn starts(runs: &Runs) -> Study {
         });
         let force = moved(FORCE).map_or(f64::NAN, |(other, rest)| other / rest - 1.0);
         let text = format!(
-            "Re {re}, H/dx = 10, start from rest and from the reference: u differs by {} of U_b (rms), the \
-             force by {}{bubble}.",
+            "Re {re}, H/dx = 10: a start from the reference changes u by {} of U_b (rms), the force by \
+             {}{bubble}.",
             percent(difference, 2),
             percent(force, 2),
         );

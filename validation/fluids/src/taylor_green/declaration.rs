@@ -140,10 +140,9 @@ const SHOWN: usize = 50;
 /// Energy and error through time.
 fn histories(tier: Tier) -> Curves {
     let caption = format!(
-        "Taylor-Green vortices at Re 100 over time, each variant at the most particles a side that ran, up \
-         to {SHOWN}. Left: relative error of the kinetic energy, |E/E_exact − 1|, which dips where its \
-         sign changes; right: relative L2 error of the velocity. Black marks the bounds of variant \
-         `{BEST}`, which apply at t = 2 L/U."
+        "Taylor-Green vortices at Re 100 over time, with at most {SHOWN} particles a side. Left: relative \
+         error of the kinetic energy, |E/E_exact − 1|, which dips where its sign changes; right: relative \
+         L2 error of the velocity. Black marks the bounds of variant `{BEST}`, which apply at t = 2 L/U."
     );
     let panels = STARTS.into_iter().flat_map(|start| {
         let of_start = || plan::judged(tier).into_iter().filter(move |run| run.2 == start);

@@ -79,9 +79,8 @@ pub const WAVE_ANGLE: MetricKey =
 pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     name: "resting_box",
     problem: "Small noise at rest: is the time step stable?",
-    about: "Velocity noise of 1e-8 c0 on a periodic lattice at rest excites every wave of the box. It is \
-            too small for nonlinear effects. Its energy grows if the time step is unstable, and linear \
-            theory of the same box predicts the largest stable step.",
+    about: "Velocity noise of 1e-8 c0 excites every wave of a periodic lattice at rest. Its energy grows \
+            if the time step is beyond the limit that linear theory of the same box predicts.",
     variants,
     is_stable,
     declaration: |_| Declaration::default(),

@@ -143,10 +143,10 @@ fn figure(points: &[Point], limits: &[Limit], weak: &[[f64; 2]]) -> Figure {
     plot = plot.layer(Layer::vertical(INVISCID_AT, "ν = 0"));
     Figure::new(
         "time-step-limits",
-        "Left: longest stable time step by bisection on a periodic lattice of 12 × 12 particles (symbols), \
-         and by linear stability theory of the same lattice (lines). Below c₀h/ν of about 3 viscosity \
-         decides, and both integrators have the same limit; ν = 0 is without viscosity. Right: growth of \
-         the stiffest sound wave a step in the predictor-corrector without viscosity.",
+        "Left: longest stable time step by bisection on a periodic lattice (symbols), and by linear \
+         stability theory of this lattice (lines). Below c₀h/ν of about 3 viscosity decides, and both \
+         integrators have the same limit. Right: growth of the stiffest sound wave a step in the \
+         predictor-corrector without viscosity.",
     )
     .title("Stability of the time step")
     .panel(plot.legend(report::Legend::Outside))

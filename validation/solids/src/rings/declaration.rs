@@ -98,10 +98,10 @@ fn histories(tier: Tier) -> Curves {
         id: "rubber-rings-histories".into(),
         title: "Histories over finite elements".into(),
         caption: format!(
-            "One of two rubber rings that collide at 0.059 c0 each: position and velocity of its centre of \
-             mass, and its width along and height across the line of flight. Coloured: variant `{variant}` \
-             at several spacings. Black: finite elements with the same elastic law, whose uncertainty is \
-             less than the width of the line."
+            "Centre of mass of one of two rubber rings that collide at 0.059 c0 each, its velocity, and \
+             the width along and height across the line of flight. Coloured: variant `{variant}` at \
+             several spacings. Black: finite elements, whose uncertainty is less than the width of the \
+             line."
         ),
         columns: 2,
         panels: Reference::COLUMNS.into_iter().enumerate().map(panel).collect(),
@@ -271,10 +271,10 @@ fn fracture_map(tier: Tier) -> Map {
     Map {
         id: "rubber-rings-fracture-map".into(),
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
-        caption: "Outcome of collisions of two rubber rings over speed and particle spacing, for three \
-                  variants; an empty cell was not run. Whole rings show the coefficient of restitution e, \
-                  or that they still touch at t = 200 L/c0. Torn rings (cut through once, like a C) show \
-                  the time of the tear in L/c0, and rings in pieces the largest number of pieces."
+        caption: "Outcome of collisions of two rubber rings over speed and particle spacing; an empty cell \
+                  was not run. Whole rings show the coefficient of restitution e, or that they still touch \
+                  at the end. Torn rings (cut through once) show the time of the tear in L/c0, and others \
+                  the largest number of pieces."
             .into(),
         x: "speed of each ring [c0]".into(),
         y: "particle spacing [L]".into(),

@@ -86,9 +86,9 @@ fn distances(tier: Tier, runs: &Runs) -> Study {
 fn energies(record: &Record) -> Figure {
     let caption = format!(
         "Energies of two colliding rubber rings over the initial energy, variant `{}`, spacing {} L. Left: \
-         kinetic, compression and shear energy and their sum; right: what each term of the equations has \
-         added, which agrees with that sum up to {}. The elastic law adds a little, because the stress \
-         that follows from its rate has no exact energy at finite strain.",
+         kinetic, compression and shear energy and their sum; right: what each term has added, which \
+         agrees with that sum up to {}. The elastic law adds a little, because its rate has no exact \
+         energy at finite strain.",
         record.variant,
         exact(settings(record).spacing),
         percent(record.value(ENERGY_GAP).unwrap_or(f64::NAN), 2)
@@ -136,11 +136,11 @@ fn phases_table(tier: Tier, runs: &Runs) -> Table {
         Column::num("impulse of the second", "ρ c0 L²"),
         Column::text("1, 50, 99 % of it passed at [L/c0]"),
     ];
-    let caption = "Rings touch twice: the poles first, which then swing back while the flanks fly on, and \
-                   once more on the way out. At 5 layers, spacing 0.2 L, kernels reach across the gap that \
-                   opens in between, so that the rings never let go. \
-                   A phase ends where the force stays below 1 % of its largest \
-                   for 5 L/c0. Finite elements: with their uncertainty.";
+    let caption = "The two phases of contact. The poles touch first and swing back while the flanks fly \
+                   on, and the rings touch once more on the way out. At 5 layers, spacing 0.2 L, kernels \
+                   reach across the gap that opens in between, so that the rings never let go. A phase \
+                   ends where the force stays below 1 % of its largest for 5 L/c0. Values of finite \
+                   elements have their uncertainty.";
     let mut table = Table::new(caption, columns);
     let mut speeds = Vec::new();
     for (record, reference) in with_reference(tier, runs) {
@@ -190,10 +190,10 @@ fn found_phases(record: &Record) -> Vec<Cell> {
 
 /// The rings at five times, coloured by the largest principal stress, with those of finite elements.
 fn pictures(runs: &Runs) -> Study {
-    let caption = "The right one of two rubber rings (radii 3 L and 4 L) that collide at 0.059 c0 each and \
-                   meet at x = 0, at five times. Particles of variant `seed`, spacing 0.2 L, are coloured \
-                   by the largest principal stress σ₁ over the bulk modulus K; tension is positive. Black \
-                   lines are the faces of the ring in finite elements.";
+    let caption = "The right one of two rubber rings that collide at 0.059 c0 each and meet at x = 0. \
+                   Particles of variant `seed`, spacing 0.2 L, are coloured by the largest principal \
+                   stress σ₁ over the bulk modulus K; tension is positive. Black lines are the faces of \
+                   the ring in finite elements.";
     let mut figure = Figure::new("rubber-rings-pictures", caption).columns(5);
     let (variant, spacing, speed) = PICTURED;
     if let Some(record) = runs.record(&collision(variant, spacing, speed)) {

@@ -112,9 +112,9 @@ fn pairs(record: &Record) -> f64 {
 
 fn table(runs: &Runs) -> Table {
     let caption = format!(
-        "The tank of Lobovsky et al. at H/dx = {N} until t √(g/H) = {END}, with one thing changed at a \
-         time. Errors are of front and levels after the best shift (rms), and of the impulses on P1 to P3 \
-         during one √(H/g) (mean). Noise is the rms distance of P2 from its running mean.",
+        "The tank of Lobovsky et al. at H/dx = {N}, with one thing changed at a time. Runs end at t √(g/H) \
+         = {END}. Errors are of front and levels after the best shift (rms), and of the impulses on P1 to \
+         P3 during one √(H/g) (mean). Noise is the rms distance of P2 from its running mean.",
     );
     let changed = |record: &Record| {
         let is_it = |row: &&(&str, Change)| spec(row.0, row.1).key() == record.key();

@@ -86,7 +86,7 @@ fn accuracy(tier: Tier) -> Accuracy {
         Ladder::new(variant, resolutions.iter().map(|n| level(variant, *n)))
     };
     let about = format!(
-        "Front Z(T), 1 ≤ T ≤ 3.3, of the column of Martin & Moyce; per cent are of its width a. An error \
+        "Front Z(T), 1 ≤ T ≤ 3.3, of the column of Martin & Moyce. Per cent are of its width a. An error \
          is the rms distance from the front of `modern` at a/dx = {n}, which is itself short of the limit, \
          so an error smaller than the last one of its own series says no more."
     );

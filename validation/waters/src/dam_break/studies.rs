@@ -228,9 +228,9 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
 /// Pressures of the finest run.
 fn pressures(finest: &Record, lobovsky: &Lobovsky) -> Figure {
     let caption = format!(
-        "Pressure on four sensors in the far wall, {} (blue), after the wave arrives at P1. Black is the \
-         experiment of Lobovsky et al., grey its second sensor at the height of P2. Peaks scatter in both \
-         and are cut at 3.5 ρ g H; impulses are judged instead.",
+        "Pressure on four sensors in the far wall, {} (blue), after arrival at P1. Black is the experiment \
+         of Lobovsky et al., grey its second sensor at the height of P2. Peaks scatter in both and are cut \
+         at 3.5 ρ g H; impulses are judged instead.",
         name_of(finest, "H")
     );
     let mut figure = Figure::new("dam-break-pressures", caption).columns(2);
@@ -270,9 +270,9 @@ fn since(curve: &Curve, arrival: f64) -> Curve {
 
 /// Impulses since the arrival of all runs.
 fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
-    let caption = "Impulse (integral of the pressure over time) on four sensors in the far wall after the \
-                   wave arrives at P1. Black is the experiment of Lobovsky et al., with the band between \
-                   its two sensors at the height of P2. Impulses at 1 √(H/g) are judged, within 8.5 %.";
+    let caption = "Impulse (pressure integrated over time) on four sensors in the far wall after arrival \
+                   at P1. Black is the experiment of Lobovsky et al., with the band between its two \
+                   sensors at the height of P2. Impulses at 1 √(H/g) are judged.";
     let mut figure = Figure::new("dam-break-impulses", caption).columns(2);
     let so_far = |curve: &Curve, arrival: f64| -> Curve {
         let later = since(curve, arrival).into_iter().filter(|(t, _)| *t >= 0.0);
@@ -413,7 +413,7 @@ fn film(tier: Tier, runs: &Runs) -> Result<Film, String> {
 fn energies(tier: Tier, runs: &Runs) -> Study {
     let caption = "Energy of the column of Martin & Moyce at a/dx = 20, over its potential energy on the \
                    floor, M g H/2. Solid lines are what the water has, and dashed lines what each term has \
-                   taken so far, if more than 1e-4. Black is the sum, which must keep its first value.";
+                   taken so far. Black is the sum, which must keep its first value.";
     let mut figure = Figure::new("dam-break-energy", caption).columns(2);
     for variant in ["seed", "modern"] {
         if let Some(record) = runs.record(&specs::free(tier, variant, 20)) {
@@ -459,7 +459,7 @@ fn energy_plot(record: &Record) -> Plot {
 }
 
 fn energy_table(tier: Tier, runs: &Runs) -> Table {
-    let caption = "Energy that each term has added until the end, over M g H/2 at the start; below 0 it \
+    let caption = "Energy that each term has added until the end, over M g H/2 at the start. Below 0 it \
                    took energy. The work of the walls is that of their pressure beyond what they store. \
                    Momentum is over M √(g H).";
     let scene = |record: &Record| if is_free(record) { "Martin & Moyce" } else { "Lobovsky" };

@@ -91,7 +91,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         Ladder::new(variant, ladder(tier, variant).iter().map(|rows| level(variant, *rows)))
     };
     let error = ErrorOf::Metric(P_L2.into());
-    let about = "Water at rest after 20 acoustic periods, g H/c0² = 0.01; errors are rms, over the rms of \
+    let about = "Water at rest after 20 acoustic periods, g H/c0² = 0.01. Errors are rms, over the rms of \
                  the pressure.";
     let accuracy = Accuracy {
         about: about.into(),

@@ -22,8 +22,8 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         let of = |variant: &'static str| {
             runs.records(COMPRESSIBILITIES.map(|(c, _)| plan::plain(variant, c)))
         };
-        let caption = "Every wall with every treatment of density, for water at rest with Wendland C2, \
-                           h/dx = 1.5, leapfrog and 20 rows.";
+        let caption = "Every wall with every treatment of density. Runs are water at rest with Wendland \
+                           C2, h/dx = 1.5, leapfrog and 20 rows.";
         let by_wall = table(caption, TABLE.into_iter().flat_map(of));
         let study = Study::new("hydrostatic-walls", "Walls and density treatments");
         studies.push(study.block(by_wall));
@@ -34,9 +34,9 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 /// p over y of the variants at g H/c₀² = 0.01, and how far it is from exact.
 fn pressures(runs: &Runs) -> Figure {
     let caption = "Pressure of every particle over its height after 20 acoustic periods (left), and its \
-                   error (right), at g H/c0² = 0.01 with 20 rows by 10 columns. Variants `seed` and \
-                   `ghosts` have the paper's two walls, and `modern` walls that extrapolate pressure. \
-                   Exact lines differ because the surface of `seed` is half a spacing lower.";
+                   error (right), at g H/c0² = 0.01 with 20 rows. Variants `seed` and `ghosts` have the \
+                   paper's walls, and `modern` walls that extrapolate. Exact lines differ because the \
+                   surface of `seed` is half a spacing lower.";
     let mut over = Plot::new("", Axis::linear("p/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
     let mut error =
         Plot::new("", Axis::linear("(p - p_exact)/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
