@@ -89,7 +89,7 @@ macro_rules! unit_settings {
                 eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 1e-6,
                 /// exponent of the Tait equation
                 gamma: usize ["-"] in 1..=20 = 7,
-                /// background pressure 0p
+                /// background pressure p0
                 background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
                 /// Courant number of the time step: two thirds of the theoretical limit
                 courant: f64 ["-"] in 1e-6..=100.0 = 1.5,

@@ -34,7 +34,7 @@ crate::solid_settings! {
         collide: bool = false,
         /// largest velocity of the pulse, or the speed of each bar
         speed: f64 ["c_p"] in 1e-12..=0.9 = 1e-4,
-        /// what is between the bars beyond one spacing; 0: both stand on one lattice, in touch
+        /// gap between the bars beyond one spacing; 0: both stand on one lattice, in touch
         gap: f64 ["dx"] in 0.0..=100.0 = 0.0,
         /// standard deviation of the pulse
         width: f64 ["L"] in 0.01..=0.2 = 0.0625,

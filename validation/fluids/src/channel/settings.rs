@@ -27,11 +27,11 @@ base::settings! {
         c0: Option<f64> ["m/s"] in 1e-12..=1e6 = None,
         /// density variation δ that Morris' rule allows: c0² = max(V², ν V/L, F L)/δ
         density_variation: f64 ["-"] in 1e-8..=1.0 = 0.01,
-        /// least c0 in units of ν/h: sound as stiff as viscosity costs no step and leaves no Mach number
+        /// least c0 in units of ν/h; sound no stiffer than viscosity does not shorten the time step
         c0_viscous: f64 ["nu/h"] in 0.0..=100.0 = 0.0,
         /// exponent of the Tait equation
         gamma: usize ["-"] in 1..=20 = 7,
-        /// background pressure 0p
+        /// background pressure p0
         background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
         /// time step; auto: the least of courant h/(c0 + V), viscous h²/ν, √(h/F)/4
         dt: Option<f64> ["s"] in 1e-15..=1e3 = None,
@@ -45,7 +45,7 @@ base::settings! {
         alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
         /// artificial viscosity, quadratic
         beta: f64 ["-"] in 0.0..=10.0 = 0.0,
-        /// XSPH
+        /// XSPH: ε
         xsph: f64 ["-"] in 0.0..=0.99 = 0.5,
         /// artificial stress, strength ξ
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,

@@ -44,11 +44,11 @@ unit_settings! {
         n: usize ["-"] in 4..=400 = 10,
         /// height of the crest; 0 is a flat channel
         crest: f64 ["H"] in 0.0..=1.5 = 1.0,
-        /// flux, of that of the reference
+        /// flux over that of the reference
         flux: f64 ["2.035 U_b H"] in 0.0..=10.0 = 1.0,
         /// start from an interpolation of the reference instead of from rest
         from_reference: bool = false,
-        /// force of the start
+        /// body force at the start
         force: f64 ["U_b^2/H"] in -1e3..=1e3 = 0.0,
         /// time in which the controller closes a gap in flux; 0 keeps the force
         response: f64 ["H/U_b"] in 0.0..=1e3 = 1.0,

@@ -52,7 +52,7 @@ base::settings! {
         mach: f64 ["-"] in 1e-6..=10.0 = 0.1,
         /// Reynolds number of the vortex
         re: f64 ["-"] in 1e-3..=1e6 = 100.0,
-        /// standard deviation of the initial places
+        /// standard deviation of the initial displacements
         jitter: f64 ["dx"] in 0.0..=0.5 = 0.0,
         /// end of the run of the vortex, in units of its side over its speed
         end: f64 ["-"] in 1e-6..=100.0 = 0.5,

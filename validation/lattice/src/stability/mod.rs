@@ -39,7 +39,7 @@ base::settings! {
         n: usize ["-"] in 4..=400 = 12,
         /// smoothing length over spacing
         h_over_dx: f64 ["-"] in 0.5..=5.0 = 1.3,
-        /// sound against viscosity, c0 h/nu; auto: no viscosity at all
+        /// ratio of sound to viscosity, c0 h/nu; auto: no viscosity
         stiffness: Option<f64> ["-"] in 1e-6..=1e9 = Some(10.0),
         /// alpha of the artificial viscosity, on every pair
         alpha: f64 ["-"] in 0.0..=10.0 = 0.0,

@@ -59,8 +59,8 @@ base::settings! {
         eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 0.01,
         /// density diffusion δ
         diffusion: f64 ["-"] in 0.0..=10.0 = 0.0,
-        /// standard deviation of the initial places, for sums that no symmetry makes vanish; theory
-        /// is that of the lattice
+        /// standard deviation of the initial displacements, for sums that no symmetry makes vanish;
+        /// theory is that of the lattice
         jitter: f64 ["dx"] in 0.0..=0.2 = 0.0,
         /// initial velocity amplitude
         amplitude: f64 ["c0"] in 1e-12..=0.1 = 1e-6,

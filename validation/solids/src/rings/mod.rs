@@ -65,13 +65,13 @@ base::settings! {
         alpha: f64 ["-"] in 0.0..=10.0 = 1.0,
         /// quadratic artificial viscosity
         beta: f64 ["-"] in 0.0..=10.0 = 2.0,
-        /// XSPH
+        /// XSPH: ε
         xsph: f64 ["-"] in 0.0..=0.99 = 0.5,
         /// strength of the artificial stress
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,
         /// exponent of the artificial stress
         exponent: usize ["-"] in 1..=16 = 4,
-        /// samples of the energy budget; no time step is longer than what is between them
+        /// samples of the energy budget; no time step is longer than the interval between them
         samples: usize ["-"] in 1..=100000 = 200,
     }
 }

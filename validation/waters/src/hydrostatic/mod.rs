@@ -45,7 +45,7 @@ base::settings! {
         alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
         /// quadratic artificial viscosity
         beta: f64 ["-"] in 0.0..=10.0 = 0.0,
-        /// XSPH
+        /// XSPH: ε
         xsph: f64 ["-"] in 0.0..=0.99 = 0.5,
         /// strength of the artificial stress
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,
@@ -53,7 +53,7 @@ base::settings! {
         exponent: usize ["-"] in 1..=16 = 4,
         /// density diffusion delta
         diffusion: f64 ["-"] in 0.0..=1.0 = 0.1,
-        /// share of gravity that an extrapolating wall knows of; 1, unless to see what it is for
+        /// share of gravity in the extrapolation of a wall; less than 1 only to show its effect
         wall_gravity: f64 ["g"] in 0.0..=2.0 = 1.0,
     }
 }
