@@ -41,7 +41,7 @@ pub enum Refusal {
     },
     /// Not all of it is there, or not as it was written.
     #[error(
-        "the checkpoint {path:?} is damaged or truncated: its content has not the digest that it states"
+        "the checkpoint {path:?} is damaged or truncated: its content does not have the digest stated"
     )]
     Damaged {
         /// The file.

@@ -29,7 +29,7 @@ pub fn summary(suite: &Suite) -> String {
     let rows: Vec<Vec<String>> = suite.cases.iter().map(row).collect();
     let mut text = output::table(&heads, &rows);
     text += "The error is that of the best variant, its cost that on one core; the margin is the unused\n\
-             share of the bound of the worst gate, of a limited one until it fails.\n";
+             share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
     text += &failures(suite);
     let counts = suite.counts();
     if counts.limitation > 0 {

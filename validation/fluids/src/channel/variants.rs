@@ -132,7 +132,7 @@ fn moderns<B: Drive>(all: All) -> All {
     )
     .with(
         "modern-mirror",
-        "modern with plainly mirroring ghosts",
+        "modern with ghosts that do not know the curvature",
         Method::of::<Modern<Fluid<B>, Stabilised>>(),
         modern,
     )
