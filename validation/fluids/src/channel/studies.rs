@@ -93,8 +93,8 @@ fn snapshot(flow: Flow, record: &Record) -> Figure {
     let settings: ChannelSettings = record.settings_as();
     let dx = settings.width / settings.rows as f64;
     let caption = "Particles of variant `seed` at νt/L² = 1, Re 0.5, 20 rows across the channel. Left: \
-                   velocity u along the channel. Right: pressure p, which is exactly zero in theory; rows \
-                   that slide past each other disturb it.";
+                   velocity u. Right: pressure p, exactly zero in theory; rows that slide past each other \
+                   disturb it.";
     let map = |title: &str, field: &str, label: &str, colours| {
         let points = pictures::points(record, "particles", field);
         let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));

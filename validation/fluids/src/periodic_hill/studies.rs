@@ -199,7 +199,7 @@ fn reasons(runs: &Runs) -> Study {
     let study = Study::new("periodic-hill-best", "Why this variant is the best").prose(format!(
         "`{BEST}` is chosen for its force and its drag balance, not for the least error of u at every \
          spacing (table of all runs). `modern` misses the goals of both, and `consistent` comes no closer \
-         to them, with terms that take more work a pair."
+         to them, with terms that take more work for each pair."
     ));
     of_finest(runs).into_iter().fold(study, Study::prose)
 }

@@ -38,8 +38,7 @@ fn table(runs: &Runs) -> Table {
 fn pictures(tier: Tier, runs: &Runs) -> Study {
     let caption = "Particles in half of the periodic box of Taylor-Green vortices at t = 2 L/U, Re 100, \
                    for variant `plain`, without stabilisers, and the best one, `consistent`. Left: speed; \
-                   right: logarithm of the error of the velocity, where −2 is 1 %. Both are over the \
-                   largest exact speed of that time.";
+                   right: logarithm of the error of the velocity, where −2 is 1 %.";
     let mut figure = Figure::new("taylor-green-pictures", caption).columns(2);
     let of_tier = plan::judged(tier);
     for (variant, n, start) in PICTURED.into_iter().filter(|run| of_tier.contains(run)) {

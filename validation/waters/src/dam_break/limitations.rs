@@ -137,23 +137,23 @@ fn of_ghosts_in_tank(gate: Gate, sensor: Option<usize>) -> Gate {
 const MIRRORED: Why = (
     &NO_SLIP_IMAGES,
     "At a/dx = 10, 14, 28 and 40 the walls do work of 0.64, 0.66, 0.43 and 0.30 M g H/2 on the water, and \
-     at 14 the front is slowest, with Z = 2.31 at T = 2 and 3.32 at T = 3. The bounds: mean plus two \
-     standard deviations of these runs for work (0.84) and energy (0.013), their farthest values for front \
-     and height, and the Mach number of the tank, 0.60. `ghosts-slip`, whose images keep the velocity along \
-     the wall, has 0.001 of work, Z = 2.58 and 4.00, and Mach 0.12.",
+     at 14 the front is slowest, with Z = 2.31 at T = 2 and 3.32 at T = 3. The bounds of work (0.84) and \
+     energy (0.013) are the mean plus two standard deviations of these runs, those of front and height \
+     their farthest values, and that of the Mach number is 0.60, as in the tank. `ghosts-slip`, whose \
+     images keep the velocity along the wall, has a work of 0.001, Z = 2.58 and 4.00, and Mach 0.12.",
 );
 const CROSSED: Why = (
     &PRESSED_THROUGH,
     "`ghosts-slip` loses 1 particle on the endless floor and 5 in the tank, `ghosts-split` none and 3, and \
-     `ghosts` without XSPH 11 in the tank. The bound: 11 for `ghosts` in the tank, and 5 elsewhere.",
+     `ghosts` without XSPH 11 in the tank. The bound is 11 for `ghosts` in the tank, and 5 elsewhere.",
 );
 const ENDS: Why = (
     &NO_SLIP_IMAGES,
-    "At H/dx = 20 the run diverges after 54 % of its time, which is 36 % at 30 if it is proportional to the \
-     spacing; the bounds of work (1.11 M g H/2) and energy (0.096) are those at 20 without XSPH, of \
-     momentum (0.035) and Mach number (0.60) with it. Those of front, levels and impulses are the largest \
-     errors of `seed` at h/dx = 1.2 and of `ghosts-slip`. `ghosts-split` reaches the end at 20 and 30, but \
-     its floor drags the water, which strikes the far wall at 3.94 instead of 2.44 √(H/g).",
+    "At H/dx = 20 the run diverges after 54 % of its time; if this share is proportional to the spacing, \
+     it is 36 % at 30. The bounds of work (1.11 M g H/2) and energy (0.096) were found at 20 without XSPH, \
+     and those of momentum (0.035) and Mach number (0.60) with it. Those of front, levels and impulses are \
+     the largest errors of `seed` at h/dx = 1.2 and of `ghosts-slip`. `ghosts-split` reaches the end at 20 \
+     and 30, but its floor drags the water, which strikes the far wall at 3.94 instead of 2.44 √(H/g).",
 );
 const THICK: Why = (
     &VISCOSITY,
@@ -164,33 +164,33 @@ const THICK: Why = (
 const LAYER: Why = (
     &VISCOSITY,
     "Particles next to the back wall lag: at 0.2 a from it and τ = 2.45 the height is too large by 0.10 \
-     (unit 2a) at a/dx = 20 and by 0.05 at 40. The shift is proportional to artificial viscosity: -0.053 \
-     with half of alpha and -0.187 with twice the sound speed are -0.106 and -0.094 with that of this run \
-     at 20. The bound: -0.11 at 20 and half of it at 40.",
+     (unit 2a) at a/dx = 20 and by 0.05 at 40. The shift is proportional to artificial viscosity: it is \
+     -0.053 with half of alpha and -0.187 with twice the sound speed, which in proportion is -0.106 and \
+     -0.094 with the viscosity of this run at 20. The bound is -0.11 at 20 and half of it at 40.",
 );
 const SPENT: Why = (
     &VISCOSITY,
-    "Viscosity takes 73 % of the energy, and the water strikes the far wall at 3.04 instead of 2.44 √(H/g). \
-     With alpha = 0.2 at H/dx = 20, three times this viscosity, the front is 0.22 H off, and the impulses \
-     on P1, P2 and P3 lack 85, 57 and 36 %. The bounds: these, and of the impulse that remains the 5, 17 \
-     and 25 % that the finest run of `modern` lacks.",
+    "Viscosity takes 73 % of the energy, and the water strikes the far wall at 3.04 instead of 2.44 \
+     √(H/g). With alpha = 0.2 at H/dx = 20, three times this viscosity, the front is 0.22 H off, and the \
+     impulses on P1, P2 and P3 lack 85, 57 and 36 %. The bounds are these errors; they also take from the \
+     impulse that remains the 5, 17 and 25 % that the finest run of `modern` lacks.",
 );
 const PULLED: Why = (
     &TENSION,
     "The little water that rises to 80 mm has lost density, and the impulse on P4 is negative, an error \
-     below -100 %. Five runs at H/dx = 20 that differ in alpha or in XSPH alone have errors of -12 \
-     to -103 %. The bound: their mean less twice their standard deviation, -135 %.",
+     below -100 %. Five runs at H/dx = 20 that differ in alpha or in XSPH alone have errors of -12 to -103 \
+     %. The bound is their mean less twice their standard deviation, -135 %.",
 );
 const FAST: Why = (
     &TWO_DIMENSIONS,
-    "The front runs at 1.56, 1.62 and 1.67 √(g H) at H/dx = 30, 60 and 120, and at 1.515 in the experiment. \
-     Its distances after the shift, 0.064, 0.075 and 0.089 H, tend to 0.103 H if they are of first order. \
-     The bound: this limit and the last difference.",
+    "The front runs at 1.56, 1.62 and 1.67 √(g H) at H/dx = 30, 60 and 120, and at 1.515 in the \
+     experiment. Its distances after the shift, 0.064, 0.075 and 0.089 H, tend to 0.103 H if they are of \
+     first order. The bound is this limit plus the last difference.",
 );
 const TONGUE: Why = (
     &TWO_DIMENSIONS,
     "The layer of water at H4 (metric `tongue`) is 9 to 13 % thinner than measured, and after its arrival \
      it takes 0.20 √(H/g) longer to rise to 80 mm. If errors at H/dx = 60 and 120 are of first order, they \
-     tend to -13, -27, -26 and -53 % at P1 to P4. The bound: this limit, and 1.25 times the largest \
-     difference of these runs (10.5 %) in proportion to the spacing.",
+     tend to -13, -27, -26 and -53 % at P1 to P4. The bound is this limit, with 1.25 times the largest \
+     difference of these runs (10.5 %), in proportion to the spacing, either way.",
 );

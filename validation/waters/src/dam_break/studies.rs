@@ -372,7 +372,7 @@ fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
     };
     let caption = format!(
         "{scene} at six times, {}, coloured by pressure, cut at 0 and 1 ρ g H. Particles that lag at the \
-         back wall make the spike at x = 0; the depth is measured beyond them.",
+         back wall make the spike at x = 0.",
         name_of(record, side)
     );
     let mut figure = Figure::new(id, caption).columns(2);
