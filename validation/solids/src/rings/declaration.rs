@@ -70,7 +70,7 @@ pub fn shown(tier: Tier) -> &'static str {
 fn histories(tier: Tier) -> Curves {
     let variant = shown(tier);
     let reference = Reference::of(&RingSettings::default());
-    let labels = ["centre of mass [L]", "velocity of that [c0]", "width [L]", "height [L]"];
+    let labels = ["centre of mass [L]", "its velocity [c0]", "width [L]", "height [L]"];
     let panel = |(k, name): (usize, &'static str)| {
         let line = |spacing: &f64| CurveOf {
             name: format!("spacing {} L", exact(*spacing)),

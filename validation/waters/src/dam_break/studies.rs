@@ -271,8 +271,8 @@ fn since(curve: &Curve, arrival: f64) -> Curve {
 /// Impulses since the arrival of all runs.
 fn impulses(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
     let caption = "Impulse (pressure integrated over time) on four sensors in the far wall after arrival \
-                   at P1. Black is the experiment of Lobovsky et al., with the band between its two \
-                   sensors at the height of P2. Impulses at 1 √(H/g) are judged.";
+                   at P1. Black is the experiment of Lobovsky et al., and the band is as wide as its two \
+                   sensors at the height of P2 differ. Impulses at 1 √(H/g) are judged.";
     let mut figure = Figure::new("dam-break-impulses", caption).columns(2);
     let so_far = |curve: &Curve, arrival: f64| -> Curve {
         let later = since(curve, arrival).into_iter().filter(|(t, _)| *t >= 0.0);
@@ -366,13 +366,15 @@ fn impact_table(records: &[&Record]) -> Table {
 
 /// Six times of a run, on the same axes.
 fn pictures(record: &Record, id: &str, (width, height): (f64, f64)) -> Figure {
-    let (scene, side) = match is_free(record) {
-        true => ("The column of Martin & Moyce", "a"),
-        false => ("The tank of Lobovsky et al.", "H"),
+    let (scene, side, spike) = match is_free(record) {
+        true => {
+            let spike = " Particles that lag at the back wall make the spike at x = 0.";
+            ("The column of Martin & Moyce", "a", spike)
+        }
+        false => ("The tank of Lobovsky et al.", "H", ""),
     };
     let caption = format!(
-        "{scene} at six times, {}, coloured by pressure, cut at 0 and 1 ρ g H. Particles that lag at the \
-         back wall make the spike at x = 0.",
+        "{scene} at six times, {}, coloured by pressure, cut at 0 and 1 ρ g H.{spike}",
         name_of(record, side)
     );
     let mut figure = Figure::new(id, caption).columns(2);

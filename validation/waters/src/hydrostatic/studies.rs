@@ -37,9 +37,9 @@ fn pressures(runs: &Runs) -> Figure {
                    error (right), at g H/c0² = 0.01 with 20 rows. Variants `seed` and `ghosts` have the \
                    paper's walls, and `modern` walls that extrapolate. Exact lines differ because the \
                    surface of `seed` is half a spacing lower.";
-    let mut over = Plot::new("", Axis::linear("p/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
+    let mut over = Plot::new("", Axis::linear("p/(ρ₀ g H) [-]"), Axis::linear("y/H [-]"));
     let mut error =
-        Plot::new("", Axis::linear("(p - p_exact)/(rho0 g H) [-]"), Axis::linear("y/H [-]"));
+        Plot::new("", Axis::linear("(p − p_exact)/(ρ₀ g H) [-]"), Axis::linear("y/H [-]"));
     for (k, variant) in SHOWN.into_iter().enumerate() {
         let Some(record) = runs.record(&plan::plain(variant, 0.01)) else { continue };
         let [y, p, exact] = ["y", "p", "p_exact"].map(|name| record.column("pressure", name));
