@@ -115,14 +115,14 @@ impl fmt::Display for Bound {
             Bound::Below(high) => write!(f, "at most {}", shown(*high)),
             Bound::Above(low) => write!(f, "at least {}", shown(*low)),
             Bound::Within(low, high) => write!(f, "{} to {}", shown(*low), shown(*high)),
-            Bound::Equals(expected) => write!(f, "exactly {}", shown(*expected)),
+            Bound::Equals(expected) => write!(f, "exactly {expected}"),
         }
     }
 }
 
-/// Seven significant digits at most, for people: `300`, `1.78398`, `1e-10`.
+/// Four significant digits at most, for people: `300`, `1.784`, `1e-10`.
 fn shown(value: f64) -> String {
-    let rounded = format!("{value:.6e}").parse().unwrap_or(value);
+    let rounded = format!("{value:.3e}").parse().unwrap_or(value);
     let text = format!("{rounded:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_string)
 }
@@ -503,7 +503,7 @@ mod tests {
     fn bounds_are_shown_without_rounding_dust() {
         assert_eq!(Bound::Below(0.1 + 0.2).to_string(), "at most 0.3");
         assert_eq!(Bound::Equals(300.0).to_string(), "exactly 300");
-        assert_eq!(Bound::Within(-1e-10, 1.78398).to_string(), "-1e-10 to 1.78398");
+        assert_eq!(Bound::Within(-1e-10, 1.78398).to_string(), "-1e-10 to 1.784");
     }
 
     #[test]

@@ -54,9 +54,9 @@ fn describe(cause: Option<&Cause>, found: &[Found]) -> (String, Vec<String>) {
     cases.dedup();
     let what = match cause {
         Some(Cause { what, mend, since }) => {
-            format!("**{what}** What would remove it: {mend} Known since {since}.")
+            format!("{what} What would remove it: {mend} Known since {since}.")
         }
-        None => "**Other causes.**".into(),
+        None => "Other causes.".into(),
     };
     let command = found.iter().find_map(command).unwrap_or_default();
     let text = format!("{what} Cases: {}. To see it: `{command}`.", cases.join(", "));

@@ -32,10 +32,9 @@ pub fn figure(suite: &Suite) -> Figure {
         let series = Series::markers(name, points).colour(colour).shape(shape).size(4.0);
         plot = plot.layer(series);
     }
-    let caption = "The margin of every gate, one dot a gate and one row a case: 0 is at the end of what the \
-                   gate allows, and 1 as far inside as can be. A known limitation is measured by its own, \
-                   wider bound. Left of 0 stand gates without a margin: those outside their bound, and those \
-                   that allow a single number only.";
+    let caption = "The margin of every gate, one dot a gate and one row a case: 0 is at the bound, and 1 as \
+                   far inside as can be. A limitation is measured by its own, wider bound. Left of 0 stand \
+                   gates outside their bound, and those that allow a single number only.";
     let height = 24.0 * count.max(1) as f64;
     Figure::new("margins", caption).panel(plot.legend(Legend::Outside)).panel_size(620.0, height)
 }

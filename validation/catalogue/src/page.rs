@@ -130,8 +130,7 @@ fn verdicts(suite: &Suite) -> Section {
     Section::new(VERDICTS, "All verdicts")
         .prose(
             "The margin is the unused share of what a bound allows: 100 % is far inside, 0 % is at the \
-             bound. Of a limitation it is the share that is left until it fails. Select a gate to read its \
-             reasons.",
+             bound. For a limitation, the wider bound counts. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
         .block(margins::figure(suite))

@@ -142,8 +142,8 @@ pub fn ladder_gates(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
         gates.push(error(L2.at(1), 1e-4, because));
     }
     if (flow, variant, rows) == (Flow::Couette, "modern", 20) {
-        let because = "the larger error of the row-reduced matrices of the walls, 6.6e-4, and as much again \
-                       for shifting and density diffusion, which the matrices leave out";
+        let because = "The bound is the larger error by the row-reduced matrices of the walls, 6.6e-4, and \
+                       as much again for shifting and density diffusion, which the matrices leave out.";
         gates.push(error(L2.at(flow.compared_at()), 1.3e-3, because));
     }
     if (flow, variant, rows) == (Flow::Poiseuille, "curved", 20) {

@@ -78,9 +78,9 @@ pub fn study(tier: Tier, runs: &Runs) -> Study {
 }
 
 fn gate(variant: &str, n: usize) -> Gate {
-    let because = "sound four times as fast takes four times the work and must not be needed: \
+    let because = "Sound four times as fast takes four times the work and must not be needed: \
                    compressibility at c0 = 10 U is (U/c0)^2 = 1 % of the pressure, and what irregular \
-                   particles add to the pressure grows as c0^2, so that the error has been seen to rise";
+                   particles add to the pressure grows as c0^2, so that the error has been seen to rise.";
     let id = format!("taylor_green.{variant}.{n}.sound_speed");
     Gate::new(
         id,

@@ -47,7 +47,7 @@ fn in_words(Budget { variant, changes }: &Budget, errors: &[f64]) -> Vec<String>
     let cancels = highest.filter(|(_, error)| **error > 1.1 * base);
     if let Some((change, error)) = cancels {
         findings.push(format!(
-            "`{variant}`: *time and spacing cancel*: as dt falls the error rises, from {} at dt to {} at {}.",
+            "`{variant}`: errors of time and spacing cancel, from {} at dt to {} at {}.",
             percent(base, 3),
             percent(*error, 3),
             change.what
@@ -58,7 +58,7 @@ fn in_words(Budget { variant, changes }: &Budget, errors: &[f64]) -> Vec<String>
     let smallest = single.min_by(|a, b| a.1.total_cmp(b.1));
     findings.push(match smallest.filter(|(_, error)| **error < 0.9 * base) {
         Some((change, error)) => format!(
-            "`{variant}`: {} falls most by *{}* (to {}): {}.",
+            "`{variant}`: {} falls most with *{}*, to {} ({}).",
             percent(base, 2),
             change.what,
             percent(*error, 2),

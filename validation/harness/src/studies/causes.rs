@@ -32,8 +32,8 @@ pub const STEP: &str =
 
 /// The term does its work with another strength too.
 pub static ENOUGH_OR_IDLE: Cause = Cause::new(
-    "Terms that keep particles evenly spread or together have little to do in some flows, and in others a \
-     weaker term suffices.",
+    "Terms that keep particles evenly spread or together have little effect in some flows, or suffice when \
+     weaker.",
     "Gates on each term alone, in a scene made for it, such as the decay of a disturbed lattice.",
     "2026-11-23",
 );

@@ -151,12 +151,13 @@ fn figure(
     let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
     let failed = points.iter().any(|point| point.failure.is_some());
     let crosses = if failed { " Crosses above are runs that failed." } else { "" };
-    let others = accuracy.peers.first().map_or(String::new(), |peer| {
-        format!(" Grey: other codes, stored with the references ({}).", peer.timed)
-    });
+    let others = accuracy
+        .peers
+        .first()
+        .map_or(String::new(), |peer| format!(" Grey: other codes ({}).", peer.timed));
     let caption = format!(
-        "{} {} against particle spacing (left), run time on one core (middle) and pair interactions \
-         (right).{explained}{crosses}{others}",
+        "{} {} over spacing (left), run time on one core (middle) and work (right).\
+         {explained}{crosses}{others}",
         first_sentence(&accuracy.about).0,
         name_of_error(&accuracy.label),
     );
@@ -253,9 +254,9 @@ fn cheapest_table(points: &[Point]) -> Table {
 
 /// At the error of each peer, the cheapest of ours and how many times faster it is.
 fn peer_table<'a>(peers: &'a [Peer], points: &'a [Point]) -> Table {
-    let caption = "Other codes against our cheapest setting with no more error, and against our best at the \
-                   same resolution. At equal error, points of ours count whose finer levels have no more \
-                   error either.";
+    let caption = "Other codes on the same work, and ours at equal error and at equal resolution. Ours at \
+                   equal error is the cheapest setting whose finer levels have no more error either; ours at \
+                   equal resolution is the most accurate.";
     type Row<'a> = (&'a Peer, Option<&'a Point>, Option<&'a Point>);
     let dash = || Cell::text("–");
     let row =

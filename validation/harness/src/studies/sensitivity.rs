@@ -25,7 +25,7 @@ const ABOUT: &str = "What the gates can detect. One constant of the scene is mul
                      ingredient of the method must be detected, and so must gross faults: a wrong sign \
                      (× -1), a missing term (× 0), a constant that is wrong by a factor. Errors \
                      between 0.1 % and 30 % are tried by bisection, which assumes that a larger error is \
-                     easier to detect: `detected from` says nothing of the larger errors that were not \
+                     easier to detect: `detected from` does not cover the larger errors that were not \
                      tried. The quick tier tries only the largest error that may go undetected.";
 
 /// An error that means that none up to 30 % is detected.
