@@ -1,5 +1,5 @@
-//! Errors and their cost: the order in the spacing, and which settings reach an error with the least work,
-//! in seconds of a run that was made alone, and in pair interactions, which do not depend on the machine or on
+//! Errors and their cost: the order in the spacing, and which settings reach an error with the least work, in
+//! seconds of a run that was made alone, and in pair interactions, which do not depend on the machine or on
 //! other programs.
 
 use base::functions::ln;
