@@ -7,7 +7,7 @@ use crate::{
     kernel::Smoothing,
     neighbours::{BLOCK, Neighbours},
     parallel,
-    particle_data::{Extent, Fault, ParticleData},
+    particle_data::{Extent, Fault, ParticleData, Phase},
     particles::{Column, Common, Evolved, Fixed, Rate},
     physics::{Derived, Physics, State},
     sweep::{self, BlockUpdate, PairSweep, Sweep, first, nothing, second, whole},
@@ -41,8 +41,7 @@ impl<P: Physics> Engine<P> {
         walls: &P::Walls,
         data: ParticleData<P::Extra>,
     ) -> Self {
-        let (columns, extents, extrapolated) = (Vec::new(), Vec::new(), Vec::new());
-        let wall_terms = walls.terms();
+        let (wall_terms, columns, extents, extrapolated) = (walls.terms(), vec![], vec![], vec![]);
         Self { kernel, terms, wall_terms, data, columns, extents, extrapolated }
     }
 
@@ -76,20 +75,21 @@ impl<P: Physics> Engine<P> {
 
     /// Sums the forces: `update(i, target, rate)` with dv/dt, for fluid particles.
     pub fn sweep_forces(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
-        self.data.count(false);
+        self.data.count(Phase::Forces);
         let sweep = self.sweep(&self.terms.0, first(), true);
         sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
+        self.data.enter(Phase::Rest);
     }
 
     /// Sums the drift: `update(i, target, rate)` with dx/dt, dρ/dt and the terms' own rates.
     pub fn sweep_drift(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
-        self.data.count(true);
+        self.data.count(Phase::Drift);
         self.sweep_both(&self.sweep(&self.terms.1, second(), true), targets, &by_blocks(update));
     }
 
     /// Sums forces and drift in one pair sweep: `update(i, target, rate)` with the whole rate.
     pub fn sweep_all(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
-        self.data.count(true);
+        self.data.count(Phase::Both);
         self.sweep_both(&self.sweep(&self.terms, whole(), true), targets, &by_blocks(update));
     }
 
@@ -171,25 +171,30 @@ impl<P: Physics> Engine<P> {
         if !(wall_lists.of.is_empty() || P::Walls::EXTRAPOLATES) {
             self.sweep_walls(&mut targets[wall_lists.of.start..], update);
         }
+        self.data.enter(Phase::Rest);
     }
 
     fn sweep_walls(&self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+        self.data.enter(Phase::Walls);
         let sweep = self.sweep(&self.wall_terms, nothing(), false);
         sweep::run(&sweep, &self.data.neighbours.wall_lists, targets, update);
     }
 
     /// Builds neighbour lists and images for particles at these places, and makes room for their columns.
     pub(crate) fn build_lists(&mut self, positions: impl Iterator<Item = Vector2<f64>>) {
+        self.data.enter(Phase::Search);
         self.data.neighbours.place(positions);
         self.data.build_lists(P::Walls::EXTRAPOLATES);
         let columns = self.data.fixed.len() + self.data.neighbours.images.len();
         self.columns.resize(columns + 1, Column::sentinel());
         self.columns[columns] = Column::sentinel();
+        self.data.column_bytes = size_of_val(&self.columns[..]);
     }
 
     /// Derives the columns of the particles, and finds out how far they moved since the neighbour lists
     /// were built.
     fn fill(&mut self, state: &State<P>) -> Result<Extent, Fault> {
+        self.data.enter(Phase::Refresh);
         let Self { terms, data, columns, extents, .. } = self;
         extents.resize(state.len().div_ceil(BLOCK), Extent::NIL);
         let blocks = columns[..state.len()].chunks_mut(BLOCK).zip(&mut *extents).enumerate();
@@ -211,6 +216,7 @@ impl<P: Physics> Engine<P> {
         if P::Walls::EXTRAPOLATES && self.data.counts[1] > 0 {
             self.extrapolate(state);
         }
+        self.data.enter(Phase::Rest);
     }
 
     /// Gives the columns of wall particles that extrapolate what the fluid before them implies, and
@@ -225,6 +231,7 @@ impl<P: Physics> Engine<P> {
             target.density = rate.density;
         };
         self.sweep_walls(&mut implied, &by_blocks(update));
+        self.data.enter(Phase::Refresh);
         for (column, implied) in self.columns[fluid..].iter_mut().zip(&implied) {
             *column = derive(&self.terms, column.common.mass, implied);
         }

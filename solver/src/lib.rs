@@ -53,7 +53,9 @@ pub use eos::{EquationOfState, Linear, Tait};
 pub use integrator::{Euler, Integrator, Leapfrog, PredictorCorrector, Scheme};
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
 pub use numbers::{In, Numbers, Symmetric};
-pub use particle_data::{Checkpoint, Fault, Limits, ParticleData, Progress, Work};
+pub use particle_data::{
+    Checkpoint, Fault, Limits, ParticleData, Phase, PhaseWatch, Progress, Work,
+};
 pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};

@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 
 use crate::{
-    neighbours::Neighbours,
+    neighbours::{BLOCK, Lists, Neighbours},
     numbers::Numbers,
     particles::{Evolved, Fixed, Particle, Role},
 };
@@ -21,6 +21,31 @@ pub struct Work {
     /// Times that neighbour lists were built.
     pub list_builds: u64,
 }
+
+/// A part of a step. Only that one begins is told, to whom [`crate::Stepper::watch`] names: the solver itself
+/// reads no clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// What integrators do beside the calls of their engine.
+    Rest,
+    /// Deriving columns of particles and images from a state.
+    Refresh,
+    /// Putting particles in the order of their cells.
+    Sorting,
+    /// Making images and neighbour lists.
+    Search,
+    /// The pair sweep over the forces.
+    Forces,
+    /// The pair sweep over the drift.
+    Drift,
+    /// One pair sweep over forces and drift together.
+    Both,
+    /// The pair sweep over the terms of the walls.
+    Walls,
+}
+
+/// Is told that a phase begins, which ends the one before.
+pub type PhaseWatch = Box<dyn Fn(Phase) + Send + Sync>;
 
 /// A state that no simulation may reach, and where.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +103,7 @@ pub struct Progress {
 pub struct Checkpoint<X = ()> {
     /// Time, work and the age of the neighbour lists.
     pub progress: Progress,
-    /// How far the velocities are behind the rest \[s\]; 0 after [`crate::Simulation::advance`] reached
+    /// How far the velocities are behind the rest \[s\]; 0 after [`crate::Stepper::advance`] reached
     /// a time.
     pub lag: f64,
     /// Particles as they are stored, with their numbers in the scene.
@@ -143,6 +168,9 @@ pub struct ParticleData<X = ()> {
     pub(crate) parallel: bool,
     pub(crate) progress: Progress,
     pub(crate) order: Vec<u32>,
+    /// Memory of the columns that a pair sweep reads \[bytes\].
+    pub column_bytes: usize,
+    pub(crate) watch: Option<PhaseWatch>,
 }
 
 impl<X: Numbers> ParticleData<X> {
@@ -192,6 +220,13 @@ impl<X: Numbers> ParticleData<X> {
         self.fixed[range.clone()].iter().map(|f| f.mass).zip(&self.state[range])
     }
 
+    /// The neighbour lists of the fluid particles as these are stored: places in
+    /// [`crate::Stepper::plain_columns`], padded by places after its end.
+    pub fn lists(&self) -> impl Iterator<Item = &[u32]> {
+        let Lists { of, blocks, .. } = &self.neighbours.lists;
+        of.clone().map(|k| blocks[k / BLOCK].list(k % BLOCK).as_flattened())
+    }
+
     /// All particles in the order of the scene.
     pub fn particles(&self) -> Vec<Particle<X>> {
         let nothing = Particle::fluid(Vector2::zeros(), Vector2::zeros(), 0.0, 0.0);
@@ -200,12 +235,6 @@ impl<X: Numbers> ParticleData<X> {
             particles[id as usize] = particle;
         }
         particles
-    }
-
-    /// Total momentum of the fluid per unit depth \[kg/s\], summed in the order of the scene.
-    pub fn momentum(&self) -> Vector2<f64> {
-        let fluid = self.particles().into_iter().filter(|p| p.role == Role::Fluid);
-        fluid.fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass)
     }
 
     /// All particles as they are stored, with their numbers in the scene.
@@ -236,6 +265,7 @@ impl<X: Numbers> ParticleData<X> {
 
     /// Puts fluid particles in the order of their cells, and all inside the period.
     pub(crate) fn sort(&mut self, state: &mut [Evolved<X>]) {
+        self.enter(Phase::Sorting);
         for evolved in &mut *state {
             evolved.position = self.neighbours.domain.wrap(evolved.position);
         }
@@ -255,10 +285,18 @@ impl<X: Numbers> ParticleData<X> {
         self.progress.work.list_builds += 1;
     }
 
-    /// Counts a pair sweep.
-    pub(crate) fn count(&mut self, completes_a_right_hand_side: bool) {
+    /// Tells that a phase begins.
+    pub(crate) fn enter(&self, phase: Phase) {
+        if let Some(tell) = &self.watch {
+            tell(phase);
+        }
+    }
+
+    /// Counts a pair sweep that begins, of forces alone or one that completes a right-hand side.
+    pub(crate) fn count(&mut self, phase: Phase) {
+        self.enter(phase);
         self.progress.work.pair_interactions += self.neighbours.pairs();
-        if completes_a_right_hand_side {
+        if phase != Phase::Forces {
             self.progress.work.right_hand_sides += self.counts[0] as u64;
         }
     }
@@ -302,13 +340,7 @@ impl<X: Numbers> ParticleData<X> {
     fn find_fault(&self, state: &[Evolved<X>]) -> Fault {
         let fault = |((evolved, fixed), built_at): ((&Evolved<X>, &Fixed), &Vector2<f64>)| {
             let displacement2 = (evolved.position - built_at).norm_squared();
-            let field = evolved.fault().or_else(|| self.excess(evolved, displacement2))?;
-            let value = match field {
-                "position" => evolved.position.norm(),
-                "velocity" => evolved.velocity.norm(),
-                "density" => evolved.density,
-                _ => f64::NAN,
-            };
+            let (field, value) = evolved.fault().or_else(|| self.excess(evolved, displacement2))?;
             Some(Fault { particle: fixed.id, field, value })
         };
         let particles = state.iter().zip(&self.fixed).zip(&self.neighbours.built_at);
@@ -318,14 +350,16 @@ impl<X: Numbers> ParticleData<X> {
 
     /// The first field that is beyond its limit. A NaN fails every comparison.
     #[inline(always)]
-    fn excess(&self, evolved: &Evolved<X>, displacement2: f64) -> Option<&'static str> {
+    fn excess(&self, evolved: &Evolved<X>, displacement2: f64) -> Option<(&'static str, f64)> {
         let ([least, most], speed2) = (self.limits.density, evolved.velocity.norm_squared());
         // The square of the limit may be infinite.
         let speed_limit2 = self.limits.speed * self.limits.speed;
         match evolved.density {
-            _ if !(displacement2 <= self.reach2) => Some("position"),
-            _ if !(speed2 <= speed_limit2 && speed2.is_finite()) => Some("velocity"),
-            density if !(density > least && density < most) => Some("density"),
+            _ if !(displacement2 <= self.reach2) => Some(("position", evolved.position.norm())),
+            _ if !(speed2 <= speed_limit2 && speed2.is_finite()) => {
+                Some(("velocity", evolved.velocity.norm()))
+            }
+            density if !(density > least && density < most) => Some(("density", density)),
             _ => None,
         }
     }

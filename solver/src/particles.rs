@@ -112,13 +112,15 @@ impl<X: Numbers> Evolved<X> {
         self
     }
 
-    /// The first field that no simulation may reach: not finite, or a density not above 0.
-    pub(crate) fn fault(&self) -> Option<&'static str> {
-        match self {
-            Self { position, .. } if !position.is_finite() => Some("position"),
-            Self { velocity, .. } if !velocity.is_finite() => Some("velocity"),
-            Self { density, .. } if !(density.is_finite() && *density > 0.0) => Some("density"),
-            Self { extra, .. } if !extra.is_finite() => Some("extra"),
+    /// The first field that no simulation may reach, and its value or length: not finite, or a density not
+    /// above 0.
+    pub(crate) fn fault(&self) -> Option<(&'static str, f64)> {
+        let Self { position, velocity, density, extra } = self;
+        match *density {
+            _ if !position.is_finite() => Some(("position", position.norm())),
+            _ if !velocity.is_finite() => Some(("velocity", velocity.norm())),
+            density if !(density.is_finite() && density > 0.0) => Some(("density", density)),
+            _ if !extra.is_finite() => Some(("extra", f64::NAN)),
             _ => None,
         }
     }

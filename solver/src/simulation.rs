@@ -5,8 +5,7 @@ use std::{mem::take, ops::Deref};
 use crate::{
     engine::Engine,
     integrator::{Integrator, PhysicsOf, Scheme},
-    kernel::Smoothing,
-    particle_data::{Checkpoint, Fault, ParticleData},
+    particle_data::{Checkpoint, Fault, ParticleData, PhaseWatch},
     particles::{Column, Rate},
     physics::Derived,
     terms::Term,
@@ -45,7 +44,7 @@ pub enum Flow {
     Stop,
 }
 
-/// Observes a run. `()` is an observer that does nothing, and a pair of observers is an observer too.
+/// Observes a run. `()` is an observer that does nothing.
 pub trait Observer<X> {
     /// Called after every step.
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow;
@@ -57,24 +56,20 @@ impl<X> Observer<X> for () {
     }
 }
 
-impl<X, A: Observer<X>, B: Observer<X>> Observer<X> for (A, B) {
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        let flows = [self.0.after_step(simulation), self.1.after_step(simulation)];
-        if flows.contains(&Flow::Stop) { Flow::Stop } else { Flow::Continue }
-    }
-}
-
-impl<X, O: Observer<X> + ?Sized> Observer<X> for &mut O {
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        (**self).after_step(simulation)
-    }
-}
-
 /// A simulation without the type of its scheme, as a harness uses it: `&dyn Stepper<X>` is any simulation
 /// whose particles integrate the extra fields `X`. It dereferences to [`ParticleData`], which gives time,
 /// work and particles.
 pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
-    /// Steps to the time `until` \[s\], see [`Simulation::advance`].
+    /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then brings every
+    /// quantity to that time.
+    ///
+    /// The time is computed from the start and the number of steps, so rounding errors do not accumulate.
+    /// After a stop, a call with the same two arguments makes the steps that the stop left undone, with the
+    /// bits of a run that was not stopped.
+    ///
+    /// # Panics
+    /// If `until` is earlier than the present time or not finite, or if `dt_max` is not above 0 or is so
+    /// small that the number of steps is 10¹⁵ or more: the run would never end.
     fn advance(&mut self, until: f64, dt_max: f64, observer: &mut dyn Observer<X>) -> Outcome;
     /// Everything that is needed to continue from here with bitwise equal results.
     fn checkpoint(&self) -> Checkpoint<X>;
@@ -98,11 +93,36 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     fn wall_rates(&self) -> Vec<Rate<X>>;
     /// Memory that the simulation occupies \[bytes\].
     fn bytes(&self) -> usize;
+    /// Tells this watch of the phases of steps from now on; `None` tells nobody.
+    fn watch(&mut self, watch: Option<PhaseWatch>);
 }
 
 impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn advance(&mut self, until: f64, dt: f64, observer: &mut dyn Observer<S::Extra>) -> Outcome {
-        self.advance(until, dt, observer)
+        let now = &mut self.engine.data.progress;
+        if now.call[1..] != [until, dt] {
+            (now.call, now.made) = ([now.time, until, dt], 0);
+        }
+        let (start, made) = (now.call[0], now.made);
+        let (span, steps) = (until - start, count_steps(start, until, dt));
+        now.dt = if steps > 0 { span / steps as f64 } else { now.dt };
+        let dt = now.dt;
+        for k in made + 1..=steps {
+            let mut state = take(&mut self.engine.data.state);
+            let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
+            self.engine.data.state = state;
+            if let Err(fault) = stepped {
+                return self.diverged(fault);
+            }
+            let now = &mut self.engine.data.progress;
+            now.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
+            (now.made, now.work.steps) = (k, now.work.steps + 1);
+            if observer.after_step(self) == Flow::Stop {
+                return Outcome::Stopped;
+            }
+        }
+        self.engine.data.progress.call = [0.0; 3];
+        self.synchronise()
     }
     fn checkpoint(&self) -> Checkpoint<S::Extra> {
         self.engine.data.checkpoint(self.integrator.lag())
@@ -129,6 +149,9 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     }
     fn bytes(&self) -> usize {
         self.engine.bytes() + self.integrator.bytes()
+    }
+    fn watch(&mut self, watch: Option<PhaseWatch>) {
+        self.engine.data.watch = watch;
     }
 }
 
@@ -157,48 +180,6 @@ fn count_steps(start: f64, until: f64, dt_max: f64) -> u64 {
 }
 
 impl<S: Scheme> Simulation<S> {
-    /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then brings every
-    /// quantity to that time.
-    ///
-    /// The time is computed from the start and the number of steps, so rounding errors do not accumulate.
-    /// After a stop, a call with the same two arguments makes the steps that the stop left undone, with the
-    /// bits of a run that was not stopped.
-    ///
-    /// # Panics
-    /// If `until` is earlier than the present time or not finite, or if `dt_max` is not above 0 or is so
-    /// small that the number of steps is 10¹⁵ or more: the run would never end.
-    pub fn advance(
-        &mut self,
-        until: f64,
-        dt_max: f64,
-        observer: &mut dyn Observer<S::Extra>,
-    ) -> Outcome {
-        let now = &mut self.engine.data.progress;
-        if now.call[1..] != [until, dt_max] {
-            (now.call, now.made) = ([now.time, until, dt_max], 0);
-        }
-        let (start, made) = (now.call[0], now.made);
-        let (span, steps) = (until - start, count_steps(start, until, dt_max));
-        now.dt = if steps > 0 { span / steps as f64 } else { now.dt };
-        let dt = now.dt;
-        for k in made + 1..=steps {
-            let mut state = take(&mut self.engine.data.state);
-            let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
-            self.engine.data.state = state;
-            if let Err(fault) = stepped {
-                return self.diverged(fault);
-            }
-            let now = &mut self.engine.data.progress;
-            now.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
-            (now.made, now.work.steps) = (k, now.work.steps + 1);
-            if observer.after_step(self) == Flow::Stop {
-                return Outcome::Stopped;
-            }
-        }
-        self.engine.data.progress.call = [0.0; 3];
-        self.synchronise()
-    }
-
     /// Brings every quantity to the same time, and refreshes the derived data.
     fn synchronise(&mut self) -> Outcome {
         let Self { engine, integrator } = self;
@@ -213,19 +194,14 @@ impl<S: Scheme> Simulation<S> {
         Outcome::Diverged(Divergence { step: self.work().steps, time: self.time(), fault })
     }
 
-    /// The kernel with its smoothing length.
-    pub fn kernel(&self) -> &Smoothing<S::Kernel> {
-        &self.engine.kernel
-    }
-
-    /// The forces and the drift, which may be changed between two calls of [`Simulation::advance`], for
+    /// The forces and the drift, which may be changed between two calls of [`Stepper::advance`], for
     /// example a body force that drives the flow. They are not part of a checkpoint.
     pub fn terms_mut(&mut self) -> &mut (S::Forces, S::Drift) {
         &mut self.engine.terms
     }
 
     /// Rates of each particle of [`ParticleData::fluid`] by the given terms alone, after
-    /// [`Simulation::advance`] reached a time. The terms may belong to the scene or not. dx/dt does not
+    /// [`Stepper::advance`] reached a time. The terms may belong to the scene or not. dx/dt does not
     /// include v. A program that never calls this function contains none of its code.
     ///
     /// Terms that depend on the largest speed use the value that [`Term::prepare`] received last.
@@ -234,7 +210,7 @@ impl<S: Scheme> Simulation<S> {
     }
 
     /// The derived data of particles and of their images, as pair sweeps read them, after
-    /// [`Simulation::advance`].
+    /// [`Stepper::advance`].
     pub fn columns(&self) -> &[Column<Derived<S>>] {
         self.engine.columns()
     }

@@ -9,7 +9,7 @@ use std::any::TypeId;
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, Integrator, InterfaceWall, Leapfrog,
-    Open, Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, Tait,
+    Open, Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, Stepper, Tait,
     integrator::PhysicsOf, lattice, walls::Walls,
 };
 

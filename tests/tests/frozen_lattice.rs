@@ -22,7 +22,7 @@ use nalgebra::DVector;
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, Integrator as _,
     InterfaceWall, Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline,
-    Simulation, Tait, WendlandC2, walls::Walls,
+    Simulation, Stepper, Tait, WendlandC2, walls::Walls,
 };
 
 /// A channel flow in the kernel K, the walls W and the integrator I, and no stabiliser.
@@ -91,7 +91,7 @@ fn stepped(model: &RowModel, by: Integrator, u: &mut DVector<f64>, dt: f64, step
     }
 }
 
-/// Steps and their length, as `Simulation::advance` divides a span.
+/// Steps and their length, as `Stepper::advance` divides a span.
 fn division(span: f64, dt_max: f64) -> (usize, f64) {
     let steps = (span / dt_max * (1.0 - 1e-12)).ceil();
     (steps as usize, span / steps)

@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, Domain, Ghosts, Integrator, Leapfrog, Open, Outcome,
-    Particle, PlaneWall, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, Tait,
-    Viscosity, lattice,
+    Particle, PlaneWall, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, Stepper,
+    Tait, Viscosity, lattice,
 };
 use touchstone_tests::{Random, V2, bits, difference, patch};
 

@@ -47,7 +47,7 @@ fn channel<I: Integrator<()>>() -> Scene<Method<I, ExtrapolatingWall<Tait, NoSli
             rows.map(|x| Particle::fluid(x, Vector2::zeros(), 1.0, dx * dx).with_role(Role::Wall)),
         );
     }
-    let walls = ExtrapolatingWall::no_slip(Tait::new(1.0, 1.0), Vector2::new(0.1, 0.0));
+    let walls = ExtrapolatingWall::new(Tait::new(1.0, 1.0), Vector2::new(0.1, 0.0));
     scene_of(Domain::channel(1.0), particles, walls)
 }
 

@@ -218,6 +218,20 @@ fn the_solver_stays_within_its_budget() {
     assert!(lines <= SOLVER_LINES, "the solver has {lines} lines, allowed are {SOLVER_LINES}");
 }
 
+/// A profile costs nothing unless it is asked for: clocks are in the harness, which the solver tells of phases
+/// if it is asked to.
+#[test]
+fn the_solver_reads_no_clock() {
+    let mut found = Vec::new();
+    for (path, source) in sources(&["solver/src"]) {
+        let lines = without_tests(&source);
+        let clocks =
+            lines.iter().filter(|line| line.contains("Instant") || line.contains("time::"));
+        found.extend(clocks.map(|line| format!("{path}: {}", line.trim())));
+    }
+    assert_none("no clock in the solver", found);
+}
+
 #[test]
 fn lines_are_short_and_carry_no_banned_word() {
     let mut found = Vec::new();

@@ -5,8 +5,9 @@ use base::functions::powf;
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, EquationOfState, ExtrapolatingWall,
-    Kernel, Leapfrog, Outcome, Particle, Pressure, QuinticSpline, Role, Scene, Smoothing, Tait,
-    WendlandC2, walls::WallVelocity,
+    Kernel, Leapfrog, Outcome, Particle, Pressure, QuinticSpline, Role, Scene, Smoothing, Stepper,
+    Tait, WendlandC2,
+    walls::{NoSlip, WallVelocity},
 };
 use touchstone_tests::{Random, V2, open_rates, relative_sum};
 
@@ -91,12 +92,12 @@ fn check<K: Kernel>() {
     let all = scene();
     let (fluid, walls): (Vec<Particle>, Vec<Particle>) =
         all.iter().partition(|p| p.role == Role::Fluid);
-    let sticky = shown::<K, _>(&all, ExtrapolatingWall::no_slip(water(), GRAVITY));
-    let smooth = shown::<K, _>(&all, ExtrapolatingWall::new(water(), GRAVITY));
+    let sticky = shown::<K, NoSlip>(&all, ExtrapolatingWall::new(water(), GRAVITY));
+    let smooth = shown::<K, ()>(&all, ExtrapolatingWall::new(water(), GRAVITY));
     let pressures: Vec<f64> =
         walls.iter().filter_map(|w| Some(formula::<K>(w, &fluid)?.0)).collect();
     let floor = pressures.iter().fold(0.0, |sum, p| sum + p) / pressures.len() as f64;
-    let clipped = shown::<K, _>(&all, ExtrapolatingWall::new(water(), GRAVITY).not_below(floor));
+    let clipped = shown::<K, ()>(&all, ExtrapolatingWall::new(water(), GRAVITY).not_below(floor));
     let (mut below, mut alone) = (0, 0);
     for (k, wall) in walls.iter().enumerate() {
         let k = fluid.len() + k;
@@ -156,7 +157,7 @@ fn a_hydrostatic_pressure_goes_on_behind_the_wall() {
     for p in &mut particles {
         p.density = eos.density(pressure(p.position));
     }
-    let shown = shown::<WendlandC2, _>(&particles, ExtrapolatingWall::new(eos, gravity));
+    let shown = shown::<WendlandC2, ()>(&particles, ExtrapolatingWall::new(eos, gravity));
     let walls = particles.iter().zip(&shown).filter(|(p, _)| p.role == Role::Wall);
     for (wall, seen) in walls {
         let (found, expected) = (eos.pressure(seen.density), pressure(wall.position));

@@ -300,8 +300,8 @@ const SHORT: [&str; 17] = [
     "resting_box",
 ];
 
-/// Of each case there are as many frames as asked for, at equal intervals and with all fields, and what is
-/// left of each run is what it is without them.
+/// Of each case there are as many frames as asked for, at equal intervals and with all fields, and a profile
+/// whose parts add up; what is left of each run is what it is without them.
 #[test]
 fn watching_does_not_change_a_run() {
     let names: Vec<&str> = SHORT.iter().filter_map(|run| run.split(' ').next()).collect();
@@ -311,11 +311,24 @@ fn watching_does_not_change_a_run() {
         let folder = tempfile::tempdir().unwrap();
         let arguments: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
         let unwatched = record_of(folder.path(), &[&arguments[..], &["--json"]].concat());
-        let watch = ["--json", "--vtk", "4", "--out", "here"];
+        let watch = ["--json", "--profile", "--vtk", "4", "--out", "here"];
         let watched = record_of(folder.path(), &[&arguments[..], &watch].concat());
         assert!(watched.cost.steps > 10, "{run}");
         assert_eq!(watched.state, unwatched.state, "{run}");
-        assert_eq!(watched.cost.steps, unwatched.cost.steps, "{run}");
+        let work = |Cost { steps, pair_interactions, particle_rhs, .. }: &Cost| {
+            [*steps, *pair_interactions, *particle_rhs]
+        };
+        assert_eq!(work(&watched.cost), work(&unwatched.cost), "{run}");
+        assert_eq!(unwatched.cost.breakdown, None, "{run}");
+        let breakdown = watched.cost.breakdown.as_ref().expect("a profile");
+        let [stepping, observing] = breakdown.totals();
+        for (parts, whole) in
+            [(stepping, watched.cost.wall_s), (observing, watched.cost.observing_s)]
+        {
+            assert!((parts - whole).abs() < 0.05 * whole + 1e-3, "{run}: {parts} s of {whole} s");
+        }
+        assert_eq!(breakdown.steps, watched.cost.steps, "{run}");
+        assert!(breakdown.observing.iter().any(|part| part.name == "frames"), "{run}");
         let metrics = |of: &Record| format!("{:?}", of.metrics); // some may be NaN
         assert_eq!(metrics(&watched), metrics(&unwatched), "{run}");
         let read = |name: &str| fs::read_to_string(folder.path().join("here").join(name)).unwrap();

@@ -37,21 +37,12 @@ pub struct ExtrapolatingWall<E, U = ()> {
     pub velocity: U,
 }
 
-impl<E> ExtrapolatingWall<E> {
-    /// A wall whose particles keep their velocity, under g − a_w \[m/s²\].
+impl<E, U: Default> ExtrapolatingWall<E, U> {
+    /// A wall under g − a_w \[m/s²\].
     pub fn new(eos: E, acceleration: Vector2<f64>) -> Self {
-        Self { eos, acceleration, least_pressure: f64::NEG_INFINITY, velocity: () }
+        Self { eos, acceleration, least_pressure: f64::NEG_INFINITY, velocity: U::default() }
     }
-}
 
-impl<E> ExtrapolatingWall<E, NoSlip> {
-    /// A wall that the fluid sticks to, under g − a_w \[m/s²\].
-    pub fn no_slip(eos: E, acceleration: Vector2<f64>) -> Self {
-        Self { eos, acceleration, least_pressure: f64::NEG_INFINITY, velocity: NoSlip }
-    }
-}
-
-impl<E, U> ExtrapolatingWall<E, U> {
     /// The same wall with pressures not below this \[Pa\].
     pub fn not_below(self, least_pressure: f64) -> Self {
         Self { least_pressure, ..self }

@@ -83,8 +83,8 @@ impl<X, const SLIPS: bool> Walls<X> for Mirrors<SLIPS> {
 mod tests {
     use super::*;
     use crate::{
-        Compose, Continuity, Domain, EquationOfState, Leapfrog, Particle, Pressure, Scene, Tait,
-        Term, Viscosity, WendlandC2,
+        Compose, Continuity, Domain, EquationOfState, Leapfrog, Particle, Pressure, Scene, Stepper,
+        Tait, Term, Viscosity, WendlandC2,
     };
 
     type Method<W> = Compose<WendlandC2, Pressure<Tait>, Continuity, W, Leapfrog>;

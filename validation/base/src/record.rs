@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use thiserror::Error;
 
+use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
 use crate::mutation::Mutation;
 use crate::reference::sha256;
@@ -298,6 +299,9 @@ pub struct Cost {
     /// how often the run went on from a checkpoint; the times are then those of its parts together
     #[serde(default, skip_serializing_if = "is_default")]
     pub resumed: u32,
+    /// where the time went, if this was asked for
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub breakdown: Option<Breakdown>,
 }
 
 impl Cost {

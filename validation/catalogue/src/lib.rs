@@ -9,3 +9,4 @@ pub mod cases;
 mod limitations;
 pub mod margins;
 pub mod page;
+mod time;

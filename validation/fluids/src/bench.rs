@@ -10,21 +10,9 @@ use std::time::Instant;
 
 use nalgebra::Vector2;
 use solver::{
-    BodyForce, Compose, Continuity, CubicSpline, Domain, Engine, Euler, Evolved, Fault, Ghosts,
-    Integrator, Leapfrog, Open, Outcome, Particle, Physics, PredictorCorrector, Pressure,
-    QuinticSpline, Scene, SceneError, Scheme, Simulation, Stepper, Tait, Viscosity, lattice,
-};
-
-use crate::{
-    channel::{self, ChannelSettings, Drive, Flow, Setup, Stabilised},
-    couette::COUETTE,
-    poiseuille::POISEUILLE,
-};
-use harness::{
-    case::RunError,
-    checkpoint::CheckpointError,
-    context::Context,
-    method::{self, Boundary, FromMedium, Method, Standard},
+    Compose, Continuity, CubicSpline, Domain, Engine, Euler, Evolved, Fault, Integrator, Open,
+    Outcome, Particle, Physics, Pressure, Scene, SceneError, Scheme, Simulation, Stepper, Tait,
+    Viscosity, lattice,
 };
 
 /// The scheme whose right-hand side is measured.
@@ -83,53 +71,6 @@ impl Integrator<()> for Rebuilding {
     }
 }
 
-/// The sweeps of the integrator `I` and nothing else: no refresh, no lists, no time.
-#[derive(Debug, Default)]
-pub struct Bare<I> {
-    is_begun: bool,
-    of: std::marker::PhantomData<I>,
-}
-
-impl<I: Sweeping> Integrator<()> for Bare<I> {
-    const NAME: &'static str = "bare sweeps";
-    const ORDER: [u32; 2] = [0, 0];
-
-    fn step<P: Physics<Extra = ()>>(
-        &mut self,
-        engine: &mut Engine<P>,
-        state: &mut [Evolved<()>],
-        _dt: f64,
-    ) -> Result<(), Fault> {
-        if !self.is_begun {
-            engine.begin(state)?;
-            self.is_begun = true;
-        }
-        I::sweep(engine, state);
-        Ok(())
-    }
-}
-
-/// An integrator whose sweeps can be done without the rest of its step.
-pub trait Sweeping: Integrator<()> {
-    /// The sweeps of one step, with updates over no time.
-    fn sweep<P: Physics<Extra = ()>>(engine: &mut Engine<P>, state: &mut [Evolved<()>]);
-}
-
-impl Sweeping for PredictorCorrector {
-    fn sweep<P: Physics<Extra = ()>>(engine: &mut Engine<P>, state: &mut [Evolved<()>]) {
-        for _ in 0..2 {
-            engine.sweep_all(state, |_, evolved, rate| *evolved = evolved.advanced(0.0, rate));
-        }
-    }
-}
-
-impl Sweeping for Leapfrog {
-    fn sweep<P: Physics<Extra = ()>>(engine: &mut Engine<P>, state: &mut [Evolved<()>]) {
-        engine.sweep_forces(state, |_, evolved, rate| evolved.kick(0.0, rate));
-        engine.sweep_drift(state, |_, evolved, rate| evolved.drift(0.0, rate));
-    }
-}
-
 /// Seconds a step of the next so many; NaN if they are not made to the end, for steps that are not made take
 /// no time.
 fn batch<S: Scheme>(simulation: &mut Simulation<S>, dt: f64, steps: u64) -> f64 {
@@ -182,109 +123,9 @@ pub fn speed(side: usize, parallel: bool, budget: f64) -> Result<Speed, SceneErr
     Ok(Speed { particles, rate, neighbours, bytes, list_rate })
 }
 
-/// Where the time of a channel run goes: of [`PAIRS`] the pair with the median share.
-#[derive(Clone, Copy, Debug)]
-pub struct Share {
-    /// A whole step \[s\].
-    pub step: f64,
-    /// The pair sweeps of a step alone \[s\].
-    pub sweeps: f64,
-}
-
-impl Share {
-    /// Share of the pair sweeps in a step.
-    pub fn of_sweeps(&self) -> f64 {
-        self.sweeps / self.step
-    }
-}
-
-type Seed<B, I> = Compose<CubicSpline, channel::Fluid<B>, Continuity, Ghosts, I>;
-type Modern<B, I> = Compose<QuinticSpline, channel::Fluid<B>, Stabilised, Ghosts, I>;
-
-/// Batches of whole steps, each followed by as many bare sweeps, so that what slows the machine for a
-/// while slows both.
-pub const PAIRS: usize = 21;
-
-/// When the flow of a profiled run is at work, and for how long at most it is timed \[L²/ν\].
-const START: f64 = 0.1;
-const LONGEST: f64 = 0.2;
-
-/// Of each variant.
-pub type Shares = [(&'static str, Share); 2];
-
-/// Of the flow that a plate drives. Not generic: its schemes are those of the variants, compiled in this
-/// crate.
-pub fn shares_of_couette(rows: usize, budget: f64) -> Result<Shares, RunError> {
-    shares::<()>(Flow::Couette, rows, budget)
-}
-
-/// Of the flow that a body force drives.
-pub fn shares_of_poiseuille(rows: usize, budget: f64) -> Result<Shares, RunError> {
-    shares::<BodyForce>(Flow::Poiseuille, rows, budget)
-}
-
-/// Times whole steps of the variants `seed` and `modern` of a channel flow driven by `B`, and as
-/// many bare sweeps in turn, at so many rows, for about `budget` seconds each.
-fn shares<B: Drive>(flow: Flow, rows: usize, budget: f64) -> Result<Shares, RunError> {
-    let case = if flow == Flow::Couette { &COUETTE } else { &POISEUILLE };
-    let settings = |variant: &str| case.settings_of(variant, &[format!("rows={rows}")]);
-    let seed = share::<Seed<B, PredictorCorrector>, Seed<B, Bare<PredictorCorrector>>>(
-        flow,
-        &settings("seed")?,
-        budget,
-    )?;
-    let modern = share::<Modern<B, Leapfrog>, Modern<B, Bare<Leapfrog>>>(
-        flow,
-        &settings("modern")?,
-        budget,
-    )?;
-    Ok([("seed", seed), ("modern", modern)])
-}
-
-fn share<S, Sweeps>(flow: Flow, settings: &ChannelSettings, budget: f64) -> Result<Share, RunError>
-where
-    S: Standard<Extra = ()>,
-    Sweeps: Scheme<Extra = (), Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
-{
-    let (method, context) = (Method::of::<S>(), Context::default());
-    let setup = Setup::new(flow, settings, &method, &context)?;
-    let scene = || method::scene::<S>(setup.parts(&method, &context));
-    let mut whole = scene().build()?;
-    let mut bare = method::scene::<Sweeps>(setup.parts(&method, &context)).build()?;
-    // The flow at work, not the lattice at rest, and each time the same: later, some flows diverge.
-    let _ = whole.advance(setup.time(START), setup.dt, &mut ());
-    let start = whole.checkpoint();
-    let mut pair = |steps| -> Result<Share, RunError> {
-        let mut whole = scene().build()?;
-        whole.restore(&start).map_err(CheckpointError::State)?;
-        let (step, sweeps) =
-            (batch(&mut whole, setup.dt, steps), batch(&mut bare, setup.dt, steps));
-        Ok(Share { step, sweeps })
-    };
-    let most = (setup.time(LONGEST) / setup.dt) as u64;
-    let steps = steps_in(budget / PAIRS as f64, pair(100)?.step).min(most);
-    let mut pairs = (0..PAIRS).map(|_| pair(steps)).collect::<Result<Vec<Share>, _>>()?;
-    pairs.sort_by(|a, b| a.of_sweeps().total_cmp(&b.of_sweeps()));
-    Ok(pairs[PAIRS / 2])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The flow had diverged before it was timed: 0.00167 µs a step, of which the sweeps were 683,496 %.
-    #[test]
-    fn a_step_takes_longer_than_its_sweeps() {
-        for shares in [shares_of_couette(10, 0.2), shares_of_poiseuille(10, 0.2)] {
-            for (variant, share) in shares.expect("a sound flow") {
-                let of_sweeps = share.of_sweeps();
-                assert!(
-                    share.step > 1e-7 && (0.05..1.2).contains(&of_sweeps),
-                    "{variant}: {share:?}"
-                );
-            }
-        }
-    }
 
     #[test]
     fn steps_that_are_not_made_have_no_time() {

@@ -43,6 +43,8 @@ pub struct Context<'a> {
     pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
     /// Called with the progress of the run.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
+    /// Find out where the time goes.
+    pub profile: bool,
     /// Where checkpoints go, and what the run goes on from; the last one is made at an interrupt.
     pub checkpoints: Option<&'a Checkpoints<'a>>,
     /// Set by another thread to stop the run.

@@ -25,6 +25,7 @@ pub mod notes;
 pub mod pictures;
 pub mod plan;
 pub mod planned;
+pub mod profile;
 pub mod rules;
 pub mod runner;
 pub mod runs;

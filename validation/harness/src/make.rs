@@ -325,7 +325,8 @@ impl Batch<'_> {
         Some(record)
     }
 
-    fn run(&self, job: &Job) -> Result<Record, RunError> {
+    /// Makes a run, and finds out where its time goes if it is to be profiled.
+    fn run(&self, job: &Job, profile: bool) -> Result<Record, RunError> {
         let (interrupt, spec, start) = (self.making.interrupt, &job.planned.spec, Instant::now());
         let (case, expected) = (job.case.name(), expected(job, self.making));
         let show = |progress: context::Progress| {
@@ -336,7 +337,8 @@ impl Batch<'_> {
         let progress: Option<&(dyn Fn(context::Progress) + Sync)> =
             if spec.task == Task::Simulate { Some(&show) } else { None };
         let allow_long = self.making.allow_long;
-        let context = Context { threads: 1, allow_long, interrupt, progress, ..Context::default() };
+        let context =
+            Context { threads: 1, allow_long, profile, interrupt, progress, ..Context::default() };
         let mut record = run(job.case, &job.planned.spec, &context)?;
         record.manifest.sources = (self.making.sources)(job.case.name());
         Ok(record)
@@ -353,7 +355,7 @@ fn side_by_side(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
                 break;
             }
             let start = Instant::now();
-            mine.extend(batch.done(job, batch.run(job)?, start));
+            mine.extend(batch.done(job, batch.run(job, false)?, start));
         }
         Ok(mine)
     };
@@ -370,7 +372,7 @@ fn side_by_side(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
     Ok(made.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
-/// One run at a time; cheap ones again in further rounds. A record is kept as soon as it is there, and
+/// One run at a time, the first of each profiled; cheap ones again in further rounds. A record is kept as soon as it is there, and
 /// again with the timings of a later round.
 fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
     let again_below = timed_again_below(batch.making.tier);
@@ -380,14 +382,14 @@ fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
             return Ok(records);
         }
         let start = Instant::now();
-        let mut record = batch.run(job)?;
+        let mut record = batch.run(job, true)?;
         record.cost.alone_s = vec![record.cost.cpu_s];
         records.extend(batch.done(job, record, start));
     }
     for _ in 1..REPETITIONS {
         for (job, record) in jobs.iter().zip(&mut records) {
             if !batch.is_interrupted() && record.cost.alone_s[0] < again_below {
-                let again = batch.run(job)?;
+                let again = batch.run(job, false)?;
                 if !matches!(again.status, Status::Interrupted { .. }) {
                     record.cost.alone_s.push(again.cost.cpu_s);
                 }

@@ -4,6 +4,7 @@
 use std::sync::{PoisonError, atomic::Ordering};
 use std::time::{Duration, Instant};
 
+use base::breakdown::Breakdown;
 use base::mutation::Constant;
 use base::record::{Cost, Status};
 use cpu_time::{ProcessTime, ThreadTime};
@@ -14,6 +15,7 @@ use crate::{
     checkpoint::{self, CheckpointError, Checkpoints, Observed, Stage},
     error::RunError,
     frames::{self, Frames},
+    profile::{self, Profiler},
     size::Size,
 };
 
@@ -24,6 +26,8 @@ const SHOW_EVERY: Duration = Duration::from_millis(200);
 type AfterStep<'a, X, S> = &'a dyn Fn(&mut S, &dyn Stepper<X>) -> Flow;
 /// A function that is called at the k-th of the times of interest.
 type At<'a, D, S> = &'a dyn Fn(&mut S, &mut D, usize);
+/// Functions by the names that a profile gives them, in the order in which they are called.
+type Named<F> = Vec<(&'static str, F)>;
 /// A function that is called when a run goes on from a checkpoint.
 type Resumed<'a, D, S> = &'a dyn Fn(&S, &mut D);
 
@@ -53,8 +57,9 @@ struct Watch<'a, X, S> {
     shown: Instant,
     saved: Instant,
     seen: &'a mut S,
-    after_step: AfterStep<'a, X, S>,
+    after_step: Named<AfterStep<'a, X, S>>,
     frames: Option<Frames<'a>>,
+    profiler: Option<Profiler>,
     /// Until the clocks were started.
     cost: Cost,
     clocks: Clocks,
@@ -92,6 +97,18 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         cost
     }
 
+    /// An observer of this name begins.
+    fn profile(&self, name: &str) {
+        if let Some(profiler) = &self.profiler {
+            profiler.observe(name);
+        }
+    }
+
+    /// Where the time went until now, if anyone wants to know.
+    fn breakdown(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Option<Breakdown> {
+        self.profiler.as_ref().map(|profiler| profiler.breakdown(simulation))
+    }
+
     /// The run as bytes, after a step or at its end.
     fn save(
         &self,
@@ -106,15 +123,24 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
 
     /// What the case observes, and what of it is written.
     fn observe(&mut self, simulation: &dyn Stepper<X>) -> Result<Flow, RunError> {
-        let flow = (self.after_step)(self.seen, simulation);
+        let mut flow = Flow::Continue;
+        for (name, after_step) in &self.after_step {
+            self.profile(name);
+            if after_step(self.seen, simulation) == Flow::Stop {
+                flow = Flow::Stop;
+            }
+        }
         if let Some(frames) = &mut self.frames {
+            self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
             frames.after_step(simulation)?;
         }
         // A run that ends here by itself has nothing to go on with.
         if let (Some(checkpoints), Flow::Continue) = (self.context.checkpoints, flow)
             && (self.saved.elapsed() >= checkpoints.every || self.is_interrupted())
         {
-            let bytes = self.save(simulation, self.cost(simulation), None)?;
+            self.profile(profile::CHECKPOINTS);
+            let cost = Cost { breakdown: self.breakdown(simulation), ..self.cost(simulation) };
+            let bytes = self.save(simulation, cost, None)?;
             checkpoints.write(bytes, self.is_interrupted())?;
             self.saved = Instant::now();
         }
@@ -127,8 +153,13 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         D: Stepper<X> + ?Sized,
     {
         self.clocks = Clocks::start(simulation.work().steps);
+        self.profiler.iter().for_each(Profiler::step);
         let outcome = simulation.advance(until, dt, self);
+        self.profiler.iter().for_each(Profiler::pause);
         self.cost = self.cost(simulation);
+        if let Some(profiler) = &mut self.profiler {
+            profiler.sample(simulation);
+        }
         match outcome {
             Outcome::Reached => None,
             Outcome::Diverged(divergence) => Some(Status::Diverged {
@@ -143,6 +174,33 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
                 Some(Status::Interrupted { step, time })
             }
         }
+    }
+
+    /// Steps through the times that are left, and observes each; how the run ended.
+    fn step_through<D>(
+        &mut self,
+        simulation: &mut D,
+        times: &[f64],
+        dt: f64,
+        at: &Named<At<D, S>>,
+    ) -> Status
+    where
+        D: Stepper<X> + ?Sized,
+    {
+        while let Some(&until) = times.get(self.reached) {
+            if let Some(ended) = self.step_to(simulation, until, dt) {
+                return ended;
+            }
+            let start = Instant::now();
+            for (name, at) in at {
+                self.profile(name);
+                at(self.seen, simulation, self.reached);
+            }
+            self.profiler.iter().for_each(Profiler::pause);
+            self.cost.observing_s += start.elapsed().as_secs_f64();
+            self.reached += 1;
+        }
+        Status::Completed
     }
 
     /// Goes on from a checkpoint; how the simulation ended, if it did.
@@ -175,6 +233,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
             particle_rhs: work.right_hand_sides,
             particles: simulation.fluid_count(),
             solver_bytes: simulation.bytes() as u64,
+            breakdown: self.breakdown(simulation),
             ..self.cost.clone()
         }
     }
@@ -189,6 +248,7 @@ impl<X: Numbers, S: Observed> Observer<X> for Watch<'_, X, S> {
         let start = Instant::now();
         let observed = self.observe(simulation);
         self.clocks.observing += start.elapsed().as_secs_f64();
+        self.profiler.iter().for_each(Profiler::step);
         match observed {
             Ok(Flow::Continue) if !self.is_interrupted() => Flow::Continue,
             Ok(_) => Flow::Stop,
@@ -229,8 +289,8 @@ pub struct Drive<'a, X, D: ?Sized, S> {
     times: &'a [f64],
     pressure: &'a dyn Fn(f64) -> f64,
     seen: &'a mut S,
-    after_step: AfterStep<'a, X, S>,
-    at: At<'a, D, S>,
+    after_step: Named<AfterStep<'a, X, S>>,
+    at: Named<At<'a, D, S>>,
     resumed: Resumed<'a, D, S>,
 }
 
@@ -244,20 +304,21 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         pressure: &'a dyn Fn(f64) -> f64,
         seen: &'a mut S,
     ) -> Self {
-        let after_step: AfterStep<'a, X, S> = &|_, _| Flow::Continue;
-        let at: At<'a, D, S> = &|_, _, _| {};
+        let (after_step, at) = (Vec::new(), Vec::new());
         let resumed: Resumed<'a, D, S> = &|_, _| {};
         Self { simulation, dt, times, pressure, seen, after_step, at, resumed }
     }
 
-    /// Calls a function after every step.
-    pub fn after_step(self, after_step: AfterStep<'a, X, S>) -> Self {
-        Self { after_step, ..self }
+    /// Calls a function after every step, beside those named before; a profile shows its time by this name.
+    pub fn after_step(mut self, name: &'static str, after_step: AfterStep<'a, X, S>) -> Self {
+        self.after_step.push((name, after_step));
+        self
     }
 
-    /// Calls a function at each of the times, with its number.
-    pub fn at(self, at: At<'a, D, S>) -> Self {
-        Self { at, ..self }
+    /// Calls a function at each of the times, with its number, likewise.
+    pub fn at(mut self, name: &'static str, at: At<'a, D, S>) -> Self {
+        self.at.push((name, at));
+        self
     }
 
     /// Calls a function when a run goes on from a checkpoint: for what a case has changed of a simulation and
@@ -291,6 +352,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             seen,
             after_step,
             frames: frames.transpose()?,
+            profiler: None,
             cost: Cost { threads: context.threads.max(1), ..Cost::default() },
             clocks: Clocks::start(0),
             reached: 0,
@@ -301,21 +363,17 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             ended = watch.go_on(&bytes, simulation)?;
             resumed(watch.seen, simulation);
         }
+        if context.profile && ended.is_none() {
+            let after_step = watch.after_step.iter().map(|(name, _)| *name);
+            let names = after_step.chain(at.iter().map(|(name, _)| *name));
+            let earlier = watch.cost.breakdown.take().unwrap_or_default();
+            watch.profiler = Some(Profiler::new(simulation, names, earlier));
+        }
         watch.show(simulation, dt);
         let (status, cost) = match ended {
             Some(status) => (status, watch.cost.clone()),
             None => {
-                let mut status = Status::Completed;
-                while let Some(&until) = times.get(watch.reached) {
-                    if let Some(ended) = watch.step_to(simulation, until, dt) {
-                        status = ended;
-                        break;
-                    }
-                    let start = Instant::now();
-                    at(watch.seen, simulation, watch.reached);
-                    watch.cost.observing_s += start.elapsed().as_secs_f64();
-                    watch.reached += 1;
-                }
+                let status = watch.step_through(simulation, times, dt, &at);
                 if let Some(error) = watch.failed.take() {
                     return Err(error);
                 }
@@ -394,7 +452,7 @@ mod tests {
         let slow = Slow { each: Duration::ZERO, at: (3, set) };
         let (times, mut wave) = ([1000.0 * DT], wave());
         let (status, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
-            .after_step(&|_, simulation| slow.after_step(simulation))
+            .after_step("slow", &|_, simulation| slow.after_step(simulation))
             .run(&context)
             .unwrap();
         assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
@@ -411,7 +469,7 @@ mod tests {
             let slow = Slow { each: Duration::from_millis(25), at: (0, || ()) };
             let (times, mut wave) = ([10.0 * DT, 40.0 * DT], wave());
             Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
-                .after_step(&|_, simulation| slow.after_step(simulation))
+                .after_step("slow", &|_, simulation| slow.after_step(simulation))
                 .run(&context)
                 .unwrap();
             states.push((state(&wave.particles()), wave.work().steps));
@@ -421,5 +479,53 @@ mod tests {
         assert!(shown.len() >= 4, "in 40 steps of 25 ms: {shown:?}");
         assert_eq!(shown[0].1, 0.0, "before the first step, which may take long");
         assert!(shown.windows(2).all(|pair| pair[1].0 - pair[0].0 >= SHOW_EVERY), "{shown:?}");
+    }
+
+    /// One run of 400 steps with two observers after each and one at each of two times.
+    fn profiled(profile: bool) -> (String, solver::Work, Cost, usize) {
+        let slow = Slow { each: Duration::from_micros(200), at: (0, || ()) };
+        let (times, mut wave) = ([10.0 * DT, 400.0 * DT], wave());
+        let (_, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+            .after_step("slow", &|_, simulation| slow.after_step(simulation))
+            .after_step("quick", &|_, _| Flow::Continue)
+            .at("pause", &|_, _, _| std::thread::sleep(Duration::from_millis(20)))
+            .run(&Context { profile, ..Context::default() })
+            .unwrap();
+        (state(&wave.particles()), wave.work(), cost, wave.column_bytes)
+    }
+
+    #[test]
+    fn a_profile_adds_up_and_changes_nothing() {
+        let (plain, found) = (profiled(false), profiled(true));
+        assert_eq!((&plain.0, plain.1), (&found.0, found.1), "state and work");
+        assert_eq!(plain.2.breakdown, None);
+        let (cost, all) = (&found.2, found.2.breakdown.as_ref().unwrap());
+        let [stepping, observing] = all.totals();
+        assert!((stepping / cost.wall_s - 1.0).abs() < 0.05, "{stepping} s of {} s", cost.wall_s);
+        let share = observing / cost.observing_s;
+        assert!((share - 1.0).abs() < 0.05, "{observing} s of {} s", cost.observing_s);
+        let part = |name: &str| {
+            let mut parts = all.stepping.iter().chain(&all.observing);
+            parts.find(|part| part.name == name).unwrap()
+        };
+        // At each of the two times the leapfrog brings velocities up by a sum of forces.
+        let names = ["slow", "quick", "pause", profile::FORCES, profile::DRIFT];
+        assert_eq!(names.map(|name| part(name).times), [400, 400, 2, 402, 400]);
+        assert!(part("slow").seconds > 0.08 && part("pause").seconds > 0.04, "{all:?}");
+        assert!(part("quick").seconds < 0.1 * part("slow").seconds, "{all:?}");
+        let shares = [profile::FORCES, profile::DRIFT].map(|name| all.share(&[name]));
+        assert!(shares.iter().all(|share| (0.05..0.8).contains(share)), "{shares:?}");
+    }
+
+    #[test]
+    fn a_profile_counts_what_sweeps_go_through() {
+        let (_, work, cost, column_bytes) = profiled(true);
+        let all = cost.breakdown.unwrap();
+        // A lattice with h/dx = 1.3 and a support of 2.6 dx: 20 neighbours, and no more within the skin.
+        assert_eq!((all.neighbours, all.inside, all.padding), (20.0, 1.0, 0.0));
+        assert_eq!((all.steps, all.list_builds + 1), (400, work.list_builds));
+        let (lists, states) = (144 * 20 * 4, 144 * 40);
+        let a_sweep = (lists + 2 * column_bytes + 3 * states) as f64;
+        assert!((all.bytes_a_step / (802.0 / 400.0 * a_sweep) - 1.0).abs() < 1e-12, "{all:?}");
     }
 }

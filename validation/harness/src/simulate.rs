@@ -5,7 +5,8 @@ use base::{
     record::{Record, digest},
     settings::Settings,
 };
-use solver::{EquationOfState as _, Numbers, Particle, Stepper};
+use nalgebra::Vector2;
+use solver::{EquationOfState as _, Numbers, Particle, Role, Stepper};
 
 use crate::{
     context::Context,
@@ -101,6 +102,12 @@ pub fn simulate<X: Numbers>(
         Drive::new(&mut *simulation, dt, &[end], &pressure, &mut ()).run(context)?;
     record.state = Some(state(&simulation.particles()));
     Ok(simulation)
+}
+
+/// Total momentum of the fluid per unit depth \[kg/s\], summed in the order given.
+pub fn momentum<X>(particles: &[Particle<X>]) -> Vector2<f64> {
+    let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
+    fluid.fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass)
 }
 
 /// Digest of positions, velocities and densities, in the order of the scene.

@@ -20,6 +20,7 @@ use harness::{
     case::{Planned, Tier},
     composed::{self, Composed},
     declare::{Accuracy, Declaration, ErrorOf},
+    simulate,
 };
 use maths::{exact::impact::Impact, theory::lattice::SquareLattice};
 
@@ -279,7 +280,7 @@ impl Watch for Motion {
             false => self.pulse_metrics(record),
         }
         let after = Energy::of(simulation, &self.settings.material());
-        let momentum = simulation.momentum() - self.momentum;
+        let momentum = simulate::momentum(&simulation.particles()) - self.momentum;
         record.put(MOMENTUM_ERROR, momentum.norm() / self.total);
         record.put(ENERGY_CHANGE, after.total() / self.energy - 1.0);
         let columns = [

@@ -189,7 +189,7 @@ fn run(
     let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
     let (times, pressure) = ([dt * steps as f64], |density| RUBBER.eos().pressure(density));
     (record.status, record.cost) = Drive::new(&mut *simulation, dt, &times, &pressure, &mut watch)
-        .after_step(&Watch::after_step)
+        .after_step("projection", &Watch::after_step)
         .run(context)?;
     let error = if settings.rotation {
         let particles = simulation.particles();

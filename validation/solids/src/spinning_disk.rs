@@ -19,6 +19,7 @@ use harness::{
     composed::{self, Composed},
     declare::{Accuracy, Declaration, ErrorOf},
     runs::Runs,
+    simulate,
     study::Study,
 };
 use report::Cell;
@@ -202,7 +203,8 @@ impl Watch for History {
         let scale = 2.0 * material.shear * speed / self.settings.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
         record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
-        record.put(MOMENTUM_ERROR, simulation.momentum().norm() / (self.mass * speed));
+        let momentum = simulate::momentum(&simulation.particles()).norm();
+        record.put(MOMENTUM_ERROR, momentum / (self.mass * speed));
     }
 }
 

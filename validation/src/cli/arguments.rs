@@ -66,7 +66,7 @@ fn threads() -> clap::builder::RangedI64ValueParser<u16> {
 }
 
 /// The options of `run` that apply to a single run and are refused with `--specs`.
-const OF_ONE_RUN: [&str; 12] = [
+const OF_ONE_RUN: [&str; 13] = [
     "case",
     "variant",
     "set",
@@ -76,6 +76,7 @@ const OF_ONE_RUN: [&str; 12] = [
     "vtk",
     "json",
     "all",
+    "profile",
     "allow_unstable",
     "checkpoint_every",
     "resume",
@@ -116,6 +117,10 @@ pub struct Run {
     /// Print every gate, not only those that did not pass
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
+    /// Also find out where the time goes: seconds and share of each part of a step and of each observer,
+    /// neighbours visited, bytes moved; with --json it is the part `cost.breakdown` of the record
+    #[arg(long)]
+    pub profile: bool,
     /// Number of threads inside the run, 1 to 1024, used from 10,000 particles on; with --specs, number
     /// of runs made in parallel. The default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]

@@ -5,12 +5,13 @@ use std::time::Instant;
 use ::report;
 use base::files::OutputFolder;
 use base::manifest::{Known, Manifest};
+use base::record::Cost;
 use base::reference::Reference;
 use fluids::bench;
-use harness::{case, context::Context};
+use harness::{case, context::Context, profile};
 use validation::cases;
 
-use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
+use super::{Exit, Failure, Outcome, World, arguments, list::default_variant, on_threads, output};
 
 pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
@@ -138,9 +139,7 @@ fn bench(world: &World) -> Result<(), Failure> {
             }
             row.extend([speed.rate, speed.list_rate].map(|rate| report::sig(rate / 1e6, 3)));
             if world.is_interrupted() {
-                return Err(Failure::interrupted(
-                    "the measurements are not complete; the same command begins again",
-                ));
+                return Err(interrupted());
             }
         }
         rows.push(row);
@@ -149,35 +148,53 @@ fn bench(world: &World) -> Result<(), Failure> {
     let heads =
         ["particles", "in list", "B each", "1 thread: M rhs/s", "M lists/s", &on_all, "M lists/s"];
     output::print(&output::table(&heads[..if all > 1 { 7 } else { 5 }], &rows))?;
-    shares()
+    on_threads(Some(1), || whole_runs(world))
 }
 
-/// Rows of the profiled runs.
-const ROWS: usize = 20;
+/// The runs that are timed as a whole, at sizes that take about a second each on a machine of 2023.
+const WHOLE: [(&str, &str); 5] = [
+    ("couette", "rows=50"),
+    ("poiseuille", "rows=50"),
+    ("periodic_hill", "end=5"),
+    ("dam_break", "n=24"),
+    ("rubber_rings", "spacing=0.2"),
+];
 
-fn shares() -> Result<(), Failure> {
-    let couette = bench::shares_of_couette(ROWS, BUDGET)?;
-    let poiseuille = bench::shares_of_poiseuille(ROWS, BUDGET)?;
-    let all = [("couette", couette), ("poiseuille", poiseuille)];
-    let rows: Vec<Vec<String>> = all
-        .iter()
-        .flat_map(|(case, shares)| shares.iter().map(move |share| (case, share)))
-        .map(|(case, (variant, share))| {
-            vec![
-                format!("{case} {variant}"),
-                report::seconds(share.step),
-                report::seconds(share.sweeps),
-                report::percent(share.of_sweeps(), 3),
-            ]
-        })
-        .collect();
+/// Times runs of the five cases as `touchstone run` makes them.
+fn whole_runs(world: &World) -> Result<(), Failure> {
+    let mut rows = Vec::new();
+    for (name, set) in WHOLE {
+        let case = cases::find(name)?;
+        let spec = case::spec(case, default_variant(case), &[set.to_string()])?;
+        let (interrupt, profile) = (Some(world.interrupt), true);
+        let context = Context { interrupt, profile, ..Context::default() };
+        let Cost { particles, steps, particle_rhs, wall_s, observing_s, breakdown, .. } =
+            case.run(&spec, &context)?.cost;
+        if world.is_interrupted() {
+            return Err(interrupted());
+        }
+        let each = |seconds: f64| 1e9 * seconds / (particles as f64 * steps as f64);
+        let sweeps = breakdown.map_or(f64::NAN, |breakdown| breakdown.share(&profile::SWEEPS));
+        rows.push(vec![
+            format!("{name} {} {set}", spec.variant),
+            particles.to_string(),
+            steps.to_string(),
+            report::sig(each(wall_s), 3),
+            report::percent(sweeps, 3),
+            report::sig(each(observing_s), 3),
+            report::sig(1e-6 * particle_rhs as f64 / wall_s, 3),
+        ]);
+    }
+    let heads = ["run", "particles", "steps", "stepping", "pair sweeps", "observing", "M rhs/s"];
     output::print(&format!(
-        "\nWhere the time of a run goes, {ROWS} rows, one thread. Method: whole steps of the running \
-         flow are\ntimed, then as many pair sweeps alone (of the same scene, over derived data and \
-         neighbour lists that are\nready, with updates over no time), {} times in turn: the pair with the \
-         median share. The rest of a\nstep is refreshing particles and images, and building neighbour \
-         lists.\n\n{}",
-        bench::PAIRS,
-        output::table(&["run", "step", "its pair sweeps", "share"], &rows)
+        "\nWhole runs of the five cases, on one thread, with default settings but for the size. Stepping \
+         and\nobserving: nanoseconds of wall time a fluid particle and time step; pair sweeps: their share \
+         of the\nstepping; M rhs/s: million particle right-hand sides a second of stepping. `touchstone run \
+         CASE --profile`\nshows all parts.\n\n{}",
+        output::table(&heads, &rows)
     ))
+}
+
+fn interrupted() -> Failure {
+    Failure::interrupted("the measurements are not complete; the same command begins again")
 }

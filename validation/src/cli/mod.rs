@@ -27,6 +27,7 @@ mod man;
 mod outcome;
 mod output;
 mod plan;
+mod profile;
 mod progress;
 mod report;
 mod run;

@@ -30,7 +30,7 @@ use super::{
     list::default_variant,
     on_threads,
     outcome::outcome,
-    output,
+    output, profile,
     progress::Bar,
     specs,
 };
@@ -89,15 +89,14 @@ fn carry_out(
     world: &World,
 ) -> Outcome {
     let (case, spec, vtk) = (order.case, order.spec.clone(), order.vtk);
-    let (record, last) = match on_threads(arguments.threads, || {
-        compute(order, arguments.json, folder.as_ref(), world)
-    }) {
-        Ok(made) => made,
-        Err(failure) => {
-            folder.iter().for_each(Folder::remove_if_new_and_empty);
-            return Err(failure);
-        }
-    };
+    let (record, last) =
+        match on_threads(arguments.threads, || compute(order, arguments, folder.as_ref(), world)) {
+            Ok(made) => made,
+            Err(failure) => {
+                folder.iter().for_each(Folder::remove_if_new_and_empty);
+                return Err(failure);
+            }
+        };
     if let Status::Interrupted { step, time } = record.status {
         folder.iter().for_each(Folder::remove_if_new_and_empty);
         let kept = if vtk.is_some() { "; frames so far are whole" } else { "" };
@@ -169,7 +168,7 @@ fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
 /// The record, and all fields of the particles at the end if there is a folder for them.
 fn compute(
     Order { case, spec, vtk, allow_long, every, earlier }: Order,
-    is_quiet: bool,
+    arguments: &arguments::Run,
     folder: Option<&Folder>,
     world: &World,
 ) -> Result<(Record, Option<Profile>), Failure> {
@@ -178,7 +177,7 @@ fn compute(
     let last = Mutex::default();
     let told = Once::new(); // a run may consist of several simulations, the first of which is the longest
     let tell = |size: &Size| {
-        if !is_quiet {
+        if !arguments.json {
             told.call_once(|| output::say(&format!("estimate: {size}")));
         }
     };
@@ -200,6 +199,7 @@ fn compute(
         frames,
         checkpoints: checkpoints.as_ref(),
         allow_long,
+        profile: arguments.profile,
         estimate: Some(&tell),
         at_the_end: folder.map(|_| &last),
         progress: Some(&show),
@@ -406,7 +406,8 @@ fn summary(record: &Record) -> String {
         cost.steps,
         report::seconds(cost.wall_s)
     );
-    text + &metrics(record) + &absent(record)
+    let profile = cost.breakdown.as_ref().map(|breakdown| profile::tables(cost, breakdown));
+    text + &metrics(record) + &absent(record) + &profile.unwrap_or_default()
 }
 
 /// The results that the run gives no meaning, with the reasons.

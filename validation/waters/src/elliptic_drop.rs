@@ -234,10 +234,8 @@ fn run(
     let mut seen = (&mut history, &mut ledger);
     (record.status, record.cost) =
         Drive::new(&mut *simulation, drop.rules.dt, &times, &pressure, &mut seen)
-            .at(&|(history, ledger), simulation, _| {
-                history.sample(&drop, &*simulation);
-                ledger.sample(simulation);
-            })
+            .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
+            .at("energy ledger by term", &|(_, ledger), simulation, _| ledger.sample(simulation))
             .run(context)?;
     history.measure(&mut record);
     let start = shape(drop.particles.iter().map(evolved));

@@ -51,8 +51,8 @@ fn run(
     let pressure = |density| eos.pressure(density);
     let mut seen = (&mut series, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, setup.dt, &times, &pressure, &mut seen)
-        .after_step(&|(series, _), simulation| series.after_step(simulation))
-        .at(&|(_, record), simulation, k| {
+        .after_step("series", &|(series, _), simulation| series.after_step(simulation))
+        .at("profiles and errors", &|(_, record), simulation, k| {
             measure::compare(setup, &Sample::of(setup, simulation), compared[k], record);
         })
         .run(context)?;

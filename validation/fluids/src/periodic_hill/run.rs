@@ -71,7 +71,7 @@ impl Monitor<'_> {
         window_of(time, s.end, s.average * s.end).map(|k| &mut self.windows[k])
     }
 
-    /// After a stretch: the controller acts, and the flow is sampled if it is time.
+    /// After a stretch: the controller acts.
     fn look(&mut self, simulation: &mut dyn Driving, stretch: f64) {
         let time = simulation.time();
         let mean = measure::mean_velocity(simulation, self.area);
@@ -85,6 +85,11 @@ impl Monitor<'_> {
         if self.entry.has_come(time) {
             self.series.push([time, force, flux, kinetic_energy(simulation)]);
         }
+    }
+
+    /// Samples the flow if it is time.
+    fn sample(&mut self, simulation: &dyn Driving) {
+        let time = simulation.time();
         if self.sample.has_come(time) {
             let setup = self.setup;
             if let Some(window) = self.window(time) {
@@ -125,7 +130,8 @@ fn run(
     let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt, &times, &pressure, &mut monitor)
-            .at(&|monitor, simulation, _| monitor.look(simulation, stretch))
+            .at("controller of the flux", &|monitor, s, _| monitor.look(s, stretch))
+            .at("samples of the field", &|monitor, s, _| monitor.sample(s))
             .resumed(&|monitor, simulation| {
                 // Until its first look the force is that of the scene, which may have a deliberate error.
                 if !monitor.series.is_empty() {

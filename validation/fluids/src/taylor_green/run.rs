@@ -94,7 +94,7 @@ fn run(
     let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt, &times, &pressure, &mut series)
-            .at(&|series, simulation, _| series.push(sample(simulation)))
+            .at("series", &|series, simulation, _| series.push(sample(simulation)))
             .run(context)?;
     if record.status == Status::Completed {
         measure(&setup, &simulation.particles(), &series, &mut record);

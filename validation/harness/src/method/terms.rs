@@ -178,7 +178,7 @@ impl Boundary for ExtrapolatingWall<Tait, NoSlip> {
     const NAME: &'static str = "extrapolating-wall";
     const FIRST_ROW: FirstRow = FirstRow::Behind;
     fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
-        Self::no_slip(medium.eos, medium.wall_acceleration)
+        Self::new(medium.eos, medium.wall_acceleration)
     }
 }
 

@@ -207,7 +207,7 @@ fn drive<S: Observed>(
     let mut record = simulate::begin(name, settings, method, &[(PLANNED_DT, dt)], &serial);
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(simulation, dt, times, &pressure, seen).at(at).run(context)?;
+        Drive::new(simulation, dt, times, &pressure, seen).at("samples", at).run(context)?;
     record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
 }

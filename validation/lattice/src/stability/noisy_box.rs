@@ -297,8 +297,8 @@ impl NoisyBox {
         let pressure = |density| Tait::new(1.0, 1.0).pressure(density);
         let (times, mut seen) = ([dt * steps as f64], (&mut watch, &mut wave_growth));
         let (mut status, cost) = Drive::new(&mut *simulation, dt, &times, &pressure, &mut seen)
-            .after_step(&|(watch, _), simulation| watch.after_step(simulation))
-            .at(&|(_, growth), simulation, _| {
+            .after_step("energy", &|(watch, _), simulation| watch.after_step(simulation))
+            .at("stiffest wave", &|(_, growth), simulation, _| {
                 let ratio = wave.energy(&simulation.particles()) / wave_start;
                 **growth = Some(0.5 * ln(ratio) / steps as f64);
             })

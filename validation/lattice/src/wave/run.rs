@@ -214,7 +214,7 @@ impl Observer<()> for Projection<'_> {
             sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
         }
         self.series.push(sums);
-        let momentum = simulation.momentum().into();
+        let momentum = simulate::momentum(&simulation.particles()).into();
         self.momentum = Some([self.momentum.map_or(momentum, |[first, _]| first), momentum]);
         Flow::Continue
     }
@@ -248,7 +248,7 @@ fn project(
     // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
     let (status, cost) =
         Drive::new(&mut *simulation, wave.dt, &[wave.end], &pressure, &mut projection)
-            .after_step(&Projection::after_step)
+            .after_step("projection", &Projection::after_step)
             .run(context)?;
     Ok(Measured {
         momentum_change: projection

@@ -36,7 +36,7 @@ pub struct Meter<'a, S: Scheme> {
 }
 
 impl<'a, S: Scheme> Meter<'a, S> {
-    /// A meter for a simulation that [`Simulation::advance`] has brought to a time.
+    /// A meter for a simulation that [`Stepper::advance`] has brought to a time.
     pub fn new(simulation: &'a Simulation<S>, slope: Slope<'a, S::Extra>) -> Self {
         Self { simulation, slope }
     }

@@ -58,13 +58,13 @@ pub fn run(
     let pressure = |density| eos.pressure(density);
     let mut seen = (&mut series, &mut budget, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rings.dt, &times, &pressure, &mut seen)
-        .after_step(&|(series, ..), simulation| series.after_step(simulation))
-        .at(&|(_, budget, record), s, k| {
+        .after_step("series", &|(series, ..), simulation| series.after_step(simulation))
+        .at("energy budget by term", &|(_, budget, _), s, k| {
             if stops[k].is_sample {
                 budget.sample(rings, s);
             }
-            keep(rings, s, times[k], context, record);
         })
+        .at("pictures", &|(.., record), s, k| keep(rings, s, times[k], context, record))
         .run(context)?;
     let particles = measure::along_flight(rings, &*simulation);
     if status == Status::Completed {

@@ -142,7 +142,7 @@ fn run<P: Problem>(
     // No stop but the end: one would bring the leapfrog's velocities to a whole step.
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) = Drive::new(&mut *simulation, dt, &[end], &pressure, &mut watch)
-        .after_step(&P::Watch::after_step)
+        .after_step("measurements", &P::Watch::after_step)
         .run(context)?;
     record.state = Some(digest(&simulation.particles()));
     watch.measure(&*simulation, &mut record);

@@ -67,10 +67,10 @@ fn run(
     let pressure = |density| medium.eos.pressure(density);
     let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rules.dt, &times, &pressure, &mut seen)
-        .after_step(&|(gauge, ..), simulation| gauge.after_step(simulation))
-        .at(&|(_, samples, ledger, record), s, k| {
-            samples.sample(&*s);
-            ledger.sample(s);
+        .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
+        .at("front, levels and momentum", &|(_, samples, ..), s, _| samples.sample(&*s))
+        .at("energy ledger by term", &|(.., ledger, _), s, _| ledger.sample(s))
+        .at("pictures", &|(.., record), s, k| {
             if let Some(share) = pictures.get(&k) {
                 record.profiles.insert(format!("particles@{share}"), picture(dam, &*s));
             }

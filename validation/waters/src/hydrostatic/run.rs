@@ -49,7 +49,7 @@ fn run(
     let pressure = |density| medium.eos.pressure(density);
     (record.status, record.cost) =
         Drive::new(&mut *simulation, rules.dt, &times(&column), &pressure, &mut history)
-            .at(&|history, simulation, _| history.sample(&*simulation))
+            .at("history", &|history, simulation, _| history.sample(&*simulation))
             .run(context)?;
     if record.status == Status::Completed {
         history.metrics(&mut record);

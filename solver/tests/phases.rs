@@ -1,0 +1,99 @@
+//! Who watches a simulation is told of each phase of a step in turn, and what the lists are that sweeps go
+//! through.
+
+use std::sync::{Arc, Mutex};
+
+use nalgebra::Vector2;
+use solver::{
+    Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Integrator, InterfaceWall,
+    Leapfrog, Open, Outcome, Particle, Phase, PredictorCorrector, Pressure, Role, Scene,
+    Simulation, Stepper, Tait, lattice, walls::Walls,
+};
+
+type Method<W, I> = Compose<CubicSpline, Pressure<Tait>, Continuity, W, I>;
+
+const DX: f64 = 0.1;
+const H: f64 = 1.2 * DX;
+
+/// A periodic lattice that moves at a speed, so many rows of it wall particles.
+fn simulation<W: Walls<()>, I: Integrator<()>>(
+    (walls, rows): (W, usize),
+    speed: f64,
+) -> Simulation<Method<W, I>> {
+    let particle = |(k, place): (usize, Vector2<f64>)| {
+        let fluid = Particle::fluid(place, Vector2::new(speed, 0.0), 1.0, DX * DX);
+        fluid.with_role(if k < 8 * rows { Role::Wall } else { Role::Fluid })
+    };
+    let places = lattice(Vector2::repeat(0.5 * DX), DX, 8, 8);
+    let particles = places.enumerate().map(particle).collect();
+    let pressure = Pressure::new(Tait::new(1.0, 1.0));
+    let domain = Domain::torus(0.8, 0.8);
+    Scene::new(H, domain, particles, pressure, Continuity, walls).build().expect("a scene")
+}
+
+/// The phases of one step, without the repetitions of one after itself, and those of bringing all to a time.
+fn phases<W: Walls<()>, I: Integrator<()>>(
+    simulation: &mut Simulation<Method<W, I>>,
+) -> Vec<Phase> {
+    let told: Arc<Mutex<Vec<Phase>>> = Arc::default();
+    let log = Arc::clone(&told);
+    simulation.watch(Some(Box::new(move |phase| log.lock().expect("one thread").push(phase))));
+    assert_eq!(simulation.advance(1e-3, 1e-3, &mut ()), Outcome::Reached);
+    simulation.watch(None);
+    assert_eq!(simulation.advance(2e-3, 1e-3, &mut ()), Outcome::Reached);
+    let mut phases = told.lock().expect("one thread").clone();
+    phases.dedup();
+    phases
+}
+
+#[test]
+fn each_phase_of_a_step_is_told_in_turn() {
+    use Phase::{Both, Drift, Forces, Refresh, Rest, Walls};
+    let at_a_time = [Refresh, Rest, Forces, Rest, Refresh, Rest];
+    let leapfrog = phases(&mut simulation::<_, Leapfrog>((Open, 0), 0.0));
+    let step = [Refresh, Rest, Forces, Rest, Refresh, Rest, Drift, Rest];
+    assert_eq!(leapfrog, [&step[..], &at_a_time].concat());
+
+    let open = phases(&mut simulation::<_, PredictorCorrector>((Open, 0), 0.0));
+    let step = [Refresh, Rest, Both, Rest, Refresh, Rest, Both, Rest, Refresh, Rest];
+    assert_eq!(open, step);
+
+    let walled = phases(&mut simulation::<_, PredictorCorrector>((InterfaceWall, 2), 0.0));
+    let step = [Refresh, Rest, Both, Walls, Rest, Refresh, Rest, Both, Walls, Rest, Refresh, Rest];
+    assert_eq!(walled, step);
+
+    let wall: ExtrapolatingWall<Tait> =
+        ExtrapolatingWall::new(Tait::new(1.0, 1.0), Vector2::zeros());
+    let walled = phases(&mut simulation::<_, PredictorCorrector>((wall, 2), 0.0));
+    let sweep = [Refresh, Walls, Refresh, Rest, Both, Rest];
+    assert_eq!(walled, [&sweep[..], &sweep, &sweep[..4]].concat());
+}
+
+#[test]
+fn sorting_and_search_are_told_when_lists_are_built() {
+    use Phase::{Forces, Refresh, Rest, Search, Sorting};
+    // A step moves each particle by more than half of the skin of 0.12 h.
+    let phases = phases(&mut simulation::<_, Leapfrog>((Open, 0), 20.0));
+    let inside = [Refresh, Search, Refresh, Rest];
+    let built = [Refresh, Sorting, Search, Refresh, Rest, Forces];
+    assert!(phases.windows(4).any(|told| told == inside), "{phases:?}");
+    assert!(phases.windows(6).any(|told| told == built), "{phases:?}");
+}
+
+#[test]
+fn lists_are_those_that_sweeps_count() {
+    let mut simulation = simulation::<_, PredictorCorrector>((Open, 0), 0.0);
+    assert_eq!(simulation.advance(1e-3, 1e-3, &mut ()), Outcome::Reached);
+    let columns = simulation.plain_columns();
+    let places = simulation.lists().flatten().filter(|place| (**place as usize) < columns.len());
+    assert_eq!(2 * places.count() as u64, simulation.work().pair_interactions);
+    let reach = 2.0 * H + 0.12 * H;
+    for (own, list) in columns.iter().zip(simulation.lists()) {
+        assert!(list.len() % 4 == 0 && list.len() >= 20);
+        for other in list.iter().filter_map(|place| columns.get(*place as usize)) {
+            assert!((own.position - other.position).norm() <= reach);
+        }
+    }
+    assert_eq!(simulation.lists().count(), 64);
+    assert_eq!(simulation.column_bytes, (columns.len() + 1) * 64);
+}

@@ -1,0 +1,58 @@
+//! Where the time of a run went: an optional part of the cost in its record.
+
+use serde::{Deserialize, Serialize};
+
+/// Where the time of a run went. Seconds are wall seconds of the thread that steps: what is shared out to
+/// several threads is counted once, from when it is handed out until the last thread is done.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Breakdown {
+    /// parts of the stepping
+    pub stepping: Vec<Part>,
+    /// observers, frames, checkpoints
+    pub observing: Vec<Part>,
+    /// time steps that were watched
+    pub steps: u64,
+    /// builds of neighbour lists
+    pub list_builds: u64,
+    /// neighbours in the list of a fluid particle, padding not counted, mean over samples
+    #[serde(with = "crate::number")]
+    pub neighbours: f64,
+    /// share of these that is inside the support of the kernel; the others are within the skin
+    #[serde(with = "crate::number")]
+    pub inside: f64,
+    /// share of the lanes of these lists that pads the last chunk of each
+    #[serde(with = "crate::number")]
+    pub padding: f64,
+    /// bytes that a time step moves: each pair sweep over the fluid reads its lists and the columns of
+    /// particles and images once and updates the state, and the refresh before it reads the state and
+    /// writes the columns. Building lists is not counted; what caches hold is
+    #[serde(with = "crate::number")]
+    pub bytes_a_step: f64,
+}
+
+/// A part of the time.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Part {
+    /// what was done
+    pub name: String,
+    /// how long it took in seconds
+    #[serde(with = "crate::number")]
+    pub seconds: f64,
+    /// how often it began
+    pub times: u64,
+}
+
+impl Breakdown {
+    /// Seconds of the stepping and of observing \[s\].
+    pub fn totals(&self) -> [f64; 2] {
+        [&self.stepping, &self.observing].map(|parts| parts.iter().map(|part| part.seconds).sum())
+    }
+
+    /// The share of the stepping that these parts have together.
+    pub fn share(&self, names: &[&str]) -> f64 {
+        let named = self.stepping.iter().filter(|part| names.contains(&&*part.name));
+        named.map(|part| part.seconds).sum::<f64>() / self.totals()[0]
+    }
+}

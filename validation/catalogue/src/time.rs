@@ -1,0 +1,53 @@
+//! Where the time of the main cases goes.
+
+use base::{breakdown::Breakdown, record::Record};
+use harness::{
+    columns::Columns,
+    profile::{BOTH, DRIFT, FORCES, REFRESH, REST, SEARCH, SORTING, WALLS},
+    suite::{CaseResults, Suite},
+};
+use report::{Cell, Section};
+
+/// A run with its profile.
+type Profiled<'a> = (&'a Record, &'a Breakdown);
+
+/// The largest run of the best variant of a case among those that were profiled.
+fn largest(results: &CaseResults) -> Option<Profiled<'_>> {
+    let best = &results.headlines.first()?.variant;
+    let profiled = results.runs.simulations().filter(|record| record.variant == *best);
+    profiled
+        .filter_map(|record| Some((record, record.cost.breakdown.as_ref()?)))
+        .max_by_key(|(record, _)| record.cost.pair_interactions)
+}
+
+/// A row for each main case whose best variant was profiled.
+pub fn section(suite: &Suite) -> Section {
+    let share = |names: &'static [&str]| move |(_, b): &Profiled| Cell::percent(b.share(names), 3);
+    let each = |record: &Record, seconds: f64| {
+        let Record { cost, .. } = record;
+        Cell::num(1e9 * seconds / (cost.particles as f64 * cost.steps as f64), 3)
+    };
+    let table = Columns::<Profiled>::default()
+        .code("run", |(record, _)| format!("{} {}", record.case, record.variant))
+        .num(["particles", "1"], |(record, _)| Cell::count(record.cost.particles as u64))
+        .num(["stepping", "ns"], move |(record, b)| each(record, b.totals()[0]))
+        .num(["force sweep", ""], share(&[FORCES, BOTH]))
+        .num(["drift sweep", ""], share(&[DRIFT]))
+        .num(["wall sweep", ""], share(&[WALLS]))
+        .num(["refresh", ""], share(&[REFRESH]))
+        .num(["search and sorting", ""], share(&[SEARCH, SORTING]))
+        .num(["rest", ""], share(&[REST]))
+        .num(["observing", "ns"], move |(record, b)| each(record, b.totals()[1]))
+        .num(["inside the support", ""], |(_, b)| Cell::percent(b.inside, 3))
+        .num(["padding", ""], |(_, b)| Cell::percent(b.padding, 2))
+        .num(["moved", "kB/step"], |(_, b)| Cell::num(1e-3 * b.bytes_a_step, 3))
+        .table(
+            "Where the time goes, in the largest run of the best variant of each main case that was timed \
+             alone. Stepping and observing: nanoseconds of wall time a fluid particle and time step. Sweeps, \
+             refresh, search and rest: shares of the stepping. Inside the support: the share of the \
+             neighbours visited that are nearer than the support of the kernel. Padding: the share of lanes \
+             without a neighbour. `touchstone run CASE --profile` shows the same of any run.",
+            suite.cases.iter().filter_map(largest),
+        );
+    Section::new("time", "Where the time goes").block(table)
+}

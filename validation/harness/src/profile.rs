@@ -1,0 +1,195 @@
+//! Where the time of a run goes: a clock that is read when a phase of a step or an observer begins, and
+//! samples of the neighbour lists. A run that is not profiled has none of it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::time::Instant;
+
+use base::breakdown::{Breakdown, Part};
+use solver::{Evolved, Numbers, Phase, Stepper};
+
+/// The pair sweep over the forces.
+pub const FORCES: &str = "force sweep";
+/// The pair sweep over the drift.
+pub const DRIFT: &str = "drift sweep";
+/// One pair sweep over forces and drift together.
+pub const BOTH: &str = "force and drift sweep";
+/// The pair sweep over the terms of the walls.
+pub const WALLS: &str = "wall sweep";
+/// Columns of particles and of images.
+pub const REFRESH: &str = "refresh of columns and images";
+/// Images and neighbour lists.
+pub const SEARCH: &str = "neighbour search";
+/// Particles in the order of cells.
+pub const SORTING: &str = "sorting";
+/// What is left of a step.
+pub const REST: &str = "rest of the integrator";
+
+/// The phases of a step and their names.
+const PHASES: [(Phase, &str); 8] = [
+    (Phase::Forces, FORCES),
+    (Phase::Drift, DRIFT),
+    (Phase::Both, BOTH),
+    (Phase::Walls, WALLS),
+    (Phase::Refresh, REFRESH),
+    (Phase::Search, SEARCH),
+    (Phase::Sorting, SORTING),
+    (Phase::Rest, REST),
+];
+
+/// The pair sweeps of a step.
+pub const SWEEPS: [&str; 4] = [FORCES, DRIFT, BOTH, WALLS];
+
+/// Frames for ParaView.
+pub const FRAMES: &str = "frames";
+/// Checkpoints.
+pub const CHECKPOINTS: &str = "checkpoints";
+
+/// Time steps between samples of the lists: a sample costs a fraction of a step.
+const SAMPLE_EVERY: u64 = 500;
+
+/// A clock over numbered parts, of which one is under way. Only the thread that steps reads it: atomic, so
+/// that a simulation can own a share of it, and never locked.
+struct Clock {
+    start: Instant,
+    part: AtomicUsize,
+    since: AtomicU64,
+    /// Nanoseconds of each part, and how often it began.
+    parts: Vec<[AtomicU64; 2]>,
+}
+
+impl Clock {
+    fn enter(&self, part: usize) {
+        let now = u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        let [spent, _] = &self.parts[self.part.load(Relaxed)];
+        spent.store(spent.load(Relaxed) + now - self.since.load(Relaxed), Relaxed);
+        self.since.store(now, Relaxed);
+        self.part.store(part, Relaxed);
+        let [_, times] = &self.parts[part];
+        times.store(times.load(Relaxed) + 1, Relaxed);
+    }
+}
+
+/// Sums over samples of neighbour lists.
+#[derive(Default)]
+struct Lists {
+    count: f64,
+    particles: f64,
+    neighbours: f64,
+    inside: f64,
+    lanes: f64,
+    column_bytes: f64,
+    state_bytes: f64,
+}
+
+/// Profiles a run: phases by number, then observers, and last what is neither.
+pub(crate) struct Profiler {
+    clock: Arc<Clock>,
+    observers: Vec<&'static str>,
+    /// Of a run that this one goes on with.
+    earlier: Breakdown,
+    lists: Lists,
+    sampled: u64,
+    /// Steps and builds of lists before it.
+    before: [u64; 2],
+}
+
+impl Profiler {
+    /// A profiler of a simulation with these observers, frames and checkpoints.
+    pub fn new<X: Numbers>(
+        simulation: &mut (impl Stepper<X> + ?Sized),
+        observers: impl Iterator<Item = &'static str>,
+        earlier: Breakdown,
+    ) -> Self {
+        let observers: Vec<_> = observers.chain([FRAMES, CHECKPOINTS]).collect();
+        let parts = (0..=PHASES.len() + observers.len()).map(|_| Default::default()).collect();
+        let (part, since) = (AtomicUsize::new(PHASES.len() + observers.len()), AtomicU64::new(0));
+        let clock = Arc::new(Clock { start: Instant::now(), part, since, parts });
+        let watch = Arc::clone(&clock);
+        simulation.watch(Some(Box::new(move |phase| watch.enter(phase as usize))));
+        let work = simulation.work();
+        let before = [work.steps, work.list_builds];
+        Self { clock, observers, earlier, lists: Lists::default(), sampled: 0, before }
+    }
+
+    /// Stepping begins, or goes on after it was observed.
+    pub fn step(&self) {
+        self.clock.enter(Phase::Rest as usize);
+    }
+
+    /// One of the observers begins.
+    pub fn observe(&self, observer: &str) {
+        let place = self.observers.iter().position(|name| *name == observer);
+        self.clock.enter(PHASES.len() + place.unwrap_or(self.observers.len()));
+    }
+
+    /// Neither stepping nor observing begins.
+    pub fn pause(&self) {
+        self.clock.enter(PHASES.len() + self.observers.len());
+    }
+
+    /// Looks at the lists of a simulation that was brought to a time, if the last look is long ago.
+    pub fn sample<X: Numbers>(&mut self, simulation: &(impl Stepper<X> + ?Sized)) {
+        let steps = simulation.work().steps;
+        if self.lists.count > 0.0 && steps < self.sampled + SAMPLE_EVERY {
+            return;
+        }
+        self.sampled = steps;
+        let (columns, lists) = (simulation.plain_columns(), &mut self.lists);
+        for (own, list) in columns.iter().zip(simulation.lists()) {
+            let others = list.iter().filter_map(|place| columns.get(*place as usize));
+            let (mut neighbours, mut inside) = (0, 0);
+            for other in others {
+                neighbours += 1;
+                let r2 = (own.position - other.position).norm_squared();
+                inside += u32::from(simulation.weight(r2) > 0.0);
+            }
+            lists.neighbours += f64::from(neighbours);
+            lists.inside += f64::from(inside);
+            lists.lanes += list.len() as f64;
+        }
+        let particles = simulation.fluid_count() + simulation.walls().len();
+        lists.count += 1.0;
+        lists.particles += simulation.fluid_count() as f64;
+        lists.column_bytes += simulation.column_bytes as f64;
+        lists.state_bytes += (particles * size_of::<Evolved<X>>()) as f64;
+    }
+
+    /// What was found so far.
+    pub fn breakdown<X: Numbers>(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Breakdown {
+        let mut all = self.earlier.clone();
+        let of_clock = |parts: &mut Vec<Part>, name: &str, number: usize| {
+            let [nanoseconds, times] = [0, 1].map(|k| self.clock.parts[number][k].load(Relaxed));
+            add(parts, name, 1e-9 * nanoseconds as f64, times);
+        };
+        for (phase, name) in PHASES {
+            of_clock(&mut all.stepping, name, phase as usize);
+        }
+        for (k, name) in self.observers.iter().enumerate() {
+            of_clock(&mut all.observing, name, PHASES.len() + k);
+        }
+        let work = simulation.work();
+        all.steps += work.steps - self.before[0];
+        all.list_builds += work.list_builds - self.before[1];
+        let sweeps =
+            all.stepping.iter().filter(|part| [FORCES, DRIFT, BOTH].contains(&&*part.name));
+        let sweeps = sweeps.map(|part| part.times).sum::<u64>() as f64;
+        let Lists { count, particles, neighbours, inside, lanes, column_bytes, state_bytes } =
+            self.lists;
+        all.neighbours = neighbours / particles;
+        all.inside = inside / neighbours;
+        all.padding = (lanes - neighbours) / lanes;
+        let bytes = size_of::<u32>() as f64 * lanes + 2.0 * column_bytes + 3.0 * state_bytes;
+        all.bytes_a_step = sweeps / all.steps as f64 * bytes / count;
+        all
+    }
+}
+
+/// Adds to the part of this name, which is begun by its first time.
+fn add(parts: &mut Vec<Part>, name: &str, seconds: f64, times: u64) {
+    match parts.iter_mut().find(|part| part.name == name) {
+        Some(part) => (part.seconds, part.times) = (part.seconds + seconds, part.times + times),
+        None if times > 0 => parts.push(Part { name: name.into(), seconds, times }),
+        None => {}
+    }
+}
