@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use base::gate::{Cause, Gate, Purpose};
 use harness::{
     case::{Case, RunError, Tier},
+    make::Made,
     plan,
     runs::Runs,
-    studies,
+    studies, suite,
 };
 use validation::cases::CASES;
 
@@ -19,6 +20,19 @@ fn no_planned_run_sets_what_its_variant_lacks() {
             let refused = case.rules(&planned.spec);
             let spec = &planned.spec;
             assert!(!matches!(refused, Err(RunError::Unused { .. })), "{refused:?}: {spec:?}");
+        }
+    }
+}
+
+/// A study that reads what its run does not measure shows gaps, and a gate of the case fails. Here no run is
+/// made: what is planned is looked up all the same.
+#[test]
+fn studies_ask_for_no_more_than_is_planned() {
+    for tier in [Tier::Quick, Tier::Full] {
+        let suite = suite::judge(suite::plans(CASES, tier), tier, Made::default());
+        for case in suite.cases {
+            let asked = case.runs.unplanned();
+            assert!(asked.is_empty(), "{}: {}", case.case.name(), asked.join("\n"));
         }
     }
 }

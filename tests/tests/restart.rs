@@ -199,7 +199,7 @@ fn gone_on(case: &dyn Case) -> Vec<String> {
     let mut variants = Vec::new();
     for variant in case.variants() {
         let Some(run) = runs.iter().find(|run| run.spec.variant == variant.name) else { continue };
-        let spec = run.spec.clone().keep_particles();
+        let spec = run.spec.clone().keep_particles().measure_all();
         let Ok(whole) = case.run(&spec, &Context::default()) else { continue };
         let name = format!("{} {}", case.name(), variant.name);
         let simulations = interrupted_after((whole.cost.steps / 2).clamp(1, 150), case, &spec);

@@ -213,7 +213,7 @@ fn runs(case: &dyn Case) -> Vec<Run> {
             let set: Vec<String> = name.split(' ').map(String::from).collect();
             let spec = case::spec(case, variant, &set).expect("sound settings");
             assert!(is_planned(&spec), "{} {variant} {name} is not planned", case.name());
-            runs.push(Run { name, spec });
+            runs.push(Run { name, spec: spec.measure_all() });
         }
     }
     runs

@@ -10,7 +10,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use base::{
-    record::{Cost, Record, Status},
+    record::{Cost, NOT_ASKED, Record, Status},
     spec::RunSpec,
 };
 use harness::case::{Case, spec};
@@ -301,7 +301,8 @@ const SHORT: [&str; 17] = [
 ];
 
 /// Of each case there are as many frames as asked for, at equal intervals and with all fields, and a profile
-/// whose parts add up; what is left of each run is what it is without them.
+/// whose parts add up; what is left of each run is what it is without them, and without the metrics that are
+/// left out unless asked for.
 #[test]
 fn watching_does_not_change_a_run() {
     let names: Vec<&str> = SHORT.iter().filter_map(|run| run.split(' ').next()).collect();
@@ -311,7 +312,7 @@ fn watching_does_not_change_a_run() {
         let folder = tempfile::tempdir().unwrap();
         let arguments: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
         let unwatched = record_of(folder.path(), &[&arguments[..], &["--json"]].concat());
-        let watch = ["--json", "--profile", "--vtk", "4", "--out", "here"];
+        let watch = ["--json", "--profile", "--metrics", "all", "--vtk", "4", "--out", "here"];
         let watched = record_of(folder.path(), &[&arguments[..], &watch].concat());
         assert!(watched.cost.steps > 10, "{run}");
         assert_eq!(watched.state, unwatched.state, "{run}");
@@ -329,8 +330,12 @@ fn watching_does_not_change_a_run() {
         }
         assert_eq!(breakdown.steps, watched.cost.steps, "{run}");
         assert!(breakdown.observing.iter().any(|part| part.name == "frames"), "{run}");
-        let metrics = |of: &Record| format!("{:?}", of.metrics); // some may be NaN
-        assert_eq!(metrics(&watched), metrics(&unwatched), "{run}");
+        let shown = |of: &Record, name| format!("{:?}", of.metrics.get(name)); // some may be NaN
+        for name in unwatched.metrics.keys() {
+            assert_eq!(shown(&watched, name), shown(&unwatched, name), "{run}: {name}");
+        }
+        let unasked = unwatched.absent.iter().filter(|(_, why)| *why == NOT_ASKED).count();
+        assert_eq!(unwatched.metrics.len() + unasked, watched.metrics.len(), "{run}");
         let read = |name: &str| fs::read_to_string(folder.path().join("here").join(name)).unwrap();
         let attribute = |line: &str| line.split('"').nth(1).and_then(|text| text.parse().ok());
         let times: Vec<f64> =
@@ -455,6 +460,25 @@ fn a_folder_that_cannot_be_written_is_refused_before_the_run() {
 #[test]
 fn rows_that_are_given_twice_are_refused() {
     refused(&short("couette", &["--set", "rows=10"]), &["--rows 8", "--set rows=10"]);
+}
+
+/// Plain runs computed an energy ledger that nobody had asked for, and judged it.
+#[test]
+fn a_run_says_which_metrics_and_gates_were_not_asked_for() {
+    let set = ["width=0.01", "height=0.2", "n=1", "tank=0.5"].map(|set| ["--set", set]).concat();
+    let run = |rest: &[&'static str]| {
+        let output = touchstone(&[&["run", "dam_break", "--all"], &set[..], rest].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stdout(&output)
+    };
+    let (plain, all) = (run(&[]), run(&["--metrics", "all"]));
+    assert!(plain.contains("(not asked for: --metrics all)"), "{plain}");
+    assert!(
+        plain.contains("more gates, on metrics that were not asked for (--metrics all): 1"),
+        "{plain}"
+    );
+    assert!(!plain.contains(".energy_gap") && all.contains(".energy_gap"), "{all}");
+    assert!(!all.contains("not asked for"), "{all}");
 }
 
 #[test]

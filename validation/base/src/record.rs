@@ -26,7 +26,10 @@ use crate::manifest::Manifest;
 use crate::mutation::Mutation;
 use crate::reference::sha256;
 use crate::settings::Settings;
-use crate::spec::{Keep, RunKey, RunSpec, Task};
+use crate::spec::{Keep, Measure, RunKey, RunSpec, Task};
+
+/// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
+pub const NOT_ASKED: &str = "not asked for: --metrics all";
 
 /// Version of the document; raised with every change that an older reader would misread.
 pub const SCHEMA: u32 = 2;
@@ -375,7 +378,7 @@ impl Record {
         Self { task, allow_unstable, keep, mutation, ..self }
     }
 
-    /// The run that it is of.
+    /// The run that it is of, whatever was measured of it.
     pub fn spec(&self) -> RunSpec {
         let Self { case, variant, settings, task, allow_unstable, keep, mutation, .. } = self;
         RunSpec {
@@ -386,6 +389,15 @@ impl Record {
             allow_unstable: *allow_unstable,
             keep: *keep,
             mutation: *mutation,
+            measure: Measure::default(),
+        }
+    }
+
+    /// How much was measured of the run: all, unless a metric is absent because it was not asked for.
+    pub fn measured(&self) -> Measure {
+        match self.absent.values().any(|reason| reason == NOT_ASKED) {
+            true => Measure::Headline,
+            false => Measure::All,
         }
     }
 
@@ -432,6 +444,11 @@ impl Record {
     /// States why a metric is absent: this run gives it no meaning.
     pub fn leave_out(&mut self, metric: impl Into<MetricName>, reason: impl Into<String>) {
         self.absent.insert(metric.into().name, reason.into());
+    }
+
+    /// States that metrics are absent because they were not asked for.
+    pub fn leave_unasked(&mut self, metrics: &[MetricKey]) {
+        metrics.iter().for_each(|metric| self.leave_out(*metric, NOT_ASKED));
     }
 
     /// A metric's value, `None` if it was not measured.

@@ -1,7 +1,8 @@
-//! The specification of a run as data: everything that determines its result, and nothing else.
+//! The specification of a run as data: everything that determines its result, and how much is measured of it.
 //!
 //! A [`RunSpec`] has a canonical JSON form, one line with sorted keys, and a [`RunKey`], the first 16
-//! hexadecimal digits of the SHA-256 of that line. Equal keys mean the same run, whichever study planned it.
+//! hexadecimal digits of the SHA-256 of that line without what is measured. Equal keys mean the same run,
+//! whichever study planned it.
 //!
 //! ```
 //! use base::spec::RunSpec;
@@ -44,6 +45,27 @@ pub struct RunSpec {
     /// a deliberate error of the scene
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mutation: Option<Mutation>,
+    /// how much is measured, which is no part of the key
+    #[serde(default, skip_serializing_if = "Measure::is_headline")]
+    pub measure: Measure,
+}
+
+/// How much is measured of a run. What is measured does not change the run, and a record of which more was
+/// measured than is asked for serves as well.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// what costs little beside the stepping
+    #[default]
+    Headline,
+    /// also what takes pair sweeps of its own, such as the work of each term
+    All,
+}
+
+impl Measure {
+    fn is_headline(&self) -> bool {
+        *self == Measure::Headline
+    }
 }
 
 /// What is done with the settings.
@@ -126,8 +148,8 @@ impl RunSpec {
     /// One simulation that keeps metrics and curves.
     pub fn new(case: &str, variant: &str, settings: Value) -> Self {
         let (case, variant) = (case.to_string(), variant.to_string());
-        let (task, keep) = (Task::Simulate, Keep::default());
-        Self { case, variant, settings, task, allow_unstable: false, keep, mutation: None }
+        let (task, keep, measure) = (Task::Simulate, Keep::default(), Measure::default());
+        Self { case, variant, settings, task, allow_unstable: false, keep, mutation: None, measure }
     }
 
     /// The same, whatever its time step.
@@ -162,6 +184,11 @@ impl RunSpec {
         Self { mutation: Some(mutation), ..self }
     }
 
+    /// The same, of which all is measured.
+    pub fn measure_all(self) -> Self {
+        Self { measure: Measure::All, ..self }
+    }
+
     /// The same with one setting changed, by name; the caller knows that there is one.
     pub fn with_setting(mut self, name: &str, value: impl Into<Value>) -> Self {
         if let Some(settings) = self.settings.as_object_mut() {
@@ -186,7 +213,8 @@ impl RunSpec {
 
     /// The name of the run.
     pub fn key(&self) -> RunKey {
-        RunKey(sha256(self.canonical().as_bytes())[..16].to_string())
+        let run = Self { measure: Measure::default(), ..self.clone() };
+        RunKey(sha256(run.canonical().as_bytes())[..16].to_string())
     }
 }
 
@@ -220,6 +248,16 @@ mod tests {
         for spec in others {
             assert_eq!(RunSpec::from_canonical(&spec.canonical()).unwrap(), spec);
         }
+    }
+
+    #[test]
+    fn what_is_measured_is_written_and_is_no_part_of_the_key() {
+        let spec = RunSpec::new("dam_break", "modern", json!({"n": 20}));
+        let all = spec.clone().measure_all();
+        assert_eq!(all.key(), spec.key());
+        assert!(all.canonical().contains(r#""measure":"all""#), "{}", all.canonical());
+        assert_eq!(RunSpec::from_canonical(&all.canonical()).unwrap(), all);
+        assert!(spec.measure < all.measure);
     }
 
     #[test]

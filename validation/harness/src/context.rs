@@ -3,7 +3,11 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, atomic::AtomicBool};
 
-use base::{mutation::Mutation, record::Profile, spec::RunSpec};
+use base::{
+    mutation::Mutation,
+    record::Profile,
+    spec::{Measure, RunSpec},
+};
 
 use crate::{checkpoint::Checkpoints, size::Size};
 
@@ -39,6 +43,8 @@ pub struct Context<'a> {
     pub keep_particles: bool,
     /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
     pub pictures: Option<usize>,
+    /// How much is measured.
+    pub measure: Measure,
     /// Told what the run is estimated to take, before its first step.
     pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
     /// Called with the progress of the run.
@@ -52,19 +58,26 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
+    /// Is all to be measured, whatever it costs?
+    pub fn measures_all(&self) -> bool {
+        self.measure == Measure::All
+    }
+
     /// The context for computing rules, which give the time step whether or not it is stable, and however
     /// many there are.
     pub fn of_rules() -> Self {
         Self { allow_unstable: true, allow_long: true, ..Self::default() }
     }
 
-    /// The same context for this run, with what its spec says about the time step and about what is kept.
+    /// The same context for this run, with what its spec says about the time step and about what is measured
+    /// and kept.
     pub fn of(&self, spec: &RunSpec) -> Self {
         Self {
             allow_unstable: spec.allow_unstable,
             keep_particles: spec.keep.particles,
             pictures: spec.keep.pictures,
             mutation: spec.mutation,
+            measure: spec.measure,
             ..self.clone()
         }
     }

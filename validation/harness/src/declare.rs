@@ -6,8 +6,8 @@
 use base::{
     gate::{Bound, Cause, Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
-    record::{MetricName, Record, Status},
-    spec::{Bisect, RunSpec},
+    record::{MetricKey, MetricName, Record, Status},
+    spec::{Bisect, Measure, RunSpec},
 };
 use report::{Axis, Colour};
 
@@ -34,6 +34,9 @@ pub struct Declaration {
     pub maps: Vec<Map>,
     /// Errors of constants that the gates must detect.
     pub sensitivity: Option<Sensitivity>,
+    /// The metrics that take pair sweeps of their own, and which a run leaves out unless a gate reads one of
+    /// them or all is asked for.
+    pub costly: &'static [MetricKey],
 }
 
 /// What the report says first of a case: its error with the best variant and with the paper's.
@@ -420,7 +423,8 @@ impl Sensitivity {
     /// The runs with a constant multiplied by a factor.
     pub fn faulty(&self, of: Constant, factor: f64) -> impl Iterator<Item = (&RunSpec, RunSpec)> {
         let mutation = Mutation { of, factor };
-        self.runs.iter().map(move |run| (run, run.clone().allow_unstable().mutated(mutation)))
+        let faulty = |run: &RunSpec| run.clone().allow_unstable().measure_all();
+        self.runs.iter().map(move |run| (run, faulty(run).mutated(mutation)))
     }
 }
 
@@ -516,6 +520,15 @@ pub struct CurveOf {
 pub type PointsOf = Box<dyn Fn(&Record) -> Vec<(f64, f64)> + Send + Sync>;
 
 impl Declaration {
+    /// How much must be measured of a run with these gates.
+    pub fn measure_for(&self, gates: &[Gate]) -> Measure {
+        let costly = self.costly.iter().map(|metric| String::from(*metric));
+        match costly.into_iter().any(|metric| gates.iter().any(|gate| gate.metric == metric)) {
+            true => Measure::All,
+            false => Measure::Headline,
+        }
+    }
+
     /// Every run that the studies need.
     pub fn runs(&self) -> Vec<Planned> {
         let mut runs = Vec::new();

@@ -9,7 +9,7 @@ use base::{
 
 use crate::{
     bisect,
-    case::{Case, RunError},
+    case::{Case, RunError, Tier},
     context::Context,
     plan,
 };
@@ -52,8 +52,9 @@ pub fn run(
     detect: &Detect,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let healthy = RunSpec { task: Task::Simulate, ..spec.clone() };
+    let mut healthy = RunSpec { task: Task::Simulate, ..spec.clone() };
     let gates = gates(case, &healthy, detect.of);
+    healthy.measure = case.declaration(Tier::Quick).measure_for(&gates);
     let mut search =
         Search { case, healthy, detect, gates, context, ended: None, cost: Cost::default() };
     let (detected, undetected) = search.smallest()?;
@@ -155,7 +156,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Planned, Tier, Variant},
+        case::{Planned, Variant},
         runs::Runs,
         study::Study,
     };

@@ -13,11 +13,15 @@ use crate::{
 };
 
 /// The runs of a case in a tier: those of its own plan, then those of its declaration. Runs that occur
-/// several times are merged into one, with the gates of all.
+/// several times are merged into one, with the gates of all. Of each run is measured what its gates read.
 pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
-    let mut all = case.plan(tier);
-    all.extend(case.declaration(tier).runs());
-    merged(all)
+    let (mut all, declared) = (case.plan(tier), case.declaration(tier));
+    all.extend(declared.runs());
+    let mut merged = merged(all);
+    for Planned { spec, gates, .. } in &mut merged {
+        spec.measure = spec.measure.max(declared.measure_for(gates));
+    }
+    merged
 }
 
 /// The gates that the plans of both tiers have for the simulation with the settings of this run, each once.
@@ -31,7 +35,8 @@ pub fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
     gates.filter(|gate| names.insert(gate.id.clone())).collect()
 }
 
-/// Each run once, at its first place, with all gates; timed if one of them is.
+/// Each run once, at its first place, with all gates; timed if one of them is, and all of it measured if one
+/// of them asks for all.
 pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
     let mut merged: Vec<Planned> = Vec::new();
     let mut places: BTreeMap<RunKey, usize> = BTreeMap::new();
@@ -45,6 +50,7 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
                 let first = &mut merged[place];
                 first.gates.extend(planned.gates);
                 first.timed |= planned.timed;
+                first.spec.measure = first.spec.measure.max(planned.spec.measure);
                 first.seconds = first.seconds.max(planned.seconds);
             }
         }
@@ -56,7 +62,7 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 mod tests {
     use base::{
         gate::{Bound, Evidence, Gate},
-        spec::RunSpec,
+        spec::{Measure, RunSpec},
     };
     use serde_json::json;
 
@@ -70,11 +76,13 @@ mod tests {
             run(20).judged(vec![gate("c.a")]),
             run(40),
             run(20).judged(vec![gate("c.b")]).timed().taking(7.0),
+            Planned::new(run(40).spec.measure_all()),
         ];
         let merged = merged(all);
         assert_eq!(merged.len(), 2);
         let first = &merged[0];
         assert_eq!((first.gates.len(), first.timed, first.seconds), (2, true, 7.0));
         assert!(!merged[1].timed);
+        assert_eq!([0, 1].map(|k| merged[k].spec.measure), [Measure::Headline, Measure::All]);
     }
 }

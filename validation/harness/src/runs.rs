@@ -66,7 +66,8 @@ impl Judged {
 }
 
 /// The judged runs of a case. A study looks a run up by its [`RunSpec`]; one that is asked for and was not
-/// planned is a fault of the study, which [`Runs::unplanned`] tells, so that it cannot pass in silence.
+/// planned, or of which less is measured than the study asks for, is a fault of the study, which
+/// [`Runs::unplanned`] tells, so that it cannot pass in silence.
 #[derive(Debug, Default)]
 pub struct Runs {
     runs: Vec<JudgedRun>,
@@ -90,6 +91,7 @@ impl Runs {
     /// The judged run of a spec.
     pub fn judged(&self, spec: &RunSpec) -> Option<&JudgedRun> {
         let found = self.by_key.get(&spec.key()).map(|k| &self.runs[*k]);
+        let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         if found.is_none() {
             let mut unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
             unplanned.insert(spec.canonical());

@@ -68,14 +68,18 @@ impl Store {
         format!("{}-{}-{}.json", spec.case, spec.variant, spec.key())
     }
 
-    /// The record of a run, if there is one, and whether sources of this digest made it. An
-    /// interrupted record, or a file that is not a record, does not count: the run will be made again.
+    /// The record of a run, if there is one, and whether sources of this digest made it. An interrupted
+    /// record, one of which less was measured than the run asks for, or a file that is not a record, does
+    /// not count: the run will be made again.
     pub fn find(&self, spec: &RunSpec, sources: &str) -> Found {
         let Ok(text) = fs::read_to_string(self.path().join(Self::name(spec))) else {
             return Found::Nothing;
         };
         match Record::from_json(&text) {
-            Ok(record) if record.spec() != *spec => Found::Nothing,
+            Ok(record) if record.spec() != RunSpec { measure: <_>::default(), ..spec.clone() } => {
+                Found::Nothing
+            }
+            Ok(record) if record.measured() < spec.measure => Found::Nothing,
             Ok(Record { status: Status::Interrupted { .. }, .. }) | Err(_) => Found::Nothing,
             Ok(record) if record.manifest.sources == sources && sources != UNKNOWN => {
                 Found::Same(Box::new(record))
@@ -133,6 +137,7 @@ impl Store {
 
 #[cfg(test)]
 mod tests {
+    use base::record::MetricKey;
     use serde_json::json;
 
     use super::*;
@@ -159,6 +164,23 @@ mod tests {
         let finer = whole.spec().with_setting("rows", 40);
         assert!(matches!(store.find(&finer, "abc"), Found::Nothing));
         assert_eq!(Store::all(store.path()).unwrap(), [whole]);
+    }
+
+    /// A record with more metrics than are asked for serves; one with fewer is made again.
+    #[test]
+    fn a_record_serves_whoever_asks_for_no_more_than_was_measured() {
+        const GAP: MetricKey = MetricKey::new("gap", "-", "E(t) - E(0)");
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let (mut all, mut headline) = (record(Status::Completed), record(Status::Completed));
+        all.put(GAP, 0.0);
+        headline.leave_unasked(&[GAP]);
+        let spec = all.spec();
+        let serves = |spec: &RunSpec| matches!(store.find(spec, "abc"), Found::Same(_));
+        store.write(&all).unwrap();
+        assert!(serves(&spec) && serves(&spec.clone().measure_all()));
+        store.write(&headline).unwrap();
+        assert!(serves(&spec) && !serves(&spec.clone().measure_all()));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use base::spec::Measure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use harness::case;
 
@@ -83,8 +84,36 @@ const OF_ONE_RUN: [&str; 13] = [
 ];
 
 /// The options of `run` that a checkpoint holds.
-const OF_A_CHECKPOINT: [&str; 9] =
-    ["case", "variant", "set", "rows", "out", "overwrite", "vtk", "allow_unstable", "allow_long"];
+const OF_A_CHECKPOINT: [&str; 10] = [
+    "case",
+    "variant",
+    "set",
+    "rows",
+    "metrics",
+    "out",
+    "overwrite",
+    "vtk",
+    "allow_unstable",
+    "allow_long",
+];
+
+/// How much is measured of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Metrics {
+    /// What costs little beside the time steps
+    Headline,
+    /// Also what takes pair sweeps of its own, such as the energy that each term of the equations adds
+    All,
+}
+
+impl From<Metrics> for Measure {
+    fn from(metrics: Metrics) -> Self {
+        match metrics {
+            Metrics::Headline => Measure::Headline,
+            Metrics::All => Measure::All,
+        }
+    }
+}
 
 #[derive(Debug, Args)]
 pub struct Run {
@@ -100,6 +129,9 @@ pub struct Run {
     /// Short for `--set rows=N`; giving both is an error
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rows: Option<String>,
+    /// How much is measured; with --specs, at least so much of each run
+    #[arg(long, value_enum, value_name = "WHICH", default_value = "headline")]
+    pub metrics: Metrics,
     /// Write record.json, the curves of the record (series.csv and others) and profile.csv into this folder:
     /// the velocity across a channel, with profile.png, or all fields of the particles at the end; without
     /// --out and --vtk no file is written

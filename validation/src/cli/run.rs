@@ -1,5 +1,6 @@
 //! `run`: one variant of one case.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -9,7 +10,8 @@ use std::time::Duration;
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series, Status as Verdict};
 use base::{
     files::{Cell, CsvTable, FileError, OutputFolder},
-    record::{Profile, Record, Status},
+    gate::Gate,
+    record::{NOT_ASKED, Profile, Record, Status},
     spec::RunSpec,
 };
 use harness::{
@@ -57,6 +59,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
     let mut spec = case::spec(case, variant, &set(arguments)?)?;
     spec.allow_unstable = arguments.allow_unstable;
+    spec.measure = arguments.metrics.into();
     if arguments.checkpoint_every.is_some() && arguments.out.is_none() {
         let words =
             "--checkpoint-every needs --out DIR, the folder that the checkpoints are written into";
@@ -111,15 +114,21 @@ fn carry_out(
         return Err(Failure::interrupted(what));
     }
     let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();
-    let verdicts: Vec<Judged> = plan::gates_of(case, &spec)
-        .into_iter()
-        .map(|gate| Judged::of_record(gate, &record))
-        .collect();
+    let is_asked = |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| why != NOT_ASKED);
+    let (gates, unasked): (Vec<Gate>, Vec<Gate>) =
+        plan::gates_of(case, &spec).into_iter().partition(is_asked);
+    let verdicts: Vec<Judged> =
+        gates.into_iter().map(|gate| Judged::of_record(gate, &record)).collect();
     // What was computed is not lost with a file that cannot be written: then the record is printed, and where
     // that is refused, too, its numbers are told.
     let shown: Vec<&Judged> =
         verdicts.iter().filter(|j| arguments.all || j.status() != Verdict::Pass).collect();
-    let table = if shown.is_empty() { String::new() } else { judged::table(shown) + "\n" };
+    let mut table = if shown.is_empty() { String::new() } else { judged::table(shown) + "\n" };
+    if !unasked.is_empty() {
+        let count = unasked.len();
+        table +=
+            &format!("more gates, on metrics that were not asked for (--metrics all): {count}\n\n");
+    }
     let end = outcome(case, &spec, &record, &verdicts);
     let text = format!("{}\n{table}{end}", summary(&record));
     let printed = match arguments.json || written.is_err() {
@@ -410,12 +419,16 @@ fn summary(record: &Record) -> String {
     text + &metrics(record) + &absent(record) + &profile.unwrap_or_default()
 }
 
-/// The results that the run gives no meaning, with the reasons.
+/// The results that the run does not have, by the reason.
 fn absent(record: &Record) -> String {
-    let line = |(name, reason): (&String, &String)| {
-        output::wrap(&format!("{name} is absent: {reason}"), 100, "    ")
+    let mut names: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (name, reason) in &record.absent {
+        names.entry(reason).or_default().push(name);
+    }
+    let line = |(reason, names): (&&str, &Vec<&str>)| {
+        output::wrap(&format!("absent: {} ({reason})", names.join(", ")), 100, "    ")
     };
-    let lines: String = record.absent.iter().map(line).collect();
+    let lines: String = names.iter().map(line).collect();
     if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 

@@ -20,7 +20,8 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
         return Err(Failure::usage(anyhow::anyhow!("--specs needs --store DIR")));
     };
     let specs = chosen(read(file)?, arguments)?;
-    let job = |spec: RunSpec| -> Result<Job, Failure> {
+    let job = |mut spec: RunSpec| -> Result<Job, Failure> {
+        spec.measure = spec.measure.max(arguments.metrics.into());
         let case: &'static dyn Case = cases::find_in(world.cases, &spec.case)?;
         Ok(Job { case, planned: Planned::new(spec) })
     };

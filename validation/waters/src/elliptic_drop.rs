@@ -227,7 +227,7 @@ fn run(
     let mut simulation = (method.build)(parts)?;
     let [_, numbers @ ..] = drop.rules.numbers([s.h_over_dx, medium.dx]);
     let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
-    let mut ledger = Ledger::new(medium);
+    let mut ledger = context.measures_all().then(|| Ledger::new(medium));
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let pressure = |density| medium.eos.pressure(density);
@@ -235,12 +235,19 @@ fn run(
     (record.status, record.cost) =
         Drive::new(&mut *simulation, drop.rules.dt, &times, &pressure, &mut seen)
             .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
-            .at("energy ledger by term", &|(_, ledger), simulation, _| ledger.sample(simulation))
+            .at("energy ledger by term", &|(_, ledger), simulation, _| {
+                if let Some(ledger) = ledger {
+                    ledger.sample(simulation);
+                }
+            })
             .run(context)?;
     history.measure(&mut record);
     let start = shape(drop.particles.iter().map(evolved));
     let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;
-    ledger.measure(kinetic, "initial kinetic energy", &mut record);
+    match ledger {
+        Some(ledger) => ledger.measure(kinetic, "initial kinetic energy", &mut record),
+        None => record.leave_unasked(&ledger::METRICS),
+    }
     finish(&drop, &*simulation, context, &mut record);
     Ok(record)
 }
@@ -299,9 +306,10 @@ const VARIANTS: [&str; 3] = ["seed", "modern", "plain"];
 /// Particles across the drop of the figure.
 const SHOWN: usize = 40;
 
-/// A drop without gravity; with its particles where there is a picture of it.
+/// A drop without gravity, of which the table shows the energy; with its particles where there is a picture of
+/// it.
 fn spec(variant: &str, n: usize) -> RunSpec {
-    let spec = ELLIPTIC_DROP.spec(variant, |s| s.n = n);
+    let spec = ELLIPTIC_DROP.spec(variant, |s| s.n = n).measure_all();
     if (variant, n) == ("modern", SHOWN) { spec.keep_particles() } else { spec }
 }
 
@@ -331,7 +339,7 @@ fn declaration(tier: Tier) -> Declaration {
         ladders: VARIANTS.map(of).into(),
         ..Accuracy::new("elliptic-drop", error, "largest error of the semi-axis b [-]")
     };
-    Declaration { accuracy: vec![accuracy], ..Declaration::default() }
+    Declaration { accuracy: vec![accuracy], costly: &ledger::METRICS, ..Declaration::default() }
 }
 
 fn plan(tier: Tier) -> Vec<Planned> {
@@ -483,7 +491,7 @@ mod tests {
     use harness::case::Case;
 
     fn run(variant: &str, set: impl FnOnce(&mut DropSettings)) -> Result<Record, RunError> {
-        ELLIPTIC_DROP.run(&ELLIPTIC_DROP.spec(variant, set), &Context::default())
+        ELLIPTIC_DROP.run(&ELLIPTIC_DROP.spec(variant, set).measure_all(), &Context::default())
     }
 
     #[test]

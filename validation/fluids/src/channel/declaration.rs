@@ -41,6 +41,7 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
         limits: Some(limits::limits(channel, tier)),
         maps,
         sensitivity: Some(sensitivity::sensitivity(channel, tier)),
+        ..Declaration::default()
     }
 }
 

@@ -36,6 +36,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         limits: Some(stability::limits(tier)),
         sensitivity: Some(sensitivity::sensitivity(tier)),
         maps: Vec::new(),
+        ..Declaration::default()
     }
 }
 

@@ -23,6 +23,9 @@ const ELASTIC: &str = "elastic law";
 const ITEMS: [(&str, MetricKey); 3] =
     [(VISCOSITY, WORK_VISCOSITY), (STRESS, WORK_STRESS), (ELASTIC, WORK_ELASTIC)];
 
+/// What a budget measures: it takes a pair sweep a term.
+pub const METRICS: [MetricKey; 4] = [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_ELASTIC];
+
 /// Forces with an artificial stress, or with none, `()`.
 pub trait Stressed {
     /// The artificial stress.

@@ -2,7 +2,7 @@
 //! cost, an error budget, step limits, maps.
 
 use super::{
-    RUBBER_RINGS, RingSettings,
+    RUBBER_RINGS, RingSettings, budget,
     metrics::{
         Fate, HEIGHT_MAX_ERROR, PIECES_MOST, RESTITUTION, RESTITUTION_ERROR, TORN_AT,
         WIDTH_MIN_ERROR,
@@ -40,6 +40,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         limits: Some(limits(tier)),
         maps,
         sensitivity: Some(sensitivity::sensitivity(tier)),
+        costly: &budget::METRICS,
     }
 }
 

@@ -4,7 +4,7 @@ use solver::{EquationOfState, Observer, Particle, Stepper, Symmetric};
 
 use super::{
     RingMethod, RingSettings, Rings,
-    budget::Budget,
+    budget::{self, Budget},
     measure::{self, Series},
     metrics::{COURANT, MOMENTUM},
     reference::{self, Reference},
@@ -47,10 +47,10 @@ pub fn run(
     let name = (super::NAME, variant);
     let mut record = simulate::begin(name, &rings.settings, method, &numbers(rings), context);
     let mut series = Series::new(rings);
-    let mut budget = Budget::default();
+    let mut budget = context.measures_all().then(Budget::default);
     simulation.advance(0.0, rings.dt, &mut ());
     series.sample(0.0, &measure::along_flight(rings, &*simulation));
-    budget.sample(rings, &*simulation);
+    budget.iter_mut().for_each(|budget| budget.sample(rings, &*simulation));
     keep(rings, &*simulation, 0.0, context, &mut record);
     let stops = stops(rings, context);
     let times: Vec<f64> = stops.iter().map(|stop| stop.time).collect();
@@ -60,7 +60,7 @@ pub fn run(
     let (status, cost) = Drive::new(&mut *simulation, rings.dt, &times, &pressure, &mut seen)
         .after_step("series", &|(series, ..), simulation| series.after_step(simulation))
         .at("energy budget by term", &|(_, budget, _), s, k| {
-            if stops[k].is_sample {
+            if let Some(budget) = budget.as_mut().filter(|_| stops[k].is_sample) {
                 budget.sample(rings, s);
             }
         })
@@ -72,13 +72,16 @@ pub fn run(
             series.sample(simulation.time(), &particles);
         }
         series.measure(&mut record);
-        budget.measure(rings, &mut record);
+        budget.iter().for_each(|budget| budget.measure(rings, &mut record));
         match Reference::of(&rings.settings) {
             Some(reference) => reference.compare(&series, &mut record),
             None => reference::leave_out(&mut record),
         }
         record.put(MOMENTUM, measure::momentum_error(rings, &particles));
         record.put(COURANT, rings.dt * (rings.cp + rings.v) / rings.medium.h);
+    }
+    if budget.is_none() {
+        record.leave_unasked(&budget::METRICS);
     }
     record.profiles.insert("series".into(), series.profile());
     record.state = Some(digest(&simulation.particles()));

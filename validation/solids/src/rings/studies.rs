@@ -76,7 +76,7 @@ fn distances(tier: Tier, runs: &Runs) -> Study {
     let study = Study::new("rubber-rings-distances", "Distances from finite elements")
         .block(collisions_table(tier, runs))
         .block(phases_table(tier, runs));
-    match runs.record(&finest(tier)) {
+    match runs.record(&finest(tier).measure_all()) {
         Some(record) => study.block(energies(record)),
         None => study,
     }

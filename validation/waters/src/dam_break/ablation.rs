@@ -85,7 +85,7 @@ fn spec(variant: &str, change: Change) -> RunSpec {
             set(s, value);
         }
     };
-    DAM_BREAK.spec(variant, set).allow_unstable()
+    DAM_BREAK.spec(variant, set).allow_unstable().measure_all()
 }
 
 /// The runs of all rows.

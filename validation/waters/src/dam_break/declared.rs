@@ -3,7 +3,7 @@
 
 use super::{
     DAM_BREAK, DamSettings, NAME, front, lobovsky, metrics::FRONT, reference::FRONT_SPREAD,
-    sensitivity, specs,
+    run::COSTLY, sensitivity, specs,
 };
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -29,6 +29,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         budgets,
         limits,
         sensitivity,
+        costly: COSTLY,
         ..Declaration::default()
     }
 }
@@ -149,8 +150,9 @@ fn limits(tier: Tier) -> StepLimits {
             (s.n, s.end) = (15, 4.0);
         }),
     ];
-    let of =
-        |variant| scenes.map(|(scene, set)| limit(variant, scene, DAM_BREAK.spec(variant, set)));
+    // Stable is what keeps its energy.
+    let spec = |variant, set| DAM_BREAK.spec(variant, set).measure_all();
+    let of = |variant| scenes.map(|(scene, set)| limit(variant, scene, spec(variant, set)));
     let most = if tier == Tier::Quick { 1 } else { usize::MAX };
     let all =
         ["modern", "modern-bare", "seed-leapfrog", "seed"].into_iter().flat_map(of).take(most);

@@ -1,6 +1,5 @@
-//! What is measured of the water: front, heights, levels, momentum, and pressure on the far wall.
+//! What is measured of the water: front, heights, levels, and pressure on the far wall.
 
-use harness::checkpoint::vector;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use solver::{EquationOfState, Evolved, Flow, Observer, Stepper, Tait};
@@ -76,29 +75,14 @@ pub struct Samples<'a> {
     /// x of the foremost particle at the start \[m\].
     start: f64,
     samples: Vec<Sample>,
-    /// t, momentum and the force of walls and gravity: the last of them, the impulse so far, and the
-    /// largest gap.
-    balance: Option<Balance>,
 }
 
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Balance {
-    time: f64,
-    #[serde(with = "vector")]
-    start: Vector2<f64>,
-    #[serde(with = "vector")]
-    force: Vector2<f64>,
-    #[serde(with = "vector")]
-    impulse: Vector2<f64>,
-    gap: f64,
-}
-
-harness::observed! { Samples<'_>: changes(start, samples, balance), parts(), stays(dam) }
+harness::observed! { Samples<'_>: changes(start, samples), parts(), stays(dam) }
 
 impl<'a> Samples<'a> {
     /// None yet.
     pub fn new(dam: &'a Dam) -> Self {
-        Self { dam, start: f64::NAN, samples: Vec::new(), balance: None }
+        Self { dam, start: f64::NAN, samples: Vec::new() }
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
@@ -135,27 +119,6 @@ impl<'a> Samples<'a> {
             speed: fastest,
             density: [fold(f64::min), fold(f64::max)],
         });
-        self.balance(simulation);
-    }
-
-    /// Momentum against the impulse of walls and gravity, by the trapezoidal rule.
-    fn balance(&mut self, simulation: &dyn Stepper<()>) {
-        let rates = simulation.total_rates();
-        let (mut momentum, mut force) = (Vector2::zeros(), Vector2::zeros());
-        for ((mass, p), rate) in simulation.fluid().zip(&rates) {
-            momentum += p.velocity * mass;
-            force += rate.velocity * mass;
-        }
-        let time = simulation.time();
-        let now = match self.balance {
-            None => Balance { time, start: momentum, force, impulse: Vector2::zeros(), gap: 0.0 },
-            Some(b) => {
-                let impulse = b.impulse + (b.force + force) * (0.5 * (time - b.time));
-                let gap = (momentum - b.start - impulse).norm().max(b.gap);
-                Balance { time, force, impulse, gap, ..b }
-            }
-        };
-        self.balance = Some(now);
     }
 
     /// (t, front) \[s, m\].
@@ -174,8 +137,8 @@ impl<'a> Samples<'a> {
     }
 
     /// Metrics that need no reference, and the series.
-    pub fn measure(&self, mass: f64, record: &mut Record) {
-        let Dam { settings: s, medium, .. } = self.dam;
+    pub fn measure(&self, record: &mut Record) {
+        let medium = &self.dam.medium;
         let most = |f: &dyn Fn(&Sample) -> f64| self.samples.iter().map(f).fold(f64::NAN, f64::max);
         record.put(metrics::OUTSIDE, most(&|s| s.outside));
         let last = self.samples.last().map_or(f64::NAN, |s| s.outside);
@@ -184,9 +147,6 @@ impl<'a> Samples<'a> {
         record.put(metrics::MACH, most(&|s| s.speed) / medium.eos.sound_speed);
         record.put(metrics::DENSITY_MOST, most(&|s| s.density[1]));
         record.put(metrics::DENSITY_LEAST, -most(&|s| -s.density[0]));
-        let scale = mass * (s.gravity * s.height).sqrt();
-        let gap = self.balance.map_or(f64::NAN, |b| b.gap) / scale;
-        record.put(metrics::MOMENTUM_GAP, gap);
         let column = |f: &dyn Fn(&Sample) -> f64| self.samples.iter().map(f).collect();
         let mut series = Profile::default()
             .with("t", "s", column(&|s| s.time))
@@ -372,9 +332,9 @@ mod tests {
             .collect()
     }
 
-    fn record(dam: &Dam, samples: &Samples, mass: f64) -> Record {
+    fn record(dam: &Dam, samples: &Samples) -> Record {
         let mut record = Record::new("dam_break", "modern", serde_json::json!(dam.settings), 1);
-        samples.measure(mass, &mut record);
+        samples.measure(&mut record);
         record
     }
 
@@ -439,40 +399,13 @@ mod tests {
         samples.sample(&*simulation(&free, particles.clone()));
         particles.truncate(202);
         samples.sample(&*simulation(&free, particles));
-        let record = record(&free, &samples, 1.0);
+        let record = record(&free, &samples);
         let value = |metric| record.value(metric).expect("a metric");
         assert_eq!((value(metrics::OUTSIDE), value(metrics::OUTSIDE_END)), (3.0, 1.0));
         is(value(metrics::OUTSIDE_DEPTH), 2.5);
         is(value(metrics::MACH), 0.5 / free.medium.eos.sound_speed);
         is(value(metrics::DENSITY_MOST), 0.07);
         is(value(metrics::DENSITY_LEAST), -0.06);
-    }
-
-    #[test]
-    fn momentum_that_no_force_explains_is_the_gap() {
-        let free = dam(|s| s.n = 10);
-        let apart = |v: Vector2<f64>| {
-            let place = |k: usize| Vector2::new(0.1 * k as f64, 0.05 * k as f64);
-            let particle = |k| Particle::fluid(place(k), v, 1e3, 1e-5 * (k + 1) as f64);
-            simulation(&free, (1..4).map(particle).collect())
-        };
-        let unit = (free.settings.gravity * free.settings.height).sqrt();
-        let gap = |samples: &Samples| {
-            record(&free, samples, 0.09).value(metrics::MOMENTUM_GAP).expect("a gap")
-        };
-        // A free fall: gravity gives what the water has.
-        let (mut falling, mut samples) = (apart(Vector2::zeros()), Samples::new(&free));
-        for k in 0..4 {
-            falling.advance(0.01 * f64::from(k), 1e-3, &mut ());
-            samples.sample(&*falling);
-        }
-        assert!(gap(&samples) < 1e-13, "{:e}", gap(&samples));
-        // A kick of all masses, of 0.09 kg/m, and then a smaller one: the largest counts.
-        let mut samples = Samples::new(&free);
-        for v in [Vector2::zeros(), Vector2::new(0.3, 0.4) * unit, Vector2::new(0.1, 0.0)] {
-            samples.sample(&*apart(v));
-        }
-        is(gap(&samples), 0.5);
     }
 
     #[test]

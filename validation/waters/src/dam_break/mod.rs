@@ -10,6 +10,7 @@ mod front;
 mod limitations;
 mod measure;
 mod metrics;
+mod momentum;
 mod plan;
 mod reference;
 mod run;

@@ -135,3 +135,39 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
     );
     gates.into_iter().map(|gate| limitations::in_tank(gate, variant, n)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dam_break::DAM_BREAK;
+    use base::spec::{Measure, RunSpec};
+    use harness::{case::Case, context::Context, plan, runs::JudgedRun};
+
+    /// The need of a run follows from its gates, and a gate on what was not asked for fails.
+    #[test]
+    fn what_gates_read_is_measured_and_nothing_else_that_is_costly() {
+        let planned = plan::of_case(&DAM_BREAK, Tier::Quick);
+        let of = |spec: &RunSpec| {
+            let run = planned.iter().find(|planned| planned.spec.key() == spec.key());
+            run.expect("a planned run").clone()
+        };
+        let is_costly =
+            |gate: &Gate| super::super::run::COSTLY.iter().any(|m| gate.metric == String::from(*m));
+        for run in planned.iter().filter(|run| run.gates.iter().any(is_costly)) {
+            assert_eq!(run.spec.measure, Measure::All, "{:?}", run.spec);
+        }
+        let coarse = stability::USUAL;
+        for spec in [film(Tier::Quick), planned_free(Tier::Quick, "modern", coarse).spec] {
+            assert_eq!(of(&spec).spec.measure, Measure::Headline, "{spec:?}");
+        }
+        let extreme = stability::extremes(Tier::Quick).nth(1).expect("a column one particle wide");
+        let run = of(&extreme.planned().spec);
+        let failed = |spec: RunSpec| {
+            let record = DAM_BREAK.run(&spec, &Context::default()).expect("a run");
+            let judged = JudgedRun::new(run.clone(), record).judged;
+            judged.into_iter().filter(|j| j.judgement.verdict.is_failure()).count()
+        };
+        assert_eq!(failed(run.spec.clone()), 0);
+        assert_eq!(failed(RunSpec { measure: Measure::Headline, ..run.spec.clone() }), 1);
+    }
+}

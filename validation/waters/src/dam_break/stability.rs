@@ -37,7 +37,7 @@ pub const SPEEDS: [f64; 5] = [5.0, 10.0, 20.0, 50.0, 100.0];
 
 /// The column of Martin & Moyce with one of them.
 pub fn at_speed(c0: f64) -> RunSpec {
-    DAM_BREAK.spec("modern", |s| (s.n, s.c0) = (20, c0)).allow_unstable()
+    DAM_BREAK.spec("modern", |s| (s.n, s.c0) = (20, c0)).allow_unstable().measure_all()
 }
 
 /// The sound speed: Mach number, excursion of the density, front.
@@ -120,12 +120,13 @@ pub fn extremes(tier: Tier) -> impl Iterator<Item = Extreme> {
     ];
     let mild = rows.into_iter().map(|(name, set)| Extreme {
         name,
-        spec: DAM_BREAK.spec("modern", set),
+        spec: DAM_BREAK.spec("modern", set).measure_all(),
         holds: true,
     });
     let rules = DAM_BREAK.rules(&specs::free(tier, "modern", USUAL));
     let limit = rules.ok().map(|rules| 2.0 * declared::theory(rules));
     let spec = DAM_BREAK.spec("modern", |s| (s.n, s.dt) = (USUAL, limit)).allow_unstable();
+    let spec = spec.measure_all();
     let beyond = Extreme { name: "dt at twice the limit", spec, holds: false };
     mild.chain([beyond])
 }

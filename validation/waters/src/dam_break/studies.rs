@@ -14,6 +14,7 @@ use crate::water::{curve, ledger};
 use base::{
     record::{MetricName, Record},
     reference::ReferenceError,
+    spec::RunSpec,
 };
 use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{
@@ -418,7 +419,7 @@ fn energies(tier: Tier, runs: &Runs) -> Study {
                    taken so far. Black is the sum, which must keep its first value.";
     let mut figure = Figure::new("dam-break-energy", caption).columns(2);
     for variant in ["seed", "modern"] {
-        if let Some(record) = runs.record(&specs::free(tier, variant, 20)) {
+        if let Some(record) = runs.record(&specs::free(tier, variant, 20).measure_all()) {
             figure = figure.panel(energy_plot(record));
         }
     }
@@ -464,6 +465,7 @@ fn energy_table(tier: Tier, runs: &Runs) -> Table {
     let caption = "Energy that each term has added until the end, over M g H/2 at the start. Below 0 it \
                    took energy. The work of the walls is that of their pressure beyond what they store. \
                    Momentum is over M √(g H).";
+    let all = specs::all_free(tier).chain(specs::all_in_tank(tier));
     let scene = |record: &Record| if is_free(record) { "Martin & Moyce" } else { "Lobovsky" };
     let sci = |value| Cell::sci(value, 2);
     let mut columns = Columns::of_variants().text("case", move |record| scene(record)).of(
@@ -477,5 +479,5 @@ fn energy_table(tier: Tier, runs: &Runs) -> Table {
     columns
         .metric(["not accounted for", "-"], ledger::ENERGY_GAP, sci)
         .metric(["momentum not accounted for", "-"], metrics::MOMENTUM_GAP, sci)
-        .table(caption, runs.records(specs::all_free(tier).chain(specs::all_in_tank(tier))))
+        .table(caption, runs.records(all.map(RunSpec::measure_all)))
 }

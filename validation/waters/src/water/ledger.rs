@@ -27,6 +27,10 @@ pub const ITEMS: [(&str, MetricKey); 5] = [
     (WALLS, WORK_WALLS),
 ];
 
+/// What a ledger measures: it takes a pair sweep a term.
+pub const METRICS: [MetricKey; 6] =
+    [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
+
 /// Keeps the budget of a run.
 pub struct Ledger {
     water: Water,
