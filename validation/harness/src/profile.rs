@@ -112,7 +112,7 @@ impl Profiler {
         Self { clock, observers, earlier, lists: Lists::default(), sampled: 0, before }
     }
 
-    /// Stepping begins, or goes on after it was observed.
+    /// Stepping begins. What comes between an observer and the next phase of a step counts as observing.
     pub fn step(&self) {
         self.clock.enter(Phase::Rest as usize);
     }

@@ -248,7 +248,6 @@ impl<X: Numbers, S: Observed> Observer<X> for Watch<'_, X, S> {
         let start = Instant::now();
         let observed = self.observe(simulation);
         self.clocks.observing += start.elapsed().as_secs_f64();
-        self.profiler.iter().for_each(Profiler::step);
         match observed {
             Ok(Flow::Continue) if !self.is_interrupted() => Flow::Continue,
             Ok(_) => Flow::Stop,

@@ -28,6 +28,7 @@ pub fn tables(cost: &Cost, breakdown: &Breakdown) -> String {
     }
     let moved = breakdown.bytes_a_step;
     let counts = [
+        ("processor time of the stepping, all threads", seconds(cost.cpu_s)),
         ("neighbours visited, of a fluid particle in a pair sweep", sig(breakdown.neighbours, 3)),
         (
             "share of them inside the support, the rest being in the skin",
@@ -48,7 +49,7 @@ pub fn tables(cost: &Cost, breakdown: &Breakdown) -> String {
         "\nWhere the time went, in wall seconds ({threads}); ns: nanoseconds a fluid particle and time \
          step\n\n{}\n{}",
         output::table(&["part", "time", "share", "ns", "times"], &rows),
-        output::table(&["what pair sweeps go through", ""], &counts)
+        output::table(&["work and data", ""], &counts)
     )
 }
 
