@@ -56,7 +56,7 @@ impl<P: Physics> Engine<P> {
             extent = self.fill(state)?;
         }
         self.terms.prepare(extent.speed2.sqrt());
-        self.refresh_walls(state);
+        self.refresh_walls(state, 1.0);
         Ok(())
     }
 
@@ -69,7 +69,15 @@ impl<P: Physics> Engine<P> {
             self.data.progress.built_inside_a_step = true;
             self.fill(state)?;
         }
-        self.refresh_walls(state);
+        self.refresh_walls(state, 1.0);
+        Ok(())
+    }
+
+    /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
+    /// 0 for wall particles: walls are at rest, and images have the differences that follow.
+    pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), Fault> {
+        self.fill(state)?;
+        self.refresh_walls(state, 0.0);
         Ok(())
     }
 
@@ -77,6 +85,21 @@ impl<P: Physics> Engine<P> {
     pub fn sweep_forces(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
         self.data.count(Phase::Forces);
         let sweep = self.sweep(&self.terms.0, first(), true);
+        sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
+        self.data.enter(Phase::Rest);
+    }
+
+    /// Sums a part of the forces, whose derived numbers `select` reads: `update(i, target, rate)` with dv/dt,
+    /// for fluid particles.
+    pub fn sweep_part<T: Term<P::Extra>>(
+        &mut self,
+        targets: &mut State<P>,
+        part: &T,
+        select: impl Fn(&Derived<P>) -> T::Derived + Sync,
+        update: impl Update<P::Extra>,
+    ) {
+        self.data.count(Phase::Forces);
+        let sweep = self.sweep(part, select, true);
         sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
         self.data.enter(Phase::Rest);
     }
@@ -103,7 +126,7 @@ impl<P: Physics> Engine<P> {
             Column { position, velocity, common, derived: terms.derived(&common, &extra) }
         };
         let mut columns: Vec<_> = self.columns.iter().enumerate().map(own).collect();
-        fill_images::<P, T>(neighbours, 0, &mut columns);
+        fill_images::<P, T>(neighbours, 0, 1.0, &mut columns);
         let (kernel, select) = (&self.kernel, whole());
         let sweep = Sweep { kernel, terms, columns: &columns, select, moving: false };
         sweep::rates(&sweep, &neighbours.lists)
@@ -210,18 +233,19 @@ impl<P: Physics> Engine<P> {
         data.check(state, extents)
     }
 
-    /// Refreshes images, and what wall particles extrapolate.
-    fn refresh_walls(&mut self, state: &State<P>) {
-        fill_images::<P, (P::Forces, P::Drift)>(&self.data.neighbours, 0, &mut self.columns);
+    /// Refreshes images, and what wall particles extrapolate, with this share of the walls' own motion.
+    fn refresh_walls(&mut self, state: &State<P>, motion: f64) {
+        let neighbours = &self.data.neighbours;
+        fill_images::<P, (P::Forces, P::Drift)>(neighbours, 0, motion, &mut self.columns);
         if P::Walls::EXTRAPOLATES && self.data.counts[1] > 0 {
-            self.extrapolate(state);
+            self.extrapolate(state, motion);
         }
         self.data.enter(Phase::Rest);
     }
 
     /// Gives the columns of wall particles that extrapolate what the fluid before them implies, and
     /// their images too.
-    fn extrapolate(&mut self, state: &State<P>) {
+    fn extrapolate(&mut self, state: &State<P>, motion: f64) {
         let (walls, fluid) = (self.data.neighbours.wall_lists.of.clone(), self.data.counts[0]);
         let mut implied = std::mem::take(&mut self.extrapolated);
         implied.clear();
@@ -236,15 +260,17 @@ impl<P: Physics> Engine<P> {
             *column = derive(&self.terms, column.common.mass, implied);
         }
         self.extrapolated = implied;
-        fill_images::<P, (P::Forces, P::Drift)>(&self.data.neighbours, fluid, &mut self.columns);
+        let neighbours = &self.data.neighbours;
+        fill_images::<P, (P::Forces, P::Drift)>(neighbours, fluid, motion, &mut self.columns);
     }
 }
 
 /// Refills the images among these columns of the particles from `first` on; an image of an image belongs to
-/// both.
+/// both. `motion` is the share of the walls' own motion that they have.
 fn fill_images<P: Physics, T: Term<P::Extra>>(
     neighbours: &Neighbours,
     first: usize,
+    motion: f64,
     columns: &mut [Column<T::Derived>],
 ) {
     let real = columns.len() - 1 - neighbours.images.len();
@@ -252,8 +278,8 @@ fn fill_images<P: Physics, T: Term<P::Extra>>(
         let source = image.source as usize;
         if source >= first {
             let (map, source) = (&neighbours.maps[image.map as usize], &columns[source]);
-            let mut image = map.apply(source, P::Walls::SLIPS);
-            let no_slip = map.apply(source, false).velocity;
+            let mut image = map.apply(source, P::Walls::SLIPS, motion);
+            let no_slip = map.apply(source, false, motion).velocity;
             T::no_slip(&mut image.derived, no_slip - image.velocity);
             columns[real + k] = image;
         }

@@ -2,39 +2,37 @@
 
 use crate::{
     engine::Engine,
+    kernel::Kernel,
     numbers::Numbers,
     particle_data::Fault,
     particles::{Evolved, Rate},
-    physics::{Compose, Physics},
+    physics::{Compose, Physics, State},
+    terms::Term,
+    walls::Walls,
 };
 
-/// An explicit time integration of (x, v, ρ). A value of the type holds what is needed from step to step.
-pub trait Integrator<X: Numbers>: Default + Send + Sync + 'static {
+/// Whether a step stayed within the bounds of its scene.
+pub type Stepped = Result<(), Fault>;
+
+/// An explicit time integration of (x, v, ρ) of the physics `P`. A value of the type holds what is needed
+/// from step to step.
+pub trait Integrator<P: Physics>: Default + Send + Sync + 'static {
     /// Its name in settings and reports.
     const NAME: &'static str;
     /// Order in dt for forces that do not depend on the velocity, and for forces that do.
     const ORDER: [u32; 2];
 
     /// Advances the state by dt \[s\].
-    fn step<P: Physics<Extra = X>>(
-        &mut self,
-        engine: &mut Engine<P>,
-        state: &mut [Evolved<X>],
-        dt: f64,
-    ) -> Result<(), Fault>;
+    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped;
 
     /// Brings every quantity to the same time.
-    fn synchronise<P: Physics<Extra = X>>(
-        &mut self,
-        _engine: &mut Engine<P>,
-        _state: &mut [Evolved<X>],
-    ) -> Result<(), Fault> {
+    fn synchronise(&mut self, _engine: &mut Engine<P>, _state: &mut State<P>) -> Stepped {
         Ok(())
     }
 
     /// Rates of each fluid particle in the state that was synchronised last, where dx/dt does not include v.
     /// They are computed by the same pair sweeps that a step uses.
-    fn rates<P: Physics<Extra = X>>(engine: &Engine<P>) -> Vec<Rate<X>> {
+    fn rates(engine: &Engine<P>) -> Vec<Rate<P::Extra>> {
         engine.rates_in_one_sweep()
     }
 
@@ -58,12 +56,13 @@ pub trait Integrator<X: Numbers>: Default + Send + Sync + 'static {
 /// A physics with its time integration: the complete method. [`Compose`] names one in a line of types.
 pub trait Scheme: Physics {
     /// Time integration.
-    type Integrator: Integrator<Self::Extra>;
+    type Integrator: Integrator<PhysicsOf<Self>>;
 }
 
-impl<K, F, D, W, I: Integrator<X>, X: Numbers> Scheme for Compose<K, F, D, W, I, X>
+impl<K: Kernel, F: Term<X>, D: Term<X>, W: Walls<X>, I, X: Numbers> Scheme
+    for Compose<K, F, D, W, I, X>
 where
-    Self: Physics<Extra = X>,
+    I: Integrator<Compose<K, F, D, W, (), X>>,
 {
     type Integrator = I;
 }
@@ -88,16 +87,11 @@ pub struct PredictorCorrector<X = ()> {
     midpoint: Vec<Evolved<X>>,
 }
 
-impl<X: Numbers> Integrator<X> for PredictorCorrector<X> {
+impl<P: Physics> Integrator<P> for PredictorCorrector<P::Extra> {
     const NAME: &'static str = "predictor-corrector";
     const ORDER: [u32; 2] = [2, 2];
 
-    fn step<P: Physics<Extra = X>>(
-        &mut self,
-        engine: &mut Engine<P>,
-        state: &mut [Evolved<X>],
-        dt: f64,
-    ) -> Result<(), Fault> {
+    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.begin(state)?;
         self.midpoint.clear();
         self.midpoint.extend_from_slice(state);
@@ -110,7 +104,7 @@ impl<X: Numbers> Integrator<X> for PredictorCorrector<X> {
     }
 
     fn bytes(&self) -> usize {
-        self.midpoint.capacity() * size_of::<Evolved<X>>()
+        self.midpoint.capacity() * size_of::<Evolved<P::Extra>>()
     }
 }
 
@@ -121,29 +115,56 @@ impl<X: Numbers> Integrator<X> for PredictorCorrector<X> {
 /// not reversible in time, because D depends on the positions. Each of the two pair sweeps evaluates only
 /// its own terms, so together they make one right-hand side. Sound is neither damped nor amplified up to
 /// ω dt = 2. With both sums at the old velocity the scheme would be forward Euler for sound, and unstable
-/// at every dt. Forces that depend on the velocity use that of half a step earlier: first order in dt.
+/// at every dt. `K` advances the velocities, by default [`ForwardKick`].
 #[derive(Debug, Default)]
-pub struct Leapfrog {
+pub struct Leapfrog<K = ForwardKick> {
     /// The time by which the velocities lag behind the positions \[s\].
     lag: f64,
+    kick: K,
 }
 
-impl<X: Numbers> Integrator<X> for Leapfrog {
+/// How a [`Leapfrog`] advances velocities while positions and densities stay as they are.
+pub trait Kick<P: Physics>: Default + Send + Sync + 'static {
+    /// Name of the leapfrog that has it.
+    const NAME: &'static str;
+    /// Order in dt of that leapfrog, as [`Integrator::ORDER`].
+    const ORDER: [u32; 2];
+
+    /// Advances the velocities of fluid particles by the first of these times \[s\], and then moves the
+    /// particles with them for the second.
+    fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped;
+
+    /// Memory that it holds \[bytes\].
+    fn bytes(&self) -> usize {
+        0
+    }
+}
+
+/// v + dt a(v): forces that depend on the velocity use that of half a step earlier, first order in dt.
+#[derive(Debug, Default)]
+pub struct ForwardKick;
+
+impl<P: Physics> Kick<P> for ForwardKick {
     const NAME: &'static str = "leapfrog";
     const ORDER: [u32; 2] = [2, 1];
 
-    fn step<P: Physics<Extra = X>>(
-        &mut self,
-        engine: &mut Engine<P>,
-        state: &mut [Evolved<X>],
-        dt: f64,
-    ) -> Result<(), Fault> {
-        engine.begin(state)?;
-        let (kick, half) = (self.lag + 0.5 * dt, 0.5 * dt);
+    fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
         engine.sweep_forces(state, |_, evolved, rate| {
-            evolved.kick(kick, rate);
-            evolved.position += evolved.velocity * half;
+            evolved.kick(dt[0], rate);
+            evolved.position += evolved.velocity * dt[1];
         });
+        Ok(())
+    }
+}
+
+impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
+    const NAME: &'static str = K::NAME;
+    const ORDER: [u32; 2] = K::ORDER;
+
+    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+        engine.begin(state)?;
+        let half = 0.5 * dt;
+        self.kick.kick(engine, state, [self.lag + half, half])?;
         engine.refresh(state)?;
         // Wall particles have a velocity too, but do not move.
         let fluid = engine.data.fluid_count();
@@ -157,21 +178,16 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
         Ok(())
     }
 
-    fn synchronise<P: Physics<Extra = X>>(
-        &mut self,
-        engine: &mut Engine<P>,
-        state: &mut [Evolved<X>],
-    ) -> Result<(), Fault> {
+    fn synchronise(&mut self, engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
         if self.lag != 0.0 {
-            let kick = self.lag;
             engine.begin(state)?;
-            engine.sweep_forces(state, |_, evolved, rate| evolved.kick(kick, rate));
+            self.kick.kick(engine, state, [self.lag, 0.0])?;
             self.lag = 0.0;
         }
         Ok(())
     }
 
-    fn rates<P: Physics<Extra = X>>(engine: &Engine<P>) -> Vec<Rate<X>> {
+    fn rates(engine: &Engine<P>) -> Vec<Rate<P::Extra>> {
         engine.rates_in_two_sweeps()
     }
 
@@ -180,7 +196,11 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
     }
 
     fn with_lag(lag: f64) -> Self {
-        Self { lag }
+        Self { lag, ..Self::default() }
+    }
+
+    fn bytes(&self) -> usize {
+        self.kick.bytes()
     }
 }
 
@@ -188,16 +208,11 @@ impl<X: Numbers> Integrator<X> for Leapfrog {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Euler;
 
-impl<X: Numbers> Integrator<X> for Euler {
+impl<P: Physics> Integrator<P> for Euler {
     const NAME: &'static str = "euler";
     const ORDER: [u32; 2] = [1, 1];
 
-    fn step<P: Physics<Extra = X>>(
-        &mut self,
-        engine: &mut Engine<P>,
-        state: &mut [Evolved<X>],
-        dt: f64,
-    ) -> Result<(), Fault> {
+    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.begin(state)?;
         engine.sweep_all(state, |_, evolved, rate| *evolved = evolved.advanced(dt, rate));
         Ok(())

@@ -19,7 +19,7 @@
 //!
 //! ```text
 //! lane, numbers, kernel, eos, domain <- particles <- terms <- walls <- neighbours
-//!     <- physics, sweep, particle_data <- engine <- integrator <- simulation <- scene
+//!     <- physics, sweep, particle_data <- engine <- integrator <- super_steps, simulation <- scene
 //! ```
 //!
 //! The crate does no I/O and contains no reference data. After [`Scene::build`] it returns no error; a
@@ -41,6 +41,7 @@ pub mod particles;
 pub mod physics;
 pub mod scene;
 pub mod simulation;
+pub mod super_steps;
 mod sweep;
 pub mod terms;
 pub mod walls;
@@ -50,7 +51,7 @@ mod ymm;
 pub use domain::Domain;
 pub use engine::Engine;
 pub use eos::{EquationOfState, Linear, Tait};
-pub use integrator::{Euler, Integrator, Leapfrog, PredictorCorrector, Scheme};
+pub use integrator::{Euler, ForwardKick, Integrator, Leapfrog, PredictorCorrector, Scheme};
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
 pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{
@@ -60,11 +61,12 @@ pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Flow, Observer, Outcome, Simulation, Stepper};
+pub use super_steps::SuperSteps;
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
     ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion,
     Hydrostatic, JaumannRate, NoSlipImages, Pressure, PrincipalStress, ShiftAdvection, Shifting,
-    Term, Viscosity, Xsph,
+    Split, Term, Viscosity, Xsph,
 };
 pub use walls::{
     ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall, SlipGhosts,

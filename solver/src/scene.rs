@@ -16,67 +16,32 @@ use crate::{
     walls::{PlaneWall, RIGHT_ANGLE, Walls},
 };
 
-/// Why a scene cannot be simulated.
+/// Why a scene cannot be simulated: a number that is not allowed.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum SceneError {
-    /// The scene has no particle that moves.
-    #[error("the scene has no fluid particle")]
-    Empty,
-    /// There are more particles than the indices of neighbour lists allow.
-    #[error("the scene has {count} particles, but at most {most} are allowed")]
-    TooMany {
-        /// Particles given.
-        count: usize,
-        /// Particles allowed.
-        most: usize,
-    },
-    /// A length that must be positive and finite.
-    #[error("{name} is {value} m, but must be a finite length {range}")]
-    Length {
-        /// Which length.
-        name: &'static str,
-        /// Its value \[m\].
-        value: f64,
-        /// What is allowed.
-        range: &'static str,
-    },
-    /// A particle that no simulation may start from.
-    #[error("the {field} of particle {particle} is {value}, but must be {range}")]
-    Particle {
-        /// Its number.
-        particle: usize,
-        /// The quantity.
-        field: &'static str,
-        /// Its value.
-        value: f64,
-        /// What is allowed.
-        range: &'static str,
-    },
-    /// A mirroring wall whose normal, velocity or numbers are not valid.
-    #[error("wall {wall} has {field} {value}, but must have {range}")]
-    Wall {
-        /// Its number.
-        wall: usize,
-        /// The quantity.
-        field: &'static str,
-        /// Its value.
-        value: f64,
-        /// What is allowed.
-        range: &'static str,
-    },
-    /// A period so short that two particles would be neighbours twice, once directly and once as an image.
-    #[error(
-        "the period along {axis} is {period} m, but must be at least {least} m, \
-         the larger of two support radii and one support radius plus the Verlet skin"
-    )]
-    PeriodTooShort {
-        /// `x` or `y`.
-        axis: char,
-        /// The period given \[m\].
-        period: f64,
-        /// The least one \[m\].
-        least: f64,
-    },
+#[error("{of}: the {quantity} is {value}, but must be {allowed}")]
+pub struct SceneError {
+    /// What the number belongs to.
+    pub of: Part,
+    /// The quantity.
+    pub quantity: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// The values that are allowed.
+    pub allowed: String,
+}
+
+/// What a number of a scene belongs to.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum Part {
+    /// The scene itself.
+    #[error("scene")]
+    Scene,
+    /// The particle with this number.
+    #[error("particle {0}")]
+    Particle(usize),
+    /// The mirroring wall with this number.
+    #[error("wall {0}")]
+    Wall(usize),
 }
 
 /// A scene whose method is the scheme `S`.
@@ -150,8 +115,12 @@ impl<S: Scheme> Scene<S> {
     }
 
     fn check(&self) -> Result<(), SceneError> {
-        check_length("smoothing length", self.h, self.h > 0.0, "above 0")?;
-        check_length("skin", self.skin, self.skin >= 0.0, "of at least 0")?;
+        let (h, skin) = (self.h, self.skin);
+        let lengths = [
+            (h > 0.0 && h.is_finite(), "smoothing length in m", h, "finite and above 0"),
+            (skin >= 0.0 && skin.is_finite(), "skin in m", skin, "finite and at least 0"),
+        ];
+        require(Part::Scene, lengths)?;
         check_particles(&self.particles)?;
         check_walls(self.walls.mirrors())?;
         check_domain(&self.domain, S::Kernel::SUPPORT * self.h, self.skin)
@@ -166,21 +135,30 @@ fn by_role<X: Copy>(all: &[Particle<X>]) -> Vec<(u32, Particle<X>)> {
 
 type Checked = Result<(), SceneError>;
 
-fn check_length(name: &'static str, value: f64, valid: bool, range: &'static str) -> Checked {
-    let error = SceneError::Length { name, value, range };
-    if valid && value.is_finite() { Ok(()) } else { Err(error) }
+/// A condition on a quantity: whether it is met, the quantity, its value, and what is allowed.
+type Condition<'a> = (bool, &'static str, f64, &'a str);
+
+/// Refuses the first quantity that does not meet its condition.
+fn require<const N: usize>(of: Part, all: [Condition; N]) -> Checked {
+    let Some((_, quantity, value, allowed)) = all.into_iter().find(|(is_met, ..)| !is_met) else {
+        return Ok(());
+    };
+    Err(SceneError { of, quantity, value, allowed: allowed.into() })
 }
 
-/// A period must be long enough that one periodic copy on either side suffices.
+/// A period must be long enough that no two particles are neighbours twice, once directly and once as an
+/// image: one periodic copy on either side must suffice.
 fn check_domain(domain: &Domain, support: f64, skin: f64) -> Checked {
-    for (axis, name) in [(0, 'x'), (1, 'y')] {
+    // Neighbour lists reach farther than the support by the skin.
+    let least = (2.0 * support).max(support + skin);
+    let allowed = format!(
+        "finite and at least {least}, the larger of two support radii and one support radius plus the skin"
+    );
+    for (axis, name) in [(0, "period along x in m"), (1, "period along y in m")] {
         let Some(period) = domain.period[axis] else { continue };
-        // Neighbour lists reach farther than the support by the skin; one copy on either side must suffice.
-        let least = (2.0 * support).max(support + skin);
-        if !(period >= least && period.is_finite()) {
-            return Err(SceneError::PeriodTooShort { axis: name, period, least });
-        }
-        check_length("lower corner of the period", domain.low[axis], true, "anywhere")?;
+        let (low, long) = (domain.low[axis], period >= least && period.is_finite());
+        let low = (low.is_finite(), "lower corner in m", low, "finite");
+        require(Part::Scene, [(long, name, period, &*allowed), low])?;
     }
     Ok(())
 }
@@ -194,18 +172,16 @@ fn check_walls(mirrors: &[PlaneWall]) -> Checked {
         let (length, across) = (normal.norm(), velocity.dot(normal));
         let sum = point.sum() + velocity.sum() + curvature.sum();
         let mut cosines = mirrors[..wall].iter().map(|other| other.normal.dot(normal).abs());
-        let (field, value, range) = if !((length - 1.0).abs() < 1e-12) {
-            ("a normal of length", length, "1")
-        } else if !(across.abs() <= 1e-12 * velocity.norm()) {
-            ("a velocity along its normal of", across, "0")
-        } else if !sum.is_finite() {
-            ("components whose sum is", sum, "finite ones")
-        } else if let Some(cosine) = cosines.find(|c| *c > RIGHT_ANGLE && (c - 1.0).abs() > 1e-12) {
-            ("a cosine between its normal and another one of", cosine, "0 (corner) or 1")
-        } else {
-            continue;
-        };
-        return Err(SceneError::Wall { wall, field, value, range });
+        let skew = cosines.find(|c| *c > RIGHT_ANGLE && (c - 1.0).abs() > 1e-12);
+        let (is_square, cosine) = (skew.is_none(), skew.unwrap_or_default());
+        let slides = across.abs() <= 1e-12 * velocity.norm();
+        let all = [
+            ((length - 1.0).abs() < 1e-12, "length of its normal", length, "1"),
+            (slides, "velocity along its normal", across, "0"),
+            (sum.is_finite(), "sum of its components", sum, "finite"),
+            (is_square, "cosine between its normal and another", cosine, "0 (corner) or 1"),
+        ];
+        require(Part::Wall(wall), all)?;
     }
     Ok(())
 }
@@ -213,28 +189,23 @@ fn check_walls(mirrors: &[PlaneWall]) -> Checked {
 fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
     // Images and the sentinel have indices too; there are at most eight images per particle.
     let (count, most) = (particles.len(), (u32::MAX / 16) as usize);
-    if count > most {
-        return Err(SceneError::TooMany { count, most });
-    }
-    if !particles.iter().any(|p| p.role == Role::Fluid) {
-        return Err(SceneError::Empty);
-    }
+    let fluid = particles.iter().filter(|p| p.role == Role::Fluid).count();
+    let numbers = [
+        (count <= most, "number of particles", count as f64, &*format!("at most {most}")),
+        (fluid > 0, "number of fluid particles", fluid as f64, "above 0"),
+    ];
+    require(Part::Scene, numbers)?;
     for (particle, p) in particles.iter().enumerate() {
-        let finite = |v: &Vector2<f64>| v.x.is_finite() && v.y.is_finite();
-        let (field, value, range) = if !finite(&p.position) {
-            ("position", p.position.x + p.position.y, "finite")
-        } else if !finite(&p.velocity) {
-            ("velocity", p.velocity.x + p.velocity.y, "finite")
-        } else if !(p.density > 0.0 && p.density.is_finite()) {
-            ("density", p.density, "finite and above 0")
-        } else if !(p.mass > 0.0 && p.mass.is_finite()) {
-            ("mass", p.mass, "finite and above 0")
-        } else if !p.extra.is_finite() {
-            ("extra field", f64::NAN, "finite")
-        } else {
-            continue;
-        };
-        return Err(SceneError::Particle { particle, field, value, range });
+        let Particle { position: x, velocity: v, density, mass, extra, .. } = p;
+        let is_positive = |value: f64| value > 0.0 && value.is_finite();
+        let all = [
+            (x.is_finite(), "position", x.sum(), "finite"),
+            (v.is_finite(), "velocity", v.sum(), "finite"),
+            (is_positive(*density), "density", *density, "finite and above 0"),
+            (is_positive(*mass), "mass", *mass, "finite and above 0"),
+            (extra.is_finite(), "extra field", f64::NAN, "finite"),
+        ];
+        require(Part::Particle(particle), all)?;
     }
     Ok(())
 }

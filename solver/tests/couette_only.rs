@@ -29,6 +29,7 @@ fn a_program_has_no_symbol_of_what_its_scheme_does_not_name() {
         "BodyForce",
         "InterfaceWall",
         "PredictorCorrector",
+        "SuperSteps",
         "CubicSpline",
         "WendlandC2",
     ] {

@@ -29,6 +29,7 @@ fn rings_have_no_symbol_of_a_wall_an_exponent_or_a_fluid_term() {
         "Ghosts",
         "InterfaceWall",
         "PredictorCorrector",
+        "SuperSteps",
         "QuinticSpline",
         "WendlandC2",
     ] {

@@ -8,15 +8,18 @@ use std::any::TypeId;
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, Integrator, InterfaceWall, Leapfrog,
-    Open, Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, Stepper, Tait,
+    Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, InterfaceWall, Leapfrog, Open,
+    Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, Scheme, Stepper, Tait,
     integrator::PhysicsOf, lattice, walls::Walls,
 };
 
 type Method<W, I> = Compose<CubicSpline, Pressure<Tait>, Continuity, W, I>;
 
 /// Two steps of a few particles, some of them behind a wall.
-fn run<W: Walls<()>, I: Integrator<()>>(walls: W) -> Vec<Particle> {
+fn run<W: Walls<()>, I>(walls: W) -> Vec<Particle>
+where
+    Method<W, I>: Scheme<Forces = Pressure<Tait>, Drift = Continuity, Walls = W, Extra = ()>,
+{
     let (dx, n) = (0.1, 8);
     let particle = |place: Vector2<f64>| {
         let particle = Particle::fluid(place, Vector2::new(0.1, 0.0), 1.0, dx * dx);

@@ -11,8 +11,9 @@ use base::functions::{cos, sin};
 use nalgebra::Vector2;
 use serde_json::Value;
 use solver::{
-    Compose, Domain, Engine, Evolved, Fault, Flow, Integrator, Kernel, Observer, Open, Outcome,
-    Particle, Physics, Rate, Role, Scene, Stepper, Term, lattice, numbers::Numbers, walls::Walls,
+    Compose, Domain, Engine, Evolved, Flow, Integrator, Kernel, Observer, Open, Outcome, Particle,
+    Physics, Rate, Role, Scene, Stepper, Term, integrator::Stepped, lattice, numbers::Numbers,
+    physics::State, walls::Walls,
 };
 
 /// The JSON of a committed snapshot, `case.variant`; `None` if there is none.
@@ -61,16 +62,11 @@ pub type RatesOf<K, F, D, W = Open, X = ()> = Compose<K, F, D, W, RateInstead, X
 #[derive(Default)]
 pub struct RateInstead;
 
-impl<X: Numbers> Integrator<X> for RateInstead {
+impl<P: Physics> Integrator<P> for RateInstead {
     const NAME: &'static str = "rate";
     const ORDER: [u32; 2] = [0, 0];
 
-    fn step<P: Physics<Extra = X>>(
-        &mut self,
-        engine: &mut Engine<P>,
-        state: &mut [Evolved<X>],
-        _: f64,
-    ) -> Result<(), Fault> {
+    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, _: f64) -> Stepped {
         engine.begin(state)?;
         engine.sweep_all(state, |_, evolved, rate| {
             let Rate { position, velocity, density, extra } = *rate;

@@ -72,7 +72,7 @@ fn check<S: Scheme>(scene: Scene<S>) {
     assert_eq!(allocations, 0, "{} allocated in {steps} steps", S::Integrator::NAME);
 }
 
-fn periodic<I: Integrator<()>>() -> Scene<Method<I>> {
+fn periodic<I: Integrator<Method<()>>>() -> Scene<Method<I>> {
     let domain = Domain::torus(1.0, 1.0);
     Scene::new(H, domain, patch(24, 0.3, 3), forces(), Continuity, Open)
 }

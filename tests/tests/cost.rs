@@ -67,10 +67,11 @@ fn forces() -> (Pressure<Tait>, Viscosity) {
     (Pressure::new(Tait::new(1.0, 1.0)), Viscosity { mu: 0.01, eta2: 1e-8 })
 }
 
+type Flight<I> = Compose<QuinticSpline, (), Continuity, Open, I>;
+
 /// Particles that fly straight on, whose densities follow: the trajectories are exact, so that two
 /// runs differ in their rows only.
-fn flight<I: Integrator<()>>(skin: f64, share: f64) -> (Vec<Particle>, u64) {
-    type Flight<I> = Compose<QuinticSpline, (), Continuity, Open, I>;
+fn flight<I: Integrator<Flight<()>>>(skin: f64, share: f64) -> (Vec<Particle>, u64) {
     let h = 0.07;
     let particles = patch(16, 0.2, 3);
     let scene =
@@ -81,7 +82,7 @@ fn flight<I: Integrator<()>>(skin: f64, share: f64) -> (Vec<Particle>, u64) {
     (simulation.particles(), simulation.work().list_builds)
 }
 
-fn check_skin<I: Integrator<()>>() {
+fn check_skin<I: Integrator<Flight<()>>>() {
     let torus = [Some(1.0), Some(1.0)];
     let (exact, every_time) = flight::<I>(0.0, 0.5);
     assert!(every_time >= 64);

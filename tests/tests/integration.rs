@@ -15,13 +15,16 @@ const H: f64 = 0.1;
 const TORUS: [Option<f64>; 2] = [Some(1.0), Some(1.0)];
 
 /// A jittered patch in motion. The quintic spline is smooth enough for second order in time.
-fn simulation<I: Integrator<()>>(particles: Vec<Particle>, mu: f64) -> Simulation<Scheme<I>> {
+fn simulation<I: Integrator<Scheme<()>>>(
+    particles: Vec<Particle>,
+    mu: f64,
+) -> Simulation<Scheme<I>> {
     let pressure = Pressure::new(Tait { background: 0.3, ..Tait::new(1.0, 1.0) });
     let forces = (pressure, Viscosity { mu, eta2: 1e-4 * H * H });
     Scene::new(H, Domain::torus(1.0, 1.0), particles, forces, Continuity, Open).build().unwrap()
 }
 
-fn end<I: Integrator<()>>(mu: f64, time: f64, steps: u32) -> Vec<Particle> {
+fn end<I: Integrator<Scheme<()>>>(mu: f64, time: f64, steps: u32) -> Vec<Particle> {
     let mut simulation = simulation::<I>(patch(10, 0.1, 5), mu);
     let outcome = simulation.advance(time, time / f64::from(steps), &mut ());
     assert_eq!((outcome, simulation.work().steps), (Outcome::Reached, u64::from(steps)));
@@ -29,7 +32,7 @@ fn end<I: Integrator<()>>(mu: f64, time: f64, steps: u32) -> Vec<Particle> {
 }
 
 /// log₂ of the ratio of successive differences over dt, dt/2, dt/4, dt/8, finest last.
-fn orders<I: Integrator<()>>(mu: f64) -> [f64; 2] {
+fn orders<I: Integrator<Scheme<()>>>(mu: f64) -> [f64; 2] {
     let (time, steps) = (0.4, 64);
     let [a, b, c, d] = [1, 2, 4, 8].map(|k| end::<I>(mu, time, steps * k));
     let [e1, e2, e3] = [(&a, &b), (&b, &c), (&c, &d)].map(|(p, q)| difference(p, q, TORUS));
@@ -37,7 +40,7 @@ fn orders<I: Integrator<()>>(mu: f64) -> [f64; 2] {
     [log2(e1 / e2), log2(e2 / e3)]
 }
 
-fn check_order<I: Integrator<()>>() {
+fn check_order<I: Integrator<Scheme<()>>>() {
     for (mu, declared) in [0.0, 0.02].into_iter().zip(I::ORDER) {
         for order in orders::<I>(mu) {
             let apart = (order - f64::from(declared)).abs();
@@ -62,7 +65,7 @@ fn euler_has_the_order_it_declares() {
 }
 
 /// Error of going there and back.
-fn irreversibility<I: Integrator<()>>(mu: f64, steps: u32) -> f64 {
+fn irreversibility<I: Integrator<Scheme<()>>>(mu: f64, steps: u32) -> f64 {
     let start = patch(10, 0.1, 5);
     let mut there = simulation::<I>(start.clone(), mu);
     let dt = 0.4 / f64::from(steps);
@@ -152,7 +155,7 @@ fn time_does_not_drift_over_a_hundred_thousand_steps() {
 /// half kicks in place of one.
 #[test]
 fn two_advances_are_one_for_the_one_step_schemes_and_nearly_for_leapfrog() {
-    fn both<I: Integrator<()>>(mu: f64) -> [Vec<Particle>; 2] {
+    fn both<I: Integrator<Scheme<()>>>(mu: f64) -> [Vec<Particle>; 2] {
         [vec![0.5], vec![0.25, 0.5]].map(|times| {
             let mut simulation = simulation::<I>(patch(10, 0.1, 5), mu);
             for time in times {

@@ -18,13 +18,13 @@ const STEPS: u32 = 50;
 /// Differences of round-off, 1e-16, after 50 steps of a flow that stretches them.
 const ROUND_OFF: f64 = 1e-13;
 
-fn scene<I: Integrator<()>>(particles: Vec<Particle>) -> Scene<Scheme<I>> {
+fn scene<I: Integrator<Scheme<()>>>(particles: Vec<Particle>) -> Scene<Scheme<I>> {
     let pressure = Pressure::new(Tait { background: 0.3, ..Tait::new(1.0, 1.0) });
     let forces = (pressure, Viscosity { mu: 0.01, eta2: 1e-4 * H * H });
     Scene::new(H, Domain::torus(1.0, 1.0), particles, forces, Continuity, Open)
 }
 
-fn run<I: Integrator<()>>(particles: Vec<Particle>) -> Vec<Particle> {
+fn run<I: Integrator<Scheme<()>>>(particles: Vec<Particle>) -> Vec<Particle> {
     let mut simulation = scene::<I>(particles).build().unwrap();
     assert_eq!(simulation.advance(f64::from(STEPS) * DT, DT, &mut ()), Outcome::Reached);
     assert!(simulation.work().list_builds > 2, "rows were rebuilt on the way");
@@ -36,7 +36,11 @@ fn start() -> Vec<Particle> {
 }
 
 /// `seen` of the end must be the end of `seen` of the start.
-fn check<I: Integrator<()>>(name: &str, tolerance: f64, seen: impl Fn(Particle, f64) -> Particle) {
+fn check<I: Integrator<Scheme<()>>>(
+    name: &str,
+    tolerance: f64,
+    seen: impl Fn(Particle, f64) -> Particle,
+) {
     let elsewhere = run::<I>(start().into_iter().map(|p| seen(p, 0.0)).collect());
     let time = f64::from(STEPS) * DT;
     let here: Vec<_> = run::<I>(start()).into_iter().map(|p| seen(p, time)).collect();
@@ -46,7 +50,7 @@ fn check<I: Integrator<()>>(name: &str, tolerance: f64, seen: impl Fn(Particle, 
     assert!(difference(&here, &start(), TORUS) > 1e-2, "nothing happened");
 }
 
-fn check_all<I: Integrator<()>>() {
+fn check_all<I: Integrator<Scheme<()>>>() {
     // A moving frame loses the bits that its velocity takes: eps U/v.
     check::<I>("Galilean", 10.0 * ROUND_OFF, |p, t| {
         let frame = Vector2::new(3.0, -1.7);
@@ -77,7 +81,7 @@ fn predictor_corrector_is_the_same_in_every_frame() {
     check_all::<PredictorCorrector>();
 }
 
-fn check_permutation<I: Integrator<()>>() {
+fn check_permutation<I: Integrator<Scheme<()>>>() {
     let mut order: Vec<usize> = (0..144).collect();
     Random(8).shuffle(&mut order);
     let start = start();
@@ -95,7 +99,7 @@ fn the_order_of_the_particles_does_not_change_a_bit() {
 }
 
 /// A run in units that are 2^l, 2^t, 2^m times as small, read back in the units of [`run`].
-fn in_units<I: Integrator<()>>([l, t, m]: [i32; 3]) -> Vec<Particle> {
+fn in_units<I: Integrator<Scheme<()>>>([l, t, m]: [i32; 3]) -> Vec<Particle> {
     let [length, time, mass] = [l, t, m].map(|k| 2.0_f64.powi(k));
     let (speed, density) = (length / time, mass / (length * length));
     let scale = |p: Particle| Particle {

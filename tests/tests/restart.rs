@@ -30,15 +30,17 @@ use validation::cases;
 type Method<I, W = Open> =
     Compose<CubicSpline, (Pressure<Tait>, Viscosity), (Continuity, Shifting), W, I>;
 
+type Plates = ExtrapolatingWall<Tait, NoSlip>;
+
 const H: f64 = 0.08;
 const DT: f64 = 1.0 / 64.3;
 
-fn scene<I: Integrator<()>>() -> Scene<Method<I>> {
+fn scene<I: Integrator<Method<()>>>() -> Scene<Method<I>> {
     scene_of(Domain::torus(1.0, 1.0), patch(16, 0.15, 7), Open)
 }
 
 /// The same fluid between walls that extrapolate.
-fn channel<I: Integrator<()>>() -> Scene<Method<I, ExtrapolatingWall<Tait, NoSlip>>> {
+fn channel<I: Integrator<Method<(), Plates>>>() -> Scene<Method<I, Plates>> {
     let dx = 1.0 / 16.0;
     let mut particles = patch(16, 0.05, 7);
     for first in [-2.5 * dx, 1.0 + 0.5 * dx] {
@@ -51,7 +53,7 @@ fn channel<I: Integrator<()>>() -> Scene<Method<I, ExtrapolatingWall<Tait, NoSli
     scene_of(Domain::channel(1.0), particles, walls)
 }
 
-fn scene_of<I: Integrator<()>, W: Walls<()>>(
+fn scene_of<I: Integrator<Method<(), W>>, W: Walls<()>>(
     domain: Domain,
     particles: Vec<Particle>,
     walls: W,

@@ -391,10 +391,10 @@ impl<X: Numbers> Term<X> for Carousel {
 const RATIO: f64 = 1.3;
 const START: Symmetric = Symmetric { xx: 0.7, yy: -0.2, xy: 0.4 };
 
+type Turning<I> = Compose<QuinticSpline, Carousel, (Continuity, JaumannRate), Open, I, Symmetric>;
+
 /// The stress at the centre of a patch that turned once about it, in so many steps.
-fn turned_once<I: Integrator<Symmetric>>(steps: u32) -> Tensor {
-    type Turning<I> =
-        Compose<QuinticSpline, Carousel, (Continuity, JaumannRate), Open, I, Symmetric>;
+fn turned_once<I: Integrator<Turning<()>>>(steps: u32) -> Tensor {
     let (n, omega) = (11, 2.0 * PI);
     let particles = uniform(n, Matrix2::new(0.0, -omega, omega, 0.0), START);
     let drift = (Continuity, JaumannRate { shear_modulus: 1.0 });
@@ -407,7 +407,7 @@ fn turned_once<I: Integrator<Symmetric>>(steps: u32) -> Tensor {
 
 /// Objectivity. The lattice sees G₁ ω in place of ω, so that S turns by 2π G₁ a revolution; how far
 /// the computed one is from there falls with dt at the order of the integrator.
-fn check_turning<I: Integrator<Symmetric>>() {
+fn check_turning<I: Integrator<Turning<()>>>() {
     let factor = SquareLattice::<QuinticSpline>::new(RATIO, 0.0).gradient_factor();
     let turn = rotation(2.0 * PI * factor);
     let exact = turn * matrix(START) * turn.inverse();

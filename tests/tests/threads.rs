@@ -20,7 +20,7 @@ type Forces = (Pressure<Tait>, Viscosity);
 type Drift = (Continuity, Shifting);
 type Method<W, I> = Compose<CubicSpline, Forces, Drift, W, I>;
 
-fn scene<W: Walls<()>, I: Integrator<()>>(
+fn scene<W: Walls<()>, I: Integrator<Method<W, ()>>>(
     domain: Domain,
     particles: Vec<Particle>,
     walls: W,
@@ -51,7 +51,7 @@ fn check<S: Scheme<Extra = ()>>(name: &str, scene: impl Fn() -> Scene<S> + Sync)
     assert_ne!(bits(&start.particles()), serial.0, "{name}: something happened");
 }
 
-fn periodic<I: Integrator<()>>() -> Scene<Method<Open, I>> {
+fn periodic<I: Integrator<Method<Open, ()>>>() -> Scene<Method<Open, I>> {
     scene(Domain::torus(1.0, 1.0), patch(N, 0.1, 2), Open)
 }
 

@@ -16,6 +16,7 @@ mod no_slip_images;
 mod pressure;
 mod shift_advection;
 mod shifting;
+mod split;
 mod tensile_stress;
 mod viscosity;
 mod xsph;
@@ -32,6 +33,7 @@ pub use no_slip_images::NoSlipImages;
 pub use pressure::Pressure;
 pub use shift_advection::ShiftAdvection;
 pub use shifting::Shifting;
+pub use split::Split;
 pub use tensile_stress::{
     Axes, ComponentStress, Componentwise, InTension, Principal, PrincipalStress, TensileStress,
 };
@@ -114,9 +116,9 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
 
 /// Implements [`Term`] for a tuple: each member in turn, in the order of the equation.
 macro_rules! tuple_of_terms {
-    ($($member:ident $index:tt),*) => {
+    ($Tuple:ty: $($member:ident $index:tt),*) => {
         #[allow(unused_variables, clippy::unused_unit)] // of the empty tuple
-        impl<X, $($member: Term<X>),*> Term<X> for ($($member,)*) {
+        impl<X, $($member: Term<X>),*> Term<X> for $Tuple {
             type Derived = ($($member::Derived,)*);
             type Sum = ($($member::Sum,)*);
             const IS_EMPTY: bool = true $(&& $member::IS_EMPTY)*;
@@ -149,13 +151,14 @@ macro_rules! tuple_of_terms {
     };
 }
 
-tuple_of_terms!();
-tuple_of_terms!(A 0);
-tuple_of_terms!(A 0, B 1);
-tuple_of_terms!(A 0, B 1, C 2);
-tuple_of_terms!(A 0, B 1, C 2, D 3);
-tuple_of_terms!(A 0, B 1, C 2, D 3, E 4);
-tuple_of_terms!(A 0, B 1, C 2, D 3, E 4, F 5);
+tuple_of_terms!(():);
+tuple_of_terms!((A,): A 0);
+tuple_of_terms!((A, B): A 0, B 1);
+tuple_of_terms!((A, B, C): A 0, B 1, C 2);
+tuple_of_terms!((A, B, C, D): A 0, B 1, C 2, D 3);
+tuple_of_terms!((A, B, C, D, E): A 0, B 1, C 2, D 3, E 4);
+tuple_of_terms!((A, B, C, D, E, F): A 0, B 1, C 2, D 3, E 4, F 5);
+tuple_of_terms!(Split<A, B>: A 0, B 1);
 
 #[cfg(test)]
 mod tests {

@@ -47,15 +47,16 @@ impl Map {
 
     /// The image of a column, `slip` being [`super::Walls::SLIPS`]. Scalars (density, pressure) are those
     /// of the source. Of a source that has crossed a wall the image would lie in the fluid: it has neither
-    /// mass nor volume, and so acts on nothing.
+    /// mass nor volume, and so acts on nothing. `motion` is 1, or 0 where velocities are differences of two
+    /// states: U and ∂²v/∂n² are then 0.
     #[inline(always)]
-    pub fn apply<S: Numbers>(&self, source: &Column<S>, slip: bool) -> Column<S> {
+    pub fn apply<S: Numbers>(&self, source: &Column<S>, slip: bool, motion: f64) -> Column<S> {
         let v = source.velocity;
         let velocity = match self {
             Self::Mirror(wall) if slip => v - wall.normal * v.dot(&wall.normal) * 2.0,
             Self::Mirror(wall) => {
                 let depth = wall.depth(source.position);
-                wall.velocity * 2.0 - v + wall.curvature * (depth * depth)
+                wall.velocity * (2.0 * motion) - v + wall.curvature * (depth * depth * motion)
             }
             Self::Corner(..) if slip => -v,
             Self::Corner(..) | Self::Shift(_) => v,
@@ -84,12 +85,12 @@ mod tests {
         let along = Vector2::new(0.8, 0.6);
         let position = point + along * 5.0 + normal * 0.25;
         let source = Column { position, velocity: Vector2::new(1.0, 7.0), common, derived: 9.0 };
-        let ghost = map.apply(&source, false);
+        let ghost = map.apply(&source, false, 1.0);
         assert!((ghost.position - (point + along * 5.0 - normal * 0.25)).norm() < 1e-14);
         let expected = velocity * 2.0 - source.velocity + Vector2::new(0.0, 3.0) * 0.0625;
         assert!((ghost.velocity - expected).norm() < 1e-14);
         assert_eq!((ghost.common.density, ghost.derived), (2.0, 9.0));
-        let mirrored = map.apply(&source, true).velocity - source.velocity;
+        let mirrored = map.apply(&source, true, 1.0).velocity - source.velocity;
         assert!((mirrored + normal * (2.0 * source.velocity.dot(&normal))).norm() < 1e-14);
         let back = map.place(ghost.position) - position;
         assert!(back.norm() < 1e-14, "mirroring twice is the identity");
@@ -106,14 +107,14 @@ mod tests {
         let source = Column { position: Vector2::new(1.3, 2.9), velocity, common, derived: 9.0 };
         let corner_map = Map::corner([&walls[0], &walls[1]]);
         for slip in [false, true] {
-            let ghost = corner_map.apply(&source, slip);
-            let [a, b] = [a, b].map(|map| move |column: &Column<f64>| map.apply(column, slip));
+            let ghost = corner_map.apply(&source, slip, 1.0);
+            let [a, b] = [a, b].map(|map| move |column: &Column<f64>| map.apply(column, slip, 1.0));
             for twice in [a(&b(&source)), b(&a(&source))] {
                 assert!((ghost.position - twice.position).norm() < 1e-14);
                 assert!((ghost.velocity - twice.velocity).norm() < 1e-14);
             }
         }
-        let ghost = corner_map.apply(&source, false);
+        let ghost = corner_map.apply(&source, false, 1.0);
         assert!((ghost.position + source.position - corner * 2.0).norm() < 1e-14, "half a turn");
     }
 
@@ -134,7 +135,7 @@ mod tests {
         ] {
             let source = Column { position: place, velocity: Vector2::y(), common, derived: 9.0 };
             for (map, seen) in maps.iter().zip(seen) {
-                let Common { mass, volume, density } = map.apply(&source, true).common;
+                let Common { mass, volume, density } = map.apply(&source, true, 1.0).common;
                 let expected = if seen { (1.0, 0.5, 2.0) } else { (0.0, 0.0, 2.0) };
                 assert_eq!((mass, volume, density), expected, "{map:?} of {place:?}");
             }

@@ -10,9 +10,9 @@ use std::time::Instant;
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, Domain, Engine, Euler, Evolved, Fault, Integrator, Open,
-    Outcome, Particle, Physics, Pressure, Scene, SceneError, Scheme, Simulation, Stepper, Tait,
-    Viscosity, lattice,
+    Compose, Continuity, CubicSpline, Domain, Engine, Euler, Integrator, Open, Outcome, Particle,
+    Physics, Pressure, Scene, SceneError, Scheme, Simulation, Stepper, Tait, Viscosity,
+    integrator::Stepped, lattice, physics::State,
 };
 
 /// The scheme whose right-hand side is measured.
@@ -26,7 +26,7 @@ pub const SHORT: f64 = 1e-9;
 
 /// `side` × `side` particles on a unit torus; serial unless `parallel`, and then from the usual
 /// number of particles on.
-pub fn scene<I: Integrator<()>>(side: usize, parallel: bool) -> Scene<Fluid<I>> {
+pub fn scene<I: Integrator<Fluid<()>>>(side: usize, parallel: bool) -> Scene<Fluid<I>> {
     let dx = 1.0 / side as f64;
     let h = 1.2 * dx;
     let wave = |y: f64| 0.01 * sin(std::f64::consts::TAU * y);
@@ -54,16 +54,11 @@ pub struct Rebuilding {
     is_away: bool,
 }
 
-impl Integrator<()> for Rebuilding {
+impl<P: Physics> Integrator<P> for Rebuilding {
     const NAME: &'static str = "rebuilding";
     const ORDER: [u32; 2] = [0, 0];
 
-    fn step<P: Physics<Extra = ()>>(
-        &mut self,
-        engine: &mut Engine<P>,
-        state: &mut [Evolved<()>],
-        dt: f64,
-    ) -> Result<(), Fault> {
+    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         self.is_away = !self.is_away;
         let shift = if self.is_away { dt } else { -dt };
         state.iter_mut().for_each(|evolved| evolved.position.x += shift);

@@ -19,6 +19,8 @@ pub struct Medium {
     pub h: f64,
     /// W(dx) \[1/m²\].
     pub w_at_spacing: f64,
+    /// Largest eigenvalue of the viscous term on a square lattice \[ν/h²\].
+    pub stiffest: f64,
     /// Kinematic viscosity ν \[m²/s\].
     pub nu: f64,
     /// Shear modulus μ of (11) \[Pa\].
@@ -49,6 +51,11 @@ impl Medium {
     /// δ h c0 of the density diffusion \[m²/s\].
     pub fn diffusivity(&self) -> f64 {
         self.diffusion * self.h * self.sound_speed
+    }
+
+    /// The longest step of forward Euler for the viscous term alone \[s\].
+    pub fn explicit_limit(&self) -> f64 {
+        time_step::explicit_limit(self.stiffest, self.h, self.nu)
     }
 
     /// (12).

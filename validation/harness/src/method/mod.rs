@@ -16,8 +16,8 @@ use maths::theory::{
 };
 use nalgebra::Vector2;
 use solver::{
-    Domain, Integrator as _, Kernel, Limits, Numbers, Particle, Physics, PlaneWall, Scene,
-    SceneError, Scheme, Smoothing, Stepper, Tait,
+    Domain, Integrator as _, Kernel, Limits, Numbers, Particle, PlaneWall, Scene, SceneError,
+    Scheme, Smoothing, Stepper, Tait,
 };
 
 use crate::context::Context;
@@ -26,22 +26,12 @@ pub use terms::{Boundary, FirstRow, FromMedium};
 
 /// A scheme whose terms and walls can be constructed from a medium.
 pub trait Standard:
-    Scheme<
-        Forces: FromMedium,
-        Drift: FromMedium,
-        Walls: Boundary,
-        Integrator: Stepping<<Self as Physics>::Extra>,
-    >
+    Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary, Integrator: Stepping>
 {
 }
 
 impl<S> Standard for S where
-    S: Scheme<
-            Forces: FromMedium,
-            Drift: FromMedium,
-            Walls: Boundary,
-            Integrator: Stepping<<S as Physics>::Extra>,
-        >
+    S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary, Integrator: Stepping>
 {
 }
 
@@ -120,6 +110,7 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     /// The simulation of a scene with these parts.
     pub build: fn(Parts<X>) -> Result<Box<D>, SceneError>,
     weight: fn(f64, f64) -> f64,
+    stiffest: fn(f64) -> f64,
     mode: fn(Lattice, Vector2<f64>, &time_step::Medium) -> Mode,
     gradient: fn(f64, Vector2<f64>) -> Vector2<f64>,
     gradient_factor: fn(f64) -> f64,
@@ -139,6 +130,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             uses: [S::Forces::uses(), S::Drift::uses(), S::Walls::uses()].concat(),
             build,
             weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
+            stiffest: |ratio| SquareLattice::<S::Kernel>::new(ratio, 0.0).stiffest(),
             mode: |[ratio, eta2], theta, medium| {
                 Mode::new(&SquareLattice::<S::Kernel>::new(ratio, eta2), theta, medium)
             },
@@ -159,6 +151,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             dx,
             h,
             w_at_spacing: (self.weight)(h, dx * dx),
+            stiffest: (self.stiffest)(h / dx),
             nu: 0.0,
             shear_modulus: 0.0,
             acceleration: Vector2::zeros(),

@@ -4,7 +4,7 @@ use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion, ExtrapolatingWall,
     Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall, Pressure,
-    ShiftAdvection, Shifting, SlipGhosts, Tait, Viscosity, Xsph,
+    ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension, Switch},
 };
 
@@ -65,6 +65,15 @@ impl<E: FromMedium, R: FromMedium> FromMedium for Pressure<E, R> {
     }
     fn uses() -> Vec<Knob> {
         R::uses()
+    }
+}
+
+impl<E: FromMedium, T: FromMedium> FromMedium for Split<E, T> {
+    fn new(medium: &Medium) -> Self {
+        Self(E::new(medium), T::new(medium), medium.explicit_limit())
+    }
+    fn uses() -> Vec<Knob> {
+        [E::uses(), T::uses()].concat()
     }
 }
 

@@ -4,8 +4,9 @@
 use nalgebra::{Complex, Vector2};
 use solver::{
     ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion, Domain,
-    EquationOfState, Flow, Kernel, Leapfrog, Limits, Observer, Open, Particle, PredictorCorrector,
-    Pressure, QuinticSpline, SceneError, Stepper, Tait, Viscosity, WendlandC2, terms::Always,
+    EquationOfState, Flow, Integrator, Kernel, Leapfrog, Limits, Observer, Open, Particle,
+    PredictorCorrector, Pressure, QuinticSpline, SceneError, Stepper, Tait, Viscosity, WendlandC2,
+    terms::Always,
 };
 
 use super::{BoxSettings, ENERGY, GREW, RESTING_BOX, WAVE_ANGLE, WAVE_GROWTH};
@@ -63,7 +64,10 @@ pub struct Pair {
 }
 
 impl Pair {
-    fn of<K: Kernel, I: Stepping>(name: &'static str, h_over_dx: f64) -> Self {
+    fn of<K: Kernel, I>(name: &'static str, h_over_dx: f64) -> Self
+    where
+        I: Stepping + Integrator<Plain<K, ()>> + Integrator<Damped<K, ()>>,
+    {
         let (plain, damped) = (Method::of::<Plain<K, I>>(), Method::of::<Damped<K, I>>());
         Self { name, h_over_dx, plain, damped }
     }

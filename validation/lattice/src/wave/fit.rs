@@ -4,6 +4,8 @@
 //! A mode obeys p' = -ω v, v' = ω p - γ v with p = -c₀ ρ̂/ρ₀, and one step is a matrix M of (p, v):
 //!
 //! - leapfrog, v at half steps: tr M = 2 - γ dt - (ω dt)², det M = 1 - γ dt;
+//! - the same with super-time-stepping, whose factor of a wave that decays is an exponential up to second
+//!   order in dt: det M = exp(-γ dt), tr M = 1 + det M - (ω dt)² (1 - det M)/(γ dt);
 //! - explicit midpoint: M = 1 + Z + Z²/2 with Z = A dt, so each eigenvalue ξ of M belongs to
 //!   z = (2ξ - 1)^(1/2) - 1, and Σz = -γ dt, Πz = (ω dt)²;
 //! - forward Euler: M = 1 + Z.
@@ -12,7 +14,7 @@
 
 use nalgebra::{Complex, Matrix2, Vector2};
 
-use base::functions::complex_sqrt;
+use base::functions::{complex_sqrt, exp, ln};
 use maths::{exact::damped_mode::DampedMode, theory::time_step::Integrator};
 
 /// The matrix of one step of (p, v).
@@ -35,6 +37,12 @@ pub fn step_with_diffusion(
             let drift = Matrix2::new(1.0 - d, -w, 0.0, 1.0);
             drift * kick
         }
+        Integrator::SuperLeapfrog => {
+            let left = exp(-g);
+            let kick = if g > 0.0 { (1.0 - left) / g } else { 1.0 };
+            let kick = Matrix2::new(1.0, 0.0, w * kick, left);
+            Matrix2::new(1.0 - d, -w, 0.0, 1.0) * kick
+        }
         Integrator::PredictorCorrector => Matrix2::identity() + z + z * z * 0.5,
         Integrator::Euler => Matrix2::identity() + z,
     }
@@ -45,6 +53,7 @@ pub fn shear_step(gamma: f64, integrator: Integrator, dt: f64) -> f64 {
     let z = -gamma * dt;
     match integrator {
         Integrator::PredictorCorrector => 1.0 + z + 0.5 * z * z,
+        Integrator::SuperLeapfrog => exp(z),
         Integrator::Leapfrog | Integrator::Euler => 1.0 + z,
     }
 }
@@ -55,6 +64,12 @@ pub fn mode_of_step(m: &Matrix2<f64>, integrator: Integrator, dt: f64) -> Damped
     if integrator == Integrator::Leapfrog {
         let gamma = 1.0 - determinant;
         let square = 2.0 - gamma - trace;
+        return DampedMode { omega: square.max(0.0).sqrt() / dt, gamma: gamma / dt };
+    }
+    if integrator == Integrator::SuperLeapfrog {
+        let gamma = -ln(determinant);
+        let kick = if gamma > 0.0 { (1.0 - determinant) / gamma } else { 1.0 };
+        let square = (1.0 + determinant - trace) / kick;
         return DampedMode { omega: square.max(0.0).sqrt() / dt, gamma: gamma / dt };
     }
     let half = Complex::new(0.5 * trace, 0.0);
@@ -71,6 +86,7 @@ pub fn mode_of_step(m: &Matrix2<f64>, integrator: Integrator, dt: f64) -> Damped
 pub fn shear_of_step(factor: f64, integrator: Integrator, dt: f64) -> f64 {
     match integrator {
         Integrator::PredictorCorrector => (1.0 - (2.0 * factor - 1.0).sqrt()) / dt,
+        Integrator::SuperLeapfrog => -ln(factor) / dt,
         Integrator::Leapfrog | Integrator::Euler => (1.0 - factor) / dt,
     }
 }
@@ -111,13 +127,13 @@ pub fn decay_of(series: &[[f64; 3]], integrator: Integrator, dt: f64) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Integrator::{Euler, Leapfrog, PredictorCorrector};
+    use Integrator::{Euler, Leapfrog, PredictorCorrector, SuperLeapfrog};
     use approx::assert_relative_eq;
 
     /// States of exact steps give back ω and γ: under- and overdamped, for each integrator.
     #[test]
     fn steps_give_back_the_mode() {
-        for integrator in [Leapfrog, PredictorCorrector, Euler] {
+        for integrator in [Leapfrog, SuperLeapfrog, PredictorCorrector, Euler] {
             for (omega, gamma) in [(3.0, 0.0), (3.0, 0.5), (1.0, 5.0)] {
                 let (mode, dt) = (DampedMode { omega, gamma }, 0.05);
                 let m = step(&mode, integrator, dt);

@@ -17,8 +17,8 @@ mod run;
 pub use run::{Wave, measure};
 
 use solver::{
-    Compose, Continuity, CubicSpline, DensityDiffusion, Kernel, Leapfrog, Open, PredictorCorrector,
-    Pressure, QuinticSpline, Tait, Viscosity, WendlandC2,
+    Compose, Continuity, CubicSpline, DensityDiffusion, Integrator, Kernel, Leapfrog, Open,
+    PredictorCorrector, Pressure, QuinticSpline, Tait, Viscosity, WendlandC2,
 };
 
 use base::{
@@ -201,7 +201,7 @@ fn variants<P: Kind>() -> Vec<Composition<WaveSettings>> {
 }
 
 /// The equations and nothing else.
-pub fn plain<K: Kernel, I: Stepping>() -> Method {
+pub fn plain<K: Kernel, I: Stepping + Integrator<Scheme<K, ()>>>() -> Method {
     Method::of::<Scheme<K, I>>()
 }
 

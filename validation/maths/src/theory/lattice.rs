@@ -168,6 +168,12 @@ impl<K: Kernel> SquareLattice<K> {
         sum * (self.h * self.h)
     }
 
+    /// The largest λ₀(k) h² of all: that of a wave whose phase is 0 or π along each axis.
+    pub fn stiffest(&self) -> f64 {
+        let along_y = Vector2::new(0.0, PI);
+        self.diffusion(along_y).max(self.diffusion(Vector2::repeat(PI)))
+    }
+
     /// The largest symbols among the wave vectors of a periodic box of `n` × `n` particles. The
     /// maximum over the whole Brillouin zone is the limit of large n; 120 gives four digits.
     pub fn maxima(&self, n: usize) -> Maxima {
@@ -282,6 +288,20 @@ mod tests {
         let p = lattice.artificial(theta);
         let trace = 0.5 * lattice.laplacian(theta) - p.trace();
         assert!(trace.abs() < 1e-16, "the trace of P is half of the Laplacian");
+    }
+
+    #[test]
+    fn the_stiffest_wave_has_opposite_velocities_side_by_side() {
+        fn check<K: Kernel>(ratios: &[f64]) {
+            for ratio in ratios {
+                let lattice = SquareLattice::<K>::new(*ratio, 0.0);
+                let share = lattice.stiffest() / lattice.maxima(120).diffusion;
+                assert!((0.97..=1.0 + 1e-12).contains(&share), "{} {ratio}: {share}", K::NAME);
+            }
+        }
+        check::<CubicSpline>(&[1.2, 1.3, 1.5]);
+        check::<QuinticSpline>(&[0.9, 1.0, 1.2]);
+        check::<WendlandC2>(&[1.5, 2.0]);
     }
 
     #[test]

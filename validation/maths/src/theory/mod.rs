@@ -4,6 +4,7 @@
 pub mod channel;
 pub mod lattice;
 mod stepping;
+pub mod super_steps;
 pub mod time_step;
 
 pub use stepping::Stepping;

@@ -1,23 +1,27 @@
 //! Which theory of the time step belongs to which integrator.
 
-use solver::{Euler, Integrator, Leapfrog, Numbers, PredictorCorrector};
+use solver::{Euler, Leapfrog, PredictorCorrector, SuperSteps};
 
 use super::time_step::Integrator as Theory;
 
-/// An integrator and the theory of its time step.
-pub trait Stepping<X: Numbers = ()>: Integrator<X> {
+/// An integrator that has a theory of its time step.
+pub trait Stepping {
     /// Which theory.
     const THEORY: Theory;
 }
 
-impl<X: Numbers> Stepping<X> for PredictorCorrector<X> {
+impl<X> Stepping for PredictorCorrector<X> {
     const THEORY: Theory = Theory::PredictorCorrector;
 }
 
-impl<X: Numbers> Stepping<X> for Leapfrog {
+impl Stepping for Leapfrog {
     const THEORY: Theory = Theory::Leapfrog;
 }
 
-impl<X: Numbers> Stepping<X> for Euler {
+impl<X> Stepping for Leapfrog<SuperSteps<X>> {
+    const THEORY: Theory = Theory::SuperLeapfrog;
+}
+
+impl Stepping for Euler {
     const THEORY: Theory = Theory::Euler;
 }

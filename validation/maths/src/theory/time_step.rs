@@ -11,10 +11,13 @@
 //! lattice is the limit of large n. Moving, disordered or strongly compressed particles grow
 //! earlier: see the notes of each study.
 
-use super::lattice::{SquareLattice, wave_vectors};
+use super::{
+    lattice::{SquareLattice, wave_vectors},
+    super_steps,
+};
 use base::functions::{ln, ln_1p, modulus};
 use nalgebra::{Complex, Matrix3, Vector2};
-use solver::kernel::Kernel;
+use solver::{kernel::Kernel, super_steps::stages};
 
 /// The fluid that the limits are for. All numbers must be finite and not negative, `h` and `c0`
 /// positive.
@@ -40,6 +43,8 @@ pub enum Integrator {
     PredictorCorrector,
     /// Staggered leapfrog with damping from the old velocity, continuity from the new one.
     Leapfrog,
+    /// The same with Morris' viscosity by super-time-stepping.
+    SuperLeapfrog,
     /// Forward Euler; order 1.
     Euler,
 }
@@ -60,6 +65,10 @@ pub struct Mode {
     pub transverse: f64,
     /// γ_ρ \[1/s\].
     pub density: f64,
+    /// ν λ(k), the part of Γ that is Morris' viscosity \[1/s\].
+    pub viscous: f64,
+    /// [`explicit_limit`], from which super-time-stepping computes its number of stages \[s\].
+    pub explicit: f64,
 }
 
 /// The limit of each mechanism acting alone \[s\]; infinite for what is absent.
@@ -90,6 +99,16 @@ pub fn separate_limits<K: Kernel>(
         artificial_viscosity: 2.0 * h / (max.artificial * alpha * c0),
         density_diffusion: 2.0 * h / (max.diffusion * delta * c0),
     }
+}
+
+/// The largest eigenvalue of a viscous term may be this much above that of the lattice: displacements by a
+/// tenth of a spacing raise it by 9 %, and rows that slide past each other lower it.
+const DISORDER: f64 = 1.1;
+
+/// The longest step of forward Euler for viscosity alone \[s\], from which super-time-stepping computes its number
+/// of stages: 2/λ, λ being `stiffest` = [`SquareLattice::stiffest`] ν/h² and 10 % more for disorder.
+pub fn explicit_limit(stiffest: f64, h: f64, nu: f64) -> f64 {
+    2.0 * h * h / (DISORDER * stiffest * nu)
 }
 
 /// The waves of a periodic box of `n` × `n` particles, one of each symmetry class.
@@ -130,6 +149,9 @@ pub fn predictor_corrector_growth(omega_dt: f64) -> f64 {
     0.5 * ln_1p(0.25 * omega_dt.powi(4))
 }
 
+/// Steps of 1 % in which the limit of super-time-stepping is searched: up to 140 times that without viscosity.
+const SEARCHED: i32 = 500;
+
 impl Mode {
     /// The wave with phase `theta` = k dx \[rad\].
     pub fn new<K: Kernel>(
@@ -151,6 +173,8 @@ impl Mode {
             coupling: across.dot(&(p * along)),
             transverse: viscous + across.dot(&(p * across)),
             density: delta * c0 / h * lattice.diffusion(theta),
+            viscous,
+            explicit: explicit_limit(lattice.stiffest(), h, nu),
         }
     }
 
@@ -159,6 +183,8 @@ impl Mode {
     /// - Leapfrog: 2/λ_max of the symmetric \[\[γ_ρ, ω, 0\], \[ω, γ_l, γ_c\], \[0, γ_c, γ_t\]\],
     ///   for which ξ = -1 is reached first. Without coupling this is (2 - γ dt)(2 - γ_ρ dt) ≥ (ω
     ///   dt)².
+    /// - Super-time-stepping: the first dt at which a factor of -1 is reached. Viscosity alone reaches none, and
+    ///   with sound it delays it, so that the search begins at the limit of the leapfrog without viscosity.
     /// - The others: the smallest limit over the eigenvalues s = a + ib of the equations, from
     ///   |1 + s dt|² ≤ 1 for Euler and |1 + s dt + (s dt)²/2|² ≤ 1 for the predictor-corrector. The
     ///   latter reads 2a + 2a² dt + a|s|² dt² + |s|⁴ dt³/4 ≤ 0, free of cancellation, and its left
@@ -166,6 +192,9 @@ impl Mode {
     pub fn limit(&self, integrator: Integrator) -> f64 {
         if integrator == Integrator::Leapfrog {
             return 2.0 / self.stiffness().symmetric_eigenvalues().max();
+        }
+        if integrator == Integrator::SuperLeapfrog {
+            return self.limit_of_super_steps();
         }
         let limit = |s: Complex<f64>| match modulus(s) {
             0.0 => f64::INFINITY,
@@ -176,11 +205,33 @@ impl Mode {
         self.eigenvalues().map(limit).into_iter().fold(f64::INFINITY, f64::min)
     }
 
+    fn limit_of_super_steps(&self) -> f64 {
+        let viscous = self.viscous;
+        let (longitudinal, transverse) = (self.longitudinal - viscous, self.transverse - viscous);
+        let inviscid = Self { longitudinal, transverse, viscous: 0.0, ..*self };
+        let shortest = 0.999 * inviscid.limit(Integrator::Leapfrog);
+        let is_stable = |dt: f64| {
+            let step = self.leapfrog_step(Integrator::SuperLeapfrog, dt);
+            (step + Matrix3::identity()).determinant() > 0.0
+        };
+        let Some(mut high) =
+            (0..SEARCHED).map(|k| shortest * 1.01_f64.powi(k)).find(|dt| !is_stable(*dt))
+        else {
+            return f64::INFINITY;
+        };
+        let mut low = high / 1.01;
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if is_stable(middle) { low = middle } else { high = middle }
+        }
+        low
+    }
+
     /// ln of the spectral radius of one step.
     pub fn growth(&self, integrator: Integrator, dt: f64) -> f64 {
         let radius = match integrator {
-            Integrator::Leapfrog => {
-                let spectrum = self.leapfrog_step(dt).complex_eigenvalues();
+            Integrator::Leapfrog | Integrator::SuperLeapfrog => {
+                let spectrum = self.leapfrog_step(integrator, dt).complex_eigenvalues();
                 spectrum.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
             }
             Integrator::Euler => self.largest(|s| Complex::new(1.0, 0.0) + s * dt),
@@ -212,18 +263,28 @@ impl Mode {
     }
 
     /// One step of the leapfrog: v with the old v and p, then p with the new v.
-    fn leapfrog_step(&self, dt: f64) -> Matrix3<f64> {
-        let Self { omega, longitudinal, coupling, transverse, density, .. } = *self;
+    fn leapfrog_step(&self, integrator: Integrator, dt: f64) -> Matrix3<f64> {
+        let Self { omega, longitudinal, coupling, transverse, density, viscous, .. } = *self;
+        // Over which time the kick sums the forces beside viscosity, and what it leaves of the velocities.
+        let (kick, left) = match integrator {
+            Integrator::SuperLeapfrog if viscous * dt > 1e-9 => {
+                let left = super_steps::factor(stages(dt / self.explicit), viscous * dt);
+                let kick = (1.0 - left) / viscous;
+                let left_by = |damping: f64| left - (damping - viscous) * kick;
+                (kick, [longitudinal, transverse].map(left_by))
+            }
+            _ => (dt, [longitudinal, transverse].map(|damping| 1.0 - damping * dt)),
+        };
         let kick = Matrix3::new(
             1.0,
             0.0,
             0.0, //
-            omega * dt,
-            1.0 - longitudinal * dt,
-            -coupling * dt, //
+            omega * kick,
+            left[0],
+            -coupling * kick, //
             0.0,
-            -coupling * dt,
-            1.0 - transverse * dt,
+            -coupling * kick,
+            left[1],
         );
         let drift = Matrix3::new(
             1.0 - density * dt,
@@ -344,7 +405,16 @@ mod tests {
 
     fn oscillator(omega: f64, gamma: f64) -> Mode {
         let along = Vector2::x();
-        Mode { along, omega, longitudinal: gamma, coupling: 0.0, transverse: 0.0, density: 0.0 }
+        Mode {
+            along,
+            omega,
+            longitudinal: gamma,
+            coupling: 0.0,
+            transverse: 0.0,
+            density: 0.0,
+            viscous: gamma,
+            explicit: 0.0,
+        }
     }
 
     /// Table 2.1: leapfrog limit of sound c₀ dt/h and limit of viscosity ν dt/h² at η² = 0.01 h².

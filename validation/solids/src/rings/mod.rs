@@ -25,7 +25,8 @@ use harness::{
 };
 use maths::theory::Stepping;
 use solver::{
-    ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Symmetric, terms::TensileStress,
+    ComponentStress, Integrator, Leapfrog, PredictorCorrector, PrincipalStress, Symmetric,
+    terms::TensileStress,
 };
 
 use crate::solid::Rubber;
@@ -83,7 +84,7 @@ pub type RingMethod = Method<Symmetric, dyn Metered>;
 pub fn method<R, I>() -> RingMethod
 where
     R: TensileStress + FromMedium,
-    I: Stepping<Symmetric>,
+    I: Stepping + Integrator<Rubber<R, ()>>,
 {
     Method::with::<Rubber<R, I>>(|parts| {
         Ok(Box::new(method::scene::<Rubber<R, I>>(parts).build()?))

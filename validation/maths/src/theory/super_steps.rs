@@ -1,0 +1,76 @@
+//! The stage polynomial of super-time-stepping, RKL2 (Meyer, Balsara & Aslam 2014), in closed form.
+
+/// The factor by which a kick of so many stages over dt multiplies a velocity that decays at the rate γ, with
+/// z = γ dt: R(z) = 1 − b + b P(1 − 4 z/(s² + s − 2)) with the Legendre polynomial P of degree s and
+/// b = (s² + s − 2)/(2 s (s + 1)).
+///
+/// R(z) = 1 − z + z²/2 + O(z³), and 0 < R(z) ≤ 1 as long as s stages are stable, z ≤ (s² + s − 2)/2.
+pub fn factor(stages: u32, z: f64) -> f64 {
+    let s = f64::from(stages);
+    let scale = s * s + s - 2.0;
+    let b = 0.5 * scale / (s * s + s);
+    // 1 - P in terms of 1 - x, so that long waves do not lose their digits.
+    let x = 4.0 * z / scale;
+    let (mut before, mut last) = (0.0, x);
+    for j in 2..=stages {
+        let j = f64::from(j);
+        // j P_j = (2j - 1) (1 - x) P_{j-1} - (j - 1) P_{j-2}, with 1 - P in place of P.
+        let next = ((2.0 * j - 1.0) * (last + x - x * last) - (j - 1.0) * before) / j;
+        (before, last) = (last, next);
+    }
+    1.0 - b * last
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use solver::super_steps::stages;
+
+    /// The polynomial at many z up to the limit of s stages.
+    fn sampled(s: u32) -> Vec<f64> {
+        let limit = 0.5 * f64::from(s * s + s - 2);
+        (0..=10_000).map(|k| factor(s, limit * f64::from(k) / 10_000.0)).collect()
+    }
+
+    #[test]
+    fn no_wave_grows_or_changes_its_sign_up_to_the_limit_of_the_stages() {
+        for s in (3..=51).step_by(2) {
+            let all = sampled(s);
+            assert!(all.iter().all(|r| (0.0..=1.0).contains(r)), "{s} stages");
+            let at_the_limit = 2.0 / f64::from(s * s + s);
+            assert!((all[10_000] - at_the_limit).abs() < 1e-12, "{s} stages: {}", all[10_000]);
+            let beyond = factor(s, 1.1 * 0.5 * f64::from(s * s + s - 2));
+            assert!(beyond < 0.0, "{s} stages: {beyond}");
+        }
+        // With an even number the stiffest wave stays as it is.
+        assert!((sampled(4)[10_000] - 1.0).abs() < 1e-12);
+    }
+
+    /// The polynomial is positive, but it does not fall with z everywhere. That no velocity overshoots its
+    /// neighbours is a property of the whole kick, which a test of the solver shows.
+    #[test]
+    fn the_factor_swings_about_a_half_for_stiff_waves() {
+        let all = sampled(25);
+        assert!(all.windows(2).any(|pair| pair[1] > pair[0] + 1e-4));
+        assert!(all[2000..].iter().all(|r| (r - 0.5).abs() < 0.5));
+        assert!(all[500..9000].iter().all(|r| (r - 0.5).abs() < 0.2));
+    }
+
+    #[test]
+    fn the_factor_is_an_exponential_up_to_second_order() {
+        for s in [3, 5, 11] {
+            let error = |z: f64| (factor(s, z) - base::functions::exp(-z)).abs();
+            let ratio = error(2e-2) / error(1e-2);
+            assert!((7.5..8.5).contains(&ratio), "{s} stages: {ratio}");
+        }
+    }
+
+    #[test]
+    fn the_stages_of_the_solver_are_the_fewest_odd_ones_that_allow_the_step() {
+        let longest = |s: u32| 0.25 * f64::from(s * s + s - 2);
+        assert_eq!([0.0, 1e-9, 1.0, 2.5].map(stages), [3; 4]);
+        for s in (3..100).step_by(2) {
+            assert_eq!([longest(s), 1.0001 * longest(s)].map(stages), [s, s + 2]);
+        }
+    }
+}
