@@ -46,7 +46,7 @@ where
     E: Term<P::Extra>,
     T: Term<P::Extra>,
 {
-    const NAME: &'static str = "super-time-stepping leapfrog";
+    const NAME: &'static str = "super-leapfrog";
     const ORDER: [u32; 2] = [2, 2];
 
     fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {

@@ -16,7 +16,7 @@ const DX: f64 = 0.1;
 const H: f64 = 1.2 * DX;
 
 /// A periodic lattice that moves at a speed, so many rows of it wall particles.
-fn simulation<W: Walls<()>, I: Integrator<()>>(
+fn simulation<W: Walls<()>, I: Integrator<Method<W, ()>>>(
     (walls, rows): (W, usize),
     speed: f64,
 ) -> Simulation<Method<W, I>> {
@@ -32,7 +32,7 @@ fn simulation<W: Walls<()>, I: Integrator<()>>(
 }
 
 /// The phases of one step, without the repetitions of one after itself, and those of bringing all to a time.
-fn phases<W: Walls<()>, I: Integrator<()>>(
+fn phases<W: Walls<()>, I: Integrator<Method<W, ()>>>(
     simulation: &mut Simulation<Method<W, I>>,
 ) -> Vec<Phase> {
     let told: Arc<Mutex<Vec<Phase>>> = Arc::default();

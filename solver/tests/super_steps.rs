@@ -63,9 +63,20 @@ fn farthest(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// sin of whole waves over the height, at the rows of the lattice.
+/// cos(k a) from cos a.
+fn multiple(cos: f64, k: usize) -> f64 {
+    let (mut before, mut last) = (cos, 1.0);
+    for _ in 0..k {
+        (before, last) = (last, 2.0 * cos * last - before);
+    }
+    last
+}
+
+/// The cosine of whole waves over the height, at the rows of the lattice.
 fn wave(waves: usize) -> impl Fn(Vector2<f64>) -> f64 {
-    move |x| SLOW * (std::f64::consts::TAU * waves as f64 * (x.y - 0.25 * DX)).sin()
+    // cos π/8 by halves of angles.
+    let turn = multiple((2.0 + 2.0_f64.sqrt()).sqrt() / 2.0, waves);
+    move |x| SLOW * multiple(turn, (x.y / DX) as usize)
 }
 
 /// Legendre's polynomial of this degree.

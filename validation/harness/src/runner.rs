@@ -176,18 +176,21 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         }
     }
 
-    /// Steps through the times that are left, and observes each; how the run ended.
+    /// Steps through the times that are left, with steps of at most `dt` \[s\] and at least so many to each,
+    /// and observes each; how the run ended.
     fn step_through<D>(
         &mut self,
         simulation: &mut D,
         times: &[f64],
-        dt: f64,
+        (dt, least): (f64, f64),
         at: &Named<At<D, S>>,
     ) -> Status
     where
         D: Stepper<X> + ?Sized,
     {
         while let Some(&until) = times.get(self.reached) {
+            let start = self.reached.checked_sub(1).map_or(0.0, |before| times[before]);
+            let dt = if until > start { dt.min((until - start) / least) } else { dt };
             if let Some(ended) = self.step_to(simulation, until, dt) {
                 return ended;
             }
@@ -285,6 +288,8 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
 pub struct Drive<'a, X, D: ?Sized, S> {
     simulation: &'a mut D,
     dt: f64,
+    least: usize,
+    sweeps: f64,
     times: &'a [f64],
     pressure: &'a dyn Fn(f64) -> f64,
     seen: &'a mut S,
@@ -305,7 +310,18 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
     ) -> Self {
         let (after_step, at) = (Vec::new(), Vec::new());
         let resumed: Resumed<'a, D, S> = &|_, _| {};
-        Self { simulation, dt, times, pressure, seen, after_step, at, resumed }
+        let (least, sweeps) = (1, 2.0);
+        Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed }
+    }
+
+    /// Makes at least so many steps to each of the times, from the one before it.
+    pub fn at_least(self, least: usize) -> Self {
+        Self { least, ..self }
+    }
+
+    /// So many pair sweeps a step, for the estimate of what the run takes.
+    pub fn sweeps(self, sweeps: f64) -> Self {
+        Self { sweeps, ..self }
     }
 
     /// Calls a function after every step, beside those named before; a profile shows its time by this name.
@@ -333,11 +349,15 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
     /// If it would take more time or memory than a run may, or a frame or a checkpoint cannot be written: the
     /// run stops at once.
     pub fn run(self, context: &Context) -> Result<(Status, Cost), RunError> {
-        let Self { simulation, dt, times, pressure, seen, after_step, at, resumed } = self;
-        let dt =
-            context.mutation.map_or(dt, |mutation| dt * mutation.factor_of(Constant::TimeStep));
+        let Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed } =
+            self;
+        let factor =
+            context.mutation.map_or(1.0, |mutation| mutation.factor_of(Constant::TimeStep));
+        let (dt, least) = (dt * factor, least as f64 / factor);
         let end = times.last().copied().unwrap_or_default();
-        let size = Size::of(simulation, ((end - simulation.time()) / dt).max(times.len() as f64));
+        let fewest = least.max(1.0) * times.len() as f64;
+        let steps = ((end - simulation.time()) / dt).max(fewest);
+        let size = Size::of(simulation, steps).with_sweeps(sweeps);
         check_size(size, "the end, the time step or the spacing", context)?;
         if let Some(tell) = context.estimate {
             tell(&size);
@@ -372,7 +392,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         let (status, cost) = match ended {
             Some(status) => (status, watch.cost.clone()),
             None => {
-                let status = watch.step_through(simulation, times, dt, &at);
+                let status = watch.step_through(simulation, times, (dt, least), &at);
                 if let Some(error) = watch.failed.take() {
                     return Err(error);
                 }

@@ -29,6 +29,8 @@ pub struct Size {
     pub particles: f64,
     /// Neighbours of a particle.
     pub neighbours: f64,
+    /// Pair sweeps of a step.
+    pub sweeps: f64,
     /// Steps of which the record keeps something.
     pub samples: f64,
 }
@@ -36,7 +38,7 @@ pub struct Size {
 impl Size {
     /// So many steps of so many particles, whose kernel reaches over `reach` spacings.
     pub fn new([steps, particles]: [f64; 2], reach: f64) -> Self {
-        Self { steps, particles, neighbours: PI * reach * reach, samples: 0.0 }
+        Self { steps, particles, neighbours: PI * reach * reach, sweeps: 2.0, samples: 0.0 }
     }
 
     /// So many steps of a simulation; its kernel tells how far it reaches.
@@ -55,9 +57,15 @@ impl Size {
         Self { samples: self.steps, ..self }
     }
 
+    /// The same of a run with so many pair sweeps a step.
+    #[must_use]
+    pub fn with_sweeps(self, sweeps: f64) -> Self {
+        Self { sweeps, ..self }
+    }
+
     /// Processor time \[s\].
     pub fn seconds(&self) -> f64 {
-        self.steps * self.particles * (STEP[0] + STEP[1] * self.neighbours)
+        0.5 * self.sweeps * self.steps * self.particles * (STEP[0] + STEP[1] * self.neighbours)
     }
 
     /// Memory \[bytes\].

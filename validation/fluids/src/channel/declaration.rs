@@ -79,7 +79,7 @@ fn error(flow: Flow) -> (MetricName, String) {
 }
 
 /// Variants whose error is drawn against their cost. Without a body force `curved` is `plain`.
-pub fn ladder(flow: Flow) -> [&'static str; 8] {
+pub fn ladder(flow: Flow) -> [&'static str; 9] {
     [
         "seed",
         "interface-wall",
@@ -89,6 +89,7 @@ pub fn ladder(flow: Flow) -> [&'static str; 8] {
         "quintic-pc",
         "plain",
         if flow == Flow::Couette { "modern" } else { "curved" },
+        "stiff",
     ]
 }
 

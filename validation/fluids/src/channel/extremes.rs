@@ -79,7 +79,7 @@ fn error_of(model: &RowModel, u: &DVector<f64>) -> f64 {
 }
 
 /// Relative error of the row-reduced matrix at νt/L² = 0.1, exact in time.
-fn matrix_error<K: Kernel>(count: usize, h_over_dx: f64, eta2: f64) -> Option<f64> {
+pub fn matrix_error<K: Kernel>(count: usize, h_over_dx: f64, eta2: f64) -> Option<f64> {
     let model = rows::<K>(count, h_over_dx, eta2, Alignment::Aligned)?;
     let u = model.at(END)?;
     Some(error_of(&model, &u))

@@ -14,6 +14,7 @@ mod sensitivity;
 mod settings;
 mod setup;
 mod starts;
+mod stiff;
 mod studies;
 mod variants;
 mod waves;
@@ -25,7 +26,7 @@ pub use run::{COUETTE, POISEUILLE};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};
 pub use studies::studies;
-pub use variants::{Drive, Fluid, Modern, Seed, Stabilised, variants};
+pub use variants::{Drive, Fluid, Modern, Seed, Stabilised, Stiff, variants};
 
 use harness::{
     composed::{Composed, Program},

@@ -7,7 +7,7 @@ use super::{
         L2, L2_WORST, MOMENTUM_Y, NU_EFF, OUTSIDE, P_RMS, SHEAR_LOWER, SHEAR_UPPER, V_RMS,
         VOLUME_DRIFT,
     },
-    waves,
+    stiff, waves,
 };
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -33,7 +33,7 @@ pub fn plan(channel: Channel, tier: Tier) -> Vec<Planned> {
             mirrored.chain(hypotheses.concat()).collect()
         }
     };
-    runs.extend(more.into_iter().map(Planned::new));
+    runs.extend(more.into_iter().chain(stiff::specs(case, tier)).map(Planned::new));
     runs.push(Planned::new(snapshot(channel)));
     runs
 }

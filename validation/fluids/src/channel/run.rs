@@ -51,6 +51,8 @@ fn run(
     let pressure = |density| eos.pressure(density);
     let mut seen = (&mut series, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, setup.dt, &times, &pressure, &mut seen)
+        .at_least(settings.least_steps)
+        .sweeps(setup.sweeps)
         .after_step("series", &|(series, _), simulation| series.after_step(simulation))
         .at("profiles and errors", &|(_, record), simulation, k| {
             measure::compare(setup, &Sample::of(setup, simulation), compared[k], record);

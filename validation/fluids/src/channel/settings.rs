@@ -33,12 +33,16 @@ base::settings! {
         gamma: usize ["-"] in 1..=20 = 7,
         /// background pressure p0
         background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
-        /// time step; auto: the least of courant h/(c0 + V), viscous h²/ν, √(h/F)/4
+        /// time step; auto: the least of courant h/(c0 + V), viscous h²/ν (or of limit_share), √(h/F)/4
         dt: Option<f64> ["s"] in 1e-15..=1e3 = None,
         /// Courant number of the time step
         courant: f64 ["-"] in 1e-6..=100.0 = 0.25,
         /// viscous number of the time step
         viscous: f64 ["-"] in 1e-6..=100.0 = 0.125,
+        /// time step as a share of its theoretical limit, in place of both numbers; auto: not
+        limit_share: Option<f64> ["-"] in 0.01..=1.0 = None,
+        /// least number of time steps from one time of comparison to the next
+        least_steps: usize ["-"] in 1..=100000 = 1,
         /// wall ghosts know the curvature -F/ν of the velocity at the wall
         wall_curvature: bool = false,
         /// artificial viscosity, linear

@@ -63,6 +63,8 @@ pub struct Setup {
     pub columns: usize,
     /// Time step \[s\].
     pub dt: f64,
+    /// Pair sweeps of a step.
+    pub sweeps: f64,
     /// Its theoretical limit for sound, viscosity and what else damps \[s\].
     pub dt_limit: f64,
 }
@@ -114,11 +116,13 @@ impl Setup {
         let courant = s.courant * h / (sound_speed + v);
         let viscous = s.viscous * h * h / s.nu;
         let forced = if force > 0.0 { 0.25 * (h / force).sqrt() } else { f64::INFINITY };
-        let dt = s.dt.unwrap_or(courant.min(viscous).min(forced));
         let waves = medium.waves(&method.uses);
         let dt_limit = method.step_limit([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let stable = s.limit_share.map_or(courant.min(viscous), |share| share * dt_limit);
+        let dt = s.dt.unwrap_or(stable.min(forced));
+        let sweeps = method.theory.sweeps(dt / medium.explicit_limit());
         let settings = s.clone();
-        let setup = Self { settings, flow, v, force, medium, columns, dt, dt_limit };
+        let setup = Self { settings, flow, v, force, medium, columns, dt, sweeps, dt_limit };
         setup.check(method, context)?;
         Ok(setup)
     }
@@ -132,7 +136,7 @@ impl Setup {
         let Self { settings: s, medium, columns, .. } = self;
         simulate::check_step(method.integrator, self.rules(), context)?;
         let (steps, particles) = (self.time(s.end) / self.dt, s.rows as f64 * *columns as f64);
-        let size = simulate::size(method, medium, [steps, particles]);
+        let size = simulate::size(method, medium, [steps, particles]).with_sweeps(self.sweeps);
         let size = if s.watch_mode { size.sampled_at_every_step() } else { size };
         runner::check_size(size, DECISIVE, context)
     }

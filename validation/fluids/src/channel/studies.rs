@@ -5,7 +5,7 @@ use super::{
     declaration::at_rows,
     extremes, floor, map,
     measure::{L2_WORST, P_RMS, V_RMS},
-    plan, waves,
+    plan, stiff, waves,
 };
 use base::record::{MetricKey, Record, Status};
 use harness::{
@@ -24,6 +24,7 @@ pub fn studies(channel: Channel, tier: Tier, runs: &Runs) -> Vec<Study> {
         claims(channel, runs),
         floor::study(channel, tier, runs),
         reynolds(channel, tier, runs),
+        stiff::study(channel, tier, runs),
     ];
     match flow {
         Flow::Couette => studies.push(extremes::study(case, tier, runs)),

@@ -9,7 +9,7 @@ mod odd;
 mod smoothing;
 mod vortex;
 
-pub use experiment::{Experiment, plan, study};
+pub use experiment::{Experiment, measured, plan, study};
 
 use solver::{CubicSpline, EquationOfState, Leapfrog, QuinticSpline, Stepper, Tait, WendlandC2};
 

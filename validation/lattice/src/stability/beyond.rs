@@ -1,7 +1,7 @@
-//! Steps beyond the limit: they diverge, and as soon as theory says.
+//! Steps about the limit: up to it nothing grows, beyond it runs diverge as soon as theory says.
 
-use super::{BoxSettings, NoisyBox, Pair, RESTING_BOX, noisy_box::NOISE};
-use crate::extremes::Experiment;
+use super::{BoxSettings, GREW, NoisyBox, Pair, RESTING_BOX, noisy_box::NOISE};
+use crate::extremes::{Experiment, measured};
 use base::functions::ln;
 use base::{
     gate::{Bound, Evidence},
@@ -21,9 +21,35 @@ pub fn experiments() -> Vec<Experiment> {
             beyond(Pair::cubic_leapfrog(), None, factor),
             beyond(Pair::cubic_leapfrog(), Some(1.0), factor),
             beyond(Pair::cubic_pc(), Some(1.0), factor),
+            beyond(Pair::cubic_super(), Some(1.0), factor),
+            beyond(Pair::cubic_super(), Some(10.0), factor),
         ]
     };
-    [1.05, 2.0].into_iter().flat_map(at).collect()
+    let up_to = |factor: f64| [1.0, 10.0].map(|stiffness| up_to(stiffness, factor));
+    let stable = [0.9, 1.0].into_iter().flat_map(up_to);
+    stable.chain([1.05, 2.0].into_iter().flat_map(at)).collect()
+}
+
+/// The box with super-time-stepping of viscosity, whose limit is that of sound.
+fn up_to(stiffness: f64, factor: f64) -> Experiment {
+    let pair = Pair::cubic_super();
+    let settings =
+        BoxSettings { n: 20, h_over_dx: 1.3, stiffness: Some(stiffness), ..Default::default() };
+    let theory = NoisyBox::new(&settings).theory(pair.plain());
+    let (courant, integrator) = (factor * theory.limit, pair.plain().integrator);
+    let set = |s: &mut BoxSettings| {
+        *s = BoxSettings { courant, steps: theory.steps, to_the_end: true, ..settings };
+    };
+    let spec = RESTING_BOX.spec(pair.name, set).allow_unstable();
+    Experiment::of(spec, 1e-3 * theory.steps as f64, move |record: &Record| {
+        let setting = format!("{factor} limits, {integrator}, c₀h/ν = {stiffness}");
+        let name = format!("step.{integrator}.{stiffness}.{factor}");
+        let what = ["step up to the limit".into(), setting];
+        let because = "up to the limit of sound and viscosity together no wave grows, however stiff viscosity is";
+        let entry =
+            Entry::new(&name, what, "grew", Bound::Equals(0.0)).because(Evidence::Theory, because);
+        measured(entry, record, GREW, " (0: no growth)")
+    })
 }
 
 fn beyond(pair: Pair, stiffness: Option<f64>, factor: f64) -> Experiment {
@@ -40,7 +66,7 @@ fn beyond(pair: Pair, stiffness: Option<f64>, factor: f64) -> Experiment {
     };
     let spec = RESTING_BOX.spec(pair.name, set).allow_unstable();
     Experiment::of(spec, 1e-4 * steps as f64, move |record: &Record| {
-        let sound = if stiffness.is_some() { "c₀h/ν = 1" } else { "no viscosity" };
+        let sound = stiffness.map_or("no viscosity".into(), |ratio| format!("c₀h/ν = {ratio}"));
         let what =
             ["step beyond the limit".into(), format!("{factor} limits, {integrator}, {sound}")];
         let name = format!("step.{integrator}.{}.{factor}", stiffness.unwrap_or(f64::INFINITY));

@@ -233,6 +233,9 @@ fn points(tier: Tier) -> Vec<Point> {
     let cubic = [Pair::cubic_leapfrog(), Pair::cubic_pc()];
     let mut points = points_of(&cubic, 1.3, tier);
     points.extend(points_of(&Pair::quintic(), 1.0, tier));
+    let damped =
+        [[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [10.0, 0.0, 0.0], [30.0, 0.0, 0.0], [30.0, 0.1, 0.1]];
+    points.extend(damped.map(|damping| Point::new(&Pair::cubic_super(), 1.3, damping)));
     if tier == Tier::Full {
         points.extend(points_of(&cubic, 1.2, tier));
         points.extend(points_of(&Pair::wendland(), 2.0, tier));
@@ -318,6 +321,8 @@ mod tests {
     fn boxes_have_the_limits_of_theory() {
         let (leapfrog, midpoint) = (Pair::cubic_leapfrog(), Pair::cubic_pc());
         for limit in [
+            limit(&Pair::cubic_super(), 1.0),
+            limit(&Pair::cubic_super(), 10.0),
             limit(&leapfrog, 1.0),
             limit(&leapfrog, f64::INFINITY),
             limit(&midpoint, 1.0),

@@ -5,8 +5,8 @@ use nalgebra::{Complex, Vector2};
 use solver::{
     ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion, Domain,
     EquationOfState, Flow, Integrator, Kernel, Leapfrog, Limits, Observer, Open, Particle,
-    PredictorCorrector, Pressure, QuinticSpline, SceneError, Stepper, Tait, Viscosity, WendlandC2,
-    terms::Always,
+    PredictorCorrector, Pressure, QuinticSpline, SceneError, Split, Stepper, SuperSteps, Tait,
+    Viscosity, WendlandC2, terms::Always,
 };
 
 use super::{BoxSettings, ENERGY, GREW, RESTING_BOX, WAVE_ANGLE, WAVE_GROWTH};
@@ -53,6 +53,18 @@ type Damped<K, I> = Compose<
     I,
 >;
 
+/// The same by super-time-stepping of viscosity.
+type SuperPlain<K> =
+    Compose<K, Split<Pressure<Tait>, Viscosity>, Continuity, Open, Leapfrog<SuperSteps>>;
+/// With artificial viscosity and density diffusion too.
+type SuperDamped<K> = Compose<
+    K,
+    Split<(Pressure<Tait>, ArtificialViscosity<Tait, Always>), Viscosity>,
+    (Continuity, DensityDiffusion),
+    Open,
+    Leapfrog<SuperSteps>,
+>;
+
 /// A kernel and an integrator: a variant, with and without what damps beside viscosity.
 pub struct Pair {
     /// Name of the variant.
@@ -82,6 +94,13 @@ impl Pair {
         Self::of::<CubicSpline, PredictorCorrector>("cubic-pc", 1.3)
     }
 
+    /// The cubic spline and the leapfrog with super-time-stepping.
+    pub fn cubic_super() -> Self {
+        let plain = Method::of::<SuperPlain<CubicSpline>>();
+        let damped = Method::of::<SuperDamped<CubicSpline>>();
+        Self { name: "cubic-super", h_over_dx: 1.3, plain, damped }
+    }
+
     /// The quintic spline with both.
     pub fn quintic() -> [Self; 2] {
         [
@@ -100,7 +119,7 @@ impl Pair {
 
     /// All of them.
     pub fn all() -> impl Iterator<Item = Self> {
-        let cubic = [Self::cubic_leapfrog(), Self::cubic_pc()];
+        let cubic = [Self::cubic_leapfrog(), Self::cubic_pc(), Self::cubic_super()];
         cubic.into_iter().chain(Self::quintic()).chain(Self::wendland())
     }
 

@@ -49,6 +49,17 @@ pub enum Integrator {
     Euler,
 }
 
+impl Integrator {
+    /// Pair sweeps of a step that is so many times as long as [`explicit_limit`].
+    pub fn sweeps(self, ratio: f64) -> f64 {
+        match self {
+            Self::Euler => 1.0,
+            Self::PredictorCorrector | Self::Leapfrog => 2.0,
+            Self::SuperLeapfrog => 1.0 + f64::from(stages(ratio)),
+        }
+    }
+}
+
 /// One wave: the coefficients of its equations, resolved along and across ĝ.
 #[derive(Clone, Copy, Debug)]
 pub struct Mode {
@@ -118,7 +129,8 @@ pub fn modes<K: Kernel>(lattice: &SquareLattice<K>, n: usize, medium: &Medium) -
 
 /// The largest stable dt \[s\] over `modes`: 0 if one of them grows at every dt, infinite for none.
 pub fn time_step_limit(modes: &[Mode], integrator: Integrator) -> f64 {
-    modes.iter().map(|mode| mode.limit(integrator)).fold(f64::INFINITY, f64::min)
+    let shorter = |least: f64, mode: &Mode| least.min(mode.limit_below(integrator, least));
+    modes.iter().fold(f64::INFINITY, shorter)
 }
 
 /// The growth rate of the fastest of `modes` a step, ln of the spectral radius; about 0 or below
@@ -190,11 +202,16 @@ impl Mode {
     ///   latter reads 2a + 2a² dt + a|s|² dt² + |s|⁴ dt³/4 ≤ 0, free of cancellation, and its left
     ///   side grows with dt for every a < 0, so it has one root.
     pub fn limit(&self, integrator: Integrator) -> f64 {
+        self.limit_below(integrator, f64::INFINITY)
+    }
+
+    /// The same, or any longer step if it is longer than this.
+    fn limit_below(&self, integrator: Integrator, longest: f64) -> f64 {
         if integrator == Integrator::Leapfrog {
             return 2.0 / self.stiffness().symmetric_eigenvalues().max();
         }
         if integrator == Integrator::SuperLeapfrog {
-            return self.limit_of_super_steps();
+            return self.limit_of_super_steps(longest);
         }
         let limit = |s: Complex<f64>| match modulus(s) {
             0.0 => f64::INFINITY,
@@ -205,7 +222,7 @@ impl Mode {
         self.eigenvalues().map(limit).into_iter().fold(f64::INFINITY, f64::min)
     }
 
-    fn limit_of_super_steps(&self) -> f64 {
+    fn limit_of_super_steps(&self, longest: f64) -> f64 {
         let viscous = self.viscous;
         let (longitudinal, transverse) = (self.longitudinal - viscous, self.transverse - viscous);
         let inviscid = Self { longitudinal, transverse, viscous: 0.0, ..*self };
@@ -214,9 +231,9 @@ impl Mode {
             let step = self.leapfrog_step(Integrator::SuperLeapfrog, dt);
             (step + Matrix3::identity()).determinant() > 0.0
         };
-        let Some(mut high) =
-            (0..SEARCHED).map(|k| shortest * 1.01_f64.powi(k)).find(|dt| !is_stable(*dt))
-        else {
+        let searched = (0..SEARCHED).map(|k| shortest * 1.01_f64.powi(k));
+        let mut within = searched.take_while(|dt| *dt < 1.01 * longest);
+        let Some(mut high) = within.find(|dt| !is_stable(*dt)) else {
             return f64::INFINITY;
         };
         let mut low = high / 1.01;
