@@ -353,12 +353,10 @@ impl<X: Numbers> ParticleData<X> {
     fn excess(&self, evolved: &Evolved<X>, displacement2: f64) -> Option<(&'static str, f64)> {
         let ([least, most], speed2) = (self.limits.density, evolved.velocity.norm_squared());
         // The square of the limit may be infinite.
-        let speed_limit2 = self.limits.speed * self.limits.speed;
+        let limit2 = self.limits.speed * self.limits.speed;
         match evolved.density {
             _ if !(displacement2 <= self.reach2) => Some(("position", evolved.position.norm())),
-            _ if !(speed2 <= speed_limit2 && speed2.is_finite()) => {
-                Some(("velocity", evolved.velocity.norm()))
-            }
+            _ if !(speed2 <= limit2 && speed2.is_finite()) => Some(("velocity", speed2.sqrt())),
             density if !(density > least && density < most) => Some(("density", density)),
             _ => None,
         }

@@ -218,8 +218,7 @@ fn the_solver_stays_within_its_budget() {
     assert!(lines <= SOLVER_LINES, "the solver has {lines} lines, allowed are {SOLVER_LINES}");
 }
 
-/// A profile costs nothing unless it is asked for: clocks are in the harness, which the solver tells of phases
-/// if it is asked to.
+/// A profile costs nothing unless it is asked for: clocks are in the harness, which is told of phases then.
 #[test]
 fn the_solver_reads_no_clock() {
     let mut found = Vec::new();

@@ -372,8 +372,8 @@ fn side_by_side(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
     Ok(made.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
-/// One run at a time, the first of each profiled; cheap ones again in further rounds. A record is kept as soon as it is there, and
-/// again with the timings of a later round.
+/// One run at a time, the first of each profiled; cheap ones again in further rounds. A record is kept as
+/// soon as it is there, and again with the timings of a later round.
 fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
     let again_below = timed_again_below(batch.making.tier);
     let mut records: Vec<Record> = Vec::new();
