@@ -8,7 +8,7 @@
 
 use std::marker::PhantomData;
 
-use crate::lane::Lane;
+use lanes::Lane;
 
 /// The dimensionless shape of a kernel.
 pub trait Kernel: Copy + Default + Send + Sync + 'static {

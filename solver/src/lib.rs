@@ -25,14 +25,11 @@
 //! The crate does no I/O and contains no reference data. After [`Scene::build`] it returns no error; a
 //! divergence is the regular result [`Outcome::Diverged`].
 
-mod dispatch;
 pub mod domain;
 pub mod engine;
 pub mod eos;
 pub mod integrator;
 pub mod kernel;
-#[macro_use]
-pub mod lane;
 mod neighbours;
 pub mod numbers;
 mod parallel;
@@ -45,14 +42,13 @@ pub mod super_steps;
 mod sweep;
 pub mod terms;
 pub mod walls;
-#[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))] // see `dispatch.rs`
-mod ymm;
 
 pub use domain::Domain;
 pub use engine::Engine;
 pub use eos::{EquationOfState, Linear, Tait};
 pub use integrator::{Euler, ForwardKick, Integrator, Leapfrog, PredictorCorrector, Scheme};
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
+pub use lanes as lane;
 pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{
     Checkpoint, Fault, Limits, ParticleData, Phase, PhaseWatch, Progress, Work,

@@ -8,12 +8,11 @@
 
 use std::{mem::take, ops::Range};
 
+use lanes::{LANES, Lane, OnLanes, gather_vector, on_widest};
 use nalgebra::Vector2;
 
 use crate::{
-    dispatch::on_widest,
     domain::Domain,
-    lane::{LANES, Lane, OnLanes, gather_vector},
     numbers::Numbers,
     parallel,
     walls::{Map, PlaneWall, corners},
@@ -338,6 +337,7 @@ impl OnLanes for FillLists<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lanes::on_registers;
     use simba::simd::WideF64x4;
 
     /// Splitmix64: the same points on every machine.
@@ -484,13 +484,19 @@ mod tests {
         neighbours.build([250, 250], true, false);
         let [fluid, wall] =
             [&neighbours.lists, &neighbours.wall_lists].map(|lists| &lists.blocks[..]);
-        for (widest, of, up_to) in [(fluid, 0..250, usize::MAX), (wall, 250..500, 250)] {
-            let mut portable = Block::default();
-            FillLists { neighbours: &neighbours, block: &mut portable, of, up_to }
-                .run::<WideF64x4>();
-            let [widest] = widest else { panic!("one block") };
-            assert_eq!(portable.chunks, widest.chunks);
-            assert_eq!((portable.starts, portable.pairs), (widest.starts.clone(), widest.pairs));
+        for (built, of, up_to) in [(fluid, 0..250, usize::MAX), (wall, 250..500, 250)] {
+            let [mut portable, mut widest] = [Block::default(), Block::default()];
+            let of_block =
+                |block| FillLists { neighbours: &neighbours, block, of: of.clone(), up_to };
+            of_block(&mut portable).run::<WideF64x4>();
+            if let Some(work) = on_registers(of_block(&mut widest)) {
+                work.run::<WideF64x4>();
+            }
+            let [built] = built else { panic!("one block") };
+            for block in [portable, widest] {
+                assert_eq!(block.chunks, built.chunks);
+                assert_eq!((block.starts, block.pairs), (built.starts.clone(), built.pairs));
+            }
         }
         assert!(wall[0].pairs > 1000 && fluid[0].pairs > wall[0].pairs);
     }

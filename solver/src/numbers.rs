@@ -6,7 +6,7 @@
 
 use nalgebra::Vector2;
 
-use crate::lane::{Lane, gather_vector};
+use lanes::{Lane, gather_vector};
 
 /// A fixed set of numbers.
 pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 'static {

@@ -3,9 +3,10 @@
 //! The integrator accesses [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
 //! laid out for the pair sweep: for a fluid it is one cache line.
 
+use lanes::Lane;
 use nalgebra::Vector2;
 
-use crate::{lane::Lane, numbers::Numbers};
+use crate::numbers::Numbers;
 
 /// The role of a particle in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

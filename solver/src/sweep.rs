@@ -7,12 +7,11 @@
 //! compiled once for each combination of these. Code that is compiled only once calls it through
 //! [`PairSweep`].
 
+use lanes::{Lane, OnLanes, gather_vector, on_widest};
 use nalgebra::Vector2;
 
 use crate::{
-    dispatch::on_widest,
     kernel::{Kernel, Smoothing},
-    lane::{Lane, OnLanes, gather_vector},
     neighbours::{BLOCK, Block, Lists},
     numbers::Numbers,
     parallel,
@@ -172,6 +171,7 @@ mod tests {
     use crate::{
         Continuity, Domain, Pressure, QuinticSpline, Tait, Viscosity, neighbours::Neighbours,
     };
+    use lanes::on_registers;
     use simba::simd::WideF64x4;
 
     const DX: f64 = 0.1;
@@ -204,12 +204,18 @@ mod tests {
         let kernel = Smoothing::<QuinticSpline>::new(DX);
         let (terms, columns) = (&terms, &columns[..]);
         let sweep = Sweep { kernel: &kernel, terms, columns, select: whole(), moving: true };
-        let widest: Vec<Rate<()>> = rates(&sweep, &neighbours.lists);
         let start = |column: &Column<_>| Rate { position: column.velocity, ..Rate::default() };
         let mut portable: Vec<Rate<()>> = columns[..count].iter().map(start).collect();
+        let mut widest = portable.clone();
         for (b, rates) in portable.chunks_mut(BLOCK).enumerate() {
             let (sweep, block, first) = (&sweep, &neighbours.lists.blocks[b], b * BLOCK);
             Particles { sweep, block, list: 0, first, rates }.run::<WideF64x4>();
+        }
+        for (b, rates) in widest.chunks_mut(BLOCK).enumerate() {
+            let (sweep, block, first) = (&sweep, &neighbours.lists.blocks[b], b * BLOCK);
+            if let Some(work) = on_registers(Particles { sweep, block, list: 0, first, rates }) {
+                work.run::<WideF64x4>();
+            }
         }
         assert!(neighbours.lists.blocks.len() > 1);
         let bits =

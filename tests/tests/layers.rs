@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use crate::tidy::root;
 
 /// A crate, its folder, and the crates of this project that it may know.
-const LAYERS: [(&str, &str, &[&str]); 12] = [
-    ("solver", "solver", &[]),
+const LAYERS: [(&str, &str, &[&str]); 13] = [
+    ("lanes", "solver/lanes", &[]),
+    ("solver", "solver", &["lanes"]),
     ("base", "validation/base", &[]),
     ("report", "validation/report", &["base"]),
     ("maths", "validation/maths", &["solver", "base"]),

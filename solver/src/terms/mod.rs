@@ -40,13 +40,13 @@ pub use tensile_stress::{
 pub use viscosity::Viscosity;
 pub use xsph::Xsph;
 
+use lanes::Lane;
 use nalgebra::Vector2;
 
 // What terms are written with: each file takes it from here.
 use crate::{
     eos::EquationOfState,
     kernel::{Kernel, Smoothing},
-    lane::Lane,
     numbers::{In, Numbers, Symmetric},
     particles::{Common, Rate},
 };
@@ -164,7 +164,7 @@ tuple_of_terms!(Split<A, B>: A 0, B 1);
 mod tests {
     use super::*;
     use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2};
-    use crate::{dispatch::on_widest, lane::OnLanes};
+    use lanes::{OnLanes, on_registers};
     use simba::simd::WideF64x4;
 
     /// The k-th of four finite numbers.
@@ -278,6 +278,6 @@ mod tests {
     #[test]
     fn four_lanes_have_the_bits_of_four_scalars() {
         check_every_kernel::<WideF64x4>();
-        on_widest(EveryKernel);
+        on_registers(EveryKernel);
     }
 }

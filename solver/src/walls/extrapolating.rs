@@ -1,13 +1,13 @@
 //! Boundary particles to which pressure, and with [`NoSlip`] velocity, are extrapolated from the fluid
 //! (Adami, Hu & Adams 2012).
 
+use lanes::Lane;
 use nalgebra::Vector2;
 
 use super::Walls;
 use crate::{
     eos::EquationOfState,
     kernel::Kernel,
-    lane::Lane,
     numbers::{In, Numbers},
     particles::{Common, Rate},
     terms::{Pair, Term},

@@ -1,8 +1,8 @@
-//! Lanes: the number type of the pair loop and of the search for pairs, one neighbour (`f64`) or four at
-//! once (`WideF64x4`, and `Ymm` where the processor has registers for four).
+//! Lanes: the number type of the pair loop and of the search for pairs of an SPH solver, one neighbour (`f64`)
+//! or four at once (`WideF64x4`, and a type of this crate where the processor has registers for four).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
-//! pair sweep runs it on four neighbours. No form contracts `a * b + c`, and the lanes are added in a
+//! pair sweep runs it on four neighbours by [`on_widest`]. No form contracts `a * b + c`, and the lanes are added in a
 //! fixed order, so the bits do not depend on the machine.
 
 use std::ops::Neg;
@@ -14,7 +14,7 @@ use simba::simd::WideF64x4;
 use wide::f64x4;
 
 /// Neighbours handled at once.
-pub(crate) const LANES: usize = 4;
+pub const LANES: usize = 4;
 
 /// A real number per neighbour.
 pub trait Lane:
@@ -66,15 +66,33 @@ pub trait Lane:
 }
 
 /// A loop that is written once for lanes of any type.
-pub(crate) trait OnLanes {
+pub trait OnLanes {
     /// Does it. To be inlined always: what is not is right, but slow, compiled for every processor.
     fn run<V: Lane>(self);
+}
+
+/// Runs the loop on the widest lanes that the processor has. The forms for wide registers are compiled in
+/// release builds, whose speed matters. All other builds compile the portable form alone: one instead of
+/// three. Never inlined, so that a program has a symbol a loop, which tests count.
+#[inline(never)]
+pub fn on_widest(work: impl OnLanes) {
+    #[cfg(not(debug_assertions))]
+    let Some(work) = on_registers(work) else { return };
+    work.run::<WideF64x4>();
+}
+
+/// Runs the loop on registers for four numbers, in any build; gives it back where the processor has none.
+pub fn on_registers<W: OnLanes>(work: W) -> Option<W> {
+    #[cfg(target_arch = "x86_64")]
+    return ymm::run(work);
+    #[cfg(not(target_arch = "x86_64"))]
+    Some(work)
 }
 
 /// Implements [`Lane`], inlined always: what each operation is for the type.
 macro_rules! lane {
     (for $Type:ty: $(fn $name:ident($($takes:tt)*) -> $Gives:ty = $is:expr;)+) => {
-        impl $crate::lane::Lane for $Type {$(
+        impl $crate::Lane for $Type {$(
             #[inline(always)]
             fn $name($($takes)*) -> $Gives {
                 $is
@@ -82,6 +100,9 @@ macro_rules! lane {
         )+}
     };
 }
+#[cfg(target_arch = "x86_64")]
+mod ymm; // after the macro that it uses
+
 lane! {
     for f64:
     fn all(x: f64) -> Self = x;
@@ -109,6 +130,6 @@ lane! {
 
 /// A vector per neighbour.
 #[inline(always)]
-pub(crate) fn gather_vector<V: Lane>(read: impl Fn(usize) -> Vector2<f64>) -> Vector2<V> {
+pub fn gather_vector<V: Lane>(read: impl Fn(usize) -> Vector2<f64>) -> Vector2<V> {
     Vector2::from(V::gather_pair(|k| read(k).into()))
 }

@@ -11,7 +11,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::lane::{LANES, OnLanes};
+use crate::{LANES, OnLanes};
 
 /// Runs a loop compiled for such registers, 32 of them if there are as many, so that fewer sums have to
 /// be put aside; gives it back where there are none. The standard library keeps the processor's answer.
@@ -144,7 +144,7 @@ const PACKED: [i32; 16] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lane::Lane;
+    use crate::Lane;
     use simba::simd::WideF64x4;
 
     /// Numbers with signs, a zero of either sign, and extremes.
