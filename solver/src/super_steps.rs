@@ -27,11 +27,12 @@ pub struct SuperSteps<X = ()> {
     stages: [Vec<Evolved<X>>; 3],
 }
 
-/// The number of stages of a step that is so many times as long as the explicit limit.
+/// The number of stages of a step that is so many times as long as the explicit limit: at most 999, so that a
+/// step beyond 249,749 limits is not stable instead of never ending.
 pub fn stages(ratio: f64) -> u32 {
     let least = 0.5 * ((9.0 + 16.0 * ratio).sqrt() - 1.0);
     // A rounding error must not add two stages.
-    (least * (1.0 - 1e-12)).ceil().max(3.0) as u32 | 1
+    (least * (1.0 - 1e-12)).ceil().clamp(3.0, 999.0) as u32 | 1
 }
 
 /// b of stage j.

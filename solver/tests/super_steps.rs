@@ -290,3 +290,10 @@ fn a_limit_that_is_stated_too_long_ends_as_a_divergence() {
     assert_eq!(run(1.0), Outcome::Reached);
     assert!(matches!(run(1.5), Outcome::Diverged(_)), "{:?}", run(1.5));
 }
+
+/// A viscosity of 10⁹ ν once kept the theory of the time step busy without end.
+#[test]
+fn a_step_of_any_length_has_a_bounded_number_of_stages() {
+    let most = (999.0 * 999.0 + 999.0 - 2.0) / 4.0;
+    assert_eq!([0.0, most, 1.01 * most, 1e30, f64::INFINITY].map(stages), [3, 999, 999, 999, 999]);
+}

@@ -13,7 +13,7 @@ use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, Flow, Ghosts, Integrator, Leapfrog,
     Numbers, Observer, Open, Outcome, PlaneWall, PredictorCorrector, Pressure, Scene, Scheme,
-    Shifting, Smoothing, Stepper, Tait, Viscosity,
+    Shifting, Smoothing, Split, Stepper, SuperSteps, Tait, Viscosity,
 };
 use touchstone_tests::patch;
 
@@ -80,6 +80,22 @@ fn periodic<I: Integrator<Method<()>>>() -> Scene<Method<I>> {
 #[test]
 fn a_step_of_leapfrog_allocates_nothing_even_when_rows_are_rebuilt() {
     check(periodic::<Leapfrog>());
+}
+
+#[test]
+fn a_step_of_super_time_stepping_allocates_nothing_even_when_rows_are_rebuilt() {
+    type Super = Compose<
+        CubicSpline,
+        Split<Pressure<Tait>, Viscosity>,
+        Continuity,
+        Open,
+        Leapfrog<SuperSteps>,
+    >;
+    let (pressure, viscosity) = forces();
+    // Seven stages.
+    let forces = Split(pressure, viscosity, 0.02 * H);
+    let domain = Domain::torus(1.0, 1.0);
+    check(Scene::<Super>::new(H, domain, patch(24, 0.3, 3), forces, Continuity, Open));
 }
 
 #[test]

@@ -115,7 +115,7 @@ fn lengths_that_make_no_sense_are_refused_with_their_value() {
     }
     // The skin makes rows longer than the period, which is itself long enough.
     let error = refused(|s| s.skin = 1.5);
-    check_message(&error, &["1 m", &(2.0 * H + 1.5).to_string()]);
+    check_message(&error, &["in m is 1,", &(2.0 * H + 1.5).to_string()]);
     check_message(&refused(|s| s.domain.low.y = f64::NAN), &["lower corner", "NaN"]);
 }
 

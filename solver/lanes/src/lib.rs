@@ -1,9 +1,10 @@
-//! Lanes: the number type of the pair loop and of the search for pairs of an SPH solver, one neighbour (`f64`)
-//! or four at once (`WideF64x4`, and a type of this crate where the processor has registers for four).
+//! Lanes: the number type of the pair loop and of the search for pairs of an SPH solver, one neighbour
+//! (`f64`) or four at once (`WideF64x4`, and a type of this crate where the processor has registers for
+//! four).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
-//! pair sweep runs it on four neighbours by [`on_widest`]. No form contracts `a * b + c`, and the lanes are added in a
-//! fixed order, so the bits do not depend on the machine.
+//! pair sweep runs it on four neighbours by [`on_widest`]. No form contracts `a * b + c`, and the lanes are
+//! added in a fixed order, so the bits do not depend on the machine.
 
 use std::ops::Neg;
 

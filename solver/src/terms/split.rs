@@ -6,7 +6,7 @@ pub struct Split<E, T>(
     pub E,
     /// The stiff force: linear in the differences of velocity, with negative real eigenvalues.
     pub T,
-    /// The longest stable step of forward Euler for the stiff force \[s\], above 0: 2 over the largest absolute
-    /// eigenvalue.
+    /// The longest stable step of forward Euler for the stiff force \[s\], above 0: 2 over the largest
+    /// absolute eigenvalue.
     pub f64,
 );

@@ -306,8 +306,8 @@ const VARIANTS: [&str; 3] = ["seed", "modern", "plain"];
 /// Particles across the drop of the figure.
 const SHOWN: usize = 40;
 
-/// A drop without gravity, of which the table shows the energy; with its particles where there is a picture of
-/// it.
+/// A drop without gravity, of which the table shows the energy; with its particles where there is a picture
+/// of it.
 fn spec(variant: &str, n: usize) -> RunSpec {
     let spec = ELLIPTIC_DROP.spec(variant, |s| s.n = n).measure_all();
     if (variant, n) == ("modern", SHOWN) { spec.keep_particles() } else { spec }

@@ -45,7 +45,8 @@ fn up_to(stiffness: f64, factor: f64) -> Experiment {
         let setting = format!("{factor} limits, {integrator}, c₀h/ν = {stiffness}");
         let name = format!("step.{integrator}.{stiffness}.{factor}");
         let what = ["step up to the limit".into(), setting];
-        let because = "up to the limit of sound and viscosity together no wave grows, however stiff viscosity is";
+        let because = "Up to the limit of sound and viscosity together no wave grows, however stiff \
+                       viscosity is.";
         let entry =
             Entry::new(&name, what, "grew", Bound::Equals(0.0)).because(Evidence::Theory, because);
         measured(entry, record, GREW, " (0: no growth)")

@@ -65,9 +65,9 @@ mod tests {
         }
     }
 
-    /// Relative error of start-up Couette flow at νt/L² = 0.1 that the steps alone make, with so many of them to
-    /// each of 0.02, 0.05 and 0.1: waves decay by the factors of their kicks in place of exponentials. At each of
-    /// these times velocities are brought up to it, by half a kick before and half a one after.
+    /// Relative error of start-up Couette flow at νt/L² = 0.1 that the steps alone make, with so many of them
+    /// to each of 0.02, 0.05 and 0.1: waves decay by the factors of their kicks in place of exponentials. At
+    /// each of these times velocities are brought up to it, by half a kick before and half a one after.
     fn error_of_start_up(rows: usize, steps: i32) -> f64 {
         use base::functions::{exp, sin};
         use std::f64::consts::PI;

@@ -116,8 +116,8 @@ pub fn separate_limits<K: Kernel>(
 /// tenth of a spacing raise it by 9 %, and rows that slide past each other lower it.
 const DISORDER: f64 = 1.1;
 
-/// The longest step of forward Euler for viscosity alone \[s\], from which super-time-stepping computes its number
-/// of stages: 2/λ, λ being `stiffest` = [`SquareLattice::stiffest`] ν/h² and 10 % more for disorder.
+/// The longest step of forward Euler for viscosity alone \[s\], from which super-time-stepping computes its
+/// number of stages: 2/λ, λ being `stiffest` = [`SquareLattice::stiffest`] ν/h² and 10 % more for disorder.
 pub fn explicit_limit(stiffest: f64, h: f64, nu: f64) -> f64 {
     2.0 * h * h / (DISORDER * stiffest * nu)
 }
@@ -161,7 +161,8 @@ pub fn predictor_corrector_growth(omega_dt: f64) -> f64 {
     0.5 * ln_1p(0.25 * omega_dt.powi(4))
 }
 
-/// Steps of 1 % in which the limit of super-time-stepping is searched: up to 140 times that without viscosity.
+/// Steps of 1 % in which the limit of super-time-stepping is searched: up to 140 times that without
+/// viscosity.
 const SEARCHED: i32 = 500;
 
 impl Mode {
@@ -195,8 +196,9 @@ impl Mode {
     /// - Leapfrog: 2/λ_max of the symmetric \[\[γ_ρ, ω, 0\], \[ω, γ_l, γ_c\], \[0, γ_c, γ_t\]\],
     ///   for which ξ = -1 is reached first. Without coupling this is (2 - γ dt)(2 - γ_ρ dt) ≥ (ω
     ///   dt)².
-    /// - Super-time-stepping: the first dt at which a factor of -1 is reached. Viscosity alone reaches none, and
-    ///   with sound it delays it, so that the search begins at the limit of the leapfrog without viscosity.
+    /// - Super-time-stepping: the first dt at which a factor of -1 is reached. Viscosity alone reaches none,
+    ///   and with sound it delays it, so that the search begins at the limit of the leapfrog without
+    ///   viscosity.
     /// - The others: the smallest limit over the eigenvalues s = a + ib of the equations, from
     ///   |1 + s dt|² ≤ 1 for Euler and |1 + s dt + (s dt)²/2|² ≤ 1 for the predictor-corrector. The
     ///   latter reads 2a + 2a² dt + a|s|² dt² + |s|⁴ dt³/4 ≤ 0, free of cancellation, and its left
