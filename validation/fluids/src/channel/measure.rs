@@ -215,13 +215,17 @@ fn fitted_viscosity(setup: &Setup, fluid: &[Particle], t: f64) -> f64 {
         fluid.iter().map(|p| error(p).powi(2)).sum()
     };
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let at = |ratio: f64| (ratio, distance(ratio));
     let (mut low, mut high) = (0.5, 2.0);
+    // The inner point that is kept is an inner point of the next interval.
+    let (mut a, mut b) = (at(high - golden * (high - low)), at(low + golden * (high - low)));
     for _ in 0..40 {
-        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-        if distance(a) < distance(b) {
-            high = b;
+        if a.1 < b.1 {
+            (high, b) = (b.0, a);
+            a = at(high - golden * (high - low));
         } else {
-            low = a;
+            (low, a) = (a.0, b);
+            b = at(low + golden * (high - low));
         }
     }
     0.5 * (low + high)

@@ -109,7 +109,11 @@ impl<'a> Field<'a> {
         let (mut moments, mut sums) = (Matrix3::zeros(), [Vector3::zeros(); 3]);
         for p in self.near(x, y) {
             let r = Vector2::new(p[0] - x, p[1] - y);
-            let weight = p[2] * (self.weight)(r.norm_squared());
+            let r2 = r.norm_squared();
+            if r2 >= reach * reach {
+                continue;
+            }
+            let weight = p[2] * (self.weight)(r2);
             if weight > 0.0 {
                 let basis = Vector3::new(1.0, r.x / reach, r.y / reach);
                 moments += Matrix3::from_fn(|i, j| basis[i] * basis[j] * weight);

@@ -23,7 +23,7 @@ const ELASTIC: &str = "elastic law";
 const ITEMS: [(&str, MetricKey); 3] =
     [(VISCOSITY, WORK_VISCOSITY), (STRESS, WORK_STRESS), (ELASTIC, WORK_ELASTIC)];
 
-/// What a budget measures: it takes a pair sweep a term.
+/// What a budget measures: it takes pair sweeps of its own.
 pub const METRICS: [MetricKey; 4] = [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_ELASTIC];
 
 /// Forces with an artificial stress, or with none, `()`.
@@ -57,12 +57,11 @@ impl<S: Scheme<Extra = Symmetric, Forces: Stressed>> Metered for Simulation<S> {
         }
         let slope = solid_slope(&rings.material);
         let meter = Meter::new(self, &slope);
-        let elastic = power::<S, CauchyStress<Linear>>(&meter, rings);
-        let stressed =
-            power::<S, CauchyStress<Linear, <S::Forces as Stressed>::Tensile>>(&meter, rings);
-        let strained = power::<S, (Continuity, JaumannRate)>(&meter, rings);
+        type Law<R> = (CauchyStress<Linear, R>, Continuity, JaumannRate);
+        let elastic = power::<S, Law<()>>(&meter, rings);
+        let stressed = power::<S, Law<<S::Forces as Stressed>::Tensile>>(&meter, rings);
         let viscosity = power::<S, ArtificialViscosity<Linear>>(&meter, rings);
-        vec![(ELASTIC, elastic + strained), (STRESS, stressed - elastic), (VISCOSITY, viscosity)]
+        vec![(ELASTIC, elastic), (STRESS, stressed - elastic), (VISCOSITY, viscosity)]
     }
 }
 

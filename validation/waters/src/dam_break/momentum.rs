@@ -7,11 +7,11 @@ use solver::Stepper;
 
 use super::{Dam, metrics::MOMENTUM_GAP};
 use base::record::Record;
+use harness::method::Medium;
 
-/// Momentum against the impulse of walls and gravity, by the trapezoidal rule. It takes the pair sweeps of a
-/// right-hand side.
-#[derive(Default)]
+/// Momentum against the impulse of walls and gravity, by the trapezoidal rule.
 pub struct Momentum {
+    gravity: Vector2<f64>,
     balance: Option<Balance>,
 }
 
@@ -28,16 +28,21 @@ struct Balance {
     gap: f64,
 }
 
-harness::observed! { Momentum: changes(balance), parts(), stays() }
+harness::observed! { Momentum: changes(balance), parts(), stays(gravity) }
 
 impl Momentum {
-    /// Takes a sample of a simulation that has been brought to a time.
-    pub fn sample(&mut self, simulation: &dyn Stepper<()>) {
-        let rates = simulation.total_rates();
-        let (mut momentum, mut force) = (Vector2::zeros(), Vector2::zeros());
-        for ((mass, p), rate) in simulation.fluid().zip(&rates) {
+    /// No sample yet, of water of this medium.
+    pub fn new(medium: &Medium) -> Self {
+        Self { gravity: medium.acceleration, balance: None }
+    }
+
+    /// Takes a sample of a simulation that has been brought to a time, and in which pairs exert this force
+    /// on the water \[N/m\].
+    pub fn sample(&mut self, simulation: &dyn Stepper<()>, pairs: Vector2<f64>) {
+        let (mut momentum, mut force) = (Vector2::zeros(), pairs);
+        for (mass, p) in simulation.fluid() {
             momentum += p.velocity * mass;
-            force += rate.velocity * mass;
+            force += self.gravity * mass;
         }
         let time = simulation.time();
         let now = match self.balance {
@@ -91,16 +96,16 @@ mod tests {
             record.value(MOMENTUM_GAP).expect("a gap")
         };
         // A free fall: gravity gives what the water has.
-        let (mut falling, mut momentum) = (apart(Vector2::zeros()), Momentum::default());
+        let (mut falling, mut momentum) = (apart(Vector2::zeros()), Momentum::new(&free.medium));
         for k in 0..4 {
             falling.advance(0.01 * f64::from(k), 1e-3, &mut ());
-            momentum.sample(&*falling);
+            momentum.sample(&*falling, Vector2::zeros());
         }
         assert!(gap(&momentum) < 1e-13, "{:e}", gap(&momentum));
         // A kick of all masses, of 0.09 kg/m, and then a smaller one: the largest counts.
-        let mut momentum = Momentum::default();
+        let mut momentum = Momentum::new(&free.medium);
         for v in [Vector2::zeros(), Vector2::new(0.3, 0.4) * unit, Vector2::new(0.1, 0.0)] {
-            momentum.sample(&*apart(v));
+            momentum.sample(&*apart(v), Vector2::zeros());
         }
         assert!((gap(&momentum) - 0.5).abs() < 1e-9, "{}", gap(&momentum));
     }

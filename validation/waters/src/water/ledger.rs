@@ -6,6 +6,7 @@ use maths::metrics::{
     budget::{Account, DIFFUSION, Metered, STRESS, VISCOSITY, WALLS, XSPH},
     energy::{Energy, Water, water_slope},
 };
+use nalgebra::Vector2;
 
 base::metrics! {
     ENERGY_GAP = "energy_gap" ["-"] "max over samples of |E(t) - E(0) - work of all terms|/{}";
@@ -27,7 +28,7 @@ pub const ITEMS: [(&str, MetricKey); 5] = [
     (WALLS, WORK_WALLS),
 ];
 
-/// What a ledger measures: it takes a pair sweep a term.
+/// What a ledger measures: it takes pair sweeps of its own.
 pub const METRICS: [MetricKey; 6] =
     [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
 
@@ -48,14 +49,16 @@ impl Ledger {
         Self { water, account: Account::default(), rows: Vec::new() }
     }
 
-    /// Takes a sample of a simulation that has been brought to a time.
-    pub fn sample(&mut self, simulation: &mut dyn Metered<()>) {
-        let powers = simulation.powers(&water_slope(&self.water));
+    /// Takes a sample of a simulation that has been brought to a time. Returns the force of all pairs on the
+    /// water \[N/m\].
+    pub fn sample(&mut self, simulation: &mut dyn Metered<()>) -> Vector2<f64> {
+        let (powers, force) = simulation.powers(&water_slope(&self.water));
         self.account.add(simulation.time(), &powers);
         let Energy { kinetic, potential, compression } = self.water.energy(&*simulation);
         let [a, b, c, d, e] = ITEMS.map(|(name, _)| self.account.work(name));
         let time = simulation.time();
         self.rows.push([time, kinetic, potential, compression, a, b, c, d, e]);
+        force
     }
 
     /// The largest |E(t) − E(0) − work(t)| so far \[J/m\].
@@ -87,7 +90,6 @@ mod tests {
     use super::*;
     use crate::water::{Modern, method};
     use harness::{context::Context, method::Parts};
-    use nalgebra::Vector2;
     use solver::{Domain, Particle, Tait};
 
     /// Water of three particles that do not see each other, raised and moving.

@@ -13,7 +13,7 @@ use base::{
 use harness::method::{self, FirstRow, Medium, Method, Standard};
 use maths::{
     geometry::Tank,
-    metrics::budget::{Itemised, Metered},
+    metrics::budget::{Metered, WaterDrift, WaterForces},
 };
 use nalgebra::Vector2;
 use solver::{
@@ -41,7 +41,7 @@ pub type WaterMethod = Method<(), dyn Metered<()>>;
 /// The method of a scheme whose terms account for their energy.
 pub fn method<S>() -> WaterMethod
 where
-    S: Standard<Extra = (), Forces: Itemised<()>, Drift: Itemised<()>>,
+    S: Standard<Extra = (), Forces: WaterForces<()>, Drift: WaterDrift<()>>,
 {
     Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
 }
