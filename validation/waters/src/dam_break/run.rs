@@ -48,8 +48,8 @@ pub fn share(k: usize, count: usize) -> f64 {
 /// (H/g)^(1/2) at any spacing the impact alone left 1e-3 of the energy unaccounted for, whatever the step.
 ///
 /// Of the column of Martin & Moyce, `modern` at n = 20, these samples leave 3.5e-5 of the energy and 1.1e-3
-/// of the momentum unaccounted for; samples after every step, which are four times as many, 1.7e-5 and 1.5e-5;
-/// half as many samples 1.2e-4 and 4.6e-3, half of what the gate on momentum allows.
+/// of the momentum unaccounted for; samples after every step, which are four times as many, leave 1.7e-5
+/// and 1.5e-5; half as many samples 1.2e-4 and 4.6e-3, half of what the gate on momentum allows.
 const SAMPLE: f64 = 4.0;
 /// At most so many samples.
 const MOST_SAMPLES: f64 = 2e4;
