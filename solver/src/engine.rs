@@ -55,7 +55,7 @@ impl<P: Physics> Engine<P> {
             self.data.progress.built_inside_a_step = false;
             extent = self.fill(state)?;
         }
-        self.terms.prepare(extent.speed2.sqrt());
+        self.terms.prepare(extent.speed());
         self.refresh_walls(state, 1.0);
         Ok(())
     }
@@ -63,7 +63,7 @@ impl<P: Physics> Engine<P> {
     /// Refreshes everything that is derived from a state inside a step.
     pub fn refresh(&mut self, state: &State<P>) -> Result<(), Fault> {
         let extent = self.fill(state)?;
-        if self.data.is_stale(extent.displacement2) {
+        if self.data.is_stale(extent) {
             self.build_lists(state.iter().map(|e| e.position));
             // Particles may have left the period by more than images make up for: wrap soon.
             self.data.progress.built_inside_a_step = true;

@@ -1,5 +1,7 @@
 //! Time integration. A physics together with an integrator is a scheme.
 
+use nalgebra::Vector2;
+
 use crate::{
     engine::Engine,
     kernel::Kernel,
@@ -25,7 +27,7 @@ pub trait Integrator<P: Physics>: Default + Send + Sync + 'static {
     /// Advances the state by dt \[s\].
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped;
 
-    /// Brings every quantity to the same time.
+    /// Brings every quantity to the same time, until the next step.
     fn synchronise(&mut self, _engine: &mut Engine<P>, _state: &mut State<P>) -> Stepped {
         Ok(())
     }
@@ -40,6 +42,12 @@ pub trait Integrator<P: Physics>: Default + Send + Sync + 'static {
     /// steps.
     fn lag(&self) -> f64 {
         0.0
+    }
+
+    /// The velocities of fluid particles \[m/s\] from which the next step goes on; none where these are those
+    /// of the state.
+    fn held(&self) -> &[Vector2<f64>] {
+        &[]
     }
 
     /// An integrator with this lag \[s\].
@@ -121,6 +129,8 @@ pub struct Leapfrog<K = ForwardKick> {
     /// The time by which the velocities lag behind the positions \[s\].
     lag: f64,
     kick: K,
+    /// Velocities as they were before they were synchronised, until the next step \[m/s\].
+    held: Vec<Vector2<f64>>,
 }
 
 /// How a [`Leapfrog`] advances velocities while positions and densities stay as they are.
@@ -162,6 +172,9 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
     const ORDER: [u32; 2] = K::ORDER;
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+        for (evolved, velocity) in state.iter_mut().zip(self.held.drain(..)) {
+            evolved.velocity = velocity;
+        }
         engine.begin(state)?;
         let half = 0.5 * dt;
         self.kick.kick(engine, state, [self.lag + half, half])?;
@@ -179,10 +192,10 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
     }
 
     fn synchronise(&mut self, engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
-        if self.lag != 0.0 {
+        if self.lag != 0.0 && self.held.is_empty() {
             engine.begin(state)?;
+            self.held.extend(state[..engine.data.fluid_count()].iter().map(|e| e.velocity));
             self.kick.kick(engine, state, [self.lag, 0.0])?;
-            self.lag = 0.0;
         }
         Ok(())
     }
@@ -195,12 +208,16 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
         self.lag
     }
 
+    fn held(&self) -> &[Vector2<f64>] {
+        &self.held
+    }
+
     fn with_lag(lag: f64) -> Self {
         Self { lag, ..Self::default() }
     }
 
     fn bytes(&self) -> usize {
-        self.kick.bytes()
+        self.held.capacity() * size_of::<Vector2<f64>>() + self.kick.bytes()
     }
 }
 

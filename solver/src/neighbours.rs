@@ -1,10 +1,12 @@
 //! Neighbour lists (Verlet lists): particles are sorted by cell, and lists of column indices are padded to
-//! whole lanes and kept for as long as no particle has moved by more than half the skin.
+//! whole lanes and kept for as long as no two particles have come nearer to each other by more than the skin.
 //!
 //! Column c < n is particle c; then come images (periodic copies, mirror particles), and last the sentinel
-//! that pads lists. Two particles farther apart than support + skin when the lists were built, each
-//! having moved by at most skin/2 since, are still outside each other's support: the criterion is
-//! exact, for images too, since a shift or a mirror moves an image as far as its source.
+//! that pads lists. Two particles farther apart than support + skin when the lists were built, and no
+//! nearer by more than the skin since, are still outside each other's support: the criterion is exact.
+//!
+//! A list begins with those inside the support. The others stand together at its end, where a pair sweep
+//! skips four at once while all of them are outside, so that a wide skin costs little.
 
 use std::{mem::take, ops::Range};
 
@@ -34,9 +36,9 @@ pub(crate) struct Block {
     /// The list of particle k of the block is `chunks[starts[k]..starts[k + 1]]`.
     starts: Vec<u32>,
     chunks: Vec<[u32; LANES]>,
-    /// Scratch: the neighbours of one list.
-    found: Vec<u32>,
-    /// Neighbours without padding.
+    /// Scratch: the neighbours of one list, inside the support and beyond it.
+    found: [Vec<u32>; 2],
+    /// Neighbours inside the support when the lists were built.
     pub pairs: u64,
 }
 
@@ -48,8 +50,8 @@ impl Block {
     }
 
     fn bytes(&self) -> usize {
-        (self.starts.capacity() + self.found.capacity()) * size_of::<u32>()
-            + self.chunks.capacity() * size_of::<[u32; LANES]>()
+        let lists: usize = self.found.iter().chain([&self.starts]).map(Vec::capacity).sum();
+        lists * size_of::<u32>() + self.chunks.capacity() * size_of::<[u32; LANES]>()
     }
 }
 
@@ -86,16 +88,12 @@ impl Grid {
         Self { low, inverse: cell.map(|c| 1.0 / c), cells }
     }
 
-    #[inline(always)]
-    fn cell(&self, point: Vector2<f64>) -> [usize; 2] {
-        let q = (point - self.low).component_mul(&self.inverse);
-        // A float below 0 becomes 0; the upper bound guards against the last bit.
-        [(q.x as usize).min(self.cells[0] - 1), (q.y as usize).min(self.cells[1] - 1)]
-    }
-
+    /// The number of a cell, row by row.
     #[inline(always)]
     fn index(&self, point: Vector2<f64>) -> usize {
-        let [x, y] = self.cell(point);
+        let q = (point - self.low).component_mul(&self.inverse);
+        // A float below 0 becomes 0; the upper bound guards against the last bit.
+        let [x, y] = [0, 1].map(|a| (q[a] as usize).min(self.cells[a] - 1));
         y * self.cells[0] + x
     }
 }
@@ -103,6 +101,7 @@ impl Grid {
 /// The neighbour lists of a scene and what is needed to rebuild them without allocating.
 #[derive(Debug, Default)]
 pub(crate) struct Neighbours {
+    support: f64,
     radius: f64,
     pub domain: Domain,
     pub maps: Vec<Map>,
@@ -123,8 +122,9 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Lists that reach `radius` = support + skin \[m\], empty until built.
-    pub fn new(radius: f64, domain: Domain, mirrors: &[PlaneWall]) -> Self {
+    /// Lists that reach as far as the support and a skin \[m\], empty until built.
+    pub fn new([support, skin]: [f64; 2], domain: Domain, mirrors: &[PlaneWall]) -> Self {
+        let radius = support + skin;
         let mut maps: Vec<_> = mirrors.iter().copied().map(Map::Mirror).collect();
         maps.extend(corners(mirrors).map(Map::corner));
         for axis in 0..2 {
@@ -133,10 +133,10 @@ impl Neighbours {
                 maps.extend([Map::Shift(shift), Map::Shift(-shift)]);
             }
         }
-        Self { radius, domain, maps, ..Self::default() }
+        Self { support, radius, domain, maps, ..Self::default() }
     }
 
-    /// Neighbours of all lists, without padding.
+    /// Neighbours of all lists that were inside the support when these were built.
     pub fn pairs(&self) -> u64 {
         self.blocks().map(|b| b.pairs).sum()
     }
@@ -269,30 +269,38 @@ impl Neighbours {
         Lists { of, parallel, ..lists }
     }
 
-    /// Finds the columns nearer to particle i than the radius, in the order of cells, then of columns;
-    /// never i itself. Returns how many they are, and leaves room for a chunk more.
+    /// Finds the columns nearer to particle i than the radius, those inside the support and those beyond it,
+    /// each in the order of cells, then of columns; never i itself. Returns how many they are, and leaves
+    /// room for all of them and a chunk more.
     #[inline(always)]
-    fn find<V: Lane>(&self, found: &mut Vec<u32>, i: usize) -> usize {
+    fn find<V: Lane>(&self, [inside, beyond]: &mut [Vec<u32>; 2], i: usize) -> [usize; 2] {
         const { assert!(size_of::<V>() == LANES * size_of::<f64>()) };
-        let (own, radius2) = (self.points[i].spread::<V>(), self.radius * self.radius);
-        let ([cx, cy], [width, height]) = (self.grid.cell(self.points[i]), self.grid.cells);
-        let mut count = 0;
+        let (own, own_column) = (self.points[i].spread::<V>(), i as u32);
+        let [support2, radius2] = [self.support, self.radius].map(|reach| reach * reach);
+        let (cell, [width, height]) = (self.grid.index(self.points[i]), self.grid.cells);
+        let (cx, cy) = (cell % width, cell / width);
+        let [mut near, mut far] = [0; 2];
         for y in cy.saturating_sub(1)..(cy + 2).min(height) {
             let start = self.cell_starts[y * width + cx.saturating_sub(1)] as usize;
             let end = self.cell_starts[y * width + (cx + 2).min(width)] as usize;
-            found.resize(found.len().max(count + end - start + LANES), 0);
+            let room = inside.len().max(near + far + end - start + LANES);
+            inside.resize(room, 0);
+            beyond.resize(room, 0);
             let run = start..start + (end - start).next_multiple_of(LANES);
             let (points, _) = self.cell_points[run.clone()].as_chunks::<LANES>();
             let (columns, _) = self.cell_columns[run].as_chunks();
             for (k, (points, columns)) in points.iter().zip(columns).enumerate() {
                 let r = own - gather_vector::<V>(|lane| points[lane]);
+                let r2 = r.x * r.x + r.y * r.y;
                 // The last lanes may be of the next cells.
                 let of_the_run = !(!0 << (end - start - k * LANES).min(LANES));
-                let near = (r.x * r.x + r.y * r.y).bits_below(radius2) & of_the_run;
-                count += V::pack(columns, near, i as u32, &mut found[count..]);
+                let listed = r2.bits_below(radius2) & of_the_run;
+                let nearer = r2.bits_below(support2);
+                near += V::pack(columns, listed & nearer, own_column, &mut inside[near..]);
+                far += V::pack(columns, listed & !nearer, own_column, &mut beyond[far..]);
             }
         }
-        count
+        [near, far]
     }
 }
 
@@ -315,20 +323,23 @@ impl OnLanes for FillLists<'_> {
         let sentinel = neighbours.points.len() as u32;
         let mut found = take(&mut block.found);
         for i in of {
-            let mut count = neighbours.find::<V>(&mut found, i);
+            let mut counts = neighbours.find::<V>(&mut found, i);
             if up_to < usize::MAX {
-                let all = count;
-                count = 0;
-                for k in 0..all {
-                    found[count] = found[k];
-                    count += usize::from(neighbours.particle(found[k] as usize) < up_to);
+                for (found, count) in found.iter_mut().zip(&mut counts) {
+                    for k in 0..take(count) {
+                        found[*count] = found[k];
+                        *count += usize::from(neighbours.particle(found[k] as usize) < up_to);
+                    }
                 }
             }
-            found[count..count + LANES].fill(sentinel);
-            let (chunks, _) = found[..count.next_multiple_of(LANES)].as_chunks();
+            let ([near, far], [list, beyond]) = (counts, &mut found);
+            let count = near + far;
+            list[near..count].copy_from_slice(&beyond[..far]);
+            list[count..count + LANES].fill(sentinel);
+            let (chunks, _) = list[..count.next_multiple_of(LANES)].as_chunks();
             block.chunks.extend_from_slice(chunks);
             block.starts.push(block.chunks.len() as u32);
-            block.pairs += count as u64;
+            block.pairs += near as u64;
         }
         block.found = found;
     }
@@ -438,7 +449,8 @@ mod tests {
     }
 
     fn check(points: &[Vector2<f64>], radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> u64 {
-        let mut neighbours = Neighbours::new(radius, *domain, mirrors);
+        let reaches = [0.75 * radius, 0.25 * radius];
+        let mut neighbours = Neighbours::new(reaches, *domain, mirrors);
         let n = points.len();
         let all: Vec<_> = (0..n).map(|i| brute_force(points, i, radius, domain, mirrors)).collect();
         let mut pairs = 0;
@@ -447,6 +459,7 @@ mod tests {
             neighbours.place(points.iter().copied());
             neighbours.build([fluid, n - fluid], fluid_only, false);
             pairs = 0;
+            let mut inside = 0;
             for (i, expected) in all.iter().enumerate() {
                 let (blocks, k) = match i.checked_sub(fluid) {
                     None => (&neighbours.lists.blocks, i),
@@ -457,15 +470,18 @@ mod tests {
                 let wanted = expected.len();
                 pairs += wanted as u64;
                 let found = listed(&neighbours, blocks, k, points);
+                let is_near = |e: &Listed| (e.1 - points[i]).norm() < reaches[0];
+                assert!(found.is_sorted_by_key(|e| !is_near(e)), "those inside the support first");
+                inside += found.iter().filter(|e| is_near(e)).count() as u64;
                 assert!(
                     same(found, expected, 1e-9),
                     "list {i} of {n}: {wanted} neighbours expected"
                 );
             }
-            assert_eq!(neighbours.pairs(), pairs, "padding is not counted");
+            assert_eq!(neighbours.pairs(), inside, "neither padding nor skin is counted");
         }
         // The parallel path builds the same lists in the same order.
-        let mut parallel = Neighbours::new(radius, *domain, mirrors);
+        let mut parallel = Neighbours::new(reaches, *domain, mirrors);
         parallel.place(points.iter().copied());
         parallel.build([n, 0], false, true);
         for (a, b) in neighbours.lists.blocks.iter().zip(&parallel.lists.blocks) {
@@ -479,7 +495,7 @@ mod tests {
     fn lists_are_the_same_in_portable_lanes() {
         let (mut random, domain) = (Random(3), Domain::torus(4.0, 3.0));
         let points: Vec<_> = (0..500).map(|_| random.point([4.0, 3.0])).collect();
-        let mut neighbours = Neighbours::new(0.6, domain, &[]);
+        let mut neighbours = Neighbours::new([0.5, 0.1], domain, &[]);
         neighbours.place(points.into_iter());
         neighbours.build([250, 250], true, false);
         let [fluid, wall] =
@@ -573,7 +589,7 @@ mod tests {
         let mirrors = [horizontal(0.0, 1.0), horizontal(2.0, -1.0)];
         let mut random = Random(77);
         let mut points: Vec<_> = (0..200).map(|_| random.point([3.0, 2.0])).collect();
-        let mut neighbours = Neighbours::new(support + skin, domain, &mirrors);
+        let mut neighbours = Neighbours::new([support, skin], domain, &mirrors);
         let mut lost = 0;
         let n = points.len();
         neighbours.place(points.iter().copied());
@@ -621,7 +637,7 @@ mod tests {
         let mut points: Vec<_> = (0..300).map(|_| random.point([2.0, 5.0])).collect();
         let sorted = |points: &[Vector2<f64>]| {
             let mut order = Vec::new();
-            let mut neighbours = Neighbours::new(0.3, Domain::open(), &[]);
+            let mut neighbours = Neighbours::new([0.3, 0.0], Domain::open(), &[]);
             neighbours.place(points.iter().copied());
             neighbours.order(&mut order);
             order.iter().map(|&k| points[k as usize]).collect::<Vec<_>>()

@@ -14,7 +14,7 @@ use crate::{
 pub struct Work {
     /// Time steps.
     pub steps: u64,
-    /// Neighbours visited, each pair sweep counted, padding not.
+    /// Neighbours that were inside the support when the lists were built, each pair sweep counted.
     pub pair_interactions: u64,
     /// Right-hand sides of moving particles.
     pub right_hand_sides: u64,
@@ -83,8 +83,9 @@ pub struct Progress {
     pub dt: f64,
     /// What was done so far.
     pub work: Work,
-    /// Largest displacement since the neighbour lists were built, at the start of the last step \[m\].
-    pub last_displacement: f64,
+    /// Half of what two particles came nearer to each other at most since the neighbour lists were built, at
+    /// the start of the last step \[m\].
+    pub last_approach: f64,
     /// Whether the lists were built inside a step, for particles neither sorted nor wrapped.
     pub built_inside_a_step: bool,
     /// Where the present call of [`crate::Stepper::advance`] began, where it ends and its largest step
@@ -129,23 +130,31 @@ impl<X> Checkpoint<X> {
     }
 }
 
-/// Largest squares found in a state.
+/// What is largest in a state, of numbers that are not below 0.
 #[derive(Clone, Copy)]
 pub(crate) struct Extent {
-    pub displacement2: f64,
-    pub speed2: f64,
+    /// Squares of displacement and speed, then the displacement along x, against it, along y, and against it.
+    largest: [f64; 6],
     within_limits: bool,
 }
 
 impl Extent {
-    pub const NIL: Self = Self { displacement2: 0.0, speed2: 0.0, within_limits: true };
+    pub const NIL: Self = Self { largest: [0.0; 6], within_limits: true };
 
-    /// Exact, so it does not matter in which order.
+    /// Exact, so it does not matter in which order. What is not a number is beyond limits.
+    #[inline(always)]
     fn and(mut self, other: Self) -> Self {
-        self.displacement2 = self.displacement2.max(other.displacement2);
-        self.speed2 = self.speed2.max(other.speed2);
+        for a in 0..self.largest.len() {
+            let [one, two] = [self.largest[a], other.largest[a]];
+            self.largest[a] = if two > one { two } else { one };
+        }
         self.within_limits &= other.within_limits;
         self
+    }
+
+    /// Largest speed \[m/s\].
+    pub fn speed(&self) -> f64 {
+        self.largest[1].sqrt()
     }
 }
 
@@ -160,8 +169,8 @@ pub struct ParticleData<X = ()> {
     pub(crate) counts: [usize; 2],
     pub(crate) neighbours: Neighbours,
     pub(crate) limits: Limits,
-    /// (largest displacement that keeps the neighbour lists exact)² \[m²\].
-    pub(crate) slack2: f64,
+    /// Half of what particles may come nearer to each other while neighbour lists stay exact \[m\].
+    pub(crate) slack: f64,
     /// (displacement beyond which the step, not the flow, moved a particle)² \[m²\]: half a period,
     /// since images are one period away, on either side.
     pub(crate) reach2: f64,
@@ -305,11 +314,12 @@ impl<X: Numbers> ParticleData<X> {
     pub(crate) fn extent(&self, state: &[Evolved<X>], built_at: &[Vector2<f64>]) -> Extent {
         let mut extent = Extent::NIL;
         for (evolved, built_at) in state.iter().zip(built_at) {
-            let displacement2 = (evolved.position - built_at).norm_squared();
-            let speed2 = evolved.velocity.norm_squared();
-            let excess = self.excess(evolved, displacement2);
+            let d = evolved.position - built_at;
+            let excess = self.excess(evolved, d.norm_squared());
             let within_limits = excess.is_none() && evolved.extra.is_finite();
-            extent = extent.and(Extent { displacement2, speed2, within_limits });
+            let speed2 = evolved.velocity.norm_squared();
+            let largest = [d.norm_squared(), speed2, d.x, -d.x, d.y, -d.y];
+            extent = extent.and(Extent { largest, within_limits });
         }
         extent
     }
@@ -320,19 +330,29 @@ impl<X: Numbers> ParticleData<X> {
         if extent.within_limits { Ok(extent) } else { Err(self.find_fault(state)) }
     }
 
-    /// Whether neighbour lists are not exact any more when a particle has moved so far² \[m²\].
-    pub(crate) fn is_stale(&self, displacement2: f64) -> bool {
+    /// Half of what two particles, or their images, have come nearer to each other at most since the lists
+    /// were built \[m\]: not more than half the diagonal of the box of all displacements, for a period moves
+    /// all images alike; nor than the largest displacement, which a mirror turns.
+    fn approach(&self, extent: Extent) -> f64 {
+        let [displacement2, _, right, left, up, down] = extent.largest;
+        let diagonal = Vector2::new(right + left, up + down).norm();
+        let has_mirrors = self.neighbours.maps.iter().any(|map| !map.walls().is_empty());
+        displacement2.sqrt().min(if has_mirrors { f64::MAX } else { 0.5 * diagonal })
+    }
+
+    /// Whether neighbour lists are not exact any more.
+    pub(crate) fn is_stale(&self, extent: Extent) -> bool {
         // Negated, so that a slack that is not a number means "always".
-        !(displacement2 <= self.slack2)
+        !(self.approach(extent) <= self.slack)
     }
 
     /// Whether neighbour lists will be stale within a step like the last one: better built now, in
     /// order, than inside the step and again after it.
     pub(crate) fn is_stale_soon(&mut self, extent: Extent) -> bool {
-        let displacement = extent.displacement2.sqrt();
-        let ahead = displacement + (displacement - self.progress.last_displacement).max(0.0);
-        let stale = self.is_stale(ahead * ahead);
-        self.progress.last_displacement = if stale { 0.0 } else { displacement };
+        let approach = self.approach(extent);
+        let ahead = approach + (approach - self.progress.last_approach).max(0.0);
+        let stale = !(ahead <= self.slack);
+        self.progress.last_approach = if stale { 0.0 } else { approach };
         stale
     }
 

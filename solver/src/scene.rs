@@ -61,8 +61,9 @@ pub struct Scene<S: Scheme> {
     /// Verlet skin: how far neighbour lists reach beyond the support radius \[m\]. With a larger skin the
     /// lists are longer and are rebuilt less often.
     pub skin: f64,
-    /// Neighbour lists are rebuilt before a particle has moved by more than this share of the skin. Up to
-    /// 0.5 no neighbour is missed; larger values are wrong and exist so that tests can detect the error.
+    /// Neighbour lists are rebuilt before two particles, having moved against each other, have each moved by
+    /// more than this share of the skin. Up to 0.5 no neighbour is missed; larger values are wrong and exist
+    /// so that tests can detect the error.
     pub skin_share: f64,
     /// Bounds beyond which the run counts as diverged.
     pub limits: Limits,
@@ -80,7 +81,7 @@ impl<S: Scheme> Scene<S> {
         drift: S::Drift,
         walls: S::Walls,
     ) -> Self {
-        let (skin, skin_share, limits) = (0.12 * h, 0.5, Limits::default());
+        let (skin, skin_share, limits) = (0.4 * h, 0.5, Limits::default());
         // For fewer particles, distributing the work is assumed to cost more than it saves; not measured.
         let parallel_from = 10_000;
         Self { h, domain, particles, forces, drift, walls, skin, skin_share, limits, parallel_from }
@@ -101,15 +102,14 @@ impl<S: Scheme> Scene<S> {
     /// The engine for the particles in the given order, without neighbour lists.
     fn engine(self, particles: &[(u32, Particle<S::Extra>)]) -> Engine<PhysicsOf<S>> {
         let kernel = Smoothing::new(self.h);
-        let radius = kernel.support() + self.skin;
-        let slack = self.skin_share * self.skin;
         let periods = self.domain.period.iter().flatten();
         // The root of the largest number: its square is finite.
         let half_period = 0.5 * periods.fold(f64::MAX.sqrt(), |a, b| a.min(*b));
-        let neighbours = Neighbours::new(radius, self.domain, self.walls.mirrors());
+        let reaches = [kernel.support(), self.skin];
+        let neighbours = Neighbours::new(reaches, self.domain, self.walls.mirrors());
         let mut data = ParticleData { neighbours, limits: self.limits, ..Default::default() };
         data.put(particles);
-        [data.slack2, data.reach2] = [slack * slack, half_period * half_period];
+        [data.slack, data.reach2] = [self.skin_share * self.skin, half_period * half_period];
         data.parallel = particles.len() >= self.parallel_from;
         Engine::new(kernel, (self.forces, self.drift), &self.walls, data)
     }

@@ -48,6 +48,13 @@ pub enum Flow {
 pub trait Observer<X> {
     /// Called after every step.
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow;
+
+    /// Whether [`Stepper::advance`] brings every quantity to the time at which it ends, for which a leapfrog
+    /// sums the forces once more. Without, its velocities lag behind by half a step, and what pair sweeps
+    /// read is that of the last step. The steps have the same bits either way.
+    fn synchronises(&self) -> bool {
+        true
+    }
 }
 
 impl<X> Observer<X> for () {
@@ -61,7 +68,8 @@ impl<X> Observer<X> for () {
 /// work and particles.
 pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then brings every
-    /// quantity to that time.
+    /// quantity to that time, unless the observer does without. The next step undoes that, so the times at
+    /// which a run is observed do not change it, but for the length of equal steps between them.
     ///
     /// The time is computed from the start and the number of steps, so rounding errors do not accumulate.
     /// After a stop, a call with the same two arguments makes the steps that the stop left undone, with the
@@ -122,10 +130,15 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
             }
         }
         self.engine.data.progress.call = [0.0; 3];
-        self.synchronise()
+        if observer.synchronises() { self.synchronise() } else { Outcome::Reached }
     }
     fn checkpoint(&self) -> Checkpoint<S::Extra> {
-        self.engine.data.checkpoint(self.integrator.lag())
+        let mut checkpoint = self.engine.data.checkpoint(self.integrator.lag());
+        for ((_, particle), velocity) in checkpoint.particles.iter_mut().zip(self.integrator.held())
+        {
+            particle.velocity = *velocity;
+        }
+        checkpoint
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
         from.check()?;
@@ -180,12 +193,15 @@ fn count_steps(start: f64, until: f64, dt_max: f64) -> u64 {
 }
 
 impl<S: Scheme> Simulation<S> {
-    /// Brings every quantity to the same time, and refreshes the derived data.
+    /// Brings every quantity to the same time, and refreshes the derived data. Steps do without the sums that
+    /// this takes, which do not count as their work.
     fn synchronise(&mut self) -> Outcome {
         let Self { engine, integrator } = self;
         let mut state = take(&mut engine.data.state);
+        let pairs = engine.data.progress.work.pair_interactions;
         let synchronised =
             integrator.synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
+        engine.data.progress.work.pair_interactions = pairs;
         engine.data.state = state;
         synchronised.map_or_else(|fault| self.diverged(fault), |()| Outcome::Reached)
     }

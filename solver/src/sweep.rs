@@ -136,6 +136,7 @@ where
     #[inline(always)]
     fn run<V: Lane>(self) {
         let &Sweep { kernel, terms, columns, ref select, .. } = self.sweep;
+        let support2 = kernel.support() * kernel.support() * (1.0 + 1e-12);
         for (k, rate) in self.rates.iter_mut().enumerate() {
             let own = &columns[self.first + k];
             let position = own.position.spread::<V>();
@@ -148,14 +149,17 @@ where
                 // Not `map`: its code is not inlined, see the profiles in `Cargo.toml`.
                 let at = |k: usize| &columns[chunk[k] as usize];
                 let others = [at(0), at(1), at(2), at(3)];
+                let r = position - gather_vector::<V>(|k| others[k].position);
+                let r2 = r.x * r.x + r.y * r.y;
+                if r2.bits_below(support2) == 0 {
+                    continue;
+                }
                 let [mass, density] =
                     V::gather_pair(|k| [others[k].common.mass, others[k].common.density]);
                 let other =
                     Common { mass, density, volume: V::gather(|k| others[k].common.volume) };
-                let r = position - gather_vector::<V>(|k| others[k].position);
                 let v = velocity - gather_vector::<V>(|k| others[k].velocity);
                 let derived = T::Derived::gather::<V>(|k| select(&others[k].derived));
-                let r2 = r.x * r.x + r.y * r.y;
                 let f = kernel.f(r2);
                 let pair = Pair { r, r2, v, f, own: common, other, kernel };
                 terms.pair(&pair, [own_derived, derived], &mut sum);
@@ -198,7 +202,7 @@ mod tests {
         let terms: Terms = (Pressure::new(Tait::new(1.0, 10.0)), viscosity, Continuity);
         let columns = columns(&terms, 30);
         let count = columns.len() - 1;
-        let mut neighbours = Neighbours::new(3.0 * DX, Domain::open(), &[]);
+        let mut neighbours = Neighbours::new([3.0 * DX, 0.0], Domain::open(), &[]);
         neighbours.place(columns[..count].iter().map(|column| column.position));
         neighbours.build([count, 0], false, false);
         let kernel = Smoothing::<QuinticSpline>::new(DX);

@@ -15,13 +15,14 @@ type Method<W, I> = Compose<CubicSpline, Pressure<Tait>, Continuity, W, I>;
 const DX: f64 = 0.1;
 const H: f64 = 1.2 * DX;
 
-/// A periodic lattice that moves at a speed, so many rows of it wall particles.
+/// A periodic lattice whose rows move at a speed, each against the next, so many of them wall particles.
 fn simulation<W: Walls<()>, I: Integrator<Method<W, ()>>>(
     (walls, rows): (W, usize),
     speed: f64,
 ) -> Simulation<Method<W, I>> {
     let particle = |(k, place): (usize, Vector2<f64>)| {
-        let fluid = Particle::fluid(place, Vector2::new(speed, 0.0), 1.0, DX * DX);
+        let velocity = Vector2::new(if k / 8 % 2 == 0 { speed } else { -speed }, 0.0);
+        let fluid = Particle::fluid(place, velocity, 1.0, DX * DX);
         fluid.with_role(if k < 8 * rows { Role::Wall } else { Role::Fluid })
     };
     let places = lattice(Vector2::repeat(0.5 * DX), DX, 8, 8);
@@ -72,8 +73,8 @@ fn each_phase_of_a_step_is_told_in_turn() {
 #[test]
 fn sorting_and_search_are_told_when_lists_are_built() {
     use Phase::{Forces, Refresh, Rest, Search, Sorting};
-    // A step moves each particle by more than half of the skin of 0.12 h.
-    let phases = phases(&mut simulation::<_, Leapfrog>((Open, 0), 20.0));
+    // A step moves rows against each other by more than the skin of 0.4 h.
+    let phases = phases(&mut simulation::<_, Leapfrog>((Open, 0), 70.0));
     let inside = [Refresh, Search, Refresh, Rest];
     let built = [Refresh, Sorting, Search, Refresh, Rest, Forces];
     assert!(phases.windows(4).any(|told| told == inside), "{phases:?}");
@@ -85,15 +86,16 @@ fn lists_are_those_that_sweeps_count() {
     let mut simulation = simulation::<_, PredictorCorrector>((Open, 0), 0.0);
     assert_eq!(simulation.advance(1e-3, 1e-3, &mut ()), Outcome::Reached);
     let columns = simulation.plain_columns();
-    let places = simulation.lists().flatten().filter(|place| (**place as usize) < columns.len());
-    assert_eq!(2 * places.count() as u64, simulation.work().pair_interactions);
-    let reach = 2.0 * H + 0.12 * H;
+    let mut inside = 0;
     for (own, list) in columns.iter().zip(simulation.lists()) {
         assert!(list.len() % 4 == 0 && list.len() >= 20);
         for other in list.iter().filter_map(|place| columns.get(*place as usize)) {
-            assert!((own.position - other.position).norm() <= reach);
+            let distance = (own.position - other.position).norm();
+            assert!(distance <= 2.0 * H + 0.4 * H);
+            inside += u64::from(distance < 2.0 * H);
         }
     }
+    assert_eq!(2 * inside, simulation.work().pair_interactions);
     assert_eq!(simulation.lists().count(), 64);
     assert_eq!(simulation.column_bytes, (columns.len() + 1) * 64);
 }

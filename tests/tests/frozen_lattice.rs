@@ -99,29 +99,37 @@ fn super_step(model: &RowModel, u: &mut DVector<f64>, dt: f64, explicit: f64) {
     *u = last;
 }
 
-/// `steps` steps for u' = A u + b, between times at which all quantities are known: there a
-/// leapfrog kicks by half a step, at both ends. `explicit` is the limit from which stages are counted.
+/// Velocities, and the time by which those of a leapfrog lag behind \[s\].
+type Lagging = (DVector<f64>, f64);
+
+/// `steps` steps for u' = A u + b, and u at the time of the last, to which a leapfrog kicks a copy by half a
+/// step. `explicit` is the limit from which stages are counted.
 fn stepped(
     model: &RowModel,
     (by, explicit): (Integrator, f64),
-    u: &mut DVector<f64>,
+    (u, lag): &mut Lagging,
     dt: f64,
     steps: usize,
-) {
-    let staggered = matches!(by, Integrator::Leapfrog | Integrator::SuperLeapfrog);
-    let last = if staggered { steps } else { steps - 1 };
-    for k in 0..=last {
-        let kick = if k == 0 || k == last { 0.5 * dt } else { dt };
-        match by {
-            Integrator::Euler => *u += model.rate(u) * dt,
-            Integrator::PredictorCorrector => {
-                let half = &*u + model.rate(u) * (0.5 * dt);
-                *u += model.rate(&half) * dt;
-            }
-            Integrator::Leapfrog => *u += model.rate(u) * kick,
-            Integrator::SuperLeapfrog => super_step(model, u, kick, explicit),
+) -> DVector<f64> {
+    let kick = |u: &mut DVector<f64>, dt: f64| match by {
+        Integrator::Euler => *u += model.rate(u) * dt,
+        Integrator::PredictorCorrector => {
+            let half = &*u + model.rate(u) * (0.5 * dt);
+            *u += model.rate(&half) * dt;
         }
+        Integrator::Leapfrog => *u += model.rate(u) * dt,
+        Integrator::SuperLeapfrog => super_step(model, u, dt, explicit),
+    };
+    let is_staggered = matches!(by, Integrator::Leapfrog | Integrator::SuperLeapfrog);
+    for _ in 0..steps {
+        kick(u, if is_staggered { *lag + 0.5 * dt } else { dt });
+        *lag = if is_staggered { 0.5 * dt } else { 0.0 };
     }
+    let mut there = u.clone();
+    if is_staggered {
+        kick(&mut there, *lag);
+    }
+    there
 }
 
 /// Steps and their length, as `Stepper::advance` divides a span.
@@ -157,14 +165,14 @@ fn check_steps<S: Standard<Extra = ()>>(settings: &ChannelSettings, flow: Flow) 
     let mut simulation = simulation::<S>(&method, &setup);
     let model = reduced::<S::Kernel>(&setup, rule(&setup, method.walls));
     let name = format!("{flow:?}, {}, {settings:?}", std::any::type_name::<S>());
-    let (mut u, mut before) = (DVector::zeros(model.y.len()), 0.0);
+    let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
     for tau in [0.005, 0.02, 0.1, 0.5, 2.0] {
         let until = setup.time(tau);
         assert_eq!(simulation.advance(until, setup.dt, &mut ()), Outcome::Reached);
         let (steps, dt) = division(until - before, setup.dt);
         assert_eq!(simulation.dt(), dt, "{name}");
         let by = (method.theory, setup.medium.explicit_limit());
-        stepped(&model, by, &mut u, dt, steps);
+        let u = stepped(&model, by, &mut lagging, dt, steps);
         let apart = apart(&setup, &fluid(&simulation), &model, &u);
         assert!(apart < ROUND_OFF, "{tau}: {apart:e} V from the matrix, {name}");
         before = until;
@@ -294,11 +302,12 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
     let context = Context::of_rules();
     let setup = Setup::new(flow, &settings, &method, &context).expect(&name);
     let model = matrix_of(&record, &setup);
-    let (mut u, mut before) = (DVector::zeros(model.y.len()), 0.0);
+    let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
     for tau in TIMES.into_iter().filter(|tau| *tau <= settings.end) {
         let span = setup.time(tau) - before;
         let (steps, dt) = division(span, setup.dt.min(span / settings.least_steps as f64));
-        stepped(&model, (by, setup.medium.explicit_limit()), &mut u, dt, steps);
+        let by = (by, setup.medium.explicit_limit());
+        let u = stepped(&model, by, &mut lagging, dt, steps);
         before = setup.time(tau);
         let columns = &record.profiles[&format!("u@{tau}")].columns;
         let rows: Vec<_> =

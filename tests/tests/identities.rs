@@ -28,7 +28,7 @@ fn water() -> Tait {
 
 fn stressed<K: Kernel>() -> Pressure<Tait, ArtificialStress> {
     let w = Smoothing::<K>::new(H).w(0.01);
-    Pressure::with_stress(water(), ArtificialStress::new(0.3, 4, w))
+    Pressure { eos: water(), tensile: ArtificialStress::new(0.3, 4, w) }
 }
 
 /// What must vanish: both components of Σ m a, and Σ m x × a where the term is central.

@@ -151,13 +151,12 @@ fn time_does_not_drift_over_a_hundred_thousand_steps() {
     assert_eq!((often.time(), often.work().steps), (10_000.0, 100_000));
 }
 
-/// dt = 1/128 is exact, so that both runs step by the same bits. Leapfrog stops to synchronise: two
-/// half kicks in place of one.
+/// dt = 1/128 is exact, so that both runs step by the same bits.
 #[test]
-fn two_advances_are_one_for_the_one_step_schemes_and_nearly_for_leapfrog() {
-    fn both<I: Integrator<Scheme<()>>>(mu: f64) -> [Vec<Particle>; 2] {
+fn two_advances_are_one() {
+    fn both<I: Integrator<Scheme<()>>>() -> [Vec<Particle>; 2] {
         [vec![0.5], vec![0.25, 0.5]].map(|times| {
-            let mut simulation = simulation::<I>(patch(10, 0.1, 5), mu);
+            let mut simulation = simulation::<I>(patch(10, 0.1, 5), 0.02);
             for time in times {
                 assert_eq!(simulation.advance(time, 1.0 / 128.0, &mut ()), Outcome::Reached);
             }
@@ -165,14 +164,7 @@ fn two_advances_are_one_for_the_one_step_schemes_and_nearly_for_leapfrog() {
             simulation.particles()
         })
     }
-    let [one, two] = both::<PredictorCorrector>(0.02);
-    assert_eq!(bits(&one), bits(&two));
-    let [one, two] = both::<Euler>(0.02);
-    assert_eq!(bits(&one), bits(&two));
-    let [one, two] = both::<Leapfrog>(0.0);
-    assert!(difference(&one, &two, TORUS) < 1e-13);
-    let [one, two] = both::<Leapfrog>(0.02);
-    let apart = difference(&one, &two, TORUS);
-    println!("one synchronisation under viscosity: {apart:e}");
-    assert!(apart > 0.0 && apart < 1e-4, "a synchronisation moved the state by {apart:e}");
+    for [one, two] in [both::<PredictorCorrector>(), both::<Euler>(), both::<Leapfrog>()] {
+        assert_eq!(bits(&one), bits(&two));
+    }
 }

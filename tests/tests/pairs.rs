@@ -106,7 +106,7 @@ fn pressure_is_equation_5() {
 fn pressure_with_artificial_stress_is_equations_14_18_19() {
     let spacing = Vector2::new(0.25, 0.0);
     let stress = ArtificialStress::new(0.3, 4, w(spacing));
-    check(Pressure::with_stress(eos(), stress), (), |i, j, r, _| {
+    check(Pressure { eos: eos(), tensile: stress }, (), |i, j, r, _| {
         let repulsion = |k: &Particle| {
             if p(k) < 0.0 { 0.3 * p(k).abs() / k.density.powi(2) } else { 0.0 }
         };

@@ -62,7 +62,8 @@ fn scene_of<I: Integrator<Method<(), W>>, W: Walls<()>>(
     let forces = (pressure, Viscosity { mu: 0.01, eta2: 1e-4 * H * H });
     let w = Smoothing::<CubicSpline>::new(H).w(1.0 / 256.0);
     let drift = (Continuity, Shifting::new(0.5, H, w));
-    Scene::new(H, domain, particles, forces, drift, walls)
+    // So that lists are built often.
+    Scene { skin: 0.06 * H, ..Scene::new(H, domain, particles, forces, drift, walls) }
 }
 
 /// Stops after so many steps of the run.
@@ -109,6 +110,55 @@ fn leapfrog_goes_on_with_the_same_bits() {
 fn the_predictor_corrector_goes_on_with_the_same_bits() {
     check(scene::<PredictorCorrector>);
     check(channel::<PredictorCorrector>);
+}
+
+/// Leaves velocities where steps left them.
+struct PositionsOnly;
+
+impl<X> Observer<X> for PositionsOnly {
+    fn after_step(&mut self, _: &dyn Stepper<X>) -> Flow {
+        Flow::Continue
+    }
+    fn synchronises(&self) -> bool {
+        false
+    }
+}
+
+/// Ten looks at a run of 40 steps of a length whose multiples are exact: with velocities of the very time, of
+/// half a step before, and with a checkpoint at each.
+fn check_looks<S: Scheme<Extra = ()>>(scene: impl Fn() -> Scene<S>) {
+    const DT: f64 = 1.0 / 64.0;
+    let mut whole = scene().build().unwrap();
+    assert_eq!(whole.advance(40.0 * DT, DT, &mut ()), Outcome::Reached);
+    let time = |look: u32| f64::from(4 * look) * DT;
+    let run = |observer: &mut dyn Observer<()>, save: bool| {
+        let mut simulation = scene().build().unwrap();
+        for look in 1..=10 {
+            assert_eq!(simulation.advance(time(look), DT, observer), Outcome::Reached);
+            if save {
+                let checkpoint = simulation.checkpoint();
+                simulation = scene().build().unwrap();
+                simulation.restore(&checkpoint).unwrap();
+            }
+        }
+        // No step: velocities of the very time.
+        assert_eq!(simulation.advance(time(10), DT, &mut ()), Outcome::Reached);
+        assert_eq!(bits(&simulation.particles()), bits(&whole.particles()), "saved: {save}");
+        assert_eq!(simulation.work().list_builds, whole.work().list_builds);
+        simulation.work().pair_interactions
+    };
+    let looked = [run(&mut (), false), run(&mut (), true)];
+    let [lagging, saved] = [run(&mut PositionsOnly, false), run(&mut PositionsOnly, true)];
+    assert!(lagging == saved && lagging <= looked[0].min(looked[1]));
+    let [one, two] = looked.map(|pairs| pairs as f64 / lagging as f64);
+    assert!((one, two) == (1.0, 1.0) || one > 1.1, "{one}, {two}");
+}
+
+#[test]
+fn looking_at_a_run_does_not_change_it() {
+    check_looks(scene::<Leapfrog>);
+    check_looks(channel::<Leapfrog>);
+    check_looks(scene::<PredictorCorrector>);
 }
 
 /// Why a checkpoint is more than the particles: without the rows' age, the order and the lag the

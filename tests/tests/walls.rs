@@ -5,8 +5,8 @@ use base::functions::powf;
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, EquationOfState, ExtrapolatingWall,
-    Kernel, Leapfrog, Outcome, Particle, Pressure, QuinticSpline, Role, Scene, Smoothing, Stepper,
-    Tait, WendlandC2,
+    Hydrostatic, Kernel, Leapfrog, Outcome, Particle, Pressure, QuinticSpline, Role, Scene,
+    Smoothing, Stepper, Tait, WendlandC2,
     walls::{NoSlip, WallVelocity},
 };
 use touchstone_tests::{Random, V2, open_rates, relative_sum};
@@ -192,7 +192,8 @@ fn hydrostatic_diffusion_leaves_any_column_at_rest_alone() {
         let eos = Tait::new(1000.0, c);
         let water = column(&eos, gravity, 3);
         let plain = DensityDiffusion::new(0.1 * H * c);
-        let kept = DensityDiffusion::hydrostatic(0.1 * H * c, eos, gravity);
+        let rest = Hydrostatic { eos, gravity };
+        let kept = DensityDiffusion { diffusivity: 0.1 * H * c, rest };
         let rates = |term| open_rates::<WendlandC2, _, _, _>(H, &water, (), term);
         let levelled = rates(plain).iter().map(|r| r.density.abs()).fold(0.0, f64::max);
         let left = open_rates::<WendlandC2, _, _, _>(H, &water, (), kept);
@@ -215,7 +216,8 @@ fn without_gravity_hydrostatic_diffusion_is_the_plain_one_to_first_order() {
             })
             .collect();
         let plain = DensityDiffusion::new(0.1);
-        let kept = DensityDiffusion::hydrostatic(0.1, eos, Vector2::zeros());
+        let rest = Hydrostatic { eos, gravity: Vector2::zeros() };
+        let kept = DensityDiffusion { diffusivity: 0.1, rest };
         let plain = open_rates::<CubicSpline, _, _, _>(H, &cloud, (), plain);
         let kept = open_rates::<CubicSpline, _, _, _>(H, &cloud, (), kept);
         let size = plain.iter().map(|r| r.density.abs()).fold(0.0, f64::max);

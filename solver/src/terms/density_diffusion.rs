@@ -57,13 +57,6 @@ impl DensityDiffusion {
     }
 }
 
-impl DensityDiffusion<Hydrostatic> {
-    /// Towards a column at rest, with δ h ⁰c \[m²/s\] and g \[m/s²\].
-    pub fn hydrostatic(diffusivity: f64, eos: Tait, gravity: Vector2<f64>) -> Self {
-        Self { diffusivity, rest: Hydrostatic { eos, gravity } }
-    }
-}
-
 impl<X, R: Rest> Term<X> for DensityDiffusion<R> {
     type Derived = ();
     type Sum = f64;

@@ -250,7 +250,7 @@ mod tests {
         let eos = Tait { background: 0.2, ..Tait::new(1.0, 3.0) };
         let (eta2, w) = (1e-4, 2.0);
         check_vector::<V, K>(Pressure::new(eos));
-        check_vector::<V, K>(Pressure::with_stress(eos, ArtificialStress::new(0.3, 4, w)));
+        check_vector::<V, K>(Pressure { eos, tensile: ArtificialStress::new(0.3, 4, w) });
         check_vector::<V, K>(Viscosity { mu: 0.3, eta2 });
         check_vector::<V, K>(ArtificialViscosity::<_, Approaching>::new(0.3, 0.7, 0.35, eos));
         check_vector::<V, K>(ArtificialViscosity::<_, Always>::new(0.3, 0.7, 0.35, eos));
@@ -258,7 +258,8 @@ mod tests {
         check_vector::<V, K>(Shifting::new(0.5, 0.35, w));
         check_number::<V, K>(Continuity);
         check_number::<V, K>(DensityDiffusion::new(0.1));
-        check_number::<V, K>(DensityDiffusion::hydrostatic(0.1, eos, Vector2::new(0.3, -0.2)));
+        let rest = Hydrostatic { eos, gravity: Vector2::new(0.3, -0.2) };
+        check_number::<V, K>(DensityDiffusion { diffusivity: 0.1, rest });
     }
 
     fn check_every_kernel<V: Lane>() {

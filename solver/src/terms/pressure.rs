@@ -1,6 +1,4 @@
-use super::{
-    ArtificialStress, Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Tensile, Term, Vector2,
-};
+use super::{Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Tensile, Term, Vector2};
 
 /// (5) Pᵢ = −Σⱼ mⱼ (pᵢ/ρᵢ² + pⱼ/ρⱼ²) ∇ᵢWᵢⱼ \[m/s²\], and (14) with R ≠ ().
 ///
@@ -18,13 +16,6 @@ impl<E> Pressure<E> {
     /// The pressure term (5) without artificial stress.
     pub fn new(eos: E) -> Self {
         Self { eos, tensile: () }
-    }
-}
-
-impl<E> Pressure<E, ArtificialStress> {
-    /// The pressure term of (14) with artificial stress.
-    pub fn with_stress(eos: E, tensile: ArtificialStress) -> Self {
-        Self { eos, tensile }
     }
 }
 

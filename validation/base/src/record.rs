@@ -278,7 +278,7 @@ pub struct Cost {
     pub cpu_s: f64,
     /// time steps
     pub steps: u64,
-    /// neighbours visited, those within the skin included, summed over all traversals
+    /// neighbours that were inside the support when the lists were built, summed over all traversals
     pub pair_interactions: u64,
     /// right-hand sides of one particle
     pub particle_rhs: u64,

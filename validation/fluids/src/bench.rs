@@ -96,7 +96,7 @@ pub struct Speed {
     pub particles: usize,
     /// Right-hand sides of a particle a second.
     pub rate: f64,
-    /// Neighbours in a list, those within the skin included.
+    /// Neighbours inside the support.
     pub neighbours: f64,
     /// Memory a particle \[bytes\].
     pub bytes: usize,

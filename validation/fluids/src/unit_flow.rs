@@ -100,7 +100,7 @@ macro_rules! unit_settings {
                 /// particle shifting, amplitude
                 shift: f64 ["-"] in 0.0..=10.0 = 0.5,
                 /// Verlet skin: reach of neighbour lists beyond the support radius
-                skin: f64 ["h"] in 0.0..=2.0 = 0.15,
+                skin: f64 ["h"] in 0.0..=2.0 = 0.6,
             }
         }
 

@@ -209,9 +209,9 @@ type Stored = (u32, u8, [f64; 8], Vec<f64>);
 /// The state of a simulation.
 fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Saving) -> Done {
     let Checkpoint { progress, lag, particles, built_at } = state;
-    let &Progress { time, dt, work, last_displacement, built_inside_a_step, call, made } = progress;
+    let &Progress { time, dt, work, last_approach, built_inside_a_step, call, made } = progress;
     let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-    to.put(&([time, dt, last_displacement, *lag], call))?;
+    to.put(&([time, dt, last_approach, *lag], call))?;
     to.put(&[steps, pair_interactions, right_hand_sides, list_builds, made])?;
     to.put(&built_inside_a_step)?;
     let stored = |((id, p), at): (&(u32, Particle<X>), &Vector2<f64>)| {
@@ -229,11 +229,11 @@ fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Saving) -> Done {
 }
 
 fn restore_state<X: Numbers>(from: &mut Restoring) -> Result<Checkpoint<X>, CheckpointError> {
-    let ([time, dt, last_displacement, lag], call) = from.take()?;
+    let ([time, dt, last_approach, lag], call) = from.take()?;
     let [steps, pair_interactions, right_hand_sides, list_builds, made] = from.take()?;
     let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
     let built_inside_a_step = from.take()?;
-    let progress = Progress { time, dt, work, last_displacement, built_inside_a_step, call, made };
+    let progress = Progress { time, dt, work, last_approach, built_inside_a_step, call, made };
     let stored: Vec<Stored> = from.take()?;
     let (mut particles, mut built_at) = (Vec::new(), Vec::new());
     for (id, role, [x, y, u, v, density, mass, at_x, at_y], numbers) in stored {

@@ -52,8 +52,10 @@ from_medium! {
         |m| Self::new(m.alpha, m.beta, m.h, E::new(m));
     Xsph [] (Xsph) = |m| Xsph { epsilon: m.xsph };
     DensityDiffusion [] (Diffusion) = |m| Self::new(m.diffusivity());
-    DensityDiffusion<Hydrostatic> [] (Diffusion) =
-        |m| DensityDiffusion::hydrostatic(m.diffusivity(), m.eos, m.acceleration);
+    DensityDiffusion<Hydrostatic> [] (Diffusion) = |m| DensityDiffusion {
+        diffusivity: m.diffusivity(),
+        rest: Hydrostatic { eos: m.eos, gravity: m.acceleration },
+    };
     Shifting [] (Shift) = |m| Shifting::new(m.shift, m.h, m.w_at_spacing);
     ShiftAdvection [] (Shift) = |m| ShiftAdvection(Shifting::new(m.shift, m.h, m.w_at_spacing));
     JaumannRate [] () = |m| JaumannRate { shear_modulus: m.shear_modulus };

@@ -271,7 +271,7 @@ mod tests {
         }));
         let stress = ArtificialStress::new(0.3, 4, Smoothing::<CubicSpline>::new(h).w(DX * DX));
         let forces = (
-            Pressure::with_stress(eos, stress),
+            Pressure { eos, tensile: stress },
             ArtificialViscosity::new(0.4, 0.8, h, eos),
             BodyForce(WATER.gravity),
         );

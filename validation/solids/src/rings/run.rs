@@ -56,15 +56,16 @@ pub fn run(
     let times: Vec<f64> = stops.iter().map(|stop| stop.time).collect();
     let eos = rings.material.eos();
     let pressure = |density| eos.pressure(density);
+    let has_budget = budget.is_some();
     let mut seen = (&mut series, &mut budget, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rings.dt, &times, &pressure, &mut seen)
         .after_step("series", &|(series, ..), simulation| series.after_step(simulation))
-        .at("energy budget by term", &|(_, budget, _), s, k| {
+        .at_if(has_budget, "energy budget by term", &|(_, budget, _), s, k| {
             if let Some(budget) = budget.as_mut().filter(|_| stops[k].is_sample) {
                 budget.sample(rings, s);
             }
         })
-        .at("pictures", &|(.., record), s, k| keep(rings, s, times[k], context, record))
+        .at_positions("pictures", &|(.., record), s, k| keep(rings, s, times[k], context, record))
         .run(context)?;
     let particles = measure::along_flight(rings, &*simulation);
     if status == Status::Completed {

@@ -104,7 +104,7 @@ fn impulse(record: &Record) -> f64 {
     IMPULSE.into_iter().take(3).map(error).sum::<f64>() / 3.0
 }
 
-/// Neighbours visited by a particle in a step.
+/// Neighbours of a particle in the sweeps of a step.
 fn pairs(record: &Record) -> f64 {
     let cost = &record.cost;
     cost.pair_interactions as f64 / (cost.steps as f64 * cost.particles as f64)

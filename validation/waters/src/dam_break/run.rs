@@ -77,17 +77,18 @@ fn run(
     let filled = water_mass(&simulation.particles());
     let (times, pictures) = stops(dam, context);
     let pressure = |density| medium.eos.pressure(density);
+    let has_balances = balances.is_some();
     let mut seen = (&mut gauge, &mut samples, &mut balances, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rules.dt, &times, &pressure, &mut seen)
         .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
-        .at("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
-        .at("energy ledger and momentum", &|(_, _, balances, _), s, _| {
+        .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
+        .at_if(has_balances, "energy ledger and momentum", &|(_, _, balances, _), s, _| {
             if let Some((ledger, momentum)) = balances {
                 let force = ledger.sample(s);
                 momentum.sample(&*s, force);
             }
         })
-        .at("pictures", &|(.., record), s, k| {
+        .at_positions("pictures", &|(.., record), s, k| {
             if let Some(share) = pictures.get(&k) {
                 record.profiles.insert(format!("particles@{share}"), picture(dam, &*s));
             }
