@@ -23,8 +23,8 @@ type Flow<K> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfro
 
 fn rules(method: &Method, s: &Decay) -> Result<Rules, RunError> {
     let medium = medium(method, s);
-    let dt_limit = method.step_limit([1.3, 1e-6], 32, &medium.waves(&method.uses));
-    Ok(Rules { dt: s.step * dt_limit, dt_limit, sound_speed: 1.0 })
+    let limits = method.limits([1.3, 1e-6], 32, &medium.waves(&method.uses));
+    Ok(Rules { step: Step::share(s.step, &limits), limits, sound_speed: 1.0, end: s.end })
 }
 
 fn medium(method: &Method, s: &Decay) -> Medium {
@@ -33,7 +33,7 @@ fn medium(method: &Method, s: &Decay) -> Medium {
 }
 
 fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record, RunError> {
-    let (medium, Rules { dt, .. }, dx) = (medium(m, s), rules(m, s)?, 1.0 / s.n as f64);
+    let (medium, dt, dx) = (medium(m, s), rules(m, s)?.dt(), 1.0 / s.n as f64);
     let wave = |x: Vector2<f64>| Vector2::new(1e-3 * sin(TAU * x.y), 0.0);
     let places = lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n);
     let particles = places.map(|x| Particle::fluid(x, wave(x), 1.0, dx * dx)).collect();

@@ -9,6 +9,7 @@ mod identities;
 mod integration;
 mod invariance;
 mod layers;
+mod limits;
 mod margins;
 mod new_case;
 mod pairs;

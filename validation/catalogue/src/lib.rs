@@ -9,4 +9,5 @@ pub mod cases;
 mod limitations;
 pub mod margins;
 pub mod page;
+pub mod stiffness;
 mod time;

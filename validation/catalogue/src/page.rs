@@ -20,7 +20,7 @@ use report::{
     Block, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS,
 };
 
-use crate::{limitations, margins, time};
+use crate::{limitations, margins, stiffness, time};
 
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
@@ -44,7 +44,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
     ];
     let mut sections: Vec<Section> = vec![verdicts(suite), limitations::section(suite)];
     sections.extend(suite.cases.iter().map(case_section));
-    sections.extend([time::section(suite), references_section()]);
+    sections.extend([stiffness::section(suite), time::section(suite), references_section()]);
     Page {
         title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
         lead: vec![format!(

@@ -11,7 +11,7 @@ use base::{
     record::{Profile, Record, Status},
 };
 use harness::{
-    case::{Case, Planned, Rules, RunError, Tier},
+    case::{Case, Planned, Rules, RunError, Step, Tier},
     composed::{self, Composed, Composition, Program, Variants},
     context::Context,
     declare::{
@@ -93,10 +93,11 @@ impl Cylinders {
         let sound_speed = (10.0 * speed).max(s.c0_viscous * s.nu / h);
         let medium = method.medium(Tait::new(s.rho, sound_speed), [dx, h]);
         let medium = Medium { nu: s.nu, eta2_over_h2: s.eta2_over_h2, ..medium };
-        let dt = (s.courant * h / (sound_speed + speed)).min(s.viscous * h * h / s.nu);
+        let step = Step::courant(s.courant, h, [sound_speed, speed]).viscous(s.viscous, h, s.nu);
         let waves = medium.waves(&method.uses);
-        let dt_limit = method.step_limit([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
-        let rules = Rules { dt, dt_limit, sound_speed };
+        let limits = method.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let (limits, end) = (limits.moving(h, speed, 0.0), s.end * s.gap * s.gap / s.nu);
+        let rules = Rules { step, limits, sound_speed, end };
         let flow = TaylorCouette { inner, outer: inner + s.gap, speed };
         // Rows out to the support must fit into the inner cylinder.
         let share = method.support * h / inner;
@@ -106,13 +107,8 @@ impl Cylinders {
         }
         let cylinders = Self { settings: s.clone(), flow, medium, rules };
         let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
-        let extent = [cylinders.end(), area / (dx * dx)];
-        simulate::check(method, &medium, rules, extent, DECISIVE, context)?;
+        simulate::check(method, &medium, &rules, area / (dx * dx), DECISIVE, context)?;
         Ok(cylinders)
-    }
-
-    fn end(&self) -> f64 {
-        self.settings.end * self.settings.gap * self.settings.gap / self.settings.nu
     }
 
     /// Fluid in layers about the axis, and rows behind both cylinders, all with the velocity of the
@@ -150,7 +146,7 @@ fn run(
     let particles = cylinders.particles(method);
     let parts = Parts::new(cylinders.medium, Domain::open(), particles, context);
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
-    let until = [cylinders.rules.dt, cylinders.end()];
+    let until = [cylinders.rules.dt(), cylinders.rules.end];
     let simulation = simulate::simulate(method, parts, until, context, &mut record)?;
     if record.status == Status::Completed {
         measure(&cylinders.flow, &simulation.particles(), &mut record);
@@ -406,7 +402,7 @@ mod tests {
         assert_relative_eq!(cylinders.flow.speed, 0.5e-3, max_relative = 1e-12);
         assert_relative_eq!(cylinders.flow.inner, 0.5e-3, max_relative = 1e-12);
         assert_relative_eq!(cylinders.flow.outer, 1.5e-3, max_relative = 1e-12);
-        assert_relative_eq!(cylinders.end(), 0.5, max_relative = 1e-12);
+        assert_relative_eq!(cylinders.rules.end, 0.5, max_relative = 1e-12);
         let particles = cylinders.particles(&method);
         let turning = |p: &&Particle| p.role != Role::Fluid && p.position.norm() < 0.6e-3;
         let walls: Vec<&Particle> = particles.iter().filter(turning).collect();

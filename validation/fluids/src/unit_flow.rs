@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use solver::{ConsistentContinuity, DensityDiffusion, Domain, Limits, Particle, Shifting, Tait};
 
 use harness::{
-    case::{Rules, RunError},
+    case::{Rules, RunError, Step},
     context::Context,
     method::{Medium, Method, Parts},
     simulate,
@@ -58,11 +58,12 @@ impl UnitFlow {
         context: &Context,
     ) -> Result<Self, RunError> {
         let Medium { h, dx, nu, eta2_over_h2, eos: Tait { sound_speed, .. }, .. } = medium;
-        let dt = dt.unwrap_or((courant * h / (sound_speed + speed)).min(viscous * h * h / nu));
+        let step = Step::courant(courant, h, [sound_speed, speed]).viscous(viscous, h, nu);
         let waves = medium.waves(&method.uses);
-        let dt_limit = method.step_limit([h / dx, eta2_over_h2], LIMIT_BOX, &waves);
-        let rules = Rules { dt, dt_limit, sound_speed };
-        simulate::check(method, &medium, rules, [end, area / (dx * dx)], DECISIVE, context)?;
+        let limits = method.limits([h / dx, eta2_over_h2], LIMIT_BOX, &waves);
+        let (step, limits) = (step.or_given(dt), limits.moving(h, speed, force));
+        let rules = Rules { step, limits, sound_speed, end };
+        simulate::check(method, &medium, &rules, area / (dx * dx), DECISIVE, context)?;
         let medium = Medium { acceleration: Vector2::new(force, 0.0), ..medium };
         Ok(Self { medium, support: method.support * h, rules, speed, skin: skin * h })
     }

@@ -11,8 +11,9 @@ use serde_json::Value;
 use crate::{context::Context, declare::Declaration, runs::Runs, study::Study};
 pub use crate::{
     error::RunError,
+    limits::Limits,
     planned::{Planned, Tier},
-    rules::{PLANNED_DT, Rules},
+    rules::{PLANNED_DT, Rules, Step},
 };
 
 /// One named composition of types with its default settings.

@@ -284,8 +284,8 @@ impl StepLimit {
             scene: scene.into(),
             spec: spec.allow_unstable().bisect(bisect),
             theory_at: 1.0,
-            theory: rules.dt_limit,
-            default_at: rules.dt / rules.dt_limit,
+            theory: rules.dt_limit(),
+            default_at: rules.dt() / rules.dt_limit(),
             of_theory: Vec::new(),
             of_default: Vec::new(),
         }

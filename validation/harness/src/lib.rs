@@ -19,6 +19,7 @@ pub mod detect;
 pub mod error;
 pub mod extremes;
 pub mod frames;
+pub mod limits;
 pub mod make;
 pub mod method;
 pub mod notes;

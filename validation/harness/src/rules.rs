@@ -2,25 +2,101 @@
 
 use base::{number, record::Record};
 
+use crate::limits::Limits;
+
 /// The quantities that the rules of a case determine before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// Time step \[s\].
-    pub dt: f64,
-    /// Its theoretical limit \[s\].
-    pub dt_limit: f64,
+    /// The time step and the rule that sets it.
+    pub step: Step,
+    /// Its theoretical limits.
+    pub limits: Limits,
     /// Sound speed \[m/s\].
     pub sound_speed: f64,
+    /// End of the run \[s\].
+    pub end: f64,
+}
+
+/// A time step \[s\]: the least of those that the rules of a case allow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The step \[s\].
+    pub dt: f64,
+    /// The rule that sets it, as its formula.
+    pub by: &'static str,
+    /// What the rule multiplies.
+    pub number: f64,
+}
+
+impl Step {
+    /// dt ≤ C h/(c + V): a wave of speed c \[m/s\] in matter of speed V \[m/s\] gets ahead by C smoothing
+    /// lengths.
+    pub fn courant(number: f64, h: f64, [c, v]: [f64; 2]) -> Self {
+        Self { dt: number * h / (c + v), by: "h/(c + V)", number }
+    }
+
+    /// dt ≤ N h²/ν: viscosity.
+    #[must_use]
+    pub fn viscous(self, number: f64, h: f64, nu: f64) -> Self {
+        self.least(Self { dt: number * h * h / nu, by: "h²/ν", number })
+    }
+
+    /// dt ≤ N (h/F)^(1/2): a body force \[m/s²\]; none if it is 0.
+    #[must_use]
+    pub fn forced(self, number: f64, h: f64, force: f64) -> Self {
+        let dt = if force > 0.0 { number * (h / force).sqrt() } else { f64::INFINITY };
+        self.least(Self { dt, by: "(h/F)^(1/2)", number })
+    }
+
+    /// A share of the theoretical limit.
+    pub fn share(number: f64, limits: &Limits) -> Self {
+        Self { dt: number * limits.together, by: "limit", number }
+    }
+
+    /// The step that the settings give \[s\], if they do.
+    #[must_use]
+    pub fn or_given(self, dt: Option<f64>) -> Self {
+        dt.map_or(self, Self::given)
+    }
+
+    /// A step that the settings give \[s\].
+    pub fn given(dt: f64) -> Self {
+        Self { dt, by: "given", number: 1.0 }
+    }
+
+    fn least(self, other: Self) -> Self {
+        if other.dt < self.dt { other } else { self }
+    }
 }
 
 impl Rules {
     /// Those of a run that is refused, for plans: the run itself is refused too, so that its gates, which
     /// must be there, fail.
-    pub const REFUSED: Self = Self { dt: 1.0, dt_limit: 1.0, sound_speed: 1.0 };
+    pub const REFUSED: Self = Self {
+        step: Step { dt: 1.0, by: "", number: 1.0 },
+        limits: Limits::REFUSED,
+        sound_speed: 1.0,
+        end: 1.0,
+    };
+
+    /// Time step \[s\].
+    pub fn dt(&self) -> f64 {
+        self.step.dt
+    }
+
+    /// Pair sweeps of a step.
+    pub fn sweeps(&self) -> f64 {
+        self.limits.sweeps(self.dt())
+    }
+
+    /// Its theoretical limit \[s\].
+    pub fn dt_limit(&self) -> f64 {
+        self.limits.together
+    }
 
     /// These and the lattice, h/dx and dx \[m\], by the names that records give them.
-    pub fn numbers(self, [h_over_dx, dx]: [f64; 2]) -> [(&'static str, f64); 5] {
-        let Self { dt, dt_limit, sound_speed } = self;
+    pub fn numbers(&self, [h_over_dx, dx]: [f64; 2]) -> [(&'static str, f64); 5] {
+        let (dt, dt_limit, sound_speed) = (self.dt(), self.dt_limit(), self.sound_speed);
         [
             ("h/dx", h_over_dx),
             ("dx [m]", dx),
@@ -58,7 +134,8 @@ mod tests {
     /// A run of one step of 1e-4 s stated the 275 s that were planned, and 451,608 times the limit.
     #[test]
     fn a_record_states_the_step_that_was_taken_beside_the_one_that_was_planned() {
-        let rules = Rules { dt: 2e-4, dt_limit: 4e-4, sound_speed: 1.0 };
+        let limits = Limits { together: 4e-4, ..Limits::REFUSED };
+        let rules = Rules { step: Step::given(2e-4), limits, ..Rules::REFUSED };
         let mut record = Record::new("c", "v", json!({}), 1);
         let numbers = rules.numbers([1.2, 0.1]).map(|(name, value)| (name.into(), value.into()));
         record.numerics.extend(numbers);

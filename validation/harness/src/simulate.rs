@@ -48,9 +48,10 @@ pub fn begin<X, D: ?Sized>(
 /// The step, its limit, and the integrator.
 pub fn check_step(
     integrator: &'static str,
-    Rules { dt, dt_limit: limit, .. }: Rules,
+    rules: &Rules,
     context: &Context,
 ) -> Result<(), RunError> {
+    let (dt, limit) = (rules.dt(), rules.dt_limit());
     if dt > limit && !context.allow_unstable {
         return Err(RunError::TimeStep { dt, limit, integrator });
     }
@@ -66,7 +67,7 @@ pub fn size<X, D: ?Sized>(
     Size::new(steps_and_particles, method.support * medium.h / medium.dx)
 }
 
-/// Refuses a step as [`check_step`] does, and a run to the end \[s\] with so many particles as
+/// Refuses a step as [`check_step`] does, and a run with so many particles as
 /// [`check_size`] does, before the particles are made. `settings` are those on which its size depends.
 ///
 /// # Errors
@@ -74,13 +75,14 @@ pub fn size<X, D: ?Sized>(
 pub fn check<X, D: ?Sized>(
     method: &Method<X, D>,
     medium: &Medium,
-    rules: Rules,
-    [end, particles]: [f64; 2],
+    rules: &Rules,
+    particles: f64,
     settings: &'static str,
     context: &Context,
 ) -> Result<(), RunError> {
     check_step(method.integrator, rules, context)?;
-    check_size(size(method, medium, [end / rules.dt, particles]), settings, context)
+    let size = size(method, medium, [rules.end / rules.dt(), particles]);
+    check_size(size.with_sweeps(rules.sweeps()), settings, context)
 }
 
 /// Steps a scene to `end` \[s\] by `dt` \[s\] and completes its record: how it ended, what it took, and the

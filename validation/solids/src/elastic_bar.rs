@@ -114,6 +114,10 @@ impl Problem for BarSettings {
         self.speed * self.wave()
     }
 
+    fn approach(&self) -> f64 {
+        if self.collide { 2.0 * self.speed() } else { 0.0 }
+    }
+
     fn end(&self) -> f64 {
         let auto = match (self.collide, self.gap > 0.0) {
             (false, _) => 0.3,

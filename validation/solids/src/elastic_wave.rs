@@ -11,7 +11,7 @@ use solver::{
 };
 use std::f64::consts::TAU;
 
-use super::solid::{Bare, Material};
+use super::solid::{Bare, Material, limits};
 use base::functions::{acos, cos, sin};
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -19,7 +19,7 @@ use base::{
     spec::RunSpec,
 };
 use harness::{
-    case::{Planned, RunError},
+    case::{Planned, Rules, RunError, Step},
     columns::Columns,
     composed::{self, Composed, Composition, Program, Variants},
     context::Context,
@@ -75,9 +75,7 @@ fn variants() -> Vec<Composition<WaveSettings>> {
     fn method<K: Kernel>() -> Method<Symmetric> {
         Method::of::<Bare<Open, K>>()
     }
-    let rules =
-        |_: &Method<Symmetric>, _: &WaveSettings| Err(RunError::NoRules { case: NAME.into() });
-    Variants::of(&Program { run, rules })
+    Variants::of(&Program { run, rules: |method, settings| Ok(settings.rules(method)) })
         .with(
             CubicSpline::NAME,
             "equations (9) to (12), leapfrog, cubic spline",
@@ -145,6 +143,22 @@ impl WaveSettings {
         g * modulus.sqrt()
     }
 
+    /// A fiftieth of the period of the wave, or the step in which the block turns by its angle.
+    fn rules(&self, method: &Method<Symmetric>) -> Rules {
+        let (step, steps) = match self.rotation {
+            true => (Step::given(ANGLE), 1),
+            false => (
+                Step { dt: 0.02 / self.frequency(method) * TAU, number: 0.02, by: "period" },
+                STEPS,
+            ),
+        };
+        let side = if self.rotation { N + 1 } else { N } as f64;
+        let medium = RUBBER.medium(method, [1.0 / side, self.h_over_dx / side]);
+        let limits = limits(method, &RUBBER, &medium, self.h_over_dx);
+        let end = step.dt * steps as f64;
+        Rules { step, limits, sound_speed: RUBBER.sound_speed(), end }
+    }
+
     fn metric(&self) -> MetricKey {
         if self.rotation { TURNING_ERROR } else { FREQUENCY_ERROR }
     }
@@ -180,14 +194,12 @@ fn run(
 ) -> Result<Record, RunError> {
     let mut simulation = (method.build)(settings.parts(method, context))?;
     let (omega, h_over_dx) = (settings.frequency(method), settings.h_over_dx);
-    let (dt, steps) = match settings.rotation {
-        true => (ANGLE, 1),
-        false => (0.02 / omega * TAU, STEPS),
-    };
+    let rules = settings.rules(method);
+    let dt = rules.dt();
     let numbers = [("h/dx", h_over_dx), (PLANNED_DT, dt)];
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
     let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
-    let (times, pressure) = ([dt * steps as f64], |density| RUBBER.eos().pressure(density));
+    let (times, pressure) = ([rules.end], |density| RUBBER.eos().pressure(density));
     (record.status, record.cost) = Drive::new(&mut *simulation, dt, &times, &pressure, &mut watch)
         .after_step("projection", &Watch::after_step)
         .run(context)?;

@@ -417,7 +417,7 @@ fn extremes(runs: &Runs) -> Study {
     let step = |nu: f64| {
         let spec = first_steps(nu);
         let rules = runs.completed(&spec).and_then(|_| OSCILLATING_PLATE.rules(&spec).ok());
-        rules.map_or(f64::NAN, |rules| rules.dt)
+        rules.map_or(f64::NAN, |rules| rules.dt())
     };
     let theory = |nu: f64| ((1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu)).sqrt();
     let steps = TOWARDS_ONE_HALF.map(step);

@@ -328,6 +328,9 @@ pub struct Stability {
     /// How many variants to examine
     #[arg(long, value_enum, default_value = "quick")]
     pub tier: Tier,
+    /// Make no run: print for every variant which mechanism limits its step by theory, at default settings
+    #[arg(long, conflicts_with_all = ["tier", "threads"])]
+    pub theory: bool,
     /// Print the limits as JSON on standard output
     #[arg(long)]
     pub json: bool,

@@ -1,15 +1,18 @@
 //! `stability`: the largest stable time steps that cases declare, measured and by theory.
 
-use ::report;
+use ::report::{self, Cell};
 use harness::{
     case::Case,
     declare::StepLimit,
+    limits::Mechanism,
     make::Job,
     planned::Planned,
     runs::{JudgedRun, Runs},
     studies::limit_of_theory,
 };
 use serde_json::{Value, json};
+
+use validation::stiffness::{self, Row};
 
 use super::{Exit, Failure, Outcome, World, arguments, output};
 
@@ -21,6 +24,9 @@ struct Declared {
 
 pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
+    if arguments.theory {
+        return theory(&cases, arguments.json);
+    }
     let mut declared = Vec::new();
     for case in cases {
         let limits = case.declaration(arguments.tier.into()).limits;
@@ -53,6 +59,41 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         output::print(&(table(&declared, &runs) + "\n"))?;
     }
     Ok(Exit::Pass)
+}
+
+/// What limits the step of each variant, without a run.
+fn theory(cases: &[&'static dyn Case], as_json: bool) -> Outcome {
+    let mut rows = Vec::new();
+    for case in cases {
+        rows.extend(Row::of(*case)?);
+    }
+    if as_json {
+        let all = rows.iter().map(row_json).collect();
+        output::print_whole(&format!("{:#}\n", Value::Array(all)))?;
+    } else {
+        let table = stiffness::table(&rows);
+        let heads: Vec<&str> = table.columns.iter().map(|column| &*column.head).collect();
+        let cells = |row: &Vec<Cell>| row.iter().map(|cell| cell.text.replace('`', "")).collect();
+        let rows: Vec<Vec<String>> = table.rows.iter().map(cells).collect();
+        let reading = output::wrap(&stiffness::READING.replace('*', ""), 100, "");
+        output::print(&format!("{}\n{reading}", output::table(&heads, &rows)))?;
+    }
+    Ok(Exit::Pass)
+}
+
+fn row_json(row: &Row) -> Value {
+    let limits = &row.rules.limits;
+    let has = |mechanism: &Mechanism| limits.alone(*mechanism).is_finite();
+    let all = Mechanism::ALL.into_iter().filter(has);
+    let alone = all.map(|mechanism| (mechanism.name().to_string(), limits.alone(mechanism).into()));
+    json!({
+        "case": row.case, "variant": row.variant, "step_s": row.rules.dt(),
+        "set_by": json!([row.rules.step.number, row.rules.step.by]),
+        "limits_s": Value::Object(alone.collect()), "together_s": row.rules.dt_limit(),
+        "bound_by": limits.binding().name(), "slowest_over_stiffest": row.stiffness(),
+        "steps": row.steps(), "steps_over_slowest": row.cost(),
+        "sweeps": row.steps() * row.rules.sweeps(),
+    })
 }
 
 fn json(Declared { case, limit }: &Declared, runs: &Runs) -> Value {

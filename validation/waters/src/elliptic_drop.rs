@@ -118,7 +118,7 @@ impl Drop {
         let gravity = s.gravity * s.strain * rate;
         let fall = gravity * s.end / s.strain;
         let speed = (tip.strain * tip.b).max(rate) + fall;
-        let (medium, rules) = s.medium(method, [dx, s.c0 * rate, gravity, speed]);
+        let (medium, rules) = s.medium(method, [dx, s.c0 * rate, gravity, speed, s.end / s.strain]);
         let corner = Vector2::repeat(0.5 * dx - s.radius);
         let particles: Vec<Particle> = solver::lattice(corner, dx, s.n, s.n)
             .filter(|x| x.norm() <= s.radius)
@@ -220,9 +220,9 @@ fn run(
     context: &Context,
 ) -> Result<Record, RunError> {
     let drop = Drop::new(s, method);
-    let (medium, end) = (&drop.medium, s.end / s.strain);
-    let extent = [end, drop.particles.len() as f64];
-    simulate::check(method, medium, drop.rules, extent, DECISIVE, context)?;
+    let (medium, end) = (&drop.medium, drop.rules.end);
+    let particles = drop.particles.len() as f64;
+    simulate::check(method, medium, &drop.rules, particles, DECISIVE, context)?;
     let parts = Parts::new(*medium, Domain::open(), drop.particles.clone(), context);
     let mut simulation = (method.build)(parts)?;
     let [_, numbers @ ..] = drop.rules.numbers([s.h_over_dx, medium.dx]);
@@ -233,7 +233,7 @@ fn run(
     let pressure = |density| medium.eos.pressure(density);
     let mut seen = (&mut history, &mut ledger);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, drop.rules.dt, &times, &pressure, &mut seen)
+        Drive::new(&mut *simulation, drop.rules.dt(), &times, &pressure, &mut seen)
             .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
             .at("energy ledger by term", &|(_, ledger), simulation, _| {
                 if let Some(ledger) = ledger {

@@ -14,7 +14,7 @@ use base::{
     spec::RunSpec,
 };
 use harness::{
-    case::{Case, Rules, Tier},
+    case::{Case, Rules, Step, Tier},
     declare::{
         Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
         Ladder, Level, OrderGate, Peer,
@@ -327,7 +327,7 @@ fn changes(Channel { flow, case }: Channel, variant: &'static str, tier: Tier) -
     let spec = |set: &dyn Fn(&mut ChannelSettings)| case.spec(variant, set);
     let base = spec(&|_| ());
     // A variant that has no rules is refused, and its record says why.
-    let Ok(Rules { dt, sound_speed, .. }) = case.rules(&base) else {
+    let Ok(Rules { step: Step { dt, .. }, sound_speed, .. }) = case.rules(&base) else {
         return vec![Change::new("none", "–", base)];
     };
     let is_seed = variant == "seed";

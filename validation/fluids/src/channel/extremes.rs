@@ -127,7 +127,7 @@ fn slow(case: &ChannelCase, tier: Tier, runs: &Runs) -> Vec<Entry> {
         let matrix = match variant {
             "seed" => matrix_error::<CubicSpline>(rows, 1.2, 0.01),
             "quintic-pc" => matrix_error::<QuinticSpline>(rows, 1.0, 1e-6),
-            _ => case.rules(&spec).ok().and_then(|rules| stepped_error(rows, rules.dt)),
+            _ => case.rules(&spec).ok().and_then(|rules| stepped_error(rows, rules.dt())),
         };
         let because = "The row-reduced matrix gives the exact error of the sums, for `modern` with its own \
                        time steps. The bound adds 10 % for the time step.";
@@ -205,7 +205,7 @@ fn smoothed_spec(case: &ChannelCase, (variant, ratio): (&str, f64)) -> RunSpec {
 
 /// The larger error of the row-reduced matrices of rows in columns and of rows that slid past each other.
 fn smoothed_matrix(case: &ChannelCase, (variant, ratio): (&'static str, f64)) -> Option<f64> {
-    let dt = case.rules(&smoothed_spec(case, (variant, ratio))).ok()?.dt;
+    let dt = case.rules(&smoothed_spec(case, (variant, ratio))).ok()?.dt();
     let reduced = match variant {
         "cubic-leapfrog" => rows::<CubicSpline>,
         "wendland-leapfrog" => rows::<WendlandC2>,

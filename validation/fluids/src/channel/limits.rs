@@ -62,7 +62,7 @@ fn limit(Channel { flow, case }: Channel, variant: &'static str) -> StepLimit {
     let spec = case.spec(variant, |s| s.jitter = DISORDER).allow_unstable();
     let rules = case.rules(&spec).unwrap_or(Rules::REFUSED);
     // Not `dt_limit`, in the last bit: bisections begin where they always have.
-    let theory = rules.dt / (rules.dt / rules.dt_limit);
+    let theory = rules.dt() / (rules.dt() / rules.dt_limit());
     let defaults = ChannelSettings::default();
     let bisect = Bisect {
         setting: "dt".into(),
@@ -91,7 +91,7 @@ fn limit(Channel { flow, case }: Channel, variant: &'static str) -> StepLimit {
         spec: spec.bisect(bisect),
         theory,
         theory_at: theory,
-        default_at: rules.dt,
+        default_at: rules.dt(),
         of_theory: ratio.into_iter().collect(),
         of_default: [stable].into_iter().chain(margin).collect(),
     }

@@ -29,7 +29,7 @@ pub const POISEUILLE: Program<ChannelSettings, Method> = Program {
 };
 
 fn rules(flow: Flow, method: &Method, settings: &ChannelSettings) -> Result<Rules, RunError> {
-    Ok(Setup::new(flow, settings, method, &Context::of_rules())?.rules())
+    Ok(Setup::new(flow, settings, method, &Context::of_rules())?.rules)
 }
 
 fn run(
@@ -50,9 +50,9 @@ fn run(
     let mut series = Series::new(setup, &*simulation);
     let pressure = |density| eos.pressure(density);
     let mut seen = (&mut series, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, setup.dt, &times, &pressure, &mut seen)
+    let (status, cost) = Drive::new(&mut *simulation, setup.dt(), &times, &pressure, &mut seen)
         .at_least(settings.least_steps)
-        .sweeps(setup.sweeps)
+        .sweeps(setup.rules.sweeps())
         .after_step("series", &|(series, _), simulation| series.after_step(simulation))
         .at("profiles and errors", &|(_, record), simulation, k| {
             measure::compare(setup, &Sample::of(setup, simulation), compared[k], record);
@@ -78,5 +78,5 @@ fn numbers(setup: &Setup) -> Vec<(&'static str, f64)> {
     let (s, medium) = (&setup.settings, &setup.medium);
     let c0 = medium.eos.sound_speed;
     let own = [("V [m/s]", setup.v), ("c0/V", c0 / setup.v), ("c0 h/nu", c0 * medium.h / s.nu)];
-    [&setup.rules().numbers([s.h_over_dx, medium.dx])[..], &own].concat()
+    [&setup.rules.numbers([s.h_over_dx, medium.dx])[..], &own].concat()
 }

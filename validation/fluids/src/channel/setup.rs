@@ -6,7 +6,7 @@ use solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
 use super::ChannelSettings;
 use base::random::Random;
 use harness::{
-    case::{Rules, RunError},
+    case::{Rules, RunError, Step},
     context::Context,
     method::{FirstRow, Medium, Method, Parts},
     runner, simulate,
@@ -61,12 +61,8 @@ pub struct Setup {
     pub medium: Medium,
     /// Particles along the channel.
     pub columns: usize,
-    /// Time step \[s\].
-    pub dt: f64,
-    /// Pair sweeps of a step.
-    pub sweeps: f64,
-    /// Its theoretical limit for sound, viscosity and what else damps \[s\].
-    pub dt_limit: f64,
+    /// Time step, its limits, sound speed, end.
+    pub rules: Rules,
 }
 
 /// The settings on which time and memory of a run depend.
@@ -113,38 +109,36 @@ impl Setup {
             shift: s.shift,
             ..method.medium(eos, [dx, h])
         };
-        let courant = s.courant * h / (sound_speed + v);
-        let viscous = s.viscous * h * h / s.nu;
-        let forced = if force > 0.0 { 0.25 * (h / force).sqrt() } else { f64::INFINITY };
         let waves = medium.waves(&method.uses);
-        let dt_limit = method.step_limit([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
-        let stable = s.limit_share.map_or(courant.min(viscous), |share| share * dt_limit);
-        let dt = s.dt.unwrap_or(stable.min(forced));
-        let sweeps = method.theory.sweeps(dt / medium.explicit_limit());
-        let settings = s.clone();
-        let setup = Self { settings, flow, v, force, medium, columns, dt, sweeps, dt_limit };
+        let limits = method.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let both = || Step::courant(s.courant, h, [sound_speed, v]).viscous(s.viscous, h, s.nu);
+        let stable = s.limit_share.map_or_else(both, |share| Step::share(share, &limits));
+        let step = stable.forced(0.25, h, force).or_given(s.dt);
+        let (limits, end) = (limits.moving(h, v, force), s.end * s.unit_of_time());
+        let rules = Rules { step, limits, sound_speed, end };
+        let setup = Self { settings: s.clone(), flow, v, force, medium, columns, rules };
         setup.check(method, context)?;
         Ok(setup)
     }
 
     fn check(&self, method: &Method, context: &Context) -> Result<(), RunError> {
-        let Rules { sound_speed: value, .. } = self.rules();
+        let Rules { sound_speed: value, .. } = self.rules;
         if value > MOST_SOUND {
             let (what, setting) = ("the sound speed", "c0, re, nu or width");
             return Err(RunError::TooMuch { what, value, most: MOST_SOUND, setting });
         }
         let Self { settings: s, medium, columns, .. } = self;
-        simulate::check_step(method.integrator, self.rules(), context)?;
-        let (steps, particles) = (self.time(s.end) / self.dt, s.rows as f64 * *columns as f64);
-        let size = simulate::size(method, medium, [steps, particles]).with_sweeps(self.sweeps);
+        simulate::check_step(method.integrator, &self.rules, context)?;
+        let (steps, particles) = (self.time(s.end) / self.dt(), s.rows as f64 * *columns as f64);
+        let size =
+            simulate::size(method, medium, [steps, particles]).with_sweeps(self.rules.sweeps());
         let size = if s.watch_mode { size.sampled_at_every_step() } else { size };
         runner::check_size(size, DECISIVE, context)
     }
 
-    /// What the rules chose.
-    pub fn rules(&self) -> Rules {
-        let Self { dt, dt_limit, .. } = *self;
-        Rules { dt, dt_limit, sound_speed: self.medium.eos.sound_speed }
+    /// Time step \[s\].
+    pub fn dt(&self) -> f64 {
+        self.rules.dt()
     }
 
     /// The scene.

@@ -134,7 +134,7 @@ fn reynolds(channel: Channel, tier: Tier, runs: &Runs) -> Study {
     let table = Columns::<Row>::default()
         .num(["Re", "-"], |(.., s)| Cell::exact(s.re))
         .num(["c0/V", "-"], |(_, rules, s)| Cell::num(rules.sound_speed / s.speed(), 3))
-        .num(["dt/limit", "-"], |(_, rules, _)| Cell::num(rules.dt / rules.dt_limit, 2))
+        .num(["dt/limit", "-"], |(_, rules, _)| Cell::num(rules.dt() / rules.dt_limit(), 2))
         .num(["νt/L² reached", "-"], move |row| Cell::num(reached(row), 3))
         .num(["worst error from νt/L² = 0.1 on", "-"], shown(L2_WORST, Cell::percent))
         .num(["rms p", "ρV²"], shown(P_RMS, Cell::sci))

@@ -115,7 +115,7 @@ fn run(
     let (s, flow) = (&setup.settings, &setup.flow);
     let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
     let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
-    let stretches = (s.end / (STRETCH * flow.rules.dt)).ceil().max(1.0) as usize;
+    let stretches = (s.end / (STRETCH * flow.rules.dt())).ceil().max(1.0) as usize;
     let stretch = s.end / stretches as f64;
     let times: Vec<f64> = (1..=stretches).map(|k| stretch * k as f64).collect();
     let area = setup.area();
@@ -129,7 +129,7 @@ fn run(
     let mut monitor = Monitor { setup, area, controller, windows, entry, sample, series };
     let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt, &times, &pressure, &mut monitor)
+        Drive::new(&mut *simulation, flow.rules.dt(), &times, &pressure, &mut monitor)
             .at("controller of the flux", &|monitor, s, _| monitor.look(s, stretch))
             .at("samples of the field", &|monitor, s, _| monitor.sample(s))
             .resumed(&|monitor, simulation| {

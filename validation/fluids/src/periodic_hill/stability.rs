@@ -80,7 +80,7 @@ fn limit(variant: &'static str, n: usize) -> StepLimit {
     let spec = CASE.spec(variant, |s| (s.n, s.from_reference, s.end) = (n, true, 3.0));
     let rules = CASE.rules(&spec).unwrap_or(Rules::REFUSED);
     // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
-    let at_limit = HillSettings::default().courant / (rules.dt / rules.dt_limit);
+    let at_limit = HillSettings::default().courant / (rules.dt() / rules.dt_limit());
     let scene = format!("Re 50, H/dx = {n}");
     StepLimit::proportional(variant, &scene, spec, ("courant", at_limit), &rules)
 }

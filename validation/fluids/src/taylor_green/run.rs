@@ -93,7 +93,8 @@ fn run(
     let mut series = vec![sample(&*simulation)];
     let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt, &times, &pressure, &mut series)
+        Drive::new(&mut *simulation, flow.rules.dt(), &times, &pressure, &mut series)
+            .sweeps(flow.rules.sweeps())
             .at("series", &|series, simulation, _| series.push(sample(simulation)))
             .run(context)?;
     if record.status == Status::Completed {

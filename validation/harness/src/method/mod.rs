@@ -16,11 +16,11 @@ use maths::theory::{
 };
 use nalgebra::Vector2;
 use solver::{
-    Domain, Integrator as _, Kernel, Limits, Numbers, Particle, PlaneWall, Scene, SceneError,
-    Scheme, Smoothing, Stepper, Tait,
+    Domain, Integrator as _, Kernel, Numbers, Particle, PlaneWall, Scene, SceneError, Scheme,
+    Smoothing, Stepper, Tait,
 };
 
-use crate::context::Context;
+use crate::{context::Context, limits::Limits};
 pub use medium::{Knob, Medium};
 pub use terms::{Boundary, FirstRow, FromMedium};
 
@@ -48,7 +48,7 @@ pub struct Parts<X = ()> {
     /// Verlet skin \[m\], if not the usual one.
     pub skin: Option<f64>,
     /// Bounds beyond which the run counts as diverged.
-    pub limits: Limits,
+    pub limits: solver::Limits,
     /// Threads inside the run.
     pub threads: usize,
     /// A deliberate error.
@@ -63,7 +63,7 @@ impl<X> Parts<X> {
         particles: Vec<Particle<X>>,
         context: &Context,
     ) -> Self {
-        let (mirrors, limits) = (Vec::new(), Limits::default());
+        let (mirrors, limits) = (Vec::new(), solver::Limits::default());
         let &Context { threads, mutation, .. } = context;
         Self { medium, domain, particles, mirrors, skin: None, limits, threads, mutation }
     }
@@ -189,9 +189,9 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
         (self.modes)(lattice, n, medium)
     }
 
-    /// The largest step at which none of these waves grows \[s\].
-    pub fn step_limit(&self, lattice: Lattice, n: usize, medium: &time_step::Medium) -> f64 {
-        time_step::time_step_limit(&self.modes(lattice, n, medium), self.theory)
+    /// The limits of a step by these waves.
+    pub fn limits(&self, lattice: Lattice, n: usize, medium: &time_step::Medium) -> Limits {
+        Limits::of(&self.modes(lattice, n, medium), self.theory)
     }
 }
 

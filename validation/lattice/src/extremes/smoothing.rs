@@ -50,11 +50,11 @@ pub fn run(
         let measured = measure(&wave, method, &context)?;
         let (series, unit) = (&measured.series, waves.nu * TAU * TAU);
         if k == 0 {
-            let mode = fit::mode_of(series, Integrator::Leapfrog, wave.dt);
+            let mode = fit::mode_of(series, Integrator::Leapfrog, wave.dt());
             found[k] = mode.map_or(f64::NAN, |mode| mode.omega / TAU);
             theory[k] = wave.sound.omega / TAU;
         } else {
-            let gamma = fit::decay_of(series, Integrator::Leapfrog, wave.dt);
+            let gamma = fit::decay_of(series, Integrator::Leapfrog, wave.dt());
             found[k] = gamma.map_or(f64::NAN, |gamma| gamma / unit);
             theory[k] = wave.shear / unit;
         }

@@ -17,8 +17,9 @@ use base::{
 };
 use harness::{
     bisect::{Bracket, Growth, largest_stable},
-    case::{Rules, RunError},
+    case::{Rules, RunError, Step},
     context::Context,
+    limits,
     method::{Medium, Method, Parts},
     rules::{PLANNED_DT, PLANNED_DT_OVER_LIMIT},
     runner::Drive,
@@ -377,8 +378,8 @@ pub fn run(
     let method = pair.method(&fluid);
     let &BoxSettings { courant, steps, to_the_end, .. } = settings;
     let rules = rules(pair, settings)?;
-    simulate::check_step(method.integrator, rules, context)?;
-    let Rules { dt, dt_limit, sound_speed } = rules;
+    simulate::check_step(method.integrator, &rules, context)?;
+    let (dt, dt_limit, sound_speed) = (rules.dt(), rules.dt_limit(), rules.sound_speed);
     let simulation = (method.build)(fluid.parts(method))?;
     let measured = fluid.run(method, simulation, (courant, steps), to_the_end, context)?;
     let numbers = [
@@ -405,8 +406,9 @@ pub fn run(
 /// What the settings say, and theory.
 pub fn rules(pair: &Pair, settings: &BoxSettings) -> Result<Rules, RunError> {
     let fluid = NoisyBox::new(settings);
-    let method = pair.plain();
-    let limit = time_step::time_step_limit(&fluid.modes(method), method.theory);
-    let (dt, dt_limit) = (settings.courant * fluid.h(), limit * fluid.h());
-    Ok(Rules { dt, dt_limit, sound_speed: 1.0 })
+    let (method, h) = (pair.plain(), fluid.h());
+    let limits = limits::Limits::of(&fluid.modes(method), method.theory).times(h);
+    let step = Step::courant(settings.courant, h, [1.0, 0.0]);
+    let end = settings.steps as f64 * step.dt;
+    Ok(Rules { step, limits, sound_speed: 1.0, end })
 }

@@ -15,8 +15,9 @@ use base::{
     record::{self, Cost, MetricKey, Profile, Record, Status},
 };
 use harness::{
-    case::{Rules, RunError},
+    case::{Rules, RunError, Step},
     context::Context,
+    limits::Limits,
     method::{Medium, Method, Parts},
     rules::PLANNED_DT,
     runner::{self, Drive},
@@ -42,12 +43,8 @@ pub struct Wave {
     pub shear: f64,
     /// Decay that theory gives to density by itself \[1/s\].
     diffusion: f64,
-    /// Time step \[s\], of which a whole number ends the run.
-    pub dt: f64,
-    /// The leapfrog's limit of it \[s\].
-    dt_limit: f64,
-    /// End of the run \[s\].
-    end: f64,
+    /// A time step of which a whole number ends the run, the leapfrog's limits of it, sound speed, end.
+    pub rules: Rules,
 }
 
 /// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
@@ -110,23 +107,23 @@ impl Wave {
             time_step::Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
         let mode = method.mode(lattice, theta, &waves);
         let sound = DampedMode { omega: mode.omega, gamma: mode.longitudinal };
-        let viscous = if s.nu > 0.0 { s.viscous * h * h / s.nu } else { f64::INFINITY };
-        let dt = s.dt.unwrap_or((s.courant * h / sound_speed).min(viscous));
+        let step = Step::courant(s.courant, h, [sound_speed, 0.0]).viscous(s.viscous, h, s.nu);
         // The predictor-corrector amplifies sound at every dt, which is part of what is compared.
         let theory = time_step::Integrator::Leapfrog;
-        let dt_limit = time_step::time_step_limit(&method.modes(lattice, s.n, &waves), theory);
-        simulate::check_step("leapfrog", Rules { dt, dt_limit, sound_speed }, context)?;
+        let limits = Limits::of(&method.modes(lattice, s.n, &waves), theory);
         let period = std::f64::consts::TAU / sound.omega;
         let time = match polarisation {
             Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,
             _ => period,
         };
         let end = s.span * time;
-        let steps = (end / dt).ceil().max(4.0);
+        let mut rules = Rules { step: step.or_given(s.dt), limits, sound_speed, end };
+        simulate::check_step("leapfrog", &rules, context)?;
+        let steps = (end / rules.dt()).ceil().max(4.0);
         let size =
             simulate::size(method, &medium, [steps, (s.n * s.n) as f64]).sampled_at_every_step();
         runner::check_size(size, "span, dt, courant, viscous, nu or n", context)?;
-        let dt = end / steps;
+        rules.step.dt = end / steps;
         Ok(Self {
             settings: s.clone(),
             polarisation,
@@ -136,10 +133,13 @@ impl Wave {
             sound,
             shear: mode.transverse,
             diffusion: mode.density,
-            dt,
-            dt_limit,
-            end,
+            rules,
         })
+    }
+
+    /// Time step \[s\].
+    pub fn dt(&self) -> f64 {
+        self.rules.dt()
     }
 
     /// Phase of each label, in the order of the scene.
@@ -173,7 +173,7 @@ impl Wave {
 
     /// What theory gives for the amplitudes after each of `steps` steps, exactly.
     fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<[f64; 3]> {
-        let (a, dt) = (self.settings.amplitude, self.dt);
+        let (a, dt) = (self.settings.amplitude, self.dt());
         let m = fit::step_with_diffusion(&self.sound, self.diffusion, integrator, dt);
         let factor = fit::shear_step(self.shear, integrator, dt);
         let (mut y, mut shear) = match self.polarisation {
@@ -247,7 +247,7 @@ fn project(
     let pressure = |density: f64| wave.medium.eos.pressure(density);
     // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
     let (status, cost) =
-        Drive::new(&mut *simulation, wave.dt, &[wave.end], &pressure, &mut projection)
+        Drive::new(&mut *simulation, wave.dt(), &[wave.rules.end], &pressure, &mut projection)
             .after_step("projection", &Projection::after_step)
             .run(context)?;
     Ok(Measured {
@@ -266,9 +266,7 @@ pub(super) fn rules(
     method: &Method,
     settings: &WaveSettings,
 ) -> Result<Rules, RunError> {
-    let Wave { dt, dt_limit, medium, .. } =
-        Wave::new(polarisation, settings, method, &Context::of_rules())?;
-    Ok(Rules { dt, dt_limit, sound_speed: medium.sound_speed })
+    Ok(Wave::new(polarisation, settings, method, &Context::of_rules())?.rules)
 }
 
 /// Runs a wave and compares it with theory.
@@ -287,8 +285,8 @@ pub(super) fn run(
         ("h/dx", s.h_over_dx),
         ("c0 [m/s]", sound_speed),
         ("c0 h/nu", sound_speed * h / s.nu),
-        (PLANNED_DT, wave.dt),
-        ("omega dt", wave.sound.omega * wave.dt),
+        (PLANNED_DT, wave.dt()),
+        ("omega dt", wave.sound.omega * wave.dt()),
     ];
     let mut record = simulate::begin((case.name, variant), s, method, &numbers, context);
     compare(wave, method.theory, &measured.series, &mut record);
@@ -299,7 +297,7 @@ pub(super) fn run(
         Polarisation::Shear => [0.0, 0.0, s.amplitude],
     };
     let column = |k: usize| once(&start).chain(&measured.series).map(|a| a[k]).collect();
-    let times = (0..=measured.series.len()).map(|k| k as f64 * wave.dt).collect();
+    let times = (0..=measured.series.len()).map(|k| k as f64 * wave.dt()).collect();
     let profile = Profile::default()
         .with("t", "s", times)
         .with("p", "rho c0^2", column(0))
@@ -329,7 +327,7 @@ fn compare(
     let relative = |found: f64, expected: f64, scale: f64| (found - expected).abs() / scale;
     if wave.polarisation == Polarisation::Sound {
         let nothing = DampedMode { omega: f64::NAN, gamma: f64::NAN };
-        let found = fit::mode_of(series, integrator, wave.dt).unwrap_or(nothing);
+        let found = fit::mode_of(series, integrator, wave.dt()).unwrap_or(nothing);
         let expected = wave.sound;
         let scale = if expected.gamma > 0.0 { expected.gamma } else { expected.omega };
         let error = relative(found.omega, expected.omega, expected.omega);
@@ -341,7 +339,7 @@ fn compare(
             / wave.settings.length;
         record.put(SOUND_FACTOR, found.omega / sound);
     } else {
-        let found = fit::decay_of(series, integrator, wave.dt).unwrap_or(f64::NAN);
+        let found = fit::decay_of(series, integrator, wave.dt()).unwrap_or(f64::NAN);
         let scale = if wave.shear > 0.0 { wave.shear } else { wave.sound.omega };
         record.put(SHEAR_DECAY_ERROR, relative(found, wave.shear, scale));
         record.put(SHEAR_DECAY, found);

@@ -227,7 +227,8 @@ fn step_limit(variant: &'static str) -> StepLimit {
     let id = format!("rubber_rings.{variant}.step_limit");
     let bound = Bound::Above(1.0);
     let gate = Gate::new(id, "stable dt/default dt", bound, Evidence::Invariant, because);
-    let limit = StepLimit::proportional(variant, "collision", spec, ("dt", rules.dt_limit), &rules);
+    let limit =
+        StepLimit::proportional(variant, "collision", spec, ("dt", rules.dt_limit()), &rules);
     StepLimit { of_default: vec![gate], ..limit }
 }
 

@@ -32,7 +32,7 @@ fn pictures(context: &Context) -> Vec<f64> {
 
 /// What the rules choose.
 pub fn rules(method: &RingMethod, settings: &RingSettings) -> Result<Rules, RunError> {
-    Ok(Rings::new(settings, method, &Context::of_rules())?.rules())
+    Ok(Rings::new(settings, method, &Context::of_rules())?.rules)
 }
 
 /// Runs and measures.
@@ -48,7 +48,7 @@ pub fn run(
     let mut record = simulate::begin(name, &rings.settings, method, &numbers(rings), context);
     let mut series = Series::new(rings);
     let mut budget = context.measures_all().then(Budget::default);
-    simulation.advance(0.0, rings.dt, &mut ());
+    simulation.advance(0.0, rings.rules.dt(), &mut ());
     series.sample(0.0, &measure::along_flight(rings, &*simulation));
     budget.iter_mut().for_each(|budget| budget.sample(rings, &*simulation));
     keep(rings, &*simulation, 0.0, context, &mut record);
@@ -58,7 +58,7 @@ pub fn run(
     let pressure = |density| eos.pressure(density);
     let has_budget = budget.is_some();
     let mut seen = (&mut series, &mut budget, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, rings.dt, &times, &pressure, &mut seen)
+    let (status, cost) = Drive::new(&mut *simulation, rings.rules.dt(), &times, &pressure, &mut seen)
         .after_step("series", &|(series, ..), simulation| series.after_step(simulation))
         .at_if(has_budget, "energy budget by term", &|(_, budget, _), s, k| {
             if let Some(budget) = budget.as_mut().filter(|_| stops[k].is_sample) {
@@ -79,7 +79,7 @@ pub fn run(
             None => reference::leave_out(&mut record),
         }
         record.put(MOMENTUM, measure::momentum_error(rings, &particles));
-        record.put(COURANT, rings.dt * (rings.cp + rings.v) / rings.medium.h);
+        record.put(COURANT, rings.rules.dt() * (rings.cp + rings.v) / rings.medium.h);
     }
     if budget.is_none() {
         record.leave_unasked(&budget::METRICS);
@@ -93,7 +93,7 @@ pub fn run(
 /// What the run chose.
 fn numbers(rings: &Rings) -> Vec<(&'static str, f64)> {
     let own = [("V [m/s]", rings.v), ("c_p [m/s]", rings.cp)];
-    [&rings.rules().numbers([rings.settings.h_over_dx, rings.medium.dx])[..], &own].concat()
+    [&rings.rules.numbers([rings.settings.h_over_dx, rings.medium.dx])[..], &own].concat()
 }
 
 /// A stop of a run: for a picture, or for a sample of the energy budget.

@@ -6,10 +6,11 @@ use solver::{Domain, Limits, Particle, Symmetric};
 use std::f64::consts::TAU;
 
 use super::RingSettings;
-use crate::solid::{Material, step_limit};
+use crate::solid::{Material, limits};
 use harness::{
-    case::{Rules, RunError},
+    case::{Rules, RunError, Step},
     context::Context,
+    limits::Mechanism,
     method::{Medium, Method, Parts},
     simulate,
 };
@@ -32,10 +33,8 @@ pub struct Rings {
     pub cp: f64,
     /// Speed of each ring V \[m/s\].
     pub v: f64,
-    /// Time step \[s\].
-    pub dt: f64,
-    /// Its theoretical limit in a stress-free lattice with artificial viscosity always on \[s\].
-    pub dt_limit: f64,
+    /// Time step, its limits in a stress-free lattice with artificial viscosity always on, end.
+    pub rules: Rules,
 }
 
 impl Rings {
@@ -69,18 +68,14 @@ impl Rings {
             exponent: s.exponent as u32,
             ..material.medium(method, [dx, h])
         };
-        let dt_limit = step_limit(method, &material, &medium, s.h_over_dx);
-        let dt = s.dt.unwrap_or(s.courant * h / (cp + v));
-        let rings = Self { settings: s.clone(), material, medium, c0, cp, v, dt, dt_limit };
+        let limits = limits(method, &material, &medium, s.h_over_dx)
+            .moving(h, v, 0.0)
+            .with(Mechanism::Contact, h / (2.0 * v));
+        let step = Step::courant(s.courant, h, [cp, v]).or_given(s.dt);
+        let rules = Rules { step, limits, sound_speed: c0, end: s.end / c0 };
         let particles = TAU * (s.outer * s.outer - s.inner * s.inner) / (dx * dx);
-        let extent = [s.end / c0, particles];
-        simulate::check(method, &medium, rings.rules(), extent, DECISIVE, context)?;
-        Ok(rings)
-    }
-
-    /// What the rules chose.
-    pub fn rules(&self) -> Rules {
-        Rules { dt: self.dt, dt_limit: self.dt_limit, sound_speed: self.c0 }
+        simulate::check(method, &medium, &rules, particles, DECISIVE, context)?;
+        Ok(Self { settings: s.clone(), material, medium, c0, cp, v, rules })
     }
 
     /// Rotates the line of flight to the x axis.

@@ -1,6 +1,9 @@
 //! The elastic material, and the medium that it is at a spacing.
 
-use harness::method::{Medium, Method};
+use harness::{
+    limits::{Limits, Mechanism},
+    method::{Medium, Method},
+};
 use maths::theory::time_step;
 use solver::{Linear, Symmetric, Tait};
 
@@ -33,6 +36,11 @@ impl Material {
         ((self.bulk + 4.0 / 3.0 * self.shear) / self.density).sqrt()
     }
 
+    /// (μ/⁰ρ)^(1/2), the speed of shear waves \[m/s\].
+    pub fn shear_wave_speed(&self) -> f64 {
+        (self.shear / self.density).sqrt()
+    }
+
     /// (12).
     pub fn eos(&self) -> Linear {
         Linear { density: self.density, sound_speed: self.sound_speed() }
@@ -49,21 +57,24 @@ impl Material {
 /// Side of the periodic box whose waves give the limit of the time step.
 const LIMIT_BOX: usize = 24;
 
-/// The largest stable step of a method on a stress-free lattice of this material, with artificial viscosity
-/// on every pair \[s\]: with α = 1 about 1.1 h/c_p for the leapfrog.
+/// The limits of the step of a method on a stress-free lattice of this material, with artificial viscosity
+/// on every pair: together with α = 1 about 1.1 h/c_p for the leapfrog.
 ///
 /// Its fastest waves run at c_p. The c of the artificial viscosity is that of the equation of state, c₀, so
 /// its α counts as α c₀/c_p of c_p.
-pub fn step_limit<D: ?Sized>(
+pub fn limits<D: ?Sized>(
     method: &Method<Symmetric, D>,
     material: &Material,
     medium: &Medium,
     h_over_dx: f64,
-) -> f64 {
+) -> Limits {
     let wave = material.p_wave_speed();
     let alpha = medium.alpha * material.sound_speed() / wave;
     let waves = time_step::Medium { c0: wave, h: medium.h, nu: 0.0, alpha, delta: 0.0 };
-    method.step_limit([h_over_dx, 0.01], LIMIT_BOX, &waves)
+    let limits = method.limits([h_over_dx, 0.01], LIMIT_BOX, &waves);
+    // Both kinds of waves have the rates of the same gradient.
+    let shear = limits.alone(Mechanism::Waves) * wave / material.shear_wave_speed();
+    limits.with(Mechanism::ShearWaves, shear)
 }
 
 #[cfg(test)]
@@ -80,7 +91,7 @@ mod tests {
         let limit = |shear: f64, alpha: f64| {
             let material = Material { density: 1.0, bulk: 1.0, shear };
             let medium = Medium { alpha, ..material.medium(&method, [1.0, 1.5]) };
-            step_limit(&method, &material, &medium, 1.5) * material.p_wave_speed()
+            limits(&method, &material, &medium, 1.5).together * material.p_wave_speed()
         };
         // Without viscosity, and without shear: 1.87 h/c_p, and 1.03 with α = 1.
         assert_relative_eq!(limit(0.22, 0.0) / 1.5, 1.87, max_relative = 1e-2);

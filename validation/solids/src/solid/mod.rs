@@ -14,7 +14,7 @@ use harness::{
 };
 
 pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
-pub use material::{Material, step_limit};
+pub use material::{Material, limits};
 pub use method::{Bare, Clamp, Plain, Rubber};
 pub use problem::{Problem, SharedSettings, Watch, digest, variants};
 

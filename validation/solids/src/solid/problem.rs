@@ -5,16 +5,17 @@ use solver::{
     Symmetric, walls::Walls,
 };
 
-use super::{Bare, Material, Plain, Rubber, step_limit};
+use super::{Bare, Material, Plain, Rubber, limits};
 use base::{
     record::{self, Record},
     settings::Settings,
 };
 use harness::{
-    case::{Rules, RunError},
+    case::{Rules, RunError, Step},
     checkpoint::Observed,
     composed::{Composition, Program, Variants},
     context::Context,
+    limits::Mechanism,
     method::{Boundary, Medium, Method, Parts},
     rules::PLANNED_DT,
     runner::{self, Drive},
@@ -45,6 +46,10 @@ pub trait Problem: SharedSettings {
     fn dx(&self) -> f64;
     /// Largest speed at the start \[m/s\].
     fn speed(&self) -> f64;
+    /// Speed at which bodies approach each other \[m/s\]: 0 if there is one.
+    fn approach(&self) -> f64 {
+        0.0
+    }
     /// End of the run \[s\].
     fn end(&self) -> f64;
     /// The particles at the start.
@@ -106,9 +111,12 @@ fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
     let [dt, courant] = settings.given_step();
     let courant = courant.unwrap_or(usual);
-    let dt = dt.unwrap_or(courant * medium.h / (material.p_wave_speed() + settings.speed()));
-    let dt_limit = step_limit(method, &material, &medium, settings.h_over_dx());
-    Rules { dt, dt_limit, sound_speed: material.sound_speed() }
+    let (h, speed) = (medium.h, settings.speed());
+    let step = Step::courant(courant, h, [material.p_wave_speed(), speed]).or_given(dt);
+    let limits = limits(method, &material, &medium, settings.h_over_dx())
+        .moving(h, speed, 0.0)
+        .with(Mechanism::Contact, h / settings.approach());
+    Rules { step, limits, sound_speed: material.sound_speed(), end: settings.end() }
 }
 
 /// One run with a method.
@@ -118,13 +126,13 @@ fn run<P: Problem>(
     settings: &P,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let (rules, end) = (rules(method, settings), settings.end());
-    simulate::check_step(method.integrator, rules, context)?;
+    let rules = rules(method, settings);
+    simulate::check_step(method.integrator, &rules, context)?;
     let medium = settings.medium(method, settings.dx());
-    let size =
-        simulate::size(method, &medium, [end / rules.dt, settings.count()]).sampled_at_every_step();
+    let size = simulate::size(method, &medium, [rules.end / rules.dt(), settings.count()])
+        .sampled_at_every_step();
     runner::check_size(size, "end, dt, n, length or thickness", context)?;
-    let (dt, material) = (rules.dt, settings.material());
+    let (dt, end, material) = (rules.dt(), rules.end, settings.material());
     let numbers = [
         ("h/dx", settings.h_over_dx()),
         ("dx [m]", medium.dx),

@@ -163,8 +163,8 @@ fn limits(tier: Tier) -> StepLimits {
 }
 
 /// The theoretical limit of the time step as the record's dt and dt/limit state it \[s\].
-pub fn theory(Rules { dt, dt_limit, .. }: Rules) -> f64 {
-    dt / (dt / dt_limit)
+pub fn theory(rules: &Rules) -> f64 {
+    rules.dt() / (rules.dt() / rules.dt_limit())
 }
 
 fn limit(variant: &'static str, scene: &str, spec: RunSpec) -> StepLimit {
@@ -174,9 +174,9 @@ fn limit(variant: &'static str, scene: &str, spec: RunSpec) -> StepLimit {
                    at 1.2 would measure another limit, because the stiffest mode of leapfrog grows \
                    3.5-fold a step there.";
     let id = format!("{NAME}.limit.{variant}.{}", scene.split(' ').next().unwrap_or_default());
-    let bound = Bound::Within(rules.dt / rules.dt_limit, 1.2);
+    let bound = Bound::Within(rules.dt() / rules.dt_limit(), 1.2);
     let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
-    let setting = ("dt", theory(rules));
+    let setting = ("dt", theory(&rules));
     let limit = StepLimit::proportional(variant, scene, spec, setting, &rules);
     StepLimit { of_theory: vec![gate], ..limit }
 }

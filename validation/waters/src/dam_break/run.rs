@@ -79,7 +79,7 @@ fn run(
     let pressure = |density| medium.eos.pressure(density);
     let has_balances = balances.is_some();
     let mut seen = (&mut gauge, &mut samples, &mut balances, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, rules.dt, &times, &pressure, &mut seen)
+    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &times, &pressure, &mut seen)
         .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
         .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
         .at_if(has_balances, "energy ledger and momentum", &|(_, _, balances, _), s, _| {
@@ -127,7 +127,7 @@ fn water_mass(particles: &[Particle]) -> f64 {
 /// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and the
 /// samples that are pictures, by their share of the run.
 fn stops(dam: &Dam, context: &Context) -> (Vec<f64>, BTreeMap<usize, f64>) {
-    let (end, dt) = (dam.settings.end * dam.settings.unit_time(), dam.rules.dt);
+    let (end, dt) = (dam.settings.end * dam.settings.unit_time(), dam.rules.dt());
     let (h, eos) = (dam.medium.h, dam.medium.eos);
     let crossing = SAMPLE * h / (eos.sound_speed + dam.speed);
     let every = (crossing.max(end / MOST_SAMPLES) / dt).round().max(1.0) * dt;

@@ -59,9 +59,9 @@ impl Dam {
         let fall = (s.gravity * s.height).sqrt();
         // The front of a dam break in shallow water runs at 2 (g H)^(1/2).
         let speed = 2.0 * fall;
-        let (medium, rules) = s.medium(method, [dx, s.c0 * fall, s.gravity, speed]);
         let end = s.end * s.height / fall;
-        simulate::check(method, &medium, rules, [end, all], DECISIVE, context)?;
+        let (medium, rules) = s.medium(method, [dx, s.c0 * fall, s.gravity, speed, end]);
+        simulate::check(method, &medium, &rules, all, DECISIVE, context)?;
         Ok(Self { settings: s.clone(), medium, tank, counts, speed, rules })
     }
 
@@ -114,7 +114,7 @@ impl Dam {
         // The fastest water crosses the least skin in a step or two; lists that last longer are worth their
         // length.
         // A step far beyond the limit must not make everything a neighbour of everything.
-        let skin = (SKIN_STEPS * self.rules.dt * speed).clamp(LEAST_SKIN * medium.h, medium.h);
+        let skin = (SKIN_STEPS * self.rules.dt() * speed).clamp(LEAST_SKIN * medium.h, medium.h);
         // Water that is twice as dense, or as fast as sound, is no water any more.
         let limits = Limits { density: [0.5 * rho, 2.0 * rho], speed: c0.max(2.0 * speed) };
         let parts = Parts::new(*medium, Domain::open(), particles, context);

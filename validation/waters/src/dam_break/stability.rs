@@ -124,7 +124,7 @@ pub fn extremes(tier: Tier) -> impl Iterator<Item = Extreme> {
         holds: true,
     });
     let rules = DAM_BREAK.rules(&specs::free(tier, "modern", USUAL));
-    let limit = rules.ok().map(|rules| 2.0 * declared::theory(rules));
+    let limit = rules.ok().map(|rules| 2.0 * declared::theory(&rules));
     let spec = DAM_BREAK.spec("modern", |s| (s.n, s.dt) = (USUAL, limit)).allow_unstable();
     let spec = spec.measure_all();
     let beyond = Extreme { name: "dt at twice the limit", spec, holds: false };

@@ -7,7 +7,7 @@ use super::HydrostaticSettings;
 use crate::water;
 use base::random::Random;
 use harness::{
-    case::{Rules, RunError},
+    case::{Rules, RunError, Step},
     context::Context,
     method::{FirstRow, Medium, Method, Parts},
     simulate,
@@ -65,12 +65,15 @@ impl Column {
             ..method.medium(Tait { gamma, ..Tait::new(s.rho, c0) }, [dx, h])
         };
         let fastest = exact.sound_speed(s.depth);
-        let dt_limit = water::step_limit(method, &medium, [s.h_over_dx, fastest], LIMIT_BOX);
-        let rules = Rules { dt: s.courant * h / fastest, dt_limit, sound_speed: c0 };
+        let limits = water::limits(method, &medium, [s.h_over_dx, fastest], LIMIT_BOX);
+        let (limits, step) =
+            (limits.moving(h, 0.0, s.g), Step::courant(s.courant, h, [fastest, 0.0]));
+        let period = 4.0 * s.depth / c0;
+        let rules = Rules { step, limits, sound_speed: c0, end: s.end * period };
         let first = method.first_row.fluid();
         let column = Self { settings: s.clone(), exact, medium, rules, first };
-        let extent = [column.end(), s.rows as f64 * s.columns as f64];
-        simulate::check(method, &medium, rules, extent, DECISIVE, context)?;
+        let particles = s.rows as f64 * s.columns as f64;
+        simulate::check(method, &medium, &rules, particles, DECISIVE, context)?;
         Ok(column)
     }
 
@@ -81,7 +84,7 @@ impl Column {
 
     /// End of the run \[s\].
     pub fn end(&self) -> f64 {
-        self.settings.end * self.period()
+        self.rules.end
     }
 
     /// The tank.

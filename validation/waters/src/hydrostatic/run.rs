@@ -48,7 +48,7 @@ fn run(
     history.sample(&*simulation);
     let pressure = |density| medium.eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, rules.dt, &times(&column), &pressure, &mut history)
+        Drive::new(&mut *simulation, rules.dt(), &times(&column), &pressure, &mut history)
             .at("history", &|history, simulation, _| history.sample(&*simulation))
             .run(context)?;
     if record.status == Status::Completed {

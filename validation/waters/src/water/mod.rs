@@ -10,7 +10,10 @@ use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricName, Record},
 };
-use harness::method::{self, FirstRow, Medium, Method, Standard};
+use harness::{
+    limits::Limits,
+    method::{self, FirstRow, Medium, Method, Standard},
+};
 use maths::{
     geometry::Tank,
     metrics::budget::{Metered, WaterDrift, WaterForces},
@@ -49,16 +52,16 @@ where
 /// η²/h² of the lattice whose waves give the limit of the time step.
 const ETA2: f64 = 0.01;
 
-/// The time step that a resting lattice of n × n particles with artificial viscosity on every pair and the
-/// terms of the method allows \[s\]. `c0` is the largest sound speed \[m/s\].
-pub fn step_limit<D: ?Sized>(
+/// The limits of the time step on a resting lattice of n × n particles with artificial viscosity on every pair
+/// and the terms of the method. `c0` is the largest sound speed \[m/s\].
+pub fn limits<D: ?Sized>(
     method: &Method<(), D>,
     medium: &Medium,
     [h_over_dx, c0]: [f64; 2],
     n: usize,
-) -> f64 {
+) -> Limits {
     let waves = maths::theory::time_step::Medium { c0, ..medium.waves(&method.uses) };
-    method.step_limit([h_over_dx, ETA2], n, &waves)
+    method.limits([h_over_dx, ETA2], n, &waves)
 }
 
 /// Places and roles of the particles of a tank's walls, out to the support \[m\].
@@ -136,11 +139,11 @@ macro_rules! water_settings {
 
         impl $Struct {
             /// Water with this spacing \[m\], sound speed \[m/s\] and gravity \[m/s²\], and what the rules
-            /// choose; `speed` is the largest speed expected \[m/s\].
+            /// choose; `speed` is the largest speed expected \[m/s\], `end` the end \[s\].
             pub fn medium(
                 &self,
                 method: &$crate::water::WaterMethod,
-                [dx, c0, gravity, speed]: [f64; 4],
+                [dx, c0, gravity, speed, end]: [f64; 5],
             ) -> (harness::method::Medium, harness::case::Rules) {
                 let (h, eos) = (self.h_over_dx * dx, solver::Tait::new(self.rho, c0));
                 let down = nalgebra::Vector2::new(0.0, -gravity);
@@ -155,9 +158,10 @@ macro_rules! water_settings {
                     diffusion: self.diffusion,
                     ..method.medium(eos, [dx, h])
                 };
-                let dt = self.dt.unwrap_or(self.courant * h / (c0 + speed));
-                let dt_limit = $crate::water::step_limit(method, &medium, [self.h_over_dx, c0], 24);
-                (medium, harness::case::Rules { dt, dt_limit, sound_speed: c0 })
+                let step = harness::case::Step::courant(self.courant, h, [c0, speed]);
+                let limits = $crate::water::limits(method, &medium, [self.h_over_dx, c0], 24);
+                let (step, limits) = (step.or_given(self.dt), limits.moving(h, speed, gravity));
+                (medium, harness::case::Rules { step, limits, sound_speed: c0, end })
             }
         }
     };

@@ -1,0 +1,61 @@
+//! The table of what limits the time step is about the steps that runs take.
+
+use std::sync::{Mutex, atomic::AtomicBool};
+
+use harness::{
+    case::{self, Case, PLANNED_DT},
+    context::{Context, Progress},
+    limits::Mechanism,
+};
+use rayon::prelude::*;
+use validation::{cases, stiffness::Row};
+
+/// What a run does before it is stopped: the step that it is driven with, the step that it plans in its record,
+/// and the first step that it makes.
+fn first_step(case: &dyn Case, variant: &str) -> (f64, Option<f64>, f64) {
+    let (driven, stop) = (Mutex::new(f64::NAN), AtomicBool::new(true));
+    let show = |progress: Progress| {
+        if progress.particle_steps == 0 {
+            *driven.lock().unwrap() = progress.dt;
+        }
+    };
+    let context = Context { progress: Some(&show), interrupt: Some(&stop), ..Context::of_rules() };
+    let record = case.run(&case::spec(case, variant, &[]).unwrap(), &context).unwrap();
+    assert_eq!(record.cost.steps, 1, "{} {variant}", case.name());
+    let planned = record.numerics.get(PLANNED_DT).and_then(|dt| dt.as_f64());
+    (driven.into_inner().unwrap(), planned, record.cost.largest_dt_s)
+}
+
+fn check(case: &dyn Case, row: &Row) {
+    let name = format!("{} {}", row.case, row.variant);
+    let (dt, limits) = (row.rules.dt(), &row.rules.limits);
+    let (driven, planned, taken) = first_step(case, row.variant);
+    assert_eq!(driven, dt, "{name}: the step with which the run is driven");
+    assert!(planned.is_none_or(|planned| planned == dt), "{name}: planned {planned:?}, not {dt}");
+    assert!(taken > 0.0 && taken <= dt * (1.0 + 1e-12), "{name}: a step of {taken}, not {dt}");
+    let waves = [
+        Mechanism::Waves,
+        Mechanism::Viscosity,
+        Mechanism::ArtificialViscosity,
+        Mechanism::Diffusion,
+    ];
+    let least =
+        waves.map(|mechanism| limits.alone(mechanism)).into_iter().fold(f64::INFINITY, f64::min);
+    assert!(dt <= limits.together, "{name}: beyond its limit");
+    let is_super_stepped = limits.sweeps(1e3 * dt) > limits.sweeps(1e-3 * dt);
+    assert!(limits.together <= least * (1.0 + 1e-9) || is_super_stepped, "{name}: {limits:?}");
+}
+
+/// Every variant of every case: the step of the table is the one with which its run is driven.
+#[test]
+fn the_step_of_the_table_is_that_of_the_run() {
+    let rows = |case: &&'static dyn Case| -> Vec<(&'static dyn Case, Row)> {
+        Row::of(*case).unwrap().into_iter().map(|row| (*case, row)).collect()
+    };
+    let all: Vec<_> = cases::CASES.iter().flat_map(rows).collect();
+    all.par_iter().for_each(|(case, row)| check(*case, row));
+    let lacks = |case: &&&dyn Case| !all.iter().any(|(_, row)| row.case == case.name());
+    let lacking: Vec<&str> = cases::CASES.iter().filter(lacks).map(|case| case.name()).collect();
+    assert_eq!(lacking, ["extremes"], "experiments with steps of their own have no rule");
+    assert!(all.len() > 80, "{}", all.len());
+}

@@ -1,0 +1,162 @@
+//! What limits the time step of a run: the limit of each mechanism of its scene alone, and of all waves of
+//! the lattice together.
+
+use maths::theory::time_step::{self, Integrator, Mode, SeparateLimits};
+
+/// What limits a time step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mechanism {
+    /// Sound in a fluid; in a solid longitudinal waves, whose speed is c_p.
+    Waves,
+    /// Shear waves in a solid, whose speed is (μ/ρ)^(1/2).
+    ShearWaves,
+    /// Viscosity of the fluid.
+    Viscosity,
+    /// Artificial viscosity, as if it acted on every pair.
+    ArtificialViscosity,
+    /// Density diffusion.
+    Diffusion,
+    /// The motion of the matter: the time h/V in which it crosses a smoothing length.
+    Motion,
+    /// A body force: the time (h/F)^(1/2).
+    Force,
+    /// Bodies that approach each other: the time in which they do so by a smoothing length.
+    Contact,
+}
+
+impl Mechanism {
+    /// All of them, in the order of tables.
+    pub const ALL: [Self; 8] = [
+        Self::Waves,
+        Self::ShearWaves,
+        Self::Viscosity,
+        Self::ArtificialViscosity,
+        Self::Diffusion,
+        Self::Motion,
+        Self::Force,
+        Self::Contact,
+    ];
+
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Waves => "sound or elastic waves",
+            Self::ShearWaves => "shear waves",
+            Self::Viscosity => "viscosity",
+            Self::ArtificialViscosity => "artificial viscosity",
+            Self::Diffusion => "density diffusion",
+            Self::Motion => "motion",
+            Self::Force => "body force",
+            Self::Contact => "contact",
+        }
+    }
+
+    /// Is it a part of the problem, and not only of the method?
+    fn is_physical(self) -> bool {
+        !matches!(self, Self::ArtificialViscosity | Self::Diffusion)
+    }
+}
+
+/// The limits of a time step \[s\]. Those of waves, viscosity and diffusion are 2 over the largest rate on
+/// the lattice at rest, from the same waves as the limit of all together. Those of motion, force and contact
+/// are the times that the rules of the cases multiply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Of all waves of the lattice together: a step beyond it is refused.
+    pub together: f64,
+    alone: [f64; Mechanism::ALL.len()],
+    explicit: f64,
+    integrator: Integrator,
+}
+
+impl Limits {
+    /// Those of a run that is refused.
+    pub const REFUSED: Self = Self {
+        together: 1.0,
+        alone: [f64::INFINITY; Mechanism::ALL.len()],
+        explicit: f64::INFINITY,
+        integrator: Integrator::Leapfrog,
+    };
+
+    /// Those of the waves of a lattice.
+    pub fn of(modes: &[Mode], integrator: Integrator) -> Self {
+        let of = SeparateLimits::of(modes);
+        let together = time_step::time_step_limit(modes, integrator);
+        let explicit = modes.iter().map(|mode| mode.explicit).fold(f64::INFINITY, f64::min);
+        Self { together, explicit, integrator, ..Self::REFUSED }
+            .with(Mechanism::Waves, of.acoustic)
+            .with(Mechanism::Viscosity, of.viscous)
+            .with(Mechanism::ArtificialViscosity, of.artificial_viscosity)
+            .with(Mechanism::Diffusion, of.density_diffusion)
+    }
+
+    /// The same with another limit of a mechanism alone \[s\].
+    #[must_use]
+    pub fn with(mut self, mechanism: Mechanism, limit: f64) -> Self {
+        self.alone[mechanism as usize] = limit;
+        self
+    }
+
+    /// The same of a scene with this smoothing length \[m\], largest speed \[m/s\] and body force \[m/s²\].
+    #[must_use]
+    pub fn moving(self, h: f64, speed: f64, force: f64) -> Self {
+        self.with(Mechanism::Motion, h / speed).with(Mechanism::Force, (h / force).sqrt())
+    }
+
+    /// The same in another unit of time.
+    #[must_use]
+    pub fn times(self, unit: f64) -> Self {
+        let (together, explicit) = (self.together * unit, self.explicit * unit);
+        Self { together, explicit, alone: self.alone.map(|limit| limit * unit), ..self }
+    }
+
+    /// Of a mechanism alone \[s\]; infinite if the scene lacks it.
+    pub fn alone(&self, mechanism: Mechanism) -> f64 {
+        self.alone[mechanism as usize]
+    }
+
+    /// The mechanism that limits the step most. Super-time-stepping takes viscosity out of the contest.
+    pub fn binding(&self) -> Mechanism {
+        let limits = |mechanism: &Mechanism| {
+            self.integrator != Integrator::SuperLeapfrog || *mechanism != Mechanism::Viscosity
+        };
+        let all = Mechanism::ALL.into_iter().filter(limits);
+        let shorter = |a, b| if self.alone(b) < self.alone(a) { b } else { a };
+        all.reduce(shorter).unwrap_or(Mechanism::Waves)
+    }
+
+    /// The slowest mechanism of the problem that acts within this time, and its limit \[s\]: the time itself if
+    /// all are slower.
+    pub fn slowest(&self, end: f64) -> f64 {
+        let all = Mechanism::ALL.into_iter().filter(|mechanism| mechanism.is_physical());
+        let limits = all.map(|mechanism| self.alone(mechanism)).filter(|limit| limit.is_finite());
+        limits.fold(0.0, f64::max).min(end)
+    }
+
+    /// Pair sweeps of a step of `dt` \[s\].
+    pub fn sweeps(&self, dt: f64) -> f64 {
+        self.integrator.sweeps(dt / self.explicit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn viscosity_binds_unless_it_is_super_stepped() {
+        let of = |integrator| {
+            Limits { integrator, ..Limits::REFUSED }
+                .with(Mechanism::Waves, 3.0)
+                .with(Mechanism::Viscosity, 1.0)
+                .with(Mechanism::Diffusion, 500.0)
+                .moving(2.0, 0.02, 0.0)
+        };
+        let explicit = of(Integrator::Leapfrog);
+        assert_eq!(explicit.binding(), Mechanism::Viscosity);
+        assert_eq!(of(Integrator::SuperLeapfrog).binding(), Mechanism::Waves);
+        // Motion at 100 s is the slowest of the problem; in a run of 7 s the run itself is.
+        assert_eq!([1e3, 7.0].map(|end| explicit.slowest(end)), [100.0, 7.0]);
+        assert_eq!(explicit.alone(Mechanism::Force), f64::INFINITY);
+    }
+}
