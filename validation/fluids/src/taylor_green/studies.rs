@@ -5,7 +5,7 @@ use super::{
     declaration::start_of,
     plan::{self, PICTURED, spec},
     run::{ENERGY, L2, MOMENTUM_ADDED, NEAREST, NU_EFF, PRESSURE_L2},
-    sound,
+    sound, viscous,
 };
 use base::functions::log10;
 use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
@@ -14,7 +14,7 @@ use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table};
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = Study::new("taylor-green-runs", "All runs").block(table(runs));
-    vec![pictures(tier, runs), sound::study(tier, runs), table]
+    vec![pictures(tier, runs), sound::study(tier, runs), viscous::study(tier, runs), table]
 }
 
 /// Every run.

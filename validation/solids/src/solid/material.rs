@@ -107,6 +107,12 @@ mod tests {
         let (c, cp) = (rubber.sound_speed(), rubber.p_wave_speed());
         assert_relative_eq!(cp / c, 1.137, max_relative = 1e-3);
         assert_relative_eq!(c, 57.02, max_relative = 1e-3);
+        // As docs/limits.md has them: c_p over the speed of shear waves.
+        for (poisson, ratio) in [(0.3975, 2.42), (0.49, 7.14), (0.499, 22.4), (0.4999, 70.7)] {
+            let rubber = Material::from_young(1000.0, 2e6, poisson);
+            let found = rubber.p_wave_speed() / rubber.shear_wave_speed();
+            assert_relative_eq!(found, ratio, max_relative = 2e-3);
+        }
         // K = E/(3(1-2nu)) and mu = E/(2(1+nu)) have 9 K mu/(3 K + mu) = E.
         let young = 9.0 * rubber.bulk * rubber.shear / (3.0 * rubber.bulk + rubber.shear);
         assert_relative_eq!(young, 2e6, max_relative = 1e-12);
