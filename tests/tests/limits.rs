@@ -10,8 +10,8 @@ use harness::{
 use rayon::prelude::*;
 use validation::{cases, stiffness::Row};
 
-/// What a run does before it is stopped: the step that it is driven with, the step that it plans in its record,
-/// and the first step that it makes.
+/// What a run does before it is stopped: the step that it is driven with, the step that it plans in its
+/// record, and the first step that it makes.
 fn first_step(case: &dyn Case, variant: &str) -> (f64, Option<f64>, f64) {
     let (driven, stop) = (Mutex::new(f64::NAN), AtomicBool::new(true));
     let show = |progress: Progress| {

@@ -125,8 +125,8 @@ impl Limits {
         all.reduce(shorter).unwrap_or(Mechanism::Waves)
     }
 
-    /// The slowest mechanism of the problem that acts within this time, and its limit \[s\]: the time itself if
-    /// all are slower.
+    /// The limit of the slowest mechanism of the problem \[s\], and at most this time: a mechanism that is
+    /// slower does not act within the run.
     pub fn slowest(&self, end: f64) -> f64 {
         let all = Mechanism::ALL.into_iter().filter(|mechanism| mechanism.is_physical());
         let limits = all.map(|mechanism| self.alone(mechanism)).filter(|limit| limit.is_finite());

@@ -10,7 +10,7 @@ use super::{
 };
 use base::functions::{cos, cosh, sin, sinh};
 use base::{
-    gate::{Bound, Evidence},
+    gate::{Bound, Evidence, Gate},
     record::{Profile, Record},
     spec::RunSpec,
 };

@@ -1,4 +1,5 @@
-//! The vortices at Re 1, where viscosity is stiff: error and work of explicit steps and of super-time-stepping.
+//! The vortices at Re 1, where viscosity is stiff: error and work of explicit steps and of
+//! super-time-stepping.
 
 use super::{
     CASE,

@@ -52,8 +52,8 @@ where
 /// η²/h² of the lattice whose waves give the limit of the time step.
 const ETA2: f64 = 0.01;
 
-/// The limits of the time step on a resting lattice of n × n particles with artificial viscosity on every pair
-/// and the terms of the method. `c0` is the largest sound speed \[m/s\].
+/// The limits of the time step on a resting lattice of n × n particles with artificial viscosity on every
+/// pair and the terms of the method. `c0` is the largest sound speed \[m/s\].
 pub fn limits<D: ?Sized>(
     method: &Method<(), D>,
     medium: &Medium,
