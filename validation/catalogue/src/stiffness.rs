@@ -134,7 +134,7 @@ pub fn section(suite: &Suite) -> Section {
             Block::Prose(vec![
                 "Measured/theory is the longest stable step by bisection over *together*, of the runs that \
                  each case declares; they need not have the default resolution. On lattices at rest the two \
-                 agree within 3 %, see [the largest stable time step](#study-time-step-limits). \
+                 agree within 3 %, as gates of the case `resting_box` demand. \
                  `touchstone stability --theory` prints the table without any run."
                     .into(),
             ]),

@@ -134,7 +134,8 @@ mod tests {
     /// A run of one step of 1e-4 s stated the 275 s that were planned, and 451,608 times the limit.
     #[test]
     fn a_record_states_the_step_that_was_taken_beside_the_one_that_was_planned() {
-        let limits = Limits { together: 4e-4, ..Limits::REFUSED };
+        let mut limits = Limits::REFUSED;
+        limits.together = 4e-4;
         let rules = Rules { step: Step::given(2e-4), limits, ..Rules::REFUSED };
         let mut record = Record::new("c", "v", json!({}), 1);
         let numbers = rules.numbers([1.2, 0.1]).map(|(name, value)| (name.into(), value.into()));

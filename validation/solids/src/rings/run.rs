@@ -58,15 +58,18 @@ pub fn run(
     let pressure = |density| eos.pressure(density);
     let has_budget = budget.is_some();
     let mut seen = (&mut series, &mut budget, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, rings.rules.dt(), &times, &pressure, &mut seen)
-        .after_step("series", &|(series, ..), simulation| series.after_step(simulation))
-        .at_if(has_budget, "energy budget by term", &|(_, budget, _), s, k| {
-            if let Some(budget) = budget.as_mut().filter(|_| stops[k].is_sample) {
-                budget.sample(rings, s);
-            }
-        })
-        .at_positions("pictures", &|(.., record), s, k| keep(rings, s, times[k], context, record))
-        .run(context)?;
+    let (status, cost) =
+        Drive::new(&mut *simulation, rings.rules.dt(), &times, &pressure, &mut seen)
+            .after_step("series", &|(series, ..), simulation| series.after_step(simulation))
+            .at_if(has_budget, "energy budget by term", &|(_, budget, _), s, k| {
+                if let Some(budget) = budget.as_mut().filter(|_| stops[k].is_sample) {
+                    budget.sample(rings, s);
+                }
+            })
+            .at_positions("pictures", &|(.., record), s, k| {
+                keep(rings, s, times[k], context, record)
+            })
+            .run(context)?;
     let particles = measure::along_flight(rings, &*simulation);
     if status == Status::Completed {
         if series.last_time() < Some(simulation.time() * rings.c0) {
