@@ -8,7 +8,7 @@ use super::{Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Tensile, Term
 pub struct Pressure<E, R = ()> {
     /// Equation of state p(ρ).
     pub eos: E,
-    /// `()` or [`ArtificialStress`].
+    /// `()` or [`ArtificialStress`](super::ArtificialStress).
     pub tensile: R,
 }
 
