@@ -105,7 +105,25 @@ fn unknown_names_are_refused_with_the_nearest() {
     refused(&["run", "couette", "--set", "row=8"], &["did you mean rows?"]);
     refused(&["run", "couette", "--set", "rows"], &["key=value"]);
     refused(&["stability", "acoustic_wave"], &["acoustic_wave declares no largest stable time"]);
+    refused(&["stability", "--theory", "extremes"], &["extremes has no rule for its time step"]);
     refused(&["explain", "no.such.gate"], &["no gate is called \"no.such.gate\""]);
+}
+
+/// Super-time-stepping takes viscosity out of the contest, which `modern` is bound by.
+#[test]
+fn the_limits_of_every_variant_are_shown_without_a_run() {
+    let output = touchstone(&["stability", "--theory", "--json", "couette"]);
+    let rows: Vec<Value> = serde_json::from_str(&stdout(&output)).unwrap();
+    let row = |variant: &str| rows.iter().find(|row| row["variant"] == variant).unwrap();
+    let (modern, stiff) = (row("modern"), row("stiff"));
+    assert_eq!(modern["bound_by"], "viscosity");
+    assert_eq!(stiff["bound_by"], "sound or elastic waves");
+    let number = |row: &Value, name: &str| row[name].as_f64().unwrap();
+    assert!(number(stiff, "sweeps") < 0.5 * number(modern, "sweeps"));
+    let table = stdout(&touchstone(&["stability", "--theory"]));
+    for case in cases::CASES.iter().filter(|case| case.name() != "extremes") {
+        assert!(table.contains(&format!("\n{} ", case.name())), "{}", case.name());
+    }
 }
 
 #[test]

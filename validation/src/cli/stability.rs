@@ -67,6 +67,10 @@ fn theory(cases: &[&'static dyn Case], as_json: bool) -> Outcome {
     for case in cases {
         rows.extend(Row::of(*case)?);
     }
+    if rows.is_empty() {
+        let words = format!("{} has no rule for its time step", cases[0].name());
+        return Err(Failure::usage(anyhow::anyhow!(words)));
+    }
     if as_json {
         let all = rows.iter().map(row_json).collect();
         output::print_whole(&format!("{:#}\n", Value::Array(all)))?;
