@@ -2,6 +2,10 @@
 
 use std::sync::{Mutex, atomic::AtomicBool};
 
+use base::{
+    mutation::{Constant, Mutation},
+    spec::RunSpec,
+};
 use harness::{
     case::{self, Case, PLANNED_DT},
     context::{Context, Progress},
@@ -12,7 +16,7 @@ use validation::{cases, stiffness::Row};
 
 /// What a run does before it is stopped: the step that it is driven with, the step that it plans in its
 /// record, and the first step that it makes.
-fn first_step(case: &dyn Case, variant: &str) -> (f64, Option<f64>, f64) {
+fn first_step(case: &dyn Case, variant: &str, fault: Option<Mutation>) -> (f64, Option<f64>, f64) {
     let (driven, stop) = (Mutex::new(f64::NAN), AtomicBool::new(true));
     let show = |progress: Progress| {
         if progress.particle_steps == 0 {
@@ -20,7 +24,8 @@ fn first_step(case: &dyn Case, variant: &str) -> (f64, Option<f64>, f64) {
         }
     };
     let context = Context { progress: Some(&show), interrupt: Some(&stop), ..Context::of_rules() };
-    let record = case.run(&case::spec(case, variant, &[]).unwrap(), &context).unwrap();
+    let spec = RunSpec { mutation: fault, ..case::spec(case, variant, &[]).unwrap() };
+    let record = case.run(&spec, &context).unwrap();
     assert_eq!(record.cost.steps, 1, "{} {variant}", case.name());
     let planned = record.numerics.get(PLANNED_DT).and_then(|dt| dt.as_f64());
     (driven.into_inner().unwrap(), planned, record.cost.largest_dt_s)
@@ -29,7 +34,7 @@ fn first_step(case: &dyn Case, variant: &str) -> (f64, Option<f64>, f64) {
 fn check(case: &dyn Case, row: &Row) {
     let name = format!("{} {}", row.case, row.variant);
     let (dt, limits) = (row.rules.dt(), &row.rules.limits);
-    let (driven, planned, taken) = first_step(case, row.variant);
+    let (driven, planned, taken) = first_step(case, row.variant, None);
     assert_eq!(driven, dt, "{name}: the step with which the run is driven");
     assert!(planned.is_none_or(|planned| planned == dt), "{name}: planned {planned:?}, not {dt}");
     assert!(taken > 0.0 && taken <= dt * (1.0 + 1e-12), "{name}: a step of {taken}, not {dt}");
@@ -58,4 +63,16 @@ fn the_step_of_the_table_is_that_of_the_run() {
     let lacking: Vec<&str> = cases::CASES.iter().filter(lacks).map(|case| case.name()).collect();
     assert_eq!(lacking, ["extremes"], "experiments with steps of their own have no rule");
     assert!(all.len() > 80, "{}", all.len());
+}
+
+/// A run that takes a step 1 % longer than its rules say does not pass for the step of the table.
+#[test]
+fn a_run_with_another_step_is_seen() {
+    let case = cases::find("taylor_green").unwrap();
+    let longer = Mutation { of: Constant::TimeStep, factor: 1.01 };
+    for row in Row::of(case).unwrap() {
+        let (driven, planned, _) = first_step(case, row.variant, Some(longer));
+        assert_eq!(planned, Some(row.rules.dt()));
+        assert_ne!(driven, row.rules.dt(), "{}", row.variant);
+    }
 }
