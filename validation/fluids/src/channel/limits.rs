@@ -118,7 +118,7 @@ const BEFORE: &[(&str, [f64; 2])] = &[
     ("curved", [1.3401, 1.0299]),
     ("modern", [1.3336, 1.0250]),
     ("stiff", [1.3970, 1.0478]),
-    ("modern-mirror", [1.3734, 1.0555]),
+    ("modern-mirror", [1.3336, 1.0250]),
     ("cure-background", [2.8596, 1.0148]),
     ("cure-stress", [2.8455, 1.0098]),
     ("cure-viscosity", [2.8173, 1.0100]),
