@@ -41,6 +41,8 @@ macro_rules! embedded {
 
 /// Every package of `references/` with its tables.
 const EMBEDDED: &[Embedded] = embedded! {
+    "dam_break_vof":
+        ["series.csv", "levels.csv", "pressure.csv", "summary.csv", "spread.csv", "checks.csv"],
     "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
     "dambreak_martin_moyce": ["front.csv", "height.csv"],
     "peers_channel": ["errors.csv"],
