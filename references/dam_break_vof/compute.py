@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import time
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,7 @@ import dam
 import package
 import read
 
-SHARED = {"lobovsky": 30, "martin_moyce": 40}  # the meshes on which the variants run, finer ones below
-FINER = {"mules": {"lobovsky": 60}}
+SHARED = {"lobovsky": 30, "martin_moyce": 20}  # the meshes on which the variants run
 VARIANTS = {
     "mules": dict(solver="interFoam"),
     "tension": dict(tension=dam.TENSION),
@@ -35,7 +35,7 @@ def variants():
         meshes = dict(SHARED)
         if name == "high_rim":
             del meshes["martin_moyce"]
-        for scene, n in (*meshes.items(), *FINER.get(name, {}).items()):
+        for scene, n in meshes.items():
             yield name, replace(dam.Run(scene, n), **changes)
 
 
@@ -87,6 +87,8 @@ def tongue(kept):
     """Mean level at H4 for one unit of time from when it first exceeds 0.02."""
     t, level = kept["t"], kept["H4"]
     start = first_above(t, level, 0.02)
+    if not t[-1] > start + 1.0:
+        return np.nan
     fine = np.linspace(start, start + 1.0, 101)
     return np.interp(fine, t, level).mean()
 
@@ -94,6 +96,8 @@ def tongue(kept):
 def speed(kept):
     """Slope of the least squares line of the front."""
     t, x = kept["t"], kept["front"]
+    if t[-1] < RUNNING[1]:
+        return np.nan
     inside = (t > RUNNING[0] - 1e-6) & (t < RUNNING[1] + 1e-6)
     return np.polyfit(t[inside], x[inside], 1)[0]
 
@@ -130,7 +134,11 @@ def of_tank():
                 lambda kept, k=k, window=window: impulse(kept, k, window),
             )
     for k in range(4):
-        yield f"peak_P{k + 1}", PRESSURE, lambda kept, k=k: kept["p"][k].max()
+        yield (
+            f"peak_P{k + 1}",
+            PRESSURE,
+            lambda kept, k=k: kept["p"][k].max() if kept["t"][-1] > 3.5 else np.nan,
+        )
     yield "reaches_rim", TIME, lambda kept: first_above(kept["t"], kept["run_up"], 1.999)
     for time_ in (2.0, 3.0, 4.0, 5.0):
         yield f"kinetic_at_{time_:g}", ENERGY, at("kinetic", time_)
@@ -169,9 +177,10 @@ def digits(value, figures=6):
 def judge(numbers):
     """(uncertainty, extrapolated, order) of three numbers from coarse to fine.
 
-    The grid convergence index: SAFETY times what Richardson's extrapolation adds, with the observed order
-    taken to lie between 1/2 and 2. Without an order, because the differences change their sign or grow, three
-    times the last difference. Of two meshes: SAFETY times their difference, as for the order 1.
+    The grid convergence index: SAFETY times what Richardson's extrapolation adds. The order is the observed one,
+    at least 1/2, in the uncertainty at most 1 and in the extrapolation at most 2. Without an order, because the
+    differences change their sign or grow, three times the last difference. Of two meshes: SAFETY times their
+    difference, as for the order 1.
     """
     numbers = [number for number in numbers if np.isfinite(number)]
     if len(numbers) < 2:
@@ -183,8 +192,8 @@ def judge(numbers):
     if last == 0.0 or before / last <= 1.0:
         return 3.0 * abs(last), np.nan, np.nan
     order = np.log2(before / last)
-    change = last / (2.0 ** min(max(order, 0.5), 2.0) - 1.0)
-    return SAFETY * abs(change), numbers[-1] + change, order
+    adds = [last / (2.0 ** min(max(order, 0.5), most) - 1.0) for most in (1.0, 2.0)]
+    return SAFETY * abs(adds[0]), numbers[-1] + adds[1], order
 
 
 def summary(folder):
@@ -246,47 +255,58 @@ CURVES = ("front", "front_depth_2", "front_depth_5", "height", "height_wall", "k
 LEVELS = tuple(f"{kind}H{k}" for kind in ("", "top_") for k in (1, 2, 3, 4))
 
 
-def finest_two(folder, scene):
-    """The finest run, the one before it, and the times that both have reached."""
-    made = [kept for _, kept in read.meshes(folder, scene)][-2:]
-    for kept in made:
+def segments(folder, scene):
+    """(mesh, finer run, coarser run, from, to): the two finest meshes that reach the rows of each segment.
+
+    The finest mesh may end before the others; what comes later is that of the next, and column mesh says so.
+    """
+    made = read.meshes(folder, scene)
+    for _, kept in made:
         kept["lost"] = 1 - kept["water"]
         kept |= {f"P{k + 1}": kept["p"][k] for k in range(4)} if "p" in kept else {}
-    return made[1], made[0], min(kept["t"][-1] for kept in made)
+    done = -1.0
+    for (_, coarse), (n, fine) in reversed(list(pairwise(made))):
+        end = min(fine["t"][-1], coarse["t"][-1])
+        if end > done:
+            yield n, fine, coarse, done, end
+            done = end
+
+
+def sampled(folder, scene, names):
+    """Rows of curves at regular times."""
+    for n, fine, coarse, start, end in segments(folder, scene):
+        times = np.round(np.arange(0, int(round(end / dam.SAMPLE)) + 1) * dam.SAMPLE, 6)
+        times = times[times > start + 1e-6]
+        cells = columns(fine, coarse, names, "t", times, 4)
+        yield from zip([f"{t:.2f}" for t in times], [n] * len(times), *cells, strict=True)
 
 
 def series(folder):
     """Rows of series.csv."""
     for scene in dam.SCENES:
-        fine, middle, end = finest_two(folder, scene)
-        times = np.round(np.arange(0, int(round(end / dam.SAMPLE)) + 1) * dam.SAMPLE, 6)
-        cells = columns(fine, middle, CURVES, "t", times, 4)
-        yield from zip([scene] * len(times), [f"{t:.2f}" for t in times], *cells, strict=True)
+        yield from ((scene, *row) for row in sampled(folder, scene, CURVES))
 
 
 def levels(folder):
     """Rows of levels.csv."""
-    fine, middle, end = finest_two(folder, "lobovsky")
-    times = np.round(np.arange(0, int(round(end / dam.SAMPLE)) + 1) * dam.SAMPLE, 6)
-    yield from zip([f"{t:.2f}" for t in times], *columns(fine, middle, LEVELS, "t", times, 4), strict=True)
+    yield from sampled(folder, "lobovsky", LEVELS)
 
 
 def pressure(folder):
-    """Rows of pressure.csv: from shortly before the arrival on, with the clock of the finest mesh.
+    """Rows of pressure.csv: from shortly before the arrival on, with the clock of the mesh of the row.
 
     The uncertainty compares after the arrivals were put on each other: a steep rise that comes a little later
     is in the uncertainty of the arrival.
     """
-    fine, middle, _ = finest_two(folder, "lobovsky")
-    late = arrival(middle) - arrival(fine)
-    middle["p_t"] = middle["p_t"] - late
-    end = min(fine["p_t"][-1], middle["p_t"][-1])
-    times = fine["p_t"][(fine["p_t"] > arrival(fine) - 0.1) & (fine["p_t"] <= end)]
-    yield from zip(
-        [f"{t:.3f}" for t in times],
-        *columns(fine, middle, ("P1", "P2", "P3", "P4"), "p_t", times, 4),
-        strict=True,
-    )
+    for n, fine, coarse, start, end in segments(folder, "lobovsky"):
+        late = arrival(coarse) - arrival(fine)
+        if np.isnan(late):
+            continue
+        moved = coarse | dict(p_t=coarse["p_t"] - late)
+        start = max(start, arrival(fine) - 0.1)
+        times = fine["p_t"][(fine["p_t"] > start) & (fine["p_t"] < min(end, moved["p_t"][-1]))]
+        cells = columns(fine, moved, ("P1", "P2", "P3", "P4"), "p_t", times, 4)
+        yield from zip([f"{t:.3f}" for t in times], [n] * len(times), *cells, strict=True)
 
 
 def tables(folder):

@@ -57,10 +57,11 @@ def with_doubt(columns):
 
 
 TABLES = {
-    "series": [SCENE, ("t", "number", TIME, "time since the release"), *with_doubt(CURVES)],
-    "levels": [("t", "number", TIME, "time since the release"), *with_doubt(LEVELS)],
+    "series": [SCENE, ("t", "number", TIME, "time since the release"), MESH, *with_doubt(CURVES)],
+    "levels": [("t", "number", TIME, "time since the release"), MESH, *with_doubt(LEVELS)],
     "pressure": [
         ("t", "number", TIME, "middle of the block of 0.01 that the row is the mean of"),
+        MESH,
         *with_doubt(SENSORS),
     ],
     "summary": [SCENE, *QUANTITY]
