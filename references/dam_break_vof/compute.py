@@ -15,7 +15,7 @@ import dam
 import package
 import read
 
-SHARED = {"lobovsky": 30, "martin_moyce": 20}  # the meshes on which the variants run
+SHARED = {"lobovsky": 30, "martin_moyce": 20, "square": 20}  # the meshes on which the variants run
 VARIANTS = {
     "mules": dict(solver="interFoam"),
     "tension": dict(tension=dam.TENSION),
@@ -32,10 +32,9 @@ RUNNING = (1.0, 2.3)  # the speed of the front is found between these times [(H/
 def variants():
     """(name, run) of every variant."""
     for name, changes in VARIANTS.items():
-        meshes = dict(SHARED)
-        if name == "high_rim":
-            del meshes["martin_moyce"]
-        for scene, n in meshes.items():
+        for scene, n in SHARED.items():
+            if name == "high_rim" and scene != "lobovsky":
+                continue
             yield name, replace(dam.Run(scene, n), **changes)
 
 
@@ -177,9 +176,9 @@ def digits(value, figures=6):
 def judge(numbers):
     """(uncertainty, extrapolated, order) of three numbers from coarse to fine.
 
-    The grid convergence index: SAFETY times what Richardson's extrapolation adds. The order is the observed one,
-    at least 1/2, in the uncertainty at most 1 and in the extrapolation at most 2. Without an order, because the
-    differences change their sign or grow, three times the last difference. Of two meshes: SAFETY times their
+    The grid convergence index: SAFETY times what Richardson's extrapolation adds. The order is the observed
+    one, at least 1/2, in the uncertainty at most 1, in the extrapolation at most 2. Where differences change
+    their sign or grow there is none: three times the last difference. Of two meshes: SAFETY times their
     difference, as for the order 1.
     """
     numbers = [number for number in numbers if np.isfinite(number)]
@@ -196,23 +195,40 @@ def judge(numbers):
     return SAFETY * abs(adds[0]), numbers[-1] + adds[1], order
 
 
+def steps(folder, scene):
+    """The runs of a scene with whole and half steps, on the mesh that the variants run on."""
+    run = dam.Run(scene, SHARED[scene])
+    return [read.load(folder, one) for one in (run, replace(run, **VARIANTS["half_step"]))]
+
+
+def step_share(scene, n):
+    """The error of the step on a mesh over the change by half of it on the mesh of the variants.
+
+    The step is of first order, so its error is twice that change, and it shortens with the cells.
+    """
+    return 2.0 * SHARED[scene] / n
+
+
 def summary(folder):
     """Rows of summary.csv."""
     for scene, quantities in QUANTITIES.items():
         made = read.meshes(folder, scene)
+        whole, half = steps(folder, scene)
         for name, unit, of in quantities():
             numbers = {n: of(kept) for n, kept in made}
             finite = [(n, value) for n, value in numbers.items() if np.isfinite(value)]
             if not finite:
                 continue
-            doubt, limit, order = judge([value for _, value in finite])
+            error, limit, order = judge([value for _, value in finite])
+            step = abs(of(whole) - of(half)) * step_share(scene, finite[-1][0])
+            error += step if np.isfinite(step) else 0.0
             each = [digits(numbers.get(n, np.nan)) for n in dam.SCENES[scene].meshes]
             yield (
                 scene,
                 name,
                 unit,
                 digits(finite[-1][1]),
-                digits(doubt, 2),
+                digits(error, 2),
                 finite[-1][0],
                 digits(limit),
                 digits(order, 2),
@@ -232,21 +248,23 @@ def spread(folder):
                 yield run.scene, name, run.n, quantity, unit, digits(value), f"{value - reference:.2g}"
 
 
-def doubt(t, fine, coarse, times, least):
-    """SAFETY times the greatest difference of two curves within NEAR_BY of a time, at least `least`."""
-    both = [np.interp(t, *curve) for curve in (fine, coarse)]
-    difference = SAFETY * abs(both[0] - both[1])
-    return [max(difference[abs(t - time_) <= NEAR_BY + 1e-9].max(), least) for time_ in times]
+def distance(one, other, name, clock, times):
+    """The greatest distance of two curves within NEAR_BY of each time."""
+    far = abs(np.interp(times, one[clock], one[name]) - np.interp(times, other[clock], other[name]))
+    return np.array([far[abs(times - time_) <= NEAR_BY + 1e-9].max() for time_ in times])
 
 
-def columns(fine, middle, names, clock, times, figures):
-    """Columns of a table: of each curve its values at the times and its uncertainty, as text."""
+def columns(pairs, names, clock, times, figures):
+    """Columns of a table: of each curve its values at the times and its uncertainty, as text.
+
+    `pairs` are runs whose curves differ, each with the share of their distance that counts. The values are those
+    of the first run of the first pair.
+    """
     out = []
     for name in names:
-        values = np.interp(times, fine[clock], fine[name])
-        errors = doubt(
-            times, (fine[clock], fine[name]), (middle[clock], middle[name]), times, 0.5 * 10.0**-figures
-        )
+        values = np.interp(times, pairs[0][1][clock], pairs[0][1][name])
+        errors = sum(share * distance(one, other, name, clock, times) for share, one, other in pairs)
+        errors = np.maximum(errors, 0.5 * 10.0**-figures)
         out += [[f"{value:.{figures}f}" for value in values], [f"{error:.1e}" for error in errors]]
     return out
 
@@ -255,29 +273,33 @@ CURVES = ("front", "front_depth_2", "front_depth_5", "height", "height_wall", "k
 LEVELS = tuple(f"{kind}H{k}" for kind in ("", "top_") for k in (1, 2, 3, 4))
 
 
+def with_curves(kept):
+    """A run with the curves that are made of others."""
+    pressures = {f"P{k + 1}": kept["p"][k] for k in range(4)} if "p" in kept else {}
+    return kept | {"lost": 1 - kept["water"]} | pressures
+
+
 def segments(folder, scene):
-    """(mesh, finer run, coarser run, from, to): the two finest meshes that reach the rows of each segment.
+    """(mesh, pairs, from, to): the two finest meshes that reach the rows of each segment, and the two steps.
 
     The finest mesh may end before the others; what comes later is that of the next, and column mesh says so.
     """
-    made = read.meshes(folder, scene)
-    for _, kept in made:
-        kept["lost"] = 1 - kept["water"]
-        kept |= {f"P{k + 1}": kept["p"][k] for k in range(4)} if "p" in kept else {}
+    made = [(n, with_curves(kept)) for n, kept in read.meshes(folder, scene)]
+    whole, half = (with_curves(kept) for kept in steps(folder, scene))
     done = -1.0
     for (_, coarse), (n, fine) in reversed(list(pairwise(made))):
         end = min(fine["t"][-1], coarse["t"][-1])
         if end > done:
-            yield n, fine, coarse, done, end
+            yield n, [(SAFETY, fine, coarse), (step_share(scene, n), whole, half)], done, end
             done = end
 
 
 def sampled(folder, scene, names):
     """Rows of curves at regular times."""
-    for n, fine, coarse, start, end in segments(folder, scene):
+    for n, pairs, start, end in segments(folder, scene):
         times = np.round(np.arange(0, int(round(end / dam.SAMPLE)) + 1) * dam.SAMPLE, 6)
         times = times[times > start + 1e-6]
-        cells = columns(fine, coarse, names, "t", times, 4)
+        cells = columns(pairs, names, "t", times, 4)
         yield from zip([f"{t:.2f}" for t in times], [n] * len(times), *cells, strict=True)
 
 
@@ -298,14 +320,18 @@ def pressure(folder):
     The uncertainty compares after the arrivals were put on each other: a steep rise that comes a little later
     is in the uncertainty of the arrival.
     """
-    for n, fine, coarse, start, end in segments(folder, "lobovsky"):
-        late = arrival(coarse) - arrival(fine)
-        if np.isnan(late):
+    for n, pairs, start, end in segments(folder, "lobovsky"):
+        clock = arrival(pairs[0][1])
+        if np.isnan(clock):
             continue
-        moved = coarse | dict(p_t=coarse["p_t"] - late)
-        start = max(start, arrival(fine) - 0.1)
-        times = fine["p_t"][(fine["p_t"] > start) & (fine["p_t"] < min(end, moved["p_t"][-1]))]
-        cells = columns(fine, moved, ("P1", "P2", "P3", "P4"), "p_t", times, 4)
+        moved = [
+            (share, *(kept | dict(p_t=kept["p_t"] + clock - arrival(kept)) for kept in both))
+            for share, *both in pairs
+        ]
+        p_t = pairs[0][1]["p_t"]
+        last = min(end, *(kept["p_t"][-1] for _, *both in moved for kept in both))
+        times = p_t[(p_t > max(start, clock - 0.1)) & (p_t < last)]
+        cells = columns(moved, ("P1", "P2", "P3", "P4"), "p_t", times, 4)
         yield from zip([f"{t:.3f}" for t in times], [n] * len(times), *cells, strict=True)
 
 

@@ -67,7 +67,7 @@ TABLES = {
     "summary": [SCENE, *QUANTITY]
     + [
         ("value", "number", "see column unit", "on the finest mesh that has the number"),
-        ("uncertainty", "number", "see column unit", "of value, by the grid convergence index"),
+        ("uncertainty", "number", "see column unit", "of value, from meshes and time step"),
         ("mesh", "integer", "-", "of value: cells along the shorter side of the column"),
         ("extrapolated", "number", "see column unit", "Richardson's, empty where the meshes show no order"),
         ("order", "number", "-", "observed order of the three meshes, empty where there is none"),
