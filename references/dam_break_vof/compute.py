@@ -257,8 +257,8 @@ def distance(one, other, name, clock, times):
 def columns(pairs, names, clock, times, figures):
     """Columns of a table: of each curve its values at the times and its uncertainty, as text.
 
-    `pairs` are runs whose curves differ, each with the share of their distance that counts. The values are those
-    of the first run of the first pair.
+    `pairs` are runs whose curves differ, each with the share of their distance that counts. The values are
+    those of the first run of the first pair.
     """
     out = []
     for name in names:
