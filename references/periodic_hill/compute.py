@@ -8,6 +8,7 @@ import numpy as np
 import checks
 import hill
 import package
+import tables
 
 REYNOLDS = (10.0, 50.0, 100.0)
 LEVELS = (0, 1, 2)
@@ -168,7 +169,7 @@ if __name__ == "__main__":
     known = [*checks.geometry()]
     for mesh in LEVELS[:2]:
         known += [*checks.flat(mesh), *checks.creeping(mesh)]
-    package.write(Path(__file__).parent, {
+    tables.write(Path(__file__).parent, package.TABLES, {
         "profiles": profile_rows(every), "starts": start_rows(every),
         "wall": wall_rows(every), "line": line_rows(every), "summary": summary_rows(every), "checks": check_rows(known + balance),
     })

@@ -1,10 +1,4 @@
-"""Writes the tables and lists them in datapackage.json, whose texts stay; checks both as the loader does."""
-
-import csv
-import hashlib
-import io
-import json
-from importlib.metadata import version
+"""The columns of the tables."""
 
 SPEED, SHEAR = "U_b", "rho U_b^2"
 RE = ("re", "number", "-", "Reynolds number U_b H/nu")
@@ -61,25 +55,3 @@ TABLES = {
         ("expected", "number", "see column check", "exact, empty for a mere statement"),
     ],
 }
-
-
-def write(folder, tables):
-    resources = []
-    for name, rows in tables.items():
-        fields = [dict(name=field, type=kind, unit=unit, description=text)
-                  for field, kind, unit, text in TABLES[name]]
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow([field["name"] for field in fields])
-        writer.writerows(rows)
-        path = f"{name}.csv"
-        (folder / path).write_text(out.getvalue(), newline="\n")
-        schema = {"fields": fields, "missingValues": [""]}
-        digest = hashlib.sha256((folder / path).read_bytes()).hexdigest()
-        resources.append({"name": name, "path": path, "hash": f"sha256:{digest}", "schema": schema})
-    description = folder / "datapackage.json"
-    package = json.loads(description.read_text())
-    for used in ("scikit-fem", "numpy", "scipy"):
-        assert f"{used} {version(used)}" in package["method"], f"the method names another version of {used}"
-    package["resources"] = resources
-    description.write_text(json.dumps(package, indent=2, ensure_ascii=False) + "\n")

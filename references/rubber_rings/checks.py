@@ -1,4 +1,4 @@
-"""Checks of ring.py against what is known exactly or computed by other code. Rows of checks.csv."""
+"""Checks of ring.py and plane_strain.py against what is known or computed by other code: checks.csv."""
 
 import numpy as np
 import scipy.optimize
@@ -8,7 +8,9 @@ import scipy.special
 import skfem
 from skfem.helpers import ddot, eye, sym_grad, trace
 
+import plane_strain
 import ring
+from ring import RUBBER
 
 
 def exact_frequency(wave, low, high):
@@ -16,7 +18,7 @@ def exact_frequency(wave, low, high):
     in the radial displacement: potentials with Bessel functions, no stress on both circles."""
 
     def determinant(omega):
-        speeds = ring.P_WAVE, np.sqrt(ring.SHEAR / ring.DENSITY)
+        speeds = RUBBER.p_wave, np.sqrt(RUBBER.shear / RUBBER.density)
         rows = []
         for r in (ring.INNER, ring.OUTER):
             normal, tangential = [], []
@@ -25,10 +27,10 @@ def exact_frequency(wave, low, high):
                 for f in (scipy.special.jvp, scipy.special.yvp):
                     a, da, dda = f(wave, k * r, 0), k * f(wave, k * r, 1), k * k * f(wave, k * r, 2)
                     if is_shear:
-                        normal.append(2 * ring.SHEAR * wave * (da / r - a / r**2))
+                        normal.append(2 * RUBBER.shear * wave * (da / r - a / r**2))
                         tangential.append(-dda + da / r - wave**2 * a / r**2)
                     else:
-                        normal.append(2 * ring.SHEAR * dda - ring.LAME * k * k * a)
+                        normal.append(2 * RUBBER.shear * dda - RUBBER.lame * k * k * a)
                         tangential.append(2 * wave * (a / r**2 - da / r))
             rows += [normal, tangential]
         matrix = np.array(rows)
@@ -43,12 +45,13 @@ def assembled(layers):
     (component, row, column) flattened."""
     grid = ring.Ring(layers)
     rows, cols = grid.mass.shape
-    mesh = ring.sector(layers, grid.columns, np.pi)
+    mesh, _ = plane_strain.quadrilaterals(np.linspace(ring.INNER, ring.OUTER, layers + 1),
+                                          np.linspace(0, np.pi, grid.columns + 1), ring.polar)
     basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementQuad2()), intorder=5)
 
     @skfem.BilinearForm
     def stiffness(u, v, _):
-        stress = ring.LAME * eye(trace(sym_grad(u)), 2) + 2 * ring.SHEAR * sym_grad(u)
+        stress = RUBBER.lame * eye(trace(sym_grad(u)), 2) + 2 * RUBBER.shear * sym_grad(u)
         return ddot(stress, sym_grad(v))
 
     matrix = stiffness.assemble(basis)
@@ -79,13 +82,14 @@ def frequencies(grid, matrix, count=6):
 
 def shear(amount=1.0, steps=2000):
     """Greatest error of the Jaumann law in simple shear: S12 = mu sin(shear), S11 = mu (1 - cos(shear))."""
-    law, one, worst = ring.Jaumann(), np.ones((1, 1, 1)), 0.0
+    law, one, worst = plane_strain.Jaumann(RUBBER), np.ones((1, 1, 1)), 0.0
     for step in range(steps + 1):
         k = amount * step / steps
-        stress = law(one, k * one, 0 * one, one, 0)
+        stress = law.stress(one, k * one, 0 * one, one, 0)
+        law.keep()
         # Cauchy stress = P F^T at J = 1.
         s11, s12 = stress[0] + k * stress[1], stress[1]
-        error = max(abs(s11 - ring.SHEAR * (1 - np.cos(k))).max(), abs(s12 - ring.SHEAR * np.sin(k)).max())
+        error = max(abs(s11 - RUBBER.shear * (1 - np.cos(k))).max(), abs(s12 - RUBBER.shear * np.sin(k)).max())
         worst = max(worst, error)
     return worst
 
@@ -104,7 +108,7 @@ def rows():
         u = rng.standard_normal(grid.x0.shape)
         step = 1e-5 * grid.h
         for law in ("hencky", "neo_hookean", "saint_venant"):
-            f = ring.LAWS[law]
+            f = plane_strain.LAWS[law](RUBBER)
             force = (grid.force(grid.x0 + step * u, f) - grid.force(grid.x0 - step * u, f)) / (2 * step)
             want = -(matrix @ u.ravel()).reshape(u.shape)
             error = np.abs(force - want).max() / np.abs(want).max()
@@ -116,7 +120,7 @@ def rows():
     way = rng.standard_normal(bent.shape)
     step = 1e-6
     for law in ("hencky", "neo_hookean", "saint_venant"):
-        f = ring.LAWS[law]
+        f = plane_strain.LAWS[law](RUBBER)
         out.append((f"force of {law} on a turned ring", 8, np.abs(grid.force(turned, f)).max(), 0.0))
         slope = -(grid.energy(bent + step * way, f) - grid.energy(bent - step * way, f)) / (2 * step)
         out.append((f"force of {law} along a random direction against minus its energy's slope", 8,

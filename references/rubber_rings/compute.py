@@ -11,6 +11,8 @@ import numpy as np
 import checks
 import package
 import ring
+import tables
+from tables import doubt, fixed, number, richardson, widest
 
 SPEEDS = (0.059, 0.03)
 MESHES = {"hencky": (4, 8, 16), "neo_hookean": (4, 8, 16), "jaumann": (4, 8, 16)}
@@ -150,35 +152,6 @@ def uncertainty(values):
     return np.maximum(parts, 0.5 * np.ptp(np.array(seeded), axis=0))
 
 
-def richardson(coarse, middle, fine):
-    """Extrapolation, if the differences shrink monotonically; of order 4 at most."""
-    first, second = middle - coarse, fine - middle
-    if second == 0 or first / second < 1.5:
-        return None, None
-    ratio = first / second
-    return fine + second / (min(ratio, 16) - 1), np.log2(ratio)
-
-
-def widest(u, around=4):
-    """Greatest uncertainty within two units of time: differences of curves vanish where they cross."""
-    padded = np.pad(u, around, mode="edge")
-    return np.lib.stride_tricks.sliding_window_view(padded, 2 * around + 1).max(axis=1)
-
-
-def number(value, digits=6):
-    return "" if value is None else f"{value:.{digits}g}"
-
-
-def fixed(value, decimals):
-    text = f"{value:.{decimals}f}"
-    return text.lstrip("-") if float(text) == 0 else text
-
-
-def doubt(u, decimals=None):
-    """Not below half a unit of the last printed decimal."""
-    return f"{u if decimals is None else max(u, 0.5 * 10.0**-decimals):.1e}"
-
-
 DECIMALS = {"v_c": 6, "force": 4, "impulse": 5, "kinetic": 6, "strain": 6}
 
 
@@ -309,7 +282,7 @@ if __name__ == "__main__":
     if options.speed is not None:
         sys.exit()
     every_family = [Family(options.runs, law, speed) for law in MESHES for speed in SPEEDS]
-    package.write(Path(__file__).parent, {
+    tables.write(Path(__file__).parent, package.TABLES, {
         "series": series_rows(every_family), "summary": summary_rows(every_family),
         "phases": phase_rows(every_family), "laws": law_rows(options.runs),
         "outlines": outline_rows(options.runs), "checks": check_rows(options.runs),

@@ -45,6 +45,7 @@ const EMBEDDED: &[Embedded] = embedded! {
         ["series.csv", "levels.csv", "pressure.csv", "summary.csv", "spread.csv", "checks.csv"],
     "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
     "dambreak_martin_moyce": ["front.csv", "height.csv"],
+    "oscillating_plate": ["series.csv", "summary.csv", "clamps.csv", "checks.csv"],
     "peers_channel": ["errors.csv"],
     "peers_taylor_green": ["errors.csv"],
     "periodic_hill":
