@@ -1,0 +1,122 @@
+"""Computes the tables of this folder. `python compute.py --help` says how; README.md says what."""
+
+import argparse
+import time
+from pathlib import Path
+
+import numpy as np
+
+import bar
+import checks
+import package
+import tables
+from tables import doubt, fixed, number, widest
+
+MESHES, STEP = (4, 8), 0.0025
+SAMPLE = 0.01
+
+
+def runs():
+    """All bars as keyword arguments, the cheap ones first."""
+    coarse, fine = MESHES
+    listed = []
+    for law in bar.LAWS:
+        for gravity in (bar.LARGE, bar.SMALL):
+            base = dict(law=law, gravity=gravity)
+            listed += [dict(base, layers=coarse, step=step) for step in (STEP, STEP / 2)]
+        listed += [dict(law=law, gravity=bar.LARGE, layers=fine, step=STEP)]
+    return sorted(listed, key=lambda run: run["layers"] ** 2 / run["step"])
+
+
+def file(law, gravity, layers, step):
+    return f"{law}_{gravity}_{layers}_{step:.3g}.npz"
+
+
+def simulate(folder):
+    for run in runs():
+        path = folder / file(**run)
+        if path.exists():
+            continue
+        start = time.process_time()
+        result = bar.run(**run)
+        np.savez_compressed(path, **result)
+        found = summary(result, 0)
+        print(f"{path.stem}: {time.process_time() - start:.0f} s, y {1e3 * found['mean_y']:.4f} +- "
+              f"{1e3 * found['amplitude_y']:.4f} mm, {found['frequency']:.5f} Hz", flush=True)
+
+
+def summary(run, station):
+    return bar.summary(run["t"], *run["path"][:, station].T)
+
+
+def unit(quantity):
+    return {"frequency": "Hz", "first_fall": "s", "last_fall": "s"}.get(quantity, "m")
+
+
+def load(folder, law, gravity, layers, step=STEP):
+    return dict(np.load(folder / file(law, gravity, layers, step)))
+
+
+def large(folder, law):
+    """The coarse and the fine mesh, and the coarse one with half the step."""
+    coarse, fine = MESHES
+    of = (coarse, STEP), (fine, STEP), (coarse, STEP / 2)
+    return [load(folder, law, bar.LARGE, *one) for one in of]
+
+
+def uncertainty(values):
+    """Mesh, plus time step, whose error is of second order."""
+    coarse, fine, half = values
+    return np.abs(fine - coarse) + 4 / 3 * np.abs(half - coarse)
+
+
+def series_rows(folder):
+    for law in bar.LAWS:
+        found = large(folder, law)
+        paths = [run["path"][:: round(SAMPLE / float(run["step"])), 0] for run in found]
+        wide = np.apply_along_axis(widest, 0, uncertainty(paths))
+        for n, place in enumerate(paths[1]):
+            row = [bar.LARGE, law, fixed(n * SAMPLE, 2)]
+            for k in range(2):
+                row += [fixed(place[k], 7), doubt(wide[n, k], 7)]
+            yield row
+
+
+def summary_rows(folder):
+    """Under the small load there is no fine mesh: its share of the uncertainty is that of the large one."""
+    for law in bar.LAWS:
+        big = large(folder, law)
+        small = [load(folder, law, bar.SMALL, MESHES[0], step) for step in (STEP, STEP / 2)]
+        for station, layers in enumerate(("", *bar.LAYERS)):
+            big_values, small_values = ([summary(run, station) for run in runs] for runs in (big, small))
+            for key in big_values[0]:
+                of = coarse, fine, half = [v[key] for v in big_values]
+                yield [bar.LARGE, law, layers, key, unit(key), number(fine, 7), doubt(uncertainty(of)),
+                       *(number(value, 7) for value in of)]
+                one, halved = (v[key] for v in small_values)
+                doubts = abs(one * (fine / coarse - 1)) + 4 / 3 * abs(halved - one)
+                yield [bar.SMALL, law, layers, key, unit(key), number(one, 7), doubt(doubts),
+                       number(one, 7), "", number(halved, 7)]
+
+
+def check_rows(folder):
+    for run in runs():
+        result = dict(np.load(folder / file(**run)))
+        total = result["kinetic"] + result["strain"] + result["lift"]
+        change = np.abs(total[::10]).max() / result["kinetic"].max()
+        yield ["greatest change of the total energy over the greatest kinetic energy", run["gravity"],
+               run["law"], run["layers"], number(run["step"]), number(change, 3), "0"]
+    for check, gravity, law, mesh, step, value, expected in checks.rows():
+        yield [check, gravity, law, mesh, step, number(value, 8), number(expected, 8)]
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=Path, required=True, help="folder that keeps the raw results")
+    options = parser.parse_args()
+    options.runs.mkdir(parents=True, exist_ok=True)
+    simulate(options.runs)
+    tables.write(Path(__file__).parent, package.TABLES, {
+        "series": series_rows(options.runs), "summary": summary_rows(options.runs),
+        "checks": check_rows(options.runs),
+    })
