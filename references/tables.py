@@ -54,7 +54,8 @@ def write(folder, described, tables):
         resources.append({"name": name, "path": path, "hash": "", "schema": schema})
     description = folder / "datapackage.json"
     package = json.loads(description.read_text())
-    for used in ("scikit-fem", "numpy", "scipy"):
+    for line in (folder / "requirements.txt").read_text().split():
+        used = line.split("==")[0]
         assert f"{used} {version(used)}" in package["method"], f"the method names another version of {used}"
     package["resources"] = resources
     for resource in resources:

@@ -1,13 +1,13 @@
 """Computes the tables of this folder. `python compute.py --help` says how; README.md says what."""
 
 import argparse
-import time
 from pathlib import Path
 
 import numpy as np
 
 import bar
 import checks
+import kept
 import package
 import tables
 from tables import doubt, fixed, number, widest
@@ -32,17 +32,10 @@ def file(law, gravity, layers, step):
     return f"{law}_{gravity}_{layers}_{step:.3g}.npz"
 
 
-def simulate(folder):
-    for run in runs():
-        path = folder / file(**run)
-        if path.exists():
-            continue
-        start = time.process_time()
-        result = bar.run(**run)
-        np.savez_compressed(path, **result)
-        found = summary(result, 0)
-        print(f"{path.stem}: {time.process_time() - start:.0f} s, y {1e3 * found['mean_y']:.4f} +- "
-              f"{1e3 * found['amplitude_y']:.4f} mm, {found['frequency']:.5f} Hz", flush=True)
+def told(_, result):
+    found = summary(result, 0)
+    mean, amplitude = 1e3 * found["mean_y"], 1e3 * found["amplitude_y"]
+    return f"y {mean:.4f} +- {amplitude:.4f} mm, {found['frequency']:.5f} Hz"
 
 
 def summary(run, station):
@@ -115,7 +108,7 @@ if __name__ == "__main__":
     parser.add_argument("--runs", type=Path, required=True, help="folder that keeps the raw results")
     options = parser.parse_args()
     options.runs.mkdir(parents=True, exist_ok=True)
-    simulate(options.runs)
+    kept.make(options.runs, runs(), file, bar.run, told)
     tables.write(Path(__file__).parent, package.TABLES, {
         "series": series_rows(options.runs), "summary": summary_rows(options.runs),
         "checks": check_rows(options.runs),

@@ -14,6 +14,7 @@ import checks
 import dam
 import package
 import read
+import tables
 
 SHARED = {"lobovsky": 30, "martin_moyce": 20, "square": 20}  # the meshes on which the variants run
 VARIANTS = {
@@ -335,8 +336,8 @@ def pressure(folder):
         yield from zip([f"{t:.3f}" for t in times], [n] * len(times), *cells, strict=True)
 
 
-def tables(folder):
-    """All tables."""
+def every_table(folder):
+    """The rows of each."""
     return {
         "series": series(folder),
         "levels": levels(folder),
@@ -345,6 +346,11 @@ def tables(folder):
         "spread": spread(folder),
         "checks": checks.rows(folder),
     }
+
+
+def text(value):
+    """A cell of a number that is not yet text."""
+    return tables.number(value) if isinstance(value, float) else value
 
 
 def main():
@@ -363,9 +369,9 @@ def main():
             simulate(run, options.runs)
             print(f"{run.label}: {time.time() - start:.0f} s", flush=True)
     if options.only is None:
-        package.write(
-            Path(__file__).parent, {name: list(rows) for name, rows in tables(options.runs).items()}
-        )
+        every = every_table(options.runs).items()
+        cells = {name: [[text(value) for value in row] for row in rows] for name, rows in every}
+        tables.write(Path(__file__).parent, package.TABLES, cells)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,4 @@
-"""Writes the tables and lists them in datapackage.json, whose texts stay; checks both as the loader does."""
-
-import csv
-import hashlib
-import io
-import json
-from importlib.metadata import version
+"""Columns of the tables."""
 
 LENGTH, TIME, PRESSURE, ENERGY = "H", "(H/g)^(1/2)", "rho g H", "M g H/2"
 SCENE = ("scene", "string", "-", "lobovsky, martin_moyce or square: see the README")
@@ -91,76 +85,3 @@ TABLES = {
         ("expected", "number", "see column check", "exact"),
     ],
 }
-
-
-def text(value):
-    """A cell of a number that is not yet text."""
-    return f"{value:.6g}" if isinstance(value, float) else value
-
-
-def write(folder, tables):
-    """Writes the tables and the resources of datapackage.json."""
-    resources = []
-    for name, rows in tables.items():
-        fields = [
-            dict(name=field, type=kind, unit=unit, description=about)
-            for field, kind, unit, about in TABLES[name]
-        ]
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow([field["name"] for field in fields])
-        writer.writerows([[text(value) for value in row] for row in rows])
-        path = f"{name}.csv"
-        (folder / path).write_text(out.getvalue(), newline="\n")
-        schema = {"fields": fields, "missingValues": [""]}
-        resources.append({"name": name, "path": path, "hash": "", "schema": schema})
-    description = folder / "datapackage.json"
-    package = json.loads(description.read_text())
-    for used in ("numpy", "scipy"):
-        assert f"{used} {version(used)}" in package["method"], f"the method names another version of {used}"
-    package["resources"] = resources
-    for resource in resources:
-        digest = hashlib.sha256((folder / resource["path"]).read_bytes()).hexdigest()
-        resource["hash"] = f"sha256:{digest}"
-    description.write_text(json.dumps(package, indent=2, ensure_ascii=False) + "\n")
-    check(folder)
-
-
-def check(folder):
-    """The rules of validation/base/src/reference.rs."""
-    package = json.loads((folder / "datapackage.json").read_text())
-    assert package["name"] == folder.resolve().name
-    allowed = {
-        "profile",
-        "name",
-        "title",
-        "description",
-        "licenses",
-        "sources",
-        "resources",
-        "method",
-        "uncertainty",
-        "caveats",
-        "errata",
-    }
-    assert set(package) <= allowed, set(package) - allowed
-    assert all(package[key].strip() for key in ("title", "description", "method", "uncertainty"))
-    assert package["licenses"] and all(one["name"] for one in package["licenses"])
-    assert package["sources"] and all(
-        one["title"] and (one.get("doi") or one.get("place")) for one in package["sources"]
-    )
-    for resource in package["resources"]:
-        content = (folder / resource["path"]).read_bytes()
-        assert resource["hash"] == "sha256:" + hashlib.sha256(content).hexdigest()
-        fields = resource["schema"]["fields"]
-        assert all(field["unit"].strip() and field["description"].strip() for field in fields)
-        header, *rows = csv.reader(io.StringIO(content.decode()))
-        assert header == [field["name"] for field in fields] and rows, resource["path"]
-        for row in rows:
-            assert len(row) == len(fields), row
-            for field, cell in zip(fields, row, strict=True):
-                if field["type"] == "number" and cell:
-                    assert abs(float(cell)) < float("inf"), (resource["path"], row)
-                if field["type"] == "integer" and cell:
-                    int(cell)
-        print(f"{resource['path']}: {len(rows)} rows, {len(content)} bytes")

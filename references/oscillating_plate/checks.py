@@ -8,7 +8,6 @@ import skfem
 from skfem.helpers import ddot, dot, eye, sym_grad, trace
 
 import beam
-import compute
 import plane_strain
 import plate
 
@@ -93,19 +92,19 @@ def rows():
     for layers in (4, 8, 16):
         out.append(("deflection of the end at rest under a small weight over that of a thin plate, "
                     "expected: on 32 elements", "hencky", layers, "", sag(layers), finest))
-    slow = plate.run("hencky", 8, compute.STEP, speed=1e-3 * plate.SPEED, until=0.3)
+    slow = plate.run("hencky", 8, plate.STEP, speed=1e-3 * plate.SPEED, until=0.3)
     t, y = slow["t"], slow["path"][:, 0, 1]
     k = np.flatnonzero(y[1:-1] * y[2:] < 0)[1] + 1
     period = t[k] + (t[k + 1] - t[k]) * y[k] / (y[k] - y[k + 1])
     out.append(("period of a swing at a thousandth of the speed [s], expected: of small swings", "hencky",
-                8, compute.STEP, period, 2 * np.pi / own_frequency(8)))
+                8, plate.STEP, period, 2 * np.pi / own_frequency(8)))
     for law in ("hencky", "jaumann"):
         time, path = plate.explicit(law, 2, 0.15)
-        implicit = plate.run(law, 2, compute.STEP, until=0.15)
+        implicit = plate.run(law, 2, plate.STEP, until=0.15)
         other = np.array([np.interp(implicit["t"], time, path[:, k]) for k in range(2)]).T
         worst = np.abs(other - implicit["path"][:, 0]).max()
         out.append(("greatest distance of the end from a run by central differences, t up to 0.15 s [m]",
-                    law, 2, compute.STEP, worst, 0.0))
+                    law, 2, plate.STEP, worst, 0.0))
     body = plate.body(8)
     out.append(("mass of the plate [kg/m]", "", 8, "", body.mass.sum(),
                 plate.RUBBER.density * plate.LENGTH * plate.THICKNESS))

@@ -1,19 +1,20 @@
 """Computes the tables of this folder. `python compute.py --help` says how; README.md says what."""
 
 import argparse
-import time
 from pathlib import Path
 
 import numpy as np
 
 import checks
+import kept
 import package
 import plane_strain
 import plate
 import tables
+from plate import STEP
 from tables import doubt, fixed, number, richardson, widest
 
-MESHES, STEP = (4, 8, 16), 5e-4
+MESHES = (4, 8, 16)
 MIDDLE = 8  # the mesh on which other clamps are
 SHARED = 4  # the mesh on which the half step is
 SAMPLE = 0.002
@@ -33,17 +34,9 @@ def file(law, layers, step, behind=0.0):
     return f"{law}_{layers}_{step:.3g}{f'_{behind:.3g}' if behind else ''}.npz"
 
 
-def simulate(folder):
-    for run in runs():
-        path = folder / file(**run)
-        if path.exists():
-            continue
-        start = time.process_time()
-        result = plate.run(**run)
-        np.savez_compressed(path, **result)
-        found = summary(result, 0)
-        print(f"{path.stem}: {time.process_time() - start:.0f} s, period {found['period']:.7f} s, iterations "
-              f"{result['iterations']:.1f}, factors {result['factored']}", flush=True)
+def told(_, result):
+    period = summary(result, 0)["period"]
+    return f"period {period:.7f} s, iterations {result['iterations']:.1f}, factors {result['factored']}"
 
 
 # --- Numbers of one run -------------------------------------------------------------------------------
@@ -158,7 +151,7 @@ if __name__ == "__main__":
     parser.add_argument("--runs", type=Path, required=True, help="folder that keeps the raw results")
     options = parser.parse_args()
     options.runs.mkdir(parents=True, exist_ok=True)
-    simulate(options.runs)
+    kept.make(options.runs, runs(), file, plate.run, told)
     tables.write(Path(__file__).parent, package.TABLES, {
         "series": series_rows(options.runs), "summary": summary_rows(options.runs),
         "clamps": clamp_rows(options.runs), "checks": check_rows(options.runs),

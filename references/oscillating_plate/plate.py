@@ -12,7 +12,7 @@ YOUNG, POISSON = 2e6, 0.3975
 LENGTH, THICKNESS = 0.2, 0.02
 SPEED = 0.01 * RUBBER.sound_speed  # of the tip at the start
 FIRST_MODE = 1.875104068711961
-UNTIL = 0.8
+UNTIL, STEP = 0.8, 5e-4
 LAYERS = (5, 10, 20)  # particles through the thickness of the case
 
 

@@ -3,12 +3,12 @@
 import argparse
 import functools
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 
 import checks
+import kept
 import package
 import ring
 import tables
@@ -48,17 +48,8 @@ def file(law, speed, layers, penalty=STIFFNESS, courant=COURANT, until=200.0, se
     return f"{law}_{speed}_{layers}_{penalty}_{courant}{f'_{seed}' if seed else ''}.npz"
 
 
-def simulate(folder, speed=None):
-    for run in runs():
-        path = folder / file(**run)
-        if path.exists() or speed not in (None, run["speed"]):
-            continue
-        start = time.process_time()
-        result = ring.collide(**run)
-        seconds = time.process_time() - start
-        np.savez_compressed(path, **result, seconds=seconds)
-        restitution = result["v_c"][-1] / run["speed"]
-        print(f"{path.stem}: {seconds:.0f} s, dt {result['dt']:.4g}, v_c/V {restitution:.5f}", flush=True)
+def told(run, result):
+    return f"dt {result['dt']:.4g}, v_c/V {result['v_c'][-1] / run['speed']:.5f}"
 
 
 # --- Numbers of one run -------------------------------------------------------------------------------
@@ -279,7 +270,8 @@ if __name__ == "__main__":
     parser.add_argument("--speed", type=float, help="simulate this speed only and write no table")
     options = parser.parse_args()
     options.runs.mkdir(parents=True, exist_ok=True)
-    simulate(options.runs, options.speed)
+    wanted = [run for run in runs() if options.speed in (None, run["speed"])]
+    kept.make(options.runs, wanted, file, ring.collide, told)
     if options.speed is not None:
         sys.exit()
     every_family = [Family(options.runs, law, speed) for law in MESHES for speed in SPEEDS]
