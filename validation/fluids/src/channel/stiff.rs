@@ -80,6 +80,13 @@ static SOUND: Cause = Cause::new(
     "2026-11-23",
 );
 
+static EDGE: Cause = Cause::new(
+    "On a lattice with h/dx = 1 some neighbours are exactly at the edge of the support, where round-off and \
+     the sliding of rows decide whether they are counted, though they exert no force.",
+    "A count of pair sweeps in the record beside that of pair interactions.",
+    "2026-11-23",
+);
+
 /// The gates of one pair.
 fn gates(flow: Flow, row: &Row) -> Vec<(Gate, f64)> {
     let id = |what: &str| format!("{}.stiff.{}.re{}.{what}", flow.name(), row.rows, row.re);
@@ -171,5 +178,12 @@ fn creeping(flow: Flow, found: &[Row]) -> Option<(Gate, f64)> {
         Evidence::Theory,
         because,
     );
+    let known = "Both runs make 48 steps with as many stages at 40 rows, so the number of pair sweeps is the \
+                 same; counted pairs differ by 1.5 %. The bound allows 5 % for pairs at the edge, as for \
+                 Poiseuille flow against `modern`.";
+    let gate = match flow {
+        Flow::Couette => gate.with_limitation(Bound::Below(1.05), known).because_of(&EDGE),
+        Flow::Poiseuille => gate,
+    };
     Some((gate, pairs(1e-4) / pairs(0.0125)))
 }
