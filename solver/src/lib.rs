@@ -32,7 +32,7 @@ pub mod integrator;
 pub mod kernel;
 mod neighbours;
 pub mod numbers;
-mod parallel;
+pub mod parallel;
 pub mod particle_data;
 pub mod particles;
 pub mod physics;
@@ -56,7 +56,7 @@ pub use particle_data::{
 pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
-pub use simulation::{Divergence, Flow, Observer, Outcome, Simulation, Stepper};
+pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};
 pub use super_steps::SuperSteps;
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,

@@ -5,7 +5,7 @@
 use std::sync::Mutex;
 
 /// Does `work(item)` for all items, on several threads or in order.
-pub(crate) fn for_each<T>(
+pub fn for_each<T>(
     items: impl Iterator<Item = T> + Send,
     parallel: bool,
     work: &(dyn Fn(T) + Sync),

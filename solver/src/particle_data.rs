@@ -7,6 +7,7 @@ use crate::{
     neighbours::{BLOCK, Lists, Neighbours},
     numbers::Numbers,
     particles::{Evolved, Fixed, Particle, Role},
+    walls::Map,
 };
 
 /// What was done, counted.
@@ -254,8 +255,48 @@ impl<X: Numbers> ParticleData<X> {
         })
     }
 
+    /// The moving particles as they are stored.
+    pub fn fluid_state(&self) -> &[Evolved<X>] {
+        &self.state[..self.counts[0]]
+    }
+
+    /// The same, to be advanced.
+    pub fn fluid_mut(&mut self) -> &mut [Evolved<X>] {
+        &mut self.state[..self.counts[0]]
+    }
+
+    /// The images as they follow the particles: which earlier column each copies, and by which map.
+    pub fn images(&self) -> impl ExactSizeIterator<Item = (usize, &Map)> {
+        let Neighbours { images, maps, .. } = &self.neighbours;
+        images.iter().map(|image| (image.source as usize, &maps[image.map as usize]))
+    }
+
+    /// Goes to a checkpoint of the same scene whose neighbour lists are those that there are; else says what
+    /// is wrong, and has changed nothing.
+    pub fn resume(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {
+        from.check()?;
+        let ids = from.particles.iter().map(|(id, _)| *id);
+        if from.built_at != self.neighbours.built_at || !ids.eq(self.fixed.iter().map(|f| f.id)) {
+            return Err("particles of another reference");
+        }
+        self.put(&from.particles);
+        self.progress = from.progress;
+        Ok(())
+    }
+
+    /// Looks for a particle that is out of bounds.
+    pub fn check_bounds(&self) -> Result<(), Fault> {
+        let extent = self.extent(&self.state, &self.neighbours.built_at);
+        self.check(&self.state, &[extent]).map(|_| ())
+    }
+
+    /// Tells this watch of phases from now on; `None` tells nobody.
+    pub fn set_watch(&mut self, watch: Option<PhaseWatch>) {
+        self.watch = watch;
+    }
+
     /// Everything that is needed to continue from here; `lag` is the lag of the velocities \[s\].
-    pub(crate) fn checkpoint(&self, lag: f64) -> Checkpoint<X> {
+    pub fn checkpoint(&self, lag: f64) -> Checkpoint<X> {
         Checkpoint {
             progress: self.progress,
             lag,
@@ -265,7 +306,7 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Memory held \[bytes\].
-    pub(crate) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         self.state.capacity() * size_of::<Evolved<X>>()
             + self.fixed.capacity() * size_of::<Fixed>()
             + self.order.capacity() * size_of::<u32>()
@@ -295,14 +336,14 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Tells that a phase begins.
-    pub(crate) fn enter(&self, phase: Phase) {
+    pub fn enter(&self, phase: Phase) {
         if let Some(tell) = &self.watch {
             tell(phase);
         }
     }
 
     /// Counts a pair sweep that begins, of forces alone or one that completes a right-hand side.
-    pub(crate) fn count(&mut self, phase: Phase) {
+    pub fn count(&mut self, phase: Phase) {
         self.enter(phase);
         self.progress.work.pair_interactions += self.neighbours.pairs();
         if phase != Phase::Forces {

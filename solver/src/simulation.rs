@@ -4,7 +4,8 @@ use std::{mem::take, ops::Deref};
 
 use crate::{
     engine::Engine,
-    integrator::{Integrator, PhysicsOf, Scheme},
+    integrator::{Integrator, PhysicsOf, Scheme, Stepped},
+    numbers::Numbers,
     particle_data::{Checkpoint, Fault, ParticleData, PhaseWatch},
     particles::{Column, Rate},
     physics::Derived,
@@ -103,34 +104,82 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     fn bytes(&self) -> usize;
     /// Tells this watch of the phases of steps from now on; `None` tells nobody.
     fn watch(&mut self, watch: Option<PhaseWatch>);
+    /// The energies that its forces derive from, if they do \[J/m\].
+    fn potential(&self) -> Option<Potential> {
+        None
+    }
+}
+
+/// Energies that forces derive from, per unit depth \[J/m\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Potential {
+    /// Stored by the change of volume.
+    pub compression: f64,
+    /// Stored by the change of shape.
+    pub shear: f64,
+    /// Stored by what resists modes that deform no particle.
+    pub hourglass: f64,
+    /// Of contacts and of weight.
+    pub loads: f64,
+}
+
+/// A simulation by its time step, for [`advance`].
+pub trait Steps<X>: Stepper<X> {
+    /// Its particles.
+    fn data_mut(&mut self) -> &mut ParticleData<X>;
+    /// One time step by dt \[s\].
+    fn step(&mut self, dt: f64) -> Stepped;
+    /// Brings every quantity to the same time, and refreshes the derived data.
+    fn synchronise(&mut self) -> Stepped;
+}
+
+/// [`Stepper::advance`] of a simulation by its time step.
+pub fn advance<X: Numbers>(
+    simulation: &mut impl Steps<X>,
+    until: f64,
+    dt: f64,
+    observer: &mut dyn Observer<X>,
+) -> Outcome {
+    let now = &mut simulation.data_mut().progress;
+    if now.call[1..] != [until, dt] {
+        (now.call, now.made) = ([now.time, until, dt], 0);
+    }
+    let (start, made) = (now.call[0], now.made);
+    let (span, steps) = (until - start, count_steps(start, until, dt));
+    now.dt = if steps > 0 { span / steps as f64 } else { now.dt };
+    let dt = now.dt;
+    for k in made + 1..=steps {
+        if let Err(fault) = simulation.step(dt) {
+            return diverged(simulation, fault);
+        }
+        let now = &mut simulation.data_mut().progress;
+        now.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
+        (now.made, now.work.steps) = (k, now.work.steps + 1);
+        if observer.after_step(simulation) == Flow::Stop {
+            return Outcome::Stopped;
+        }
+    }
+    simulation.data_mut().progress.call = [0.0; 3];
+    if !observer.synchronises() {
+        return Outcome::Reached;
+    }
+    // Steps do without the sums that this takes, which do not count as their work.
+    let pairs = simulation.work().pair_interactions;
+    let synchronised = simulation.synchronise();
+    simulation.data_mut().progress.work.pair_interactions = pairs;
+    match synchronised {
+        Ok(()) => Outcome::Reached,
+        Err(fault) => diverged(simulation, fault),
+    }
+}
+
+fn diverged<X: Numbers>(data: &ParticleData<X>, fault: Fault) -> Outcome {
+    Outcome::Diverged(Divergence { step: data.work().steps, time: data.time(), fault })
 }
 
 impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn advance(&mut self, until: f64, dt: f64, observer: &mut dyn Observer<S::Extra>) -> Outcome {
-        let now = &mut self.engine.data.progress;
-        if now.call[1..] != [until, dt] {
-            (now.call, now.made) = ([now.time, until, dt], 0);
-        }
-        let (start, made) = (now.call[0], now.made);
-        let (span, steps) = (until - start, count_steps(start, until, dt));
-        now.dt = if steps > 0 { span / steps as f64 } else { now.dt };
-        let dt = now.dt;
-        for k in made + 1..=steps {
-            let mut state = take(&mut self.engine.data.state);
-            let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
-            self.engine.data.state = state;
-            if let Err(fault) = stepped {
-                return self.diverged(fault);
-            }
-            let now = &mut self.engine.data.progress;
-            now.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
-            (now.made, now.work.steps) = (k, now.work.steps + 1);
-            if observer.after_step(self) == Flow::Stop {
-                return Outcome::Stopped;
-            }
-        }
-        self.engine.data.progress.call = [0.0; 3];
-        if observer.synchronises() { self.synchronise() } else { Outcome::Reached }
+        advance(self, until, dt, observer)
     }
     fn checkpoint(&self) -> Checkpoint<S::Extra> {
         let mut checkpoint = self.engine.data.checkpoint(self.integrator.lag());
@@ -168,6 +217,26 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     }
 }
 
+impl<S: Scheme> Steps<S::Extra> for Simulation<S> {
+    fn data_mut(&mut self) -> &mut ParticleData<S::Extra> {
+        &mut self.engine.data
+    }
+    fn step(&mut self, dt: f64) -> Stepped {
+        let mut state = take(&mut self.engine.data.state);
+        let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
+        self.engine.data.state = state;
+        stepped
+    }
+    fn synchronise(&mut self) -> Stepped {
+        let Self { engine, integrator } = self;
+        let mut state = take(&mut engine.data.state);
+        let synchronised =
+            integrator.synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
+        engine.data.state = state;
+        synchronised
+    }
+}
+
 /// A scene that advances in time. It dereferences to [`ParticleData`], which gives time, work and particles.
 pub struct Simulation<S: Scheme> {
     pub(crate) engine: Engine<PhysicsOf<S>>,
@@ -193,21 +262,12 @@ fn count_steps(start: f64, until: f64, dt_max: f64) -> u64 {
 }
 
 impl<S: Scheme> Simulation<S> {
-    /// Brings every quantity to the same time, and refreshes the derived data. Steps do without the sums that
-    /// this takes, which do not count as their work.
-    fn synchronise(&mut self) -> Outcome {
-        let Self { engine, integrator } = self;
-        let mut state = take(&mut engine.data.state);
-        let pairs = engine.data.progress.work.pair_interactions;
-        let synchronised =
-            integrator.synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
-        engine.data.progress.work.pair_interactions = pairs;
-        engine.data.state = state;
-        synchronised.map_or_else(|fault| self.diverged(fault), |()| Outcome::Reached)
-    }
-
-    fn diverged(&self, fault: Fault) -> Outcome {
-        Outcome::Diverged(Divergence { step: self.work().steps, time: self.time(), fault })
+    /// The particles alone, with their neighbour lists, for a method that is none of [`Scheme`] and keeps
+    /// the lists, however far particles move.
+    pub fn into_particles(self) -> ParticleData<S::Extra> {
+        let mut data = self.engine.data;
+        data.reach2 = f64::MAX;
+        data
     }
 
     /// The forces and the drift, which may be changed between two calls of [`Stepper::advance`], for

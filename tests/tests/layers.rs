@@ -8,16 +8,21 @@ use std::path::{Path, PathBuf};
 use crate::tidy::root;
 
 /// A crate, its folder, and the crates of this project that it may know.
-const LAYERS: [(&str, &str, &[&str]); 13] = [
+const LAYERS: [(&str, &str, &[&str]); 14] = [
     ("lanes", "solver/lanes", &[]),
     ("solver", "solver", &["lanes"]),
+    ("lagrangian", "solver/lagrangian", &["lanes", "solver"]),
     ("base", "validation/base", &[]),
     ("report", "validation/report", &["base"]),
     ("maths", "validation/maths", &["solver", "base"]),
     ("harness", "validation/harness", &["solver", "base", "report", "maths"]),
     ("fluids", "validation/fluids", &["solver", "base", "report", "maths", "harness"]),
     ("waters", "validation/waters", &["solver", "base", "report", "maths", "harness"]),
-    ("solids", "validation/solids", &["solver", "base", "report", "maths", "harness"]),
+    (
+        "solids",
+        "validation/solids",
+        &["solver", "lagrangian", "base", "report", "maths", "harness"],
+    ),
     ("lattice", "validation/lattice", &["solver", "base", "report", "maths", "harness"]),
     ("validation", "validation/catalogue", &EVERY),
     ("touchstone", "validation", &WITH_VALIDATION),

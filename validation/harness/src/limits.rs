@@ -90,6 +90,11 @@ impl Limits {
             .with(Mechanism::Diffusion, of.density_diffusion)
     }
 
+    /// Those of a leapfrog whose elastic waves have this limit \[s\], and which damps nothing.
+    pub fn of_waves(limit: f64) -> Self {
+        Self { together: limit, ..Self::REFUSED }.with(Mechanism::Waves, limit)
+    }
+
     /// The same with another limit of a mechanism alone \[s\].
     #[must_use]
     pub fn with(mut self, mechanism: Mechanism, limit: f64) -> Self {

@@ -6,7 +6,7 @@ use base::gate::Cause;
 pub static FREE_FACES: Cause = Cause::new(
     "Velocity gradients are not corrected where neighbours are missing, so free faces of an elastic body are \
      too soft and mistake rotation for strain.",
-    "Corrected gradients at free faces, or a total Lagrangian form of the equations.",
+    "Corrected gradients at free faces, or the total Lagrangian form of the variant `lagrangian`.",
     "2026-11-21",
 );
 
@@ -16,6 +16,22 @@ pub static SOFT_CONTACT: Cause = Cause::new(
      like a spring.",
     "A law of contact between the surfaces of bodies, or finer spacing.",
     "2026-11-21",
+);
+
+/// Short waves are slow.
+pub static DISPERSION: Cause = Cause::new(
+    "Waves of some spacings are slower than long ones, so a front leaves waves behind it, which keep a share \
+     of the energy.",
+    "Finer spacing, or viscosity that acts in shocks alone.",
+    "2026-11-23",
+);
+
+/// Contact of particles is rough.
+pub static ROUGH_CONTACT: Cause = Cause::new(
+    "Faces touch particle by particle, so a face is as rough as its spacing, and opposite particles push \
+     each other aside.",
+    "Contact between lines through the particles of a face, or finer spacing.",
+    "2026-11-23",
 );
 
 /// Bodies that touch are one.
@@ -44,7 +60,7 @@ pub static NO_VISCOSITY: Cause = Cause::new(
 /// Artificial stress is not elastic.
 pub static STRESS_ADDS_ENERGY: Cause = Cause::new(
     "Artificial stress weakens tension and stores no energy for it, so it adds energy to a body that bends.",
-    "A total Lagrangian form of the equations, which needs no artificial stress.",
+    "The variant `lagrangian`, which needs no artificial stress.",
     "2026-11-21",
 );
 
@@ -52,7 +68,7 @@ pub static STRESS_ADDS_ENERGY: Cause = Cause::new(
 pub static TEARING: Cause = Cause::new(
     "Artificial stress delays the tensile instability without removing it, so rubber tears at high speeds \
      or fine spacing.",
-    "A total Lagrangian form of the equations, which has no tensile instability.",
+    "The variant `lagrangian`, which has no tensile instability.",
     "2026-11-21",
 );
 

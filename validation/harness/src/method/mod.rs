@@ -22,6 +22,7 @@ use solver::{
 
 use crate::{context::Context, limits::Limits};
 pub use medium::{Knob, Medium};
+pub use mutate::mutate;
 pub use terms::{Boundary, FirstRow, FromMedium};
 
 /// A scheme whose terms and walls can be constructed from a medium.
@@ -45,6 +46,9 @@ pub struct Parts<X = ()> {
     pub particles: Vec<Particle<X>>,
     /// Planes that mirror the fluid, if the walls are of mirror particles.
     pub mirrors: Vec<PlaneWall>,
+    /// The number of the body of each particle, for methods of solids that keep bodies apart; empty if there
+    /// is one body.
+    pub bodies: Vec<u32>,
     /// Verlet skin \[m\], if not the usual one.
     pub skin: Option<f64>,
     /// Bounds beyond which the run counts as diverged.
@@ -63,9 +67,9 @@ impl<X> Parts<X> {
         particles: Vec<Particle<X>>,
         context: &Context,
     ) -> Self {
-        let (mirrors, limits) = (Vec::new(), solver::Limits::default());
+        let (mirrors, bodies, limits) = (Vec::new(), Vec::new(), solver::Limits::default());
         let &Context { threads, mutation, .. } = context;
-        Self { medium, domain, particles, mirrors, skin: None, limits, threads, mutation }
+        Self { medium, domain, particles, mirrors, bodies, skin: None, limits, threads, mutation }
     }
 }
 
@@ -74,8 +78,8 @@ pub fn scene<S>(mut parts: Parts<S::Extra>) -> Scene<S>
 where
     S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
 {
-    mutate::mutate(&mut parts);
-    let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation } = parts;
+    mutate(&mut parts);
+    let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation, .. } = parts;
     let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
     let walls = S::Walls::new(&medium, mirrors);
     let mut scene = Scene::new(medium.h, domain, particles, forces, drift, walls);
@@ -105,6 +109,8 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     pub support: f64,
     /// The theory of its time step.
     pub theory: time_step::Integrator,
+    /// The largest stable step in a medium at rest \[s\], of a method whose waves are not those of terms.
+    pub limit: Option<fn(&Medium) -> f64>,
     /// The settings that only its terms and walls read.
     pub uses: Vec<Knob>,
     /// The simulation of a scene with these parts.
@@ -127,6 +133,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             first_row: S::Walls::FIRST_ROW,
             support: S::Kernel::SUPPORT,
             theory: S::Integrator::THEORY,
+            limit: None,
             uses: [S::Forces::uses(), S::Drift::uses(), S::Walls::uses()].concat(),
             build,
             weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),

@@ -2,6 +2,7 @@
 //! to round-off, and the part of its error that no correct program can avoid.
 
 pub mod channel;
+pub mod lagrangian;
 pub mod lattice;
 mod stepping;
 pub mod super_steps;

@@ -2,8 +2,9 @@
 //! term that is not elastic.
 
 use harness::method::FromMedium;
+use lagrangian::{Law, Load, Solid};
 use solver::{
-    ArtificialViscosity, CauchyStress, Continuity, JaumannRate, Linear, Scheme, Simulation,
+    ArtificialViscosity, CauchyStress, Continuity, JaumannRate, Kernel, Linear, Scheme, Simulation,
     Stepper, Symmetric, Term, terms::TensileStress,
 };
 
@@ -62,6 +63,13 @@ impl<S: Scheme<Extra = Symmetric, Forces: Stressed>> Metered for Simulation<S> {
         let stressed = power::<S, Law<<S::Forces as Stressed>::Tensile>>(&meter, rings);
         let viscosity = power::<S, ArtificialViscosity<Linear>>(&meter, rings);
         vec![(ELASTIC, elastic), (STRESS, stressed - elastic), (VISCOSITY, viscosity)]
+    }
+}
+
+/// Its forces derive from an energy, so that no term adds any.
+impl<K: Kernel, L: Law, C: Load> Metered for Solid<K, L, C> {
+    fn powers(&self, _: &Rings) -> Items {
+        Items::new()
     }
 }
 

@@ -2,7 +2,7 @@
 //! cost, an error budget, step limits, maps.
 
 use super::{
-    RUBBER_RINGS, RingSettings, budget,
+    LAGRANGIAN, RUBBER_RINGS, RingSettings, budget,
     metrics::{
         Fate, HEIGHT_MAX_ERROR, PIECES_MOST, RESTITUTION, RESTITUTION_ERROR, TORN_AT,
         WIDTH_MIN_ERROR,
@@ -46,7 +46,7 @@ pub fn declaration(tier: Tier) -> Declaration {
 
 /// What the report says first of the case.
 fn card(accuracy: &Accuracy) -> Card {
-    let reference = Reference::of(&RingSettings::default());
+    let reference = Reference::of("seed", &RingSettings::default());
     let number = reference.and_then(|reference| reference.number(RESTITUTION));
     Card {
         title: "Colliding rubber rings, 0.059 c0 each",
@@ -70,7 +70,7 @@ pub fn shown(tier: Tier) -> &'static str {
 
 fn histories(tier: Tier) -> Curves {
     let variant = shown(tier);
-    let reference = Reference::of(&RingSettings::default());
+    let reference = Reference::of(variant, &RingSettings::default());
     let labels = ["centre of mass [L]", "its velocity [c0]", "width [L]", "height [L]"];
     let panel = |(k, name): (usize, &'static str)| {
         let line = |spacing: &f64| CurveOf {
@@ -131,7 +131,8 @@ fn ladders(tier: Tier) -> Vec<Ladder> {
         let spacings = COARSE.iter().chain(plan::spacings(variant, tier)).copied();
         ladder(variant, spacings, |spacing| collision(variant, spacing, SPEED))
     };
-    let mut ladders: Vec<Ladder> = ["seed", "leapfrog", "componentwise"].map(over_spacings).into();
+    let mut ladders: Vec<Ladder> =
+        ["seed", "leapfrog", "componentwise", LAGRANGIAN].map(over_spacings).into();
     if tier == Tier::Full {
         let without_xsph =
             |spacing: f64| RUBBER_RINGS.spec("leapfrog", |s| (s.spacing, s.xsph) = (spacing, 0.0));

@@ -7,6 +7,7 @@
 mod budget;
 mod declaration;
 mod extremes;
+mod lagrangian;
 #[cfg(test)]
 mod made_up;
 mod measure;
@@ -29,7 +30,11 @@ use solver::{
     terms::TensileStress,
 };
 
-use crate::solid::Rubber;
+use crate::solid::{
+    Rubber,
+    lagrangian::{self as total, Built},
+};
+use ::lagrangian::Hencky;
 pub use budget::{Metered, Stressed};
 pub use setup::Rings;
 
@@ -91,6 +96,9 @@ where
     })
 }
 
+/// The variant with a stored energy.
+pub const LAGRANGIAN: &str = "lagrangian";
+
 /// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
 const LONG_STEPS: f64 = 0.8;
@@ -122,6 +130,21 @@ fn variants() -> Vec<Composition<RingSettings>> {
             "the seed with the staggered leapfrog: one right-hand side a step, and longer steps",
             method::<PrincipalStress, Leapfrog>(),
             |s| s.courant = LONG_STEPS,
+        )
+        .with(
+            LAGRANGIAN,
+            "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
+             Hencky, contact between the rings, velocity Verlet; nothing dissipates",
+            total::named(|parts| {
+                Ok(match total::solid::<Hencky>(parts)? {
+                    Built::One(solid) => Box::new(solid),
+                    Built::Several(solid) => Box::new(solid),
+                })
+            }),
+            |s| {
+                (s.alpha, s.beta, s.xsph, s.xi) = (0.0, 0.0, 0.0, 0.0);
+                total::choose(s);
+            },
         )
         .all
 }

@@ -1,8 +1,8 @@
 //! The runs: variants over spacings at the paper's speed, other speeds, a rotated scene.
 
 use super::{
-    LONG_STEPS, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings, extremes, measure::NEIGHBOURS,
-    metrics::*, reference::Reference,
+    LAGRANGIAN, LONG_STEPS, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings, extremes, lagrangian,
+    measure::NEIGHBOURS, metrics::*, reference::Reference,
 };
 use crate::{
     causes::{FREE_FACES, SHARED_IMPULSE, SOFT_CONTACT, TEARING},
@@ -33,6 +33,7 @@ pub fn spacings(variant: &str, tier: Tier) -> &'static [f64] {
     match (tier, variant) {
         // The cheapest variant shows what the spacing does.
         (_, "leapfrog") => &[FIVE_LAYERS, 0.1],
+        (_, LAGRANGIAN) => lagrangian::spacings(tier),
         // Without artificial stress rings are torn at twice the speed, see below.
         (Tier::Quick, "no-artificial-stress") => &[],
         (Tier::Quick, _) => &[FIVE_LAYERS],
@@ -86,6 +87,7 @@ pub fn collisions(tier: Tier) -> Vec<Planned> {
             }
         }
     }
+    runs.extend(lagrangian::collisions(tier));
     if tier == Tier::Full {
         // Whether rings of ten layers hold depends on the step at 0.12 c0, and on strength and reach.
         let special = |set: fn(&mut RingSettings)| RUBBER_RINGS.planned("seed", set);
@@ -161,7 +163,7 @@ fn gates(variant: &str, spacing: f64) -> Vec<Gate> {
     let bound = Bound::Below(1e-10);
     gates.push(invariant(id, PUSHED_BY_ITSELF, bound, free));
     gates.push(invariant(id, MIRROR, Bound::Below(1e-6), EXACT_MIRROR));
-    gates.extend(reference_gates(id, spacing, SPEED));
+    gates.extend(reference_gates(variant, id, spacing, SPEED));
     gates
 }
 
@@ -173,9 +175,9 @@ fn whole(id: &str, because: &str) -> [Gate; 2] {
 }
 
 /// Distances from finite elements; no setting was chosen with those at 0.03 c0.
-fn reference_gates(id: &str, spacing: f64, speed: f64) -> Vec<Gate> {
+fn reference_gates(variant: &str, id: &str, spacing: f64, speed: f64) -> Vec<Gate> {
     let settings = RingSettings { speed, ..RingSettings::default() };
-    let Some(exact) = Reference::of(&settings) else { return Vec::new() };
+    let Some(exact) = Reference::of(variant, &settings) else { return Vec::new() };
     let layers = (1.0 / spacing).round() as usize;
     let softer = faces::known_excess(layers, settings.h_over_dx);
     let distance = Distance { id, spacing, speed, exact, softer };
@@ -421,7 +423,7 @@ fn fast_gates(variant: &str, spacing: f64, speed: f64) -> Vec<Gate> {
         _ => [pieces, holes],
     });
     if variant == "seed" && speed == 0.03 {
-        gates.extend(reference_gates(id, spacing, speed));
+        gates.extend(reference_gates(variant, id, spacing, speed));
     }
     gates
 }

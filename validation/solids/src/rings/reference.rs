@@ -1,7 +1,9 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
+use ::lagrangian::{Hencky, Law as _};
+
 use super::{
-    RingSettings,
+    LAGRANGIAN, RingSettings,
     measure::{Phase, Series},
     metrics::{
         COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, IMPULSE_ERROR, RMS, X_C_END_ERROR,
@@ -13,28 +15,35 @@ use base::{
     reference::{Reference as Package, ReferenceError, Table},
 };
 
-/// The law whose numbers are compared: the one that is solved, (10) to (12).
-const LAW: &str = "jaumann";
+/// The law of (10) to (12), as the tables name it.
+const JAUMANN: &str = "jaumann";
 
-/// The rows of a table that are of this speed.
-fn rows(table: &Table, speed: f64) -> Result<Vec<usize>, ReferenceError> {
+/// The law that a variant solves, as the tables name it.
+fn law(variant: &str) -> &'static str {
+    if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN }
+}
+
+/// Which rows of a table are looked for: of a law, at a speed.
+type Of = (&'static str, f64);
+
+fn rows(table: &Table, (law, speed): Of) -> Result<Vec<usize>, ReferenceError> {
     let (speeds, laws) = (table.numbers("speed")?, table.texts("law")?);
-    Ok((0..table.len()).filter(|&k| speeds[k] == speed && laws[k] == LAW).collect())
+    Ok((0..table.len()).filter(|&k| speeds[k] == speed && laws[k] == law).collect())
 }
 
-/// The values of a column at this speed, with their uncertainties.
-fn column(table: &Table, name: &str, speed: f64) -> Result<Vec<(f64, f64)>, ReferenceError> {
+/// The values of a column with their uncertainties.
+fn column(table: &Table, name: &str, of: Of) -> Result<Vec<(f64, f64)>, ReferenceError> {
     let (values, spread) = (table.numbers(name)?, table.numbers(&format!("{name}_uncertainty"))?);
-    Ok(rows(table, speed)?.into_iter().map(|k| (values[k], spread[k])).collect())
+    Ok(rows(table, of)?.into_iter().map(|k| (values[k], spread[k])).collect())
 }
 
-/// Largest principal logarithmic strain on the finest mesh at this speed.
-fn largest_strain(checks: &Table, speed: f64) -> Result<f64, ReferenceError> {
+/// Largest principal logarithmic strain on the finest mesh.
+fn largest_strain(checks: &Table, (law, speed): Of) -> Result<f64, ReferenceError> {
     let (names, laws) = (checks.texts("check")?, checks.texts("law")?);
     let (speeds, values) = (checks.optional("speed")?, checks.numbers("value")?);
     let is_it = |k: &usize| {
         let is_strain = names[*k] == "greatest principal logarithmic strain";
-        is_strain && laws[*k] == LAW && speeds[*k] == Some(speed)
+        is_strain && laws[*k] == law && speeds[*k] == Some(speed)
     };
     // Coarse meshes come first.
     Ok((0..checks.len()).rev().find(is_it).map_or(f64::NAN, |k| values[k]))
@@ -64,7 +73,7 @@ pub fn outlines(speed: f64, time: f64) -> Result<Vec<Vec<(f64, f64)>>, Reference
     let table = package.table("outlines")?;
     let (t, faces) = (table.numbers("t")?, table.texts("face")?);
     let (x, y) = (table.numbers("x")?, table.numbers("y")?);
-    let rows = rows(table, speed)?;
+    let rows = rows(table, (JAUMANN, speed))?;
     let face = |name: &str| {
         let of_face = rows.iter().filter(|&&k| (t[k] - time).abs() < 1e-9 && faces[k] == name);
         let half: Vec<(f64, f64)> = of_face.map(|&k| (x[k], y[k])).collect();
@@ -91,21 +100,21 @@ impl Reference {
     /// Columns of the series: centre of mass, its velocity, extents.
     pub const COLUMNS: [&'static str; 4] = ["x_c", "v_c", "width", "height"];
 
-    /// The reference of these settings; `None` where nothing was computed for them.
-    pub fn of(settings: &RingSettings) -> Option<Self> {
+    /// The reference of a variant with these settings; `None` where nothing was computed for them.
+    pub fn of(variant: &str, settings: &RingSettings) -> Option<Self> {
         let s = settings;
         let default = RingSettings::default();
         let same_rings = (s.inner, s.outer, s.centre)
             == (default.inner, default.outer, default.centre)
             && s.shear_modulus == default.shear_modulus
             && s.end == default.end;
-        if same_rings { Self::at(s.speed).ok().flatten() } else { None }
+        if same_rings { Self::at((law(variant), s.speed)).ok().flatten() } else { None }
     }
 
-    fn at(speed: f64) -> Result<Option<Self>, ReferenceError> {
+    fn at(of: Of) -> Result<Option<Self>, ReferenceError> {
         let package = Package::load("rubber_rings")?;
         let table = package.table("summary")?;
-        let rows = rows(table, speed)?;
+        let rows = rows(table, of)?;
         if rows.is_empty() {
             return Ok(None);
         }
@@ -113,18 +122,18 @@ impl Reference {
         let spread = table.numbers("uncertainty")?;
         let summary = rows.iter().map(|&k| (names[k].to_string(), values[k], spread[k])).collect();
         let series = package.table("series")?;
-        let columns = Self::COLUMNS.map(|name| column(series, name, speed));
+        let columns = Self::COLUMNS.map(|name| column(series, name, of));
         let columns = columns.into_iter().collect::<Result<_, _>>()?;
         let t = series.numbers("t")?;
-        let times = self::rows(series, speed)?.into_iter().map(|k| t[k]).collect();
+        let times = self::rows(series, of)?.into_iter().map(|k| t[k]).collect();
         let phases = package.table("phases")?;
         let [impulse, early, half, late] = ["impulse", "impulse_1", "impulse_50", "impulse_99"]
-            .map(|of| column(phases, of, speed));
+            .map(|name| column(phases, name, of));
         let (impulse, early, half, late) = (impulse?, early?, half?, late?);
         let phase = |k: usize| [impulse[k], early[k], half[k], late[k]];
         let phases = (0..impulse.len()).map(phase).collect();
-        let gap = column(series, "gap", speed)?.into_iter().map(|(gap, _)| gap).collect();
-        let strain = largest_strain(package.table("checks")?, speed)?;
+        let gap = column(series, "gap", of)?.into_iter().map(|(gap, _)| gap).collect();
+        let strain = largest_strain(package.table("checks")?, of)?;
         Ok(Some(Self { summary, phases, times, columns, gap, strain }))
     }
 
@@ -221,7 +230,7 @@ mod tests {
 
     #[test]
     fn outlines_have_the_extents_of_the_series() {
-        let paper = Reference::of(&RingSettings::default()).expect("the paper's speed");
+        let paper = Reference::of("seed", &RingSettings::default()).expect("the paper's speed");
         for time in [32.0, 60.0, 80.0, 120.0, 200.0] {
             let lines = outlines(0.059, time).expect("a table");
             assert_eq!(lines.len(), 2);
@@ -242,7 +251,7 @@ mod tests {
 
     #[test]
     fn two_speeds_have_a_reference_and_others_have_none() {
-        let at = |speed| Reference::of(&RingSettings { speed, ..RingSettings::default() });
+        let at = |speed| Reference::of("seed", &RingSettings { speed, ..RingSettings::default() });
         let paper = at(0.059).expect("the paper's speed");
         let (restitution, spread) = paper.number(RESTITUTION).expect("measured");
         assert!((restitution - 0.8004).abs() < 1e-3 && spread < 0.01);
@@ -250,7 +259,9 @@ mod tests {
         assert!((paper.phases[0][0].0 - 1.19129).abs() < 1e-4 && paper.phases.len() == 2);
         let start = paper.columns.iter().map(|c| c[0].0).collect::<Vec<f64>>();
         assert_eq!(start, [5.0, -0.059, 8.0, 8.0]);
+        let other = Reference::of(LAGRANGIAN, &RingSettings::default()).expect("its law");
+        assert_eq!(other.number(RESTITUTION).map(|(value, _)| value), Some(0.795617));
         let softer = RingSettings { shear_modulus: 0.2, ..RingSettings::default() };
-        assert!(Reference::of(&softer).is_none());
+        assert!(Reference::of("seed", &softer).is_none());
     }
 }

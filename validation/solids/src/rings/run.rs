@@ -9,7 +9,7 @@ use super::{
     metrics::{COURANT, MOMENTUM},
     reference::{self, Reference},
 };
-use crate::solid::digest;
+use crate::solid::{Energy, digest};
 use base::functions::hypot;
 use base::record::{Profile, Record, Status};
 use harness::{
@@ -49,7 +49,8 @@ pub fn run(
     let mut series = Series::new(rings);
     let mut budget = context.measures_all().then(Budget::default);
     simulation.advance(0.0, rings.rules.dt(), &mut ());
-    series.sample(0.0, &measure::along_flight(rings, &*simulation));
+    let particles = measure::along_flight(rings, &*simulation);
+    series.sample(0.0, &particles, Energy::known(&*simulation));
     budget.iter_mut().for_each(|budget| budget.sample(rings, &*simulation));
     keep(rings, &*simulation, 0.0, context, &mut record);
     let stops = stops(rings, context);
@@ -73,11 +74,11 @@ pub fn run(
     let particles = measure::along_flight(rings, &*simulation);
     if status == Status::Completed {
         if series.last_time() < Some(simulation.time() * rings.c0) {
-            series.sample(simulation.time(), &particles);
+            series.sample(simulation.time(), &particles, Energy::known(&*simulation));
         }
         series.measure(&mut record);
         budget.iter().for_each(|budget| budget.measure(rings, &mut record));
-        match Reference::of(&rings.settings) {
+        match Reference::of(variant, &rings.settings) {
             Some(reference) => reference.compare(&series, &mut record),
             None => reference::leave_out(&mut record),
         }

@@ -124,7 +124,9 @@ impl Rings {
         let speed = 2.0 * (self.cp + self.v);
         let limits = Limits { density: [0.5 * density, 2.0 * density], speed };
         let (medium, particles) = (self.medium, self.particles());
-        Parts { limits, ..Parts::new(medium, Domain::open(), particles, context) }
+        let body = |k: usize| u32::from(k >= particles.len() / 2);
+        let bodies = (0..particles.len()).map(body).collect();
+        Parts { limits, bodies, ..Parts::new(medium, Domain::open(), particles, context) }
     }
 }
 

@@ -62,7 +62,7 @@ fn is_usual(record: &Record) -> bool {
 /// Usual collisions at a speed that has a reference.
 fn with_reference(tier: Tier, runs: &Runs) -> impl Iterator<Item = (&Record, Reference)> {
     let usual = collisions(tier, runs).into_iter().filter(|record| is_usual(record));
-    usual.filter_map(|record| Some((record, Reference::of(&settings(record))?)))
+    usual.filter_map(|record| Some((record, Reference::of(&record.variant, &settings(record))?)))
 }
 
 /// The finest run of the variant that is shown.
@@ -361,7 +361,7 @@ fn fates_table(tier: Tier, runs: &Runs) -> Table {
 /// Every collision of the plan, with its distances from the reference where there is one.
 fn collisions_table(tier: Tier, runs: &Runs) -> Table {
     let exact = |r: &Record| {
-        let exact = Reference::of(&settings(r)).and_then(|of| of.number(RESTITUTION));
+        let exact = Reference::of(&r.variant, &settings(r)).and_then(|of| of.number(RESTITUTION));
         let exact = exact.map(|(value, spread)| format!("{} ± {}", sig(value, 4), sig(spread, 1)));
         exact.unwrap_or("–".into())
     };

@@ -2,7 +2,7 @@
 
 use base::functions::ln_1p;
 use nalgebra::Vector2;
-use solver::{Evolved, Numbers, Particle, Rate, Stepper, Symmetric};
+use solver::{Evolved, Numbers, Particle, Potential, Rate, Stepper, Symmetric};
 
 use super::Material;
 
@@ -18,9 +18,21 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Of all fluid particles of a simulation.
+    /// Of all fluid particles of a simulation. If its forces derive from energies, these are taken: what
+    /// loads store counts as compression, and what resists modes that deform no particle as shear.
     pub fn of(simulation: &dyn Stepper<Symmetric>, of: &Material) -> Self {
+        if let Some(known) = Self::known(simulation) {
+            return known;
+        }
         simulation.fluid().fold(Self::default(), |sum, (mass, p)| sum + Self::of_one(mass, p, of))
+    }
+
+    /// Of a simulation whose forces derive from energies.
+    pub fn known(simulation: &dyn Stepper<Symmetric>) -> Option<Self> {
+        let Potential { compression, shear, hourglass, loads } = simulation.potential()?;
+        let half = |(mass, p): (f64, &Evolved<Symmetric>)| 0.5 * mass * p.velocity.norm_squared();
+        let kinetic = simulation.fluid().map(half).fold(0.0, |sum, one| sum + one);
+        Some(Self { kinetic, compression: compression + loads, shear: shear + hourglass })
     }
 
     /// Of all of these particles.

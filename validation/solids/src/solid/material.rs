@@ -68,6 +68,9 @@ pub fn limits<D: ?Sized>(
     medium: &Medium,
     h_over_dx: f64,
 ) -> Limits {
+    if let Some(limit) = method.limit {
+        return Limits::of_waves(limit(medium));
+    }
     let wave = material.p_wave_speed();
     let alpha = medium.alpha * material.sound_speed() / wave;
     let waves = time_step::Medium { c0: wave, h: medium.h, nu: 0.0, alpha, delta: 0.0 };

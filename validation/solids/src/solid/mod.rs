@@ -3,6 +3,7 @@
 
 mod energy;
 pub mod faces;
+pub mod lagrangian;
 mod material;
 mod method;
 mod problem;

@@ -1,11 +1,13 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
+use ::lagrangian::Hencky;
+use nalgebra::Vector2;
 use solver::{
-    Domain, EquationOfState, Observer, Particle, PredictorCorrector, PrincipalStress, Stepper,
-    Symmetric, walls::Walls,
+    Domain, EquationOfState, Observer, Particle, PlaneWall, PredictorCorrector, PrincipalStress,
+    Stepper, Symmetric, walls::Walls,
 };
 
-use super::{Bare, Material, Plain, Rubber, limits};
+use super::{Bare, Energy, Material, Plain, Rubber, lagrangian, limits};
 use base::{
     record::{self, Record},
     settings::Settings,
@@ -54,11 +56,25 @@ pub trait Problem: SharedSettings {
     fn end(&self) -> f64;
     /// The particles at the start.
     fn particles(&self) -> Vec<Particle<Symmetric>>;
-    /// What measures a run with these particles at the start.
-    fn watch(&self, start: &[Particle<Symmetric>]) -> Self::Watch;
+    /// What measures a run with these particles at the start, which have these energies if the method knows
+    /// them.
+    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
     /// Open, unless a case has a period.
     fn domain(&self) -> Domain {
         Domain::open()
+    }
+    /// Planes that hold the body, for methods that have no held particles.
+    fn held(&self) -> Vec<PlaneWall> {
+        Vec::new()
+    }
+    /// The number of the body of each particle; empty if there is one body.
+    fn bodies(&self) -> Vec<u32> {
+        Vec::new()
+    }
+    /// Displacement at the start of the particle that is at this place without stress \[m\], for methods
+    /// whose stress follows from displacements.
+    fn displacement(&self, _place: Vector2<f64>) -> Vector2<f64> {
+        Vector2::zeros()
     }
     /// How many particles there are, where the ranges of the settings do not bound it.
     fn count(&self) -> f64 {
@@ -94,6 +110,16 @@ pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition
             "the equations (3), (9)-(12) and nothing that stabilises, stepped by the leapfrog",
             Method::of::<Bare<W>>(),
             |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
+        )
+        .with(
+            "lagrangian",
+            "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
+             Hencky, contact between bodies, velocity Verlet; nothing dissipates",
+            lagrangian::method::<Hencky>(),
+            |s| {
+                leave_out(s, &["alpha", "beta", "xi", "xsph"]);
+                lagrangian::choose(s);
+            },
         )
         .all
 }
@@ -145,8 +171,14 @@ fn run<P: Problem>(
     ];
     let mut record = simulate::begin((P::NAME, variant), settings, method, &numbers, context);
     let (eos, particles) = (material.eos(), settings.particles());
-    let mut watch = settings.watch(&particles);
-    let mut simulation = (method.build)(Parts::new(medium, settings.domain(), particles, context))?;
+    let (mirrors, bodies) = (settings.held(), settings.bodies());
+    let parts = Parts::new(medium, settings.domain(), particles.clone(), context);
+    let mut simulation = (method.build)(Parts { mirrors, bodies, ..parts })?;
+    if simulation.potential().is_some() {
+        lagrangian::displace(&mut *simulation, |place| settings.displacement(place));
+    }
+    let energy = Energy::known(&*simulation);
+    let mut watch = settings.watch(&particles, energy);
     // No stop but the end: one would bring the leapfrog's velocities to a whole step.
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) = Drive::new(&mut *simulation, dt, &[end], &pressure, &mut watch)

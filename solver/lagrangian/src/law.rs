@@ -1,0 +1,266 @@
+//! Stored-energy laws of isotropic solids in plane strain, from the displacement gradient H = F − 1, so that
+//! small strains keep their digits.
+
+use nalgebra::Matrix2;
+use solver::Symmetric;
+
+/// The moduli of small strains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moduli {
+    /// K, the bulk modulus of three dimensions \[Pa\].
+    pub bulk: f64,
+    /// μ, the shear modulus \[Pa\].
+    pub shear: f64,
+}
+
+impl Moduli {
+    /// K + 4μ/3, the modulus of longitudinal waves \[Pa\].
+    pub fn longitudinal(&self) -> f64 {
+        self.bulk + 4.0 / 3.0 * self.shear
+    }
+}
+
+/// A Kirchhoff stress τ = J σ, in parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kirchhoff {
+    /// A third of its trace in three dimensions \[Pa\].
+    pub mean: f64,
+    /// The rest, whose trace in three dimensions is 0: τᶻᶻ = −(τˣˣ + τʸʸ) \[Pa\].
+    pub deviator: Symmetric,
+}
+
+impl Kirchhoff {
+    /// The first Piola-Kirchhoff stress P = τ F⁻ᵀ \[Pa\].
+    #[inline(always)]
+    pub fn first_piola(&self, strain: &Strain) -> Matrix2<f64> {
+        let (mean, Symmetric { xx, yy, xy }) = (self.mean, self.deviator);
+        let h = &strain.gradient;
+        let cofactor = Matrix2::new(1.0 + h.m22, -h.m21, -h.m12, 1.0 + h.m11);
+        Matrix2::new(mean + xx, xy, xy, mean + yy) * cofactor / (1.0 + strain.dilation)
+    }
+}
+
+/// A displacement gradient, and what all laws compute from it.
+#[derive(Clone, Copy, Debug)]
+pub struct Strain {
+    /// H = F − 1.
+    pub gradient: Matrix2<f64>,
+    /// J − 1, with J = det F.
+    pub dilation: f64,
+    /// b − 1 = H + Hᵀ + H Hᵀ, with b = F Fᵀ.
+    pub left: Symmetric,
+}
+
+impl Strain {
+    /// Of this displacement gradient.
+    #[inline(always)]
+    pub fn new(gradient: Matrix2<f64>) -> Self {
+        let h = &gradient;
+        let left = Symmetric {
+            xx: 2.0 * h.m11 + h.m11 * h.m11 + h.m12 * h.m12,
+            yy: 2.0 * h.m22 + h.m21 * h.m21 + h.m22 * h.m22,
+            xy: h.m12 + h.m21 + h.m11 * h.m21 + h.m12 * h.m22,
+        };
+        let dilation = h.m11 + h.m22 + (h.m11 * h.m22 - h.m12 * h.m21);
+        Self { gradient, dilation, left }
+    }
+}
+
+/// A stored energy per reference volume, w(F).
+pub trait Law: Copy + Send + Sync + 'static {
+    /// Its name in settings and reports.
+    const NAME: &'static str;
+    /// Its energies of compression and of shear \[J/m³\], whose sum is w.
+    fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2];
+    /// τ = (∂w/∂F) Fᵀ \[Pa\]. NaN where a law has none, because the material is turned inside out.
+    fn stress(moduli: &Moduli, strain: &Strain) -> Kirchhoff;
+}
+
+/// w = K (J − 1 − ln J) + μ |dev ln V|² with V = b^½ (Hencky 1928): the pressure K(1/J − 1) is that of
+/// equation (12), and the strain is logarithmic.
+#[derive(Clone, Copy, Debug)]
+pub struct Hencky;
+
+impl Hencky {
+    /// ln J, and the deviator in the plane of ln V.
+    #[inline(always)]
+    fn logarithm(strain: &Strain) -> (f64, [f64; 2]) {
+        let Symmetric { xx, yy, xy } = strain.left;
+        // b = m + D with D = [[d, xy], [xy, −d]]: ln b = (ln det b)/2 + D atanh(r/m)/r, r² = d² + xy².
+        let (m, d) = (1.0 + 0.5 * (xx + yy), 0.5 * (xx - yy));
+        let z = (d * d + xy * xy).sqrt() / m;
+        let ratio = if z < 1e-4 { 1.0 + z * z / 3.0 } else { libm::atanh(z) / z };
+        (libm::log1p(strain.dilation), [d, xy].map(|part| 0.5 * ratio * part / m))
+    }
+}
+
+impl Law for Hencky {
+    const NAME: &'static str = "hencky";
+
+    #[inline(always)]
+    fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
+        let (log_j, [d, xy]) = Self::logarithm(strain);
+        let shear = 2.0 * (d * d + xy * xy) + log_j * log_j / 6.0;
+        [moduli.bulk * (strain.dilation - log_j), moduli.shear * shear]
+    }
+
+    #[inline(always)]
+    fn stress(moduli: &Moduli, strain: &Strain) -> Kirchhoff {
+        let (log_j, [d, xy]) = Self::logarithm(strain);
+        let (two_mu, sixth) = (2.0 * moduli.shear, log_j / 6.0);
+        let deviator =
+            Symmetric { xx: two_mu * (sixth + d), yy: two_mu * (sixth - d), xy: two_mu * xy };
+        Kirchhoff { mean: moduli.bulk * strain.dilation, deviator }
+    }
+}
+
+/// w = K (J − 1)²/2 + μ (J^(−2/3) tr b − 3)/2, the trace in three dimensions.
+#[derive(Clone, Copy, Debug)]
+pub struct NeoHookean;
+
+impl NeoHookean {
+    /// J^(−2/3) − 1.
+    #[inline(always)]
+    fn shrinkage(strain: &Strain) -> f64 {
+        libm::expm1(-2.0 / 3.0 * libm::log1p(strain.dilation))
+    }
+}
+
+impl Law for NeoHookean {
+    const NAME: &'static str = "neo_hookean";
+
+    #[inline(always)]
+    fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
+        let (e, s) = (strain.dilation, Self::shrinkage(strain));
+        let trace = strain.left.xx + strain.left.yy;
+        let excess = trace + s * (3.0 + trace);
+        [0.5 * moduli.bulk * e * e, 0.5 * moduli.shear * excess]
+    }
+
+    #[inline(always)]
+    fn stress(moduli: &Moduli, strain: &Strain) -> Kirchhoff {
+        let Symmetric { xx, yy, xy } = strain.left;
+        let factor = moduli.shear * (1.0 + Self::shrinkage(strain));
+        let third = (xx + yy) / 3.0;
+        let deviator =
+            Symmetric { xx: factor * (xx - third), yy: factor * (yy - third), xy: factor * xy };
+        Kirchhoff { mean: moduli.bulk * strain.dilation * (1.0 + strain.dilation), deviator }
+    }
+}
+
+/// w = λ (tr E)²/2 + μ E:E with E = (FᵀF − 1)/2 and λ = K − 2μ/3. It softens in compression: for tests and
+/// as the outermost of the laws.
+#[derive(Clone, Copy, Debug)]
+pub struct SaintVenantKirchhoff;
+
+impl SaintVenantKirchhoff {
+    /// E.
+    #[inline(always)]
+    fn green(strain: &Strain) -> Symmetric {
+        let h = &strain.gradient;
+        Symmetric {
+            xx: h.m11 + 0.5 * (h.m11 * h.m11 + h.m21 * h.m21),
+            yy: h.m22 + 0.5 * (h.m12 * h.m12 + h.m22 * h.m22),
+            xy: 0.5 * (h.m12 + h.m21 + h.m11 * h.m12 + h.m21 * h.m22),
+        }
+    }
+}
+
+impl Law for SaintVenantKirchhoff {
+    const NAME: &'static str = "saint_venant";
+
+    #[inline(always)]
+    fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
+        let Symmetric { xx, yy, xy } = Self::green(strain);
+        let trace = xx + yy;
+        let shear = xx * xx + yy * yy + 2.0 * xy * xy - trace * trace / 3.0;
+        [0.5 * moduli.bulk * trace * trace, moduli.shear * shear]
+    }
+
+    #[inline(always)]
+    fn stress(moduli: &Moduli, strain: &Strain) -> Kirchhoff {
+        let Symmetric { xx, yy, xy } = Self::green(strain);
+        let spread = (moduli.bulk - 2.0 / 3.0 * moduli.shear) * (xx + yy);
+        let two_mu = 2.0 * moduli.shear;
+        // τ = F S Fᵀ, and τᶻᶻ = λ tr E.
+        let second =
+            Matrix2::new(spread + two_mu * xx, two_mu * xy, two_mu * xy, spread + two_mu * yy);
+        let f = strain.gradient + Matrix2::identity();
+        let t = f * second * f.transpose();
+        let mean = (t.m11 + t.m22 + spread) / 3.0;
+        Kirchhoff { mean, deviator: Symmetric { xx: t.m11 - mean, yy: t.m22 - mean, xy: t.m12 } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    const MODULI: Moduli = Moduli { bulk: 3.0, shear: 0.7 };
+
+    /// Displacement gradients, small and large, with rotations.
+    fn gradients() -> impl Iterator<Item = Matrix2<f64>> {
+        let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let matrix = move |k: usize| Matrix2::from_fn(|i, j| number(7 * k + 2 * i + j + 1));
+        (1..30).map(move |k| matrix(k) * [1e-6, 1e-2, 0.5, 0.8][k % 4])
+    }
+
+    fn energy<L: Law>(h: Matrix2<f64>) -> f64 {
+        L::energy(&MODULI, &Strain::new(h)).iter().sum()
+    }
+
+    /// P against central differences of w, and no stress and no energy of a rotation.
+    fn check<L: Law>() {
+        for h in gradients() {
+            let strain = Strain::new(h);
+            let found = L::stress(&MODULI, &strain).first_piola(&strain);
+            let (d, size) = (1e-5, h.norm().min(1.0));
+            let expected = Matrix2::from_fn(|i, j| {
+                let mut by = Matrix2::zeros();
+                by[(i, j)] = d;
+                (energy::<L>(h + by) - energy::<L>(h - by)) / (2.0 * d)
+            });
+            let error = (found - expected).norm();
+            assert!(error < 1e-8 * size + 5e-10, "{} at {h}: {found} {expected}", L::NAME);
+        }
+        for (cos, sin) in [(0.6, 0.8), (-0.28, 0.96), (0.0, -1.0)] {
+            let rotation = Strain::new(Matrix2::new(cos - 1.0, -sin, sin, cos - 1.0));
+            let stress = L::stress(&MODULI, &rotation).first_piola(&rotation);
+            assert!(stress.norm() < 1e-14 && L::energy(&MODULI, &rotation)[0].abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn the_stress_is_the_derivative_of_the_energy_and_a_rotation_has_none() {
+        check::<Hencky>();
+        check::<NeoHookean>();
+        check::<SaintVenantKirchhoff>();
+    }
+
+    /// Uniaxial strain e: w = (K + 4μ/3) e²/2. Simple shear by g: w = μ g²/2.
+    #[test]
+    fn laws_have_the_moduli_of_small_strains() {
+        fn check<L: Law>() {
+            let e = 1e-4;
+            let along = energy::<L>(Matrix2::new(e, 0.0, 0.0, 0.0)) / (0.5 * e * e);
+            assert_relative_eq!(along, MODULI.longitudinal(), max_relative = 3e-4);
+            let sheared = energy::<L>(Matrix2::new(0.0, e, 0.0, 0.0)) / (0.5 * e * e);
+            assert_relative_eq!(sheared, MODULI.shear, max_relative = 3e-4);
+        }
+        check::<Hencky>();
+        check::<NeoHookean>();
+        check::<SaintVenantKirchhoff>();
+    }
+
+    /// Uniaxial stretch by a factor a: σ = K(1 − 1/a) + (4/3) μ ln(a)/a.
+    #[test]
+    fn hencky_has_the_stress_of_a_large_stretch() {
+        let a: f64 = 1.7;
+        let strain = Strain::new(Matrix2::new(a - 1.0, 0.0, 0.0, 0.0));
+        let stress = Hencky::stress(&MODULI, &strain);
+        let sigma = (stress.mean + stress.deviator.xx) / a;
+        let expected = 3.0 * (1.0 - 1.0 / a) + 4.0 / 3.0 * 0.7 * libm::log(a) / a;
+        assert_relative_eq!(sigma, expected, max_relative = 1e-13);
+    }
+}

@@ -1,0 +1,178 @@
+//! The reference configuration: who the neighbours of a particle are, with which weight, and what inverts
+//! the moments of its neighbourhood. It is found once, and nothing of it changes.
+
+use lanes::LANES;
+use nalgebra::{Matrix2, Vector2};
+use solver::{Kernel, ParticleData, SceneError, Smoothing, Symmetric, scene::Part, walls::Map};
+
+/// Least determinant of the moments over the volume: 1 inside a body, 0 where neighbours lie on a line.
+const SINGULAR: f64 = 1e-3;
+
+/// An image of a particle, or of an image of it: mirrored at a wall, or a period away.
+#[derive(Clone, Copy, Debug)]
+pub struct Image {
+    /// The particle or the earlier image that it follows.
+    pub source: usize,
+    /// Q, so that its displacement is Q u.
+    pub displaced: Matrix2<f64>,
+    /// M, so that its reference place is M X + constant. Its tensors are Q T Mᵀ.
+    pub mirrored: Matrix2<f64>,
+}
+
+impl Image {
+    /// At a wall that holds the body the displacement is odd, u' = −u, and so 0 on the wall. Where the body
+    /// slips along the wall it is mirrored with the place.
+    fn new(source: usize, map: &Map, slips: bool) -> Self {
+        let one = Matrix2::identity();
+        let (mirrored, held) = match map {
+            Map::Mirror(wall) => (one - wall.normal * wall.normal.transpose() * 2.0, -one),
+            Map::Corner(..) => (-one, one),
+            Map::Shift(_) => (one, one),
+        };
+        Self { source, displaced: if slips { mirrored } else { held }, mirrored }
+    }
+
+    /// Q T Mᵀ.
+    pub fn tensor(&self, of_source: &Matrix2<f64>) -> Matrix2<f64> {
+        self.displaced * of_source * self.mirrored.transpose()
+    }
+}
+
+/// Particles, then their images, in the reference configuration.
+#[derive(Clone, Debug, Default)]
+pub struct Reference {
+    /// X of particles and images \[m\].
+    pub places: Vec<Vector2<f64>>,
+    /// V of the particles \[m²\].
+    pub volumes: Vec<f64>,
+    /// Masses of the particles \[kg/m\].
+    pub masses: Vec<f64>,
+    /// M⁻¹ of the particles \[1/m²\].
+    pub inverse: Vec<Matrix2<f64>>,
+    /// The images.
+    pub images: Vec<Image>,
+    /// The neighbours of particle k are `chunks[starts[k]..starts[k + 1]]`.
+    starts: Vec<u32>,
+    chunks: Vec<[u32; LANES]>,
+    /// g of each neighbour, 0 for those that pad a list to whole lanes, which are the particle itself.
+    weights: Vec<[f64; LANES]>,
+}
+
+impl Reference {
+    /// The reference of these particles, whose lists reach at least the support of the kernel. Particles of
+    /// different bodies are no neighbours.
+    pub fn new<K: Kernel>(
+        data: &ParticleData<Symmetric>,
+        kernel: &Smoothing<K>,
+        bodies: &[u32],
+        slips: bool,
+    ) -> Result<Self, SceneError> {
+        let mut this = Self { starts: vec![0], ..Self::default() };
+        let mut particle: Vec<usize> = (0..data.fluid_count()).collect();
+        for (mass, evolved) in data.fluid() {
+            this.places.push(evolved.position);
+            this.masses.push(mass);
+            this.volumes.push(mass / evolved.density);
+        }
+        for (source, map) in data.images() {
+            this.places.push(map.place(this.places[source]));
+            this.images.push(Image::new(source, map, slips));
+            particle.push(particle[source]);
+        }
+        for (i, list) in data.lists().enumerate() {
+            let is_near = |j: &&u32| {
+                let j = **j as usize;
+                let column = particle.get(j);
+                column.is_some_and(|of| bodies.get(*of) == bodies.get(i))
+                    && kernel.f((this.places[j] - this.places[i]).norm_squared()) > 0.0
+            };
+            let near: Vec<usize> = list.iter().filter(is_near).map(|j| *j as usize).collect();
+            this.add(kernel, i, &near, &particle)?;
+        }
+        Ok(this)
+    }
+
+    /// Adds particle i with these neighbours.
+    fn add<K: Kernel>(
+        &mut self,
+        kernel: &Smoothing<K>,
+        i: usize,
+        near: &[usize],
+        particle: &[usize],
+    ) -> Result<(), SceneError> {
+        let (place, volume) = (self.places[i], self.volumes[i]);
+        let mut moments = Matrix2::zeros();
+        for chunk in near.chunks(LANES) {
+            let (mut columns, mut weights) = ([i as u32; LANES], [0.0; LANES]);
+            for (lane, &j) in chunk.iter().enumerate() {
+                let x = self.places[j] - place;
+                let weight = volume * self.volumes[particle[j]] * kernel.f(x.norm_squared());
+                (columns[lane], weights[lane]) = (j as u32, weight);
+                moments += x * x.transpose() * weight;
+            }
+            self.chunks.push(columns);
+            self.weights.push(weights);
+        }
+        self.starts.push(self.chunks.len() as u32);
+        let determinant = moments.determinant() / (volume * volume);
+        match moments.try_inverse() {
+            Some(inverse) if determinant > SINGULAR => self.inverse.push(inverse),
+            _ => {
+                let quantity = "determinant of the moments of its neighbourhood";
+                let allowed =
+                    format!("above {SINGULAR}: neighbours on both axes within the support");
+                return Err(SceneError {
+                    of: Part::Particle(i),
+                    quantity,
+                    value: determinant,
+                    allowed,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Σ V F X² of each particle, the mean of both axes.
+    fn factors(&self) -> impl Iterator<Item = f64> {
+        let of = |(inverse, volume): (&Matrix2<f64>, &f64)| {
+            0.5 * inverse.trace() / inverse.determinant() / volume
+        };
+        self.inverse.iter().zip(&self.volumes).map(of)
+    }
+
+    /// G₁ = Σ V F X² of a particle inside: the largest, for it is less at faces.
+    pub fn gradient_factor(&self) -> f64 {
+        self.factors().fold(0.0, f64::max)
+    }
+
+    /// The particles at faces, which lack a sixth of that or more. At a straight face about a third is
+    /// missing, inside of a disordered body some per cent.
+    pub fn faces(&self) -> Vec<u32> {
+        let least = 5.0 / 6.0 * self.gradient_factor();
+        (0..).zip(self.factors()).filter(|(_, factor)| *factor < least).map(|(k, _)| k).collect()
+    }
+
+    /// Number of particles.
+    pub fn count(&self) -> usize {
+        self.volumes.len()
+    }
+
+    /// The neighbours of particle k by fours, and their weights.
+    #[inline(always)]
+    pub fn pairs(&self, k: usize) -> impl Iterator<Item = (&[u32; LANES], &[f64; LANES])> {
+        let of = self.starts[k] as usize..self.starts[k + 1] as usize;
+        self.chunks[of.clone()].iter().zip(&self.weights[of])
+    }
+
+    /// Memory held \[bytes\].
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.places[..])
+            + size_of_val(&self.volumes[..])
+            + size_of_val(&self.masses[..])
+            + size_of_val(&self.inverse[..])
+            + size_of_val(&self.images[..])
+            + size_of_val(&self.starts[..])
+            + size_of_val(&self.chunks[..])
+            + size_of_val(&self.weights[..])
+    }
+}

@@ -1,0 +1,222 @@
+//! A scene of elastic solids and its simulation: the leapfrog (velocity Verlet), one evaluation of the
+//! forces a step, after which every quantity has the same time.
+
+use nalgebra::Vector2;
+use solver::{
+    Checkpoint, Domain, Kernel, Leapfrog, Limits, Observer, Outcome, Particle, ParticleData, Phase,
+    PhaseWatch, Potential, Rate, Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
+    integrator::Stepped,
+    particles::{Column, Common},
+    scene::Part,
+    simulation::{self, Steps},
+    walls::Walls,
+};
+
+use crate::{
+    body::Body,
+    law::{Law, Moduli},
+    load::{Load, Loaded},
+    reference::Reference,
+};
+
+/// The method that finds the neighbours of the reference: no terms, so that nothing else is compiled.
+type Frame<K, W> = solver::Compose<K, (), (), W, Leapfrog, Symmetric>;
+
+/// A scene of elastic solids.
+pub struct SolidScene<W, C> {
+    /// Smoothing length h \[m\].
+    pub h: f64,
+    /// The domain, periodic or open in each direction.
+    pub domain: Domain,
+    /// The particles, without stress where they are: this is their reference. Results list them in the same
+    /// order.
+    pub particles: Vec<Particle<Symmetric>>,
+    /// The number of the body of each particle, from 0; empty if there is one body.
+    pub bodies: Vec<u32>,
+    /// Planes: [`solver::Ghosts`] hold the body, along [`solver::SlipGhosts`] it slides.
+    pub walls: W,
+    /// The moduli.
+    pub moduli: Moduli,
+    /// χ, the strength of what resists modes that deform no particle, see the page of the crate.
+    pub hourglass: f64,
+    /// Weight and contact.
+    pub loads: C,
+    /// Bounds beyond which the run counts as diverged.
+    pub limits: Limits,
+    /// Number of particles from which work is distributed over threads.
+    pub parallel_from: usize,
+}
+
+impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
+    /// Checks the scene, and builds a simulation with the kernel `K` and the stored energy `L`.
+    pub fn build<K: Kernel, L: Law>(self) -> Result<Solid<K, L, C>, SceneError> {
+        let Self { h, domain, particles, bodies, walls, moduli, loads, limits, .. } = self;
+        let parallel = particles.len() >= self.parallel_from;
+        check(&particles, &bodies, [moduli.bulk, moduli.shear, self.hourglass])?;
+        let mut frame = Scene::<Frame<K, W>>::new(h, domain, particles, (), (), walls);
+        // Rounding must not leave out a neighbour; a little more is found, and left out by its weight.
+        (frame.skin, frame.limits) = (1e-9 * h, limits);
+        let data = frame.build()?.into_particles();
+        let of = |(id, _): &(u32, _)| bodies.get(*id as usize).copied().unwrap_or(0);
+        let bodies: Vec<u32> = data.checkpoint(0.0).particles.iter().map(of).collect();
+        let kernel = Smoothing::<K>::new(h);
+        let reference = Reference::new(&data, &kernel, &bodies, W::SLIPS)?;
+        let sizes = reference.volumes.iter().map(|volume| volume.sqrt()).collect();
+        let accelerations = vec![Vector2::zeros(); bodies.len()];
+        let body = Body::new(reference, moduli, self.hourglass, parallel);
+        let faces = body.reference.faces();
+        let mut solid =
+            Solid { data, body, kernel, loads, sizes, bodies, faces, domain, accelerations };
+        solid.evaluate();
+        Ok(solid)
+    }
+}
+
+fn check(
+    particles: &[Particle<Symmetric>],
+    bodies: &[u32],
+    [bulk, shear, hourglass]: [f64; 3],
+) -> Result<(), SceneError> {
+    let refuse = |of, quantity, value, allowed: &str| {
+        Err(SceneError { of, quantity, value, allowed: allowed.into() })
+    };
+    if let Some(k) = particles.iter().position(|p| p.role != Role::Fluid) {
+        return refuse(Part::Particle(k), "number of its role", 1.0, "0: it moves");
+    }
+    if !bodies.is_empty() && bodies.len() != particles.len() {
+        let count = bodies.len() as f64;
+        return refuse(Part::Scene, "number of body numbers", count, "0, or that of particles");
+    }
+    for (name, value) in [("bulk modulus in Pa", bulk), ("shear modulus in Pa", shear)] {
+        if !(value >= 0.0 && value.is_finite()) {
+            return refuse(Part::Scene, name, value, "finite and at least 0");
+        }
+    }
+    if !(hourglass >= 0.0 && hourglass.is_finite()) {
+        return refuse(Part::Scene, "hourglass strength", hourglass, "finite and at least 0");
+    }
+    Ok(())
+}
+
+/// Elastic solids that move: kernel `K`, stored energy `L`, loads `C`. It dereferences to [`ParticleData`],
+/// whose densities and extra fields (the deviator of the Cauchy stress) follow from the positions.
+pub struct Solid<K, L, C> {
+    data: ParticleData<Symmetric>,
+    body: Body<L>,
+    kernel: Smoothing<K>,
+    loads: C,
+    sizes: Vec<f64>,
+    bodies: Vec<u32>,
+    faces: Vec<u32>,
+    domain: Domain,
+    accelerations: Vec<Vector2<f64>>,
+}
+
+impl<K, L, C> std::ops::Deref for Solid<K, L, C> {
+    type Target = ParticleData<Symmetric>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.data
+    }
+}
+
+impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
+    /// Derives everything from the positions.
+    fn evaluate(&mut self) {
+        self.data.enter(Phase::Forces);
+        self.body.deform(self.data.fluid_mut(), &mut self.accelerations);
+        self.data.enter(Phase::Walls);
+        let mut accelerations = std::mem::take(&mut self.accelerations);
+        self.loads.push(&self.loaded(), &mut accelerations);
+        self.accelerations = accelerations;
+        self.data.enter(Phase::Rest);
+    }
+
+    /// The particles as loads see them.
+    fn loaded(&self) -> Loaded<'_> {
+        let Self { body, sizes, bodies, faces, domain, .. } = self;
+        let (masses, reference) = (&body.reference.masses, &body.reference.places);
+        Loaded { state: self.data.fluid_state(), masses, sizes, reference, bodies, faces, domain }
+    }
+
+    /// The body: its reference, and its deformation.
+    pub fn body(&self) -> &Body<L> {
+        &self.body
+    }
+}
+
+impl<K: Kernel, L: Law, C: Load> Steps<Symmetric> for Solid<K, L, C> {
+    fn data_mut(&mut self) -> &mut ParticleData<Symmetric> {
+        &mut self.data
+    }
+    fn step(&mut self, dt: f64) -> Stepped {
+        let half = 0.5 * dt;
+        for (evolved, acceleration) in self.data.fluid_mut().iter_mut().zip(&self.accelerations) {
+            evolved.velocity += acceleration * half;
+            evolved.position += evolved.velocity * dt;
+        }
+        self.data.count(Phase::Both);
+        self.evaluate();
+        for (evolved, acceleration) in self.data.fluid_mut().iter_mut().zip(&self.accelerations) {
+            evolved.velocity += acceleration * half;
+        }
+        self.data.check_bounds()
+    }
+    fn synchronise(&mut self) -> Stepped {
+        self.data.check_bounds()
+    }
+}
+
+impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
+    fn advance(&mut self, until: f64, dt: f64, seen: &mut dyn Observer<Symmetric>) -> Outcome {
+        simulation::advance(self, until, dt, seen)
+    }
+    fn checkpoint(&self) -> Checkpoint<Symmetric> {
+        self.data.checkpoint(0.0)
+    }
+    fn restore(&mut self, from: &Checkpoint<Symmetric>) -> Result<(), &'static str> {
+        self.data.resume(from)?;
+        self.evaluate();
+        Ok(())
+    }
+    fn weight(&self, r2: f64) -> f64 {
+        self.kernel.w(r2)
+    }
+    fn plain_columns(&self) -> Vec<Column> {
+        let mut columns: Vec<Column> = Vec::new();
+        for ((mass, evolved), position) in self.data.fluid().zip(self.body.positions()) {
+            let (velocity, density) = (evolved.velocity, evolved.density);
+            let common = Common { mass, density, volume: mass / density };
+            columns.push(Column { position, velocity, common, derived: () });
+        }
+        let images = self.body.positions().skip(columns.len());
+        for (image, position) in self.body.reference.images.iter().zip(images) {
+            let source = columns[image.source];
+            let velocity = image.displaced * source.velocity;
+            columns.push(Column { position, velocity, ..source });
+        }
+        columns
+    }
+    fn total_rates(&self) -> Vec<Rate<Symmetric>> {
+        let rate = |a: &Vector2<f64>| Rate { velocity: *a, ..Rate::default() };
+        self.accelerations.iter().map(rate).collect()
+    }
+    fn wall_rates(&self) -> Vec<Rate<Symmetric>> {
+        Vec::new()
+    }
+    fn bytes(&self) -> usize {
+        self.data.bytes()
+            + self.body.bytes()
+            + size_of_val(&self.sizes[..])
+            + size_of_val(&self.bodies[..])
+            + size_of_val(&self.faces[..])
+            + size_of_val(&self.accelerations[..])
+    }
+    fn watch(&mut self, watch: Option<PhaseWatch>) {
+        self.data.set_watch(watch);
+    }
+    fn potential(&self) -> Option<Potential> {
+        let on = self.loaded();
+        Some(Potential { loads: self.loads.energy(&on), ..self.body.potential() })
+    }
+}

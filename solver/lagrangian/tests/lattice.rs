@@ -1,0 +1,192 @@
+//! Waves on a lattice against their theory, the limit of the time step, and long runs.
+
+mod common;
+
+use common::{DENSITY, MODULI, block, build, energy, forces, free, number, put, scene};
+use lagrangian::{Hencky, Law, NeoHookean, SaintVenantKirchhoff, SolidScene};
+use nalgebra::Vector2;
+use solver::{Domain, Limits, Open, Outcome, Smoothing, Stepper, WendlandC2};
+use std::f64::consts::TAU;
+
+const SIDE: usize = 12;
+
+/// q² and s − G₁ q²/2 of a wave and G₁, by sums over the lattice, in units of the spacing.
+fn symbols(k: Vector2<f64>) -> (f64, f64, f64) {
+    let kernel = Smoothing::<WendlandC2>::new(1.2);
+    let (mut factor, mut q, mut s) = (0.0, Vector2::zeros(), 0.0);
+    for x in -3..=3 {
+        for y in -3..=3 {
+            let r = Vector2::new(f64::from(x), f64::from(y));
+            let f = if x == 0 && y == 0 { 0.0 } else { kernel.f(r.norm_squared()) };
+            factor += f * r.x * r.x;
+            q += r * (f * libm::sin(k.dot(&r)));
+            s += f * (1.0 - libm::cos(k.dot(&r)));
+        }
+    }
+    let q2 = q.norm_squared() / (factor * factor);
+    (q2, s - 0.5 * factor * q2, factor)
+}
+
+fn torus<L: Law>() -> common::Block<L> {
+    let side = SIDE as f64;
+    build(SolidScene {
+        domain: Domain::torus(side, side),
+        ..scene(block(SIDE, SIDE, 0.0), Open, ())
+    })
+}
+
+/// ρ ω² of the wave with this displacement, and how far the force is from along it.
+fn stiffness<L: Law>(k: Vector2<f64>, along: Vector2<f64>) -> f64 {
+    let mut solid = torus::<L>();
+    let wave = |x: Vector2<f64>| along * (1e-7 * libm::cos(k.dot(&x) + 0.3));
+    put(&mut solid, |_, x| x + wave(x), |_| Vector2::zeros());
+    let places = solid.body().reference.places.clone();
+    let (mut sum, mut norm, mut off) = (0.0, 0.0, 0.0_f64);
+    for ((_, _, _, force), place) in forces(&solid).iter().zip(places) {
+        let wave = wave(place);
+        (sum, norm) = (sum - force.dot(&wave), norm + wave.norm_squared());
+        off = off.max(force.perp(&along).abs());
+    }
+    assert!(off < 1e-6 * 1e-7, "the force has another direction: {off:e}");
+    sum / norm
+}
+
+#[test]
+fn longitudinal_and_shear_waves_have_the_frequencies_of_theory() {
+    fn check<L: Law>() {
+        for turns in [1.0, 2.0, 5.0, 6.0] {
+            for direction in [Vector2::x(), Vector2::new(1.0, 1.0)] {
+                let k = direction * (TAU * turns / SIDE as f64);
+                let (q2, rest, factor) = symbols(k);
+                let c = lagrangian::body::hourglass(&MODULI, 1.0, factor);
+                let unit = direction.normalize();
+                let along = stiffness::<L>(k, unit);
+                let across = stiffness::<L>(k, Vector2::new(-unit.y, unit.x));
+                let expected = [MODULI.longitudinal(), MODULI.shear].map(|m| m * q2 + c * rest);
+                for (found, expected) in [along, across].iter().zip(expected) {
+                    let error = (found / expected - 1.0).abs();
+                    assert!(error < 2e-6, "{} {turns} {direction}: {error:e}", L::NAME);
+                }
+            }
+        }
+    }
+    check::<Hencky>();
+    check::<NeoHookean>();
+    check::<SaintVenantKirchhoff>();
+}
+
+/// The rule c = 8/3 μ/G₁: of long shear waves the error falls as the fourth power of k.
+#[test]
+fn shear_waves_are_of_fourth_order() {
+    let error = |k: f64| {
+        let (q2, rest, factor) = symbols(Vector2::new(k, 0.0));
+        (q2 + 8.0 / 3.0 / factor * rest) / (k * k) - 1.0
+    };
+    let (coarse, fine) = (error(0.2), error(0.1));
+    assert!((coarse / fine - 16.0).abs() < 0.3, "{coarse:e} {fine:e}");
+    assert!(fine.abs() < 1e-5 && error(TAU / 6.0).abs() < 0.05, "{fine:e}");
+    let plain = |k: f64| symbols(Vector2::new(k, 0.0)).0 / (k * k) - 1.0;
+    assert!((plain(0.2) / plain(0.1) - 4.0).abs() < 0.1);
+}
+
+/// The longest stable step from the largest frequency: 2/ω.
+fn limit() -> f64 {
+    let mut most = 0.0_f64;
+    for i in 0..=SIDE / 2 {
+        for j in 0..=i {
+            let k = Vector2::new(i as f64, j as f64) * (TAU / SIDE as f64);
+            let (q2, rest, factor) = symbols(k);
+            let c = lagrangian::body::hourglass(&MODULI, 1.0, factor);
+            most = most.max(MODULI.longitudinal() * q2 + c * rest);
+        }
+    }
+    2.0 / (most / DENSITY).sqrt()
+}
+
+#[test]
+fn the_step_limit_is_that_of_theory() {
+    let grows = |share: f64| {
+        let mut solid = torus::<Hencky>();
+        let noise = |k: usize| Vector2::new(number(3 * k), number(5 * k + 1)) * 1e-9;
+        put(&mut solid, |_, x| x, noise);
+        let dt = share * limit();
+        solid.advance(1500.0 * dt, dt, &mut ()) != Outcome::Reached
+            || solid.fluid().any(|(_, e)| !(e.velocity.norm() < 1e-6))
+    };
+    assert!(!grows(0.99));
+    assert!(grows(1.01));
+}
+
+/// A block that is thrown, turns and vibrates, for 10⁵ steps.
+#[test]
+fn energy_stays_bounded_and_momenta_stay_over_many_steps() {
+    let mut solid = free::<Hencky>(block(6, 4, 0.1));
+    let velocity = |k: usize| {
+        Vector2::new(0.05 * number(3 * k) + 0.02, 0.05 * number(5 * k + 1) + 0.01 * k as f64 / 24.0)
+    };
+    put(&mut solid, |_, x| x, velocity);
+    let momenta = |solid: &common::Block| {
+        forces(solid)
+            .iter()
+            .fold((Vector2::zeros(), 0.0), |(p, l), (m, x, v, _)| (p + v * *m, l + m * x.perp(v)))
+    };
+    let (start, first) = (energy(&solid), momenta(&solid));
+    let dt = 0.1 * limit();
+    let mut changes = Vec::new();
+    for k in 1..=1000_u32 {
+        assert_eq!(solid.advance(f64::from(100 * k) * dt, dt, &mut ()), Outcome::Reached);
+        changes.push(energy(&solid) / start - 1.0);
+    }
+    let last = momenta(&solid);
+    assert_eq!(solid.work().steps, 100_000);
+    // The leapfrog swings by (ω dt)²/8 about the energy, here at most 0.5 %, and does not drift.
+    let mean = |of: &[f64]| of.iter().fold(0.0, |sum, one| sum + one) / of.len() as f64;
+    let [early, late] = [mean(&changes[..200]), mean(&changes[800..])];
+    assert!(changes.iter().all(|change| change.abs() < 5e-3), "{early:e} {late:e}");
+    assert!((early - late).abs() < 1e-4, "{early:e} {late:e}");
+    assert!((last.0 - first.0).norm() < 1e-11 * first.0.norm(), "{last:?} {first:?}");
+    assert!((last.1 / first.1 - 1.0).abs() < 1e-11, "{last:?} {first:?}");
+}
+
+#[test]
+fn bits_are_equal_for_threads_and_after_a_restart() {
+    let run = |parallel_from: usize, stop: bool| {
+        let mut solid = build::<Hencky, _, _>(SolidScene {
+            parallel_from,
+            limits: Limits::default(),
+            ..scene(block(40, 30, 0.1), Open, ())
+        });
+        put(&mut solid, |_, x| x, |k| Vector2::new(number(3 * k), number(5 * k)) * 0.1);
+        let dt = 0.5 * limit();
+        if stop {
+            solid.advance(10.0 * dt, dt, &mut ());
+            let kept = solid.checkpoint();
+            let mut again = build::<Hencky, _, _>(scene(block(40, 30, 0.1), Open, ()));
+            again.restore(&kept).expect("the same scene");
+            solid = again;
+            solid.advance(20.0 * dt, dt, &mut ());
+        } else {
+            solid.advance(10.0 * dt, dt, &mut ());
+            solid.advance(20.0 * dt, dt, &mut ());
+        }
+        let bits = |p: &solver::Particle<solver::Symmetric>| {
+            [p.position.x, p.velocity.y, p.density, p.extra.xy].map(f64::to_bits)
+        };
+        solid.particles().iter().map(bits).collect::<Vec<_>>()
+    };
+    let alone = run(usize::MAX, false);
+    assert!(alone == run(1, false), "threads");
+    assert!(alone == run(usize::MAX, true), "restart");
+}
+
+#[test]
+fn what_is_no_solid_is_refused() {
+    let line = block(9, 1, 0.0);
+    let refused = scene(line, Open, ()).build::<WendlandC2, Hencky>().err().expect("a line");
+    assert!(refused.to_string().contains("determinant"), "{refused}");
+    let odd = SolidScene { bodies: vec![0; 3], ..scene(block(4, 4, 0.0), Open, ()) };
+    assert!(odd.build::<WendlandC2, Hencky>().is_err());
+    let mut solid = free::<Hencky>(block(4, 4, 0.0));
+    let other = free::<Hencky>(block(4, 4, 0.1)).checkpoint();
+    assert_eq!(solid.restore(&other), Err("particles of another reference"));
+}
