@@ -2,7 +2,7 @@
 //! Each derives from an energy.
 
 use nalgebra::Vector2;
-use solver::{Domain, Evolved, Symmetric};
+use solver::{Domain, Evolved, Smoothing, Symmetric, WendlandC2};
 
 use crate::law::Moduli;
 
@@ -84,8 +84,8 @@ impl Load for Weight {
     }
 }
 
-/// Two places that touch at the distance t push each other apart where they are nearer, at d < t, with the
-/// force k (t − d) t/d per unit depth: k (t − d) at first, and so large at last that nothing passes.
+/// Two faces that overlap by o push each other apart, with the force k o on what stands for the size s of a
+/// face at small o.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
     /// k \[Pa\].
@@ -96,27 +96,15 @@ impl Contact {
     /// The rule k = (K + 4μ/3)/4. Two bodies that meet send fronts that rise at the rate 2 k/(ρ c_p dx), and
     /// a lattice carries waves of up to half its largest frequency, about c_p/dx, with little dispersion. A
     /// harder contact leaves energy in waves that are hardly longer than two spacings, a softer one lets
-    /// bodies overlap more. Contact shortens the longest stable step of the lattice; by how much is not
-    /// known.
+    /// bodies overlap more.
     pub fn of(moduli: &Moduli) -> Self {
         Self { stiffness: 0.25 * moduli.longitudinal() }
     }
-
-    /// The force \[N/m\].
-    fn force(&self, touch: f64, distance: f64) -> f64 {
-        let inverse = if distance > 0.0 { touch / distance } else { f64::INFINITY };
-        self.stiffness * (touch - distance).max(0.0) * inverse
-    }
-
-    /// Its energy k t (t ln(t/d) − (t − d)) \[J/m\].
-    fn energy(&self, touch: f64, distance: f64) -> f64 {
-        let overlap = (touch - distance).max(0.0);
-        self.stiffness * touch * (-touch * libm::log1p(-overlap / touch) - overlap)
-    }
 }
 
-/// A rigid plane without friction, which pushes and never pulls: half of the [`Contact`] of a body with its
-/// mirror image. A particle touches it at half of its size.
+/// A rigid plane without friction, which pushes and never pulls. A particle touches it at half of its size
+/// s, and where it is nearer, at d < s/2, it is pushed by twice the force k s (s/2 − d)/(2 d): 2 k o at first,
+/// since the plane does not yield, and so large at last that nothing passes.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidPlane {
     /// A point of it \[m\].
@@ -128,66 +116,195 @@ pub struct RigidPlane {
 }
 
 impl RigidPlane {
-    /// The size of each particle, and its distance from its mirror image \[m\].
+    /// Half the size t of each particle, and its distance d from the plane \[m\].
     fn distances<'a>(&self, on: &Loaded<'a>) -> impl Iterator<Item = (f64, f64)> + use<'a> {
         let Self { point, normal, .. } = *self;
         let depth = move |evolved: &Evolved<Symmetric>| (evolved.position - point).dot(&normal);
-        on.state.iter().zip(on.sizes).map(move |(at, size)| (*size, 2.0 * depth(at)))
+        on.state.iter().zip(on.sizes).map(move |(at, size)| (0.5 * size, depth(at)))
+    }
+
+    /// 2 k (t − d) t/d \[N/m\].
+    fn force(&self, touch: f64, distance: f64) -> f64 {
+        let inverse = if distance > 0.0 { touch / distance } else { f64::INFINITY };
+        2.0 * self.contact.stiffness * (touch - distance).max(0.0) * inverse
+    }
+
+    /// 2 k t (t ln(t/d) − (t − d)) \[J/m\].
+    fn stored(&self, touch: f64, distance: f64) -> f64 {
+        let overlap = (touch - distance).max(0.0);
+        2.0 * self.contact.stiffness * touch * (-touch * libm::log1p(-overlap / touch) - overlap)
     }
 }
 
 impl Load for RigidPlane {
     fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) {
         let pushed = accelerations.iter_mut().zip(on.masses).zip(self.distances(on));
-        for ((acceleration, mass), (size, distance)) in pushed {
-            *acceleration += self.normal * (self.contact.force(size, distance) / mass);
+        for ((acceleration, mass), (touch, distance)) in pushed {
+            *acceleration += self.normal * (self.force(touch, distance) / mass);
         }
     }
     fn energy(&self, on: &Loaded) -> f64 {
-        let half = |sum, (size, distance)| sum + 0.5 * self.contact.energy(size, distance);
-        self.distances(on).fold(0.0, half)
+        self.distances(on).fold(0.0, |sum, (touch, distance)| sum + self.stored(touch, distance))
     }
 }
 
-/// [`Contact`] between the faces of bodies, also of a body with itself: central, without friction and without
-/// attraction. Two particles touch at the mean of their sizes. Those of one body that are nearer than twice
-/// that in the reference do not: their distance is the business of the stress.
+/// [`Contact`] between the faces of bodies, also of a body with itself: without friction and attraction.
+///
+/// What a face particle a sees of other faces is ψ_a = Σ_b (s_b/s) W(|x_a − x_b|/s), with sizes s_a and s_b,
+/// whose mean is s, and the kernel W, which reaches 2 s. Beside a straight row of particles at the distance d
+/// it is Ψ(d) on the mean. Along the row it varies so little that the pressure of faces that overlap by 5, 20
+/// and 40 % of s varies by 0.7, 2 and 4 %: particles do not catch on each other.
+/// Where ψ exceeds Ψ(s), faces overlap by about o = e Ψ/|Ψ'| with e = ψ/Ψ(s) − 1, and the energy
+///
+/// U = ½ k Σ_a s_a² (Ψ/Ψ')² (e_a²/2 + e_a³/6)
+///
+/// is stored, half in each of two faces: k o²/2 at first, and steeper later, so that faces do not pass
+/// through each other. Its forces are central, so momenta are kept. Particles of one body that are nearer
+/// than twice the reach in the reference do not see each other: their distance is the business of the stress.
 #[derive(Clone, Copy, Debug)]
-pub struct BetweenFaces(pub Contact);
+pub struct BetweenFaces {
+    contact: Contact,
+    kernel: Smoothing<WendlandC2>,
+    /// Ψ(s) and −s Ψ'(s).
+    row: [f64; 2],
+}
+
+/// Distance at which faces see each other over the size of their particles.
+const REACH: f64 = 2.0;
+
+/// Two particles that see each other.
+struct Seen {
+    who: [usize; 2],
+    /// From the second to the first \[m\].
+    apart: Vector2<f64>,
+    /// The mean of their sizes \[m\].
+    size: f64,
+}
+
+/// Ψ(d) and −Ψ'(d) of a straight row of particles at the distance d, in units of their size.
+fn row(kernel: &Smoothing<WendlandC2>, d: f64) -> [f64; 2] {
+    // The mean over places along the row, by a sum that is exact to 1e-6: the kernel has two derivatives.
+    let across = (-200..200).map(|k| (f64::from(k) + 0.5) * 0.01);
+    across.fold([0.0; 2], |[seen, slope], x| {
+        let r2 = d * d + x * x;
+        [seen + 0.01 * kernel.w(r2), slope + 0.01 * d * kernel.f(r2)]
+    })
+}
 
 impl BetweenFaces {
-    /// Calls `each` with every two particles that touch, the vector from the second to the first \[m\], and
-    /// the distance at which they touch \[m\], in an order that depends on the state alone.
-    fn touching(on: &Loaded, mut each: impl FnMut([usize; 2], Vector2<f64>, f64)) {
+    /// Of this stiffness.
+    pub fn new(contact: Contact) -> Self {
+        let kernel = Smoothing::<WendlandC2>::new(1.0);
+        Self { contact, kernel, row: row(&kernel, 1.0) }
+    }
+
+    /// The pressure of two straight faces whose outermost particles are this many sizes apart \[Pa\]:
+    /// −dU/dd over the size.
+    pub fn pressure(&self, distance: f64) -> f64 {
+        let [seen, slope] = row(&self.kernel, distance);
+        let e = (seen / self.row[0] - 1.0).max(0.0);
+        2.0 * self.scale(1.0) * (e + 0.5 * e * e) * slope / self.row[0]
+    }
+
+    /// The longest stable step while bodies press against each other with this pressure \[Pa\] \[s\], from that
+    /// of the lattice that is compressed by it; an estimate, which a test finds within 3 %. The largest eigenvalue of a sum is at most
+    /// the sum of the largest ones, ω² = ω_l² + λ/(ρ s²), and that of the second derivatives of U at two
+    /// straight rows is at most
+    ///
+    /// λ = ½ k (Ψ/Ψ')² ((1 + e)(|Σ ∇W| + Σ |∇W|)² + 4 (e + e²/2) Σ |∇∇W|)/Ψ²
+    ///
+    /// by the norms of their rows (Gershgorin), with sums over the particles that one particle sees.
+    pub fn step_limit(&self, of_lattice: f64, density: f64, size: f64, pressure: f64) -> f64 {
+        // Nearer than 0.4 sizes the pressure hardly rises any more.
+        let halve = |[near, far]: [f64; 2], _| {
+            let middle = 0.5 * (near + far);
+            if self.pressure(middle) > pressure { [middle, far] } else { [near, middle] }
+        };
+        let [near, far] = (0..40).fold([0.4, 1.0], halve);
+        let d = 0.5 * (near + far);
+        let e = (row(&self.kernel, d)[0] / self.row[0] - 1.0).max(0.0);
+        let of = |aside: f64| {
+            let seen = (-3..=3).map(|k| Vector2::new(f64::from(k) + aside, d));
+            let [mut sum, mut sizes, mut curved] = [0.0; 3];
+            for r in seen {
+                let (r2, by) = (r.norm_squared(), 1e-4);
+                let steep = |r2: f64| r2.sqrt() * self.kernel.f(r2);
+                let [more, less] = [1.0 + by, 1.0 - by].map(|factor| steep(r2 * factor * factor));
+                let second = (more - less) / (2.0 * by * r2.sqrt());
+                sum += self.kernel.f(r2) * d;
+                sizes += steep(r2);
+                curved += self.kernel.f(r2).max(second.abs());
+            }
+            let norm = (1.0 + e) * (sum + sizes) * (sum + sizes);
+            norm + 4.0 * (e + 0.5 * e * e) * curved * self.row[0]
+        };
+        let stiffness = self.scale(1.0) / (self.row[0] * self.row[0]) * of(0.0).max(of(0.5));
+        2.0 / (4.0 / (of_lattice * of_lattice) + stiffness / (density * size * size)).sqrt()
+    }
+
+    /// All that see each other, in an order that depends on the state alone.
+    fn seen(&self, on: &Loaded) -> Vec<Seen> {
         let axis = usize::from(on.domain.period[0].is_some());
-        let reach = on.sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let reach = REACH * on.sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
         let place = |i: &u32| (on.state[*i as usize].position[axis], *i as usize);
         let mut sorted: Vec<(f64, usize)> = on.faces.iter().map(place).collect();
         sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut seen = Vec::new();
         for (k, &(x, i)) in sorted.iter().enumerate() {
             for &(_, j) in sorted[k + 1..].iter().take_while(|(other, _)| other - x < reach) {
-                let r = on.between(i, j, |k| on.state[k].position);
-                let touch = 0.5 * (on.sizes[i] + on.sizes[j]);
-                if r.norm_squared() < touch * touch && on.are_apart(i, j, 2.0 * touch) {
-                    each([i, j], r, touch);
+                let apart = on.between(i, j, |k| on.state[k].position);
+                let size = 0.5 * (on.sizes[i] + on.sizes[j]);
+                let most = REACH * size;
+                if apart.norm_squared() < most * most && on.are_apart(i, j, 2.0 * most) {
+                    seen.push(Seen { who: [i, j], apart, size });
                 }
             }
         }
+        seen
+    }
+
+    /// e of every particle.
+    fn excess(&self, on: &Loaded, seen: &[Seen]) -> Vec<f64> {
+        let mut excess = vec![-1.0; on.sizes.len()];
+        for Seen { who: [i, j], apart, size } in seen {
+            let weight = self.kernel.w(apart.norm_squared() / (size * size)) / (self.row[0] * size);
+            excess[*i] += on.sizes[*j] * weight;
+            excess[*j] += on.sizes[*i] * weight;
+        }
+        excess
+    }
+
+    /// ½ k s² (Ψ/Ψ')² \[J/m\].
+    fn scale(&self, size: f64) -> f64 {
+        let gap = size * self.row[0] / self.row[1];
+        0.5 * self.contact.stiffness * gap * gap
     }
 }
 
 impl Load for BetweenFaces {
     fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) {
-        Self::touching(on, |[i, j], r, touch| {
-            let distance = r.norm();
-            let force = r * (self.0.force(touch, distance) / distance);
-            accelerations[i] += force / on.masses[i];
-            accelerations[j] -= force / on.masses[j];
-        });
+        let seen = self.seen(on);
+        let excess = self.excess(on, &seen);
+        let slope = |k: usize| {
+            let e = excess[k].max(0.0);
+            self.scale(on.sizes[k]) * (e + 0.5 * e * e)
+        };
+        for Seen { who: [i, j], apart, size } in seen {
+            let both = slope(i) * on.sizes[j] + slope(j) * on.sizes[i];
+            if both > 0.0 {
+                let steep = self.kernel.f(apart.norm_squared() / (size * size)) / self.row[0];
+                let force = apart * (both * steep / (size * size * size));
+                accelerations[i] += force / on.masses[i];
+                accelerations[j] -= force / on.masses[j];
+            }
+        }
     }
     fn energy(&self, on: &Loaded) -> f64 {
-        let mut sum = 0.0;
-        Self::touching(on, |_, r, touch| sum += self.0.energy(touch, r.norm()));
-        sum
+        let excess = self.excess(on, &self.seen(on));
+        let of = |(e, size): (&f64, &f64)| {
+            let e = e.max(0.0);
+            self.scale(*size) * e * e * (0.5 + e / 6.0)
+        };
+        excess.iter().zip(on.sizes).map(of).fold(0.0, |sum, one| sum + one)
     }
 }

@@ -3,9 +3,13 @@
 mod common;
 
 use common::{DENSITY, MODULI, block, build, energy, forces, free, number, put, scene};
-use lagrangian::{Hencky, Law, NeoHookean, SaintVenantKirchhoff, SolidScene};
+use lagrangian::{
+    BetweenFaces, Contact, Hencky, Law, NeoHookean, SaintVenantKirchhoff, SolidScene,
+};
 use nalgebra::Vector2;
-use solver::{Domain, Limits, Open, Outcome, Smoothing, Stepper, WendlandC2};
+use solver::{
+    Domain, Limits, Open, Outcome, PlaneWall, SlipGhosts, Smoothing, Stepper, WendlandC2,
+};
 use std::f64::consts::TAU;
 
 const SIDE: usize = 12;
@@ -115,6 +119,86 @@ fn the_step_limit_is_that_of_theory() {
     };
     assert!(!grows(0.99));
     assert!(grows(1.01));
+}
+
+/// Two layers between planes along which they slip, four columns of particles each, which overlap by 0.6
+/// of a spacing without stress and so press against each other, at rest; and the contact.
+fn pressed() -> (common::Block<Hencky, BetweenFaces>, BetweenFaces) {
+    let mut particles = block(8, 5, 0.0);
+    for p in particles.iter_mut().filter(|p| p.position.x > 4.0) {
+        // Beside the gaps of the other face: where particles stand opposite each other, faces slip.
+        p.position += Vector2::new(-0.6, 0.5);
+    }
+    let plane = |x, normal| PlaneWall::new(Vector2::new(x, 0.0), normal, Vector2::zeros());
+    let walls = vec![plane(0.0, Vector2::x()), plane(7.4, -Vector2::x())];
+    let contact = BetweenFaces::new(Contact::of(&MODULI));
+    let mut solid = build::<Hencky, _, _>(SolidScene {
+        domain: Domain { low: Vector2::zeros(), period: [None, Some(5.0)] },
+        bodies: particles.iter().map(|p| u32::from(p.position.x > 3.7)).collect(),
+        ..scene(particles, SlipGhosts { walls }, contact)
+    });
+    for k in 1..=3000 {
+        let dt = 0.4 * limit();
+        solid.advance(f64::from(k) * dt, dt, &mut ());
+        let mut slowed = solid.checkpoint();
+        slowed.particles.iter_mut().for_each(|(_, p)| p.velocity *= 0.9);
+        solid.restore(&slowed).expect("the same scene");
+    }
+    (solid, contact)
+}
+
+/// ω² of the fastest mode, by power iteration on differences of forces.
+fn fastest(solid: &mut common::Block<Hencky, BetweenFaces>) -> f64 {
+    let start = solid.checkpoint();
+    let mut mode: Vec<_> = (0..start.particles.len())
+        .map(|k| Vector2::new(number(3 * k), number(5 * k + 1)))
+        .collect();
+    let mut squared = 0.0;
+    for _ in 0..400 {
+        let size = mode.iter().fold(0.0, |sum, v| sum + v.norm_squared()).sqrt();
+        mode.iter_mut().for_each(|v| *v /= size);
+        let mut at = |by: f64| {
+            let mut moved = start.clone();
+            moved.particles.iter_mut().zip(&mode).for_each(|((_, p), v)| p.position += v * by);
+            solid.restore(&moved).expect("the same scene");
+            solid.total_rates().iter().map(|rate| rate.velocity).collect::<Vec<_>>()
+        };
+        let (more, less) = (at(1e-5), at(-1e-5));
+        let pushed: Vec<_> = less.iter().zip(&more).map(|(a, b)| (a - b) / 2e-5).collect();
+        squared = pushed.iter().zip(&mode).fold(0.0, |sum, (a, v)| sum + a.dot(v));
+        mode = pushed;
+    }
+    solid.restore(&start).expect("the same scene");
+    squared
+}
+
+/// The limit is that of the fastest mode of the bodies and their contact together, which the rule estimates.
+#[test]
+fn the_step_limit_of_bodies_in_contact_is_that_of_their_fastest_mode() {
+    let (mut solid, contact) = pressed();
+    let pressure = -solid.fluid().fold(0.0, |sum, (_, e)| {
+        sum + (e.extra.xx - MODULI.bulk * (e.density / DENSITY - 1.0)) / 40.0
+    });
+    assert!(pressure > 0.03 * MODULI.longitudinal(), "{pressure}");
+    let longest = 2.0 / fastest(&mut solid).sqrt();
+    let compressed = limit() * (1.0 - pressure / MODULI.longitudinal());
+    let rule = contact.step_limit(compressed, DENSITY, 1.0, pressure);
+    let start = solid.checkpoint();
+    let mut grows = |share: f64| {
+        let mut noisy = start.clone();
+        for (k, (_, p)) in noisy.particles.iter_mut().enumerate() {
+            p.velocity = Vector2::new(number(3 * k), number(5 * k + 1)) * 1e-9;
+        }
+        solid.restore(&noisy).expect("the same scene");
+        let dt = share * longest;
+        let now = solid.time();
+        solid.advance(now + 1500.0 * dt, dt, &mut ()) != Outcome::Reached
+            || solid.fluid().any(|(_, e)| !(e.velocity.norm() < 1e-6))
+    };
+    assert!(!grows(0.98), "stable below");
+    assert!(grows(1.02), "unstable above");
+    assert!((rule / longest - 1.0).abs() < 0.03, "{rule} {longest}");
+    assert!(longest < 0.7 * limit(), "contact matters: {longest}");
 }
 
 /// A block that is thrown, turns and vibrates, for 10⁵ steps.

@@ -26,11 +26,11 @@ pub static DISPERSION: Cause = Cause::new(
     "2026-11-23",
 );
 
-/// Contact of particles is rough.
-pub static ROUGH_CONTACT: Cause = Cause::new(
-    "Faces touch particle by particle, so a face is as rough as its spacing, and opposite particles push \
-     each other aside.",
-    "Contact between lines through the particles of a face, or finer spacing.",
+/// Few particles through the thickness.
+pub static FEW_LAYERS: Cause = Cause::new(
+    "Gradients at faces are one-sided, so a body of few layers bends slowly, by an error of second order in \
+     the spacing.",
+    "More particles through the thickness.",
     "2026-11-23",
 );
 

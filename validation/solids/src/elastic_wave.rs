@@ -154,7 +154,7 @@ impl WaveSettings {
         };
         let side = if self.rotation { N + 1 } else { N } as f64;
         let medium = RUBBER.medium(method, [1.0 / side, self.h_over_dx / side]);
-        let limits = limits(method, &RUBBER, &medium, self.h_over_dx);
+        let limits = limits(method, &RUBBER, &medium, self.h_over_dx, 0.0);
         let end = step.dt * steps as f64;
         Rules { step, limits, sound_speed: RUBBER.sound_speed(), end }
     }

@@ -5,7 +5,7 @@ use super::{
     LAGRANGIAN, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings, measure::NEIGHBOURS, metrics::*,
     reference::Reference,
 };
-use crate::causes::{DISPERSION, ROUGH_CONTACT};
+use crate::causes::FEW_LAYERS;
 use base::{
     functions::exp,
     gate::{Bound, Evidence, Gate},
@@ -29,7 +29,7 @@ pub fn spacings(tier: Tier) -> &'static [f64] {
 pub fn collisions(tier: Tier) -> Vec<Planned> {
     let run = |spacing: f64, speed: f64| {
         // Particles times steps, of which each takes a third of what those of the other variants take.
-        let seconds = 4.0 * (0.1 / spacing).powi(3);
+        let seconds = 8.0 * (0.1 / spacing).powi(3);
         RUBBER_RINGS
             .planned(LAGRANGIAN, |s| (s.spacing, s.speed) = (spacing, speed))
             .taking(seconds)
@@ -37,11 +37,14 @@ pub fn collisions(tier: Tier) -> Vec<Planned> {
     };
     let mut runs: Vec<Planned> =
         spacings(tier).iter().map(|spacing| run(*spacing, SPEED)).collect();
-    let (speeds, layers): (&[f64], &[f64]) = match tier {
-        Tier::Quick => (&[0.03, 0.2], &[FIVE_LAYERS]),
-        Tier::Full => (&[0.01, 0.03, 0.12, 0.2], &[FIVE_LAYERS, 0.1]),
+    let (speeds, others): (&[f64], &[f64]) = match tier {
+        Tier::Quick => (&[0.03, 0.3], &[FIVE_LAYERS]),
+        Tier::Full => (&[0.01, 0.03, 0.12, 0.2, 0.3], &[FIVE_LAYERS, 0.1]),
     };
-    runs.extend(speeds.iter().flat_map(|v| layers.iter().map(|spacing| run(*spacing, *v))));
+    runs.extend(speeds.iter().flat_map(|v| others.iter().map(|spacing| run(*spacing, *v))));
+    if tier == Tier::Full {
+        runs.extend([0.03, 0.3].map(|speed| run(0.05, speed)));
+    }
     runs
 }
 
@@ -51,7 +54,7 @@ fn gates(spacing: f64, speed: f64) -> Vec<Gate> {
         false => format!("{LAGRANGIAN}.s{spacing}.v{speed}"),
     };
     let of = Of { id, spacing };
-    let mut gates = of.invariants().to_vec();
+    let mut gates = of.invariants(speed);
     let settings = RingSettings { speed, ..RingSettings::default() };
     if let Some(exact) = Reference::of(LAGRANGIAN, &settings) {
         gates.extend(of.extremes());
@@ -83,24 +86,33 @@ impl Of {
     }
 
     /// What holds whatever the settings.
-    fn invariants(&self) -> [Gate; 5] {
+    fn invariants(&self, speed: f64) -> Vec<Gate> {
         let momentum = "Forces are derivatives of an energy that does not change with translations, so only \
                         round-off is left.";
         let energy = "Forces are derivatives of a stored energy, that of the contact included, and nothing \
                       dissipates. Contacts that open and close within a step leave some tenths of a per \
-                      cent, at 0.2 c0 up to one.";
+                      cent.";
         let whole = "A ring is one piece, because a body that keeps the neighbours of its reference cannot \
                      tear, at any speed.";
         let invariant = |metric: MetricKey, bound, because| {
             self.gate(metric, bound, Evidence::Invariant, because)
         };
-        [
+        let mut gates = vec![
             invariant(MOMENTUM, Bound::Below(1e-12), momentum),
             invariant(ENERGY_GAINED, Bound::Below(MOST_ENERGY_GAINED), energy),
             invariant(ENERGY_LOST, Bound::Within(-0.01, 0.01), energy),
             invariant(PIECES_MOST, Bound::Equals(2.0), whole),
-            invariant(HOLES_LEAST, Bound::Equals(1.0), whole),
-        ]
+        ];
+        // At 0.3 c0 a ring is pressed flat, and its hole closes for a while.
+        if speed < 0.25 {
+            gates.push(invariant(HOLES_LEAST, Bound::Equals(1.0), whole));
+        }
+        gates
+    }
+
+    /// Has the ring fewer than 20 layers?
+    fn is_coarse(&self) -> bool {
+        self.spacing > 0.051
     }
 
     /// 2, 1 and 0.5 % for 5, 10 and 20 layers.
@@ -114,15 +126,18 @@ impl Of {
                     and 0.5 % with 5, 10 and 20 layers.";
         let vibration = "The restitution is what the vibration of the ring leaves to its centre, so it \
                          hangs on how long the two contacts last against the period of bending, which is \
-                         1.9 and 0.6 % too long with 5 and 10 layers. The bound: first order in \
-                         dx/thickness with a factor of 0.2.";
+                         1.9 and 0.6 % too long with 5 and 10 layers (plate). The bound: 4 and 2 %, first \
+                         order in the spacing.";
         let (small, known) = (self.reach(), 2.0 * self.reach());
         let near = |metric: MetricKey| {
             self.gate(metric, Bound::Within(-small, small), Evidence::Reference, goal)
         };
-        let restitution = near(RESTITUTION_ERROR)
-            .with_limitation(Bound::Within(-small, known), vibration)
-            .because_of(&DISPERSION);
+        let mut restitution = near(RESTITUTION_ERROR);
+        if self.is_coarse() {
+            restitution = restitution
+                .with_limitation(Bound::Within(-small, known), vibration)
+                .because_of(&FEW_LAYERS);
+        }
         vec![restitution, near(WIDTH_MIN_ERROR), near(HEIGHT_MAX_ERROR)]
     }
 
@@ -130,39 +145,31 @@ impl Of {
     fn contact(&self) -> [Gate; 2] {
         let twice =
             "In finite elements the rings touch twice, and fly freely for 15 L/c0 in between.";
-        let again = "In the second phase the rings touch at two places that open and close as the rings \
-                     vibrate. A pause of more than 5 L/c0 counts as the end of a phase, and with 10 layers \
-                     there is one. The bound: one pause more.";
         let end = "The last phase ends within 3 L/c0 of that of finite elements, which is what the project \
                    set out to reach.";
         let late = "At the end of the second phase the rings touch lightly, while they vibrate. The bound: \
                     99 % of the impulse have passed in finite elements at 116.6 L/c0, and the last touch \
                     is at 122.5; a sample of 0.25 L/c0 is added, and the time in which rings come apart by \
                     a spacing of 0.2 L at the speed 0.094 c0 of both.";
-        let phases = self.gate(PHASES, Bound::Equals(2.0), Evidence::Reference, twice);
         let ends = self.gate(
             CONTACT_END_ERROR.at(phase(1)),
             Bound::Within(-3.0, 3.0),
             Evidence::Reference,
             end,
         );
-        [
-            phases.with_limitation(Bound::Within(2.0, 3.0), again).because_of(&ROUGH_CONTACT),
-            ends.with_limitation(Bound::Within(-3.0, 8.3), late).because_of(&ROUGH_CONTACT),
-        ]
+        let ends = match self.is_coarse() {
+            true => ends.with_limitation(Bound::Within(-3.0, 8.3), late).because_of(&FEW_LAYERS),
+            false => ends,
+        };
+        [self.gate(PHASES, Bound::Equals(2.0), Evidence::Reference, twice), ends]
     }
 
     /// How far the rings are from each other's mirror image.
     fn mirror(&self) -> Gate {
         let exact = "The scene is its own mirror image to the last bit. Round-off of 1e-16 grows while rings \
-                     bend, the faster the finer they are.";
-        let aside = "Particles that stand exactly opposite each other push each other aside as soon as \
-                     round-off has moved them, so rings that press against each other slip along the plane \
-                     between them, by 1e-3 dx with 10 layers and by 3 dx with 20. The bound: a quarter of \
-                     the thickness.";
+                     bend, the faster the finer they are. Faces on which particles catch push each other \
+                     aside, by 3 dx with 20 layers.";
         self.gate(MIRROR, Bound::Below(1e-6), Evidence::Invariant, exact)
-            .with_limitation(Bound::Below(0.25 / self.spacing), aside)
-            .because_of(&ROUGH_CONTACT)
     }
 
     /// The largest distance of particles that were neighbours at the start.

@@ -144,6 +144,7 @@ fn variants() -> Vec<Composition<RingSettings>> {
             |s| {
                 (s.alpha, s.beta, s.xsph, s.xi) = (0.0, 0.0, 0.0, 0.0);
                 total::choose(s);
+                s.courant = total::COURANT_OF_FOLDS;
             },
         )
         .all

@@ -10,7 +10,6 @@ use crate::solid::{Material, limits};
 use harness::{
     case::{Rules, RunError, Step},
     context::Context,
-    limits::Mechanism,
     method::{Medium, Method, Parts},
     simulate,
 };
@@ -68,9 +67,7 @@ impl Rings {
             exponent: s.exponent as u32,
             ..material.medium(method, [dx, h])
         };
-        let limits = limits(method, &material, &medium, s.h_over_dx)
-            .moving(h, v, 0.0)
-            .with(Mechanism::Contact, h / (2.0 * v));
+        let limits = limits(method, &material, &medium, s.h_over_dx, 2.0 * v).moving(h, v, 0.0);
         let step = Step::courant(s.courant, h, [cp, v]).or_given(s.dt);
         let rules = Rules { step, limits, sound_speed: c0, end: s.end / c0 };
         let particles = TAU * (s.outer * s.outer - s.inner * s.inner) / (dx * dx);

@@ -3,7 +3,7 @@
 use lagrangian::{BetweenFaces, Contact, Law, Moduli, Solid, SolidScene};
 use nalgebra::Vector2;
 use solver::{
-    Compose, Ghosts, Leapfrog, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
+    Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
 };
 
 use base::settings::Settings;
@@ -18,11 +18,19 @@ const H_OVER_DX: &str = "1";
 /// The usual Courant number dt (c_p + V)/h: about half of the limit.
 const COURANT: &str = "0.8";
 
+/// The Courant number of bodies that are folded: with it the step is a quarter of the limit without stress.
+pub const COURANT_OF_FOLDS: f64 = 0.4;
+
 /// Strength of what resists modes that deform no particle: long shear waves are of fourth order with it.
 const HOURGLASS: f64 = 1.0;
 
 /// Side of the periodic box whose waves give the limit of the time step.
 const LIMIT_BOX: usize = 24;
+
+/// Densities over that without stress beyond which a run has diverged. Energy grows without bound as a body
+/// is compressed, so that no compression is wrong; but the frequencies of compressed matter grow as its
+/// density, and at five times the density the step of [`COURANT_OF_FOLDS`] is about as long as the limit.
+const DENSITIES: [f64; 2] = [0.2, 5.0];
 
 /// What names the parts of the method.
 type Named = Compose<WendlandC2, (), (), Ghosts, Leapfrog, Symmetric>;
@@ -66,7 +74,7 @@ pub fn solid<L: Law>(mut parts: Parts<Symmetric>) -> Result<Built<L>, SceneError
         return Ok(Built::One(scene(parts, ()).build()?));
     }
     let contact = Contact::of(&moduli(&parts.medium));
-    Ok(Built::Several(scene(parts, BetweenFaces(contact)).build()?))
+    Ok(Built::Several(scene(parts, BetweenFaces::new(contact)).build()?))
 }
 
 fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
@@ -86,7 +94,7 @@ fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
         moduli: moduli(&medium),
         hourglass: HOURGLASS,
         loads,
-        limits,
+        limits: Limits { density: DENSITIES.map(|ratio| ratio * medium.density), ..limits },
         parallel_from: if threads > 1 { 10_000 } else { usize::MAX },
     }
 }
@@ -104,13 +112,17 @@ fn moduli(medium: &Medium) -> Moduli {
 }
 
 /// The largest stable step on a lattice without stress \[s\]: with Poisson's ratio 0.4 about 1.8 dx/c_p.
-/// Of bodies that press against each other it is shorter: not at 0.97 of it are they stable with 30 % of a
-/// spacing of overlap.
 fn step_limit(medium: &Medium) -> f64 {
     let moduli = moduli(medium);
     let lattice = SquareLattice::<WendlandC2>::new(medium.h / medium.dx, 0.0);
     let stiffness = stiffest(&lattice, LIMIT_BOX, [moduli.longitudinal(), moduli.shear]);
     2.0 * medium.dx * (medium.density / stiffness).sqrt()
+}
+
+/// The same of bodies that press against each other with this pressure \[Pa\], from the limit of the compressed lattice.
+pub fn limit_in_contact(lattice: f64, medium: &Medium, pressure: f64) -> f64 {
+    let contact = BetweenFaces::new(Contact::of(&moduli(medium)));
+    contact.step_limit(lattice, medium.density, medium.dx, pressure)
 }
 
 /// Displaces the particles from their reference.

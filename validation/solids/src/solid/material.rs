@@ -7,6 +7,8 @@ use harness::{
 use maths::theory::time_step;
 use solver::{Linear, Symmetric, Tait};
 
+use super::lagrangian;
+
 /// An isotropic elastic solid: small-strain moduli, plane strain with the 1/3 of three dimensions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -61,15 +63,27 @@ const LIMIT_BOX: usize = 24;
 /// on every pair: together with α = 1 about 1.1 h/c_p for the leapfrog.
 ///
 /// Its fastest waves run at c_p. The c of the artificial viscosity is that of the equation of state, c₀, so
-/// its α counts as α c₀/c_p of c_p.
+/// its α counts as α c₀/c_p of c_p. Bodies may meet at the speed `approach` \[m/s\], which is 0 where none do.
 pub fn limits<D: ?Sized>(
     method: &Method<Symmetric, D>,
     material: &Material,
     medium: &Medium,
     h_over_dx: f64,
+    approach: f64,
 ) -> Limits {
+    let meeting = medium.h / approach;
     if let Some(limit) = method.limit {
-        return Limits::of_waves(limit(medium));
+        let lattice = limit(medium);
+        let mut limits = Limits::of_waves(lattice).with(Mechanism::Contact, meeting);
+        if approach > 0.0 {
+            // Each of two equal bodies changes its velocity by V, half of that, which takes rho c_p V and
+            // compresses it by V/c_p; the frequencies of compressed matter grow as its density.
+            let (cp, v) = (material.p_wave_speed(), 0.5 * approach);
+            let compressed = lattice * (1.0 - v / cp).max(0.1);
+            let pressure = material.density * cp * v;
+            limits.together = lagrangian::limit_in_contact(compressed, medium, pressure);
+        }
+        return limits;
     }
     let wave = material.p_wave_speed();
     let alpha = medium.alpha * material.sound_speed() / wave;
@@ -77,7 +91,7 @@ pub fn limits<D: ?Sized>(
     let limits = method.limits([h_over_dx, 0.01], LIMIT_BOX, &waves);
     // Both kinds of waves have the rates of the same gradient.
     let shear = limits.alone(Mechanism::Waves) * wave / material.shear_wave_speed();
-    limits.with(Mechanism::ShearWaves, shear)
+    limits.with(Mechanism::ShearWaves, shear).with(Mechanism::Contact, meeting)
 }
 
 #[cfg(test)]
@@ -94,7 +108,7 @@ mod tests {
         let limit = |shear: f64, alpha: f64| {
             let material = Material { density: 1.0, bulk: 1.0, shear };
             let medium = Medium { alpha, ..material.medium(&method, [1.0, 1.5]) };
-            limits(&method, &material, &medium, 1.5).together * material.p_wave_speed()
+            limits(&method, &material, &medium, 1.5, 0.0).together * material.p_wave_speed()
         };
         // Without viscosity, and without shear: 1.87 h/c_p, and 1.03 with α = 1.
         assert_relative_eq!(limit(0.22, 0.0) / 1.5, 1.87, max_relative = 1e-2);

@@ -17,7 +17,6 @@ use harness::{
     checkpoint::Observed,
     composed::{Composition, Program, Variants},
     context::Context,
-    limits::Mechanism,
     method::{Boundary, Medium, Method, Parts},
     rules::PLANNED_DT,
     runner::{self, Drive},
@@ -139,9 +138,8 @@ fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
     let courant = courant.unwrap_or(usual);
     let (h, speed) = (medium.h, settings.speed());
     let step = Step::courant(courant, h, [material.p_wave_speed(), speed]).or_given(dt);
-    let limits = limits(method, &material, &medium, settings.h_over_dx())
-        .moving(h, speed, 0.0)
-        .with(Mechanism::Contact, h / settings.approach());
+    let limits = limits(method, &material, &medium, settings.h_over_dx(), settings.approach())
+        .moving(h, speed, 0.0);
     Rules { step, limits, sound_speed: material.sound_speed(), end: settings.end() }
 }
 
