@@ -8,7 +8,7 @@ const FUNCTION_LINES: usize = 70;
 /// Columns that a line of Rust may have.
 const COLUMNS: usize = 110;
 /// Lines that the solver may have without its tests, and those that the total Lagrangian solid may have.
-const SOLVER_LINES: [(&str, usize); 2] = [("solver/src", 3000), ("solver/lagrangian/src", 800)];
+const SOLVER_LINES: [(&str, usize); 2] = [("solver/src", 3000), ("solver/lagrangian/src", 900)];
 /// Functions that may be longer, as `file.rs: name`, with a reason beside each.
 const LONG_FUNCTIONS: &[&str] = &[];
 /// Split, so that this file does not contain what it looks for.

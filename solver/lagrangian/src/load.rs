@@ -102,9 +102,9 @@ impl Contact {
     }
 }
 
-/// A rigid plane without friction, which pushes and never pulls. A particle touches it at half of its size
-/// s, and where it is nearer, at d < s/2, it is pushed by twice the force k s (s/2 − d)/(2 d): 2 k o at first,
-/// since the plane does not yield, and so large at last that nothing passes.
+/// A rigid plane without friction, which pushes and never pulls. A particle touches it at the distance
+/// t = s/2, half of its size. Nearer, at d < t, it is pushed with the force 2 k (t − d) t/d: twice the
+/// stiffness of a face, since the plane does not yield, and so much at last that nothing passes.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidPlane {
     /// A point of it \[m\].
@@ -206,10 +206,10 @@ impl BetweenFaces {
         2.0 * self.scale(1.0) * (e + 0.5 * e * e) * slope / self.row[0]
     }
 
-    /// The longest stable step while bodies press against each other with this pressure \[Pa\] \[s\], from that
-    /// of the lattice that is compressed by it; an estimate, which a test finds within 3 %. The largest eigenvalue of a sum is at most
-    /// the sum of the largest ones, ω² = ω_l² + λ/(ρ s²), and that of the second derivatives of U at two
-    /// straight rows is at most
+    /// The longest stable step while bodies press against each other with this pressure \[Pa\] \[s\], from
+    /// that of the lattice that is compressed by it; an estimate, which a test finds within 3 %. The
+    /// largest eigenvalue of a sum is at most the sum of the largest ones, ω² = ω_l² + λ/(ρ s²), and that
+    /// of the second derivatives of U at two straight rows is at most
     ///
     /// λ = ½ k (Ψ/Ψ')² ((1 + e)(|Σ ∇W| + Σ |∇W|)² + 4 (e + e²/2) Σ |∇∇W|)/Ψ²
     ///

@@ -81,8 +81,8 @@ static SOUND: Cause = Cause::new(
 );
 
 static EDGE: Cause = Cause::new(
-    "On a lattice with h/dx = 1 some neighbours are exactly at the edge of the support, where round-off and \
-     the sliding of rows decide whether they are counted, though they exert no force.",
+    "With h/dx = 1 some neighbours are at the edge of the support, where round-off decides whether they are \
+     counted, though they exert no force.",
     "A count of pair sweeps in the record beside that of pair interactions.",
     "2026-11-23",
 );

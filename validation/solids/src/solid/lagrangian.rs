@@ -119,7 +119,8 @@ fn step_limit(medium: &Medium) -> f64 {
     2.0 * medium.dx * (medium.density / stiffness).sqrt()
 }
 
-/// The same of bodies that press against each other with this pressure \[Pa\], from the limit of the compressed lattice.
+/// The same of bodies that press against each other with this pressure \[Pa\], from the limit of the
+/// compressed lattice.
 pub fn limit_in_contact(lattice: f64, medium: &Medium, pressure: f64) -> f64 {
     let contact = BetweenFaces::new(Contact::of(&moduli(medium)));
     contact.step_limit(lattice, medium.density, medium.dx, pressure)

@@ -63,7 +63,7 @@ const LIMIT_BOX: usize = 24;
 /// on every pair: together with α = 1 about 1.1 h/c_p for the leapfrog.
 ///
 /// Its fastest waves run at c_p. The c of the artificial viscosity is that of the equation of state, c₀, so
-/// its α counts as α c₀/c_p of c_p. Bodies may meet at the speed `approach` \[m/s\], which is 0 where none do.
+/// its α counts as α c₀/c_p of c_p. Bodies may meet at the speed `approach` \[m/s\]; where none do it is 0.
 pub fn limits<D: ?Sized>(
     method: &Method<Symmetric, D>,
     material: &Material,
