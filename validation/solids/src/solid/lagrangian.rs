@@ -38,7 +38,7 @@ type Named = Compose<WendlandC2, (), (), Ghosts, Leapfrog, Symmetric>;
 /// The method with the stored energy `L`. Particles of the scene that are held are left out: the planes of
 /// its parts hold the body instead.
 pub fn method<L: Law>() -> Method<Symmetric> {
-    named(|parts| Ok(build::<L>(parts)?))
+    named(build::<L>)
 }
 
 /// The method whose simulations this builds, likewise.
