@@ -298,7 +298,7 @@ fn a_record_states_the_step_that_was_used_and_the_one_that_was_planned() {
 }
 
 /// A short run of each case.
-const SHORT: [&str; 17] = [
+const SHORT: [&str; 18] = [
     "couette --variant seed --set rows=8 --set end=0.1",
     "poiseuille --set rows=8 --set end=0.1",
     "taylor_green --set n=20 --set end=0.1",
@@ -313,6 +313,7 @@ const SHORT: [&str; 17] = [
     "elastic_bar --set n=12",
     "spinning_disk --variant bare --set n=8 --set end=0.1 --set courant=0.8",
     "oscillating_plate --set n=4 --set end=0.1",
+    "cantilever --variant lagrangian --set n=4 --set end=0.02",
     "elastic_wave",
     "extremes --set steps=40",
     "resting_box",

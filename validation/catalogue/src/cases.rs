@@ -5,7 +5,7 @@ use harness::case::{Case, RunError};
 
 use fluids::{couette, periodic_hill, poiseuille, taylor_couette, taylor_green};
 use lattice::{acoustic_wave, extremes, shear_wave, stability};
-use solids::{elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
+use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
 use waters::{dam_break, elliptic_drop, hydrostatic};
 
 /// Every case, in the order of the report: the five of the paper, then those that support them.
@@ -22,6 +22,7 @@ pub const CASES: &[&dyn Case] = &[
     &elastic_bar::ELASTIC_BAR,
     &spinning_disk::SPINNING_DISK,
     &oscillating_plate::OSCILLATING_PLATE,
+    &cantilever::CANTILEVER,
     &acoustic_wave::ACOUSTIC_WAVE,
     &shear_wave::SHEAR_WAVE,
     &elastic_wave::ELASTIC_WAVE,
@@ -35,7 +36,8 @@ pub fn find(name: &str) -> Result<&'static dyn Case, RunError> {
 }
 
 /// The references that cases are compared with, and these cases.
-const USERS: [(&str, &[&str]); 7] = [
+const USERS: [(&str, &[&str]); 8] = [
+    ("cantilever", &["cantilever"]),
     ("dambreak_lobovsky", &["dam_break"]),
     ("dambreak_martin_moyce", &["dam_break"]),
     ("peers_channel", &["couette", "poiseuille"]),

@@ -1,5 +1,6 @@
 //! Elastic solids.
 
+pub mod cantilever;
 mod causes;
 pub mod elastic_bar;
 pub mod elastic_wave;
@@ -16,6 +17,7 @@ pub const CASES: &[&dyn Case] = &[
     &elastic_bar::ELASTIC_BAR,
     &spinning_disk::SPINNING_DISK,
     &oscillating_plate::OSCILLATING_PLATE,
+    &cantilever::CANTILEVER,
     &rings::RUBBER_RINGS,
 ];
 

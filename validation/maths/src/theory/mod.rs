@@ -1,6 +1,7 @@
 //! Exact solutions of the *discretised* equations on a lattice: what a correct program reproduces
 //! to round-off, and the part of its error that no correct program can avoid.
 
+pub mod bending;
 pub mod channel;
 pub mod lagrangian;
 pub mod lattice;

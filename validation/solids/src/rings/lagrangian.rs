@@ -5,7 +5,7 @@ use super::{
     LAGRANGIAN, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings, measure::NEIGHBOURS, metrics::*,
     reference::Reference,
 };
-use crate::causes::FEW_LAYERS;
+use crate::causes::ONE_SIDED;
 use base::{
     functions::exp,
     gate::{Bound, Evidence, Gate},
@@ -136,7 +136,7 @@ impl Of {
         if self.is_coarse() {
             restitution = restitution
                 .with_limitation(Bound::Within(-small, known), vibration)
-                .because_of(&FEW_LAYERS);
+                .because_of(&ONE_SIDED);
         }
         vec![restitution, near(WIDTH_MIN_ERROR), near(HEIGHT_MAX_ERROR)]
     }
@@ -158,7 +158,7 @@ impl Of {
             end,
         );
         let ends = match self.is_coarse() {
-            true => ends.with_limitation(Bound::Within(-3.0, 8.3), late).because_of(&FEW_LAYERS),
+            true => ends.with_limitation(Bound::Within(-3.0, 8.3), late).because_of(&ONE_SIDED),
             false => ends,
         };
         [self.gate(PHASES, Bound::Equals(2.0), Evidence::Reference, twice), ends]

@@ -1,6 +1,6 @@
 //! The total Lagrangian solid as a method of the harness.
 
-use lagrangian::{BetweenFaces, Contact, Law, Moduli, Solid, SolidScene};
+use lagrangian::{BetweenFaces, Contact, Law, Moduli, Solid, SolidScene, Weight};
 use nalgebra::Vector2;
 use solver::{
     Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
@@ -8,15 +8,15 @@ use solver::{
 
 use base::settings::Settings;
 use harness::method::{Medium, Method, Parts, mutate};
-use maths::theory::{lagrangian::stiffest, lattice::SquareLattice};
+use maths::theory::{bending, lagrangian::stiffest, lattice::SquareLattice};
 
 /// h/dx: with a support of two spacings a particle sees the eight around it, the fewest with which all of its
 /// neighbours along both axes and diagonals count. Gradients at free surfaces are one-sided, and their error
 /// grows with the reach.
-const H_OVER_DX: &str = "1";
+const H_OVER_DX: f64 = 1.0;
 
 /// The usual Courant number dt (c_p + V)/h: about half of the limit.
-const COURANT: &str = "0.8";
+const COURANT: f64 = 0.8;
 
 /// The Courant number of bodies that are folded: with it the step is a quarter of the limit without stress.
 pub const COURANT_OF_FOLDS: f64 = 0.4;
@@ -41,6 +41,15 @@ pub fn method<L: Law>() -> Method<Symmetric> {
     named(build::<L>)
 }
 
+/// The same of one body that has weight: the acceleration of its medium.
+pub fn heavy<L: Law>() -> Method<Symmetric> {
+    named(|mut parts| {
+        mutate(&mut parts);
+        let weight = Weight(parts.medium.acceleration);
+        Ok(Box::new(scene(parts, weight).build::<WendlandC2, L>()?))
+    })
+}
+
 /// The method whose simulations this builds, likewise.
 pub fn named<D: ?Sized>(
     build: fn(Parts<Symmetric>) -> Result<Box<D>, SceneError>,
@@ -52,10 +61,16 @@ pub fn named<D: ?Sized>(
     method
 }
 
+/// The bending stiffness of a plate of so many layers over that of an elastic plate, with what the method is
+/// used with: below 1, for a face takes its strain from a little inside.
+pub fn bending(layers: usize, poisson: f64) -> f64 {
+    bending::stiffness::<WendlandC2>(H_OVER_DX, layers, poisson)
+}
+
 /// Sets what the method is used with.
 pub fn choose(settings: &mut impl Settings) {
     for (name, value) in [("h_over_dx", H_OVER_DX), ("courant", COURANT)] {
-        let _is_in_range = settings.set(name, value);
+        let _is_in_range = settings.set(name, &value.to_string());
     }
 }
 

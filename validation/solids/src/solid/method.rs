@@ -2,8 +2,8 @@
 
 use harness::method::{Boundary, FirstRow, Medium};
 use solver::{
-    ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, JaumannRate, Leapfrog,
-    Linear, Open, PlaneWall, Symmetric, Xsph, walls::Walls,
+    ArtificialViscosity, BodyForce, CauchyStress, Compose, Continuity, CubicSpline, JaumannRate,
+    Leapfrog, Linear, Open, PlaneWall, Symmetric, Xsph, walls::Walls,
 };
 
 /// (9), (10) and (12) with the artificial stress `R`, and (15) with (16) and (17).
@@ -16,6 +16,17 @@ pub type Rubber<R, I, W = Open> =
 /// The same terms without XSPH, stepped by the leapfrog.
 pub type Plain<R, W = Open> =
     Compose<CubicSpline, Stabilised<R>, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
+
+/// The same forces on a body that has weight.
+type Heavy<R> = (CauchyStress<Linear, R>, ArtificialViscosity<Linear>, BodyForce);
+
+/// [`Rubber`] that has weight.
+pub type HeavyRubber<R, I, W = Open> =
+    Compose<CubicSpline, Heavy<R>, (Continuity, JaumannRate, Xsph), W, I, Symmetric>;
+
+/// [`Plain`] rubber that has weight.
+pub type HeavyPlain<R, W = Open> =
+    Compose<CubicSpline, Heavy<R>, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
 
 /// (3), (9)–(12) alone, stepped by the leapfrog: nothing stabilises, and nothing dissipates.
 pub type Bare<W = Open, K = CubicSpline> =

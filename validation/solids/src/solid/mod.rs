@@ -1,6 +1,7 @@
 //! What cases of the elastic solid have in common: material, methods, settings, energies, and the
 //! variants of a problem.
 
+mod elements;
 mod energy;
 pub mod faces;
 pub mod lagrangian;
@@ -14,10 +15,11 @@ use harness::{
     context::Context,
 };
 
+pub use elements::{Path, Quantities, rows};
 pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
 pub use material::{Material, limits};
-pub use method::{Bare, Clamp, Plain, Rubber};
-pub use problem::{Problem, SharedSettings, Watch, digest, variants};
+pub use method::{Bare, Clamp, HeavyPlain, HeavyRubber, Plain, Rubber};
+pub use problem::{Problem, SharedSettings, Watch, digest, leave_out, program, variants};
 
 /// The largest of these numbers, none of which is negative; NaN if one is NaN, for what was not measured must
 /// not pass.
@@ -33,21 +35,31 @@ pub fn refused(case: &dyn Case, variant: &str, set: &str) -> Option<RunError> {
 }
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its
-/// [`SharedSettings`].
+/// [`SharedSettings`]. The material is the rubber of the rings unless the case names another one, by Young's
+/// modulus \[Pa\] and Poisson's ratio.
 #[macro_export]
 macro_rules! solid_settings {
     (
         $(#[doc = $doc:literal])+
         pub struct $Struct:ident { $($own:tt)* }
     ) => {
+        $crate::solid_settings! {
+            $(#[doc = $doc])+
+            pub struct $Struct of [2e6, 0.3975] { $($own)* }
+        }
+    };
+    (
+        $(#[doc = $doc:literal])+
+        pub struct $Struct:ident of [$young:literal, $poisson:literal] { $($own:tt)* }
+    ) => {
         base::settings! {
             $(#[doc = $doc])+
             pub struct $Struct {
                 $($own)*
                 /// Young's modulus
-                young: f64 ["Pa"] in 1e-6..=1e15 = 2e6,
+                young: f64 ["Pa"] in 1e-6..=1e15 = $young,
                 /// Poisson's ratio
-                poisson: f64 ["-"] in 0.0..=0.4999 = 0.3975,
+                poisson: f64 ["-"] in 0.0..=0.4999 = $poisson,
                 /// density without stress
                 rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
                 /// smoothing length over spacing; published runs of rubber rings have 1.5

@@ -58,6 +58,17 @@ pub trait Problem: SharedSettings {
     /// What measures a run with these particles at the start, which have these energies if the method knows
     /// them.
     fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
+    /// The acceleration of weight \[m/s²\], which only heavy methods read.
+    fn gravity(&self) -> Vector2<f64> {
+        Vector2::zeros()
+    }
+    /// Refuses settings that are in their ranges and make no body together.
+    ///
+    /// # Errors
+    /// What is too large, and which settings it depends on.
+    fn check(&self) -> Result<(), RunError> {
+        Ok(())
+    }
     /// Open, unless a case has a period.
     fn domain(&self) -> Domain {
         Domain::open()
@@ -87,10 +98,14 @@ pub trait Watch: Observer<Symmetric> + Observed {
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
 }
 
+/// What runs a problem with any method.
+pub fn program<P: Problem>() -> Program<P, Method<Symmetric>> {
+    Program { run: run::<P>, rules: |method, s| Ok(rules(method, s)) }
+}
+
 /// The variants of a problem whose particles these walls hold.
 pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition<P>> {
-    let program = Program { run: run::<P>, rules: |method, s| Ok(rules(method, s)) };
-    Variants::of(&program)
+    Variants::of(&program())
         .with(
             "seed",
             "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
@@ -124,11 +139,14 @@ pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition
 }
 
 /// Sets the strengths of terms that a method lacks to 0.
-fn leave_out(settings: &mut impl Settings, names: &[&str]) {
+pub fn leave_out(settings: &mut impl Settings, names: &[&str]) {
     for name in names {
         let _is_in_range = settings.set(name, "0");
     }
 }
+
+/// N of the step N (h/F)^(1/2) of a body force F, the usual one.
+const FORCED: f64 = 0.25;
 
 /// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
 fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
@@ -136,10 +154,11 @@ fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
     let [dt, courant] = settings.given_step();
     let courant = courant.unwrap_or(usual);
-    let (h, speed) = (medium.h, settings.speed());
-    let step = Step::courant(courant, h, [material.p_wave_speed(), speed]).or_given(dt);
+    let (h, speed, force) = (medium.h, settings.speed(), settings.gravity().norm());
+    let step = Step::courant(courant, h, [material.p_wave_speed(), speed]);
+    let step = step.forced(FORCED, h, force).or_given(dt);
     let limits = limits(method, &material, &medium, settings.h_over_dx(), settings.approach())
-        .moving(h, speed, 0.0);
+        .moving(h, speed, force);
     Rules { step, limits, sound_speed: material.sound_speed(), end: settings.end() }
 }
 
@@ -150,9 +169,11 @@ fn run<P: Problem>(
     settings: &P,
     context: &Context,
 ) -> Result<Record, RunError> {
+    settings.check()?;
     let rules = rules(method, settings);
     simulate::check_step(method.integrator, &rules, context)?;
-    let medium = settings.medium(method, settings.dx());
+    let acceleration = settings.gravity();
+    let medium = Medium { acceleration, ..settings.medium(method, settings.dx()) };
     let size = simulate::size(method, &medium, [rules.end / rules.dt(), settings.count()])
         .sampled_at_every_step();
     runner::check_size(size, "end, dt, n, length or thickness", context)?;

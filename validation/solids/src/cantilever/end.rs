@@ -1,0 +1,168 @@
+//! What is observed of a bar: the path of its end, its energies, its middle line when the end is lowest.
+
+use nalgebra::Vector2;
+use solver::{Evolved, Flow, Observer, Stepper, Symmetric};
+
+use super::{
+    AVERAGE_Y_ERROR, BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR, COMPARED, CantileverSettings,
+    ENERGY_CHANGE, FREQUENCY_ERROR, STIFFNESS, is_lagrangian, path, reference,
+};
+use crate::solid::{Energy, Path, SharedSettings, Watch, lagrangian};
+use base::record::{Profile, Record};
+
+/// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
+const SAMPLES: f64 = 1600.0;
+/// Samples between those of the energy.
+const ENERGY_EVERY: usize = 10;
+
+/// The motion of the end.
+pub struct End {
+    settings: CantileverSettings,
+    until: f64,
+    /// t \[s\], displacement of the end along x and y \[m\].
+    path: Vec<[f64; 3]>,
+    /// t \[s\], kinetic energy and all energy, less that of the start \[J/m\].
+    energies: Vec<[f64; 3]>,
+    /// The middle of the bar when its end was lowest \[m\].
+    lowest: Vec<[f64; 2]>,
+}
+
+harness::observed! {
+    End: changes(until, path, energies, lowest), parts(), stays(settings)
+}
+
+impl Observer<Symmetric> for End {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
+        if simulation.time() >= self.until {
+            self.until = simulation.time() + self.settings.end / SAMPLES;
+            self.sample(simulation);
+        }
+        Flow::Continue
+    }
+}
+
+impl End {
+    /// What sees a run with these settings.
+    pub fn new(settings: &CantileverSettings) -> Self {
+        Self {
+            settings: settings.clone(),
+            until: 0.0,
+            path: vec![[0.0; 3]],
+            energies: vec![[0.0; 3]],
+            lowest: Vec::new(),
+        }
+    }
+
+    fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        let all = simulation.particles();
+        let columns = self.settings.columns();
+        let middle = |column: usize| {
+            let rows = (0..self.settings.n).map(|row| all[row * columns + column].position);
+            rows.fold(Vector2::zeros(), |sum, x| sum + x) / self.settings.n as f64
+        };
+        // The line through the last two columns, continued by half a spacing: the end has no curvature.
+        let end = 1.5 * middle(columns - 1) - 0.5 * middle(columns - 2);
+        let is_lowest = self.path.iter().all(|row| end.y <= row[2]);
+        self.path.push([simulation.time(), end.x - self.settings.length, end.y]);
+        if is_lowest {
+            self.lowest = (0..columns).map(|column| middle(column).into()).collect();
+        }
+        if self.path.len().is_multiple_of(ENERGY_EVERY) {
+            self.energies.push(self.energy(simulation));
+        }
+    }
+
+    /// A row of the energies. That of the weight is 0 at the start, for the bar lies along y = 0.
+    fn energy(&self, simulation: &dyn Stepper<Symmetric>) -> [f64; 3] {
+        let known = Energy::known(simulation);
+        let found = known.unwrap_or_else(|| {
+            let height = |(mass, p): (f64, &Evolved<Symmetric>)| mass * p.position.y;
+            let height = simulation.fluid().map(height).fold(0.0, |sum, one| sum + one);
+            let weight =
+                Energy { compression: self.settings.gravity * height, ..Energy::default() };
+            Energy::of(simulation, &self.settings.material()) + weight
+        });
+        [simulation.time(), found.kinetic, found.total()]
+    }
+}
+
+impl Watch for End {
+    fn measure(mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+        self.energies.push(self.energy(simulation));
+        let most = |k: usize| {
+            self.energies
+                .iter()
+                .map(|row| row[k])
+                .fold(0.0, |a: f64, b| if b.abs() > a.abs() || b.is_nan() { b } else { a })
+        };
+        record.put(ENERGY_CHANGE, most(2) / most(1));
+        let energies =
+            Profile::of_rows(&[("t", "s"), ("kinetic", "J/m"), ("change", "J/m")], &self.energies);
+        record.profiles.insert("energy".into(), energies);
+        let lowest = Profile::of_rows(&[("x", "m"), ("y", "m")], &self.lowest);
+        record.profiles.insert("lowest".into(), lowest);
+        let path = Path(std::mem::take(&mut self.path));
+        let columns = [("t", "s"), ("x", "m"), ("y", "m")];
+        record.profiles.insert("end".into(), Profile::of_rows(&columns, &path.0));
+        let found = path::measure(&path);
+        for (metric, value) in &found {
+            record.put(*metric, *value);
+        }
+        for (metric, _) in COMPARED {
+            if record.value(metric).is_none() {
+                record.leave_out(metric, "the run is too short for it");
+            }
+        }
+        reference::compare(&self.settings, &path, record);
+        self.compare_with_theory(record);
+    }
+}
+
+impl End {
+    /// Puts the distances of a total Lagrangian bar from one that bends as finite elements would with the
+    /// stiffness that the method has by theory.
+    fn compare_with_theory(&self, record: &mut Record) {
+        let errors = [FREQUENCY_ERROR, AVERAGE_Y_ERROR].map(|error| record.value(error));
+        match (is_lagrangian(&record.variant), errors) {
+            (true, [Some(frequency), Some(sag)]) => {
+                let stiffness = lagrangian::bending(self.settings.n, self.settings.poisson);
+                record.put(STIFFNESS, stiffness);
+                record.put(BENDING_FREQUENCY_ERROR, (1.0 + frequency) / stiffness.sqrt() - 1.0);
+                record.put(BENDING_SAG_ERROR, (1.0 + sag) * stiffness - 1.0);
+            }
+            (is_known, _) => {
+                let lacks = if is_known { "no distance from finite elements" } else { "no theory" };
+                for metric in [STIFFNESS, BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR] {
+                    record.leave_out(metric, format!("there is {lacks}"));
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::Problem;
+    use ::lagrangian::Hencky;
+    use approx::assert_relative_eq;
+    use harness::{context::Context, method::Parts};
+
+    /// Stretched and turned: the end is where the line through the last columns ends.
+    #[test]
+    fn the_end_is_half_a_spacing_beyond_the_last_column() {
+        let s = CantileverSettings { n: 4, ..CantileverSettings::default() };
+        let method = lagrangian::heavy::<Hencky>();
+        let (medium, domain) = (s.medium(&method, s.dx()), s.domain());
+        let parts = Parts::new(medium, domain, s.particles(), &Context::default());
+        let mut simulation = (method.build)(Parts { mirrors: s.held(), ..parts }).expect("a scene");
+        let place = |x: Vector2<f64>| Vector2::new(0.01 * x.x + 0.3 * x.y, -0.2 * x.x);
+        lagrangian::displace(&mut *simulation, place);
+        let mut end = End::new(&s);
+        end.sample(&*simulation);
+        let [_, x, y] = end.path[1];
+        assert_relative_eq!(x, 0.01 * 0.35, max_relative = 1e-9);
+        assert_relative_eq!(y, -0.2 * 0.35, max_relative = 1e-9);
+        assert_eq!(end.lowest.len(), s.columns());
+    }
+}

@@ -1,0 +1,152 @@
+//! What is measured of the path of the end of a bar, as finite elements are measured.
+
+use std::f64::consts::TAU;
+
+use base::{
+    functions::{cos, sin},
+    record::MetricKey,
+};
+use nalgebra::Vector2;
+
+use crate::solid::Path;
+
+base::metrics! {
+    MEAN_X = "mean_x" ["m"]
+        "half the sum of the greatest and the least displacement of the end along the bar";
+    MEAN_Y = "mean_y" ["m"] "the same upwards";
+    AMPLITUDE_X = "amplitude_x" ["m"] "half the difference of the two along the bar";
+    AMPLITUDE_Y = "amplitude_y" ["m"] "the same upwards";
+    FREQUENCY = "frequency" ["Hz"]
+        "whole periods between the first and the last time at which the end falls through mean_y, over the \
+         time between them";
+    AVERAGE_X = "average_x" ["m"] "mean displacement along the bar between these two times";
+    AVERAGE_Y = "average_y" ["m"] "the same upwards";
+    HARMONIC_X = "harmonic_x" ["m"]
+        "amplitude of the sinusoid of that frequency in the displacement along the bar between these times";
+    HARMONIC_Y = "harmonic_y" ["m"] "the same upwards";
+    FIRST_LEAST_Y = "first_least_y" ["m"] "least displacement upwards in the first swing";
+}
+
+/// Points between the two times, at which the path is taken for averages and harmonics.
+const POINTS: usize = 8000;
+
+/// The greatest and the least displacement of rows along an axis \[m\], each by a parabola through three
+/// rows; `None` of one that is at an end of the rows.
+fn extremes(rows: &[[f64; 3]], axis: usize) -> [Option<f64>; 2] {
+    let value = |k: usize| rows[k][1 + axis];
+    let places = || 0..rows.len();
+    let greatest = places().max_by(|a, b| value(*a).total_cmp(&value(*b)));
+    let least = places().min_by(|a, b| value(*a).total_cmp(&value(*b)));
+    [greatest, least].map(|place| {
+        let k = place.filter(|&k| k > 0 && k + 1 < rows.len())?;
+        let [a, b, c] = [value(k - 1), value(k), value(k + 1)];
+        let bend = a - 2.0 * b + c;
+        Some(if bend == 0.0 { b } else { b - (a - c) * (a - c) / (8.0 * bend) })
+    })
+}
+
+/// Mean and amplitude along an axis \[m\]. Where an extreme is at an end of the rows, it is the value there.
+fn mean_and_amplitude(rows: &[[f64; 3]], axis: usize) -> [f64; 2] {
+    let all = || rows.iter().map(|row| row[1 + axis]);
+    let ends = [all().fold(f64::NEG_INFINITY, f64::max), all().fold(f64::INFINITY, f64::min)];
+    let [greatest, least] = extremes(rows, axis);
+    let (high, low) = (greatest.unwrap_or(ends[0]), least.unwrap_or(ends[1]));
+    [0.5 * (high + low), 0.5 * (high - low)]
+}
+
+/// Times at which rows pass a height downwards \[s\].
+fn falls(rows: &[[f64; 3]], height: f64) -> Vec<f64> {
+    let pass = |w: &[[f64; 3]]| {
+        let [[t, _, a], [u, _, b]] = [w[0], w[1]];
+        (a > height && b <= height).then(|| t + (u - t) * (a - height) / (a - b))
+    };
+    rows.windows(2).filter_map(pass).collect()
+}
+
+/// What a path has of [`COMPARED`](super::COMPARED); averages, harmonics and the frequency need two falls,
+/// and the least height of the first swing needs to be passed.
+pub fn measure(path: &Path) -> Vec<(MetricKey, f64)> {
+    let [[mean_x, amplitude_x], [mean_y, amplitude_y]] =
+        [0, 1].map(|axis| mean_and_amplitude(&path.0, axis));
+    let mut found = vec![
+        (MEAN_X, mean_x),
+        (MEAN_Y, mean_y),
+        (AMPLITUDE_X, amplitude_x),
+        (AMPLITUDE_Y, amplitude_y),
+    ];
+    let times = falls(&path.0, mean_y);
+    let second = times.get(1).copied().unwrap_or(f64::INFINITY);
+    let swing = &path.0[..path.0.partition_point(|row| row[0] < second)];
+    found.extend(extremes(swing, 1)[1].map(|least| (FIRST_LEAST_Y, least)));
+    if let [first, .., last] = times[..] {
+        let frequency = (times.len() - 1) as f64 / (last - first);
+        let (average, harmonic) = fourier(path, [first, last], frequency);
+        found.extend([
+            (FREQUENCY, frequency),
+            (AVERAGE_X, average.x),
+            (AVERAGE_Y, average.y),
+            (HARMONIC_X, harmonic.x),
+            (HARMONIC_Y, harmonic.y),
+        ]);
+    }
+    found
+}
+
+/// Mean between two times \[s\], and amplitude of the sinusoid of this frequency \[Hz\].
+fn fourier(path: &Path, [first, last]: [f64; 2], frequency: f64) -> (Vector2<f64>, Vector2<f64>) {
+    let mut sums = [Vector2::zeros(); 3];
+    for k in 0..POINTS {
+        let time = first + (last - first) * (k as f64 / POINTS as f64);
+        let (place, angle) = (path.at(time).unwrap_or_default(), TAU * frequency * time);
+        let [sum, even, odd] = &mut sums;
+        *sum += place;
+        *even += place * cos(angle);
+        *odd += place * sin(angle);
+    }
+    let [average, even, odd] = sums.map(|sum| sum / POINTS as f64);
+    (average, even.zip_map(&odd, |a, b| 2.0 * (a * a + b * b).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// −0.06 (1 − cos 2πft), with a second harmonic along the bar.
+    fn swing(frequency: f64, end: f64) -> Path {
+        let row = |k: i32| {
+            let t = 0.0025 * f64::from(k);
+            let angle = TAU * frequency * t;
+            [t, -0.01 + 0.01 * cos(angle) + 0.002 * sin(2.0 * angle), -0.06 * (1.0 - cos(angle))]
+        };
+        Path((0..).map(row).take_while(|row| row[0] <= end).collect())
+    }
+
+    #[test]
+    fn a_path_that_was_made_up_has_its_frequency_mean_and_amplitude() {
+        let found = measure(&swing(1.1, 4.0));
+        let value = |key: MetricKey| {
+            let name = String::from(key);
+            found.iter().find(|(other, _)| String::from(*other) == name).expect("measured").1
+        };
+        assert_relative_eq!(value(FREQUENCY), 1.1, max_relative = 1e-6);
+        assert_relative_eq!(value(AVERAGE_Y), -0.06, max_relative = 1e-4);
+        assert_relative_eq!(value(HARMONIC_Y), 0.06, max_relative = 1e-4);
+        assert_relative_eq!(value(AVERAGE_X), -0.01, max_relative = 1e-3);
+        assert_relative_eq!(value(HARMONIC_X), 0.01, max_relative = 1e-3);
+        assert_relative_eq!(value(MEAN_Y), -0.06, max_relative = 1e-5);
+        assert_relative_eq!(value(AMPLITUDE_Y), 0.06, max_relative = 1e-5);
+        assert_relative_eq!(value(FIRST_LEAST_Y), -0.12, max_relative = 1e-5);
+    }
+
+    /// A run of half a second ends in the first swing, one of 0.3 s before its least height.
+    #[test]
+    fn a_short_path_has_no_frequency_and_a_shorter_one_no_least_height() {
+        let has = |end: f64, key: MetricKey| {
+            let name = String::from(key);
+            measure(&swing(1.1, end)).iter().any(|(other, _)| String::from(*other) == name)
+        };
+        assert!(has(0.5, FIRST_LEAST_Y) && !has(0.5, FREQUENCY) && !has(0.5, AVERAGE_Y));
+        assert!(!has(0.3, FIRST_LEAST_Y) && has(0.3, MEAN_Y));
+    }
+}
