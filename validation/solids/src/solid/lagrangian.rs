@@ -8,7 +8,11 @@ use solver::{
 
 use base::settings::Settings;
 use harness::method::{Medium, Method, Parts, mutate};
-use maths::theory::{bending, lagrangian::stiffest, lattice::SquareLattice};
+use maths::theory::{
+    bending,
+    lagrangian::{HOURGLASS, stiffest},
+    lattice::SquareLattice,
+};
 
 /// h/dx: with a support of two spacings a particle sees the eight around it, the fewest with which all of its
 /// neighbours along both axes and diagonals count. Gradients at free surfaces are one-sided, and their error
@@ -20,9 +24,6 @@ const COURANT: f64 = 0.8;
 
 /// The Courant number of bodies that are folded: with it the step is a quarter of the limit without stress.
 pub const COURANT_OF_FOLDS: f64 = 0.4;
-
-/// Strength of what resists modes that deform no particle: long shear waves are of fourth order with it.
-const HOURGLASS: f64 = 1.0;
 
 /// Side of the periodic box whose waves give the limit of the time step.
 const LIMIT_BOX: usize = 24;
