@@ -36,10 +36,11 @@ pub fn find(name: &str) -> Result<&'static dyn Case, RunError> {
 }
 
 /// The references that cases are compared with, and these cases.
-const USERS: [(&str, &[&str]); 8] = [
+const USERS: [(&str, &[&str]); 9] = [
     ("cantilever", &["cantilever"]),
     ("dambreak_lobovsky", &["dam_break"]),
     ("dambreak_martin_moyce", &["dam_break"]),
+    ("oscillating_plate", &["oscillating_plate"]),
     ("peers_channel", &["couette", "poiseuille"]),
     ("peers_taylor_green", &["taylor_green"]),
     ("periodic_hill", &["periodic_hill"]),

@@ -184,12 +184,7 @@ impl Problem for CantileverSettings {
     }
 
     fn check(&self) -> Result<(), RunError> {
-        let (what, value) = ("spacings in lengths of the bar", self.dx() / self.length);
-        if value > 0.5 {
-            let setting = "n, thickness or length";
-            return Err(RunError::TooMuch { what, value, most: 0.5, setting });
-        }
-        Ok(())
+        solid::check_length(self.dx(), self.length)
     }
 
     /// Free particles, row by row from the clamp, then those of the clamp. The columns are as wide as the

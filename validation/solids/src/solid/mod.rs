@@ -19,7 +19,9 @@ pub use elements::{Path, Quantities, rows};
 pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
 pub use material::{Material, limits};
 pub use method::{Bare, Clamp, HeavyPlain, HeavyRubber, Plain, Rubber};
-pub use problem::{Problem, SharedSettings, Watch, digest, leave_out, program, variants};
+pub use problem::{
+    Problem, SharedSettings, Watch, check_length, digest, leave_out, program, variants,
+};
 
 /// The largest of these numbers, none of which is negative; NaN if one is NaN, for what was not measured must
 /// not pass.

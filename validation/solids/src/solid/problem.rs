@@ -138,6 +138,18 @@ pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition
         .all
 }
 
+/// Refuses a body of less than two columns of particles.
+///
+/// # Errors
+/// How long a spacing is, and which settings to change.
+pub fn check_length(dx: f64, length: f64) -> Result<(), RunError> {
+    let (what, value, most) = ("the spacing in lengths of the body", dx / length, 0.5);
+    if value > most {
+        return Err(RunError::TooMuch { what, value, most, setting: "n, thickness or length" });
+    }
+    Ok(())
+}
+
 /// Sets the strengths of terms that a method lacks to 0.
 pub fn leave_out(settings: &mut impl Settings, names: &[&str]) {
     for name in names {
