@@ -1,5 +1,6 @@
 //! A cantilever that swings in its first mode, against finite elements and the theory of thin plates.
 
+mod extremes;
 mod reference;
 
 use nalgebra::Vector2;
@@ -17,18 +18,17 @@ use base::{
     spec::RunSpec,
 };
 use harness::{
-    case::{Case, Planned, RunError, Tier},
+    case::{Planned, RunError, Tier},
     columns::Columns,
     composed::{self, Composed},
     declare::{
         Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Ladder, Level, OrderGate,
     },
-    extremes::{self, Entry},
     runs::Runs,
     study::Study,
 };
 use reference::{AMPLITUDE_ERROR, BENDING_PERIOD_ERROR, PATH_RMS, PERIOD_ERROR};
-use report::{Axis, Cell, percent, sci, sig};
+use report::{Axis, Cell, percent, sig};
 
 crate::solid_settings! {
     /// Settings of a plate that is held at x = 0.
@@ -57,7 +57,7 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
     is_stable: composed::completed,
     declaration,
     plan,
-    studies: |tier, runs| vec![study(tier, runs), extremes(runs)],
+    studies: |tier, runs| vec![study(tier, runs), extremes::study(runs)],
 };
 
 base::metrics! {
@@ -68,6 +68,9 @@ base::metrics! {
         "period over 2 pi (12 rho (1 - nu^2)/(E H^2))^(1/2) (L/1.875)^2, less 1";
     AMPLITUDE_RATIO = "amplitude_ratio" ["-"]
         "greatest height of the tip in its first swing over its first speed times period/(2 pi)";
+    BENDING_EXCESS = "bending_excess" ["-"]
+        "period over that of thin-plate theory, times the root of the bending stiffness that a plate of so \
+         many layers has in the method by theory, less 1";
     ENERGY_CHANGE = "energy_change" ["-"]
         "kinetic and strain energy of the free particles, end over start less 1";
 }
@@ -211,6 +214,14 @@ impl Watch for Tip {
         self.measure_swing(record);
         let after = Energy::of(simulation, &self.material).total();
         record.put(ENERGY_CHANGE, after / self.energy - 1.0);
+        match record.value(PERIOD_EXCESS) {
+            Some(excess) if record.variant == LAGRANGIAN => {
+                let s = &self.settings;
+                let stiffness = solid::lagrangian::bending(s.n, s.poisson);
+                record.put(BENDING_EXCESS, (1.0 + excess) * stiffness.sqrt() - 1.0);
+            }
+            _ => record.leave_out(BENDING_EXCESS, "there is no period, or no theory of its layers"),
+        }
         let path = Path(self.series);
         reference::compare(&self.settings, &path, record);
         let columns = [("t", "s"), ("along", "m"), ("tip", "m")];
@@ -416,15 +427,15 @@ const RATIOS: [f64; 5] = [0.49, 0.3, 0.45, 0.499, 0.4999];
 
 fn plan(tier: Tier) -> Vec<Planned> {
     let mut plan = swings(tier);
-    plan.extend(TOWARDS_ONE_HALF.map(|ratio| Planned::new(first_steps(ratio))));
+    plan.extend(extremes::plan(tier));
     plan
 }
 
 /// Accuracy in the full tier; the quick tier has one resolution.
 fn declaration(tier: Tier) -> Declaration {
-    let curves = vec![curves(tier)];
+    let (curves, limits) = (vec![curves(tier)], Some(extremes::step_limits()));
     if tier == Tier::Quick {
-        return Declaration { curves, ..Declaration::default() };
+        return Declaration { curves, limits, ..Declaration::default() };
     }
     let error = ErrorOf::Metric(PERIOD_EXCESS.into());
     let label = "difference of the period from thin-plate theory [-]";
@@ -439,7 +450,8 @@ fn declaration(tier: Tier) -> Declaration {
     let level = |variant: &str, n| Planned::new(swing_spec(variant, n));
     let accuracy =
         accuracy.over(&["plain"], [5, 10, 20], level).over(&["bare", "seed"], [5, 10], level);
-    Declaration { curves, accuracy: vec![accuracy, of_elements()], ..Declaration::default() }
+    let accuracy = vec![accuracy, of_elements()];
+    Declaration { curves, limits, accuracy, ..Declaration::default() }
 }
 
 /// The height of the tip through three periods.
@@ -559,46 +571,6 @@ fn incompressible(tier: Tier, runs: &Runs) -> String {
          Artificial viscosity is in proportion to c0 = sqrt(K/rho), which grows as 1/sqrt(1 - 2 nu), so a \
          period that comes closer to theory on the way is no gain."
     )
-}
-
-/// Poisson's ratios towards 1/2 at the same Young's modulus.
-const TOWARDS_ONE_HALF: [f64; 6] = [0.3, 0.4, 0.45, 0.49, 0.499, 0.4999];
-
-/// The first steps of a plate of two layers.
-fn first_steps(poisson: f64) -> RunSpec {
-    OSCILLATING_PLATE.spec("bare", |s| (s.poisson, s.n, s.end) = (poisson, 2, 0.01))
-}
-
-/// Rubber that is nearly incompressible.
-fn extremes(runs: &Runs) -> Study {
-    let entry = Entry::new(
-        "plate.poisson",
-        ["rubber that hardly changes its volume", "Poisson's ratio 0.3 to 0.4999, the same E"]
-            .map(String::from),
-        "dt c_p/h over that at 0.3, less 1",
-        Bound::Below(0.01),
-    )
-    .because(
-        Evidence::Theory,
-        "The time step follows 1/c_p, which is sqrt((1 + nu)(1 - 2 nu)/(1 - nu)) at the Poisson ratio nu. \
-         The speed of the tip, 0.01 c0, changes it by 0.3 %.",
-    );
-    // NaN of a run that failed must not pass.
-    let step = |nu: f64| {
-        let spec = first_steps(nu);
-        let rules = runs.completed(&spec).and_then(|_| OSCILLATING_PLATE.rules(&spec).ok());
-        rules.map_or(f64::NAN, |rules| rules.dt())
-    };
-    let theory = |nu: f64| ((1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu)).sqrt();
-    let steps = TOWARDS_ONE_HALF.map(step);
-    let of_theory = |k: usize| steps[k] / theory(TOWARDS_ONE_HALF[k]);
-    let excess = (1..steps.len()).map(|k| (of_theory(k) / of_theory(0) - 1.0).abs());
-    let worst = solid::largest(excess);
-    let [longest, shortest] = [steps[0], steps[steps.len() - 1]].map(|dt| sci(dt, 3));
-    let found = format!("{}; dt from {longest} to {shortest} s", sci(worst, 3));
-    let entries = vec![entry.found(worst, found)];
-    let lead = "Towards Poisson's ratio 1/2 sound becomes infinitely fast.";
-    extremes::study("oscillating-plate-extremes", "Extreme settings of the plate", lead, entries)
 }
 
 #[cfg(test)]
