@@ -8,7 +8,7 @@ use crate::{
     neighbours::{BLOCK, Neighbours},
     parallel,
     particle_data::{Extent, Fault, ParticleData, Phase},
-    particles::{Column, Common, Evolved, Fixed, Rate},
+    particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
     sweep::{self, BlockUpdate, PairSweep, Sweep, first, nothing, second, whole},
     terms::Term,
@@ -119,11 +119,12 @@ impl<P: Physics> Engine<P> {
     /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
     /// the state that the columns were refreshed for last. dx/dt is without v.
     pub(crate) fn rates<T: Term<P::Extra>>(&self, terms: &T) -> Vec<Rate<P::Extra>> {
-        let (state, neighbours) = (&self.data.state, &self.data.neighbours);
+        let (data, neighbours) = (&self.data, &self.data.neighbours);
         let own = |(k, c): (usize, &Column<Derived<P>>)| {
             let Column { position, velocity, common, .. } = *c;
-            let extra = state.get(k).map_or(P::Extra::default(), |e| e.extra);
-            Column { position, velocity, common, derived: terms.derived(&common, &extra) }
+            let extra = data.state.get(k).map_or(P::Extra::default(), |e| e.extra);
+            let role = data.fixed.get(k).map_or(Role::Fluid, |fixed| fixed.role);
+            Column { position, velocity, common, derived: derived(terms, role, &common, &extra) }
         };
         let mut columns: Vec<_> = self.columns.iter().enumerate().map(own).collect();
         fill_images::<P, T>(neighbours, 0, 1.0, &mut columns);
@@ -224,9 +225,8 @@ impl<P: Physics> Engine<P> {
         parallel::for_each(blocks, data.parallel, &|(b, (columns, extent))| {
             let particles = b * BLOCK..b * BLOCK + columns.len();
             let (state, fixed) = (&state[particles.clone()], &data.fixed[particles.clone()]);
-            for ((column, evolved), Fixed { mass, .. }) in columns.iter_mut().zip(state).zip(fixed)
-            {
-                *column = derive(terms, *mass, evolved);
+            for ((column, evolved), fixed) in columns.iter_mut().zip(state).zip(fixed) {
+                *column = derive(terms, fixed, evolved);
             }
             *extent = data.extent(state, &data.neighbours.built_at[particles]);
         });
@@ -256,8 +256,10 @@ impl<P: Physics> Engine<P> {
         };
         self.sweep_walls(&mut implied, &by_blocks(update));
         self.data.enter(Phase::Refresh);
-        for (column, implied) in self.columns[fluid..].iter_mut().zip(&implied) {
-            *column = derive(&self.terms, column.common.mass, implied);
+        let fixed = &self.data.fixed[fluid..];
+        for ((column, implied), fixed) in self.columns[fluid..].iter_mut().zip(&implied).zip(fixed)
+        {
+            *column = derive(&self.terms, fixed, implied);
         }
         self.extrapolated = implied;
         let neighbours = &self.data.neighbours;
@@ -288,10 +290,22 @@ fn fill_images<P: Physics, T: Term<P::Extra>>(
 
 /// The column of a particle.
 #[inline(always)]
-fn derive<X, T: Term<X>>(terms: &T, mass: f64, evolved: &Evolved<X>) -> Column<T::Derived> {
+fn derive<X, T: Term<X>>(terms: &T, fixed: &Fixed, evolved: &Evolved<X>) -> Column<T::Derived> {
     let Evolved { position, velocity, density, ref extra } = *evolved;
+    let mass = fixed.mass;
     let common = Common { mass, density, volume: mass / density };
-    Column { position, velocity, common, derived: terms.derived(&common, extra) }
+    let derived = derived(terms, fixed.role, &common, extra);
+    Column { position, velocity, common, derived }
+}
+
+/// The derived data of a particle in this role.
+#[inline(always)]
+fn derived<X, T: Term<X>>(terms: &T, role: Role, own: &Common<f64>, extra: &X) -> T::Derived {
+    let mut derived = terms.derived(own, extra);
+    if role != Role::Fluid {
+        T::on_boundary(&mut derived);
+    }
+    derived
 }
 
 /// An update of one particle as that of a block: called once for so many, it costs no time to call.

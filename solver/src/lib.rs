@@ -61,8 +61,8 @@ pub use super_steps::SuperSteps;
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
     ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion,
-    Hydrostatic, JaumannRate, NoSlipImages, Pressure, PrincipalStress, ShiftAdvection, Shifting,
-    Split, Term, Viscosity, Xsph,
+    FluidPairs, Hydrostatic, JaumannRate, NoSlipImages, Pressure, PrincipalStress, ShiftAdvection,
+    Shifting, Split, Term, Viscosity, Xsph,
 };
 pub use walls::{
     ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall, SlipGhosts,

@@ -4,9 +4,10 @@ use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
-    Evolved, ExtrapolatingWall, Hydrostatic, Integrator, Leapfrog, NoSlip, Open, Outcome, Particle,
-    PredictorCorrector, Pressure, QuinticSpline, Scene, ShiftAdvection, Shifting, Simulation,
-    Stepper, Tait, Term, Viscosity, Xsph, particles::Column, physics::Derived,
+    Evolved, ExtrapolatingWall, FluidPairs, Hydrostatic, Integrator, Leapfrog, NoSlip, Open,
+    Outcome, Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, ShiftAdvection,
+    Shifting, Simulation, Stepper, Tait, Term, Viscosity, Xsph, particles::Column,
+    physics::Derived,
 };
 use touchstone_tests::{difference, patch};
 
@@ -36,6 +37,7 @@ fn terms_take_the_memory_of_what_they_need_and_absent_ones_none() {
     assert_eq!(sizes::<ExtrapolatingWall<Tait, NoSlip>>(), [0, 32]);
     assert_eq!(sizes::<Viscosity>(), [0, 16]);
     assert_eq!(sizes::<ArtificialViscosity<Tait>>(), [0, 16]);
+    assert_eq!(sizes::<FluidPairs<ArtificialViscosity<Tait>>>(), [8, 16]);
     assert_eq!(sizes::<Xsph>(), [0, 16]);
     assert_eq!(sizes::<Shifting>(), [0, 16]);
     // Beside the shift the gradient of both components of velocity, and a symmetric matrix.

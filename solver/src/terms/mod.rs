@@ -11,6 +11,7 @@ mod cauchy_stress;
 mod consistent;
 mod continuity;
 mod density_diffusion;
+mod fluid_pairs;
 mod jaumann_rate;
 mod no_slip_images;
 mod pressure;
@@ -28,6 +29,7 @@ pub use cauchy_stress::CauchyStress;
 pub use consistent::{ConsistentContinuity, ConsistentPressure, ConsistentViscosity};
 pub use continuity::Continuity;
 pub use density_diffusion::{DensityDiffusion, Hydrostatic, Rest};
+pub use fluid_pairs::FluidPairs;
 pub use jaumann_rate::JaumannRate;
 pub use no_slip_images::NoSlipImages;
 pub use pressure::Pressure;
@@ -103,6 +105,9 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Tells the derived data of an image how its velocity would differ behind a no-slip wall \[m/s\].
     #[inline(always)]
     fn no_slip(_image: &mut Self::Derived, _difference: Vector2<f64>) {}
+    /// Tells the derived data of a boundary particle that it is one.
+    #[inline(always)]
+    fn on_boundary(_own: &mut Self::Derived) {}
     /// Adds the contributions of the neighbours of `pair`, given the derived data of both, to the sum.
     fn pair<V: Lane, K: Kernel>(
         &self,
@@ -133,6 +138,10 @@ macro_rules! tuple_of_terms {
             #[inline(always)]
             fn no_slip(image: &mut Self::Derived, difference: Vector2<f64>) {
                 $($member::no_slip(&mut image.$index, difference);)*
+            }
+            #[inline(always)]
+            fn on_boundary(own: &mut Self::Derived) {
+                $($member::on_boundary(&mut own.$index);)*
             }
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(
@@ -254,6 +263,8 @@ mod tests {
         check_vector::<V, K>(Viscosity { mu: 0.3, eta2 });
         check_vector::<V, K>(ArtificialViscosity::<_, Approaching>::new(0.3, 0.7, 0.35, eos));
         check_vector::<V, K>(ArtificialViscosity::<_, Always>::new(0.3, 0.7, 0.35, eos));
+        let viscosity = ArtificialViscosity::<_, Always>::new(0.3, 0.7, 0.35, eos);
+        check_vector::<V, K>(FluidPairs(viscosity));
         check_vector::<V, K>(Xsph { epsilon: 0.5 });
         check_vector::<V, K>(Shifting::new(0.5, 0.35, w));
         check_number::<V, K>(Continuity);

@@ -22,6 +22,10 @@ impl<X, T: Term<X>> Term<X> for NoSlipImages<T> {
         image.1 += difference;
     }
     #[inline(always)]
+    fn on_boundary(own: &mut Self::Derived) {
+        T::on_boundary(&mut own.0);
+    }
+    #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,

@@ -3,8 +3,8 @@
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion, ExtrapolatingWall,
-    Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall, Pressure,
-    ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
+    FluidPairs, Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall,
+    Pressure, ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension, Switch},
 };
 
@@ -76,6 +76,15 @@ impl<E: FromMedium, T: FromMedium> FromMedium for Split<E, T> {
     }
     fn uses() -> Vec<Knob> {
         [E::uses(), T::uses()].concat()
+    }
+}
+
+impl<T: FromMedium> FromMedium for FluidPairs<T> {
+    fn new(medium: &Medium) -> Self {
+        Self(T::new(medium))
+    }
+    fn uses() -> Vec<Knob> {
+        T::uses()
     }
 }
 

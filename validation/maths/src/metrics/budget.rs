@@ -16,7 +16,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use solver::{
     ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
-    NoSlipImages, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
+    FluidPairs, NoSlipImages, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
     terms::{Rest, Switch, Tensile},
 };
 
@@ -111,6 +111,7 @@ pub trait WaterForces<X>: Term<X> {
 pub trait Viscous<X>: Term<X> {}
 
 impl<X, E: EquationOfState, W: Switch> Viscous<X> for ArtificialViscosity<E, W> {}
+impl<X, T: Viscous<X>> Viscous<X> for FluidPairs<T> where Self: Term<X> {}
 impl<X, T: Viscous<X>> Viscous<X> for NoSlipImages<T> where Self: Term<X> {}
 
 impl<X, E: EquationOfState, R: Tensile> WaterForces<X> for (Pressure<E, R>, BodyForce) {
