@@ -125,8 +125,8 @@ mod tests {
         ExtrapolatingWall::new(EOS, Vector2::zeros())
     }
 
-    /// Artificial viscosity saw the boundary particles stand, and water that slid along them at one speed lost
-    /// its energy.
+    /// Artificial viscosity saw the boundary particles stand, and water that slid along them at one speed
+    /// lost its energy.
     #[test]
     fn a_layer_that_slides_at_one_speed_along_boundary_particles_lost_energy() {
         let slides = || particles(0.0, &WALL);

@@ -36,8 +36,9 @@ pub fn find(name: &str) -> Result<&'static dyn Case, RunError> {
 }
 
 /// The references that cases are compared with, and these cases.
-const USERS: [(&str, &[&str]); 9] = [
+const USERS: [(&str, &[&str]); 10] = [
     ("cantilever", &["cantilever"]),
+    ("dam_break_vof", &["dam_break"]),
     ("dambreak_lobovsky", &["dam_break"]),
     ("dambreak_martin_moyce", &["dam_break"]),
     ("oscillating_plate", &["oscillating_plate"]),

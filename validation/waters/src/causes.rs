@@ -35,6 +35,29 @@ pub static TWO_DIMENSIONS: Cause = Cause::new(
     "2026-11-21",
 );
 
+/// A reference that is not fine enough.
+pub static UNCERTAIN_REFERENCE: Cause = Cause::new(
+    "The reference by volume of fluid is uncertain where a thin jet has just arrived, because the jet is a \
+     few cells wide.",
+    "The reference on its finest mesh beyond the arrival at the far wall.",
+    "2026-11-23",
+);
+
+/// Powers between samples.
+pub static SAMPLED: Cause = Cause::new(
+    "Powers are sampled at intervals, and single particles meet for a shorter time than that.",
+    "Samples after every step.",
+    "2026-11-23",
+);
+
+/// Walls without friction.
+pub static FREE_SLIP: Cause = Cause::new(
+    "Water slips along its walls without friction, and runs ahead of codes and experiments whose walls drag \
+     it.",
+    "Friction at the walls, with a boundary layer that is resolved or modelled.",
+    "2026-11-23",
+);
+
 /// Water that pulls.
 pub static TENSION: Cause = Cause::new(
     "Pressure is not cut off at zero, so water that is less dense than at rest pulls at the walls.",

@@ -31,7 +31,7 @@ const fn h_over_dx(value: f64) -> Change {
 }
 
 /// The seed and what of it is changed, the same of its other wall, and of the modern variant.
-const ROWS: [(&str, Change); 28] = [
+const ROWS: [(&str, Change); 29] = [
     ("seed", NOTHING),
     ("seed", alpha(0.0)),
     ("seed", alpha(0.01)),
@@ -55,6 +55,7 @@ const ROWS: [(&str, Change); 28] = [
     ("modern", alpha(0.0)),
     ("modern", alpha(0.1)),
     ("modern", h_over_dx(2.0)),
+    ("modern-sticking", NOTHING),
     ("modern-bare", NOTHING),
     ("modern-plain-diffusion", NOTHING),
     ("modern-interface", NOTHING),
@@ -71,7 +72,7 @@ const TITLE: &str = "What each ingredient buys";
 
 /// Where the rows are not run.
 pub fn elsewhere() -> Study {
-    let text = "What each ingredient buys, and with it the answers to the paper's claims M1 to M4, takes 28 \
+    let text = "What each ingredient buys, and with it the answers to the paper's claims M1 to M4, takes 29 \
                 runs: they are made in the full tier only.";
     Study::new(ID, TITLE).prose(text)
 }

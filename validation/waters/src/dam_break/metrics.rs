@@ -35,9 +35,13 @@ pub const LEVELS: Distance = distance!("levels");
 
 base::metrics! {
     REACHED = "reached" ["-"] "time at which the run ended over that at which it was to end";
-    OUTSIDE = "outside" ["1"] "most particles more than dx/2 behind bottom and sides at any time";
+    OUTSIDE = "outside" ["1"]
+        "most particles more than dx/2 behind bottom and sides at any time, without those that left over \
+         the rim";
     OUTSIDE_END = "outside_end" ["1"] "those at the end";
-    OUTSIDE_DEPTH = "outside_depth" ["dx"] "the deepest that a particle was behind bottom or sides";
+    OUTSIDE_DEPTH = "outside_depth" ["dx"]
+        "the deepest that a particle was behind bottom or sides, without those that left over the rim";
+    SPILLED = "spilled" ["-"] "share of the particles that left the tank over the rim of its walls";
     MACH = "mach" ["-"] "largest speed of a particle/c0";
     DENSITY_MOST = "density_most" ["-"] "largest rho/rho_0 - 1";
     DENSITY_LEAST = "density_least" ["-"] "least rho/rho_0 - 1";
@@ -46,6 +50,13 @@ base::metrics! {
     MASS_ERROR = "mass_error" ["-"]
         "|mass of the water at the end/that at the start - 1|, of all particles, lost ones too";
     Z = "z" ["-"] "Z = front from the back wall/a at T = t (2g/a)^(1/2)";
+    FRONT_AWAY = "front_away" ["-"]
+        "front less that of the same model by volume of fluid: in a at T = t (2g/a)^(1/2), in the tank in H \
+         at t (g/H)^(1/2)";
+    HEIGHT_AWAY = "height_away" ["-"]
+        "rms distance of the residual height/H from that of the same model by volume of fluid";
+    ARRIVAL_AWAY = "arrival_away" ["-"]
+        "arrival less that of the same model by volume of fluid, in (H/g)^(1/2)";
     FRONT_SPEED = "front_speed" ["-"]
         "slope of the least squares line of x/H over t (g/H)^(1/2) from 1 to 2.3, at the times of the \
          experiment";
@@ -76,6 +87,17 @@ const fn four(formula: &'static str, [a, b, c, d]: [&'static str; 4]) -> [Metric
 pub const LEVEL_RMS: [MetricKey; 4] = four(
     "rms distance of the level/H from the mean of the series, as released",
     ["H1_rms", "H2_rms", "H3_rms", "H4_rms"],
+);
+/// Distance of each level from that of the reference that shares the model.
+pub const LEVEL_AWAY: [MetricKey; 4] = four(
+    "rms distance of the level/H from that of the same model by volume of fluid, until t (g/H)^(1/2) = 5.5",
+    ["H1_away", "H2_away", "H3_away", "H4_away"],
+);
+/// Impulse on each sensor over that of the reference that shares the model.
+pub const IMPULSE_AWAY: [MetricKey; 4] = four(
+    "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over that of the same model by volume of \
+     fluid, less 1",
+    ["impulse_P1_away", "impulse_P2_away", "impulse_P3_away", "impulse_P4_away"],
 );
 /// Impulse on each sensor, at the end of its window.
 pub const IMPULSE: [MetricKey; 4] = four(

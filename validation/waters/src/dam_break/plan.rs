@@ -6,6 +6,7 @@ use super::{
     reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS},
     specs::{JUDGED, OTHER_IMAGES, film, in_tank, martin_moyce, planned_free, planned_tank},
     stability::{self, Extreme},
+    volume_of_fluid,
 };
 use crate::water::{gate, ledger};
 use base::{
@@ -35,7 +36,7 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
         }
         for &n in in_tank(variant, tier) {
             let gates = invariants(&format!("{NAME}.lobovsky.{variant}.{n}"));
-            let gates = gates.into_iter().map(|gate| limitations::in_tank(gate, variant, n));
+            let gates = gates.into_iter().map(|gate| limitations::in_tank(gate, variant));
             runs.push(planned_tank(tier, variant, n).judged(gates.collect()));
         }
     }
@@ -82,6 +83,9 @@ fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
     let mut gates = invariants(&id);
     if n >= 20 {
         gates.extend(free_references(&id)); // coarser runs are for the order and the cost alone
+        if variant == "modern" {
+            gates.extend(volume_of_fluid::free_gates(&id, n));
+        }
     }
     gates.into_iter().map(|gate| limitations::of_free(gate, variant, n)).collect()
 }
@@ -130,10 +134,13 @@ fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
     let mut gates = invariants(&id);
     gates.push(reference(FRONT.rms_shifted.into(), Bound::Below(0.08), front));
     gates.push(reference(LEVELS.rms_shifted.into(), Bound::Below(0.05), levels));
+    if variant == "modern" {
+        gates.extend(volume_of_fluid::tank_gates(&id));
+    }
     gates.extend(
         IMPULSE.map(|sensor| reference(sensor.at(1), Bound::Within(-spread, spread), impulse)),
     );
-    gates.into_iter().map(|gate| limitations::in_tank(gate, variant, n)).collect()
+    gates.into_iter().map(|gate| limitations::in_tank(gate, variant)).collect()
 }
 
 #[cfg(test)]

@@ -57,7 +57,8 @@ pub fn best_shift(pairs: &[(Curve, Curve)], range: f64) -> f64 {
     best
 }
 
-fn curve(table: &Table, t: &str, y: &str) -> Result<Curve, ReferenceError> {
+/// A column of a table over another one.
+pub fn curve(table: &Table, t: &str, y: &str) -> Result<Curve, ReferenceError> {
     Ok(table.numbers(t)?.into_iter().zip(table.numbers(y)?).collect())
 }
 
@@ -102,7 +103,7 @@ impl Lobovsky {
     }
 
     /// The mean of the series at a probe, until t.
-    fn level(&self, k: usize, until: f64) -> Curve {
+    pub fn level(&self, k: usize, until: f64) -> Curve {
         let series = &self.levels[k];
         let mean = |(n, (t, _)): (usize, &(f64, f64))| {
             (*t, series.iter().map(|s| s[n].1).sum::<f64>() / series.len() as f64)
@@ -180,7 +181,8 @@ fn put_distance(
     record.put(of.shift, shift);
 }
 
-fn scaled(curve: &[(f64, f64)], t: f64, y: f64, zero: f64) -> Curve {
+/// A curve over t in a unit, its values in another after this zero was taken off.
+pub fn scaled(curve: &[(f64, f64)], t: f64, y: f64, zero: f64) -> Curve {
     curve.iter().map(|(time, value)| (time / t, (value - zero) / y)).collect()
 }
 
@@ -249,15 +251,18 @@ fn with_lobovsky(
     put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
     let [ours, theirs] = [tongue(&pairs[3].0), tongue(&pairs[3].1)];
     record.put(metrics::TONGUE, ours / theirs - 1.0);
-    pressures(dam, &lobovsky, gauge, record);
+    put_pressures(&lobovsky, &pressures(dam, gauge), record);
     Ok(())
 }
 
-fn pressures(dam: &Dam, lobovsky: &Lobovsky, gauge: &Gauge, record: &mut Record) {
+/// Computed pressures on P1 to P4, means over blocks.
+pub fn pressures(dam: &Dam, gauge: &Gauge) -> Vec<Curve> {
     let (unit, scale) = (dam.settings.unit_time(), dam.unit_pressure());
-    let curves: Vec<Curve> = (0..SENSORS.len())
-        .map(|k| scaled(&gauge.pressure(k, BLOCK * unit), unit, scale, 0.0))
-        .collect();
+    let of = |k| scaled(&gauge.pressure(k, BLOCK * unit), unit, scale, 0.0);
+    (0..SENSORS.len()).map(of).collect()
+}
+
+fn put_pressures(lobovsky: &Lobovsky, curves: &[Curve], record: &mut Record) {
     let (ours, theirs) = (arrival(&curves[0]), arrival(&lobovsky.pressure[0]));
     record.put(metrics::ARRIVAL, ours);
     record.put(metrics::ARRIVAL_MEASURED, theirs);

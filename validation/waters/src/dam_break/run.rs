@@ -9,7 +9,7 @@ use super::{
     measure::{Gauge, Samples},
     metrics,
     momentum::Momentum,
-    reference,
+    reference, volume_of_fluid,
 };
 use crate::water::{Ledger, WaterMethod, ledger};
 use base::record::{MetricKey, Profile, Record, Status};
@@ -110,6 +110,7 @@ fn run(
     }
     if record.status == Status::Completed
         && let Err(error) = reference::compare(dam, &samples, &gauge, &mut record)
+            .and_then(|()| volume_of_fluid::compare(dam, &samples, &gauge, &mut record))
     {
         // Packages are embedded and checked by a test.
         record.numerics.insert("reference".into(), error.to_string().into());

@@ -30,6 +30,8 @@ pub struct Dam {
     pub medium: Medium,
     /// The tank.
     pub tank: Tank,
+    /// Height of the walls, over which water may leave the tank \[m\]; that of mirrors is infinite.
+    pub rim: f64,
     /// Particles of the column along x and y.
     pub counts: [usize; 2],
     /// The largest speed expected \[m/s\].
@@ -55,6 +57,8 @@ impl Dam {
         let counts = [s.width, s.height].map(|side| (side / dx).round().max(1.0) as usize);
         let spacings = |length: f64| (length / dx).round() as usize;
         let tank = Tank { columns: spacings(s.tank), rows: spacings(s.rim * s.height), dx };
+        let is_endless = method.first_row == FirstRow::Nowhere;
+        let rim = if is_endless { f64::INFINITY } else { tank.rows as f64 * dx };
         let all = (counts[0] * counts[1] + 8 * (tank.columns + 2 * tank.rows)) as f64;
         let fall = (s.gravity * s.height).sqrt();
         // The front of a dam break in shallow water runs at 2 (g H)^(1/2).
@@ -62,7 +66,7 @@ impl Dam {
         let end = s.end * s.height / fall;
         let (medium, rules) = s.medium(method, [dx, s.c0 * fall, s.gravity, speed, end]);
         simulate::check(method, &medium, &rules, all, DECISIVE, context)?;
-        Ok(Self { settings: s.clone(), medium, tank, counts, speed, rules })
+        Ok(Self { settings: s.clone(), medium, tank, rim, counts, speed, rules })
     }
 
     /// ρ g H \[Pa\], the unit of pressure.

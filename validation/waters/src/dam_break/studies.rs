@@ -8,7 +8,7 @@ use super::{
     reference::{self, Curve, FRONT_SPREAD, Lobovsky, PEERS},
     run::{self, PICTURES},
     specs::{self, FILM_ROWS, FRAMES},
-    stability,
+    stability, volume_of_fluid,
 };
 use crate::water::{curve, ledger};
 use base::{
@@ -25,7 +25,7 @@ use report::{
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let mut studies = Vec::new();
-    for study in [free(tier, runs), tank(tier, runs)] {
+    for study in [free(tier, runs), tank(tier, runs), volume_of_fluid::study(tier, runs)] {
         // Packages are embedded and checked by a test.
         studies.push(study.unwrap_or_else(|error| {
             Study::new("dam-break-reference", "Reference").prose(error.to_string())

@@ -21,22 +21,45 @@ use maths::{
 use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, ExtrapolatingWall, Leapfrog, PredictorCorrector, Pressure, Role, Tait,
-    WendlandC2, Xsph, terms::Hydrostatic,
+    DensityDiffusion, ExtrapolatingWall, FluidPairs, InterfaceWall, Leapfrog, Mirrors, Open,
+    PredictorCorrector, Pressure, Role, Tait, WendlandC2, Xsph, terms::Hydrostatic,
 };
 
 pub use ledger::Ledger;
 
 /// (14) with (7), (16), (17), and gravity; `R` is the artificial stress (18), (19).
-pub type Water<R = ()> = (Pressure<Tait, R>, ArtificialViscosity<Tait>, BodyForce);
+pub type Water<R = (), V = ArtificialViscosity<Tait>> = (Pressure<Tait, R>, V, BodyForce);
 /// What the paper describes.
 pub type Seed<W, I = PredictorCorrector> =
     Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), W, I>;
 /// Density diffusion that leaves a column at rest alone.
 pub type Diffusion = DensityDiffusion<Hydrostatic>;
-/// The best known settings.
+/// The best known settings; water slips along boundary particles.
 pub type Modern<D = (Continuity, Diffusion), W = ExtrapolatingWall<Tait>> =
-    Compose<WendlandC2, Water, D, W, Leapfrog>;
+    Compose<WendlandC2, Water<(), <W as Beside>::Viscosity>, D, W, Leapfrog>;
+
+/// The artificial viscosity of water beside these walls, if water slips along boundary particles: it leaves
+/// them out, because they stand still. Images have the velocity that their walls give them.
+pub trait Beside {
+    /// The term.
+    type Viscosity;
+}
+
+impl Beside for Open {
+    type Viscosity = ArtificialViscosity<Tait>;
+}
+
+impl<const SLIPS: bool> Beside for Mirrors<SLIPS> {
+    type Viscosity = ArtificialViscosity<Tait>;
+}
+
+impl Beside for InterfaceWall {
+    type Viscosity = FluidPairs<ArtificialViscosity<Tait>>;
+}
+
+impl Beside for ExtrapolatingWall<Tait> {
+    type Viscosity = FluidPairs<ArtificialViscosity<Tait>>;
+}
 
 /// A method whose simulations can say what each term does to the energy.
 pub type WaterMethod = Method<(), dyn Metered<()>>;
