@@ -66,8 +66,8 @@ mod tests {
         ArtificialViscosity::new(0.3, 0.7, 1.5 * DX, EOS)
     }
 
-    /// Particles of a periodic channel, so many of them at random places and speeds that they are a share
-    /// `disorder` of a spacing and of the speed; three rows of boundary particles below them, or none.
+    /// Fluid in a periodic channel, off its lattice by up to half of `disorder` spacings and off its velocity
+    /// by as many m/s, above rows of boundary particles in these roles.
     fn particles(disorder: f64, boundary: &[Role]) -> Vec<Particle> {
         let mut state = 1u32;
         let mut random = move || {

@@ -122,7 +122,8 @@ impl<'a> Samples<'a> {
     }
 
     /// Particles that are lost, and the deepest behind bottom or sides \[dx\], without those that have left
-    /// over the rim: the walls are several spacings thick, so such a particle is seen above them first.
+    /// over the rim: the walls are several spacings thick, so such a particle is seen above them first, or as
+    /// a dent in their upper end.
     fn behind_walls(&mut self, simulation: &dyn Stepper<()>) -> [f64; 2] {
         let Dam { tank, medium, rim, .. } = self.dam;
         let depth = |x: Vector2<f64>| (-x.x).max(x.x - tank.width()).max(-x.y).max(0.0) / medium.dx;
@@ -133,7 +134,8 @@ impl<'a> Samples<'a> {
         let all = simulation.particles().into_iter().enumerate();
         let water = all.filter(|(_, p)| p.role == Role::Fluid && depth(p.position) > 0.0);
         let behind: Vec<(usize, Vector2<f64>)> = water.map(|(k, p)| (k, p.position)).collect();
-        let over = behind.iter().filter(|(_, x)| x.y >= *rim && depth(*x) > LOST);
+        let low = rim - LOST * medium.dx;
+        let over = behind.iter().filter(|(_, x)| x.y >= low && depth(*x) > LOST);
         self.spilled.extend(over.map(|(k, _)| k));
         let through = behind.iter().filter(|(k, _)| !self.spilled.contains(k));
         let depths: Vec<f64> = through.map(|(_, x)| depth(*x)).collect();
@@ -440,7 +442,7 @@ mod tests {
         let mut samples = Samples::new(&dam);
         for (over, through) in [
             ([-dx, 0.9 * rim], [-dx, 0.9 * rim]),
-            ([0.6 * dx, rim], [0.6 * dx, 0.9 * rim]),
+            ([0.6 * dx, rim - 0.4 * dx], [0.6 * dx, 0.9 * rim]),
             ([4.0 * dx, -9.0 * dx], [2.0 * dx, 0.9 * rim]),
         ] {
             let at = |[x, y]: [f64; 2]| {

@@ -368,14 +368,17 @@ fn tank_rows(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        dam_break::{DAM_BREAK, lobovsky},
+        water::{Modern, method},
+    };
+    use base::record::MetricName;
+    use harness::context::Context;
 
     /// The numbers of the reference's README.
     #[test]
     fn the_reference_is_read_in_the_units_of_the_cases() {
         let reference = VolumeOfFluid::load().unwrap();
-        let is = |value: f64, expected: f64, tolerance: f64| {
-            assert!((value - expected).abs() <= tolerance, "{value} instead of {expected}");
-        };
         for (t, z) in [(1.0, 1.557), (2.0, 2.655), (3.0, 4.081)] {
             is(value(&reference.free[0], t), z, 1e-3);
         }
@@ -389,6 +392,74 @@ mod tests {
         }
         assert_eq!(reference.summary("lobovsky", "front_speed").unwrap(), [1.76054, 0.014]);
         assert!(reference.summary("lobovsky", "no such quantity").unwrap()[0].is_nan());
+    }
+
+    fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
+        let spec = DAM_BREAK.spec("modern", set);
+        let settings = serde_json::from_value(spec.settings).expect("settings of the case");
+        Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
+    }
+
+    fn compared(dam: &Dam, samples: &Samples, gauge: &Gauge) -> impl Fn(MetricName) -> f64 + use<> {
+        let mut record = Record::new("dam_break", "modern", serde_json::json!(dam.settings), 1);
+        compare(dam, samples, gauge, &mut record).expect("a sound package");
+        move |metric| record.value(metric.clone()).unwrap_or_else(|| panic!("no {metric:?}"))
+    }
+
+    #[track_caller]
+    fn is(value: f64, expected: f64, tolerance: f64) {
+        assert!((value - expected).abs() <= tolerance, "{value} instead of {expected}");
+    }
+
+    /// A front 0.03 a ahead, a height 0.02 H too large.
+    #[test]
+    fn how_far_a_column_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
+        let (dam, reference) = (dam(|_| {}), VolumeOfFluid::load().unwrap());
+        let of = &dam.settings;
+        let row = |k: u32| {
+            let t = 0.002 * f64::from(k);
+            let front = of.width * (0.03 + value(&reference.free[0], 2.0 * t));
+            let height = of.height * (0.02 + value(&reference.free[1], t));
+            ([t * of.unit_time(), front, height], [0.0; 4])
+        };
+        let samples = Samples::made_up(&dam, (0..900).map(row));
+        let metric = compared(&dam, &samples, &Gauge::made_up(&dam, Vec::new()));
+        for t in FREE_TIMES {
+            is(metric(FRONT_AWAY.at(t)), 0.03, 1e-4);
+        }
+        is(metric(HEIGHT_AWAY.into()), 0.02, 1e-4);
+    }
+
+    /// A front 0.03 H ahead, levels 0.01 to 0.04 H too high, pressures 5 to 20 % too high and late by 0.3.
+    #[test]
+    fn how_far_a_tank_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
+        let (dam, reference) = (dam(lobovsky), VolumeOfFluid::load().unwrap());
+        let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
+        let row = |k: u32| {
+            let t = 0.01 * f64::from(k);
+            let level = |k: usize| h * (0.01 * (k + 1) as f64 + value(&reference.levels[k], t));
+            let front = h * (0.03 + value(&reference.front, t));
+            ([t * unit, front, 0.0], [0, 1, 2, 3].map(level))
+        };
+        let samples = Samples::made_up(&dam, (0..600).map(row));
+        let too_much = |k: usize| 0.05 * (k + 1) as f64;
+        let sensor = |step: u32| {
+            let t = 0.001 * f64::from(step) + 0.0005;
+            let p = |k: usize| scale * (1.0 + too_much(k)) * value(&reference.pressure[k], t - 0.3);
+            [t * unit, p(0), p(1), p(2), p(3)]
+        };
+        let gauge = Gauge::made_up(&dam, (0..6000).map(sensor).collect());
+        let metric = compared(&dam, &samples, &gauge);
+        for t in TANK_TIMES {
+            is(metric(FRONT_AWAY.at(t)), 0.03, 1e-4);
+        }
+        is(metric(metrics::ARRIVAL_AWAY.into()), 0.3, 0.011);
+        for k in 0..4 {
+            is(metric(LEVEL_AWAY[k].into()), 0.01 * (k + 1) as f64, 1e-4);
+            for window in WINDOWS {
+                is(metric(IMPULSE_AWAY[k].at(window)), too_much(k), 0.02);
+            }
+        }
     }
 
     /// P4 strays by a quarter at any spacing, and no gate is on whether it falls.
