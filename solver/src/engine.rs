@@ -11,7 +11,7 @@ use crate::{
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
     sweep::{self, BlockUpdate, PairSweep, Sweep, first, nothing, second, whole},
-    terms::Term,
+    terms::{Term, moments::InverseMoments},
     walls::Walls,
 };
 
@@ -83,6 +83,7 @@ impl<P: Physics> Engine<P> {
 
     /// Sums the forces: `update(i, target, rate)` with dv/dt, for fluid particles.
     pub fn sweep_forces(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
+        self.normalise();
         self.data.count(Phase::Forces);
         let sweep = self.sweep(&self.terms.0, first(), true);
         sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
@@ -98,6 +99,7 @@ impl<P: Physics> Engine<P> {
         select: impl Fn(&Derived<P>) -> T::Derived + Sync,
         update: impl Update<P::Extra>,
     ) {
+        const { assert!(!T::NORMALISES, "moments are not summed for a part") };
         self.data.count(Phase::Forces);
         let sweep = self.sweep(part, select, true);
         sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
@@ -112,6 +114,7 @@ impl<P: Physics> Engine<P> {
 
     /// Sums forces and drift in one pair sweep: `update(i, target, rate)` with the whole rate.
     pub fn sweep_all(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
+        self.normalise();
         self.data.count(Phase::Both);
         self.sweep_both(&self.sweep(&self.terms, whole(), true), targets, &by_blocks(update));
     }
@@ -128,6 +131,9 @@ impl<P: Physics> Engine<P> {
         };
         let mut columns: Vec<_> = self.columns.iter().enumerate().map(own).collect();
         fill_images::<P, T>(neighbours, 0, 1.0, &mut columns);
+        if T::NORMALISES {
+            normalise::<P, T>(&self.kernel, neighbours, &mut columns);
+        }
         let (kernel, select) = (&self.kernel, whole());
         let sweep = Sweep { kernel, terms, columns: &columns, select, moving: false };
         sweep::rates(&sweep, &neighbours.lists)
@@ -171,6 +177,17 @@ impl<P: Physics> Engine<P> {
             + self.columns.capacity() * size_of::<Column<Derived<P>>>()
             + self.extents.capacity() * size_of::<Extent>()
             + self.extrapolated.capacity() * size_of::<Evolved<P::Extra>>()
+    }
+
+    /// Tells the forces the inverses of the moments, if they need them.
+    pub(crate) fn normalise(&mut self) {
+        const { assert!(!(P::Forces::NORMALISES && P::Walls::EXTRAPOLATES), "moments of fluid alone") };
+        const { assert!(!P::Drift::NORMALISES, "a drift sums its own moments") };
+        if P::Forces::NORMALISES {
+            self.data.count(Phase::Forces);
+            let Self { kernel, data, columns, .. } = self;
+            normalise::<P, (P::Forces, P::Drift)>(kernel, &data.neighbours, columns);
+        }
     }
 
     fn sweep<'a, T: Term<P::Extra>>(
@@ -286,6 +303,22 @@ fn fill_images<P: Physics, T: Term<P::Extra>>(
             columns[real + k] = image;
         }
     }
+}
+
+/// Sums the moments of all particles, and tells the columns and their images the inverses.
+fn normalise<P: Physics, T: Term<P::Extra>>(
+    kernel: &Smoothing<P::Kernel>,
+    neighbours: &Neighbours,
+    columns: &mut [Column<T::Derived>],
+) {
+    let terms = &InverseMoments;
+    let sweep = Sweep { kernel, terms, columns, select: nothing(), moving: false };
+    let lists = [&neighbours.lists, &neighbours.wall_lists];
+    let inverses = lists.map(|lists| sweep::rates(&sweep, lists)).concat();
+    for (column, inverse) in columns.iter_mut().zip(inverses) {
+        T::normalise(&mut column.derived, inverse.extra);
+    }
+    fill_images::<P, T>(neighbours, 0, 1.0, columns);
 }
 
 /// The column of a particle.

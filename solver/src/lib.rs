@@ -59,10 +59,9 @@ pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};
 pub use super_steps::SuperSteps;
 pub use terms::{
-    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
-    ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion,
-    FluidPairs, Hydrostatic, JaumannRate, NoSlipImages, Pressure, PrincipalStress, ShiftAdvection,
-    Shifting, Split, Term, Viscosity, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Continuity,
+    DensityDiffusion, FluidPairs, Hydrostatic, JaumannRate, NoSlipImages, Pressure,
+    PrincipalStress, ShiftAdvection, Shifting, Split, Term, Viscosity, Xsph,
 };
 pub use walls::{
     ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall, SlipGhosts,

@@ -232,6 +232,7 @@ impl<S: Scheme> Steps<S::Extra> for Simulation<S> {
         let mut state = take(&mut engine.data.state);
         let synchronised =
             integrator.synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
+        engine.normalise();
         engine.data.state = state;
         synchronised
     }

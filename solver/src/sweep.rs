@@ -55,9 +55,10 @@ pub(crate) fn run<X: Numbers>(
 /// The rates of the particles that the lists are of.
 pub(crate) fn rates<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists) -> Vec<Rate<X>> {
     let mut rates = vec![Rate::default(); lists.of.len()];
-    for (b, rates) in rates.chunks_mut(BLOCK).enumerate() {
-        sweep.rates(&lists.blocks[b], 0, lists.of.start + b * BLOCK, rates);
-    }
+    let blocks = rates.chunks_mut(BLOCK).zip(&lists.blocks).enumerate();
+    parallel::for_each(blocks, lists.parallel, &|(b, (rates, block))| {
+        sweep.rates(block, 0, lists.of.start + b * BLOCK, rates);
+    });
     rates
 }
 

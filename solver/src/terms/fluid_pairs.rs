@@ -1,4 +1,4 @@
-use super::{Common, In, Kernel, Lane, Pair, Rate, Term, Vector2};
+use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 
 /// A term without its pairs with boundary particles, [`crate::Role::Wall`] and [`crate::Role::Interface`].
 ///
@@ -12,6 +12,7 @@ pub struct FluidPairs<T>(pub T);
 impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
     type Derived = (T::Derived, f64);
     type Sum = T::Sum;
+    const NORMALISES: bool = T::NORMALISES;
 
     fn prepare(&mut self, max_speed: f64) {
         self.0.prepare(max_speed);
@@ -23,6 +24,10 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
     #[inline(always)]
     fn no_slip(image: &mut Self::Derived, difference: Vector2<f64>) {
         T::no_slip(&mut image.0, difference);
+    }
+    #[inline(always)]
+    fn normalise(derived: &mut Self::Derived, inverse: Symmetric) {
+        T::normalise(&mut derived.0, inverse);
     }
     #[inline(always)]
     fn on_boundary(own: &mut Self::Derived) {

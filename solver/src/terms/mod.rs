@@ -8,11 +8,11 @@ mod artificial_stress;
 mod artificial_viscosity;
 mod body_force;
 mod cauchy_stress;
-mod consistent;
 mod continuity;
 mod density_diffusion;
 mod fluid_pairs;
 mod jaumann_rate;
+pub mod moments;
 mod no_slip_images;
 mod pressure;
 mod shift_advection;
@@ -26,7 +26,6 @@ pub use artificial_stress::{ArtificialStress, Tensile};
 pub use artificial_viscosity::{Always, Approaching, ArtificialViscosity, Switch};
 pub use body_force::BodyForce;
 pub use cauchy_stress::CauchyStress;
-pub use consistent::{ConsistentContinuity, ConsistentPressure, ConsistentViscosity};
 pub use continuity::Continuity;
 pub use density_diffusion::{DensityDiffusion, Hydrostatic, Rest};
 pub use fluid_pairs::FluidPairs;
@@ -93,6 +92,8 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     type Sum: Numbers;
     /// Whether this is the empty tuple, so that no pair sweep is needed.
     const IS_EMPTY: bool = false;
+    /// Whether [`Term::normalise`] does anything, for which each sweep of forces needs one of moments before.
+    const NORMALISES: bool = false;
 
     /// Receives the largest speed of the scene \[m/s\], before each step.
     fn prepare(&mut self, _max_speed: f64) {}
@@ -108,6 +109,9 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Tells the derived data of a boundary particle that it is one.
     #[inline(always)]
     fn on_boundary(_own: &mut Self::Derived) {}
+    /// Tells the derived data of a particle the inverse of its [`moments`], once a state.
+    #[inline(always)]
+    fn normalise(_derived: &mut Self::Derived, _inverse: Symmetric) {}
     /// Adds the contributions of the neighbours of `pair`, given the derived data of both, to the sum.
     fn pair<V: Lane, K: Kernel>(
         &self,
@@ -127,6 +131,7 @@ macro_rules! tuple_of_terms {
             type Derived = ($($member::Derived,)*);
             type Sum = ($($member::Sum,)*);
             const IS_EMPTY: bool = true $(&& $member::IS_EMPTY)*;
+            const NORMALISES: bool = false $(|| $member::NORMALISES)*;
 
             fn prepare(&mut self, max_speed: f64) {
                 $(self.$index.prepare(max_speed);)*
@@ -142,6 +147,10 @@ macro_rules! tuple_of_terms {
             #[inline(always)]
             fn on_boundary(own: &mut Self::Derived) {
                 $($member::on_boundary(&mut own.$index);)*
+            }
+            #[inline(always)]
+            fn normalise(derived: &mut Self::Derived, inverse: Symmetric) {
+                $($member::normalise(&mut derived.$index, inverse);)*
             }
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(

@@ -15,6 +15,7 @@ impl<X, T: Term<X>> Term<X> for NoSlipImages<T> {
     }
     #[inline(always)]
     fn derived(&self, own: &Common<f64>, extra: &X) -> Self::Derived {
+        const { assert!(!T::NORMALISES, "moments are not passed on") };
         (self.0.derived(own, extra), Vector2::zeros())
     }
     #[inline(always)]

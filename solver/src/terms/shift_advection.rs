@@ -1,4 +1,4 @@
-use super::consistent::{inverse, weights};
+use super::moments::{inverse, weights};
 use super::{Common, In, Kernel, Lane, Pair, Rate, Shifting, Symmetric, Term, Vector2};
 
 /// What shifting must do to the velocity: dvᵢ/dt += (δuᵢ·∇)v \[m/s²\], δu the velocity of

@@ -7,9 +7,9 @@ use super::{In, Kernel, Lane, Numbers, Pair, Symmetric};
 pub trait TensileStress: Copy + Send + Sync + 'static {
     /// Derived numbers of a particle.
     type Derived: Numbers;
-    /// From σ/ρ² of a particle.
+    /// From σ/ρ² of a particle, or from σ; the result has the unit of either.
     fn derived(&self, stress_over_density_squared: Symmetric) -> Self::Derived;
-    /// Rᵢⱼ φᵢⱼⁿ, in the unit of σ/ρ².
+    /// Rᵢⱼ φᵢⱼⁿ, in the same unit.
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,

@@ -17,14 +17,15 @@ mod steadiness;
 mod streamlines;
 mod studies;
 
+use consistent::{ConsistentPressure, ConsistentViscosity};
 use harness::{
     case::Case,
     composed::{Composed, Composition, Variants},
     method::{self, Method, Standard},
 };
 use solver::{
-    BodyForce, ConsistentPressure, ConsistentViscosity, Continuity, ExtrapolatingWall,
-    InterfaceWall, NoSlip, Pressure, ShiftAdvection, Tait, Viscosity,
+    BodyForce, Continuity, ExtrapolatingWall, InterfaceWall, NoSlip, Pressure, ShiftAdvection,
+    Tait, Viscosity,
 };
 
 use crate::{

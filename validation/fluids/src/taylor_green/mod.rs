@@ -8,14 +8,15 @@ mod sound;
 mod studies;
 mod viscous;
 
+use consistent::{ConsistentPressure, ConsistentViscosity};
 use harness::{
     case::{Case, Planned, Tier},
     composed::{self, Composed, Composition, Variants},
     method::Method,
 };
 use solver::{
-    Compose, ConsistentPressure, ConsistentViscosity, Continuity, Leapfrog, Open, Pressure,
-    QuinticSpline, ShiftAdvection, Shifting, Split, SuperSteps, Tait, Viscosity,
+    Compose, Continuity, Leapfrog, Open, Pressure, QuinticSpline, ShiftAdvection, Shifting, Split,
+    SuperSteps, Tait, Viscosity,
 };
 
 use crate::{

@@ -17,7 +17,7 @@ use maths::theory::{
 use nalgebra::Vector2;
 use solver::{
     Domain, Integrator as _, Kernel, Numbers, Particle, PlaneWall, Scene, SceneError, Scheme,
-    Smoothing, Stepper, Tait,
+    Smoothing, Stepper, Tait, Term,
 };
 
 use crate::{context::Context, limits::Limits};
@@ -95,6 +95,12 @@ where
 /// h/dx and η²/h².
 type Lattice = [f64; 2];
 
+/// The square lattice as the forces of a scheme see it.
+fn square<S: Standard>([h_over_dx, eta2_over_h2]: Lattice) -> SquareLattice<S::Kernel> {
+    let lattice = SquareLattice::new(h_over_dx, eta2_over_h2);
+    if S::Forces::NORMALISES { lattice.corrected() } else { lattice }
+}
+
 /// A scheme without its type. `D` is what a case needs of a simulation beyond [`Stepper`].
 pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     /// Name of the kernel.
@@ -137,15 +143,11 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             uses: [S::Forces::uses(), S::Drift::uses(), S::Walls::uses()].concat(),
             build,
             weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
-            stiffest: |ratio| SquareLattice::<S::Kernel>::new(ratio, 0.0).stiffest(),
-            mode: |[ratio, eta2], theta, medium| {
-                Mode::new(&SquareLattice::<S::Kernel>::new(ratio, eta2), theta, medium)
-            },
-            gradient: |ratio, phase| SquareLattice::<S::Kernel>::new(ratio, 0.0).gradient(phase),
-            gradient_factor: |ratio| SquareLattice::<S::Kernel>::new(ratio, 0.0).gradient_factor(),
-            modes: |[ratio, eta2], n, medium| {
-                time_step::modes(&SquareLattice::<S::Kernel>::new(ratio, eta2), n, medium)
-            },
+            stiffest: |ratio| square::<S>([ratio, 0.0]).stiffest(),
+            mode: |lattice, theta, medium| Mode::new(&square::<S>(lattice), theta, medium),
+            gradient: |ratio, phase| square::<S>([ratio, 0.0]).gradient(phase),
+            gradient_factor: |ratio| square::<S>([ratio, 0.0]).gradient_factor(),
+            modes: |lattice, n, medium| time_step::modes(&square::<S>(lattice), n, medium),
         }
     }
 

@@ -1,10 +1,14 @@
 //! How each term and each wall is constructed from the parameters of a medium, and which settings it reads.
 
+use consistent::{
+    ConjugateStress, ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure,
+    ConsistentViscosity,
+};
 use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConsistentContinuity,
-    ConsistentPressure, ConsistentViscosity, Continuity, DensityDiffusion, ExtrapolatingWall,
-    FluidPairs, Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall,
-    Pressure, ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, Continuity, DensityDiffusion,
+    ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip,
+    NoSlipImages, Open, PlaneWall, Pressure, ShiftAdvection, Shifting, SlipGhosts, Split, Tait,
+    Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension, Switch},
 };
 
@@ -59,6 +63,7 @@ from_medium! {
     Shifting [] (Shift) = |m| Shifting::new(m.shift, m.h, m.w_at_spacing);
     ShiftAdvection [] (Shift) = |m| ShiftAdvection(Shifting::new(m.shift, m.h, m.w_at_spacing));
     JaumannRate [] () = |m| JaumannRate { shear_modulus: m.shear_modulus };
+    ConsistentJaumannRate [] () = |m| Self(JaumannRate::new(m));
 }
 
 impl<E: FromMedium, R: FromMedium> FromMedium for Pressure<E, R> {
@@ -98,6 +103,15 @@ impl<T: FromMedium> FromMedium for NoSlipImages<T> {
 }
 
 impl<E: FromMedium, R: FromMedium> FromMedium for CauchyStress<E, R> {
+    fn new(medium: &Medium) -> Self {
+        Self { eos: E::new(medium), tensile: R::new(medium) }
+    }
+    fn uses() -> Vec<Knob> {
+        R::uses()
+    }
+}
+
+impl<E: FromMedium, R: FromMedium> FromMedium for ConjugateStress<E, R> {
     fn new(medium: &Medium) -> Self {
         Self { eos: E::new(medium), tensile: R::new(medium) }
     }

@@ -33,6 +33,8 @@ pub struct SquareLattice<K> {
     h: f64,
     /// η²/dx².
     eta2: f64,
+    /// By which gradients are multiplied: 1, or 1/G₁.
+    correction: f64,
     sites: Vec<Site>,
     kernel: PhantomData<K>,
 }
@@ -67,7 +69,14 @@ impl<K: Kernel> SquareLattice<K> {
                 }
             }
         }
-        Self { h, eta2, sites, kernel: PhantomData }
+        Self { h, eta2, correction: 1.0, sites, kernel: PhantomData }
+    }
+
+    /// The same with gradients, and their conjugate forces, that are corrected by the inverse of the moments,
+    /// which on a lattice is 1/G₁ times the unit matrix.
+    #[must_use]
+    pub fn corrected(self) -> Self {
+        Self { correction: 1.0 / self.gradient_factor(), ..self }
     }
 
     /// h/dx.
@@ -84,9 +93,9 @@ impl<K: Kernel> SquareLattice<K> {
         self.sites.iter().map(term).sum()
     }
 
-    /// G₁ = Σ V F x².
+    /// G₁ = Σ V F x²; 1 of corrected gradients.
     pub fn gradient_factor(&self) -> f64 {
-        self.sum(|s| s.vf * s.r.x * s.r.x)
+        self.sum(|s| s.vf * s.r.x * s.r.x) * self.correction
     }
 
     /// L₁ = Σ V F y² r²/(r²+η²), equal to G₁ at η = 0.
@@ -145,7 +154,7 @@ impl<K: Kernel> SquareLattice<K> {
         for s in &self.sites {
             sum += s.r * (s.vf * sin(theta.dot(&s.r)));
         }
-        sum * self.h
+        sum * (self.h * self.correction)
     }
 
     /// λ(k) h² at phase θ = k dx \[rad\].
@@ -288,6 +297,17 @@ mod tests {
         let p = lattice.artificial(theta);
         let trace = 0.5 * lattice.laplacian(theta) - p.trace();
         assert!(trace.abs() < 1e-16, "the trace of P is half of the Laplacian");
+    }
+
+    /// Long waves have no error of the factor, and every wave has its share of it less.
+    #[test]
+    fn corrected_gradients_have_the_factor_one() {
+        let plain = SquareLattice::<CubicSpline>::new(1.5, 0.01);
+        let corrected = SquareLattice::<CubicSpline>::new(1.5, 0.01).corrected();
+        assert_relative_eq!(corrected.gradient_factor(), 1.0, max_relative = 1e-15);
+        let ratio = plain.maxima(24).gradient / corrected.maxima(24).gradient;
+        assert_relative_eq!(ratio, plain.gradient_factor(), max_relative = 1e-14);
+        assert_eq!(plain.maxima(24).artificial, corrected.maxima(24).artificial);
     }
 
     #[test]

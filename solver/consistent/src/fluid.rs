@@ -1,34 +1,23 @@
-//! Terms that are exact for linear fields wherever the particles are: the gradient of a field f is
-//! ∇f = M⁻¹ Σⱼ Vⱼ (fᵢ − fⱼ) F rᵢⱼ with the moments M = Σⱼ Vⱼ rᵢⱼ ⊗ F rᵢⱼ of the particle's own neighbours,
-//! the unit matrix in the continuum (Bonet & Lok 1999; schemes of Negi & Ramachandran 2022).
+//! Terms of a fluid that are exact for linear fields (schemes of Negi & Ramachandran 2022).
 //!
-//! M is summed in the same pair sweep, so nothing is derived or stored for it. What they cost is
-//! conservation: the forces of a pair are not opposite any more, and nothing pushes crowded particles
-//! apart. They need [`super::Shifting`].
+//! What they cost is conservation: the forces of a pair are not opposite any more, and nothing pushes crowded
+//! particles apart. They need [`solver::Shifting`].
 
-use super::{Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
+use lanes::Lane;
+use nalgebra::Vector2;
+use solver::{
+    EquationOfState, In, Kernel, Rate, Symmetric, Term,
+    particles::Common,
+    terms::{
+        Pair,
+        moments::{inverse, weights},
+    },
+};
 
-/// Least determinant of the moments: 1 inside a body of particles, 0 on a line.
-const SINGULAR: f64 = 1e-3;
+/// Least trace of the moments: 2 inside a body of particles.
+const LEAST_TRACE: f64 = 1e-3;
 
-/// Vⱼ F rᵢⱼ \[1/m\], and its share of the moments.
-#[inline(always)]
-pub(super) fn weights<V: Lane, K: Kernel>(pair: &Pair<V, K>) -> (Vector2<V>, Symmetric<V>) {
-    let weight = pair.r * (pair.other.volume * pair.f);
-    let (xx, yy, xy) = (pair.r.x * weight.x, pair.r.y * weight.y, pair.r.x * weight.y);
-    (weight, Symmetric { xx, yy, xy })
-}
-
-/// M⁻¹, `None` where there are too few neighbours for a gradient.
-#[inline(always)]
-pub(super) fn inverse(moments: Symmetric) -> Option<Symmetric> {
-    let Symmetric { xx, yy, xy } = moments;
-    let determinant = xx * yy - xy * xy;
-    let inverse = || Symmetric::new(yy / determinant, xx / determinant, -xy / determinant);
-    (determinant > SINGULAR).then(inverse)
-}
-
-/// dvᵢ/dt += −∇p/ρᵢ \[m/s²\], in place of [`super::Pressure`]. Where neighbours lie on a line, 0.
+/// dvᵢ/dt += −∇p/ρᵢ \[m/s²\], in place of [`solver::Pressure`]. Where neighbours lie on a line, 0.
 #[derive(Clone, Copy, Debug)]
 pub struct ConsistentPressure<E> {
     /// Equation of state p(ρ).
@@ -65,7 +54,7 @@ impl<X, E: EquationOfState> Term<X> for ConsistentPressure<E> {
     }
 }
 
-/// dvᵢ/dt += −(4ν/tr M) Σⱼ Vⱼ F (vᵢⱼ − (rᵢⱼ·∇)v) \[m/s²\], in place of [`super::Viscosity`]: 0 for a linear
+/// dvᵢ/dt += −(4ν/tr M) Σⱼ Vⱼ F (vᵢⱼ − (rᵢⱼ·∇)v) \[m/s²\], in place of [`solver::Viscosity`]: 0 for a linear
 /// field on any particles, exact for a parabola where M is a number times the unit matrix, as on a
 /// lattice. Where neighbours lie on a line, without the second part.
 #[derive(Clone, Copy, Debug)]
@@ -95,13 +84,13 @@ impl<X> Term<X> for ConsistentViscosity {
         let trace = moments.xx + moments.yy;
         let place = inverse(moments).map_or(Vector2::zeros(), |inverse| inverse.times(weight));
         let linear = along_x * place.x + along_y * place.y;
-        if trace > SINGULAR {
+        if trace > LEAST_TRACE {
             rate.velocity -= (laplacian - linear) * (4.0 * self.nu / trace);
         }
     }
 }
 
-/// dρᵢ/dt += −ρᵢ ∇·v \[kg/m³/s\], in place of [`super::Continuity`]. Where neighbours lie on a line, 0.
+/// dρᵢ/dt += −ρᵢ ∇·v \[kg/m³/s\], in place of [`solver::Continuity`]. Where neighbours lie on a line, 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConsistentContinuity;
 
