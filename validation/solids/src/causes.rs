@@ -26,6 +26,14 @@ pub static DISPERSION: Cause = Cause::new(
     "2026-11-23",
 );
 
+/// Folds of few spacings.
+pub static FOLDS: Cause = Cause::new(
+    "Where a thin ring is folded, its curvature changes within a few spacings, so that flattened rings are \
+     too stiff.",
+    "More particles through the thickness.",
+    "2026-11-23",
+);
+
 /// Bodies that touch are one.
 pub static ONE_LATTICE: Cause = Cause::new(
     "Two bodies on one lattice are one body to the equations, so their contact can pull as well as push.",
@@ -70,14 +78,6 @@ pub static SHARED_IMPULSE: Cause = Cause::new(
      explains a part, and the rest is unexplained.",
     "This is not known: XSPH, softness in bending and softness of the contact do not explain it.",
     "2026-11-21",
-);
-
-/// Gradients from one side.
-pub static ONE_SIDED: Cause = Cause::new(
-    "At a face the neighbours are on one side, so that the strain is that of a place a little inside: plates \
-     of few layers bend too easily, by a share of second order in the spacing.",
-    "Finer spacing, or gradients at faces that are exact for quadratic fields.",
-    "2026-11-23",
 );
 
 /// Layers that cannot keep their volume.

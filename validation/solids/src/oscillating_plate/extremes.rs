@@ -102,7 +102,7 @@ fn nearly_incompressible((n, poisson): (usize, f64)) -> Planned {
         false => period,
     };
     let mut gates = vec![period];
-    if stiffness < 1.0 {
+    if locked >= -most {
         gates.push(gate(
             BENDING_EXCESS,
             Bound::Within(beside[0], beside[1]),

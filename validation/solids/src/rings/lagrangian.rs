@@ -5,7 +5,7 @@ use super::{
     LAGRANGIAN, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings, measure::NEIGHBOURS, metrics::*,
     reference::Reference,
 };
-use crate::causes::ONE_SIDED;
+use crate::causes::FOLDS;
 use base::{
     functions::exp,
     gate::{Bound, Evidence, Gate},
@@ -124,20 +124,19 @@ impl Of {
     fn extremes(&self) -> Vec<Gate> {
         let goal = "Finite elements of the same law. The bounds are what the project set out to reach: 2, 1 \
                     and 0.5 % with 5, 10 and 20 layers.";
-        let vibration = "The restitution is what the vibration of the ring leaves to its centre, so it \
-                         hangs on how long the two contacts last against the period of bending, which is \
-                         1.9 and 0.6 % too long with 5 and 10 layers (plate). The bound: 4 and 2 %, first \
-                         order in the spacing.";
-        let (small, known) = (self.reach(), 2.0 * self.reach());
+        let sensitive = "The restitution is what the vibration of the rings leaves to their centres, and hangs \
+                         on how the second contact meets that vibration: in finite elements a law that \
+                         differs at strains of a tenth, that of St. Venant and Kirchhoff, changes it by \
+                         +3.1 %. Linear vibrations of these rings have the right frequency within 0.6 and \
+                         0.05 % with 5 and 10 layers, but the folds of flattened rings are a few spacings \
+                         wide. The bound: the difference of the two laws and 1 %; with 20 layers 1 %.";
+        let (small, known) = (self.reach(), if self.is_coarse() { 0.041 } else { 0.01 });
         let near = |metric: MetricKey| {
             self.gate(metric, Bound::Within(-small, small), Evidence::Reference, goal)
         };
-        let mut restitution = near(RESTITUTION_ERROR);
-        if self.is_coarse() {
-            restitution = restitution
-                .with_limitation(Bound::Within(-small, known), vibration)
-                .because_of(&ONE_SIDED);
-        }
+        let restitution = near(RESTITUTION_ERROR)
+            .with_limitation(Bound::Within(-small, known), sensitive)
+            .because_of(&FOLDS);
         vec![restitution, near(WIDTH_MIN_ERROR), near(HEIGHT_MAX_ERROR)]
     }
 
@@ -158,7 +157,7 @@ impl Of {
             end,
         );
         let ends = match self.is_coarse() {
-            true => ends.with_limitation(Bound::Within(-3.0, 8.3), late).because_of(&ONE_SIDED),
+            true => ends.with_limitation(Bound::Within(-3.0, 8.3), late).because_of(&FOLDS),
             false => ends,
         };
         [self.gate(PHASES, Bound::Equals(2.0), Evidence::Reference, twice), ends]
