@@ -82,8 +82,8 @@ pub static SHARED_IMPULSE: Cause = Cause::new(
 
 /// Layers that cannot keep their volume.
 pub static LOCKING: Cause = Cause::new(
-    "The displacements of an even number of layers cannot keep the volume of every layer of a bent plate, so \
-     nearly incompressible plates are too stiff.",
+    "An even number of layers cannot keep the volume of every layer of a bent plate, so nearly \
+     incompressible plates are too stiff.",
     "An odd number of layers, finer spacing, or a pressure that is taken over several particles.",
     "2026-11-23",
 );
