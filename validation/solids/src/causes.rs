@@ -10,6 +10,14 @@ pub static FREE_FACES: Cause = Cause::new(
     "2026-11-21",
 );
 
+/// Corrected gradients are of first order at faces.
+pub static LINEAR_GRADIENTS: Cause = Cause::new(
+    "Corrected gradients are exact for linear fields alone, so layers near the faces of a bent body have the \
+     smaller strain of their neighbours.",
+    "The variant `lagrangian` with fewer neighbours, or finer spacing.",
+    "2026-11-23",
+);
+
 /// Bodies act on each other before they touch.
 pub static SOFT_CONTACT: Cause = Cause::new(
     "Bodies push each other as soon as their kernels overlap, so contact begins before they touch and yields \

@@ -544,8 +544,9 @@ fn lagrangian_plan(tier: Tier) -> Vec<Planned> {
 }
 
 fn plan(tier: Tier) -> Vec<Planned> {
-    let mut plan: Vec<Planned> = VARIANTS.map(|variant| pulse(variant, 40)).to_vec();
-    plan.extend(SPEEDS.iter().flat_map(|speed| VARIANTS.map(|v| touching(v, *speed))));
+    let judged = || VARIANTS.into_iter().chain(["corrected"]);
+    let mut plan: Vec<Planned> = judged().map(|variant| pulse(variant, 40)).collect();
+    plan.extend(SPEEDS.iter().flat_map(|speed| judged().map(|v| touching(v, *speed))));
     let [slowest, slow, middle, fast] = SPEEDS;
     let mut ends = vec![(middle, 4.0), (fast, 3.0)];
     if tier == Tier::Full {

@@ -11,7 +11,7 @@ use solver::{
 };
 use std::f64::consts::TAU;
 
-use super::solid::{Bare, Material, limits};
+use super::solid::{Bare, Material, corrected::CorrectedBare, limits};
 use base::functions::{acos, cos, sin};
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -62,6 +62,9 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
 
 const NAME: &str = "elastic_wave";
 
+/// The variant with corrected gradients.
+const CORRECTED: &str = "corrected";
+
 base::metrics! {
     FREQUENCY_ERROR = "frequency_error" ["-"]
         "|omega - theory|/theory, the time step divided out; theory: |g| (K + 4 mu/3)^(1/2) along, |g| \
@@ -86,6 +89,12 @@ fn variants() -> Vec<Composition<WaveSettings>> {
             QuinticSpline::NAME,
             "the same with the quintic spline",
             method::<QuinticSpline>(),
+            |_| {},
+        )
+        .with(
+            CORRECTED,
+            "corrected gradients and the forces that are conjugate to them, cubic spline",
+            Method::of::<CorrectedBare>(),
             |_| {},
         )
         .with(WendlandC2::NAME, "the same with Wendland C2", method::<WendlandC2>(), |_| {})
@@ -245,15 +254,16 @@ impl Observer<Symmetric> for Watch {
     }
 }
 
-/// Kernels and h/dx of the waves, each along and across, in the order of the table.
-const WAVES: [(&str, f64); 4] = [
+/// Variants and h/dx of the waves, each along and across, in the order of the table.
+const WAVES: [(&str, f64); 5] = [
     (CubicSpline::NAME, 1.5),
     (CubicSpline::NAME, 1.2),
     (QuinticSpline::NAME, 1.0),
     (WendlandC2::NAME, 1.5),
+    (CORRECTED, 1.5),
 ];
 
-/// Kernel and settings of a run.
+/// Variant and settings of a run.
 type Run = (&'static str, WaveSettings);
 
 /// Every run: the waves, then the rotating block.
@@ -264,7 +274,7 @@ fn runs() -> impl Iterator<Item = Run> {
         })
     });
     let block = WaveSettings { h_over_dx: 1.5, transverse: false, rotation: true };
-    waves.chain([(CubicSpline::NAME, block)])
+    waves.chain([(CubicSpline::NAME, block.clone()), (CORRECTED, block)])
 }
 
 fn spec((kernel, settings): &Run) -> RunSpec {
@@ -290,7 +300,7 @@ fn study(runs: &Runs) -> Study {
                    gradient symbol. The shear modulus is 0.22 K, and the effect of the time step is \
                    divided out. The last column says how far the stress of a block rotates with it.";
     let table = Columns::<Run>::default()
-        .text("kernel", |(kernel, _)| *kernel)
+        .text("variant", |(variant, _)| *variant)
         .num(["h/dx", "-"], |(_, settings)| Cell::num(settings.h_over_dx, 2))
         .text("wave", |(_, settings)| what(settings))
         .num(["relative error", "-"], |run| Cell::sci(error(run), 2))

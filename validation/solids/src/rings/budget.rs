@@ -1,6 +1,7 @@
 //! Where the energy of the rings goes: kinetic and elastic energy through time, and the work of each
 //! term that is not elastic.
 
+use consistent::{ConjugateStress, ConsistentContinuity, ConsistentJaumannRate};
 use harness::method::FromMedium;
 use lagrangian::{Law, Load, Solid};
 use solver::{
@@ -29,15 +30,24 @@ pub const METRICS: [MetricKey; 4] = [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WO
 
 /// Forces with an artificial stress, or with none, `()`.
 pub trait Stressed {
-    /// The artificial stress.
-    type Tensile: TensileStress + FromMedium;
+    /// The elastic law: forces and rates that only exchange energy.
+    type Elastic: Term<Symmetric> + FromMedium;
+    /// The same with the artificial stress.
+    type Tensile: Term<Symmetric> + FromMedium;
 }
 
 impl<R: TensileStress + FromMedium> Stressed for CauchyStress<Linear, R> {
-    type Tensile = R;
+    type Elastic = (CauchyStress<Linear>, Continuity, JaumannRate);
+    type Tensile = (Self, Continuity, JaumannRate);
+}
+
+impl<R: TensileStress + FromMedium> Stressed for ConjugateStress<Linear, R> {
+    type Elastic = (ConjugateStress<Linear>, ConsistentContinuity, ConsistentJaumannRate);
+    type Tensile = (Self, ConsistentContinuity, ConsistentJaumannRate);
 }
 
 impl<A: Stressed, B> Stressed for (A, B) {
+    type Elastic = A::Elastic;
     type Tensile = A::Tensile;
 }
 
@@ -58,9 +68,8 @@ impl<S: Scheme<Extra = Symmetric, Forces: Stressed>> Metered for Simulation<S> {
         }
         let slope = solid_slope(&rings.material);
         let meter = Meter::new(self, &slope);
-        type Law<R> = (CauchyStress<Linear, R>, Continuity, JaumannRate);
-        let elastic = power::<S, Law<()>>(&meter, rings);
-        let stressed = power::<S, Law<<S::Forces as Stressed>::Tensile>>(&meter, rings);
+        let elastic = power::<S, <S::Forces as Stressed>::Elastic>(&meter, rings);
+        let stressed = power::<S, <S::Forces as Stressed>::Tensile>(&meter, rings);
         let viscosity = power::<S, ArtificialViscosity<Linear>>(&meter, rings);
         vec![(ELASTIC, elastic), (STRESS, stressed - elastic), (VISCOSITY, viscosity)]
     }

@@ -32,6 +32,7 @@ use solver::{
 
 use crate::solid::{
     Rubber,
+    corrected::Corrected,
     lagrangian::{self as total, Built},
 };
 use ::lagrangian::Hencky;
@@ -96,6 +97,9 @@ where
     })
 }
 
+/// The variant with corrected gradients.
+pub const CORRECTED: &str = "corrected";
+
 /// The variant with a stored energy.
 pub const LAGRANGIAN: &str = "lagrangian";
 
@@ -130,6 +134,15 @@ fn variants() -> Vec<Composition<RingSettings>> {
             "the seed with the staggered leapfrog: one right-hand side a step, and longer steps",
             method::<PrincipalStress, Leapfrog>(),
             |s| s.courant = LONG_STEPS,
+        )
+        .with(
+            CORRECTED,
+            "the terms of `leapfrog` without XSPH, with corrected gradients, and the forces that are \
+             conjugate to them",
+            Method::with::<Corrected<PrincipalStress>>(|parts| {
+                Ok(Box::new(method::scene::<Corrected<PrincipalStress>>(parts).build()?))
+            }),
+            |s| (s.courant, s.xsph) = (LONG_STEPS, 0.0),
         )
         .with(
             LAGRANGIAN,

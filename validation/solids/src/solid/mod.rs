@@ -1,6 +1,7 @@
 //! What cases of the elastic solid have in common: material, methods, settings, energies, and the
 //! variants of a problem.
 
+pub mod corrected;
 mod elements;
 mod energy;
 pub mod faces;

@@ -4,10 +4,14 @@ use ::lagrangian::Hencky;
 use nalgebra::Vector2;
 use solver::{
     Domain, EquationOfState, Observer, Particle, PlaneWall, PredictorCorrector, PrincipalStress,
-    Stepper, Symmetric, walls::Walls,
+    Stepper, Symmetric,
 };
 
-use super::{Bare, Energy, Material, Plain, Rubber, lagrangian, limits};
+use super::{
+    Bare, Energy, Material, Plain, Rubber,
+    corrected::{Corrected, Held},
+    lagrangian, limits,
+};
 use base::{
     record::{self, Record},
     settings::Settings,
@@ -17,7 +21,7 @@ use harness::{
     checkpoint::Observed,
     composed::{Composition, Program, Variants},
     context::Context,
-    method::{Boundary, Medium, Method, Parts},
+    method::{Medium, Method, Parts},
     rules::PLANNED_DT,
     runner::{self, Drive},
     simulate,
@@ -104,7 +108,7 @@ pub fn program<P: Problem>() -> Program<P, Method<Symmetric>> {
 }
 
 /// The variants of a problem whose particles these walls hold.
-pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition<P>> {
+pub fn variants<P: Problem, W: Held>() -> Vec<Composition<P>> {
     Variants::of(&program())
         .with(
             "seed",
@@ -124,6 +128,12 @@ pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition
             "the equations (3), (9)-(12) and nothing that stabilises, stepped by the leapfrog",
             Method::of::<Bare<W>>(),
             |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
+        )
+        .with(
+            "corrected",
+            "the terms of `plain` with corrected gradients, and the forces that are conjugate to them",
+            Method::of::<Corrected<PrincipalStress, W::Corrected>>(),
+            |s| leave_out(s, &["xsph"]),
         )
         .with(
             "lagrangian",
