@@ -446,7 +446,7 @@ fn metrics(record: &Record) -> String {
         }
     }
     let number = |text: &&str| text.parse().unwrap_or(f64::NAN);
-    times.sort_by(|a, b| number(a).total_cmp(&number(b)));
+    times.sort_by(|a, b| number(a).total_cmp(&number(b)).then(a.cmp(b)));
     times.dedup();
     names.sort();
     names.dedup();
@@ -476,4 +476,26 @@ fn metrics(record: &Record) -> String {
         text.push('\n');
     }
     text + &output::table(&["metric", "value", "unit", "formula"], &single)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::record::MetricKey;
+
+    /// The phases of colliding rings were listed five times each.
+    #[test]
+    fn places_that_are_words_are_listed_once() {
+        const FIRST: MetricKey = MetricKey::new("first", "s", "made up");
+        const SECOND: MetricKey = MetricKey::new("second", "s", "made up");
+        let mut record = Record::new("made_up", "plain", Value::Null, 1);
+        for at in ["early", "late"] {
+            record.put(FIRST.at(at), 1.0);
+            record.put(SECOND.at(at), 2.0);
+        }
+        let text = metrics(&record);
+        for at in ["early", "late"] {
+            assert_eq!(text.lines().filter(|line| line.starts_with(at)).count(), 1, "{text}");
+        }
+    }
 }
