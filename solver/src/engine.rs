@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 use crate::{
     kernel::Smoothing,
     neighbours::{BLOCK, Neighbours},
+    numbers::Symmetric,
     parallel,
     particle_data::{Extent, Fault, ParticleData, Phase},
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
@@ -31,6 +32,8 @@ pub struct Engine<P: Physics> {
     extents: Vec<Extent>,
     /// What wall particles extrapolate: empty where they do not.
     extrapolated: Vec<Evolved<P::Extra>>,
+    /// Inverses of moments: empty where no force needs them.
+    inverses: Vec<Rate<Symmetric>>,
 }
 
 impl<P: Physics> Engine<P> {
@@ -41,8 +44,9 @@ impl<P: Physics> Engine<P> {
         walls: &P::Walls,
         data: ParticleData<P::Extra>,
     ) -> Self {
-        let (wall_terms, columns, extents, extrapolated) = (walls.terms(), vec![], vec![], vec![]);
-        Self { kernel, terms, wall_terms, data, columns, extents, extrapolated }
+        let (wall_terms, columns, extents) = (walls.terms(), vec![], vec![]);
+        let (extrapolated, inverses) = (vec![], vec![]);
+        Self { kernel, terms, wall_terms, data, columns, extents, extrapolated, inverses }
     }
 
     /// Starts a step at this state: particles may be put in another order and wrapped into the period,
@@ -132,7 +136,7 @@ impl<P: Physics> Engine<P> {
         let mut columns: Vec<_> = self.columns.iter().enumerate().map(own).collect();
         fill_images::<P, T>(neighbours, 0, 1.0, &mut columns);
         if T::NORMALISES {
-            normalise::<P, T>(&self.kernel, neighbours, &mut columns);
+            normalise::<P, T>(&self.kernel, neighbours, &mut columns, &mut Vec::new());
         }
         let (kernel, select) = (&self.kernel, whole());
         let sweep = Sweep { kernel, terms, columns: &columns, select, moving: false };
@@ -177,6 +181,7 @@ impl<P: Physics> Engine<P> {
             + self.columns.capacity() * size_of::<Column<Derived<P>>>()
             + self.extents.capacity() * size_of::<Extent>()
             + self.extrapolated.capacity() * size_of::<Evolved<P::Extra>>()
+            + self.inverses.capacity() * size_of::<Rate<Symmetric>>()
     }
 
     /// Tells the forces the inverses of the moments, if they need them.
@@ -185,8 +190,8 @@ impl<P: Physics> Engine<P> {
         const { assert!(!P::Drift::NORMALISES, "a drift sums its own moments") };
         if P::Forces::NORMALISES {
             self.data.count(Phase::Forces);
-            let Self { kernel, data, columns, .. } = self;
-            normalise::<P, (P::Forces, P::Drift)>(kernel, &data.neighbours, columns);
+            let Self { kernel, data, columns, inverses, .. } = self;
+            normalise::<P, (P::Forces, P::Drift)>(kernel, &data.neighbours, columns, inverses);
         }
     }
 
@@ -310,11 +315,15 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     kernel: &Smoothing<P::Kernel>,
     neighbours: &Neighbours,
     columns: &mut [Column<T::Derived>],
+    inverses: &mut Vec<Rate<Symmetric>>,
 ) {
     let terms = &InverseMoments;
     let sweep = Sweep { kernel, terms, columns, select: nothing(), moving: false };
-    let lists = [&neighbours.lists, &neighbours.wall_lists];
-    let inverses = lists.map(|lists| sweep::rates(&sweep, lists)).concat();
+    let Neighbours { lists, wall_lists, .. } = neighbours;
+    inverses.resize(lists.of.end.max(wall_lists.of.end), Rate::default());
+    for lists in [lists, wall_lists] {
+        sweep::fill(&sweep, lists, &mut inverses[lists.of.clone()]);
+    }
     for (column, inverse) in columns.iter_mut().zip(inverses) {
         T::normalise(&mut column.derived, inverse.extra);
     }

@@ -55,11 +55,16 @@ pub(crate) fn run<X: Numbers>(
 /// The rates of the particles that the lists are of.
 pub(crate) fn rates<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists) -> Vec<Rate<X>> {
     let mut rates = vec![Rate::default(); lists.of.len()];
+    fill(sweep, lists, &mut rates);
+    rates
+}
+
+/// Writes the rates of the particles that the lists are of.
+pub(crate) fn fill<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists, rates: &mut [Rate<X>]) {
     let blocks = rates.chunks_mut(BLOCK).zip(&lists.blocks).enumerate();
     parallel::for_each(blocks, lists.parallel, &|(b, (rates, block))| {
         sweep.rates(block, 0, lists.of.start + b * BLOCK, rates);
     });
-    rates
 }
 
 // Which of the derived numbers of a column terms read. Each closure is a type of its own, which depends on

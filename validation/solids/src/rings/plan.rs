@@ -38,6 +38,7 @@ pub fn spacings(variant: &str, tier: Tier) -> &'static [f64] {
         // Without artificial stress rings are torn at twice the speed, see below.
         (Tier::Quick, "no-artificial-stress") => &[],
         (Tier::Quick, _) => &[FIVE_LAYERS],
+        // Rings of 20 layers diverge at 159 L/c0.
         (Tier::Full, CORRECTED) => &[FIVE_LAYERS, 0.1],
         (Tier::Full, _) => &[FIVE_LAYERS, 0.1, 0.05],
     }
