@@ -402,7 +402,9 @@ fn bounds_of_tank() -> Vec<(&'static str, Bound, &'static str)> {
     let noises = ["pressure_noise", "pressure_noise_measured"];
     bounds.extend(noises.map(|name| (name, Bound::Within(0.0, 1.0), "less than rho g H itself")));
     bounds.extend([
+        ("arrival_away", Bound::Within(-0.5, 0.5), clock),
         ("levels_shift", Bound::Within(-0.4, 0.4), "as of the front"),
+        ("spilled", Bound::Within(0.0, 0.05), "by volume of fluid 2 % leave, uncertain by 1 %"),
         ("tongue", Bound::Within(-0.3, 0.3), "the tongue is 0.1 H thick, three spacings"),
     ]);
     bounds

@@ -74,7 +74,8 @@ pub fn orders(tier: Tier, runs: &Runs) -> Study {
         "Observed order of the front: log2 of the ratio of successive rms differences of Z(T), 1 ≤ T ≤ \
          3.3, with its range over thirds of that time; and of Z at T = 2 alone, with the interval that a \
          quarter of a spacing in each place makes. Limits are Richardson's extrapolation. By volume of fluid \
-         Z is 2.655 ± 0.017 at T = 2 and 4.081 ± 0.024 at T = 3; three other codes have {} to {} and {} to {}.",
+         Z is 2.655 ± 0.017 at T = 2 and 4.081 ± 0.024 at T = 3; three other codes have {} to {} and {} to \
+         {}.",
         PEERS[0].1, PEERS[0].2, PEERS[1].1, PEERS[1].2
     );
     let place = |record: &Record, t: u32| record.value(metrics::Z.at(t)).unwrap_or(f64::NAN);

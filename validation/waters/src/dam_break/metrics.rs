@@ -42,9 +42,9 @@ base::metrics! {
     OUTSIDE_DEPTH = "outside_depth" ["dx"]
         "the deepest that a particle was behind bottom or sides, without those that left over the rim";
     SPILLED = "spilled" ["-"] "share of the particles that left the tank over the rim of its walls";
-    MACH = "mach" ["-"] "largest speed of a particle/c0";
-    DENSITY_MOST = "density_most" ["-"] "largest rho/rho_0 - 1";
-    DENSITY_LEAST = "density_least" ["-"] "least rho/rho_0 - 1";
+    MACH = "mach" ["-"] "largest speed of a particle/c0, without those that left over the rim";
+    DENSITY_MOST = "density_most" ["-"] "largest rho/rho_0 - 1, without the water that left over the rim";
+    DENSITY_LEAST = "density_least" ["-"] "least rho/rho_0 - 1, without the water that left over the rim";
     MOMENTUM_GAP = "momentum_gap" ["-"]
         "max |change of momentum - impulse of walls and gravity|/(M (g H)^(1/2))";
     MASS_ERROR = "mass_error" ["-"]
