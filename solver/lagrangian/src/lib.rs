@@ -24,7 +24,7 @@
 //! ρ ω² = μ q² + c (s − G₁ q²/2), where q² = k² − m₄ k⁴/(3 G₁) and s − G₁ q²/2 = m₄ k⁴/8: with χ = 1 the two
 //! errors of fourth order cancel along the axes, whatever the kernel.
 //!
-//! Reading order: [`law`] (stored energies), [`reference`], [`body`] (deformations and forces), [`load`]
+//! Reading order: [`law`] (stored energies), [`mod@reference`], [`body`] (deformations and forces), [`load`]
 //! (weight and contact), [`solid`] (the scene and its steps). The crate does no I/O.
 
 pub mod body;
