@@ -2,13 +2,17 @@
 
 use base::{
     gate::{Bound, Evidence, Gate},
+    mutation::Constant,
     record::{MetricKey, Record},
     spec::RunSpec,
 };
 use harness::{
     case::{Planned, Tier},
     columns::Columns,
-    declare::{Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Ladder, Level},
+    declare::{
+        Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Ladder, Level, Sensitivity,
+        Watched,
+    },
     runs::Runs,
     study::Study,
 };
@@ -182,13 +186,22 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
     plan
 }
 
-/// Order of accuracy in the full tier; the quick tier has one resolution.
+/// Order of accuracy and sensitivity in the full tier; the quick tier has one resolution.
 pub fn declaration(tier: Tier) -> Declaration {
     let curves = vec![curves(tier)];
     if tier == Tier::Quick {
         return Declaration { curves, ..Declaration::default() };
     }
-    Declaration { curves, accuracy: vec![accuracy()], ..Declaration::default() }
+    let constants =
+        [Constant::BodyForce, Constant::SoundSpeed, Constant::Density, Constant::ShearModulus];
+    let watched = constants.map(Watched::new);
+    let sensitivity = Sensitivity::new(CANTILEVER.name, tier, [spec(LAGRANGIAN, 5)], watched);
+    Declaration {
+        curves,
+        accuracy: vec![accuracy()],
+        sensitivity: Some(sensitivity),
+        ..Declaration::default()
+    }
 }
 
 fn accuracy() -> Accuracy {
