@@ -369,8 +369,9 @@ fn watching_does_not_change_a_run() {
             assert!((-1e-9 * end..=a_step).contains(&late), "{run}: {times:?}");
         }
         let frame = read("vtk/particles_0003.vtp");
-        let is_solid =
-            ["rubber", "elastic", "spinning", "oscillating"].iter().any(|s| run.starts_with(s));
+        let is_solid = ["rubber", "elastic", "spinning", "oscillating", "cantilever"]
+            .iter()
+            .any(|s| run.starts_with(s));
         let fields = ["velocity", "density", "pressure", "mass", "role", "id"].map(|f| (f, true));
         for (field, is_there) in fields.into_iter().chain([("deviatoric stress", is_solid)]) {
             assert_eq!(frame.contains(&format!("Name=\"{field}\"")), is_there, "{run}: {field}");
