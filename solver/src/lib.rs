@@ -60,8 +60,8 @@ pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation,
 pub use super_steps::SuperSteps;
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Continuity,
-    DensityDiffusion, FluidPairs, Hydrostatic, JaumannRate, NoSlipImages, Pressure,
-    PrincipalStress, ShiftAdvection, Shifting, Split, Term, Viscosity, Xsph,
+    DensityDiffusion, Hydrostatic, JaumannRate, NoSlipImages, Pressure, PrincipalStress,
+    ShiftAdvection, Shifting, Split, Term, Viscosity, Xsph,
 };
 pub use walls::{
     ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall, SlipGhosts,

@@ -15,14 +15,18 @@ const LAYERS: [(&str, &str, &[&str]); 15] = [
     ("lagrangian", "solver/lagrangian", &["lanes", "solver"]),
     ("base", "validation/base", &[]),
     ("report", "validation/report", &["base"]),
-    ("maths", "validation/maths", &["solver", "base"]),
+    ("maths", "validation/maths", &["solver", "consistent", "base"]),
     ("harness", "validation/harness", &["solver", "consistent", "base", "report", "maths"]),
     (
         "fluids",
         "validation/fluids",
         &["solver", "consistent", "base", "report", "maths", "harness"],
     ),
-    ("waters", "validation/waters", &["solver", "base", "report", "maths", "harness"]),
+    (
+        "waters",
+        "validation/waters",
+        &["solver", "consistent", "base", "report", "maths", "harness"],
+    ),
     (
         "solids",
         "validation/solids",

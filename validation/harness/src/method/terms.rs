@@ -2,13 +2,12 @@
 
 use consistent::{
     ConjugateStress, ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure,
-    ConsistentViscosity,
+    ConsistentViscosity, FluidPairs,
 };
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, Continuity, DensityDiffusion,
-    ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip,
-    NoSlipImages, Open, PlaneWall, Pressure, ShiftAdvection, Shifting, SlipGhosts, Split, Tait,
-    Viscosity, Xsph,
+    ExtrapolatingWall, Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open,
+    PlaneWall, Pressure, ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension, Switch},
 };
 

@@ -12,11 +12,12 @@
 //! the last one. What the first sweep has more than the second is artificial viscosity in dv/dt and density
 //! diffusion in dρ/dt. An artificial stress, which acts in dv/dt too, takes a sweep of its own.
 
+use consistent::FluidPairs;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use solver::{
     ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
-    FluidPairs, NoSlipImages, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
+    NoSlipImages, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
     terms::{Rest, Switch, Tensile},
 };
 
