@@ -6,7 +6,7 @@
 //! the fastest of a lattice without faces; the leapfrog is stable up to dt = 2/ω.
 //!
 //! At faces and corners particles have fewer neighbours, and M⁻¹ is larger: a body has faster modes there
-//! than any wave inside, with Poisson's ratio 0.4 by a factor of 1.3 at a face and of 1.5 at a corner, 1.9
+//! than any wave inside, with Poisson's ratio 0.4 by a factor of 1.4 at a corner, 1.8
 //! with 0.4999. [`fastest_of_block`] finds them by power iteration.
 
 use base::functions::sin;

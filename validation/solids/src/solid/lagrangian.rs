@@ -125,7 +125,7 @@ fn moduli(medium: &Medium) -> Moduli {
 }
 
 /// The largest stable step of a body with faces and corners, without stress and without contact \[s\]: with
-/// Poisson's ratio 0.4 about 1.06 dx/c_p. Waves inside would allow 1.5 times as much.
+/// Poisson's ratio 0.4 about 1.05 dx/c_p. Waves inside would allow 1.4 times as much.
 fn step_limit(medium: &Medium) -> f64 {
     let moduli = moduli(medium);
     let moduli = [moduli.longitudinal(), moduli.shear];
