@@ -11,7 +11,7 @@
 use nalgebra::{DMatrix, DVector};
 use solver::kernel::{Kernel, Smoothing};
 
-use super::{lagrangian::HOURGLASS, lattice::SquareLattice};
+use super::{lagrangian::hourglass_modulus, lattice::SquareLattice};
 
 /// Σ a (l·w + m)²/2, so many unknowns w.
 struct Squares {
@@ -45,7 +45,7 @@ pub fn stiffness<K: Kernel>(h_over_dx: f64, layers: usize, poisson: f64) -> f64 
     // E = 1.
     let mu = 0.5 / (1.0 + poisson);
     let lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
-    let c = 8.0 / 3.0 * HOURGLASS * mu / SquareLattice::<K>::new(h_over_dx, 0.0).gradient_factor();
+    let c = hourglass_modulus(mu, SquareLattice::<K>::new(h_over_dx, 0.0).gradient_factor());
     let (matrix, vector) = (DMatrix::zeros(layers, layers), DVector::zeros(layers));
     let mut squares = Squares { matrix, vector, constant: 0.0 };
     let none = DVector::zeros(layers);

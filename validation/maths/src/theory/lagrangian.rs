@@ -6,8 +6,8 @@
 //! the fastest of a lattice without faces; the leapfrog is stable up to dt = 2/ω.
 //!
 //! At faces and corners particles have fewer neighbours, and M⁻¹ is larger: a body has faster modes there
-//! than any wave inside, with Poisson's ratio 0.4 by a factor of 1.4 at a corner, 1.8
-//! with 0.4999. [`fastest_of_block`] finds them by power iteration.
+//! than any wave inside, at a corner by a factor of 1.4 with Poisson's ratio 0.4 and of 1.8 with 0.4999.
+//! [`fastest_of_block`] finds them by power iteration.
 
 use base::functions::sin;
 use nalgebra::{Matrix2, Vector2};
@@ -22,18 +22,9 @@ use super::lattice::SquareLattice;
 /// [`bending`](super::bending), and shear waves keep a third of the error that they have without it.
 pub const HOURGLASS: f64 = 4.0 / 3.0;
 
-/// ρ ω² dx² of the wave with these phases θ = k dx \[rad\] whose displacement is along q, or across it, for
-/// which `modulus` is K + 4μ/3 or μ \[Pa\].
-pub fn stiffness<K: Kernel>(
-    lattice: &SquareLattice<K>,
-    theta: Vector2<f64>,
-    modulus: f64,
-    shear: f64,
-) -> f64 {
-    let (factor, h) = (lattice.gradient_factor(), lattice.h_over_dx());
-    let q2 = lattice.gradient(theta).norm_squared() / (factor * h).powi(2);
-    let rest = 0.5 * (lattice.diffusion(theta) / (h * h) - factor * q2);
-    modulus * q2 + 8.0 / 3.0 * HOURGLASS * shear / factor * rest
+/// c = 8/3 χ μ/G₁ \[Pa\], the modulus against modes that deform no particle, from μ \[Pa\] and G₁.
+pub fn hourglass_modulus(shear: f64, gradient_factor: f64) -> f64 {
+    8.0 / 3.0 * HOURGLASS * shear / gradient_factor
 }
 
 /// Neighbours of a particle of the block: index, vector, and weight F.
@@ -64,8 +55,7 @@ impl Block {
         };
         let inverse = neighbours.iter().map(|near| moments(near).try_inverse().unwrap_or_default());
         let factor = SquareLattice::<K>::new(h_over_dx, 0.0).gradient_factor();
-        let resisting = 8.0 / 3.0 * HOURGLASS * shear / factor;
-        let moduli = [longitudinal - 2.0 * shear, shear, resisting];
+        let moduli = [longitudinal - 2.0 * shear, shear, hourglass_modulus(shear, factor)];
         Self { inverse: inverse.collect(), neighbours, moduli }
     }
 
@@ -126,6 +116,20 @@ mod tests {
     use crate::theory::lattice::wave_vectors;
     use approx::assert_relative_eq;
     use solver::kernel::WendlandC2;
+
+    /// ρ ω² dx² of the wave with these phases θ = k dx \[rad\] whose displacement is along q, or across it, for
+    /// which `modulus` is K + 4μ/3 or μ \[Pa\].
+    fn stiffness<K: Kernel>(
+        lattice: &SquareLattice<K>,
+        theta: Vector2<f64>,
+        modulus: f64,
+        shear: f64,
+    ) -> f64 {
+        let (factor, h) = (lattice.gradient_factor(), lattice.h_over_dx());
+        let q2 = lattice.gradient(theta).norm_squared() / (factor * h).powi(2);
+        let rest = 0.5 * (lattice.diffusion(theta) / (h * h) - factor * q2);
+        modulus * q2 + hourglass_modulus(shear, factor) * rest
+    }
 
     /// Long waves have the moduli, and shear waves along the axes a third of the error of the gradient, with
     /// the opposite sign, where longitudinal waves of a material without shear have all of it.

@@ -288,7 +288,7 @@ fn put_pressures(lobovsky: &Lobovsky, curves: &[Curve], record: &mut Record) {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use crate::{
         dam_break::{DAM_BREAK, DamSettings, lobovsky, metrics::IMPULSE},
@@ -359,20 +359,26 @@ mod tests {
         assert!((left - 0.4).abs() < 1e-3, "{left}");
     }
 
-    fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
+    /// A tank with these settings.
+    pub fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
         let spec = DAM_BREAK.spec("modern", set);
         let settings = serde_json::from_value(spec.settings).expect("settings of the case");
         Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
     }
 
-    fn compared(dam: &Dam, samples: &Samples, gauge: &Gauge) -> impl Fn(MetricName) -> f64 + use<> {
+    /// The metrics that a comparison puts.
+    pub fn metrics_of<F>(dam: &Dam, compare: F) -> impl Fn(MetricName) -> f64 + use<F>
+    where
+        F: FnOnce(&mut Record) -> Result<(), ReferenceError>,
+    {
         let mut record = Record::new("dam_break", "modern", serde_json::json!(dam.settings), 1);
-        compare(dam, samples, gauge, &mut record).expect("packages are sound");
+        compare(&mut record).expect("packages are sound");
         move |metric| record.value(metric.clone()).unwrap_or_else(|| panic!("no {metric:?}"))
     }
 
+    /// Is the value the one that is expected?
     #[track_caller]
-    fn is(value: f64, expected: f64, tolerance: f64) {
+    pub fn is(value: f64, expected: f64, tolerance: f64) {
         assert!((value - expected).abs() <= tolerance, "{value} instead of {expected}");
     }
 
@@ -389,7 +395,9 @@ mod tests {
             ([time, a * at[0], dam.settings.height * at[1]], [0.0; 4])
         };
         let samples = Samples::made_up(&dam, (0..192).map(row));
-        let metric = compared(&dam, &samples, &Gauge::made_up(&dam, Vec::new()));
+        let metric = metrics_of(&dam, |record| {
+            compare(&dam, &samples, &Gauge::made_up(&dam, Vec::new()), record)
+        });
         is(metric(FRONT.shift.into()), 0.2, 2e-3);
         is(metric(HEIGHT.shift.into()), 0.1, 2e-3);
         assert!(
@@ -420,7 +428,7 @@ mod tests {
         };
         let rows: Vec<[f64; 5]> = (0..5400).map(|k| sensor(0.001 * f64::from(k))).collect();
         let gauge = Gauge::made_up(&dam, rows.clone());
-        let metric = compared(&dam, &samples, &gauge);
+        let metric = metrics_of(&dam, |record| compare(&dam, &samples, &gauge, record));
         let of_level = |k: usize| {
             let nothing: Curve = levels[k].iter().map(|(t, _)| (*t, 0.0)).collect();
             rms(&levels[k], &nothing, 0.0)

@@ -368,12 +368,10 @@ fn tank_rows(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        dam_break::{DAM_BREAK, lobovsky},
-        water::{Modern, method},
+    use crate::dam_break::{
+        lobovsky,
+        reference::tests::{dam, is, metrics_of},
     };
-    use base::record::MetricName;
-    use harness::context::Context;
 
     /// The numbers of the reference's README.
     #[test]
@@ -394,23 +392,6 @@ mod tests {
         assert!(reference.summary("lobovsky", "no such quantity").unwrap()[0].is_nan());
     }
 
-    fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
-        let spec = DAM_BREAK.spec("modern", set);
-        let settings = serde_json::from_value(spec.settings).expect("settings of the case");
-        Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
-    }
-
-    fn compared(dam: &Dam, samples: &Samples, gauge: &Gauge) -> impl Fn(MetricName) -> f64 + use<> {
-        let mut record = Record::new("dam_break", "modern", serde_json::json!(dam.settings), 1);
-        compare(dam, samples, gauge, &mut record).expect("a sound package");
-        move |metric| record.value(metric.clone()).unwrap_or_else(|| panic!("no {metric:?}"))
-    }
-
-    #[track_caller]
-    fn is(value: f64, expected: f64, tolerance: f64) {
-        assert!((value - expected).abs() <= tolerance, "{value} instead of {expected}");
-    }
-
     /// A front 0.03 a ahead, a height 0.02 H too large.
     #[test]
     fn how_far_a_column_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
@@ -423,7 +404,9 @@ mod tests {
             ([t * of.unit_time(), front, height], [0.0; 4])
         };
         let samples = Samples::made_up(&dam, (0..900).map(row));
-        let metric = compared(&dam, &samples, &Gauge::made_up(&dam, Vec::new()));
+        let metric = metrics_of(&dam, |record| {
+            compare(&dam, &samples, &Gauge::made_up(&dam, Vec::new()), record)
+        });
         for t in FREE_TIMES {
             is(metric(FRONT_AWAY.at(t)), 0.03, 1e-4);
         }
@@ -449,7 +432,7 @@ mod tests {
             [t * unit, p(0), p(1), p(2), p(3)]
         };
         let gauge = Gauge::made_up(&dam, (0..6000).map(sensor).collect());
-        let metric = compared(&dam, &samples, &gauge);
+        let metric = metrics_of(&dam, |record| compare(&dam, &samples, &gauge, record));
         for t in TANK_TIMES {
             is(metric(FRONT_AWAY.at(t)), 0.03, 1e-4);
         }
