@@ -117,8 +117,8 @@ mod tests {
     use approx::assert_relative_eq;
     use solver::kernel::WendlandC2;
 
-    /// ρ ω² dx² of the wave with these phases θ = k dx \[rad\] whose displacement is along q, or across it, for
-    /// which `modulus` is K + 4μ/3 or μ \[Pa\].
+    /// ρ ω² dx² of the wave with these phases θ = k dx \[rad\] whose displacement is along q, or across it,
+    /// for which `modulus` is K + 4μ/3 or μ \[Pa\].
     fn stiffness<K: Kernel>(
         lattice: &SquareLattice<K>,
         theta: Vector2<f64>,
