@@ -20,7 +20,7 @@
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime};
 
@@ -88,10 +88,37 @@ fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 /// For the handler of an interruption, just before the process ends: a write that is under way
 /// on another thread then fails instead of leaving a file behind.
 pub fn remove_unfinished() -> usize {
+    remove_all(&mut unfinished())
+}
+
+/// The same; any thread that then begins to write a file waits for the end of the process.
+pub fn remove_unfinished_for_good() {
     let mut paths = unfinished();
+    remove_all(&mut paths);
+    std::mem::forget(paths);
+}
+
+fn remove_all(paths: &mut BTreeSet<PathBuf>) -> usize {
     let removed = paths.iter().filter(|path| fs::remove_file(path).is_ok()).count();
     paths.clear();
     removed
+}
+
+/// Reads a text of at most so many bytes from a regular file: a pipe in its place would be waited for without
+/// end.
+///
+/// # Errors
+/// Those of the system; or if it is no regular file, larger, or no UTF-8.
+pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
+    let refused = |why: String| Err(io::Error::new(io::ErrorKind::InvalidData, why));
+    let file = fs::metadata(path)?;
+    if !file.is_file() {
+        return refused("it is not a regular file".into());
+    }
+    if file.len() > most {
+        return refused(format!("it has {} bytes; allowed are at most {most}", file.len()));
+    }
+    fs::read_to_string(path)
 }
 
 /// Begins the name of every temporary file; random letters and digits, a hyphen and the final name follow.
@@ -241,9 +268,14 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Writes one file atomically; `name` may contain folders below this one.
+    /// Writes one file atomically; `name` may contain folders below this one, and cannot lead out of it.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, FileError> {
         let path = self.path.join(name);
+        if !Path::new(name).components().all(|part| matches!(part, Component::Normal(_))) {
+            let reason =
+                io::Error::new(io::ErrorKind::InvalidInput, "its name leads out of its folder");
+            return Err(FileError::File { path, reason });
+        }
         if let Some(parent) = path.parent() {
             let refused = |reason| FileError::Folder { path: parent.into(), reason };
             fs::create_dir_all(parent).map_err(refused)?;
@@ -372,6 +404,42 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(names(folder.path()), ["record.json"]);
         assert!(unfinished().is_empty());
+    }
+
+    #[test]
+    fn a_name_that_leads_out_of_the_folder_is_refused() {
+        let _turn = turn();
+        let above = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::create(&above.path().join("below")).unwrap();
+        folder.write("deeper/file", b"x").unwrap();
+        for name in ["../evil", "deeper/../../evil", "/tmp/evil", "x/../../../EVIL", ".", ""] {
+            let error = folder.write(name, b"x").expect_err(name).to_string();
+            assert!(
+                error.contains("leads out of its folder") || name.is_empty(),
+                "{name:?}: {error}"
+            );
+        }
+        assert_eq!(names(above.path()), ["below"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_a_folder_or_a_large_file_is_refused_without_waiting() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+        let refused = |path: &Path| read_text(path, 4).expect_err("no text of 4 bytes").to_string();
+        assert!(refused(&path).contains("not a regular file"), "{}", refused(&path));
+        assert!(
+            refused(folder.path()).contains("not a regular file"),
+            "{}",
+            refused(folder.path())
+        );
+        let text = folder.path().join("text");
+        fs::write(&text, "four").unwrap();
+        assert_eq!(read_text(&text, 4).unwrap(), "four");
+        fs::write(&text, "fiver").unwrap();
+        assert!(refused(&text).contains("5 bytes; allowed are at most 4"), "{}", refused(&text));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The record of a run, one JSON document: settings, outcome, metrics, cost, numerics, manifest.
 //!
-//! The document states its [`SCHEMA`]; a reader refuses any other. Floats are stored without loss.
+//! The document states its [`SCHEMA`]; a reader refuses any other. Its last key is the digest of all that stands
+//! before it, so that a reader refuses a document that was damaged or changed. Floats are stored without loss.
 //! There is no `null`: a number that is not finite is written as `{"not_finite": "NaN"}` (see
 //! [`number`](crate::number)), and the key of a value that does not exist is omitted.
 //!
@@ -32,7 +33,7 @@ use crate::spec::{Keep, Measure, RunKey, RunSpec, Task};
 pub const NOT_ASKED: &str = "not asked for: --metrics all";
 
 /// Version of the document; raised with every change that an older reader would misread.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// Why a record was not written or not read.
 #[derive(Debug, Error)]
@@ -41,17 +42,46 @@ pub enum RecordError {
     #[error("the record cannot be read: {0}")]
     Unreadable(#[from] serde_json::Error),
     /// The document has another version.
-    #[error("the record has schema {found}, but this program reads only schema {SCHEMA}")]
+    #[error("the record has schema {found}{}, but this program reads only schema {SCHEMA}", age(.found))]
     Schema {
         /// what the document states
         found: String,
     },
+    /// The document is not as it was written.
+    #[error("the record does not have the digest that it states: it was damaged or changed")]
+    Damaged,
     /// Somewhere there is a `null`, which says neither what is missing nor why.
     #[error("{path} of the record is null; omit the key or give a value")]
     Null {
         /// keys from the root, as in `/numerics/dt`
         path: String,
     },
+}
+
+/// The word for a document whose schema is lower than [`SCHEMA`].
+fn age(found: &str) -> &'static str {
+    match found.parse::<u32>() {
+        Ok(found) if found < SCHEMA => " and was made by an older version",
+        _ => "",
+    }
+}
+
+/// Between a record and the digest of all before it.
+const SEAL: &str = ",\n  \"digest\": \"";
+/// The end of a document.
+const END: &str = "\n}\n";
+
+/// The document with the digest of what it was before as its last key.
+fn sealed(document: &str) -> String {
+    let head = document.strip_suffix(END).unwrap_or(document);
+    format!("{head}{SEAL}{}\"{END}", sha256(document.as_bytes()))
+}
+
+/// The document before it was [`sealed`]; `None` if it is not as it was then.
+fn unsealed(text: &str) -> Option<String> {
+    let (head, _) = text.rsplit_once(SEAL)?;
+    let document = format!("{head}{END}");
+    (sealed(&document) == text).then_some(document)
 }
 
 /// Everything about one run.
@@ -61,8 +91,10 @@ pub struct Record {
     /// version of the document
     pub schema: u32,
     /// name of the case
+    #[serde(deserialize_with = "crate::spec::name")]
     pub case: String,
     /// name of the variant
+    #[serde(deserialize_with = "crate::spec::name")]
     pub variant: String,
     /// settings of the case, all of them
     pub settings: Value,
@@ -461,26 +493,27 @@ impl Record {
         self.profiles.get(profile).map_or(&[], |profile| profile.column(name))
     }
 
-    /// The document, indented, with a newline at its end.
+    /// The document, indented, with its digest and a newline at its end.
     pub fn to_json(&self) -> Result<String, RecordError> {
         let value = serde_json::to_value(self)?;
         if let Some(path) = find_null(&value) {
             return Err(RecordError::Null { path });
         }
-        Ok(serde_json::to_string_pretty(self)? + "\n")
+        Ok(sealed(&(serde_json::to_string_pretty(self)? + "\n")))
     }
 
-    /// Reads a document of this [`SCHEMA`].
+    /// Reads a document of this [`SCHEMA`] that is as [`Record::to_json`] wrote it.
     pub fn from_json(text: &str) -> Result<Self, RecordError> {
         let value: Value = serde_json::from_str(text)?;
         match &value["schema"] {
             schema if *schema == SCHEMA => {}
             schema => return Err(RecordError::Schema { found: schema.to_string() }),
         }
+        let document = unsealed(text).ok_or(RecordError::Damaged)?;
         if let Some(path) = find_null(&value) {
             return Err(RecordError::Null { path });
         }
-        Ok(serde_json::from_str(text)?) // from the text again: errors then name line and column
+        Ok(serde_json::from_str(&document)?) // from the text again: errors then name line and column
     }
 
     /// Names the run, see [`RunSpec::key`].
@@ -572,7 +605,7 @@ mod tests {
         record.numerics.insert("dt".into(), Value::from(f64::NAN)); // what serde_json does
         let error = record.to_json().unwrap_err().to_string();
         assert_eq!(error, "/numerics/dt of the record is null; omit the key or give a value");
-        let with_null = text.replace("\"quintic\"", "null");
+        let with_null = changed(&text, "\"quintic\"", "null");
         let error = Record::from_json(&with_null).unwrap_err();
         assert!(matches!(error, RecordError::Null { path } if path == "/numerics/kernel"));
     }
@@ -580,14 +613,54 @@ mod tests {
     #[test]
     fn another_schema_and_unknown_keys_are_refused() {
         let text = record().to_json().unwrap();
-        let error = Record::from_json(&text.replace("\"schema\": 2", "\"schema\": 3")).unwrap_err();
+        let of_schema = |schema: u32| {
+            let other = format!("\"schema\": {schema}");
+            Record::from_json(&changed(&text, "\"schema\": 3", &other)).unwrap_err().to_string()
+        };
+        assert_eq!(of_schema(4), "the record has schema 4, but this program reads only schema 3");
         assert_eq!(
-            error.to_string(),
-            "the record has schema 3, but this program reads only schema 2"
+            of_schema(2),
+            "the record has schema 2 and was made by an older version, but this program reads only schema 3"
         );
         assert!(matches!(Record::from_json("{}"), Err(RecordError::Schema { .. })));
-        let error = Record::from_json(&text.replace("\"wall_s\"", "\"wall\"")).unwrap_err();
-        assert!(error.to_string().contains("wall"), "{error}");
+        let error = Record::from_json(&changed(&text, "\"wall_s\"", "\"wall\"")).unwrap_err();
+        assert!(error.to_string().contains("unknown field `wall`"), "{error}");
+    }
+
+    /// A document in which something stands in place of something else, with the digest of the changed one.
+    fn changed(text: &str, from: &str, to: &str) -> String {
+        sealed(&unsealed(text).unwrap().replace(from, to))
+    }
+
+    /// An error of 6e-4 that an editor made 1e-12 passed, and 68 of 300 flipped bits were taken.
+    #[test]
+    fn no_bit_of_a_record_can_change_unseen() {
+        let text = record().to_json().unwrap();
+        for place in 0..text.len() {
+            for bit in 0..8 {
+                let mut bytes = text.clone().into_bytes();
+                bytes[place] ^= 1 << bit;
+                let Ok(other) = String::from_utf8(bytes) else { continue };
+                let read = Record::from_json(&other);
+                assert!(read.is_err(), "bit {bit} of byte {place} was flipped unseen: {other}");
+            }
+        }
+        let edited = text.replace("\"kernel\": \"quintic\"", "\"kernel\": \"cubic\"");
+        assert!(matches!(Record::from_json(&edited), Err(RecordError::Damaged)));
+        for end in [1, 2, 40, 100] {
+            assert!(Record::from_json(&text[..text.len() - end]).is_err(), "cut by {end} bytes");
+        }
+        assert!(matches!(Record::from_json(&text.repeat(2)), Err(RecordError::Unreadable(_))));
+    }
+
+    #[test]
+    fn a_name_that_is_a_path_is_refused() {
+        let text = record().to_json().unwrap();
+        for name in ["x/../../EVIL", "..", "", "a b", "\\u001b[2J"] {
+            let path = changed(&text, "\"seed\"", &format!("\"{name}\""));
+            let error = Record::from_json(&path).unwrap_err().to_string();
+            assert!(error.contains("letters, digits, - and _"), "{name:?}: {error}");
+        }
     }
 
     #[test]

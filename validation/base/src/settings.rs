@@ -143,6 +143,16 @@ pub enum SettingError {
         /// as given
         text: String,
     },
+    /// Two values for one setting.
+    #[error("setting {key} is given twice, as {first:?} and as {second:?}; give one of them")]
+    Twice {
+        /// the setting
+        key: String,
+        /// its first value, as given
+        first: String,
+        /// its second value, as given
+        second: String,
+    },
     /// The text is not a value of the setting's kind.
     #[error("setting {name} takes {kind} in the range {range}, not {text:?}")]
     Unreadable {
@@ -207,18 +217,25 @@ pub trait Settings:
     }
 }
 
-/// Applies assignments `key=value` in order; on error nothing changes.
+/// Applies assignments `key=value`, one for a key; on error nothing changes.
 pub fn apply<S: Settings>(
     settings: &mut S,
     assignments: &[impl AsRef<str>],
 ) -> Result<(), SettingError> {
     let mut changed = settings.clone();
+    let mut given: Vec<(&str, &str)> = Vec::new();
     for assignment in assignments {
         let text = assignment.as_ref();
         let Some((key, value)) = text.split_once('=') else {
             return Err(SettingError::NotAnAssignment { text: text.into() });
         };
-        changed.set(key.trim(), value.trim())?;
+        let (key, value) = (key.trim(), value.trim());
+        changed.set(key, value)?;
+        if let Some((_, first)) = given.iter().find(|(other, _)| *other == key) {
+            let [first, second] = [first, value].map(String::from);
+            return Err(SettingError::Twice { key: key.into(), first, second });
+        }
+        given.push((key, value));
     }
     *settings = changed;
     Ok(())
@@ -592,7 +609,12 @@ mod tests {
         let expected =
             Channel { re: 1e-3, rows: 100, c0: Some(12.5), shift: -0.5, verbose: true, seed: 7 };
         assert_eq!(set, expected);
-        assert_eq!(channel(&["c0=12.5", "c0=auto"]).unwrap().c0, None);
+        assert_eq!(channel(&["c0=auto"]).unwrap().c0, None);
+        let twice = channel(&["c0=12.5", "rows=40", "c0 = auto"]).unwrap_err().to_string();
+        assert_eq!(
+            twice,
+            "setting c0 is given twice, as \"12.5\" and as \"auto\"; give one of them"
+        );
         let mut kept = Channel::default();
         assert!(apply(&mut kept, &["rows=40", "re=nonsense"]).is_err());
         assert_eq!(kept, Channel::default());

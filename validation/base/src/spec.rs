@@ -15,8 +15,9 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 use serde_json::Value;
+use thiserror::Error;
 
 use crate::{
     mutation::{Detect, Mutation},
@@ -28,8 +29,10 @@ use crate::{
 #[serde(deny_unknown_fields)]
 pub struct RunSpec {
     /// name of the case
+    #[serde(deserialize_with = "name")]
     pub case: String,
     /// name of the variant
+    #[serde(deserialize_with = "name")]
     pub variant: String,
     /// every setting of the case, by name
     pub settings: Value,
@@ -48,6 +51,37 @@ pub struct RunSpec {
     /// how much is measured, which is no part of the key
     #[serde(default, skip_serializing_if = "Measure::is_headline")]
     pub measure: Measure,
+}
+
+/// Longest name of a case or of a variant.
+const LONGEST_NAME: usize = 64;
+
+/// Reads the name of a case or of a variant: it becomes a part of names of files, so it must not be a path.
+///
+/// # Errors
+/// If it is empty, too long, or has other characters than letters, digits, `-` and `_`.
+pub(crate) fn name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    let name = String::deserialize(from)?;
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_".contains(&byte);
+    match (1..=LONGEST_NAME).contains(&name.len()) && name.bytes().all(is_plain) {
+        true => Ok(name),
+        false => Err(D::Error::custom(format!(
+            "{:?} is no name of a case or variant: 1 to {LONGEST_NAME} letters, digits, - and _",
+            name.chars().take(LONGEST_NAME).collect::<String>()
+        ))),
+    }
+}
+
+/// A field of a spec that has a value which no run can have.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{field} is {value}; allowed is {allowed}")]
+pub struct SpecError {
+    /// keys from the root, as in `task.bisect.resolution`
+    pub field: &'static str,
+    /// its value
+    pub value: String,
+    /// what is allowed
+    pub allowed: &'static str,
 }
 
 /// How much is measured of a run. What is measured does not change the run, and a record of which more was
@@ -211,6 +245,36 @@ impl RunSpec {
         serde_json::from_str(text)
     }
 
+    /// Checks what a document may state and no case checks: all but the names and the settings.
+    ///
+    /// # Errors
+    /// The first field that is outside of its range.
+    pub fn check(&self) -> Result<(), SpecError> {
+        let within = |field, value: f64, range: std::ops::RangeInclusive<f64>, allowed| {
+            let refused = || SpecError { field, value: format!("{value:?}"), allowed };
+            range.contains(&value).then_some(()).ok_or_else(refused)
+        };
+        if let Some(count) = self.keep.pictures {
+            within("keep.pictures", count as f64, 1.0..=1000.0, "1 to 1000")?;
+        }
+        if let Some(mutation) = self.mutation {
+            within("mutation.factor", mutation.factor, 0.1..=10.0, "0.1 to 10")?;
+        }
+        let Task::Bisect(Bisect { guess, unit, resolution, end, .. }) = self.task else {
+            return Ok(());
+        };
+        let positive = 1e-300..=1e300;
+        let allowed = "1e-300 to 1e300";
+        within("task.bisect.guess", guess, positive.clone(), allowed)?;
+        within("task.bisect.unit", unit, positive.clone(), allowed)?;
+        within("task.bisect.resolution", resolution, 1e-6..=1.0, "1e-6 to 1")?;
+        if let Some(EndAfter { steps, unit }) = end {
+            within("task.bisect.end.steps", steps, 1.0..=1e10, "1 to 1e10")?;
+            within("task.bisect.end.unit", unit, positive, allowed)?;
+        }
+        Ok(())
+    }
+
     /// The name of the run.
     pub fn key(&self) -> RunKey {
         let run = Self { measure: Measure::default(), ..self.clone() };
@@ -258,6 +322,49 @@ mod tests {
         assert!(all.canonical().contains(r#""measure":"all""#), "{}", all.canonical());
         assert_eq!(RunSpec::from_canonical(&all.canonical()).unwrap(), all);
         assert!(spec.measure < all.measure);
+    }
+
+    /// 10^9 pictures were kept, and a resolution of 0 never ended.
+    #[test]
+    fn a_field_that_no_run_can_have_is_refused_with_its_range() {
+        let spec = |rest: &str| {
+            let line = format!(r#"{{"case":"c","variant":"v","settings":{{}},{rest}}}"#);
+            RunSpec::from_canonical(&line)
+                .map_err(|e| e.to_string())?
+                .check()
+                .map_err(|e| e.to_string())
+        };
+        let bisect = |rest: &str| {
+            let defaults = [("guess", "1"), ("unit", "1"), ("resolution", "0.01")];
+            let given = |name: &str| rest.starts_with(&format!(",\"{name}\":"));
+            let others = defaults.iter().filter(|(name, _)| !given(name));
+            let others: String =
+                others.map(|(name, value)| format!(r#","{name}":{value}"#)).collect();
+            spec(&format!(r#""task":{{"bisect":{{"setting":"dt"{others}{rest}}}}}"#))
+        };
+        assert_eq!(bisect(""), Ok(()));
+        let refused = [
+            (
+                spec(r#""keep":{"pictures":1000000000}"#),
+                "keep.pictures is 1000000000.0; allowed is 1 to 1000",
+            ),
+            (spec(r#""keep":{"pictures":9223372036854775808}"#), "keep.pictures is 9.2"),
+            (spec(r#""keep":{"pictures":0}"#), "keep.pictures is 0.0"),
+            (
+                spec(r#""mutation":{"of":"xsph","factor":-1}"#),
+                "mutation.factor is -1.0; allowed is 0.1 to 10",
+            ),
+            (bisect(r#","resolution":0"#), "task.bisect.resolution is 0.0; allowed is 1e-6 to 1"),
+            (bisect(r#","resolution":-1"#), "task.bisect.resolution is -1.0"),
+            (bisect(r#","guess":0"#), "task.bisect.guess is 0.0"),
+            (bisect(r#","unit":-2"#), "task.bisect.unit is -2.0"),
+            (bisect(r#","end":{"steps":0,"unit":1}"#), "task.bisect.end.steps is 0.0"),
+            (bisect(r#","end":{"steps":9,"unit":0}"#), "task.bisect.end.unit is 0.0"),
+        ];
+        for (found, expected) in refused {
+            let error = found.expect_err(expected);
+            assert!(error.starts_with(expected), "expected {expected}, found {error}");
+        }
     }
 
     #[test]

@@ -162,6 +162,11 @@ impl Collection {
         self.files.push((time, file.into()));
     }
 
+    /// Forgets the files of which this is false.
+    pub fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
+        self.files.retain(|(_, file)| is_there(file));
+    }
+
     /// Number of files.
     pub fn len(&self) -> usize {
         self.files.len()

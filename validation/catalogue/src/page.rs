@@ -93,11 +93,11 @@ fn tier_name(suite: &Suite) -> &'static str {
 
 /// What was not made for this page.
 fn reused(suite: &Suite) -> String {
-    let other = match suite.of_other_sources {
+    let other = match suite.made.of_other_sources {
         0 => String::new(),
         count => format!(" **{count} of them were made by a build of other sources.**"),
     };
-    match suite.reused {
+    match suite.made.reused {
         0 => String::new(),
         count => format!(" {count} records were in the store before.{other}"),
     }

@@ -3,8 +3,8 @@
 
 use base::{
     record::{Record, Status},
-    settings::{Field, nearest},
-    spec::RunSpec,
+    settings::{self, Field, Kind, nearest},
+    spec::{RunSpec, SpecError, Task},
 };
 use serde_json::Value;
 
@@ -63,6 +63,42 @@ pub trait Case: Sync {
 /// The run of a case with the settings that `key=value` texts describe.
 pub fn spec(case: &dyn Case, variant: &str, set: &[String]) -> Result<RunSpec, RunError> {
     Ok(RunSpec::new(case.name(), variant, case.settings(variant, set)?))
+}
+
+/// The run that a document describes, with every setting of its case in its usual form, so that equal runs have
+/// equal keys however they are written: settings that it leaves out have the default of the variant.
+///
+/// # Errors
+/// The first name, setting or field that no run of the case can have.
+pub fn resolved(case: &dyn Case, spec: RunSpec) -> Result<RunSpec, RunError> {
+    spec.check()?;
+    let Value::Object(given) = &spec.settings else {
+        let (value, allowed) = (spec.settings.to_string(), "an object of settings by name");
+        return Err(SpecError { field: "settings", value, allowed }.into());
+    };
+    let defaults = case.settings(&spec.variant, &[])?;
+    let is_default = |name: &String, value: &Value| match (defaults.get(name), value.as_f64()) {
+        (Some(default), Some(number)) => default.as_f64() == Some(number),
+        (default, _) => default == Some(value),
+    };
+    let text = |value: &Value| match value.as_str() {
+        Some("auto") => "auto".to_string(),
+        _ => value.to_string(),
+    };
+    let others = given.iter().filter(|(name, value)| !is_default(name, value));
+    let set: Vec<String> = others.map(|(name, value)| format!("{name}={}", text(value))).collect();
+    let settings = case.settings(&spec.variant, &set)?;
+    if let Task::Bisect(bisect) = &spec.task {
+        let is_real = |field: &&Field| matches!(field.kind, Kind::Real | Kind::RealOrAuto);
+        let end = bisect.end.map(|_| "end");
+        for key in std::iter::once(bisect.setting.as_str()).chain(end) {
+            let mut fields = case.fields().iter().filter(is_real);
+            if !fields.any(|field| field.name == key) {
+                return Err(settings::unknown(case.fields(), key).into());
+            }
+        }
+    }
+    Ok(RunSpec { settings, ..spec })
 }
 
 /// The command that makes a run with these `key=value` texts.

@@ -1,7 +1,10 @@
 //! How a run is executed, apart from what it computes.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, atomic::AtomicBool};
+use std::sync::{
+    Mutex,
+    atomic::{AtomicBool, Ordering},
+};
 
 use base::{
     mutation::Mutation,
@@ -9,7 +12,12 @@ use base::{
     spec::{Measure, RunSpec},
 };
 
-use crate::{checkpoint::Checkpoints, size::Size};
+use crate::{
+    checkpoint::Checkpoints,
+    clock::{self, Clock},
+    error::RunError,
+    size::Size,
+};
 
 /// What a progress bar shows.
 #[derive(Clone, Copy, Debug)]
@@ -47,10 +55,17 @@ pub struct Context<'a> {
     pub measure: Measure,
     /// Told what the run is estimated to take, before its first step.
     pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
+    /// Nothing but that estimate is asked for: the run ends as soon as it is told, before its particles are
+    /// made where their number is known before.
+    pub only_estimate: bool,
     /// Called with the progress of the run.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     /// Find out where the time goes.
     pub profile: bool,
+    /// Told of a frame or a checkpoint that could not be written; the run goes on.
+    pub lost: Option<&'a (dyn Fn(&RunError) + Sync)>,
+    /// What time it is, by default that of the system.
+    pub clock: Option<&'a dyn Clock>,
     /// Where checkpoints go, and what the run goes on from; the last one is made at an interrupt.
     pub checkpoints: Option<&'a Checkpoints<'a>>,
     /// Set by another thread to stop the run.
@@ -61,6 +76,16 @@ impl Context<'_> {
     /// Is all to be measured, whatever it costs?
     pub fn measures_all(&self) -> bool {
         self.measure == Measure::All
+    }
+
+    /// The clocks of the run.
+    pub fn clock(&self) -> &dyn Clock {
+        self.clock.unwrap_or(&clock::System)
+    }
+
+    /// Is the run to stop?
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// The context for computing rules, which give the time step whether or not it is stable, and however

@@ -3,6 +3,7 @@
 use base::{
     files::FileError,
     settings::{SettingError, hint},
+    spec::SpecError,
 };
 use thiserror::Error;
 
@@ -43,6 +44,9 @@ pub enum RunError {
     /// A setting that does not exist or is out of range.
     #[error(transparent)]
     Setting(#[from] SettingError),
+    /// A field of a spec that is out of range.
+    #[error(transparent)]
+    Spec(#[from] SpecError),
     /// A setting of a term that the variant does not contain.
     #[error("setting {key:?} has no effect in variant {variant}, which lacks that term")]
     Unused {
@@ -111,6 +115,9 @@ pub enum RunError {
         /// The settings on which this depends.
         settings: &'static str,
     },
+    /// Only the size of the run was asked for, which was told.
+    #[error("only the size of the run was asked for")]
+    Estimated,
     /// The solver refuses the scene.
     #[error("the settings make an impossible scene: {0}")]
     Scene(#[from] solver::SceneError),

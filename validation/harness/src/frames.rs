@@ -20,6 +20,8 @@ pub struct Frames<'a> {
     end: f64,
     count: usize,
     written: Collection,
+    /// Those whose time has come, whether or not they could be written.
+    come: usize,
 }
 
 impl<'a> Frames<'a> {
@@ -34,7 +36,7 @@ impl<'a> Frames<'a> {
     ) -> Result<Self, FileError> {
         let folder = OutputFolder::create(folder)?;
         let (written, count) = (Collection::default(), (*count).max(1));
-        Ok(Self { folder, pressure, end, count, written })
+        Ok(Self { folder, pressure, end, count, written, come: 0 })
     }
 
     /// The frames so far.
@@ -42,38 +44,32 @@ impl<'a> Frames<'a> {
         self.written.clone()
     }
 
-    /// Goes on after these frames of an earlier run.
-    pub fn go_on(&mut self, written: Collection) {
+    /// Goes on after these frames of an earlier run until this time \[s\], of which some may have been
+    /// removed.
+    pub fn go_on(&mut self, mut written: Collection, time: f64) {
+        written.retain(|name| self.folder.path().join(name).is_file());
         self.written = written;
-    }
-
-    /// Writes the frames whose time has come.
-    ///
-    /// # Errors
-    /// If one cannot be written.
-    pub fn after_step<X: Numbers>(
-        &mut self,
-        simulation: &dyn Stepper<X>,
-    ) -> Result<(), FrameError> {
-        while self.is_due(simulation.time()) {
-            self.write(simulation)?;
+        while self.is_due(time) {
+            self.come += 1;
         }
-        Ok(())
     }
 
-    fn is_due(&self, time: f64) -> bool {
-        let next = self.written.len() + 1;
+    /// Has the time of the next frame come? That of the last one is the end.
+    pub fn is_due(&self, time: f64) -> bool {
+        let next = self.come + 1;
         next < self.count && time >= self.end * next as f64 / self.count as f64
     }
 
     /// Writes a frame: between steps one whose time has come, at the end the last one.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If it cannot be written; the frames after it can be all the same.
     pub fn write<X: Numbers>(
         &mut self,
         simulation: &(impl Stepper<X> + ?Sized),
     ) -> Result<(), FrameError> {
+        let name = format!("particles_{:04}.vtp", self.come);
+        self.come += 1;
         let particles = simulation.particles();
         let column =
             |f: &dyn Fn(&Particle<X>) -> f64| -> Vec<f64> { particles.iter().map(f).collect() };
@@ -90,7 +86,6 @@ impl<'a> Frames<'a> {
         if let Some(stress) = stress(&particles) {
             frame = frame.triple(STRESS, &stress)?;
         }
-        let name = format!("particles_{:04}.vtp", self.written.len());
         self.folder.write(&name, frame.to_xml().as_bytes())?;
         self.written.push(simulation.time(), &name);
         self.folder.write("particles.pvd", self.written.to_xml().as_bytes())?;

@@ -10,6 +10,7 @@
 pub mod bisect;
 pub mod case;
 pub mod checkpoint;
+pub mod clock;
 pub mod columns;
 pub mod composed;
 pub mod context;

@@ -3,6 +3,7 @@
 //! all of them, so that a change of the machine's speed affects every variant alike.
 
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -50,6 +51,7 @@ pub struct Done<'a> {
 pub type Progress<'a> = dyn Fn(Done) + Sync + 'a;
 
 /// How runs are made.
+#[derive(Clone, Copy)]
 pub struct Making<'a> {
     /// How much is run: the quick tier repeats fewer timings.
     pub tier: Tier,
@@ -59,6 +61,8 @@ pub struct Making<'a> {
     pub sources: &'a (dyn Fn(&str) -> String + Sync),
     /// May records made by other sources be reused?
     pub reuse_other: bool,
+    /// Is every run made again? The record of before stays until the new one is whole.
+    pub fresh: bool,
     /// May runs be long? Those that were refused are tried again then.
     pub allow_long: bool,
     /// Told how far the runs are.
@@ -68,6 +72,11 @@ pub struct Making<'a> {
 }
 
 impl<'a> Making<'a> {
+    /// Is it to stop?
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
     /// Makes every run and keeps the records in memory alone.
     pub fn new(tier: Tier, sources: &'a (dyn Fn(&str) -> String + Sync)) -> Self {
         Making {
@@ -75,6 +84,7 @@ impl<'a> Making<'a> {
             store: None,
             sources,
             reuse_other: false,
+            fresh: false,
             allow_long: false,
             progress: None,
             interrupt: None,
@@ -94,8 +104,21 @@ pub struct Made {
     /// Why the store could not keep some of the records, which are among `records` all the same: what was
     /// computed is not lost with a disk that is full.
     pub not_kept: BTreeMap<RunKey, StoreError>,
+    /// Why records that the store had could not be read; these runs were made again.
+    pub unsound: BTreeMap<RunKey, StoreError>,
+    /// Why runs have no record. None of them costs another its record.
+    pub failed: BTreeMap<RunKey, Failed>,
     /// Was it stopped from outside?
     pub interrupted: bool,
+}
+
+/// Why a run has no record.
+#[derive(Debug)]
+pub enum Failed {
+    /// A file that could not be written or read.
+    Error(RunError),
+    /// A panic, of which the hook of panics has told.
+    Bug,
 }
 
 /// Timings of a run that is cheap enough to be timed again: the fewest that have a median.
@@ -109,62 +132,74 @@ fn timed_again_below(tier: Tier) -> f64 {
     }
 }
 
-/// Makes every run of the jobs that the store lacks.
-///
-/// # Errors
-/// Those of [`run`]; what was made before is in the store. A run that is refused or diverges is no error: it
-/// has a record. Neither is a record that the store cannot keep, see [`Made::not_kept`].
-pub fn make(jobs: &[Job], making: &Making) -> Result<Made, RunError> {
-    let mut made = Made::default();
-    let mut missing = Vec::new();
-    for job in jobs {
+/// What a store has of the runs of a plan, and what it lacks.
+#[derive(Default)]
+pub struct Stored {
+    /// What it has.
+    pub made: Made,
+    /// The runs that it lacks.
+    pub missing: Vec<Job>,
+    /// Those of them of which it has a record that other sources made.
+    pub other: usize,
+}
+
+/// Looks for the records of the jobs. A record does not serve if other sources made it, unless that is
+/// allowed, nor one of a run that was refused, if longer runs are allowed now: to try again takes no time.
+/// That of a timed run must have been made while no other run was.
+pub fn stored(jobs: &[Job], making: &Making) -> Stored {
+    let mut stored = Stored::default();
+    for job in jobs.iter().take_while(|_| !making.is_interrupted()) {
         let spec = &job.planned.spec;
-        let sources = (making.sources)(&spec.case);
-        let found = making.store.map_or(Found::Nothing, |store| store.find(spec, &sources));
-        let record = match found {
-            // What was refused may have been so because it was long; to try again takes no time.
-            Found::Same(record)
-                if making.allow_long && matches!(record.status, Status::Refused { .. }) =>
-            {
-                missing.push(job);
-                continue;
-            }
-            Found::Same(record) => record,
-            Found::Other(record) if making.reuse_other => {
-                made.of_other_sources += 1;
-                record
-            }
-            _ => {
-                missing.push(job);
-                continue;
+        let serves = |record: &Record| match record.status {
+            Status::Refused { .. } => !making.allow_long,
+            Status::Completed => !job.planned.timed || !record.cost.alone_s.is_empty(),
+            _ => true,
+        };
+        let found = match making.store {
+            Some(store) if !making.fresh => store.find(spec, &(making.sources)(&spec.case)),
+            _ => Found::Nothing,
+        };
+        let made = &mut stored.made;
+        let (record, is_other) = match found {
+            Found::Same(record) => (Some(record), false),
+            Found::Other(record) => (making.reuse_other.then_some(record), true),
+            Found::Nothing => (None, false),
+            Found::Unsound(error) => {
+                made.unsound.insert(spec.key(), error);
+                (None, false)
             }
         };
-        if job.planned.timed && record.cost.alone_s.is_empty() && record.status == Status::Completed
-        {
-            missing.push(job); // it is there, but was made side by side with others
-        } else {
+        if let Some(record) = record.filter(|record| serves(record)) {
             made.reused += 1;
+            made.of_other_sources += usize::from(is_other);
             made.records.insert(spec.key(), *record);
+        } else {
+            stored.other += usize::from(is_other);
+            stored.missing.push(job.clone());
         }
     }
+    stored
+}
+
+/// Makes the runs that the store lacks. A run that is refused or diverges has a record; one that fails
+/// otherwise has none, see [`Made::failed`]. For what the store cannot keep see [`Made::not_kept`].
+pub fn make(Stored { mut made, missing, .. }: Stored, making: &Making) -> Made {
     let (timed, mut rest): (Vec<&Job>, Vec<&Job>) =
-        missing.into_iter().partition(|job| job.planned.timed);
+        missing.iter().partition(|job| job.planned.timed);
     rest.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
     let mut tally = Tally::default();
     for job in rest.iter().chain(&timed) {
         tally.plan(job.case.name(), expected(job, making));
     }
-    let batch = Batch { making, tally: Mutex::new(tally), not_kept: Mutex::default() };
+    let (not_kept, failed) = <_>::default();
+    let batch = Batch { making, tally: Mutex::new(tally), not_kept, failed };
     batch.tell(|_| ());
-    for record in side_by_side(&rest, &batch)? {
-        made.records.insert(record.key(), record);
-    }
-    for record in alone(&timed, &batch)? {
-        made.records.insert(record.key(), record);
-    }
-    made.interrupted = batch.is_interrupted();
+    let records = side_by_side(&rest, &batch).into_iter().chain(alone(&timed, &batch));
+    made.records.extend(records.map(|record| (record.key(), record)));
+    made.interrupted = making.is_interrupted();
     made.not_kept = batch.not_kept.into_inner().unwrap_or_else(PoisonError::into_inner);
-    Ok(made)
+    made.failed = batch.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    made
 }
 
 /// The wall time that a run is expected to take of the batch \[s\].
@@ -286,13 +321,10 @@ struct Batch<'a> {
     making: &'a Making<'a>,
     tally: Mutex<Tally>,
     not_kept: Mutex<BTreeMap<RunKey, StoreError>>,
+    failed: Mutex<BTreeMap<RunKey, Failed>>,
 }
 
 impl Batch<'_> {
-    fn is_interrupted(&self) -> bool {
-        self.making.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
-    }
-
     /// Tells how far it is after a change.
     fn tell(&self, change: impl FnOnce(&mut Tally)) {
         let Some(progress) = self.making.progress else { return };
@@ -325,8 +357,8 @@ impl Batch<'_> {
         Some(record)
     }
 
-    /// Makes a run, and finds out where its time goes if it is to be profiled.
-    fn run(&self, job: &Job, profile: bool) -> Result<Record, RunError> {
+    /// Makes a run, and finds out where its time goes if it is to be profiled; none if it failed.
+    fn run(&self, job: &Job, profile: bool) -> Option<Record> {
         let (interrupt, spec, start) = (self.making.interrupt, &job.planned.spec, Instant::now());
         let (case, expected) = (job.case.name(), expected(job, self.making));
         let show = |progress: context::Progress| {
@@ -339,65 +371,81 @@ impl Batch<'_> {
         let allow_long = self.making.allow_long;
         let context =
             Context { threads: 1, allow_long, profile, interrupt, progress, ..Context::default() };
-        let mut record = run(job.case, &job.planned.spec, &context)?;
-        record.manifest.sources = (self.making.sources)(job.case.name());
-        Ok(record)
+        let made = catch_unwind(AssertUnwindSafe(|| run(job.case, spec, &context)));
+        let failed = match made {
+            Ok(Ok(mut record)) => {
+                record.manifest.sources = (self.making.sources)(case);
+                return Some(record);
+            }
+            Ok(Err(error)) => Failed::Error(error),
+            Err(_) => Failed::Bug,
+        };
+        self.failed.lock().unwrap_or_else(PoisonError::into_inner).insert(spec.key(), failed);
+        None
     }
 }
 
 /// Each thread takes the longest run that is left.
-fn side_by_side(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
+fn side_by_side(jobs: &[&Job], batch: &Batch) -> Vec<Record> {
     let (next, made) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let work = || -> Result<Vec<Record>, RunError> {
+    let work = || {
         let mut mine = Vec::new();
         while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-            if batch.is_interrupted() {
+            if batch.making.is_interrupted() {
                 break;
             }
             let start = Instant::now();
-            mine.extend(batch.done(job, batch.run(job, false)?, start));
+            let record = batch.run(job, false);
+            mine.extend(record.and_then(|record| batch.done(job, record, start)));
         }
-        Ok(mine)
+        mine
     };
     // Not a broadcast, which would wait for threads of the pool that are busy with other things.
     rayon::scope(|scope| {
         for _ in 0..rayon::current_num_threads() {
             scope.spawn(|_| {
                 let mine = work();
-                made.lock().unwrap_or_else(PoisonError::into_inner).push(mine);
+                made.lock().unwrap_or_else(PoisonError::into_inner).extend(mine);
             });
         }
     });
-    let made = made.into_inner().unwrap_or_else(PoisonError::into_inner);
-    Ok(made.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+    made.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// One run at a time, the first of each profiled; cheap ones again in further rounds. A record is kept as
 /// soon as it is there, and again with the timings of a later round.
-fn alone(jobs: &[&Job], batch: &Batch) -> Result<Vec<Record>, RunError> {
+fn alone(jobs: &[&Job], batch: &Batch) -> Vec<Record> {
     let again_below = timed_again_below(batch.making.tier);
-    let mut records: Vec<Record> = Vec::new();
+    let mut made: Vec<(&Job, Record)> = Vec::new();
     for job in jobs {
-        if batch.is_interrupted() {
-            return Ok(records);
+        if batch.making.is_interrupted() {
+            break;
         }
         let start = Instant::now();
-        let mut record = batch.run(job, true)?;
-        record.cost.alone_s = vec![record.cost.cpu_s];
-        records.extend(batch.done(job, record, start));
+        let record = batch.run(job, true).and_then(|mut record| {
+            record.cost.alone_s = vec![record.cost.cpu_s];
+            batch.done(job, record, start)
+        });
+        made.extend(record.map(|record| (*job, record)));
     }
     for _ in 1..REPETITIONS {
-        for (job, record) in jobs.iter().zip(&mut records) {
-            if !batch.is_interrupted() && record.cost.alone_s[0] < again_below {
-                let again = batch.run(job, false)?;
-                if !matches!(again.status, Status::Interrupted { .. }) {
-                    record.cost.alone_s.push(again.cost.cpu_s);
-                }
+        for (job, record) in &mut made {
+            if batch.making.is_interrupted() || record.cost.alone_s[0] >= again_below {
+                continue;
             }
+            let again = batch.run(job, false);
+            let whole = again.filter(|again| !matches!(again.status, Status::Interrupted { .. }));
+            record.cost.alone_s.extend(whole.map(|again| again.cost.cpu_s));
         }
     }
-    records.iter().filter(|record| record.cost.alone_s.len() > 1).for_each(|r| batch.keep(r));
-    Ok(records)
+    let records = made.into_iter().map(|(_, record)| record);
+    records
+        .inspect(|r| {
+            if r.cost.alone_s.len() > 1 {
+                batch.keep(r)
+            }
+        })
+        .collect()
 }
 
 /// One run of a case: a simulation, or a search by many. Settings that are refused give a
@@ -490,11 +538,11 @@ mod tests {
             progress: Some(&show),
             ..Making::new(Tier::Quick, &|_| "abc".into())
         };
-        let suite = suite::run(&[&Quick], &making).unwrap();
+        let suite = suite::run(&[&Quick], &making);
         let values = suite.cases[0].runs.all().iter().map(|run| run.record.value(ERROR));
         assert_eq!(values.collect::<Vec<_>>(), [Some(1.0); 3]);
-        assert_eq!(suite.not_kept.len(), 3);
-        for error in suite.not_kept.values() {
+        assert_eq!(suite.made.not_kept.len(), 3);
+        for error in suite.made.not_kept.values() {
             let words = error.to_string();
             assert!(words.contains("cannot write") && words.contains("records"), "{words}");
         }
@@ -560,7 +608,7 @@ mod tests {
         std::fs::remove_dir(store.path()).unwrap();
         let jobs = jobs(suite::plans(&[&Quick], Tier::Quick));
         let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &|_| "abc".into()) };
-        let made = make(&jobs, &making).unwrap();
+        let made = make(stored(&jobs, &making), &making);
         assert_eq!((made.records.len(), made.not_kept.len()), (3, 0));
         assert_eq!(Store::all(store.path()).unwrap().len(), 3);
     }

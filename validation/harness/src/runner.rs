@@ -1,18 +1,18 @@
 //! Steps a simulation through the times of interest: the only time loop of the program. It measures the
 //! cost, shows progress, writes frames and stops at an interrupt; cases contain only what differs.
 
-use std::sync::{PoisonError, atomic::Ordering};
+use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
 use base::breakdown::Breakdown;
 use base::mutation::Constant;
 use base::record::{Cost, Status};
-use cpu_time::{ProcessTime, ThreadTime};
 use solver::{Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{
     checkpoint::{self, CheckpointError, Checkpoints, Observed, Stage},
+    clock::Reading,
     error::RunError,
     frames::{self, Frames},
     profile::{self, Profiler},
@@ -33,22 +33,14 @@ type Synchronised = bool;
 /// A function that is called when a run goes on from a checkpoint.
 type Resumed<'a, D, S> = &'a dyn Fn(&S, &mut D);
 
-/// The clocks of the way to one of the times of interest.
-struct Clocks {
-    wall: Instant,
-    thread: ThreadTime,
-    process: ProcessTime,
-    /// Time of observers, frames and checkpoints \[s\].
-    observing: f64,
+/// The way to one of the times of interest.
+#[derive(Default)]
+struct Stretch {
+    start: Reading,
+    /// What observers, frames and checkpoints took.
+    observing: Reading,
     /// Steps before it.
     steps: u64,
-}
-
-impl Clocks {
-    fn start(steps: u64) -> Self {
-        let (thread, process) = (ThreadTime::now(), ProcessTime::now());
-        Self { wall: Instant::now(), thread, process, observing: 0.0, steps }
-    }
 }
 
 /// Sees every step: calls the observer, writes frames and checkpoints, shows how far the run is, and obeys an
@@ -57,20 +49,19 @@ struct Watch<'a, X, S> {
     context: &'a Context<'a>,
     end: f64,
     shown: Instant,
-    saved: Instant,
+    /// Wall time of the last checkpoint \[s\].
+    saved: f64,
     seen: &'a mut S,
     after_step: Named<AfterStep<'a, X, S>>,
     frames: Option<Frames<'a>>,
     profiler: Option<Profiler>,
-    /// Until the clocks were started.
+    /// Until the stretch began.
     cost: Cost,
-    clocks: Clocks,
+    stretch: Stretch,
     /// How many of the times of interest were reached.
     reached: usize,
     /// Whether what is called at the next of them reads quantities of that very time.
     synchronises: Synchronised,
-    /// Why the run cannot go on.
-    failed: Option<RunError>,
 }
 
 impl<X: Numbers, S: Observed> Watch<'_, X, S> {
@@ -82,22 +73,25 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         }
     }
 
-    fn is_interrupted(&self) -> bool {
-        self.context.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    fn now(&self) -> Reading {
+        self.context.clock().read(self.cost.threads)
+    }
+
+    /// A frame or a checkpoint could not be written.
+    fn lose(&self, error: &RunError) {
+        self.context.lost.iter().for_each(|lost| lost(error));
     }
 
     /// What the run took until now.
-    fn cost(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Cost {
-        let (mut cost, clocks) = (self.cost.clone(), &self.clocks);
-        if simulation.work().steps > clocks.steps {
+    fn cost(&self, simulation: &(impl Stepper<X> + ?Sized), now: Reading) -> Cost {
+        let (mut cost, Stretch { start, observing, steps }) = (self.cost.clone(), &self.stretch);
+        if simulation.work().steps > *steps {
             cost.largest_dt_s = cost.largest_dt_s.max(simulation.dt());
         }
-        // Runs side by side share a process, so the process's clock is only right for a run that
-        // itself has threads.
-        let cpu = if cost.threads > 1 { clocks.process.elapsed() } else { clocks.thread.elapsed() };
-        cost.wall_s += clocks.wall.elapsed().as_secs_f64() - clocks.observing;
-        cost.cpu_s += (cpu.as_secs_f64() - clocks.observing).max(0.0);
-        cost.observing_s += clocks.observing;
+        let stepping = now - *start - *observing;
+        cost.wall_s += stepping.wall;
+        cost.cpu_s += stepping.cpu;
+        cost.observing_s += observing.wall;
         cost
     }
 
@@ -125,8 +119,13 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         checkpoint::save(simulation, &stage, &*self.seen)
     }
 
+    /// Is there anything to do after a step?
+    fn observes(&self) -> bool {
+        !self.after_step.is_empty() || self.frames.is_some() || self.context.checkpoints.is_some()
+    }
+
     /// What the case observes, and what of it is written.
-    fn observe(&mut self, simulation: &dyn Stepper<X>) -> Result<Flow, RunError> {
+    fn observe(&mut self, simulation: &dyn Stepper<X>, now: Reading) -> Flow {
         let mut flow = Flow::Continue;
         for (name, after_step) in &self.after_step {
             self.profile(name);
@@ -136,19 +135,27 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         }
         if let Some(frames) = &mut self.frames {
             self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
-            frames.after_step(simulation)?;
+            while frames.is_due(simulation.time()) && !self.context.is_interrupted() {
+                let written = frames.write(simulation);
+                let lost = written.err().zip(self.context.lost);
+                lost.into_iter().for_each(|(error, lost)| lost(&error.into()));
+            }
         }
         // A run that ends here by itself has nothing to go on with.
         if let (Some(checkpoints), Flow::Continue) = (self.context.checkpoints, flow)
-            && (self.saved.elapsed() >= checkpoints.every || self.is_interrupted())
+            && (now.wall - self.saved >= checkpoints.every.as_secs_f64()
+                || self.context.is_interrupted())
         {
             self.profile(profile::CHECKPOINTS);
-            let cost = Cost { breakdown: self.breakdown(simulation), ..self.cost(simulation) };
-            let bytes = self.save(simulation, cost, None)?;
-            checkpoints.write(bytes, self.is_interrupted())?;
-            self.saved = Instant::now();
+            let cost = Cost { breakdown: self.breakdown(simulation), ..self.cost(simulation, now) };
+            let saved = self.save(simulation, cost, None);
+            let is_last = self.context.is_interrupted();
+            if let Err(error) = saved.and_then(|bytes| checkpoints.write(bytes, is_last)) {
+                self.lose(&error.into());
+            }
+            self.saved = self.now().wall;
         }
-        Ok(flow)
+        flow
     }
 
     /// Steps to a time; how the run ended, if it did not get there.
@@ -156,11 +163,12 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
     where
         D: Stepper<X> + ?Sized,
     {
-        self.clocks = Clocks::start(simulation.work().steps);
+        let steps = simulation.work().steps;
+        self.stretch = Stretch { start: self.now(), observing: Reading::default(), steps };
         self.profiler.iter().for_each(Profiler::step);
         let outcome = simulation.advance(until, dt, self);
         self.profiler.iter().for_each(Profiler::pause);
-        self.cost = self.cost(simulation);
+        self.cost = self.cost(simulation, self.now());
         if let Some(profiler) = &mut self.profiler {
             profiler.sample(simulation);
         }
@@ -200,13 +208,13 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
             if let Some(ended) = self.step_to(simulation, until, dt) {
                 return ended;
             }
-            let start = Instant::now();
+            let start = self.now();
             for (name, (at, _)) in at {
                 self.profile(name);
                 at(self.seen, simulation, self.reached);
             }
             self.profiler.iter().for_each(Profiler::pause);
-            self.cost.observing_s += start.elapsed().as_secs_f64();
+            self.cost.observing_s += (self.now() - start).wall;
             self.reached += 1;
         }
         Status::Completed
@@ -223,7 +231,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         self.cost = Cost { threads: self.cost.threads, resumed, ..cost };
         self.reached = reached;
         if let (Some(all), Some(written)) = (&mut self.frames, frames) {
-            all.go_on(written);
+            all.go_on(written, simulation.time());
         }
         if ended == Some(Status::Completed) {
             // No step: derives again what may be asked for at the end.
@@ -254,17 +262,13 @@ impl<X: Numbers, S: Observed> Observer<X> for Watch<'_, X, S> {
         if self.context.progress.is_some() && self.shown.elapsed() >= SHOW_EVERY {
             self.show(simulation, simulation.dt());
         }
-        let start = Instant::now();
-        let observed = self.observe(simulation);
-        self.clocks.observing += start.elapsed().as_secs_f64();
-        match observed {
-            Ok(Flow::Continue) if !self.is_interrupted() => Flow::Continue,
-            Ok(_) => Flow::Stop,
-            Err(error) => {
-                self.failed = Some(error);
-                Flow::Stop
-            }
+        let mut flow = Flow::Continue;
+        if self.observes() {
+            let now = self.now();
+            flow = self.observe(simulation, now);
+            self.stretch.observing += self.now() - now;
         }
+        if self.context.is_interrupted() { Flow::Stop } else { flow }
     }
 
     fn synchronises(&self) -> bool {
@@ -288,7 +292,13 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
         let (what, value, most) = ("the number of time steps", size.steps, MOST_STEPS);
         return Err(RunError::TooMuch { what, value, most, setting: settings });
     }
-    Ok(())
+    match (context.only_estimate, context.estimate) {
+        (true, Some(tell)) => {
+            tell(&size);
+            Err(RunError::Estimated)
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A simulation with what is observed of it on its way through the times of interest.
@@ -368,8 +378,9 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
     /// that of what is observed.
     ///
     /// # Errors
-    /// If it would take more time or memory than a run may, or a frame or a checkpoint cannot be written: the
-    /// run stops at once.
+    /// If it would take more time or memory than a run may, the folder of frames cannot be made, or it does not
+    /// fit the checkpoint that it goes on from. A frame or a checkpoint that cannot be written is told to
+    /// [`Context::lost`].
     pub fn run(self, context: &Context) -> Result<(Status, Cost), RunError> {
         let Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed } =
             self;
@@ -389,16 +400,15 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             context,
             end,
             shown: Instant::now(),
-            saved: Instant::now(),
+            saved: context.clock().read(context.threads).wall,
             seen,
             after_step,
             frames: frames.transpose()?,
             profiler: None,
             cost: Cost { threads: context.threads.max(1), ..Cost::default() },
-            clocks: Clocks::start(0),
+            stretch: Stretch::default(),
             reached: 0,
             synchronises: true,
-            failed: None,
         };
         let mut ended = None;
         if let Some(bytes) = context.checkpoints.and_then(Checkpoints::next) {
@@ -416,11 +426,10 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             Some(status) => (status, watch.cost.clone()),
             None => {
                 let status = watch.step_through(simulation, times, (dt, least), &at);
-                if let Some(error) = watch.failed.take() {
-                    return Err(error);
-                }
-                if let (Some(frames), Status::Completed) = (&mut watch.frames, &status) {
-                    frames.write(simulation)?;
+                if let (Some(frames), Status::Completed) = (&mut watch.frames, &status)
+                    && let Err(error) = frames.write(simulation)
+                {
+                    watch.lose(&error.into());
                 }
                 let cost = watch.counted(simulation);
                 (status, cost)
@@ -440,7 +449,10 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
 #[cfg(test)]
 mod tests {
     use base::functions::sin;
-    use std::sync::{Mutex, atomic::AtomicBool};
+    use std::sync::{
+        Mutex,
+        atomic::{AtomicBool, Ordering},
+    };
 
     use nalgebra::Vector2;
     use solver::{

@@ -2,10 +2,11 @@
 //! independent of each other, so several processes on several machines may fill a store in any order.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use base::{
-    files::{FileError, OutputFolder},
+    files::{self, FileError, OutputFolder},
     manifest::UNKNOWN,
     record::{Record, RecordError, Status},
     spec::RunSpec,
@@ -24,6 +25,15 @@ pub enum StoreError {
     /// Its folder or file.
     #[error(transparent)]
     File(#[from] FileError),
+    /// It cannot be read.
+    #[error("cannot read {path}: {reason}", path = .path.display())]
+    Unreadable {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        #[source]
+        reason: io::Error,
+    },
     /// Its content.
     #[error("{path}: {reason}", path = .path.display())]
     Record {
@@ -34,11 +44,16 @@ pub enum StoreError {
     },
 }
 
+/// A record with a million particles has 100 MB.
+const MOST_BYTES: u64 = 1 << 30;
+
 /// What a store contains for a run.
 #[derive(Debug)]
 pub enum Found {
-    /// No file that can be read as a record of this run.
+    /// No record that serves this run.
     Nothing,
+    /// A file in its place that cannot be read as a record.
+    Unsound(StoreError),
     /// A record that the same sources made.
     Same(Box<Record>),
     /// A record that other sources made.
@@ -69,22 +84,26 @@ impl Store {
     }
 
     /// The record of a run, if there is one, and whether sources of this digest made it. An interrupted
-    /// record, one of which less was measured than the run asks for, or a file that is not a record, does
-    /// not count: the run will be made again.
+    /// record, or one of which less was measured than the run asks for, does not count: the run will be made
+    /// again.
     pub fn find(&self, spec: &RunSpec, sources: &str) -> Found {
-        let Ok(text) = fs::read_to_string(self.path().join(Self::name(spec))) else {
-            return Found::Nothing;
-        };
-        match Record::from_json(&text) {
-            Ok(record) if record.spec() != RunSpec { measure: <_>::default(), ..spec.clone() } => {
-                Found::Nothing
+        let record = match read(self.path().join(Self::name(spec))) {
+            Ok(record) => record,
+            Err(StoreError::Unreadable { reason, .. })
+                if reason.kind() == io::ErrorKind::NotFound =>
+            {
+                return Found::Nothing;
             }
-            Ok(record) if record.measured() < spec.measure => Found::Nothing,
-            Ok(Record { status: Status::Interrupted { .. }, .. }) | Err(_) => Found::Nothing,
-            Ok(record) if record.manifest.sources == sources && sources != UNKNOWN => {
+            Err(error) => return Found::Unsound(error),
+        };
+        let is_of_run = record.spec() == RunSpec { measure: <_>::default(), ..spec.clone() };
+        let is_whole = !matches!(record.status, Status::Interrupted { .. });
+        match is_of_run && is_whole && record.measured() >= spec.measure {
+            false => Found::Nothing,
+            true if record.manifest.sources == sources && sources != UNKNOWN => {
                 Found::Same(Box::new(record))
             }
-            Ok(record) => Found::Other(Box::new(record)),
+            true => Found::Other(Box::new(record)),
         }
     }
 
@@ -99,39 +118,28 @@ impl Store {
         Ok(self.folder.write(&name, text.as_bytes())?)
     }
 
-    /// Removes the record of a run, if there is one.
-    ///
-    /// # Errors
-    /// If the file is there and cannot be removed.
-    pub fn remove(&self, spec: &RunSpec) -> Result<(), FileError> {
-        let path = self.path().join(Self::name(spec));
-        match fs::remove_file(&path) {
-            Err(reason) if reason.kind() != std::io::ErrorKind::NotFound => {
-                Err(FileError::File { path, reason })
-            }
-            _ => Ok(()),
-        }
-    }
-
     /// Every record of the folder, sorted by file name. What a process that was killed had not finished is
     /// none: its name begins with a dot.
     ///
     /// # Errors
     /// If the folder or a file of it cannot be read, or a `.json` file is no record.
     pub fn all(path: &Path) -> Result<Vec<Record>, StoreError> {
-        let unreadable = |path: &Path, reason| FileError::File { path: path.to_path_buf(), reason };
-        let entries = fs::read_dir(path).map_err(|reason| unreadable(path, reason))?;
-        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        let refused = |reason| StoreError::Unreadable { path: path.to_path_buf(), reason };
+        let mut paths: Vec<PathBuf> =
+            fs::read_dir(path).map_err(refused)?.flatten().map(|entry| entry.path()).collect();
         let is_hidden = |path: &Path| {
             path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
         };
         paths.retain(|path| path.extension().is_some_and(|e| e == "json") && !is_hidden(path));
         paths.sort();
-        let read = |path: PathBuf| {
-            let text = fs::read_to_string(&path).map_err(|reason| unreadable(&path, reason))?;
-            Record::from_json(&text).map_err(|reason| StoreError::Record { path, reason })
-        };
         paths.into_iter().map(read).collect()
+    }
+}
+
+fn read(path: PathBuf) -> Result<Record, StoreError> {
+    match files::read_text(&path, MOST_BYTES) {
+        Err(reason) => Err(StoreError::Unreadable { path, reason }),
+        Ok(text) => Record::from_json(&text).map_err(|reason| StoreError::Record { path, reason }),
     }
 }
 
@@ -205,7 +213,14 @@ mod tests {
         fs::write(folder.path().join(".unfinished-1-0-c.json"), "{").unwrap();
         assert_eq!(Store::all(store.path()).unwrap().len(), 1);
         fs::write(&path, "{").unwrap();
-        assert!(matches!(store.find(&cut.spec(), "abc"), Found::Nothing));
+        assert!(matches!(
+            store.find(&cut.spec(), "abc"),
+            Found::Unsound(StoreError::Record { .. })
+        ));
         assert!(matches!(Store::all(store.path()), Err(StoreError::Record { .. })));
+        fs::remove_file(&path).unwrap();
+        fs::create_dir(&path).unwrap();
+        let found = store.find(&cut.spec(), "abc");
+        assert!(matches!(found, Found::Unsound(StoreError::Unreadable { .. })), "{found:?}");
     }
 }

@@ -1,21 +1,17 @@
 //! Planning, making and judging of all runs, which `verify` and `report` share.
 
-use std::collections::BTreeMap;
-
 use base::{
     gate::{Bound, Evidence, Gate, Verdict},
     record::{Record, Status},
-    spec::RunKey,
 };
 use rayon::prelude::*;
 use report::{Card, Counts};
 
 use crate::{
-    case::{Case, Planned, RunError, Tier},
+    case::{Case, Planned, Tier},
     make::{self, Made, Making},
     plan,
     runs::{Judged, JudgedRun, Runs},
-    store::StoreError,
     studies::{self, Headline},
     study::Study,
 };
@@ -65,14 +61,8 @@ pub struct Suite {
     pub tier: Tier,
     /// One entry per case.
     pub cases: Vec<CaseResults>,
-    /// Runs whose record the store had.
-    pub reused: usize,
-    /// Those of them that other sources made.
-    pub of_other_sources: usize,
-    /// Why the store could not keep some of the records, which are judged all the same.
-    pub not_kept: BTreeMap<RunKey, StoreError>,
-    /// Was it stopped from outside? Then nothing is judged.
-    pub interrupted: bool,
+    /// How its records came about; they themselves are in the cases. Nothing is judged if it was interrupted.
+    pub made: Made,
 }
 
 impl Suite {
@@ -104,32 +94,24 @@ impl Suite {
 }
 
 /// The plans of several cases.
-pub fn plans(cases: &[&'static dyn Case], tier: Tier) -> Vec<(&'static dyn Case, Vec<Planned>)> {
+pub type Plans = Vec<(&'static dyn Case, Vec<Planned>)>;
+
+/// The plans of these cases.
+pub fn plans(cases: &[&'static dyn Case], tier: Tier) -> Plans {
     cases.iter().map(|&case| (case, plan::of_case(case, tier))).collect()
 }
 
 /// Plans the cases, makes what the store lacks, judges.
-///
-/// # Errors
-/// Those of [`make::make`].
-pub fn run(cases: &[&'static dyn Case], making: &Making) -> Result<Suite, RunError> {
+pub fn run(cases: &[&'static dyn Case], making: &Making) -> Suite {
     let plans = plans(cases, making.tier);
-    let made = make::make(&make::jobs(plans.clone()), making)?;
-    Ok(judge(plans, making.tier, made))
+    let made = make::make(make::stored(&make::jobs(plans.clone()), making), making);
+    judge(plans, making.tier, made)
 }
 
 /// Judges the records of plans: gates run by run, then studies. A pure function of the records.
-pub fn judge(plans: Vec<(&'static dyn Case, Vec<Planned>)>, tier: Tier, mut made: Made) -> Suite {
-    let mut suite = Suite {
-        tier,
-        cases: Vec::new(),
-        reused: made.reused,
-        of_other_sources: made.of_other_sources,
-        not_kept: std::mem::take(&mut made.not_kept),
-        interrupted: made.interrupted,
-    };
-    if suite.interrupted {
-        return suite; // nothing can be said of runs that were cut short
+pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
+    if made.interrupted {
+        return Suite { tier, cases: Vec::new(), made }; // nothing can be said of runs that were cut short
     }
     let mut record = |planned: &Planned| {
         let missing =
@@ -155,8 +137,8 @@ pub fn judge(plans: Vec<(&'static dyn Case, Vec<Planned>)>, tier: Tier, mut made
         studies.extend(unplanned(case, &runs));
         CaseResults { case, runs, studies, card, headlines }
     };
-    suite.cases = of_plans.into_par_iter().map(study).collect();
-    suite
+    let cases = of_plans.into_par_iter().map(study).collect();
+    Suite { tier, cases, made }
 }
 
 /// A failing gate if a study asked for a run that the case did not plan.

@@ -1,14 +1,12 @@
 //! What the runs of a plan take, estimated before the first of them: what plans say is a guess.
 
-use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use base::spec::{RunSpec, Task};
 use harness::{
     context::Context,
-    make::Job,
+    make::{Job, Making},
     size::Size,
-    store::{Found, Store},
 };
 use rayon::prelude::*;
 
@@ -16,38 +14,25 @@ use rayon::prelude::*;
 /// about: most of the ten or so that it makes diverge early or are of a short time.
 const SIMULATIONS: f64 = 3.0;
 
-/// The jobs, those that the store lacks with the estimate that each run makes before its first step.
-pub fn estimated(jobs: &[Job], store: Option<&Store>, sources: fn(&str) -> String) -> Vec<Job> {
-    let one = |job: &Job| {
-        let mut job = job.clone();
-        let spec = &job.planned.spec;
-        let is_made = store
-            .is_some_and(|store| matches!(store.find(spec, &sources(&spec.case)), Found::Same(_)));
-        if !is_made && let Some(size) = size(&job) {
-            let simulations = if spec.task == Task::Simulate { 1.0 } else { SIMULATIONS };
-            job.planned.seconds = simulations * size.seconds();
+/// Gives each job the time that its run states before its first step. A run that is refused takes none.
+pub fn estimate(jobs: &mut [Job], making: &Making) {
+    jobs.par_iter_mut().filter(|_| !making.is_interrupted()).for_each(|job| {
+        if let Some(size) = size(job, making.allow_long) {
+            let is_one = job.planned.spec.task == Task::Simulate;
+            job.planned.seconds = if is_one { 1.0 } else { SIMULATIONS } * size.seconds();
         }
-        job
-    };
-    jobs.par_iter().map(one).collect()
+    });
 }
 
-/// The size of the simulation of a job, which is stopped as soon as it has told it.
-fn size(job: &Job) -> Option<Size> {
-    let (told, stop) = (Mutex::new(None), AtomicBool::new(true));
+/// The size of the simulation of a job, which ends as soon as it has told it.
+fn size(job: &Job, allow_long: bool) -> Option<Size> {
+    let told = Mutex::new(None);
     let tell = |size: &Size| {
-        // A run may consist of several simulations, the first of which is the longest.
-        told.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(*size);
+        *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(*size);
     };
-    let context = Context {
-        threads: 1,
-        allow_long: true,
-        estimate: Some(&tell),
-        interrupt: Some(&stop),
-        ..Context::default()
-    };
+    let context =
+        Context { allow_long, estimate: Some(&tell), only_estimate: true, ..Context::default() };
     let spec = RunSpec { task: Task::Simulate, ..job.planned.spec.clone() };
-    // Settings that are refused have no size: such a run takes no time.
     let _ = job.case.run(&spec, &context);
     told.into_inner().unwrap_or_else(PoisonError::into_inner)
 }

@@ -10,6 +10,7 @@ use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
 use harness::case::{self, Case, Tier};
+use harness::make::Stored;
 use harness::plan;
 use harness::runs;
 use harness::store::Store;
@@ -18,8 +19,7 @@ use harness::suite::{self, Of};
 use super::{
     Exit, Failure, Outcome, World, arguments,
     judged::{Judged, Verdicts, tier_name},
-    output,
-    stored::stored,
+    output, verify,
 };
 
 /// A gate, what it is judged on, and what came of it last.
@@ -84,8 +84,8 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
             continue;
         }
         let plans = suite::plans(&[*case], Tier::Quick);
-        let (made, lacking) = stored(&plans, &store, false, world);
-        if lacking == [0, 0] {
+        let Stored { made, missing, .. } = verify::stored(&plans, &store, false, world);
+        if missing.is_empty() {
             let of_case = Verdicts::of(&suite::judge(plans, Tier::Quick, made));
             match &mut all {
                 None => all = Some(of_case),

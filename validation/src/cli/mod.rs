@@ -33,7 +33,6 @@ mod report;
 mod run;
 mod specs;
 mod stability;
-mod stored;
 mod summary;
 #[cfg(test)]
 mod tests;
@@ -46,10 +45,11 @@ use base::files::FileError;
 use base::manifest::{Known, Source, UNKNOWN, tell_source};
 use base::record::RecordError;
 use base::reference::{Reference, ReferenceError};
+use base::spec::RunKey;
 use clap::{CommandFactory, Parser};
 use harness::case::{Case, RunError, Tier};
-use harness::make::{self, Done, Job, Made, Making};
-use harness::store::{Store, StoreError};
+use harness::make::{self, Done, Failed, Job, Made, Making};
+use harness::store::StoreError;
 use validation::cases;
 
 use arguments::{Arguments, Command};
@@ -111,7 +111,7 @@ impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         match error {
             StoreError::File(error) => error.into(),
-            error @ StoreError::Record { .. } => Failure::usage(error),
+            error => Failure::usage(error),
         }
     }
 }
@@ -160,41 +160,24 @@ impl World {
         Ok(chosen)
     }
 
-    /// Makes the runs that a store lacks, on a pool of so many threads, with a bar, and says which records
-    /// could not be kept.
-    fn make(
-        &self,
-        jobs: &[Job],
-        tier: Tier,
-        store: Option<&Store>,
-        reuse_other: bool,
-        allow_long: bool,
-        threads: Option<u16>,
-    ) -> Result<Made, Failure> {
+    /// How runs are made, until something else is asked for.
+    fn making(&self, tier: Tier) -> Making<'_> {
+        Making { interrupt: Some(self.interrupt), ..Making::new(tier, &self.sources) }
+    }
+
+    /// Makes the runs that a store lacks, on a pool of so many threads, with a bar, and says what of it did
+    /// not go as it should.
+    fn make(&self, jobs: &[Job], making: Making, threads: Option<u16>) -> Result<Made, Failure> {
         let bar = progress::Bar::new();
         let show = |done: Done| bar.show_runs(done);
-        let making = Making {
-            tier,
-            store,
-            sources: &self.sources,
-            reuse_other,
-            allow_long,
-            progress: Some(&show),
-            interrupt: Some(self.interrupt),
-        };
         let made = on_threads(threads, || {
-            Ok(make::make(&estimate::estimated(jobs, store, self.sources), &making)?)
+            let mut stored = make::stored(jobs, &making);
+            estimate::estimate(&mut stored.missing, &making);
+            Ok(make::make(stored, &Making { progress: Some(&show), ..making }))
         });
         bar.clear();
         let made = made?;
-        if let Some(reason) = made.not_kept.values().next() {
-            let count = made.not_kept.len();
-            output::say(&format!(
-                "touchstone: {count} of {} records could not be stored: {reason}{}",
-                made.records.len(),
-                if count > 1 { ", and so on" } else { "" }
-            ));
-        }
+        tell_trouble(&made);
         Ok(made)
     }
 
@@ -220,6 +203,38 @@ impl World {
 
     fn is_interrupted(&self) -> bool {
         self.interrupt.load(std::sync::atomic::Ordering::Relaxed)
+    }
+}
+
+/// Messages of one kind that are told in full.
+const TOLD: usize = 10;
+
+/// Says what is wrong, the first of the lines in full.
+fn tell(lines: &[String]) {
+    lines.iter().take(TOLD).for_each(|line| output::say(&format!("touchstone: {line}")));
+    if lines.len() > TOLD {
+        output::say(&format!("touchstone: and {} more like this", lines.len() - TOLD));
+    }
+}
+
+/// Says which records could not be read, kept or made.
+fn tell_trouble(made: &Made) {
+    let again = |error: &StoreError| format!("{error}; a record in this place does not count");
+    tell(&made.unsound.values().map(again).collect::<Vec<_>>());
+    let lost = |error: &StoreError| format!("a record could not be stored: {error}");
+    tell(&made.not_kept.values().map(lost).collect::<Vec<_>>());
+    let failed = |(key, failed): (&RunKey, &Failed)| match failed {
+        Failed::Error(error) => format!("run {key} has no record: {error}"),
+        Failed::Bug => format!("run {key} has no record: it ended by the bug of which was told"),
+    };
+    tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
+}
+
+/// 4 if a run ended by a bug, 2 if a file could not be written or read, otherwise nothing.
+fn trouble(made: &Made) -> Option<Exit> {
+    match made.failed.values().any(|failed| matches!(failed, Failed::Bug)) {
+        true => Some(Exit::Bug),
+        false => (!made.failed.is_empty() || !made.not_kept.is_empty()).then_some(Exit::Usage),
     }
 }
 

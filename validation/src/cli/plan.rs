@@ -20,17 +20,34 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Outcome {
                 "--set and --variant ask for a sweep over the settings of one case; name one case";
             return Err(Failure::usage(anyhow::anyhow!(words)));
         };
-        sweep(case, &arguments.variant, &arguments.set)?
+        sweep(case, &arguments.variant, &arguments.set, world)?
     };
     let lines: Vec<String> = specs.iter().map(|spec: &RunSpec| spec.canonical() + "\n").collect();
     output::print(&lines.concat())?;
     Ok(Exit::Pass)
 }
 
+/// More runs than this are no sweep but a mistake.
+const MOST_RUNS: f64 = 1e6;
+
 /// Every combination of variants and values, the last setting fastest.
-fn sweep(case: &dyn Case, variants: &[String], set: &[String]) -> Result<Vec<RunSpec>, Failure> {
+fn sweep(
+    case: &dyn Case,
+    variants: &[String],
+    set: &[String],
+    world: &World,
+) -> Result<Vec<RunSpec>, Failure> {
     let default = [default_variant(case).to_string()];
     let variants = if variants.is_empty() { &default } else { variants };
+    let values = |assignment: &String| assignment.matches(',').count() as f64 + 1.0;
+    let count = variants.len() as f64 * set.iter().map(values).product::<f64>();
+    if count > MOST_RUNS {
+        let words = format!(
+            "the sweep has {} runs; allowed are at most {MOST_RUNS:.0}; give fewer values",
+            ::report::sig(count, 3)
+        );
+        return Err(Failure::usage(anyhow::anyhow!(words)));
+    }
     let mut combinations: Vec<Vec<String>> = vec![Vec::new()];
     for assignment in set {
         let (key, values) = assignment.split_once('=').unwrap_or((assignment, ""));
@@ -44,6 +61,9 @@ fn sweep(case: &dyn Case, variants: &[String], set: &[String]) -> Result<Vec<Run
     let mut specs = Vec::new();
     for variant in variants {
         for set in &combinations {
+            if world.is_interrupted() {
+                return Err(Failure::interrupted("no plan is printed"));
+            }
             specs.push(case::spec(case, variant, set)?);
         }
     }

@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, Once, PoisonError};
+use std::sync::{
+    Mutex, Once, PoisonError,
+    atomic::{AtomicUsize, Ordering},
+};
 use std::time::Duration;
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series, Status as Verdict};
@@ -15,7 +18,7 @@ use base::{
     spec::RunSpec,
 };
 use harness::{
-    case::{self, Case},
+    case::{self, Case, RunError},
     checkpoint::Checkpoints,
     context::{Context, Progress},
     plan,
@@ -28,6 +31,7 @@ use validation::cases;
 use super::{
     Exit, Failure, Outcome, World, arguments,
     checkpoint::{self, CHECKPOINT},
+    interrupt::Hold,
     judged,
     list::default_variant,
     on_threads,
@@ -92,14 +96,17 @@ fn carry_out(
     world: &World,
 ) -> Outcome {
     let (case, spec, vtk) = (order.case, order.spec.clone(), order.vtk);
-    let (record, last) =
-        match on_threads(arguments.threads, || compute(order, arguments, folder.as_ref(), world)) {
-            Ok(made) => made,
-            Err(failure) => {
-                folder.iter().for_each(Folder::remove_if_new_and_empty);
-                return Err(failure);
-            }
-        };
+    let lost = Lost::default();
+    let computed = on_threads(arguments.threads, || {
+        compute(order, arguments, (folder.as_ref(), &lost), world)
+    });
+    let (record, last) = match computed {
+        Ok(made) => made,
+        Err(failure) => {
+            folder.iter().for_each(Folder::remove_if_new_and_empty);
+            return Err(failure);
+        }
+    };
     if let Status::Interrupted { step, time } = record.status {
         folder.iter().for_each(Folder::remove_if_new_and_empty);
         let kept = if vtk.is_some() { "; frames so far are whole" } else { "" };
@@ -144,7 +151,36 @@ fn carry_out(
         folder.remove_checkpoint()?;
     }
     printed?;
-    Ok(exit)
+    match lost.count.into_inner() {
+        0 => Ok(exit),
+        count => {
+            output::say(&format!("touchstone: frames or checkpoints not written: {count}"));
+            Ok(Exit::Usage)
+        }
+    }
+}
+
+/// Frames and checkpoints that could not be written.
+#[derive(Default)]
+struct Lost {
+    count: AtomicUsize,
+}
+
+impl Lost {
+    /// Says so of the first of them.
+    fn tell(&self, error: &RunError, folder: Option<&Folder>) {
+        if self.count.fetch_add(1, Ordering::Relaxed) > 0 {
+            return;
+        }
+        let good = folder.and_then(Folder::last_checkpoint).map_or(String::new(), |time| {
+            let path = folder.map(|folder| folder.output.path().join(CHECKPOINT));
+            format!(
+                "; the last good checkpoint is {} of {time}",
+                path.unwrap_or_default().display()
+            )
+        });
+        output::say(&format!("touchstone: {error}; the run goes on{good}"));
+    }
 }
 
 /// The settings that were given, `--rows` among them.
@@ -178,9 +214,10 @@ fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
 fn compute(
     Order { case, spec, vtk, allow_long, every, earlier }: Order,
     arguments: &arguments::Run,
-    folder: Option<&Folder>,
+    (folder, lost): (Option<&Folder>, &Lost),
     world: &World,
 ) -> Result<(Record, Option<Profile>), Failure> {
+    let _hold = every.map(|_| Hold::new());
     let sources = (world.sources)(case.name());
     let bar = Bar::new();
     let last = Mutex::default();
@@ -191,6 +228,7 @@ fn compute(
         }
     };
     let show = |progress: Progress| bar.show_run(progress);
+    let lose = |error: &RunError| lost.tell(error, folder);
     let frames = folder.zip(vtk).map(|(folder, count)| (folder.vtk(), count.into()));
     let asked = |every| {
         let (spec, sources) = (spec.clone(), sources.clone());
@@ -207,6 +245,7 @@ fn compute(
         threads: rayon::current_num_threads(),
         frames,
         checkpoints: checkpoints.as_ref(),
+        lost: Some(&lose),
         allow_long,
         profile: arguments.profile,
         estimate: Some(&tell),
@@ -257,6 +296,12 @@ impl Folder {
 
     fn has_checkpoint(&self) -> bool {
         self.output.path().join(CHECKPOINT).exists()
+    }
+
+    /// When the checkpoint was written that is there.
+    fn last_checkpoint(&self) -> Option<String> {
+        let time = fs::metadata(self.output.path().join(CHECKPOINT)).and_then(|f| f.modified());
+        time.ok().map(|time| humantime::format_rfc3339_seconds(time).to_string())
     }
 
     fn remove_checkpoint(&self) -> Result<(), FileError> {

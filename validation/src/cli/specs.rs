@@ -1,93 +1,149 @@
 //! `run --specs`: the runs of a plan, one record each.
 
-use std::fs;
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use anyhow::Context as _;
 use base::{record::Status, spec::RunSpec};
 use harness::{
-    case::{Case, Planned, Tier},
-    make::Job,
+    case::{self, Planned, Tier},
+    make::{Job, Made, Making},
+    plan,
     store::Store,
 };
 use validation::cases;
 
-use super::{Exit, Failure, Outcome, World, arguments, output};
+use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
 
 pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     let Some(path) = &arguments.store else {
         return Err(Failure::usage(anyhow::anyhow!("--specs needs --store DIR")));
     };
-    let specs = chosen(read(file)?, arguments)?;
-    let job = |mut spec: RunSpec| -> Result<Job, Failure> {
-        spec.measure = spec.measure.max(arguments.metrics.into());
-        let case: &'static dyn Case = cases::find_in(world.cases, &spec.case)?;
-        Ok(Job { case, planned: Planned::new(spec) })
+    let (planned, refused) = planned(file, arguments, world)?;
+    tell(&refused);
+    if planned.is_empty() {
+        return Err(Failure::usage(anyhow::anyhow!("{} describes no run", file.display())));
+    }
+    let lines = planned.len() + refused.len();
+    let job = |planned: Planned| -> Result<Job, Failure> {
+        Ok(Job { case: cases::find_in(world.cases, &planned.spec.case)?, planned })
     };
-    let jobs = specs.into_iter().map(job).collect::<Result<Vec<Job>, Failure>>()?;
+    let jobs = plan::merged(planned).into_iter().map(job).collect::<Result<Vec<Job>, _>>()?;
     let store = Store::open(path)?;
-    let tier = Tier::Quick; // nothing is timed here
-    let &arguments::Run { allow_long, threads, .. } = arguments;
-    let made = world.make(&jobs, tier, Some(&store), false, allow_long, threads)?;
-    let ended = |of: fn(&Status) -> bool| made.records.values().filter(|r| of(&r.status)).count();
-    let words = format!(
-        "{} runs: {} completed, {} diverged, {} refused; {} of them were in the store before",
-        made.records.len(),
-        ended(|status| *status == Status::Completed),
-        ended(|status| matches!(status, Status::Diverged { .. })),
-        ended(|status| matches!(status, Status::Refused { .. })),
-        made.reused
-    );
+    let allow_long = arguments.allow_long;
+    // Nothing is timed here.
+    let making = Making { store: Some(&store), allow_long, ..world.making(Tier::Quick) };
+    let made = world.make(&jobs, making, arguments.threads)?;
     // What the store could not keep is not lost.
     for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
         output::print_whole(&record.to_json()?)?;
     }
+    let words = format!("{lines} lines, {} different runs: {}", jobs.len(), ended(&made));
     if made.interrupted {
         let rest = "the same command makes the missing runs";
         return Err(Failure::interrupted(format!("{words}; {rest}")));
     }
     output::say(&format!("{words}; {}", store.path().display()));
-    Ok(if made.not_kept.is_empty() { Exit::Pass } else { Exit::Usage })
+    Ok(exit(&made, !refused.is_empty()))
 }
 
-/// Reads JSON lines; empty lines are skipped.
-fn read(file: &Path) -> Result<Vec<RunSpec>, Failure> {
-    let mut text = String::new();
-    let read = match file.to_str() {
-        Some("-") => io::stdin().read_to_string(&mut text).map(|_| text),
-        _ => fs::read_to_string(file),
-    };
-    let text =
-        read.with_context(|| format!("cannot read {}", file.display())).map_err(Failure::usage)?;
-    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let parse = |(k, line): (usize, &str)| {
-        RunSpec::from_canonical(line)
-            .with_context(|| {
-                format!("line {} of {} does not describe a run", k + 1, file.display())
-            })
-            .map_err(Failure::usage)
-    };
-    lines.map(parse).collect()
+fn count(made: &Made, of: fn(&Status) -> bool) -> usize {
+    made.records.values().filter(|record| of(&record.status)).count()
 }
 
-/// The one that was asked for, or all.
-fn chosen(specs: Vec<RunSpec>, arguments: &arguments::Run) -> Result<Vec<RunSpec>, Failure> {
-    let count = specs.len();
-    let (chosen, missing): (Vec<RunSpec>, String) = match (&arguments.only, arguments.index) {
-        (Some(key), _) => {
-            let of_key = specs.into_iter().filter(|spec| spec.key().to_string() == *key);
-            (of_key.collect(), format!("no run of the file has the key {key}"))
+fn is_refused(status: &Status) -> bool {
+    matches!(status, Status::Refused { .. })
+}
+
+fn is_diverged(status: &Status) -> bool {
+    matches!(status, Status::Diverged { .. })
+}
+
+fn ended(made: &Made) -> String {
+    format!(
+        "{} completed, {} diverged, {} refused; {} of them were in the store before",
+        count(made, |status| *status == Status::Completed),
+        count(made, is_diverged),
+        count(made, is_refused),
+        made.reused
+    )
+}
+
+/// The worst of all lines.
+fn exit(made: &Made, is_a_line_refused: bool) -> Exit {
+    let refused = is_a_line_refused || count(made, is_refused) > 0;
+    let diverged = count(made, is_diverged) > 0;
+    let ends = [trouble(made), diverged.then_some(Exit::Diverged), refused.then_some(Exit::Usage)];
+    ends.into_iter().flatten().max_by_key(|exit| *exit as u8).unwrap_or(Exit::Pass)
+}
+
+/// The runs of the lines that were asked for, and what is wrong with the other lines.
+fn planned(
+    file: &Path,
+    arguments: &arguments::Run,
+    world: &World,
+) -> Result<(Vec<Planned>, Vec<String>), Failure> {
+    let text = read(file).map_err(|reason| {
+        Failure::usage(anyhow::anyhow!("cannot read {}: {reason}", file.display()))
+    })?;
+    let is_empty = |(_, line): &(usize, &str)| line.trim().is_empty();
+    let mut lines: Vec<(usize, &str)> =
+        text.lines().enumerate().filter(|line| !is_empty(line)).collect();
+    if let Some(index) = arguments.index {
+        let count = lines.len();
+        lines = lines.get(index).copied().into_iter().collect();
+        if lines.is_empty() {
+            return Err(Failure::usage(anyhow::anyhow!(
+                "there is no run {index}; the file has {count} runs, counted from 0"
+            )));
         }
-        (None, Some(index)) => {
-            let words =
-                format!("there is no run {index}; the file has {count} runs, counted from 0");
-            (specs.into_iter().nth(index).into_iter().collect(), words)
-        }
-        (None, None) => (specs, "the file describes no run".into()),
-    };
-    match chosen.is_empty() {
-        true => Err(Failure::usage(anyhow::anyhow!(missing))),
-        false => Ok(chosen),
     }
+    let (mut planned, mut refused) = (Vec::new(), Vec::new());
+    for (number, line) in lines {
+        if world.is_interrupted() {
+            return Err(Failure::interrupted("no run was made"));
+        }
+        match spec(line, world) {
+            Ok(spec) => planned.push(Planned::new(spec)),
+            Err(why) => refused.push(format!("line {} of {}: {why}", number + 1, file.display())),
+        }
+    }
+    for Planned { spec, .. } in &mut planned {
+        spec.measure = spec.measure.max(arguments.metrics.into());
+    }
+    if let Some(key) = &arguments.only {
+        planned.retain(|planned| planned.spec.key().to_string() == *key);
+        match planned.is_empty() {
+            true => refused.push(format!("no run of {} has the key {key}", file.display())),
+            false => refused.clear(), // they are not asked for
+        }
+    }
+    Ok((planned, refused))
+}
+
+/// More than this is no list of runs [bytes].
+const MOST_BYTES: u64 = 1 << 28;
+
+fn read(file: &Path) -> io::Result<String> {
+    let from: Box<dyn Read> = match file.to_str() {
+        Some("-") => Box::new(io::stdin()),
+        _ => Box::new(File::open(file)?),
+    };
+    let mut text = String::new();
+    if from.take(MOST_BYTES + 1).read_to_string(&mut text)? as u64 > MOST_BYTES {
+        let words = format!("it has more than {MOST_BYTES} bytes");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, words));
+    }
+    Ok(text)
+}
+
+/// The run that a line describes, or what is wrong with the line.
+fn spec(line: &str, world: &World) -> Result<RunSpec, String> {
+    let spec = RunSpec::from_canonical(line).map_err(|error| {
+        let words = error.to_string();
+        let (what, column) = words.split_once(" at line 1 column ").unwrap_or((&words, "1"));
+        format!("{what} (column {column})")
+    })?;
+    let case = cases::find_in(world.cases, &spec.case).map_err(|error| error.to_string())?;
+    case::resolved(case, spec).map_err(|error| error.to_string())
 }

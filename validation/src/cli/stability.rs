@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use validation::stiffness::{self, Row};
 
-use super::{Exit, Failure, Outcome, World, arguments, output};
+use super::{Exit, Failure, Outcome, World, arguments, output, trouble};
 
 /// A declared limit and the case that it is of.
 struct Declared {
@@ -42,8 +42,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         planned: Planned::new(limit.spec.clone()),
     };
     let jobs: Vec<Job> = declared.iter().map(job).collect();
-    let mut made =
-        world.make(&jobs, arguments.tier.into(), None, false, false, arguments.threads)?;
+    let mut made = world.make(&jobs, world.making(arguments.tier.into()), arguments.threads)?;
     if made.interrupted {
         return Err(Failure::interrupted("no limit was determined; the same command begins again"));
     }
@@ -58,7 +57,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     } else {
         output::print(&(table(&declared, &runs) + "\n"))?;
     }
-    Ok(Exit::Pass)
+    Ok(trouble(&made).unwrap_or(Exit::Pass))
 }
 
 /// What limits the step of each variant, without a run.

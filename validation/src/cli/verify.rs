@@ -5,17 +5,17 @@ use std::time::Instant;
 use ::report;
 use harness::{
     case::{Case, Tier},
-    make,
+    make::{self, Making, Stored},
     store::Store,
-    suite::{self, Suite},
+    suite::{self, Plans, Suite},
 };
 
 use super::{
     Exit, Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
     output,
-    stored::stored,
     summary::summary,
+    tell_trouble, trouble,
 };
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
@@ -61,23 +61,20 @@ fn show(
 /// `206 runs, 12 of them from the store`.
 pub fn runs(suite: &Suite) -> String {
     let all: usize = suite.cases.iter().map(|results| results.runs.all().len()).sum();
-    let other = match suite.of_other_sources {
+    let other = match suite.made.of_other_sources {
         0 => String::new(),
         count => format!(", {count} of these made by a build of other sources"),
     };
-    match suite.reused {
+    match suite.made.reused {
         0 => format!("{all} runs"),
         count => format!("{all} runs, {count} of them from the store{other},"),
     }
 }
 
-/// 2 if a record could not be kept, 1 if a gate failed.
+/// What a run or its record that failed ends with, 1 if a gate failed.
 pub fn exit(suite: &Suite) -> Exit {
-    match suite.failures() {
-        _ if !suite.not_kept.is_empty() => Exit::Usage,
-        0 => Exit::Pass,
-        _ => Exit::GateFailed,
-    }
+    let verdict = if suite.failures() == 0 { Exit::Pass } else { Exit::GateFailed };
+    trouble(&suite.made).unwrap_or(verdict)
 }
 
 /// Makes what the store lacks, on a pool, with a bar, and refuses to judge what was interrupted.
@@ -91,19 +88,21 @@ pub fn run(
 ) -> Result<Suite, Failure> {
     world.check_references(cases)?;
     let plans = suite::plans(cases, tier);
-    if reuse.fresh {
-        for planned in plans.iter().flat_map(|(_, plan)| plan) {
-            store.remove(&planned.spec)?;
-        }
-    }
     let jobs = make::jobs(plans.clone());
-    let made = world.make(&jobs, tier, Some(store), reuse.any_build, false, threads)?;
-    if world.is_interrupted() {
-        return Err(Failure::interrupted(format!(
-            "nothing is judged; {} of {} records are stored, and the same command makes the others",
-            made.records.len() - made.not_kept.len(),
-            jobs.len()
-        )));
+    let arguments::Reuse { any_build: reuse_other, fresh } = reuse;
+    let making = Making { store: Some(store), reuse_other, fresh, ..world.making(tier) };
+    let made = world.make(&jobs, making, threads)?;
+    if made.interrupted {
+        let (kept, all) = (made.records.len() - made.not_kept.len(), jobs.len());
+        return Err(Failure::interrupted(match fresh {
+            true => format!(
+                "nothing is judged; {kept} of {all} runs were made again, and the other records are those of \
+                 before"
+            ),
+            false => format!(
+                "nothing is judged; {kept} of {all} records are stored, and the same command makes the others"
+            ),
+        }));
     }
     Ok(suite::judge(plans, tier, made))
 }
@@ -122,9 +121,10 @@ pub fn of_store(
     }
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);
-    let (made, [missing, other]) = stored(&plans, &store, any_build, world);
-    if missing + other > 0 {
-        let all = made.reused + missing + other;
+    let Stored { made, missing, other } = stored(&plans, &store, any_build, world);
+    tell_trouble(&made);
+    if !missing.is_empty() {
+        let (all, missing) = (made.reused + missing.len(), missing.len() - other);
         output::say(&format!(
             "note: of {all} runs of the {} tier the store lacks {missing}, and {other} were made by a build \
              of other sources (--any-build accepts them); the gates of both fail",
@@ -132,4 +132,12 @@ pub fn of_store(
         ));
     }
     Ok(suite::judge(plans, tier, made))
+}
+
+/// What a store has of plans, whether or not its timed runs were made alone.
+pub fn stored(plans: &Plans, store: &Store, any_build: bool, world: &World) -> Stored {
+    let mut jobs = make::jobs(plans.clone());
+    jobs.iter_mut().for_each(|job| job.planned.timed = false);
+    let making = Making { store: Some(store), reuse_other: any_build, ..world.making(Tier::Quick) };
+    make::stored(&jobs, &making)
 }

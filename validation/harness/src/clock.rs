@@ -1,0 +1,52 @@
+//! The clocks of a run. They are read through [`Clock`], so that a test can say what time it is.
+
+use std::ops::{AddAssign, Sub};
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use cpu_time::{ProcessTime, ThreadTime};
+
+/// Wall time and processor time since some moment \[s\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// Time that passed.
+    pub wall: f64,
+    /// Time that processors worked.
+    pub cpu: f64,
+}
+
+impl Sub for Reading {
+    type Output = Self;
+    fn sub(self, before: Self) -> Self {
+        Self { wall: self.wall - before.wall, cpu: self.cpu - before.cpu }
+    }
+}
+
+impl AddAssign for Reading {
+    fn add_assign(&mut self, more: Self) {
+        self.wall += more.wall;
+        self.cpu += more.cpu;
+    }
+}
+
+/// Tells the time of a run.
+pub trait Clock: Sync {
+    /// Now, with the processor time of this thread, or of the whole process if the run has several threads:
+    /// runs side by side share a process.
+    fn read(&self, threads: usize) -> Reading;
+}
+
+/// The clocks of the system.
+pub struct System;
+
+impl Clock for System {
+    fn read(&self, threads: usize) -> Reading {
+        static START: OnceLock<Instant> = OnceLock::new();
+        let cpu = match threads {
+            0 | 1 => ThreadTime::now().as_duration(),
+            _ => ProcessTime::now().as_duration(),
+        };
+        let wall = START.get_or_init(Instant::now).elapsed();
+        Reading { wall: wall.as_secs_f64(), cpu: cpu.as_secs_f64() }
+    }
+}
