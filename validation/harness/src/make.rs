@@ -509,10 +509,16 @@ mod tests {
         fn settings(&self, _: &str, set: &[String]) -> Result<Value, RunError> {
             Ok(json!({ "set": set }))
         }
-        fn run(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
+        fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
             let mut record = Record::new(self.name(), &spec.variant, spec.settings.clone(), 1);
             record.put(ERROR, 1.0);
-            Ok(record)
+            (record.cost.wall_s, record.cost.cpu_s) = (7.0, 0.02);
+            match spec.settings["set"][0].as_str() {
+                Some("k=panic") => panic!("staged"),
+                Some("k=file") => Err(RunError::Reference("staged".into())),
+                Some("k=long") if !context.allow_long => Err(RunError::Estimated), // a refusal
+                _ => Ok(record),
+            }
         }
         fn plan(&self, _: Tier) -> Vec<Planned> {
             let planned = |k: i32| Planned::new(spec(self, "v", &[format!("k={k}")]).unwrap());
@@ -521,6 +527,133 @@ mod tests {
         fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
             Vec::new()
         }
+    }
+
+    fn job(k: &str) -> Job {
+        let settings = json!({ "set": [format!("k={k}")] });
+        Job { case: &Quick, planned: Planned::new(RunSpec::new("quick", "v", settings)) }
+    }
+
+    /// Makes the runs that a store lacks, by a build of these sources.
+    fn made(jobs: &[Job], making: &Making) -> Made {
+        make(stored(jobs, making), making)
+    }
+
+    /// Records of another build were reused, and no test reached that branch.
+    #[test]
+    fn a_record_of_other_sources_is_made_again_unless_any_build_will_do() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let jobs = [job("1"), job("2")];
+        // Reused, those of other sources, and whose the first record is then, by a build of these sources.
+        let build = |sources: &'static str, reuse_other: bool| {
+            let of = move |_: &str| sources.to_string();
+            let making =
+                Making { store: Some(&store), reuse_other, ..Making::new(Tier::Quick, &of) };
+            let made = made(&jobs, &making);
+            let first = made.records[&jobs[0].planned.spec.key()].manifest.sources.clone();
+            (made.reused, made.of_other_sources, first)
+        };
+        let (one, other) = (|| "one".to_string(), || "other".to_string());
+        assert_eq!(build("one", false), (0, 0, one()), "an empty store");
+        assert_eq!(build("one", false), (2, 0, one()), "its own records");
+        assert_eq!(build("other", true), (2, 2, one()), "any build will do");
+        assert_eq!(build("other", false), (0, 0, other()), "those of another build are made again");
+        let unknown = base::manifest::UNKNOWN;
+        assert_eq!(build(unknown, false), (0, 0, unknown.into()), "unknown and known differ");
+        assert_eq!(build(unknown, false), (0, 0, unknown.into()), "so do unknown and unknown");
+    }
+
+    /// `--fresh` removed 87 records and was interrupted: one was left.
+    #[test]
+    fn a_record_that_is_made_afresh_stays_until_its_successor_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let (jobs, sources) = ([job("1"), job("2")], |_: &str| "one".to_string());
+        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        made(&jobs, &making);
+        let all = || Store::all(store.path()).unwrap();
+        let before = all();
+        let (stop, fresh) = (AtomicBool::new(true), true);
+        let interrupted = Making { interrupt: Some(&stop), fresh, ..making };
+        assert!(made(&jobs, &interrupted).interrupted);
+        assert_eq!(all(), before);
+        let again = made(&jobs, &Making { fresh, ..making });
+        assert_eq!((again.reused, again.records.len(), all().len()), (0, 2, 2));
+    }
+
+    /// One record in 87 was damaged, and all commands used it for ever or refused the store.
+    #[test]
+    fn a_damaged_record_is_told_and_made_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let (jobs, sources) = ([job("1"), job("2")], |_: &str| "one".to_string());
+        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        made(&jobs, &making);
+        let path = store.path().join(Store::name(&jobs[1].planned.spec));
+        let whole = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, whole.replace("1.0", "1e-12")).unwrap();
+        let again = made(&jobs, &making);
+        assert_eq!((again.reused, again.unsound.len(), again.records.len()), (1, 1, 2));
+        let words = again.unsound.values().next().unwrap().to_string();
+        assert!(words.contains("quick-v-") && words.contains("damaged"), "{words}");
+        assert_eq!(made(&jobs, &making).reused, 2);
+    }
+
+    /// A line of a plan that needed 11 GB ended the process, and all other lines with it.
+    #[test]
+    fn a_run_that_fails_costs_no_other_its_record() {
+        let hook = std::panic::take_hook();
+        std::panic::set_hook(Box::new(|_| ())); // the panic is staged
+        let sources = |_: &str| "one".to_string();
+        let mut jobs = ["1", "panic", "2", "file", "3", "long"].map(job);
+        jobs[4].planned.timed = true;
+        let beside = made(&jobs, &Making::new(Tier::Quick, &sources));
+        jobs.iter_mut().for_each(|job| job.planned.timed = true);
+        let alone = made(&jobs, &Making::new(Tier::Quick, &sources));
+        std::panic::set_hook(hook);
+        for made in [beside, alone] {
+            let failed: Vec<_> = [1, 3].map(|k| &made.failed[&jobs[k].planned.spec.key()]).into();
+            assert!(matches!(failed[..], [Failed::Bug, Failed::Error(_)]), "{failed:?}");
+            let refused = &made.records[&jobs[5].planned.spec.key()].status;
+            assert!(matches!(refused, Status::Refused { .. }), "{refused:?}");
+            assert_eq!((made.records.len(), made.failed.len()), (4, 2));
+        }
+    }
+
+    /// What was refused for its length is made when longer runs are allowed.
+    #[test]
+    fn a_run_that_was_too_long_is_made_when_it_may_be_long() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let (jobs, sources) = ([job("long")], |_: &str| "one".to_string());
+        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        let completed = |making: &Making| {
+            let made = made(&jobs, making);
+            (made.reused, made.records.values().all(|r| r.status == Status::Completed))
+        };
+        assert_eq!(completed(&making), (0, false));
+        assert_eq!(completed(&making), (1, false));
+        assert_eq!(completed(&Making { allow_long: true, ..making }), (0, true));
+    }
+
+    /// A run that was made beside others served as timed, and the quiet phase took wall time.
+    #[test]
+    fn a_timed_run_is_made_alone_and_its_time_is_that_of_the_processor() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let sources = |_: &str| "one".to_string();
+        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        let plain = job("1");
+        let timed = Job { planned: plain.planned.clone().timed(), ..plain.clone() };
+        let alone = |job: &Job, making: &Making| {
+            let made = made(std::slice::from_ref(job), making);
+            (made.reused, made.records[&job.planned.spec.key()].cost.alone_s.clone())
+        };
+        assert_eq!(alone(&plain, &making), (0, vec![]), "made beside others");
+        assert_eq!(alone(&timed, &making), (0, vec![0.02; 3]), "so it is made again, three times");
+        assert_eq!(alone(&timed, &making), (1, vec![0.02; 3]));
+        assert_eq!(alone(&plain, &making), (1, vec![0.02; 3]), "one that was timed serves as well");
     }
 
     /// A full disk, a folder that is read-only: here a file stands in place of the folder.

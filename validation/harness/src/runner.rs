@@ -449,9 +449,10 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
 #[cfg(test)]
 mod tests {
     use base::functions::sin;
+    use std::path::PathBuf;
     use std::sync::{
         Mutex,
-        atomic::{AtomicBool, Ordering},
+        atomic::{AtomicBool, AtomicUsize, Ordering},
     };
 
     use nalgebra::Vector2;
@@ -461,6 +462,7 @@ mod tests {
 
     use super::*;
     use crate::{
+        clock::Clock,
         method::{Method, Parts},
         simulate::state,
     };
@@ -533,6 +535,183 @@ mod tests {
         assert!(shown.len() >= 4, "in 40 steps of 25 ms: {shown:?}");
         assert_eq!(shown[0].1, 0.0, "before the first step, which may take long");
         assert!(shown.windows(2).all(|pair| pair[1].0 - pair[0].0 >= SHOW_EVERY), "{shown:?}");
+    }
+
+    /// Goes on by a second of wall time and half a second of processor time whenever it is read.
+    #[derive(Default)]
+    struct Ticking {
+        now: Mutex<Reading>,
+        reads: AtomicUsize,
+    }
+
+    impl Ticking {
+        fn pass(&self, wall: f64, cpu: f64) {
+            *self.now.lock().unwrap() += Reading { wall, cpu };
+        }
+    }
+
+    impl Clock for Ticking {
+        fn read(&self, _: usize) -> Reading {
+            self.pass(1.0, 0.5);
+            self.reads.fetch_add(1, Ordering::Relaxed);
+            *self.now.lock().unwrap()
+        }
+    }
+
+    /// A run of ten and thirty steps to two times, with an observer after each step that takes so long
+    /// \[wall s, processor s\] by the clock, or with none: what it took, and how often the clock was read.
+    fn clocked(observer: Option<[f64; 2]>) -> (Cost, usize) {
+        let (clock, times, mut wave) = (Ticking::default(), [10.0 * DT, 40.0 * DT], wave());
+        let context = Context { clock: Some(&clock), ..Context::default() };
+        let [wall, cpu] = observer.unwrap_or_default();
+        let observe = |_: &mut (), _: &dyn Stepper<()>| {
+            clock.pass(wall, cpu);
+            Flow::Continue
+        };
+        let mut nothing = ();
+        let mut drive = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut nothing);
+        if observer.is_some() {
+            drive = drive.after_step("observer", &observe);
+        }
+        let (status, cost) = drive.run(&context).unwrap();
+        assert_eq!((status, cost.steps), (Status::Completed, 40));
+        (cost, clock.reads.into_inner())
+    }
+
+    /// Wall time of observing was taken from processor time: an observer that waited for a disk made the run
+    /// look cheaper, down to nothing. Processor time of the last stretch alone passed, too.
+    #[test]
+    fn what_an_observer_takes_is_no_time_of_stepping_whether_it_waits_or_computes() {
+        for observer in [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0]] {
+            let (cost, _) = clocked(Some(observer));
+            // One tick before, between and after the steps of each stretch: 11 + 31.
+            assert_eq!([cost.wall_s, cost.cpu_s], [42.0, 21.0], "{observer:?}");
+            // One tick a step and one at each of the two times.
+            assert_eq!(cost.observing_s, 40.0 * (1.0 + observer[0]) + 2.0, "{observer:?}");
+        }
+    }
+
+    #[test]
+    fn a_run_that_nobody_observes_reads_no_clock_after_its_steps() {
+        let (cost, reads) = clocked(None);
+        assert_eq!([cost.wall_s, cost.cpu_s, cost.observing_s], [2.0, 1.0, 2.0]);
+        assert_eq!(reads, 9, "once at first, then around each of two stretches and two times");
+    }
+
+    /// A run of forty steps that is interrupted after so many, or goes on from the simulations of a checkpoint:
+    /// what it took, and its last checkpoint.
+    fn resumable(
+        stop_at: Option<u64>,
+        earlier: Vec<Vec<u8>>,
+        frames: Option<(PathBuf, usize)>,
+    ) -> (Cost, Vec<Vec<u8>>) {
+        let (clock, flag, mut wave) = (Ticking::default(), AtomicBool::new(false), wave());
+        let (times, kept) = ([40.0 * DT], Mutex::new(Vec::new()));
+        let write = |simulations: &[Vec<u8>]| {
+            *kept.lock().unwrap() = simulations.to_vec();
+            clock.pass(1000.0, 1000.0);
+            Ok(())
+        };
+        let checkpoints = Checkpoints::new(Duration::MAX, earlier, &write);
+        let context = Context {
+            clock: Some(&clock),
+            interrupt: Some(&flag),
+            checkpoints: Some(&checkpoints),
+            frames,
+            ..Context::default()
+        };
+        let stop = |_: &mut (), simulation: &dyn Stepper<()>| {
+            flag.store(Some(simulation.work().steps) == stop_at, Ordering::Relaxed);
+            Flow::Continue
+        };
+        let (_, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+            .after_step("stop", &stop)
+            .run(&context)
+            .unwrap();
+        (cost, kept.into_inner().unwrap())
+    }
+
+    /// Processor time of the last stretch alone was that of the run.
+    #[test]
+    fn what_a_run_took_before_a_checkpoint_is_added_once() {
+        let (whole, _) = resumable(None, Vec::new(), None);
+        let (first, kept) = resumable(Some(10), Vec::new(), None);
+        let (second, _) = resumable(None, kept, None);
+        assert_eq!((first.steps, second.steps, second.resumed), (10, 40, 1));
+        // One tick before each step, and one after the last.
+        assert_eq!([whole.wall_s, whole.cpu_s], [41.0, 20.5]);
+        assert_eq!([second.wall_s, second.cpu_s], [41.0, 20.5], "{second:?}");
+    }
+
+    /// One frame or checkpoint that could not be written ended the run, and all that it had computed was lost.
+    #[test]
+    fn a_run_goes_on_when_a_frame_or_a_checkpoint_cannot_be_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let frames = folder.path().join("vtk");
+        std::fs::create_dir_all(frames.join("particles_0001.vtp/in the way")).unwrap();
+        let (times, mut wave, lost) = ([40.0 * DT], wave(), Mutex::new(Vec::new()));
+        let lose = |error: &RunError| lost.lock().unwrap().push(error.to_string());
+        let tries = AtomicUsize::new(0);
+        let write = |_: &[Vec<u8>]| {
+            tries.fetch_add(1, Ordering::Relaxed);
+            let reason = std::io::Error::other("the disk is full");
+            Err(base::files::FileError::File { path: "checkpoint".into(), reason })
+        };
+        let checkpoints = Checkpoints::new(Duration::from_secs(30), Vec::new(), &write);
+        let clock = Ticking::default();
+        let context = Context {
+            frames: Some((frames.clone(), 4)),
+            checkpoints: Some(&checkpoints),
+            lost: Some(&lose),
+            clock: Some(&clock),
+            ..Context::default()
+        };
+        let (status, cost) =
+            Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ()).run(&context).unwrap();
+        assert_eq!((status, cost.steps), (Status::Completed, 40));
+        let lost = lost.into_inner().unwrap();
+        let of = |name: &str| lost.iter().filter(|words| words.contains(name)).count();
+        // Two ticks a step: every 30 ticks a checkpoint is tried, not after every step.
+        assert_eq!((of("particles_0001"), of("disk is full"), tries.into_inner()), (1, 2, 2));
+        let index = std::fs::read_to_string(frames.join("particles.pvd")).unwrap();
+        let listed = [0, 1, 2, 3].map(|k| index.contains(&format!("particles_000{k}.vtp")));
+        assert_eq!(listed, [true, false, true, true], "{index}");
+    }
+
+    /// `--resume` listed frames that had been deleted.
+    #[test]
+    fn frames_that_were_removed_are_not_listed_and_the_next_keep_their_numbers() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = || {
+            let index = std::fs::read_to_string(folder.path().join("particles.pvd")).unwrap();
+            [0, 1, 2, 3].map(|k| index.contains(&format!("particles_000{k}.vtp")))
+        };
+        let frames = Some((folder.path().to_path_buf(), 4));
+        let (_, kept) = resumable(Some(25), Vec::new(), frames.clone());
+        assert_eq!(names(), [true, true, false, false]);
+        std::fs::remove_file(folder.path().join("particles_0000.vtp")).unwrap();
+        resumable(None, kept, frames);
+        assert_eq!(names(), [false, true, true, true]);
+    }
+
+    /// 9,999 frames of two steps were written before an interrupt was looked at.
+    #[test]
+    fn an_interrupt_is_obeyed_between_the_frames_of_one_step() {
+        let folder = tempfile::tempdir().unwrap();
+        let (flag, times, mut wave) = (AtomicBool::new(false), [2.0 * DT], wave());
+        let frames = Some((folder.path().into(), 9999));
+        let context = Context { frames, interrupt: Some(&flag), ..Context::default() };
+        let stop = |_: &mut (), _: &dyn Stepper<()>| {
+            flag.store(true, Ordering::Relaxed);
+            Flow::Continue
+        };
+        let (status, _) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+            .after_step("stop", &stop)
+            .run(&context)
+            .unwrap();
+        assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
+        let count = std::fs::read_dir(folder.path()).unwrap().count();
+        assert!(count <= 2, "{count} files of frames were written after the interrupt");
     }
 
     /// One run of 400 steps with two observers after each and one at each of two times.

@@ -79,7 +79,7 @@ impl Store {
         self.folder.path()
     }
 
-    fn name(spec: &RunSpec) -> String {
+    pub(crate) fn name(spec: &RunSpec) -> String {
         format!("{}-{}-{}.json", spec.case, spec.variant, spec.key())
     }
 

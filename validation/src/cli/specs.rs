@@ -38,7 +38,8 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
         output::print_whole(&record.to_json()?)?;
     }
-    let words = format!("{lines} lines, {} different runs: {}", jobs.len(), ended(&made));
+    let [runs, lines] = [(jobs.len(), "run"), (lines, "line")].map(output::count);
+    let words = format!("{runs} in {lines}: {}", ended(&made));
     if made.interrupted {
         let rest = "the same command makes the missing runs";
         return Err(Failure::interrupted(format!("{words}; {rest}")));

@@ -292,7 +292,7 @@ fn records_are_reused_judged_rendered_and_compared() {
 #[test]
 fn a_plan_is_run_line_by_line() {
     let folder = tempfile::tempdir().expect("a folder");
-    let spec = |variant: &str| RunSpec::new("right", variant, json!({"set": ["re=1"]}));
+    let spec = |variant: &str| RunSpec::new("right", variant, json!({"re": 1.0}));
     let lines = [spec("right"), spec("diverging")].map(|spec| spec.canonical() + "\n").concat();
     std::fs::write(folder.path().join("specs.jsonl"), lines).expect("a file");
     let go = |rest: &str| {
@@ -301,10 +301,71 @@ fn a_plan_is_run_line_by_line() {
     };
     let count = || std::fs::read_dir(folder.path().join("store")).expect("a store").count();
     assert_eq!(go("--index 2"), Exit::Usage);
-    assert_eq!(go("--index 1"), Exit::Pass);
+    assert_eq!(go("--index 1"), Exit::Diverged);
     assert_eq!(count(), 1);
     assert_eq!(go(&format!("--only {}", spec("right").key())), Exit::Pass);
-    assert_eq!((go(""), count()), (Exit::Pass, 2));
+    assert_eq!(go("--only 0123456789abcdef"), Exit::Usage);
+    assert_eq!((go(""), count()), (Exit::Diverged, 2));
+}
+
+/// How `run --specs` of these lines ends, and how many records there are then.
+fn of_lines(lines: &[&str]) -> (Exit, usize) {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("specs"), lines.join("\n")).expect("a file");
+    let exit = exit_with(&NEVER, "run --specs OUT/specs --store OUT/store", folder.path());
+    let records = std::fs::read_dir(folder.path().join("store"));
+    (exit, records.map_or(0, Iterator::count))
+}
+
+/// Six equal lines were made six times, and `1`, `1.0` and no value had different keys.
+#[test]
+fn a_run_is_made_once_however_often_and_however_it_is_written() {
+    let line =
+        |settings: &str| format!(r#"{{"case":"right","variant":"right","settings":{settings}}}"#);
+    let lines =
+        ["{\"re\":1}", "{\"re\":1.0}", "{\"re\":1e0}", "{}", "{}", "{\"re\": 10e-1}"].map(line);
+    assert_eq!(of_lines(&lines.each_ref().map(String::as_str)), (Exit::Pass, 1));
+    assert_eq!(of_lines(&[&line("{\"re\":1}"), &line("{\"re\":2}")]), (Exit::Pass, 2));
+}
+
+/// An array job took 0 for a run that diverged, or was refused; and one line ended all others.
+#[test]
+fn the_worst_of_all_lines_is_the_exit_code_and_costs_no_other_line() {
+    let [right, diverging, panicking] = ["right", "diverging", "panicking"]
+        .map(|variant| format!(r#"{{"case":"right","variant":"{variant}","settings":{{}}}}"#));
+    let no_spec = r#"{"case":"right","variant":"right","settings":null}"#;
+    assert_eq!(of_lines(&[&right]), (Exit::Pass, 1));
+    assert_eq!(of_lines(&[no_spec, &right]), (Exit::Usage, 1));
+    assert_eq!(of_lines(&["not json", &right]), (Exit::Usage, 1));
+    assert_eq!(of_lines(&[no_spec, &right, &diverging]), (Exit::Diverged, 2));
+    assert_eq!(of_lines(&[&panicking, no_spec, &right, &diverging]), (Exit::Bug, 2));
+    assert_eq!(of_lines(&[no_spec]), (Exit::Usage, 0));
+}
+
+/// Commands on a store whose records were made by a build of other sources.
+#[test]
+fn a_build_judges_its_own_records_unless_any_build_will_do() {
+    static GOOD: [&dyn Case; 1] = [&RIGHT];
+    let folder = tempfile::tempdir().expect("a folder");
+    let build = |sources: fn(&str) -> String, line: &str| {
+        let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
+        let words = std::iter::once("touchstone").chain(line.split(' '));
+        let arguments = Arguments::try_parse_from(words).expect("a sound command line");
+        let world = World { cases: &GOOD, sources, references: Vec::new, interrupt: &NEVER };
+        conclude(|| dispatch(&arguments.command, &world))
+    };
+    let other: fn(&str) -> String = |_| "other".into();
+    assert_eq!(build(sources, "verify --store OUT"), Exit::Pass);
+    for (line, of_its_own, of_another) in [
+        ("judge --store OUT", Exit::Pass, Exit::GateFailed),
+        ("judge --store OUT --any-build", Exit::Pass, Exit::Pass),
+    ] {
+        assert_eq!(build(sources, line), of_its_own, "{line}");
+        assert_eq!(build(other, line), of_another, "{line}");
+    }
+    let unknown: fn(&str) -> String = |_| base::manifest::UNKNOWN.into();
+    assert_eq!(build(unknown, "verify --store OUT"), Exit::Pass);
+    assert_eq!(build(unknown, "judge --store OUT"), Exit::GateFailed, "of whom are they?");
 }
 
 /// Puts a folder that is not empty where a file is to be written: the folder that holds it is writable, and
