@@ -128,6 +128,13 @@ impl Problem for BarSettings {
         self.end.unwrap_or(auto) * 2.0 * self.length / self.wave()
     }
 
+    const DECISIVE: &'static str = "end, dt or n";
+
+    fn count(&self) -> f64 {
+        let bars = if self.collide { 2 } else { 1 };
+        (bars * self.n * self.rows()) as f64
+    }
+
     fn domain(&self) -> Domain {
         Domain { low: Vector2::zeros(), period: [None, Some(self.rows() as f64 * self.dx())] }
     }

@@ -89,6 +89,12 @@ impl Problem for DiskSettings {
         self.end * TAU * self.radius / self.speed()
     }
 
+    const DECISIVE: &'static str = "end, dt or n";
+
+    fn count(&self) -> f64 {
+        std::f64::consts::PI * (self.n as f64).powi(2)
+    }
+
     /// Around the origin, without stress.
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, side) = (self.dx(), 2 * self.n + 1);

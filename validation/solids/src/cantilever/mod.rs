@@ -179,6 +179,8 @@ impl Problem for CantileverSettings {
         self.end
     }
 
+    const DECISIVE: &'static str = "end, dt, n, length or thickness";
+
     fn count(&self) -> f64 {
         self.length / self.dx() * self.n as f64
     }

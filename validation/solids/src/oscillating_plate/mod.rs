@@ -117,6 +117,8 @@ impl Problem for PlateSettings {
         self.end * thin_plate_period(self)
     }
 
+    const DECISIVE: &'static str = "end, dt, n, length or thickness";
+
     fn count(&self) -> f64 {
         self.length / self.dx() * self.n as f64
     }

@@ -90,10 +90,10 @@ pub trait Problem: SharedSettings {
     fn displacement(&self, _place: Vector2<f64>) -> Vector2<f64> {
         Vector2::zeros()
     }
-    /// How many particles there are, where the ranges of the settings do not bound it.
-    fn count(&self) -> f64 {
-        0.0
-    }
+    /// About how many particles there are, before they are made.
+    fn count(&self) -> f64;
+    /// The settings on which the number of particles and of time steps depends.
+    const DECISIVE: &'static str;
 }
 
 /// Sees every step of a run and measures it.
@@ -198,7 +198,7 @@ fn run<P: Problem>(
     let medium = Medium { acceleration, ..settings.medium(method, settings.dx()) };
     let size = simulate::size(method, &medium, [rules.end / rules.dt(), settings.count()])
         .sampled_at_every_step();
-    runner::check_size(size, "end, dt, n, length or thickness", context)?;
+    runner::check_size(size, P::DECISIVE, context)?;
     let (dt, end, material) = (rules.dt(), rules.end, settings.material());
     let numbers = [
         ("h/dx", settings.h_over_dx()),

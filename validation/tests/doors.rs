@@ -1,0 +1,316 @@
+//! What was found to come in, or to get lost, through specs, stores, signals and disks that are full.
+
+#![cfg(unix)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use base::record::Record;
+
+const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
+
+fn touchstone(folder: &Path, line: &str) -> Output {
+    Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
+}
+
+/// The program by way of a shell, after these words.
+fn by_shell(folder: &Path, before: &str, line: &str) -> Command {
+    let mut command = Command::new("sh");
+    command.current_dir(folder).args(["-c", &format!("{before}; exec {TOUCHSTONE} {line}")]);
+    command
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// The files of a folder by name, none if it is not there.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+const SPEC: &str = r#"{"case":"couette","variant":"seed","settings":{"rows":8,"end":0.01}}"#;
+const MAKE: &str = "run --specs specs --store store --threads 1";
+
+/// Makes the runs of these lines.
+fn make(folder: &Path, lines: &[&str]) -> Output {
+    fs::write(folder.join("specs"), lines.join("\n")).unwrap();
+    touchstone(folder, MAKE)
+}
+
+/// Fields that nobody checked: 10^9 pictures, a resolution that was never reached, a variant that was a path.
+#[test]
+fn a_line_that_no_run_can_have_is_told_with_its_field_and_costs_no_other_line() {
+    let couette = |variant: &str, settings: &str, rest: &str| {
+        format!(r#"{{"case":"couette","variant":"{variant}","settings":{settings}{rest}}}"#)
+    };
+    let bisect = |setting: &str, resolution: &str| {
+        let task = format!(
+            r#","task":{{"bisect":{{"setting":"{setting}","guess":1,"unit":1,"resolution":{resolution}}}}}"#
+        );
+        couette("seed", "{}", &task)
+    };
+    let odd = [
+        (couette("x/../../../../EVIL", "{}", ""), "letters, digits, - and _ (column "),
+        (couette("sed", "{}", ""), "has no variant \"sed\" (did you mean seed?)"),
+        (couette("seed", "null", ""), "settings is null; allowed is an object"),
+        (couette("seed", "{\"re\":-1}", ""), "setting re is -1"),
+        (couette("seed", "{\"ra\":1}", ""), "no setting is called \"ra\""),
+        (
+            couette("seed", "{}", r#","keep":{"pictures":1000000000}"#),
+            "keep.pictures is 1000000000",
+        ),
+        (
+            couette("seed", "{}", r#","keep":{"pictures":9223372036854775808}"#),
+            "keep.pictures is 9",
+        ),
+        (bisect("dt", "0"), "task.bisect.resolution is 0.0; allowed is 1e-6 to 1"),
+        (bisect("dt", "-1"), "task.bisect.resolution is -1.0"),
+        (bisect("nothing", "0.1"), "no setting is called \"nothing\""),
+        ("{".into(), "EOF while parsing an object (column 1)"),
+    ];
+    for (line, words) in odd {
+        let folder = tempfile::tempdir().unwrap();
+        let output = make(folder.path(), &[SPEC, &line]);
+        let message = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert!(
+            message.contains("line 2 of specs: ") && message.contains(words),
+            "{line}: {message}"
+        );
+        assert_eq!(names(folder.path()), ["specs", "store"], "{line}");
+        assert_eq!(names(&folder.path().join("store")).len(), 1, "{line}: {message}");
+    }
+}
+
+/// The estimate itself made the scene: 11 GB, and then no other run was made.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_scene_that_is_too_large_is_counted_and_not_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let large = r#"{"case":"couette","variant":"seed","settings":{"rows":2000,"columns":100000}}"#;
+    fs::write(folder.path().join("specs"), format!("{large}\n{SPEC}\n")).unwrap();
+    let output = by_shell(folder.path(), "ulimit -v 2000000", MAKE).output().unwrap();
+    let message = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("2 runs in 2 lines: 1 completed, 0 diverged, 1 refused"), "{message}");
+}
+
+/// "5.89·10⁹ time steps of 0 particles", with advice to change settings that the case lacks.
+#[test]
+fn a_run_that_is_too_long_is_told_with_its_particles_and_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    for (case, particles) in [
+        ("elastic_bar --variant seed --set end=1e5", 240.0),
+        ("spinning_disk --variant seed --set end=1e4", 201.0),
+    ] {
+        let message = said(&touchstone(folder.path(), &format!("run {case}")));
+        let count = message.split(" time steps of ").nth(1).and_then(|rest| rest.split(' ').next());
+        let count: f64 = count.and_then(|count| count.parse().ok()).expect(&message);
+        assert!((count / particles - 1.0_f64).abs() < 0.1, "{particles} particles: {message}");
+        assert!(message.trim_end().ends_with("change end, dt or n"), "{message}");
+    }
+}
+
+#[test]
+fn a_damaged_and_an_older_record_are_told_by_name_and_made_again() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(make(folder.path(), &[SPEC]).status.code(), Some(0));
+    let [name] = &names(&folder.path().join("store"))[..] else { panic!("one record") };
+    let path = folder.path().join("store").join(name);
+    let whole = fs::read_to_string(&path).unwrap();
+    let odd = [
+        (
+            whole.replace("\"schema\": 3", "\"schema\": 2"),
+            "schema 2 and was made by an older version",
+        ),
+        (whole.replacen("\"value\": ", "\"value\": 1", 1), "it was damaged or changed"),
+        (whole[..whole.len() / 2].into(), "the record cannot be read"),
+    ];
+    for (text, words) in odd {
+        fs::write(&path, text).unwrap();
+        let output = touchstone(folder.path(), MAKE);
+        let message = said(&output);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        assert!(message.contains(words) && message.contains(name), "{words}: {message}");
+        assert!(message.contains("0 of them were in the store before"), "{message}");
+        Record::from_json(&fs::read_to_string(&path).unwrap()).expect("it is whole again");
+    }
+}
+
+/// It hung until somebody wrote into the pipe.
+#[test]
+fn a_pipe_in_place_of_a_record_is_told_and_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(make(folder.path(), &[SPEC]).status.code(), Some(0));
+    let path = folder.path().join("store").join(&names(&folder.path().join("store"))[0]);
+    fs::remove_file(&path).unwrap();
+    assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+    for line in [MAKE, "compare store store"] {
+        if line != MAKE {
+            fs::remove_file(&path).unwrap();
+            assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+        }
+        let mut command = Command::new(TOUCHSTONE);
+        command.current_dir(folder.path()).args(line.split(' ')).stdout(Stdio::null());
+        let (code, message) = ended(command.stderr(Stdio::piped()).spawn().unwrap(), 20.0);
+        assert!(message.contains("not a regular file"), "{line}: {code:?} {message}");
+    }
+}
+
+/// Waits for a child, at most so long \[s\]; how it ended and what it said.
+fn ended(mut child: Child, seconds: f64) -> (Option<i32>, String) {
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() && start.elapsed().as_secs_f64() < seconds {
+        sleep(Duration::from_millis(5));
+    }
+    let _ = child.kill(); // has no effect on a child that has ended
+    let output = child.wait_with_output().unwrap();
+    (output.status.code(), said(&output))
+}
+
+fn send(signal: &str, child: &Child) {
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
+}
+
+/// Commands said "interrupting", went on for up to 12 s and ended with 0; a run that wrote many frames took
+/// 58 s, specs of 100,000 lines 70 s.
+#[test]
+fn a_signal_ends_every_command_within_a_second() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines: Vec<String> =
+        (0..20_000).map(|k| SPEC.replace("0.01", &format!("0.01{k}"))).collect();
+    fs::write(folder.path().join("specs"), lines.join("\n")).unwrap();
+    let many: String = (2..=600).map(|k| format!(",{k}")).collect();
+    let plan = format!("plan couette --set re=1{many} --set c0=1{many}");
+    for (line, signal) in [
+        (MAKE, "-INT"),
+        (&plan, "-TERM"),
+        ("stability couette", "-HUP"),
+        ("verify couette poiseuille --store other", "-INT"),
+        ("report --out report", "-TERM"),
+        ("run couette --rows 200 --vtk 9999 --out out --set end=1e-4", "-INT"),
+        ("run extremes --set n=400 --set steps=100000000 --allow-long", "-TERM"),
+    ] {
+        for delay in [30, 400] {
+            let mut command = Command::new(TOUCHSTONE);
+            command.current_dir(folder.path()).args(line.split(' ')).stdout(Stdio::null());
+            let child = command.stderr(Stdio::piped()).spawn().unwrap();
+            sleep(Duration::from_millis(delay));
+            let start = Instant::now();
+            send(signal, &child);
+            let (code, message) = ended(child, 20.0);
+            let (took, name) = (start.elapsed().as_secs_f64(), &line[..line.len().min(40)]);
+            // Before it listens a signal ends it as the system does.
+            let is_over = matches!(code, Some(130) | None);
+            assert!(is_over, "{name} {signal} after {delay} ms: {code:?} {message}");
+            assert!(took < 2.0, "{name} {signal} after {delay} ms: {took:.2} s, {message}");
+        }
+    }
+    let is_part = |name: &String| name.contains("unfinished");
+    let all: Vec<PathBuf> =
+        ["", "out", "store", "other", "report"].map(|at| folder.path().join(at)).into();
+    let parts = all.iter().flat_map(|path| names(path)).filter(is_part);
+    assert_eq!(parts.collect::<Vec<_>>(), Vec::<String>::new());
+}
+
+/// `nohup touchstone …` ended with the terminal.
+#[test]
+fn the_end_of_the_terminal_is_ignored_if_nohup_asks_for_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "run couette --variant seed --rows 40 --threads 1";
+    for (before, expected) in [("trap '' HUP", Some(0)), ("true", Some(130))] {
+        let mut command = by_shell(folder.path(), before, line);
+        let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        sleep(Duration::from_millis(300));
+        send("-HUP", &child);
+        let (code, message) = ended(child, 60.0);
+        assert_eq!(code, expected, "{before}: {message}");
+    }
+}
+
+/// The process was ended by the system, and a part of a file was left.
+#[test]
+fn a_limit_of_the_size_of_files_is_told_and_leaves_no_part() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "run couette --variant seed --rows 8 --set end=0.01 --out out";
+    let output = by_shell(folder.path(), "ulimit -f 1", line).output().unwrap();
+    let message = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("cannot write the file \"out/record.json\""), "{message}");
+    assert_eq!(names(&folder.path().join("out")), Vec::<String>::new());
+    let printed = String::from_utf8(output.stdout).unwrap();
+    Record::from_json(&printed).expect("what was computed is printed");
+}
+
+/// One frame that could not be written ended the run and lost it.
+#[test]
+fn a_run_with_a_frame_that_cannot_be_written_has_its_record_and_ends_with_2() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("out/vtk/particles_0001.vtp/in the way")).unwrap();
+    let line = "run couette --variant seed --rows 8 --set end=0.01 --out out --vtk 3";
+    let output = touchstone(folder.path(), line);
+    let message = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    for words in ["particles_0001.vtp", "the run goes on", "frames or checkpoints not written: 1"] {
+        assert!(message.contains(words), "{words}: {message}");
+    }
+    let record = fs::read_to_string(folder.path().join("out/record.json")).unwrap();
+    Record::from_json(&record).expect("the record of a run that went on");
+}
+
+/// A checkpoint that cannot be written names the last one that could, from which the run can go on.
+#[test]
+fn a_checkpoint_that_cannot_be_written_names_the_last_good_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "run dam_break --set n=28 --threads 1 --out out --checkpoint-every 1";
+    let mut command = Command::new(TOUCHSTONE);
+    command.current_dir(folder.path()).args(line.split(' ')).stdout(Stdio::null());
+    let child = command.stderr(Stdio::piped()).spawn().unwrap();
+    let out = folder.path().join("out");
+    let start = Instant::now();
+    while !out.join("checkpoint").exists() && start.elapsed() < Duration::from_secs(60) {
+        sleep(Duration::from_millis(5));
+    }
+    // Nobody can write into what is no folder any more.
+    fs::rename(&out, folder.path().join("kept")).unwrap();
+    fs::write(&out, "in the way").unwrap();
+    sleep(Duration::from_millis(1500));
+    fs::remove_file(&out).unwrap();
+    fs::rename(folder.path().join("kept"), &out).unwrap();
+    let (code, message) = ended(child, 300.0);
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("the run goes on"), "{message}");
+    assert!(names(&out).contains(&"record.json".to_string()), "{:?}", names(&out));
+}
+
+#[test]
+fn a_setting_that_is_given_twice_and_a_sweep_without_end_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let values: String = (1..=400).map(|k| format!(",{k}")).collect();
+    let cube = ["re", "rows", "c0"].map(|key| format!(" --set {key}=1{values}")).concat();
+    for (line, words) in [
+        (
+            "run couette --set re=1 --set re=2".to_string(),
+            "re is given twice, as \"1\" and as \"2\"",
+        ),
+        ("plan couette --set re=1,3 --set re=2".into(), "re is given twice, as \"1\" and as \"2\""),
+        (format!("plan couette{cube}"), "the sweep has 6.45·10⁷ runs; allowed are at most 1000000"),
+        ("run --specs nofile --store s".into(), "cannot read nofile: No such file"),
+        ("run --specs . --store s".into(), "cannot read .: Is a directory"),
+    ] {
+        let output = touchstone(folder.path(), &line);
+        let message = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(words), "{words}: {message}");
+    }
+    assert_eq!(names(folder.path()), Vec::<String>::new());
+}
