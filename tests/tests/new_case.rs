@@ -44,7 +44,7 @@ fn a_new_term_conserves_both_momenta() {
 #[test]
 fn a_new_case_has_order_cost_budget_and_step_limit() {
     let making = Making::new(Tier::Quick, &|_| "these".into());
-    let suite = suite::run(&[&DECAY], &making).expect("runs");
+    let suite = suite::run(&[&DECAY], &making);
     let [results] = &suite.cases[..] else { panic!("one case") };
     let ids: Vec<&str> = results.studies.iter().map(|study| study.id.as_str()).collect();
     let expected = ["decay-work-precision", "decay-error-budget", "decay-time-step"];

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use base::gate::{Cause, Gate, Purpose};
+use base::spec::RunSpec;
 use harness::{
-    case::{Case, RunError, Tier},
+    case::{self, Case, Planned, RunError, Tier},
     make::Made,
     plan,
     runs::Runs,
@@ -20,6 +21,18 @@ fn no_planned_run_sets_what_its_variant_lacks() {
             let refused = case.rules(&planned.spec);
             let spec = &planned.spec;
             assert!(!matches!(refused, Err(RunError::Unused { .. })), "{refused:?}: {spec:?}");
+        }
+    }
+}
+
+/// The key of a run is that of its resolved spec; a plan that wrote one otherwise would miss its record.
+#[test]
+fn every_planned_run_is_written_as_it_is_read() {
+    for (case, tier) in CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)]) {
+        for Planned { spec, .. } in plan::of_case(*case, tier) {
+            let read = RunSpec::from_canonical(&spec.canonical()).expect("a line of a plan");
+            let resolved = case::resolved(*case, read).expect("a run that is possible");
+            assert_eq!(resolved.canonical(), spec.canonical());
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The record of a run, one JSON document: settings, outcome, metrics, cost, numerics, manifest.
 //!
-//! The document states its [`SCHEMA`]; a reader refuses any other. Its last key is the digest of all that stands
-//! before it, so that a reader refuses a document that was damaged or changed. Floats are stored without loss.
-//! There is no `null`: a number that is not finite is written as `{"not_finite": "NaN"}` (see
+//! The document states its [`SCHEMA`]; a reader refuses any other. Its last key is the digest of all that is
+//! before it, so that a reader refuses a document that was damaged or changed. Floats are stored without
+//! loss. There is no `null`: a number that is not finite is written as `{"not_finite": "NaN"}` (see
 //! [`number`](crate::number)), and the key of a value that does not exist is omitted.
 //!
 //! ```

@@ -20,7 +20,7 @@ use serde_json::Value;
 use thiserror::Error;
 
 use crate::{
-    mutation::{Detect, Mutation},
+    mutation::{Constant, Detect, Mutation},
     reference::sha256,
 };
 
@@ -258,7 +258,12 @@ impl RunSpec {
             within("keep.pictures", count as f64, 1.0..=1000.0, "1 to 1000")?;
         }
         if let Some(mutation) = self.mutation {
-            within("mutation.factor", mutation.factor, 0.1..=10.0, "0.1 to 10")?;
+            // Studies leave out a term, turn its sign, and try how large an error is seen.
+            let (range, allowed) = match mutation.of {
+                Constant::TimeStep => (0.1..=10.0, "0.1 to 10"),
+                _ => (-1000.0..=1000.0, "-1000 to 1000"),
+            };
+            within("mutation.factor", mutation.factor, range, allowed)?;
         }
         let Task::Bisect(Bisect { guess, unit, resolution, end, .. }) = self.task else {
             return Ok(());
@@ -351,7 +356,11 @@ mod tests {
             (spec(r#""keep":{"pictures":9223372036854775808}"#), "keep.pictures is 9.2"),
             (spec(r#""keep":{"pictures":0}"#), "keep.pictures is 0.0"),
             (
-                spec(r#""mutation":{"of":"xsph","factor":-1}"#),
+                spec(r#""mutation":{"of":"xsph","factor":-1001}"#),
+                "mutation.factor is -1001.0; allowed is -1000 to 1000",
+            ),
+            (
+                spec(r#""mutation":{"of":"time_step","factor":-1}"#),
                 "mutation.factor is -1.0; allowed is 0.1 to 10",
             ),
             (bisect(r#","resolution":0"#), "task.bisect.resolution is 0.0; allowed is 1e-6 to 1"),

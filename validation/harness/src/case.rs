@@ -65,8 +65,8 @@ pub fn spec(case: &dyn Case, variant: &str, set: &[String]) -> Result<RunSpec, R
     Ok(RunSpec::new(case.name(), variant, case.settings(variant, set)?))
 }
 
-/// The run that a document describes, with every setting of its case in its usual form, so that equal runs have
-/// equal keys however they are written: settings that it leaves out have the default of the variant.
+/// The run that a document describes, with every setting of its case in its usual form, so that equal runs
+/// have equal keys however they are written. Settings that it leaves out have the default of the variant.
 ///
 /// # Errors
 /// The first name, setting or field that no run of the case can have.

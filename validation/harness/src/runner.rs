@@ -378,8 +378,8 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
     /// that of what is observed.
     ///
     /// # Errors
-    /// If it would take more time or memory than a run may, the folder of frames cannot be made, or it does not
-    /// fit the checkpoint that it goes on from. A frame or a checkpoint that cannot be written is told to
+    /// If it would take more time or memory than a run may, the folder of frames cannot be made, or it does
+    /// not fit the checkpoint that it goes on from. A frame or a checkpoint that cannot be written is told to
     /// [`Context::lost`].
     pub fn run(self, context: &Context) -> Result<(Status, Cost), RunError> {
         let Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed } =
@@ -598,8 +598,8 @@ mod tests {
         assert_eq!(reads, 9, "once at first, then around each of two stretches and two times");
     }
 
-    /// A run of forty steps that is interrupted after so many, or goes on from the simulations of a checkpoint:
-    /// what it took, and its last checkpoint.
+    /// A run of forty steps that is interrupted after so many, or goes on from the simulations of a
+    /// checkpoint: what it took, and its last checkpoint.
     fn resumable(
         stop_at: Option<u64>,
         earlier: Vec<Vec<u8>>,
@@ -643,7 +643,8 @@ mod tests {
         assert_eq!([second.wall_s, second.cpu_s], [41.0, 20.5], "{second:?}");
     }
 
-    /// One frame or checkpoint that could not be written ended the run, and all that it had computed was lost.
+    /// One frame or checkpoint that could not be written ended the run, and all that it had computed was
+    /// lost.
     #[test]
     fn a_run_goes_on_when_a_frame_or_a_checkpoint_cannot_be_written() {
         let folder = tempfile::tempdir().unwrap();

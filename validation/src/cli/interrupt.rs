@@ -65,8 +65,8 @@ fn end() -> ! {
     process::exit(Exit::Interrupted as i32);
 }
 
-/// Listens for signals from now on: interrupts, requests to terminate, and the end of the terminal unless that
-/// was ignored at the start, as `nohup` asks. A limit of the size of files is an error of writing, and no end.
+/// Listens for signals from now on: interrupts, requests to terminate, and the end of the terminal unless
+/// that was ignored at the start, as `nohup` asks. A limit of the size of files is an error of writing.
 ///
 /// # Errors
 /// If the system refuses.
