@@ -677,6 +677,7 @@ mod tests {
         let index = std::fs::read_to_string(frames.join("particles.pvd")).unwrap();
         let listed = [0, 1, 2, 3].map(|k| index.contains(&format!("particles_000{k}.vtp")));
         assert_eq!(listed, [true, false, true, true], "{index}");
+        assert_eq!(index.matches("<DataSet ").count(), 3, "each once: {index}");
     }
 
     /// `--resume` listed frames that had been deleted.
