@@ -372,8 +372,8 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Half of what two particles, or their images, have come nearer to each other at most since the lists
-    /// were built \[m\]: not more than half the diagonal of the box of all displacements, for a period moves
-    /// all images alike; nor than the largest displacement, which a mirror turns.
+    /// were built \[m\]: not more than half the diagonal of the box of all displacements and 0, for a period
+    /// moves all images alike; nor than the largest displacement, which a mirror turns.
     fn approach(&self, extent: Extent) -> f64 {
         let [displacement2, _, right, left, up, down] = extent.largest;
         let diagonal = Vector2::new(right + left, up + down).norm();

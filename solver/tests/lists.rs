@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, Domain, Ghosts, Leapfrog, Open, Outcome, Particle, PlaneWall,
-    Pressure, Scene, Stepper, Tait, lattice, walls::Walls,
+    Pressure, Scene, Stepper, Tait, Work, lattice, walls::Walls,
 };
 
 type Method<W> = Compose<CubicSpline, Pressure<Tait>, Continuity, W, Leapfrog>;
@@ -71,4 +71,83 @@ fn lists_of_water_that_moves_as_a_whole_last_longer() {
 fn lists_of_water_that_falls_on_a_mirror_are_built_in_time() {
     let floor = PlaneWall::new(Vector2::zeros(), Vector2::y(), Vector2::zeros());
     builds(Domain::channel(1.0), Ghosts { walls: vec![floor] }, Vector2::new(0.0, -0.4));
+}
+
+/// Where blocks end \[dx\] that move along `axis` without forces until they meet, periodic across: faces
+/// that are `gap` \[dx\] farther apart than the support at first, on lists with this skin \[h\] and share.
+/// There is one block, which meets its mirror image, or two of different speeds.
+fn met<W: Walls<()>>(walls: &W, count: usize, axis: usize, gap: f64, list: [f64; 2]) -> Vec<V2> {
+    let along = |x: f64, y: f64| if axis == 0 { V2::new(y, x) } else { V2::new(x, y) };
+    let speeds = if axis == 0 { [-1.0, 0.6] } else { [-0.6, 1.0] };
+    let first = V2::new(0.5 * DX, H + 0.5 * gap * DX);
+    let place = |k: usize| {
+        let (side, x) = ([1.0, -1.0][k], lattice(first, DX, 8, 6));
+        x.map(move |x| (along(x.x, side * x.y), along(0.0, speeds[k])))
+    };
+    let particle = |(x, v)| Particle::fluid(x, v, 1.0, DX * DX);
+    let blocks = (0..count).flat_map(place).map(particle).collect();
+    let mut domain = Domain::open();
+    domain.period[1 - axis] = Some(8.0 * DX);
+    let pressure = Pressure::new(Tait::new(1.0, 3.0));
+    let mut scene = Scene::<Method<W>>::new(H, domain, blocks, pressure, Continuity, walls.clone());
+    [scene.skin, scene.skin_share] = [list[0] * H, list[1]];
+    let mut simulation = scene.build().expect("a sound scene");
+    let dt = 0.02 * H;
+    assert_eq!(simulation.advance(100.0 * dt, dt, &mut ()), Outcome::Reached);
+    simulation.particles().into_iter().map(|p| p.position / DX).collect()
+}
+
+/// From twelve distances, so that blocks meet on lists of any age: where they end, lists that are kept do
+/// not change, unless they are kept for twice too long.
+fn check_meetings<W: Walls<()>>(walls: &W, count: usize, axis: usize) {
+    let [mut kept, mut stale] = [0.0_f64; 2];
+    for k in 0..12 {
+        let end = |list| met(walls, count, axis, f64::from(k) / 12.0, list);
+        let exact = end([0.0, 0.5]);
+        let off = |ends: Vec<V2>| {
+            ends.iter().zip(&exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+        };
+        kept = kept.max(off(end([0.4, 0.5])));
+        stale = stale.max(off(end([0.4, 1.0])));
+    }
+    let of = format!("{count} along axis {axis}: distance from where lists of every sweep lead");
+    assert!(kept < 1e-12, "{of}: {kept:e} dx, expected round-off");
+    assert!(stale > 1e-3, "{of}: {stale:e} dx with lists kept for too long, expected more");
+}
+
+/// An image moves against its particle, so they come nearer to each other by more than particles do: lists
+/// kept by the displacements of particles relative to each other gave ends that were 1e-2 dx off.
+#[test]
+fn blocks_that_fall_on_a_mirror_from_twelve_heights_end_where_they_do_without_kept_lists() {
+    for axis in [0, 1] {
+        let normal = [V2::x(), V2::y()][axis];
+        let wall = PlaneWall::new(V2::zeros(), normal, V2::zeros());
+        check_meetings(&Ghosts { walls: vec![wall] }, 1, axis);
+    }
+}
+
+/// The box of displacements is a line. With two of its sides swapped it had the smaller diagonal of a
+/// rectangle.
+#[test]
+fn blocks_that_meet_along_one_axis_only_end_where_they_do_without_kept_lists() {
+    for axis in [0, 1] {
+        check_meetings(&Open, 2, axis);
+    }
+}
+
+/// Its particles do not move against each other, so their displacements are a point: lists kept as long as
+/// the point has no extent ended the run at half a period.
+#[test]
+fn water_that_moves_by_more_than_a_period_is_not_taken_for_lost() {
+    let water = lattice(V2::repeat(0.5 * DX), DX, 8, 8);
+    let water = water.map(|x| Particle::fluid(x, V2::new(0.8, 0.6), 1.0, DX * DX)).collect();
+    let (domain, pressure) = (Domain::torus(0.4, 0.4), Pressure::new(Tait::new(1.0, 3.0)));
+    let scene = Scene::<Method<Open>>::new(H, domain, water, pressure, Continuity, Open);
+    let mut simulation = scene.build().expect("a sound scene");
+    let outcome = simulation.advance(1.0, DT, &mut ());
+    assert_eq!(outcome, Outcome::Reached, "after {} s of 1 s", simulation.time());
+    // A particle crosses the skin, twice what lists allow for, in 4 steps.
+    let Work { steps, list_builds, .. } = simulation.work();
+    let expected = steps / 4..=steps / 3 + 1;
+    assert!(expected.contains(&list_builds), "{list_builds} builds, expected {expected:?}");
 }
