@@ -15,7 +15,7 @@ const LAYERS: [(&str, &str, &[&str]); 15] = [
     ("lagrangian", "solver/lagrangian", &["lanes", "solver"]),
     ("base", "validation/base", &[]),
     ("report", "validation/report", &["base"]),
-    ("maths", "validation/maths", &["solver", "consistent", "base"]),
+    ("maths", "validation/maths", &["solver", "consistent", "lagrangian", "base"]),
     ("harness", "validation/harness", &["solver", "consistent", "base", "report", "maths"]),
     (
         "fluids",

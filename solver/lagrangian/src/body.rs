@@ -44,7 +44,7 @@ impl<L: Law> Body<L> {
         let at_rest =
             |place: &Vector2<f64>| Column { displacement: Vector2::zeros(), place: *place };
         let columns: Vec<Column> = reference.places.iter().map(at_rest).collect();
-        let hourglass = hourglass(&moduli, strength, reference.gradient_factor());
+        let hourglass = hourglass(moduli.shear, strength, reference.gradient_factor());
         let tensors = vec![Matrix2::zeros(); columns.len()];
         Self { reference, moduli, hourglass, columns, tensors, parallel, law: PhantomData }
     }
@@ -127,9 +127,9 @@ impl<L: Law> Body<L> {
     }
 }
 
-/// c = 8/3 χ μ/G₁, the modulus against modes that deform no particle \[Pa\].
-pub fn hourglass(moduli: &Moduli, strength: f64, gradient_factor: f64) -> f64 {
-    8.0 / 3.0 * strength * moduli.shear / gradient_factor
+/// c = 8/3 χ μ/G₁, the modulus against modes that deform no particle \[Pa\], from μ \[Pa\], χ and G₁.
+pub fn hourglass(shear: f64, strength: f64, gradient_factor: f64) -> f64 {
+    8.0 / 3.0 * strength * shear / gradient_factor
 }
 
 /// uₐᵦ and Xₐᵦ of four neighbours.

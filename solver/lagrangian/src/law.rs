@@ -253,6 +253,36 @@ mod tests {
         check::<SaintVenantKirchhoff>();
     }
 
+    /// The trace of a stress has τᶻᶻ too. At small strains the mean is K tr ε and the deviator 2μ (ε − tr ε/3),
+    /// of all laws; at a large uniaxial stretch by a Saint-Venant's law has τˣˣ = (λ + 2μ) E a² and
+    /// τʸʸ = τᶻᶻ = λ E with E = (a² − 1)/2, so that τˣˣ − mean is two thirds of τˣˣ − τᶻᶻ.
+    #[test]
+    fn the_mean_stress_is_a_third_of_the_trace_in_three_dimensions() {
+        fn check<L: Law>() {
+            let e = 1e-6;
+            let stress = L::stress(&MODULI, &Strain::new(Matrix2::new(e, 0.0, 0.0, 0.0)));
+            let deviator = stress.deviator;
+            for (found, expected, of) in [
+                (stress.mean, 3.0 * e, "mean"),
+                (deviator.xx, 2.0 * 0.7 * e * 2.0 / 3.0, "xx"),
+                (deviator.yy, -2.0 * 0.7 * e / 3.0, "yy"),
+            ] {
+                let error = (found / expected - 1.0).abs();
+                assert!(error < 1e-5, "{}, {of}: {found:e} Pa, expected {expected:e} Pa", L::NAME);
+            }
+        }
+        check::<Hencky>();
+        check::<NeoHookean>();
+        check::<SaintVenantKirchhoff>();
+        let a = 1.7;
+        let (lambda, green) = (3.0 - 1.4 / 3.0, 0.5 * (a * a - 1.0));
+        let [along, across] = [(lambda + 1.4) * green * a * a, lambda * green];
+        let strain = Strain::new(Matrix2::new(a - 1.0, 0.0, 0.0, 0.0));
+        let stress = SaintVenantKirchhoff::stress(&MODULI, &strain);
+        assert_relative_eq!(stress.mean, (along + 2.0 * across) / 3.0, max_relative = 1e-13);
+        assert_relative_eq!(stress.deviator.xx, (along - across) * 2.0 / 3.0, max_relative = 1e-13);
+    }
+
     /// Uniaxial stretch by a factor a: σ = K(1 − 1/a) + (4/3) μ ln(a)/a.
     #[test]
     fn hencky_has_the_stress_of_a_large_stretch() {

@@ -209,9 +209,28 @@ fn faces_that_slide_along_each_other_feel_the_same_pressure_everywhere() {
         }
     }
     assert_eq!(contact.pressure(1.0), 0.0);
-    // k o at first.
-    let k = Contact::of(&MODULI).stiffness;
-    assert!((contact.pressure(0.999) / (1e-3 * k) - 1.0).abs() < 0.01);
+}
+
+/// k o at first, with k = (K + 4μ/3)/4 for K = 2 Pa and μ = 0.7 Pa; and 2 k o of a plane, which does not
+/// yield.
+#[test]
+fn the_stiffness_of_contact_is_a_quarter_of_the_modulus_of_longitudinal_waves() {
+    let expected = 0.733_333;
+    let found = contact().pressure(0.9999) / 1e-4;
+    assert!((found / expected - 1.0).abs() < 1e-3, "faces: {found} Pa, expected {expected} Pa");
+    let contact = Contact::of(&MODULI);
+    let (normal, point) = (Vector2::y(), Vector2::zeros());
+    // A particle of size 1 touches the plane at the distance 1/2.
+    let plane = RigidPlane { point: Vector2::new(0.0, 1e-4), normal, contact };
+    let solid = build::<Hencky, _, _>(scene(block(4, 3, 0.0), Open, plane));
+    let of_row = forces(&solid).into_iter().filter(|(_, x, ..)| x.y < 1.0);
+    let found = of_row.fold(0.0, |sum, (.., f)| sum + f.y) / 4.0 / 1e-4;
+    let expected = 2.0 * expected;
+    assert!((found / expected - 1.0).abs() < 1e-3, "plane: {found} Pa, expected {expected} Pa");
+    let beside = RigidPlane { point, ..plane };
+    let solid = build::<Hencky, _, _>(scene(block(4, 3, 0.0), Open, beside));
+    let largest = forces(&solid).iter().map(|(.., f)| f.norm()).fold(0.0, f64::max);
+    assert!(largest < 1e-14, "a plane half a size away pushes with {largest:e} N/m, expected 0");
 }
 
 /// Two blocks meet and part: the energy that contact stores is given back, and momentum stays.

@@ -8,10 +8,11 @@
 //! sum of squares, λ (tr H)²/2 + μ H:H + ¼ c Σ_b g |E|² a particle, whose least value is half of the bending
 //! stiffness. Frequencies go with its root, and deflections under a load with its inverse.
 
+use lagrangian::body::hourglass;
 use nalgebra::{DMatrix, DVector};
 use solver::kernel::{Kernel, Smoothing};
 
-use super::{lagrangian::hourglass_modulus, lattice::SquareLattice};
+use super::{lagrangian::HOURGLASS, lattice::SquareLattice};
 
 /// Σ a (l·w + m)²/2, so many unknowns w.
 struct Squares {
@@ -45,7 +46,8 @@ pub fn stiffness<K: Kernel>(h_over_dx: f64, layers: usize, poisson: f64) -> f64 
     // E = 1.
     let mu = 0.5 / (1.0 + poisson);
     let lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
-    let c = hourglass_modulus(mu, SquareLattice::<K>::new(h_over_dx, 0.0).gradient_factor());
+    let factor = SquareLattice::<K>::new(h_over_dx, 0.0).gradient_factor();
+    let c = hourglass(mu, HOURGLASS, factor);
     let (matrix, vector) = (DMatrix::zeros(layers, layers), DVector::zeros(layers));
     let mut squares = Squares { matrix, vector, constant: 0.0 };
     let none = DVector::zeros(layers);

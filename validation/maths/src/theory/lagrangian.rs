@@ -10,6 +10,7 @@
 //! [`fastest_of_block`] finds them by power iteration.
 
 use base::functions::sin;
+use lagrangian::body::hourglass;
 use nalgebra::{Matrix2, Vector2};
 use solver::kernel::{Kernel, Smoothing};
 
@@ -21,11 +22,6 @@ use super::lattice::SquareLattice;
 /// +0.6, -0.05 and -0.04 % with 5, 10 and 20 layers (χ = 1: -3.4, -1.15 and -0.32 %), see
 /// [`bending`](super::bending), and shear waves keep a third of the error that they have without it.
 pub const HOURGLASS: f64 = 4.0 / 3.0;
-
-/// c = 8/3 χ μ/G₁ \[Pa\], the modulus against modes that deform no particle, from μ \[Pa\] and G₁.
-pub fn hourglass_modulus(shear: f64, gradient_factor: f64) -> f64 {
-    8.0 / 3.0 * HOURGLASS * shear / gradient_factor
-}
 
 /// Neighbours of a particle of the block: index, vector, and weight F.
 type Neighbours = Vec<(usize, Vector2<f64>, f64)>;
@@ -55,7 +51,7 @@ impl Block {
         };
         let inverse = neighbours.iter().map(|near| moments(near).try_inverse().unwrap_or_default());
         let factor = SquareLattice::<K>::new(h_over_dx, 0.0).gradient_factor();
-        let moduli = [longitudinal - 2.0 * shear, shear, hourglass_modulus(shear, factor)];
+        let moduli = [longitudinal - 2.0 * shear, shear, hourglass(shear, HOURGLASS, factor)];
         Self { inverse: inverse.collect(), neighbours, moduli }
     }
 
@@ -128,7 +124,7 @@ mod tests {
         let (factor, h) = (lattice.gradient_factor(), lattice.h_over_dx());
         let q2 = lattice.gradient(theta).norm_squared() / (factor * h).powi(2);
         let rest = 0.5 * (lattice.diffusion(theta) / (h * h) - factor * q2);
-        modulus * q2 + hourglass_modulus(shear, factor) * rest
+        modulus * q2 + hourglass(shear, HOURGLASS, factor) * rest
     }
 
     /// Long waves have the moduli, and shear waves along the axes a third of the error of the gradient, with
