@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Lines that a function may have, from `fn` to its closing brace.
 const FUNCTION_LINES: usize = 70;
@@ -10,6 +11,26 @@ const COLUMNS: usize = 110;
 /// Lines that the solver may have without its tests, and those that the crates beside it may have.
 const SOLVER_LINES: [(&str, usize); 3] =
     [("solver/src", 3000), ("solver/consistent/src", 250), ("solver/lagrangian/src", 900)];
+/// What is tracked in the root beside folders: documents, licences and the settings of tools.
+const ROOT_FILES: &[&str] = &[
+    ".gitignore",
+    "ARCHITECTURE.md",
+    "CHANGELOG.md",
+    "CITATION.cff",
+    "CONTRIBUTING.md",
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+    "SECURITY.md",
+    "clippy.toml",
+    "deny.toml",
+    "rustfmt.toml",
+];
+/// Folders of the root that are tracked.
+const ROOT_FOLDERS: &[&str] =
+    &[".ci", ".github", "docs", "references", "reports", "solver", "tests", "validation"];
 /// Functions that may be longer, as `file.rs: name`, with a reason beside each.
 const LONG_FUNCTIONS: &[&str] = &[];
 /// Split, so that this file does not contain what it looks for.
@@ -320,6 +341,34 @@ fn no_text_names_a_machine() {
         }
     }
     assert_none("a text that is committed holds no path of one machine", found);
+}
+
+/// What git tracks, or all files where it tracks nothing: in an archive of the sources.
+fn tracked() -> Vec<String> {
+    let git = Command::new("git").arg("-C").arg(root()).args(["ls-files", "-z"]).output();
+    let of_git = git.ok().filter(|output| output.status.success() && !output.stdout.is_empty());
+    of_git.map_or_else(
+        || files(&root()).iter().map(|path| relative(path)).collect(),
+        |output| {
+            String::from_utf8_lossy(&output.stdout)
+                .split_terminator('\0')
+                .map(String::from)
+                .collect()
+        },
+    )
+}
+
+/// A profile of 2.3 MB, with paths of the machine that made it, was tracked in the root by accident.
+#[test]
+fn no_output_of_a_tool_is_tracked_in_the_root() {
+    let tracked = tracked();
+    assert!(tracked.len() > 500, "only {} files are tracked", tracked.len());
+    let is_strange = |path: &String| match path.split_once('/') {
+        Some((folder, _)) => !ROOT_FOLDERS.contains(&folder),
+        None => !ROOT_FILES.contains(&path.as_str()),
+    };
+    let strange = tracked.into_iter().filter(is_strange).collect();
+    assert_none("a file in the root is a document, a licence or a tool's settings", strange);
 }
 
 #[test]
