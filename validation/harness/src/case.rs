@@ -25,6 +25,17 @@ pub struct Variant {
     pub about: &'static str,
 }
 
+/// The variant of a case that runs unless another one is named.
+#[derive(Clone, Copy, Debug)]
+pub struct Best {
+    /// Its name.
+    pub variant: &'static str,
+    /// What it is better in than the others, with numbers, in words that follow "best, for".
+    pub because: &'static str,
+    /// The variant that is the paper's, or comes closest to it.
+    pub papers: Option<&'static str>,
+}
+
 /// A benchmark.
 pub trait Case: Sync {
     /// Name on the command line.
@@ -35,6 +46,10 @@ pub trait Case: Sync {
     fn about(&self) -> &'static str;
     /// The variants to compare.
     fn variants(&self) -> Vec<Variant>;
+    /// The best of them, if that is known.
+    fn best(&self) -> Option<Best> {
+        None
+    }
     /// The settings.
     fn fields(&self) -> &'static [Field];
     /// All settings of a variant with `key=value` texts applied, as the record states them.

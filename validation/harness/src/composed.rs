@@ -10,6 +10,7 @@ use base::{
     spec::RunSpec,
 };
 
+pub use crate::case::Best;
 use crate::{
     case::{self, Case, Planned, Rules, RunError, Tier, Variant},
     context::Context,
@@ -142,6 +143,8 @@ pub struct Composed<T> {
     pub name: &'static str,
     /// The problem in at most ten words.
     pub problem: &'static str,
+    /// The variant that runs unless another one is named, and why.
+    pub best: Best,
     /// The problem in words.
     pub about: &'static str,
     /// The variants.
@@ -231,6 +234,10 @@ impl<T: Settings + 'static> Case for Composed<T> {
 
     fn about(&self) -> &'static str {
         self.about
+    }
+
+    fn best(&self) -> Option<Best> {
+        Some(self.best)
     }
 
     fn variants(&self) -> Vec<Variant> {

@@ -21,7 +21,7 @@ use base::{
 use harness::{
     case::{Planned, Rules, RunError, Step},
     columns::Columns,
-    composed::{self, Composed, Composition, Program, Variants},
+    composed::{self, Best, Composed, Composition, Program, Variants},
     context::Context,
     declare::Declaration,
     method::{Method, Parts},
@@ -49,6 +49,11 @@ base::settings! {
 pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
     name: NAME,
     problem: "A small wave in rubber; a block that rotates",
+    best: Best {
+        variant: CubicSpline::NAME,
+        because: "all kernels follow the theory of the lattice to round-off, and this one takes the fewest pairs",
+        papers: None,
+    },
     about: "The frequency of an infinitesimal wave in rubber on a stress-free lattice is known exactly \
             from the gradient symbol of the kernel. The shear modulus is 0.22 K, the wave has 16 \
             particles, and the effect of the time step is divided out. A second test is a block under a \

@@ -16,7 +16,7 @@ use base::{
 use harness::{
     case::{Planned, Tier},
     columns::Columns,
-    composed::{self, Composed},
+    composed::{self, Best, Composed},
     declare::{Accuracy, Declaration, ErrorOf},
     runs::Runs,
     simulate,
@@ -42,6 +42,11 @@ crate::solid_settings! {
 pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     name: DiskSettings::NAME,
     problem: "A free elastic disk spins",
+    best: Best {
+        variant: "lagrangian",
+        because: "it keeps its angular momentum to round-off, where the paper's disk loses all of its spin",
+        papers: Some("seed"),
+    },
     about: "A free elastic disk begins to spin without stress. Angular momentum must stay, and stress must \
             stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
             for strain.",

@@ -11,7 +11,7 @@ use fluids::bench;
 use harness::{case, context::Context, profile};
 use validation::cases;
 
-use super::{Exit, Failure, Outcome, World, arguments, list::default_variant, on_threads, output};
+use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
 
 pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
@@ -152,20 +152,20 @@ fn bench(world: &World) -> Result<(), Failure> {
 }
 
 /// The runs that are timed as a whole, at sizes that take about a second each on a machine of 2023.
-const WHOLE: [(&str, &str); 5] = [
-    ("couette", "rows=50"),
-    ("poiseuille", "rows=50"),
-    ("periodic_hill", "end=5"),
-    ("dam_break", "n=24"),
-    ("rubber_rings", "spacing=0.2"),
+const WHOLE: [(&str, &str, &str); 5] = [
+    ("couette", "modern", "rows=50"),
+    ("poiseuille", "curved", "rows=50"),
+    ("periodic_hill", "carried", "end=5"),
+    ("dam_break", "modern", "n=24"),
+    ("rubber_rings", "leapfrog", "spacing=0.2"),
 ];
 
 /// Times runs of the five cases as `touchstone run` makes them.
 fn whole_runs(world: &World) -> Result<(), Failure> {
     let mut rows = Vec::new();
-    for (name, set) in WHOLE {
+    for (name, variant, set) in WHOLE {
         let case = cases::find(name)?;
-        let spec = case::spec(case, default_variant(case), &[set.to_string()])?;
+        let spec = case::spec(case, variant, &[set.to_string()])?;
         let (interrupt, profile) = (Some(world.interrupt), true);
         let context = Context { interrupt, profile, ..Context::default() };
         let Cost { particles, steps, particle_rhs, wall_s, observing_s, breakdown, .. } =
@@ -176,7 +176,7 @@ fn whole_runs(world: &World) -> Result<(), Failure> {
         let each = |seconds: f64| 1e9 * seconds / (particles as f64 * steps as f64);
         let sweeps = breakdown.map_or(f64::NAN, |breakdown| breakdown.share(&profile::SWEEPS));
         rows.push(vec![
-            format!("{name} {} {set}", spec.variant),
+            format!("{name} {variant} {set}"),
             particles.to_string(),
             steps.to_string(),
             report::sig(each(wall_s), 3),

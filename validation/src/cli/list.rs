@@ -1,19 +1,15 @@
 //! `list`: cases, variants and settings.
 
-use harness::case::{Case, Tier};
+use harness::case::{Best, Case};
 use serde_json::{Value, json};
 use validation::cases;
 
 use super::{Exit, Outcome, World, arguments, output};
 
-/// The variant that runs unless another one is named: the best one of the card of the case, else `modern`.
+/// The variant that runs unless another one is named: the best one of the case, if that is known.
 pub fn default_variant(case: &dyn Case) -> &'static str {
-    let card = case.declaration(Tier::Quick).card;
-    let best = card.and_then(|card| card.runs.into_iter().next()).map(|spec| spec.variant);
-    let preferred = best.as_deref().unwrap_or("modern");
-    let variants = case.variants();
-    let found = variants.iter().find(|variant| variant.name == preferred);
-    found.or(variants.first()).map_or("", |variant| variant.name)
+    let first = || case.variants().first().map_or("", |variant| variant.name);
+    case.best().map_or_else(first, |best| best.variant)
 }
 
 pub fn list(arguments: &arguments::List, world: &World) -> Outcome {
@@ -39,67 +35,50 @@ fn pretty(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
-/// A line a case: the problem, and the variants for it.
+/// A line a case: the problem, and the variants for it; then why each is the best.
 fn overview(world: &World) -> String {
     let row = |case: &&dyn Case| {
-        let shown = Shown::of(*case);
-        let name = |variant: &Option<String>| variant.clone().unwrap_or_default();
-        vec![
-            case.name().to_string(),
-            case.problem().to_string(),
-            shown.default.to_string(),
-            name(&shown.best),
-            name(&shown.papers),
-        ]
+        let papers = case.best().and_then(|best| best.papers).unwrap_or_default();
+        [case.name(), case.problem(), default_variant(*case), papers].map(String::from).to_vec()
     };
     let rows: Vec<Vec<String>> = world.cases.iter().map(row).collect();
-    let heads = ["case", "problem", "variant that runs", "best", "the paper's"];
+    let heads = ["case", "problem", "best variant", "the paper's"];
+    let reason = |case: &&dyn Case| {
+        let Best { variant, because, .. } = case.best()?;
+        let words = format!("{} {variant}: {because}", case.name());
+        Some(output::wrap(&words, 100, "    ").trim_start().to_string())
+    };
+    let reasons: String = world.cases.iter().filter_map(reason).map(|r| format!("  {r}")).collect();
     output::table(&heads, &rows)
-        + "\nThe best variant is the one that the report shows first, for its error and cost.\n\
-           `touchstone list CASE` shows all variants and settings of a case, `touchstone run CASE` runs it.\n"
+        + "\nThe best variant runs unless another one is named. It is the best because\n"
+        + &reasons
+        + "\n`touchstone list CASE` shows all variants and settings of a case, `touchstone run CASE` runs it.\n"
 }
 
-/// The variants of a case that have a name of their own.
-struct Shown {
-    /// Runs unless another one is named.
-    default: &'static str,
-    /// The first of the card of the case, if it has one.
-    best: Option<String>,
-    /// The second of it.
-    papers: Option<String>,
-}
-
-impl Shown {
-    fn of(case: &dyn Case) -> Self {
-        let card = case.declaration(Tier::Quick).card;
-        let mut runs = card.into_iter().flat_map(|card| card.runs).map(|spec| spec.variant);
-        Self { default: default_variant(case), best: runs.next(), papers: runs.next() }
-    }
-
-    /// What a variant is, in words.
-    fn marks(&self, variant: &str) -> String {
-        let is = |of: &Option<String>| of.as_deref() == Some(variant);
-        let marks = [
-            (self.default == variant, "runs by default"),
-            (is(&self.best), "best"),
-            (is(&self.papers), "the paper's"),
-        ];
-        let words: Vec<&str> = marks.into_iter().filter(|(is, _)| *is).map(|(_, w)| w).collect();
-        if words.is_empty() { String::new() } else { format!(" ({})", words.join(", ")) }
+/// What a variant is, in words.
+fn marks(case: &dyn Case, variant: &str) -> &'static str {
+    match case.best() {
+        Some(best) if best.variant == variant => " (runs by default, best)",
+        Some(best) if best.papers == Some(variant) => " (the paper's)",
+        None if default_variant(case) == variant => " (runs by default)",
+        _ => "",
     }
 }
 
 fn details(case: &dyn Case) -> String {
     let mut text = format!("{}\n{}\n", case.name(), output::wrap(case.about(), 100, "    "));
-    let shown = Shown::of(case);
     text += "variants\n";
     for variant in case.variants() {
-        let marks = shown.marks(variant.name);
+        let marks = marks(case, variant.name);
         text += &format!("  {:<18} {}{marks}\n", variant.name, variant.about);
         let differs = differences(case, variant.name).join(" ");
         if !differs.is_empty() {
             text += &output::wrap(&differs, 100, &" ".repeat(21));
         }
+    }
+    if let Some(best) = case.best() {
+        let reason = format!("`{}` is the best: {}", best.variant, best.because);
+        text += &output::wrap(&reason, 100, "  ");
     }
     let fields: Vec<Vec<String>> = case
         .fields()
@@ -146,10 +125,13 @@ fn json(case: &dyn Case) -> Value {
             })
         })
         .collect();
-    let Shown { default, best, papers } = Shown::of(case);
+    let best = case.best();
     json!({
         "name": case.name(), "problem": case.problem(), "about": case.about(),
-        "default_variant": default, "best_variant": best, "papers_variant": papers,
+        "default_variant": default_variant(case),
+        "best_variant": best.map(|best| best.variant),
+        "best_because": best.map(|best| best.because),
+        "papers_variant": best.and_then(|best| best.papers),
         "variants": variants, "settings": settings,
     })
 }

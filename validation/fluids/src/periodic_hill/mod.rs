@@ -20,7 +20,7 @@ mod studies;
 use consistent::{ConsistentPressure, ConsistentViscosity};
 use harness::{
     case::Case,
-    composed::{Composed, Composition, Variants},
+    composed::{Best, Composed, Composition, Variants},
     method::{self, Method, Standard},
 };
 use solver::{
@@ -136,6 +136,11 @@ const BEST: &str = "carried";
 static CASE: Composed<HillSettings> = Composed {
     name: NAME,
     problem: "Flow over a row of hills, with separation",
+    best: Best {
+        variant: BEST,
+        because: "with ten spacings a hill height its velocity is wrong by 1.4 % of the mean, and its force and drag balance are the best, without sums that cost more for each pair",
+        papers: Some("interface-wall"),
+    },
     about: "A body force keeps a given flux through a channel with hills on its floor, one every nine \
             heights, and a flat lid. From Re 50 on the flow leaves the wall behind the crest and comes \
             back to it in the trough, or on the next hill. It is steady and laminar, along walls that are \

@@ -18,7 +18,7 @@ use base::{record::Record, settings::Settings};
 use harness::{
     case::{RunError, Tier},
     checkpoint::Observed,
-    composed::{self, Composed, Composition},
+    composed::{self, Best, Composed, Composition},
     context::Context,
     declare::Declaration,
     method::Method,
@@ -63,6 +63,11 @@ base::settings! {
 pub static EXTREMES: Composed<ExtremeSettings> = Composed {
     name: "extremes",
     problem: "Extreme settings and scenes: does the program stay sound?",
+    best: Best {
+        variant: "rest",
+        because: "each variant is an experiment of its own, and this one is the plainest",
+        papers: None,
+    },
     about: "Extreme scenes and settings must end well, or be refused with a reason. They are a lattice at \
             rest for very long, particles on top of each other or far from all others, a block at a \
             thousand times the speed of sound, impossible scenes, vortices with sound too slow and too \

@@ -23,7 +23,7 @@ use base::{
 use harness::{
     bisect::{Bracket, STABLE, UNSTABLE},
     case::{Planned, Tier},
-    composed::{Composed, Composition},
+    composed::{Best, Composed, Composition},
     declare::Declaration,
     runs::Runs,
 };
@@ -79,6 +79,11 @@ pub const WAVE_ANGLE: MetricKey =
 pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     name: "resting_box",
     problem: "Small noise at rest: is the time step stable?",
+    best: Best {
+        variant: "cubic-leapfrog",
+        because: "all have the limit that theory predicts, and this one takes the fewest pairs a step",
+        papers: None,
+    },
     about: "Velocity noise of 1e-8 c0 excites every wave of a periodic lattice at rest. Its energy grows \
             if the time step is beyond the limit that linear theory of the same box predicts.",
     variants,

@@ -27,7 +27,7 @@ use base::{
 };
 use harness::{
     case::{Planned, Tier},
-    composed::{self, Composed, Composition, Program, Variants},
+    composed::{self, Best, Composed, Composition, Program, Variants},
     declare::Declaration,
     method::Method,
 };
@@ -210,6 +210,11 @@ pub const fn case<P: Kind>() -> Composed<WaveSettings> {
     Composed {
         name: P::CASE.name,
         problem: P::CASE.problem,
+        best: Best {
+            variant: "cubic-leapfrog",
+            because: "all kernels follow the theory of the lattice to round-off, and this one takes the fewest pairs",
+            papers: None,
+        },
         about: P::CASE.about,
         variants: variants::<P>,
         is_stable: composed::completed,

@@ -14,7 +14,7 @@ use base::record::MetricKey;
 use end::End;
 use harness::{
     case::RunError,
-    composed::{self, Composed, Composition, Variants},
+    composed::{self, Best, Composed, Composition, Variants},
     method::Method,
 };
 use path::*;
@@ -39,6 +39,11 @@ crate::solid_settings! {
 pub static CANTILEVER: Composed<CantileverSettings> = Composed {
     name: CantileverSettings::NAME,
     problem: "A clamped elastic bar swings under its own weight",
+    best: Best {
+        variant: "lagrangian",
+        because: "with 10 layers its end falls as far as in finite elements to 0.1 %, the paper's 38 % farther",
+        papers: Some("seed"),
+    },
     about: "An elastic bar, held at one end and at rest without stress, begins to swing when its weight \
             begins to act: shape, material and load are those of the test CSM3 of Turek & Hron (2006). The \
             path of its end is compared with finite elements of the same bar and law.",

@@ -53,7 +53,7 @@ fn card(accuracy: &Accuracy) -> Card {
         picture: ("rubber-rings-pictures", 2),
         error: "restitution".into(),
         metric: RESTITUTION_ERROR.into(),
-        runs: accuracy.finest(&["leapfrog", "seed"]),
+        runs: accuracy.finest(&[RUBBER_RINGS.best.variant, "seed"]),
         against: "finite elements",
         uncertainty: number.map(|(value, uncertainty)| uncertainty / value),
         reach: ("speed", "speeds of", " c0 each"),

@@ -45,7 +45,7 @@ fn card(tier: Tier) -> Card {
         picture: ("dam-break-martin-moyce-pictures", 3),
         error: "front after its best shift in time, rms in column widths".into(),
         metric: FRONT.rms_shifted.into(),
-        runs: vec![finest("modern"), finest("seed")],
+        runs: vec![finest(DAM_BREAK.best.variant), finest("seed")],
         against: "the experiment of Martin & Moyce",
         uncertainty: Some(FRONT_SPREAD),
         reach: ("n", "", " spacings across the column"),
