@@ -50,3 +50,28 @@ impl Clock for System {
         Reading { wall: wall.as_secs_f64(), cpu: cpu.as_secs_f64() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::thread::{scope, sleep};
+    use std::time::Duration;
+
+    use super::*;
+
+    /// Runs side by side would each take the time of all.
+    #[test]
+    fn a_run_of_one_thread_is_not_charged_for_the_work_of_others() {
+        let is_over = AtomicBool::new(false);
+        let [alone, all] = scope(|scope| {
+            scope.spawn(|| while !is_over.load(Ordering::Relaxed) {});
+            let before = [1, 2].map(|threads| System.read(threads));
+            sleep(Duration::from_millis(200));
+            let after = [1, 2].map(|threads| System.read(threads));
+            is_over.store(true, Ordering::Relaxed);
+            [0, 1].map(|k| after[k] - before[k])
+        });
+        assert!(alone.wall >= 0.2 && alone.cpu < 0.02, "it only waited: {alone:?}");
+        assert!(all.cpu > alone.cpu + 0.02, "the other thread works: {all:?} against {alone:?}");
+    }
+}

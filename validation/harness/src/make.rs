@@ -622,6 +622,23 @@ mod tests {
         }
     }
 
+    /// Two threads with one long run at the end: one of them would have nothing to do.
+    #[test]
+    fn the_longest_runs_are_made_first() {
+        let sources = |_: &str| "one".to_string();
+        let planned = |k: &str, seconds| {
+            let job = job(k);
+            Job { planned: job.planned.taking(seconds), ..job }
+        };
+        let jobs = [planned("1", 1.0), planned("2", 7.0), planned("3", 2.0)];
+        let shares = Mutex::new(Vec::new());
+        let progress = |done: Done| shares.lock().unwrap().push(done.share);
+        let progress: Option<&Progress> = Some(&progress);
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        one.install(|| made(&jobs, &Making { progress, ..Making::new(Tier::Quick, &sources) }));
+        assert_eq!(shares.into_inner().unwrap(), [0.0, 0.7, 0.9, 1.0]);
+    }
+
     /// What was refused for its length is made when longer runs are allowed.
     #[test]
     fn a_run_that_was_too_long_is_made_when_it_may_be_long() {

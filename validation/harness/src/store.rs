@@ -171,6 +171,12 @@ mod tests {
         assert!(matches!(store.find(&whole.spec(), UNKNOWN), Found::Other(_)));
         let finer = whole.spec().with_setting("rows", 40);
         assert!(matches!(store.find(&finer, "abc"), Found::Nothing));
+        let path = store.path().join(Store::name(&whole.spec()));
+        let of_finer = store.path().join(Store::name(&finer));
+        fs::copy(&path, &of_finer).unwrap();
+        let found = store.find(&finer, "abc");
+        assert!(matches!(found, Found::Nothing), "the record of another run: {found:?}");
+        fs::remove_file(of_finer).unwrap();
         assert_eq!(Store::all(store.path()).unwrap(), [whole]);
     }
 
