@@ -7,13 +7,18 @@ use anyhow::Context as _;
 use base::{
     functions::ln,
     gate::{Bound, Verdict},
-    record::Record,
+    record::{Record, Status},
+    spec::RunSpec,
 };
-use harness::store::Store;
+use harness::{
+    case::{Case, Planned, Tier},
+    plan,
+    store::Store,
+};
 use serde_json::{Value, json};
 
 use super::{
-    Exit, Failure, Outcome, arguments,
+    Exit, Failure, Outcome, World, arguments,
     judged::{Judged, Verdicts},
     output,
 };
@@ -53,58 +58,124 @@ impl Side {
     }
 }
 
+/// What changed, the worst first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    NewFailure,
+    EndedEarly,
+    RunGone,
+    GateGone,
+    MetricsGone,
+    Verdict,
+    Status,
+    RunNew,
+    GateNew,
+    MetricsNew,
+    Value,
+    Metrics,
+    State,
+    Work,
+    Seconds,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::NewFailure => "new failure",
+            Self::EndedEarly => "run ended early",
+            Self::RunGone => "run gone",
+            Self::GateGone => "gate gone",
+            Self::MetricsGone => "metrics gone",
+            Self::Verdict => "verdict",
+            Self::Status => "status",
+            Self::RunNew => "run new",
+            Self::GateNew => "gate new",
+            Self::MetricsNew => "metrics new",
+            Self::Value => "value",
+            Self::Metrics => "metrics",
+            Self::State => "state",
+            Self::Work => "work",
+            Self::Seconds => "seconds",
+        }
+    }
+
+    /// Does something fail that did not, or is something not known any more that was?
+    fn is_loss(self) -> bool {
+        self <= Self::MetricsGone
+    }
+}
+
 /// A change of one gate or run, in words and as data.
 struct Change {
-    kind: &'static str,
+    kind: Kind,
     name: String,
     words: String,
 }
 
-/// A value moved if it did by more than this share of the scale of its gate's bound.
+/// A value moved if it did by more than this share of the scale of its gate's bound, or of itself if no gate
+/// judges it.
 const RESOLUTION: f64 = 0.01;
 
 /// Seconds of a run are told if they differ by more than this factor.
 const NOTABLE: f64 = 1.1;
 
-pub fn compare(arguments: &arguments::Compare) -> Outcome {
+/// Metrics of a run that are told by name.
+const TOLD: usize = 3;
+
+pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
     let (before, after) = (Side::read(&arguments.before)?, Side::read(&arguments.after)?);
     let mut changes = Vec::new();
-    if let (Some(old), Some(new)) = (&before.verdicts, &after.verdicts) {
-        changes.extend(of_verdicts(old, new));
+    match (&before.verdicts, &after.verdicts) {
+        (Some(old), Some(new)) => changes.extend(of_verdicts(old, new)),
+        (None, None) => {}
+        _ => {
+            let words = "one has verdicts, the other only records; touchstone judge makes verdicts";
+            output::say(&format!("note: no gates are compared: {words}"));
+        }
     }
-    changes.extend(of_records(&before.records, &after.records));
-    let failures = changes.iter().filter(|change| change.kind == NEW_FAILURE).count();
+    changes.extend(of_records(&before.records, &after.records, &bounds(world, &after.records)));
+    changes.sort_by_key(|change| change.kind);
+    let count = |of: fn(Kind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
+    let (losses, failures) = (count(Kind::is_loss), count(|kind| kind == Kind::NewFailure));
     if arguments.json {
         let all: Vec<Value> = changes
             .iter()
-            .map(|c| json!({"kind": c.kind, "name": c.name, "change": c.words}))
+            .map(|c| json!({"kind": c.kind.name(), "name": c.name, "change": c.words}))
             .collect();
-        output::print_whole(&format!("{:#}\n", json!({"new_failures": failures, "changes": all})))?;
+        let all = json!({"new_failures": failures, "losses": losses, "changes": all});
+        output::print_whole(&format!("{all:#}\n"))?;
     } else {
         output::print(&in_words(&changes, &before, &after))?;
     }
-    Ok(if failures > 0 { Exit::GateFailed } else { Exit::Pass })
+    Ok(if losses > 0 { Exit::GateFailed } else { Exit::Pass })
 }
 
-const NEW_FAILURE: &str = "new failure";
-const KINDS: [&str; 8] =
-    [NEW_FAILURE, "verdict", "gate gone", "gate new", "value", "state", "work", "seconds"];
+/// The bounds of the gates of these runs, by run and metric.
+type Bounds = BTreeMap<(String, String), Bound>;
+
+fn bounds(world: &World, records: &BTreeMap<String, Record>) -> Bounds {
+    let is_asked = |case: &&&'static dyn Case| records.values().any(|r| r.case == case.name());
+    let plans = world.cases.iter().filter(is_asked).flat_map(|case| {
+        [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| plan::of_case(*case, tier))
+    });
+    let of_run = |planned: Planned| {
+        let RunSpec { case, variant, .. } = &planned.spec;
+        let run = format!("{case} {variant} {}", planned.spec.key());
+        planned.gates.into_iter().map(move |gate| ((run.clone(), gate.metric), gate.bound))
+    };
+    plans.flat_map(of_run).collect()
+}
 
 fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
     let shared = after.records.keys().filter(|name| before.records.contains_key(*name)).count();
     let mut text = format!(
-        "{} runs before, {} after, {shared} in both\n",
-        before.records.len(),
+        "{} before, {} after, {shared} in both\n",
+        output::count((before.records.len(), "run")),
         after.records.len()
     );
-    for kind in KINDS {
-        let of_kind: Vec<&Change> = changes.iter().filter(|change| change.kind == kind).collect();
-        if !of_kind.is_empty() {
-            text += &format!("\n{kind}: {}\n", of_kind.len());
-            for change in of_kind {
-                text += &format!("  {}: {}\n", change.name, change.words);
-            }
-        }
+    for of_kind in changes.chunk_by(|a, b| a.kind == b.kind) {
+        text += &format!("\n{}: {}\n", of_kind[0].kind.name(), of_kind.len());
+        of_kind.iter().for_each(|change| text += &format!("  {}: {}\n", change.name, change.words));
     }
     if changes.is_empty() { text + "nothing changed\n" } else { text }
 }
@@ -118,21 +189,26 @@ fn of_verdicts(old: &BTreeMap<String, Judged>, new: &BTreeMap<String, Judged>) -
         |value: Option<f64>| value.map_or("not measured".to_string(), |v| format!("{v:?}"));
     for (id, was) in old {
         let Some(is) = new.get(id) else {
-            add("gate gone", id, was.judgement.verdict.to_string());
+            add(Kind::GateGone, id, was.judgement.verdict.to_string());
             continue;
         };
         let [from, to] = [&was.judgement, &is.judgement];
         let values = format!("{} to {}", number(from.value), number(to.value));
         if to.verdict == Verdict::Fail && from.verdict != Verdict::Fail {
-            add(NEW_FAILURE, id, format!("{}; {values}; bound {}", from.verdict, is.gate.bounds()));
+            add(
+                Kind::NewFailure,
+                id,
+                format!("{}; {values}; bound {}", from.verdict, is.gate.bounds()),
+            );
         } else if kind_of(&from.verdict) != kind_of(&to.verdict) {
-            add("verdict", id, format!("{} to {}; {values}", from.verdict, to.verdict));
-        } else if moved(is.gate.bound, from.value, to.value) {
-            add("value", id, values);
+            add(Kind::Verdict, id, format!("{} to {}; {values}", from.verdict, to.verdict));
+        } else if has_moved(is.gate.bound.scale(), from.value, to.value) {
+            add(Kind::Value, id, values);
         }
     }
     for (id, is) in new.iter().filter(|(id, _)| !old.contains_key(*id)) {
-        let kind = if is.judgement.verdict == Verdict::Fail { NEW_FAILURE } else { "gate new" };
+        let kind =
+            if is.judgement.verdict == Verdict::Fail { Kind::NewFailure } else { Kind::GateNew };
         add(kind, id, format!("{}; {}", is.judgement.verdict, number(is.judgement.value)));
     }
     changes
@@ -143,23 +219,45 @@ fn kind_of(verdict: &Verdict) -> std::mem::Discriminant<Verdict> {
     std::mem::discriminant(verdict)
 }
 
-fn moved(bound: Bound, from: Option<f64>, to: Option<f64>) -> bool {
+/// Is the difference more than the resolution of a value of this scale? What is not a number is equal to
+/// nothing else.
+fn has_moved(scale: f64, from: Option<f64>, to: Option<f64>) -> bool {
     match (from, to) {
-        (Some(from), Some(to)) => (from - to).abs() > RESOLUTION * bound.scale(),
+        (Some(from), Some(to)) if from == to || (from.is_nan() && to.is_nan()) => false,
+        (Some(from), Some(to)) => {
+            let is_within = (from - to).abs() <= RESOLUTION * scale;
+            !is_within // so is a difference that is not a number
+        }
         _ => from.is_some() != to.is_some(),
     }
 }
 
-fn of_records(old: &BTreeMap<String, Record>, new: &BTreeMap<String, Record>) -> Vec<Change> {
+fn of_records(
+    old: &BTreeMap<String, Record>,
+    new: &BTreeMap<String, Record>,
+    bounds: &Bounds,
+) -> Vec<Change> {
     let mut changes = Vec::new();
     let mut add = |kind, name: &str, words: String| {
         changes.push(Change { kind, name: name.to_string(), words });
     };
+    for (name, was) in old.iter().filter(|(name, _)| !new.contains_key(*name)) {
+        add(Kind::RunGone, name, was.status.to_string());
+    }
     for (name, is) in new {
-        let Some(was) = old.get(name) else { continue };
+        let Some(was) = old.get(name) else {
+            add(Kind::RunNew, name, is.status.to_string());
+            continue;
+        };
+        if was.status != is.status {
+            let is_worse = was.status == Status::Completed;
+            let kind = if is_worse { Kind::EndedEarly } else { Kind::Status };
+            add(kind, name, format!("{} to {}", was.status, is.status));
+        }
+        of_metrics(name, was, is, bounds, &mut add);
         if was.state != is.state {
             let words = format!("other bits at the end ({} to {})", was.status, is.status);
-            add("state", name, words);
+            add(Kind::State, name, words);
         }
         let (from, to) = (&was.cost, &is.cost);
         if (from.steps, from.pair_interactions) != (to.steps, to.pair_interactions) {
@@ -167,7 +265,7 @@ fn of_records(old: &BTreeMap<String, Record>, new: &BTreeMap<String, Record>) ->
                 "{} to {} steps, {} to {} pair interactions",
                 from.steps, to.steps, from.pair_interactions, to.pair_interactions
             );
-            add("work", name, words);
+            add(Kind::Work, name, words);
         }
         let (Some(before), Some(after)) = (from.alone_median(), to.alone_median()) else {
             continue;
@@ -175,8 +273,163 @@ fn of_records(old: &BTreeMap<String, Record>, new: &BTreeMap<String, Record>) ->
         let is_other = ln(after / before).abs() > ln(NOTABLE);
         if is_other && was.manifest.is_same_machine(&is.manifest) {
             let words = format!("{before:.4} to {after:.4} s, {:.3} times", after / before);
-            add("seconds", name, words);
+            add(Kind::Seconds, name, words);
         }
     }
     changes
+}
+
+/// Metrics of one run that went, came or moved, in one change each.
+fn of_metrics(
+    name: &str,
+    was: &Record,
+    is: &Record,
+    bounds: &Bounds,
+    add: &mut impl FnMut(Kind, &str, String),
+) {
+    let value = |record: &Record, metric: &str| record.metrics.get(metric).map(|m| m.value);
+    let lacking = |of: &Record, other: &Record| -> Vec<String> {
+        let reason = |metric: &String| match other.absent.get(metric) {
+            Some(why) => format!("{metric} ({why})"),
+            None => metric.clone(),
+        };
+        let gone = of.metrics.keys().filter(|metric| value(other, metric).is_none());
+        gone.map(reason).collect()
+    };
+    let moved = was.metrics.iter().filter_map(|(metric, from)| {
+        let (from, to) = (from.value, value(is, metric)?);
+        let bound = bounds.get(&(name.to_string(), metric.clone()));
+        let scale = bound.map_or(from.abs().max(to.abs()), |bound| bound.scale());
+        has_moved(scale, Some(from), Some(to)).then(|| format!("{metric} {from:?} to {to:?}"))
+    });
+    for (kind, metrics) in [
+        (Kind::MetricsGone, lacking(was, is)),
+        (Kind::MetricsNew, lacking(is, was)),
+        (Kind::Metrics, moved.collect()),
+    ] {
+        let (count, told) = (metrics.len(), metrics.iter().take(TOLD).cloned());
+        let told = told.collect::<Vec<_>>().join(", ");
+        match count {
+            0 => {}
+            1..=TOLD => add(kind, name, told),
+            _ => add(kind, name, format!("{told} and {} more", count - TOLD)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use base::gate::{Evidence, Gate};
+    use base::record::MetricKey;
+    use harness::runs;
+
+    use super::*;
+
+    const L2: MetricKey = MetricKey::new("l2", "-", "staged");
+    const DRIFT: MetricKey = MetricKey::new("drift", "-", "staged");
+
+    /// Runs 0 to 2, whose metric `l2` has a gate of at most 0.5 and `drift` none.
+    fn records() -> (BTreeMap<String, Record>, Bounds) {
+        let record = |k: usize| {
+            let mut record = Record::new("c", "v", json!({ "k": k }), 1);
+            record.put(L2, 0.1);
+            record.put(DRIFT, 1e-9);
+            record.state = Some("same".into());
+            record.cost.alone_s = vec![1.0];
+            record.manifest.cpu = "staged".into();
+            (k.to_string(), record)
+        };
+        let bound = |k: usize| ((k.to_string(), "l2".to_string()), Bound::Below(0.5));
+        ((0..3).map(record).collect(), (0..3).map(bound).collect())
+    }
+
+    /// The changes after something was done to the record of run 1.
+    fn changes(change: impl Fn(&mut Record)) -> Vec<(Kind, String)> {
+        let (old, bounds) = records();
+        let mut new = old.clone();
+        change(new.get_mut("1").expect("run 1"));
+        let changes = of_records(&old, &new, &bounds).into_iter();
+        changes.map(|change| (change.kind, format!("{}: {}", change.name, change.words))).collect()
+    }
+
+    #[track_caller]
+    fn one(change: impl Fn(&mut Record), kind: Kind, words: &str) {
+        assert_eq!(changes(change), [(kind, format!("1: {words}"))]);
+    }
+
+    /// "nothing changed" was said of 87 records whose metrics were all 123.0.
+    #[test]
+    fn a_metric_that_moved_by_more_than_the_resolution_of_its_gate_is_told() {
+        assert_eq!(changes(|_| ()), []);
+        assert_eq!(changes(|record| record.put(L2, 0.1049)), [], "0.98 % of the bound 0.5");
+        one(|record| record.put(L2, 0.1051), Kind::Metrics, "l2 0.1 to 0.1051");
+        one(|record| record.put(L2, 123.0), Kind::Metrics, "l2 0.1 to 123.0");
+        one(|record| record.put(L2, f64::NAN), Kind::Metrics, "l2 0.1 to NaN");
+        assert_eq!(changes(|record| record.put(DRIFT, 1.009e-9)), [], "0.9 % of itself");
+        one(|record| record.put(DRIFT, 1.02e-9), Kind::Metrics, "drift 1e-9 to 1.02e-9");
+        let all = |record: &mut Record| {
+            record.metrics.values_mut().for_each(|metric| metric.value = 123.0);
+        };
+        one(all, Kind::Metrics, "drift 1e-9 to 123.0, l2 0.1 to 123.0");
+    }
+
+    #[test]
+    fn a_metric_that_vanished_or_came_is_told_with_its_reason() {
+        let gone = |record: &mut Record| {
+            record.metrics.remove("l2");
+            record.absent.insert("l2".into(), "no reference".into());
+        };
+        one(gone, Kind::MetricsGone, "l2 (no reference)");
+        one(|record| record.metrics.clear(), Kind::MetricsGone, "drift, l2");
+        let new = |record: &mut Record| record.put(MetricKey::new("new", "-", "staged"), 1.0);
+        one(new, Kind::MetricsNew, "new");
+        assert!(Kind::MetricsGone.is_loss() && !Kind::MetricsNew.is_loss());
+    }
+
+    #[test]
+    fn a_run_that_vanished_or_ended_otherwise_is_told() {
+        let (old, bounds) = records();
+        let mut new = old.clone();
+        new.remove("1");
+        for (from, to, kind) in [(&old, &new, Kind::RunGone), (&new, &old, Kind::RunNew)] {
+            let found = of_records(from, to, &bounds);
+            let found: Vec<_> = found.iter().map(|c| (c.kind, c.name.as_str())).collect();
+            assert_eq!(found, [(kind, "1")]);
+        }
+        let refused = |record: &mut Record| record.status = Status::Refused { reason: "x".into() };
+        one(refused, Kind::EndedEarly, "completed to refused: x");
+        assert!(Kind::RunGone.is_loss() && Kind::EndedEarly.is_loss() && !Kind::RunNew.is_loss());
+    }
+
+    /// Slower runs were told, and faster ones were not.
+    #[test]
+    fn seconds_work_and_bits_are_told() {
+        one(|r| r.cost.alone_s = vec![0.8], Kind::Seconds, "1.0000 to 0.8000 s, 0.800 times");
+        one(|r| r.cost.alone_s = vec![1.2], Kind::Seconds, "1.0000 to 1.2000 s, 1.200 times");
+        assert_eq!(changes(|record| record.cost.alone_s = vec![1.09]), []);
+        one(|r| r.cost.steps = 7, Kind::Work, "0 to 7 steps, 0 to 0 pair interactions");
+        let other = "other bits at the end (completed to completed)";
+        one(|record| record.state = Some("other".into()), Kind::State, other);
+    }
+
+    /// `compare` ended with 0 when all gates were gone.
+    #[test]
+    fn a_gate_that_is_gone_or_fails_is_a_loss() {
+        let judged = |value: f64| {
+            let gate = Gate::new("c.l2", "l2", Bound::Below(0.5), Evidence::Theory, "staged");
+            let judged = Judged::from(&runs::Judged::new(gate, Some(value)));
+            BTreeMap::from([("c.l2".to_string(), judged)])
+        };
+        let kinds = |old: &BTreeMap<_, _>, new: &BTreeMap<_, _>| -> Vec<Kind> {
+            of_verdicts(old, new).iter().map(|change| change.kind).collect()
+        };
+        assert_eq!(kinds(&judged(0.1), &BTreeMap::new()), [Kind::GateGone]);
+        assert_eq!(kinds(&BTreeMap::new(), &judged(0.1)), [Kind::GateNew]);
+        assert_eq!(kinds(&BTreeMap::new(), &judged(0.6)), [Kind::NewFailure]);
+        assert_eq!(kinds(&judged(0.1), &judged(0.6)), [Kind::NewFailure]);
+        assert_eq!(kinds(&judged(0.6), &judged(0.1)), [Kind::Verdict]);
+        assert_eq!(kinds(&judged(0.1), &judged(0.1049)), [], "0.98 % of the bound");
+        assert_eq!(kinds(&judged(0.1), &judged(0.1051)), [Kind::Value]);
+        assert!(Kind::GateGone.is_loss() && Kind::NewFailure.is_loss() && !Kind::Value.is_loss());
+    }
 }

@@ -319,7 +319,7 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
         Command::Verify(arguments) => verify::verify(arguments, world),
         Command::Judge(arguments) => verify::judge(arguments, world),
         Command::Report(arguments) => report::report(arguments, world),
-        Command::Compare(arguments) => compare::compare(arguments),
+        Command::Compare(arguments) => compare::compare(arguments, world),
         Command::Stability(arguments) => stability::stability(arguments, world),
         Command::Explain(arguments) => explain::explain(arguments, world),
         Command::Doctor(arguments) => doctor::doctor(arguments, world),

@@ -285,6 +285,9 @@ fn records_are_reused_judged_rendered_and_compared() {
     assert_eq!(good("touchstone compare OUT/a OUT/b"), Exit::Pass);
     assert_eq!(on(&SOUND, "touchstone report --out OUT/c"), Exit::GateFailed);
     assert_eq!(good("touchstone compare OUT/a OUT/c --json"), Exit::GateFailed);
+    // The gates of `wrong` are gone in the other direction.
+    assert_eq!(good("touchstone compare OUT/c OUT/a"), Exit::GateFailed);
+    assert_eq!(good("touchstone compare OUT/c/records OUT/a/records"), Exit::GateFailed);
     // A store that lacks a run fails its gates rather than passing over them.
     assert_eq!(on(&SOUND, "touchstone judge --store OUT/a/records"), Exit::GateFailed);
 }
