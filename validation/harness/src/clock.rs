@@ -64,7 +64,11 @@ mod tests {
     fn a_run_of_one_thread_is_not_charged_for_the_work_of_others() {
         let is_over = AtomicBool::new(false);
         let [alone, all] = scope(|scope| {
-            scope.spawn(|| while !is_over.load(Ordering::Relaxed) {});
+            scope.spawn(|| {
+                while !is_over.load(Ordering::Relaxed) {
+                    std::hint::spin_loop()
+                }
+            });
             let before = [1, 2].map(|threads| System.read(threads));
             sleep(Duration::from_millis(200));
             let after = [1, 2].map(|threads| System.read(threads));

@@ -122,7 +122,7 @@ fn planned(
     Ok((planned, refused))
 }
 
-/// More than this is no list of runs [bytes].
+/// More than this is no list of runs \[bytes\].
 const MOST_BYTES: u64 = 1 << 28;
 
 fn read(file: &Path) -> io::Result<String> {
