@@ -23,10 +23,10 @@ use super::{
     output,
 };
 
-/// A report, or a store without verdicts.
+/// A report, whose records may be elsewhere, or a store without verdicts.
 struct Side {
     verdicts: Option<BTreeMap<String, Judged>>,
-    records: BTreeMap<String, Record>,
+    records: Option<BTreeMap<String, Record>>,
 }
 
 impl Side {
@@ -45,16 +45,17 @@ impl Side {
         };
         let below = path.join("records");
         let records = match (below.is_dir(), &verdicts) {
-            (true, _) => Store::all(&below)?,
-            (false, None) => Store::all(path)?,
-            (false, Some(_)) => Vec::new(), // a report whose records are elsewhere
+            (true, _) => Some(Store::all(&below)?),
+            (false, None) => Some(Store::all(path)?),
+            (false, Some(_)) => None,
         };
-        if verdicts.is_none() && records.is_empty() {
+        if verdicts.is_none() && records.as_ref().is_none_or(Vec::is_empty) {
             let words = format!("{} is neither a report nor a store", path.display());
             return Err(Failure::usage(anyhow::anyhow!(words)));
         }
         let name = |r: Record| (format!("{} {} {}", r.case, r.variant, r.key()), r);
-        Ok(Self { verdicts, records: records.into_iter().map(name).collect() })
+        let records = records.map(|records| records.into_iter().map(name).collect());
+        Ok(Self { verdicts, records })
     }
 }
 
@@ -133,7 +134,11 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
             output::say(&format!("note: no gates are compared: {words}"));
         }
     }
-    changes.extend(of_records(&before.records, &after.records, &bounds(world, &after.records)));
+    match (&before.records, &after.records) {
+        (Some(old), Some(new)) => changes.extend(of_records(old, new, &bounds(world, new))),
+        (None, None) => {}
+        _ => output::say("note: no runs are compared: only one of the reports holds its records"),
+    }
     changes.sort_by_key(|change| change.kind);
     let count = |of: fn(Kind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
     let (losses, failures) = (count(Kind::is_loss), count(|kind| kind == Kind::NewFailure));
@@ -167,12 +172,12 @@ fn bounds(world: &World, records: &BTreeMap<String, Record>) -> Bounds {
 }
 
 fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
-    let shared = after.records.keys().filter(|name| before.records.contains_key(*name)).count();
-    let mut text = format!(
-        "{} before, {} after, {shared} in both\n",
-        output::count((before.records.len(), "run")),
-        after.records.len()
-    );
+    let mut text = String::new();
+    if let (Some(old), Some(new)) = (&before.records, &after.records) {
+        let shared = new.keys().filter(|name| old.contains_key(*name)).count();
+        let before = output::count((old.len(), "run"));
+        text += &format!("{before} before, {} after, {shared} in both\n", new.len());
+    }
     for of_kind in changes.chunk_by(|a, b| a.kind == b.kind) {
         text += &format!("\n{}: {}\n", of_kind[0].kind.name(), of_kind.len());
         of_kind.iter().for_each(|change| text += &format!("  {}: {}\n", change.name, change.words));

@@ -1,5 +1,6 @@
 //! What the runs of a plan take, estimated before the first of them: what plans say is a guess.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, PoisonError};
 
 use base::spec::{RunSpec, Task};
@@ -33,6 +34,7 @@ fn size(job: &Job, allow_long: bool) -> Option<Size> {
     let context =
         Context { allow_long, estimate: Some(&tell), only_estimate: true, ..Context::default() };
     let spec = RunSpec { task: Task::Simulate, ..job.planned.spec.clone() };
-    let _ = job.case.run(&spec, &context);
+    // What fails here fails again when it is made, and is told then.
+    let _ = catch_unwind(AssertUnwindSafe(|| job.case.run(&spec, &context)));
     told.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
