@@ -1,7 +1,6 @@
 //! A case of its own in one file: the decay of a shear wave in a periodic box.
 
-use base::functions::{exp, sin};
-use base::record::{MetricKey, Record};
+use base::{functions::*, record::*};
 use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate::*};
 use nalgebra::Vector2;
 use solver::*;

@@ -310,7 +310,7 @@ const SHORT: [&str; 18] = [
     "taylor_couette --set layers=6 --set end=0.5",
     "acoustic_wave",
     "shear_wave --set span=0.2",
-    "elastic_bar --set n=12",
+    "elastic_bar --set n=24",
     "spinning_disk --variant bare --set n=8 --set end=0.1 --set courant=0.8",
     "oscillating_plate --set n=4 --set end=0.1",
     "cantilever --variant lagrangian --set n=4 --set end=0.02",
@@ -621,7 +621,7 @@ fn told(folder: &Path) -> (String, u32) {
 #[test]
 fn a_killed_run_goes_on_to_an_equal_record() {
     let folder = tempfile::tempdir().unwrap();
-    let run = ["run", "dam_break", "--set", "n=28", "--vtk", "4", "--threads", "1", "--out"];
+    let run = ["run", "dam_break", "--set", "n=40", "--vtk", "4", "--threads", "1", "--out"];
     let output = touchstone_in(folder.path(), &[&run[..], &["alone"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 

@@ -10,7 +10,8 @@ pub static COUETTE: ChannelCase = ChannelCase {
     problem: "Water between two plates, one of which starts to move",
     best: Best {
         variant: "modern",
-        because: "with 20 rows its velocity is wrong by 0.05 %, the paper's by 0.8 %, and it holds up to Re 50",
+        because: "with 20 rows its velocity is wrong by 0.05 %, the paper's by 0.8 %, and it holds up \
+                  to Re 50",
         papers: Some("seed"),
     },
     about: "Water rests between two infinite plates, L = 1 mm apart, until the upper one starts at t = 0 \

@@ -12,7 +12,8 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
     problem: "Water between two plates, driven by a body force",
     best: Best {
         variant: "curved",
-        because: "with 20 rows its velocity is wrong by 0.08 %, the paper's by 1.4 %: its ghosts know the curvature at the wall",
+        because: "with 20 rows its velocity is wrong by 0.08 %, the paper's by 1.4 %: its ghosts know \
+                  the curvature at the wall",
         papers: Some("seed"),
     },
     about: "Water rests between two infinite plates, L = 1 mm apart. At t = 0 a body force F = 8 nu V/L^2 \

@@ -202,7 +202,8 @@ static CASE: Composed<CylinderSettings> = Composed {
     problem: "Flow between two cylinders, the inner one turning",
     best: Best {
         variant: "extrapolating-wall",
-        because: "with 20 spacings across the gap its velocity is wrong by 0.16 %, that of `interface-wall` by 0.36 %",
+        because: "with 20 spacings across the gap its velocity is wrong by 0.16 %, that of \
+                  `interface-wall` by 0.36 %",
         papers: Some("interface-wall"),
     },
     about: "Viscous flow between two cylinders, of which the inner one turns, becomes steady with the \

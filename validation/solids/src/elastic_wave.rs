@@ -51,7 +51,8 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
     problem: "A small wave in rubber; a block that rotates",
     best: Best {
         variant: CubicSpline::NAME,
-        because: "all kernels follow the theory of the lattice to round-off, and this one takes the fewest pairs",
+        because: "all kernels follow the theory of the lattice to round-off, and this one takes the \
+                  fewest pairs",
         papers: None,
     },
     about: "The frequency of an infinitesimal wave in rubber on a stress-free lattice is known exactly \

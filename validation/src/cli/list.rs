@@ -52,7 +52,8 @@ fn overview(world: &World) -> String {
     output::table(&heads, &rows)
         + "\nThe best variant runs unless another one is named. It is the best because\n"
         + &reasons
-        + "\n`touchstone list CASE` shows all variants and settings of a case, `touchstone run CASE` runs it.\n"
+        + "\n`touchstone list CASE` shows all variants and settings of a case, `touchstone run CASE` \
+           runs it.\n"
 }
 
 /// What a variant is, in words.

@@ -5,10 +5,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{
-    Mutex, Once, PoisonError,
+    Mutex, MutexGuard, Once, PoisonError,
     atomic::{AtomicUsize, Ordering},
 };
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series, Status as Verdict};
 use base::{
@@ -25,6 +25,7 @@ use harness::{
     runs::Judged,
     size::Size,
 };
+use humantime::format_rfc3339_seconds;
 use serde_json::Value;
 use validation::cases;
 
@@ -96,7 +97,8 @@ fn carry_out(
     world: &World,
 ) -> Outcome {
     let (case, spec, vtk) = (order.case, order.spec.clone(), order.vtk);
-    let lost = Lost::default();
+    let good = folder.as_ref().and_then(Folder::checkpointed);
+    let lost = Lost { good: Mutex::new(good), ..Lost::default() };
     let computed = on_threads(arguments.threads, || {
         compute(order, arguments, (folder.as_ref(), &lost), world)
     });
@@ -110,7 +112,7 @@ fn carry_out(
     if let Status::Interrupted { step, time } = record.status {
         folder.iter().for_each(Folder::remove_if_new_and_empty);
         let kept = if vtk.is_some() { "; frames so far are whole" } else { "" };
-        let checkpoint = folder.as_ref().filter(|folder| folder.has_checkpoint());
+        let checkpoint = folder.as_ref().filter(|folder| folder.checkpointed().is_some());
         let again = "; the same command begins again, and with --out DIR --checkpoint-every SECONDS an \
                      interrupted run can go on";
         let goes_on = checkpoint.map_or(again.to_string(), |folder| {
@@ -160,24 +162,27 @@ fn carry_out(
     }
 }
 
-/// Frames and checkpoints that could not be written.
+/// Frames and checkpoints that could not be written, and when a checkpoint was last.
 #[derive(Default)]
 struct Lost {
     count: AtomicUsize,
+    good: Mutex<Option<SystemTime>>,
 }
 
 impl Lost {
+    fn good(&self) -> MutexGuard<'_, Option<SystemTime>> {
+        self.good.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Says so of the first of them.
     fn tell(&self, error: &RunError, folder: Option<&Folder>) {
         if self.count.fetch_add(1, Ordering::Relaxed) > 0 {
             return;
         }
-        let good = folder.and_then(Folder::last_checkpoint).map_or(String::new(), |time| {
-            let path = folder.map(|folder| folder.output.path().join(CHECKPOINT));
-            format!(
-                "; the last good checkpoint is {} of {time}",
-                path.unwrap_or_default().display()
-            )
+        let good = folder.zip(*self.good()).map_or(String::new(), |(folder, time)| {
+            let (path, time) =
+                (folder.output.path().join(CHECKPOINT), format_rfc3339_seconds(time));
+            format!("; the last good checkpoint is {} of {time}", path.display())
         });
         output::say(&format!("touchstone: {error}; the run goes on{good}"));
     }
@@ -236,7 +241,8 @@ fn compute(
     };
     let asked = folder.zip(every.map(asked));
     let write = |simulations: &[Vec<u8>]| match &asked {
-        Some((folder, asked)) => checkpoint::write(&folder.output, asked, simulations),
+        Some((folder, asked)) => checkpoint::write(&folder.output, asked, simulations)
+            .map(|()| *lost.good() = Some(SystemTime::now())),
         None => Ok(()),
     };
     let every = every.map(|seconds| Duration::from_secs(seconds.into()));
@@ -294,14 +300,10 @@ impl Folder {
         Ok(Some(folder))
     }
 
-    fn has_checkpoint(&self) -> bool {
-        self.output.path().join(CHECKPOINT).exists()
-    }
-
     /// When the checkpoint was written that is there.
-    fn last_checkpoint(&self) -> Option<String> {
-        let time = fs::metadata(self.output.path().join(CHECKPOINT)).and_then(|f| f.modified());
-        time.ok().map(|time| humantime::format_rfc3339_seconds(time).to_string())
+    fn checkpointed(&self) -> Option<SystemTime> {
+        let file = fs::metadata(self.output.path().join(CHECKPOINT));
+        file.and_then(|file| file.modified()).ok()
     }
 
     fn remove_checkpoint(&self) -> Result<(), FileError> {

@@ -276,7 +276,8 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     problem: "A free drop is strained into an ellipse",
     best: Best {
         variant: "modern",
-        because: "with 40 particles across the axes of the ellipse are wrong by 0.05 and 0.4 %, the paper's by 3 and 1.4 %",
+        because: "with 40 particles across the axes of the ellipse are wrong by 0.05 and 0.4 %, the \
+                  paper's by 3 and 1.4 %",
         papers: Some("seed"),
     },
     about: "A free circular drop starts with a uniform strain rate and becomes an ellipse, whose semi-axes \

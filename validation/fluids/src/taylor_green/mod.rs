@@ -128,7 +128,8 @@ static CASE: Composed<VortexSettings> = Composed {
     problem: "Periodic vortices decay by viscosity",
     best: Best {
         variant: plan::BEST,
-        because: "with 50 x 50 particles its velocity is wrong by 0.2 %, that of `modern` by 71 %: its sums are exact for linear fields",
+        because: "with 50 x 50 particles its velocity is wrong by 0.2 %, that of `modern` by 71 %: its \
+                  sums are exact for linear fields",
         papers: None,
     },
     about: "A periodic array of vortices decays by viscosity without changing its shape: an exact solution \

@@ -212,7 +212,8 @@ pub const fn case<P: Kind>() -> Composed<WaveSettings> {
         problem: P::CASE.problem,
         best: Best {
             variant: "cubic-leapfrog",
-            because: "all kernels follow the theory of the lattice to round-off, and this one takes the fewest pairs",
+            because: "all kernels follow the theory of the lattice to round-off, and this one takes \
+                      the fewest pairs",
             papers: None,
         },
         about: P::CASE.about,

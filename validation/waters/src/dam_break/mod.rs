@@ -211,7 +211,8 @@ pub static DAM_BREAK: Composed<DamSettings> = Composed {
     problem: "A column of water collapses on a dry floor",
     best: Best {
         variant: "modern",
-        because: "with 20 spacings a column width its front is 0.05 a from that of volume of fluid, the paper's 0.28 a",
+        because: "with 20 spacings a column width its front is 0.05 a from that of volume of fluid, \
+                  the paper's 0.28 a",
         papers: Some("seed"),
     },
     about: "A column of water, held by a wall on its left, is released at once and collapses on a dry \
