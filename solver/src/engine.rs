@@ -55,7 +55,7 @@ impl<P: Physics> Engine<P> {
         let mut extent = self.fill(state)?;
         if self.data.progress.built_inside_a_step || self.data.is_stale_soon(extent) {
             self.data.sort(state);
-            self.build_lists(state.iter().map(|e| e.position));
+            self.build_lists(&mut state.iter().map(|e| e.position));
             self.data.progress.built_inside_a_step = false;
             extent = self.fill(state)?;
         }
@@ -68,7 +68,7 @@ impl<P: Physics> Engine<P> {
     pub fn refresh(&mut self, state: &State<P>) -> Result<(), Fault> {
         let extent = self.fill(state)?;
         if self.data.is_stale(extent) {
-            self.build_lists(state.iter().map(|e| e.position));
+            self.build_lists(&mut state.iter().map(|e| e.position));
             // Particles may have left the period by more than images make up for: wrap soon.
             self.data.progress.built_inside_a_step = true;
             self.fill(state)?;
@@ -227,7 +227,7 @@ impl<P: Physics> Engine<P> {
     }
 
     /// Builds neighbour lists and images for particles at these places, and makes room for their columns.
-    pub(crate) fn build_lists(&mut self, positions: impl Iterator<Item = Vector2<f64>>) {
+    pub(crate) fn build_lists(&mut self, positions: &mut dyn Iterator<Item = Vector2<f64>>) {
         self.data.enter(Phase::Search);
         self.data.neighbours.place(positions);
         self.data.build_lists(P::Walls::EXTRAPOLATES);

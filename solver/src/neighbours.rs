@@ -162,7 +162,7 @@ impl Neighbours {
     }
 
     /// Takes note of where the particles are, for [`Neighbours::order`] or [`Neighbours::build`].
-    pub fn place(&mut self, positions: impl Iterator<Item = Vector2<f64>>) {
+    pub fn place(&mut self, positions: &mut dyn Iterator<Item = Vector2<f64>>) {
         self.points.clear();
         self.points.extend(positions);
     }
@@ -456,7 +456,7 @@ mod tests {
         let mut pairs = 0;
         // The last ones are walls that see all, walls that see no walls, or not there.
         for (fluid, fluid_only) in [(n / 2, false), (n / 2, true), (n, false)] {
-            neighbours.place(points.iter().copied());
+            neighbours.place(&mut points.iter().copied());
             neighbours.build([fluid, n - fluid], fluid_only, false);
             pairs = 0;
             let mut inside = 0;
@@ -482,7 +482,7 @@ mod tests {
         }
         // The parallel path builds the same lists in the same order.
         let mut parallel = Neighbours::new(reaches, *domain, mirrors);
-        parallel.place(points.iter().copied());
+        parallel.place(&mut points.iter().copied());
         parallel.build([n, 0], false, true);
         for (a, b) in neighbours.lists.blocks.iter().zip(&parallel.lists.blocks) {
             assert_eq!((&a.starts, &a.chunks), (&b.starts, &b.chunks));
@@ -496,7 +496,7 @@ mod tests {
         let (mut random, domain) = (Random(3), Domain::torus(4.0, 3.0));
         let points: Vec<_> = (0..500).map(|_| random.point([4.0, 3.0])).collect();
         let mut neighbours = Neighbours::new([0.5, 0.1], domain, &[]);
-        neighbours.place(points.into_iter());
+        neighbours.place(&mut points.into_iter());
         neighbours.build([250, 250], true, false);
         let [fluid, wall] =
             [&neighbours.lists, &neighbours.wall_lists].map(|lists| &lists.blocks[..]);
@@ -592,7 +592,7 @@ mod tests {
         let mut neighbours = Neighbours::new([support, skin], domain, &mirrors);
         let mut lost = 0;
         let n = points.len();
-        neighbours.place(points.iter().copied());
+        neighbours.place(&mut points.iter().copied());
         neighbours.build([n, 0], false, false);
         for _ in 0..60 {
             for point in &mut points {
@@ -601,7 +601,7 @@ mod tests {
             }
             let moved = points.iter().zip(&neighbours.built_at).map(|(p, b)| (p - b).norm());
             if moved.fold(0.0, f64::max) > share * skin {
-                neighbours.place(points.iter().copied());
+                neighbours.place(&mut points.iter().copied());
                 neighbours.build([n, 0], false, false);
                 *builds += 1;
             }
@@ -638,7 +638,7 @@ mod tests {
         let sorted = |points: &[Vector2<f64>]| {
             let mut order = Vec::new();
             let mut neighbours = Neighbours::new([0.3, 0.0], Domain::open(), &[]);
-            neighbours.place(points.iter().copied());
+            neighbours.place(&mut points.iter().copied());
             neighbours.order(&mut order);
             order.iter().map(|&k| points[k as usize]).collect::<Vec<_>>()
         };

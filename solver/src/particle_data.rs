@@ -320,7 +320,7 @@ impl<X: Numbers> ParticleData<X> {
             evolved.position = self.neighbours.domain.wrap(evolved.position);
         }
         let fluid = self.counts[0];
-        self.neighbours.place(state[..fluid].iter().map(|e| e.position));
+        self.neighbours.place(&mut state[..fluid].iter().map(|e| e.position));
         self.neighbours.order(&mut self.order);
         let fixed = &mut self.fixed;
         apply_order(&mut self.order, &mut |i, j| {

@@ -6,7 +6,7 @@ use thiserror::Error;
 use crate::{
     domain::Domain,
     engine::Engine,
-    integrator::{PhysicsOf, Scheme},
+    integrator::Scheme,
     kernel::{Kernel, Smoothing},
     neighbours::Neighbours,
     numbers::Numbers,
@@ -89,42 +89,52 @@ impl<S: Scheme> Scene<S> {
 
     /// Checks the scene, and builds a simulation that is ready to step.
     pub fn build(self) -> Result<Simulation<S>, SceneError> {
-        self.check()?;
-        let particles = by_role(&self.particles);
-        let mut engine = self.engine(&particles);
-        let mut state = std::mem::take(&mut engine.data.state);
-        engine.data.sort(&mut state);
-        engine.build_lists(state.iter().map(|e| e.position));
+        let kernel = Smoothing::<S::Kernel>::new(self.h);
+        let Self { h, domain, particles, walls, skin, skin_share, limits, .. } = &self;
+        let (mirrors, support) = (walls.mirrors(), kernel.support());
+        check(particles, [*h, *skin, S::Kernel::SUPPORT], domain, mirrors)?;
+        let neighbours = Neighbours::new([support, *skin], *domain, mirrors);
+        let mut data = data(particles, neighbours, *limits, skin_share * skin);
+        data.parallel = particles.len() >= self.parallel_from;
+        let mut state = std::mem::take(&mut data.state);
+        data.sort(&mut state);
+        let mut engine = Engine::new(kernel, (self.forces, self.drift), &self.walls, data);
+        engine.build_lists(&mut state.iter().map(|e| e.position));
         engine.data.state = state;
         Ok(Simulation { engine, integrator: S::Integrator::default() })
     }
+}
 
-    /// The engine for the particles in the given order, without neighbour lists.
-    fn engine(self, particles: &[(u32, Particle<S::Extra>)]) -> Engine<PhysicsOf<S>> {
-        let kernel = Smoothing::new(self.h);
-        let periods = self.domain.period.iter().flatten();
-        // The root of the largest number: its square is finite.
-        let half_period = 0.5 * periods.fold(f64::MAX.sqrt(), |a, b| a.min(*b));
-        let reaches = [kernel.support(), self.skin];
-        let neighbours = Neighbours::new(reaches, self.domain, self.walls.mirrors());
-        let mut data = ParticleData { neighbours, limits: self.limits, ..Default::default() };
-        data.put(particles);
-        [data.slack, data.reach2] = [self.skin_share * self.skin, half_period * half_period];
-        data.parallel = particles.len() >= self.parallel_from;
-        Engine::new(kernel, (self.forces, self.drift), &self.walls, data)
-    }
+/// The particles of a scene, ready to be sorted, with this slack of their lists \[m\].
+fn data<X: Numbers>(
+    particles: &[Particle<X>],
+    neighbours: Neighbours,
+    limits: Limits,
+    slack: f64,
+) -> ParticleData<X> {
+    let periods = neighbours.domain.period.iter().flatten();
+    // The root of the largest number: its square is finite.
+    let half_period = 0.5 * periods.fold(f64::MAX.sqrt(), |a, b| a.min(*b));
+    let mut data = ParticleData { neighbours, limits, ..Default::default() };
+    data.put(&by_role(particles));
+    [data.slack, data.reach2] = [slack, half_period * half_period];
+    data
+}
 
-    fn check(&self) -> Result<(), SceneError> {
-        let (h, skin) = (self.h, self.skin);
-        let lengths = [
-            (h > 0.0 && h.is_finite(), "smoothing length in m", h, "finite and above 0"),
-            (skin >= 0.0 && skin.is_finite(), "skin in m", skin, "finite and at least 0"),
-        ];
-        require(Part::Scene, lengths)?;
-        check_particles(&self.particles)?;
-        check_walls(self.walls.mirrors())?;
-        check_domain(&self.domain, S::Kernel::SUPPORT * self.h, self.skin)
-    }
+fn check<X: Numbers>(
+    particles: &[Particle<X>],
+    [h, skin, support]: [f64; 3],
+    domain: &Domain,
+    mirrors: &[PlaneWall],
+) -> Checked {
+    let lengths = [
+        (h > 0.0 && h.is_finite(), "smoothing length in m", h, "finite and above 0"),
+        (skin >= 0.0 && skin.is_finite(), "skin in m", skin, "finite and at least 0"),
+    ];
+    require(Part::Scene, lengths)?;
+    check_particles(particles)?;
+    check_walls(mirrors)?;
+    check_domain(domain, support * h, skin)
 }
 
 /// The particles in the order of their storage at the start (by role), with their numbers in the scene.

@@ -135,7 +135,7 @@ pub trait Steps<X>: Stepper<X> {
 
 /// [`Stepper::advance`] of a simulation by its time step.
 pub fn advance<X: Numbers>(
-    simulation: &mut impl Steps<X>,
+    simulation: &mut dyn Steps<X>,
     until: f64,
     dt: f64,
     observer: &mut dyn Observer<X>,
@@ -192,7 +192,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
         from.check()?;
         self.engine.data.put(&from.particles);
-        self.engine.build_lists(from.built_at.iter().copied());
+        self.engine.build_lists(&mut from.built_at.iter().copied());
         self.engine.data.progress = from.progress;
         self.integrator = S::Integrator::with_lag(from.lag);
         Ok(())

@@ -209,7 +209,7 @@ mod tests {
         let columns = columns(&terms, 30);
         let count = columns.len() - 1;
         let mut neighbours = Neighbours::new([3.0 * DX, 0.0], Domain::open(), &[]);
-        neighbours.place(columns[..count].iter().map(|column| column.position));
+        neighbours.place(&mut columns[..count].iter().map(|column| column.position));
         neighbours.build([count, 0], false, false);
         let kernel = Smoothing::<QuinticSpline>::new(DX);
         let (terms, columns) = (&terms, &columns[..]);

@@ -340,7 +340,7 @@ fn uniform(n: usize, gradient: Tensor, extra: Symmetric) -> Vec<Solid> {
 #[test]
 fn a_uniform_strain_rate_gives_the_exact_stress_rate_times_the_lattice_factor() {
     fn check<K: Kernel>(ratio: f64) {
-        let factor = SquareLattice::<K>::new(ratio, 0.0).gradient_factor();
+        let factor = SquareLattice::of::<K>(ratio, 0.0).gradient_factor();
         let (n, spin) = (15, 0.7);
         let plain = |xx, yy, xy| Symmetric { xx, yy, xy };
         let (rest, s) = (Symmetric::default(), random_stress(&mut Random(4)));
@@ -408,7 +408,7 @@ fn turned_once<I: Integrator<Turning<()>>>(steps: u32) -> Tensor {
 /// Objectivity. The lattice sees G₁ ω in place of ω, so that S turns by 2π G₁ a revolution; how far
 /// the computed one is from there falls with dt at the order of the integrator.
 fn check_turning<I: Integrator<Turning<()>>>() {
-    let factor = SquareLattice::<QuinticSpline>::new(RATIO, 0.0).gradient_factor();
+    let factor = SquareLattice::of::<QuinticSpline>(RATIO, 0.0).gradient_factor();
     let turn = rotation(2.0 * PI * factor);
     let exact = turn * matrix(START) * turn.inverse();
     let errors = [500, 1000, 2000, 4000]
@@ -667,7 +667,7 @@ fn waves_have_the_frequencies_of_the_lattice_symbol() {
     fn check<K: Kernel>(ratio: f64, mode: [f64; 2]) {
         let solid = Lattice { n: 12, ratio, stretch: 0.0, mu: 0.22, xi: 0.0 };
         let theta = Vector2::from(mode) * (2.0 * PI / 12.0);
-        let g = SquareLattice::<K>::new(ratio, 0.0).gradient(theta) / ratio;
+        let g = SquareLattice::of::<K>(ratio, 0.0).gradient(theta) / ratio;
         let across = Vector2::new(-g.y, g.x);
         let modulus = 1.0 + 4.0 / 3.0 * solid.mu;
         for (name, along, modulus) in [("P", g, modulus), ("S", across, solid.mu)] {

@@ -4,7 +4,6 @@ use base::{
     record::{Cost, Metric, Record, Status},
     spec::{Bisect, RunSpec, Task},
 };
-use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 
 use crate::{
@@ -154,7 +153,7 @@ const BEYOND_DOUBT: f64 = 100.0;
 const LATE_GROWTH: f64 = 1.5;
 
 /// Watches an energy over a known number of steps.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct Growth {
     start: f64,
     steps: u64,
@@ -163,6 +162,8 @@ pub struct Growth {
     quarters: [f64; 2],
     beyond_doubt: bool,
 }
+
+base::bits! { Growth { start, steps, seen, quarters, beyond_doubt } }
 
 impl Growth {
     /// Watches `steps` steps from an energy of `start` > 0.

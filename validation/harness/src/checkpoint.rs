@@ -11,24 +11,21 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use base::{
+    bits::{Bits, OtherBits},
     files::FileError,
     record::{Cost, Record, Status},
     vtk::Collection,
 };
 use nalgebra::Vector2;
-use serde::{Serialize, de::DeserializeOwned};
 use solver::{Checkpoint, Numbers, Particle, Progress, Role, Stepper, Symmetric, Work};
 use thiserror::Error;
 
 /// Why there is no checkpoint, or why a run does not go on from one.
 #[derive(Debug, Error)]
 pub enum CheckpointError {
-    /// Something that was observed has no form as bytes.
-    #[error("a checkpoint cannot be made: {0}")]
-    Saved(#[from] rmp_serde::encode::Error),
     /// The bytes are not those of the run.
     #[error("the checkpoint is not one of this run: {0}")]
-    Read(#[from] rmp_serde::decode::Error),
+    Read(#[from] OtherBits),
     /// The particles have other extra fields than those of the cases, none or a deviatoric stress.
     #[error("particles with these extra fields have no checkpoint")]
     Extra,
@@ -40,54 +37,22 @@ pub enum CheckpointError {
     File(#[from] FileError),
 }
 
-type Done = Result<(), CheckpointError>;
-
-/// Values one after another, as bytes (MessagePack); floats by their bits.
-#[derive(Default)]
-pub struct Saving(Vec<u8>);
-
-impl Saving {
-    /// Appends a value.
-    ///
-    /// # Errors
-    /// If the value refuses to be written.
-    pub fn put(&mut self, value: &impl Serialize) -> Done {
-        Ok(rmp_serde::encode::write_named(&mut self.0, value)?)
-    }
-}
-
-/// The values of [`Saving`] again.
-pub struct Restoring<'a>(&'a [u8]);
-
-impl Restoring<'_> {
-    /// The next value.
-    ///
-    /// # Errors
-    /// If it is not of this type, or there is none.
-    pub fn take<T: DeserializeOwned>(&mut self) -> Result<T, CheckpointError> {
-        Ok(rmp_serde::from_read(&mut self.0)?)
-    }
-}
-
 /// What is observed of a run: it can save what has changed since the start, and take it over again.
 /// [`observed!`](crate::observed!) implements it for a struct of observations.
 pub trait Observed {
-    /// Saves all that has changed.
-    ///
-    /// # Errors
-    /// If a value refuses to be written.
-    fn save(&self, to: &mut Saving) -> Done;
+    /// Appends all that has changed.
+    fn save(&self, to: &mut Vec<u8>);
 
     /// Takes it over.
     ///
     /// # Errors
     /// If the bytes are not those of this observation.
-    fn restore(&mut self, from: &mut Restoring) -> Done;
+    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits>;
 }
 
-/// Implements [`Observed`] for a struct: which of its fields change during a run and are values of serde,
-/// which are [`Observed`] themselves, and which stay as they were at the start. Every field must be named, so
-/// that a new one cannot be forgotten.
+/// Implements [`Observed`] for a struct: which of its fields change during a run and are [`Bits`], which are
+/// [`Observed`] themselves, and which stay as they were at the start. Every field must be named, so that a new
+/// one cannot be forgotten.
 #[macro_export]
 macro_rules! observed {
     (
@@ -95,22 +60,15 @@ macro_rules! observed {
         changes($($change:ident),*), parts($($part:ident),*), stays($($stay:ident),*)
     ) => {
         impl $crate::checkpoint::Observed for $Struct {
-            fn save(
-                &self,
-                to: &mut $crate::checkpoint::Saving,
-            ) -> Result<(), $crate::checkpoint::CheckpointError> {
+            fn save(&self, to: &mut Vec<u8>) {
                 let Self { $($change,)* $($part,)* $($stay: _,)* } = self;
-                $(to.put($change)?;)*
-                $($part.save(to)?;)*
-                Ok(())
+                $(base::bits::Bits::write_to($change, to);)*
+                $($crate::checkpoint::Observed::save($part, to);)*
             }
-            fn restore(
-                &mut self,
-                from: &mut $crate::checkpoint::Restoring,
-            ) -> Result<(), $crate::checkpoint::CheckpointError> {
+            fn restore(&mut self, from: &mut &[u8]) -> Result<(), base::bits::OtherBits> {
                 let Self { $($change,)* $($part,)* $($stay: _,)* } = self;
-                $(*$change = from.take()?;)*
-                $($part.restore(from)?;)*
+                $(*$change = base::bits::Bits::read_from(from)?;)*
+                $($crate::checkpoint::Observed::restore($part, from)?;)*
                 Ok(())
             }
         }
@@ -120,12 +78,12 @@ macro_rules! observed {
 /// Implements [`Observed`] for values that change as a whole.
 macro_rules! values {
     ($($Value:ty $(, $T:ident)?;)+) => {$(
-        impl$(<$T: Serialize + DeserializeOwned>)? Observed for $Value {
-            fn save(&self, to: &mut Saving) -> Done {
-                to.put(self)
+        impl$(<$T: Bits>)? Observed for $Value {
+            fn save(&self, to: &mut Vec<u8>) {
+                self.write_to(to);
             }
-            fn restore(&mut self, from: &mut Restoring) -> Done {
-                *self = from.take()?;
+            fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
+                *self = Bits::read_from(from)?;
                 Ok(())
             }
         }
@@ -136,19 +94,19 @@ values! { f64; Vec<T>, T; Record; }
 
 /// What is observed of some runs only: the run that goes on has it if and only if the one before had it.
 impl<O: Observed> Observed for Option<O> {
-    fn save(&self, to: &mut Saving) -> Done {
-        self.iter().try_for_each(|observed| observed.save(to))
+    fn save(&self, to: &mut Vec<u8>) {
+        self.iter().for_each(|observed| observed.save(to));
     }
-    fn restore(&mut self, from: &mut Restoring) -> Done {
+    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
         self.iter_mut().try_for_each(|observed| observed.restore(from))
     }
 }
 
 impl<O: Observed + ?Sized> Observed for &mut O {
-    fn save(&self, to: &mut Saving) -> Done {
-        (**self).save(to)
+    fn save(&self, to: &mut Vec<u8>) {
+        (**self).save(to);
     }
-    fn restore(&mut self, from: &mut Restoring) -> Done {
+    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
         (**self).restore(from)
     }
 }
@@ -157,11 +115,10 @@ impl<O: Observed + ?Sized> Observed for &mut O {
 macro_rules! tuple {
     ($($Member:ident $index:tt),*) => {
         impl<$($Member: Observed),*> Observed for ($($Member,)*) {
-            fn save(&self, _to: &mut Saving) -> Done {
-                $(self.$index.save(_to)?;)*
-                Ok(())
+            fn save(&self, _to: &mut Vec<u8>) {
+                $(self.$index.save(_to);)*
             }
-            fn restore(&mut self, _from: &mut Restoring) -> Done {
+            fn restore(&mut self, _from: &mut &[u8]) -> Result<(), OtherBits> {
                 $(self.$index.restore(_from)?;)*
                 Ok(())
             }
@@ -173,22 +130,6 @@ tuple!();
 tuple!(A 0, B 1);
 tuple!(A 0, B 1, C 2);
 tuple!(A 0, B 1, C 2, D 3);
-
-/// A vector of the plane as a value of serde, for `#[serde(with = "harness::checkpoint::vector")]`.
-pub mod vector {
-    use nalgebra::Vector2;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    /// Writes x and y.
-    pub fn serialize<S: Serializer>(vector: &Vector2<f64>, to: S) -> Result<S::Ok, S::Error> {
-        [vector.x, vector.y].serialize(to)
-    }
-
-    /// Reads x and y.
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vector2<f64>, D::Error> {
-        <[f64; 2]>::deserialize(from).map(Vector2::from)
-    }
-}
 
 /// How far a simulation is, apart from its particles and from what is observed of it.
 pub(crate) struct Stage {
@@ -202,18 +143,20 @@ pub(crate) struct Stage {
     pub ended: Option<Status>,
 }
 
+base::bits! { Stage { reached, cost, frames, ended } }
+
 /// Id, role, position, velocity, density and mass of a particle, where it was when the neighbour lists were
 /// built, and its extra fields.
 type Stored = (u32, u8, [f64; 8], Vec<f64>);
 
+/// Times and steps, and then the particles.
+type State = ([f64; 7], [u64; 5], bool, Vec<Stored>);
+
 /// The state of a simulation.
-fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Saving) -> Done {
+fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Vec<u8>) -> Result<(), CheckpointError> {
     let Checkpoint { progress, lag, particles, built_at } = state;
     let &Progress { time, dt, work, last_approach, built_inside_a_step, call, made } = progress;
     let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-    to.put(&([time, dt, last_approach, *lag], call))?;
-    to.put(&[steps, pair_interactions, right_hand_sides, list_builds, made])?;
-    to.put(&built_inside_a_step)?;
     let stored = |((id, p), at): (&(u32, Particle<X>), &Vector2<f64>)| {
         let (x, v) = (p.position, p.velocity);
         let extra: &dyn Any = &p.extra;
@@ -225,16 +168,19 @@ fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Saving) -> Done {
         Ok((*id, p.role as u8, [x.x, x.y, v.x, v.y, p.density, p.mass, at.x, at.y], extra))
     };
     let all = particles.iter().zip(built_at).map(stored);
-    to.put(&all.collect::<Result<Vec<Stored>, _>>()?)
+    let times = [time, dt, last_approach, *lag, call[0], call[1], call[2]];
+    let counts = [steps, pair_interactions, right_hand_sides, list_builds, made];
+    let state: State = (times, counts, built_inside_a_step, all.collect::<Result<_, _>>()?);
+    state.write_to(to);
+    Ok(())
 }
 
-fn restore_state<X: Numbers>(from: &mut Restoring) -> Result<Checkpoint<X>, CheckpointError> {
-    let ([time, dt, last_approach, lag], call) = from.take()?;
-    let [steps, pair_interactions, right_hand_sides, list_builds, made] = from.take()?;
+fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, CheckpointError> {
+    let (times, counts, built_inside_a_step, stored) = State::read_from(from)?;
+    let [time, dt, last_approach, lag, call @ ..] = times;
+    let [steps, pair_interactions, right_hand_sides, list_builds, made] = counts;
     let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
-    let built_inside_a_step = from.take()?;
     let progress = Progress { time, dt, work, last_approach, built_inside_a_step, call, made };
-    let stored: Vec<Stored> = from.take()?;
     let (mut particles, mut built_at) = (Vec::new(), Vec::new());
     for (id, role, [x, y, u, v, density, mass, at_x, at_y], numbers) in stored {
         let roles = [Role::Fluid, Role::Wall, Role::Interface];
@@ -260,25 +206,24 @@ pub(crate) fn save<X: Numbers>(
     stage: &Stage,
     seen: &impl Observed,
 ) -> Result<Vec<u8>, CheckpointError> {
-    let mut to = Saving::default();
+    let mut to = Vec::new();
     save_state(&simulation.checkpoint(), &mut to)?;
-    let Stage { reached, cost, frames, ended } = stage;
-    to.put(&(reached, cost, frames, ended))?;
-    seen.save(&mut to)?;
-    Ok(to.0)
+    stage.write_to(&mut to);
+    seen.save(&mut to);
+    Ok(to)
 }
 
 /// Gives a simulation of the same scene, and what was observed of it, their state from bytes.
 pub(crate) fn restore<X: Numbers>(
-    bytes: &[u8],
+    mut bytes: &[u8],
     simulation: &mut (impl Stepper<X> + ?Sized),
     seen: &mut impl Observed,
 ) -> Result<Stage, CheckpointError> {
-    let mut from = Restoring(bytes);
-    simulation.restore(&restore_state(&mut from)?).map_err(CheckpointError::State)?;
-    let (reached, cost, frames, ended) = from.take()?;
-    seen.restore(&mut from)?;
-    Ok(Stage { reached, cost, frames, ended })
+    let from = &mut bytes;
+    simulation.restore(&restore_state(from)?).map_err(CheckpointError::State)?;
+    let stage = Stage::read_from(from)?;
+    seen.restore(from)?;
+    Ok(stage)
 }
 
 /// Writes a checkpoint: the simulations of the run as bytes, one after another.
@@ -326,7 +271,7 @@ impl<'a> Checkpoints<'a> {
 
     /// Writes a checkpoint: the simulations that have ended, and the one that is under way. After the last
     /// one, that of an interrupt, none is written.
-    pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Done {
+    pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), CheckpointError> {
         let mut simulations = self.simulations();
         if simulations.is_over {
             return Ok(());
@@ -341,7 +286,6 @@ impl<'a> Checkpoints<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::number;
 
     struct Seen {
         numbers: Vec<f64>,
@@ -357,22 +301,16 @@ mod tests {
     }
 
     #[test]
-    fn what_was_observed_keeps_its_bits_whatever_the_numbers_are() {
-        let odd = [0.1, -0.0, f64::MIN_POSITIVE / 8.0, f64::NAN, -f64::NAN, f64::NEG_INFINITY];
-        let mut before = seen(odd.to_vec());
-        before.record.numerics.insert("odd".into(), number::json(f64::INFINITY));
+    fn what_was_observed_is_taken_over_and_what_stays_is_not() {
+        let mut before = seen(vec![0.1, f64::NAN]);
         before.record.put(base::record::MetricKey::new("m", "-", "1/3"), 1.0 / 3.0);
-        let mut saving = Saving::default();
-        before.save(&mut saving).unwrap();
+        let mut saved = Vec::new();
+        before.save(&mut saved);
         let mut after = Seen { width: 5.0, ..seen(Vec::new()) };
-        after.restore(&mut Restoring(&saving.0)).unwrap();
+        after.restore(&mut &saved[..]).unwrap();
         let bits = |seen: &Seen| seen.numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&after), bits(&before));
         assert_eq!(after.record, before.record);
         assert_eq!(after.width, 5.0, "what stays is not saved");
-        // Whatever is missing at the end is missed.
-        for length in 0..saving.0.len() {
-            assert!(after.restore(&mut Restoring(&saving.0[..length])).is_err(), "{length}");
-        }
     }
 }

@@ -262,7 +262,7 @@ impl Motion {
         let s = &self.settings;
         let [from, to] = STATIONS.map(|x| self.passes(1, x * s.length));
         let span = (STATIONS[1] - STATIONS[0]) * s.length / s.wave();
-        let lattice = SquareLattice::<CubicSpline>::new(s.h_over_dx, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(s.h_over_dx, 0.01);
         let factor = lattice.gradient_factor();
         record.put(TRAVEL_ERROR, (to - from) / span - 1.0);
         record.put(TRAVEL_LATTICE_ERROR, (to - from) / span * factor - 1.0);

@@ -41,7 +41,7 @@ struct LatticeFloor {
 
 /// L₁ in place and with slid rows.
 fn factors<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) -> [f64; 2] {
-    let lattice = SquareLattice::<K>::new(h_over_dx, eta2_over_h2);
+    let lattice = SquareLattice::of::<K>(h_over_dx, eta2_over_h2);
     [lattice.laplacian_factor(), lattice.sheared_laplacian_factor()]
 }
 

@@ -2,7 +2,6 @@
 
 use base::functions::exp;
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 use solver::{BodyForce, Scheme, Simulation, Stepper};
 
 /// Forces with a body force that can be set.
@@ -41,7 +40,7 @@ impl<S: Scheme<Extra = (), Forces: Driven>> Driving for Simulation<S> {
 /// f = d whatever d is.
 ///
 /// With t = T/4 both roots are −2/T: the fastest without overshoot.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct Controller {
     /// u* \[m/s\].
     pub wanted: f64,
@@ -52,6 +51,8 @@ pub struct Controller {
     /// u at the last look \[m/s\].
     pub last: f64,
 }
+
+base::bits! { Controller { wanted, response, force, last } }
 
 impl Controller {
     /// Looks at the mean velocity after `dt` \[s\].

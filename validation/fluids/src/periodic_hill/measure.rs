@@ -1,7 +1,6 @@
 //! What is measured: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
-use serde::{Deserialize, Serialize};
 use solver::{EquationOfState, Role, Stepper};
 
 use super::{
@@ -130,7 +129,7 @@ impl<'a> Field<'a> {
 }
 
 /// Sums over samples of one part of the run.
-#[derive(Clone, Default, Serialize, Deserialize)]
+#[derive(Clone, Default)]
 pub struct Window {
     count: f64,
     /// u and v at the points of the stations.
@@ -142,6 +141,8 @@ pub struct Window {
     /// u at the points of the stations, sample by sample.
     samples: Vec<Vec<f64>>,
 }
+
+base::bits! { Window { count, sections, wall, forces, samples } }
 
 /// The places of the stations: x, y, weight of the section's height.
 fn places(setup: &Setup) -> Vec<[f64; 2]> {

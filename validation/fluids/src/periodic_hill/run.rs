@@ -1,6 +1,5 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
-use serde::{Deserialize, Serialize};
 use solver::EquationOfState;
 
 use super::{
@@ -24,11 +23,12 @@ const ENTRY: f64 = 0.5;
 const SAMPLES: f64 = 40.0;
 
 /// Times at equal intervals.
-#[derive(Serialize, Deserialize)]
 struct Schedule {
     next: f64,
     every: f64,
 }
+
+base::bits! { Schedule { next, every } }
 
 impl Schedule {
     /// Has the next time come?

@@ -1,7 +1,6 @@
 //! One run of the vortices: scene, stepping, record.
 
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 use solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
@@ -109,7 +108,7 @@ fn run(
 }
 
 /// The flow at one time.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 struct Sample {
     time: f64,
     /// Relative L2 error of the velocity vector.
@@ -117,9 +116,10 @@ struct Sample {
     /// Kinetic energy over the exact one.
     energy: f64,
     /// Total momentum over total mass \[U\].
-    #[serde(with = "harness::checkpoint::vector")]
     momentum: Vector2<f64>,
 }
+
+base::bits! { Sample { time, error, energy, momentum } }
 
 impl Sample {
     fn of(setup: &Setup, time: f64, particles: &[Particle]) -> Self {

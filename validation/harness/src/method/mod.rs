@@ -95,10 +95,8 @@ where
 /// h/dx and η²/h².
 type Lattice = [f64; 2];
 
-/// The square lattice as the forces of a scheme see it.
-fn square<S: Standard>([h_over_dx, eta2_over_h2]: Lattice) -> SquareLattice<S::Kernel> {
-    let lattice = SquareLattice::new(h_over_dx, eta2_over_h2);
-    if S::Forces::NORMALISES { lattice.corrected() } else { lattice }
+fn weight<K: Kernel>(h: f64, r2: f64) -> f64 {
+    Smoothing::<K>::new(h).w(r2)
 }
 
 /// A scheme without its type. `D` is what a case needs of a simulation beyond [`Stepper`].
@@ -121,12 +119,12 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     pub uses: Vec<Knob>,
     /// The simulation of a scene with these parts.
     pub build: fn(Parts<X>) -> Result<Box<D>, SceneError>,
+    /// W from h and r².
     weight: fn(f64, f64) -> f64,
-    stiffest: fn(f64) -> f64,
-    mode: fn(Lattice, Vector2<f64>, &time_step::Medium) -> Mode,
-    gradient: fn(f64, Vector2<f64>) -> Vector2<f64>,
-    gradient_factor: fn(f64) -> f64,
-    modes: fn(Lattice, usize, &time_step::Medium) -> Vec<Mode>,
+    /// The square lattice as its kernel sees it, from h/dx and η²/h².
+    lattice: fn(f64, f64) -> SquareLattice,
+    /// Are gradients corrected by the inverse of the moments?
+    is_corrected: bool,
 }
 
 impl<X: Numbers, D: ?Sized> Method<X, D> {
@@ -142,12 +140,9 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             limit: None,
             uses: [S::Forces::uses(), S::Drift::uses(), S::Walls::uses()].concat(),
             build,
-            weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
-            stiffest: |ratio| square::<S>([ratio, 0.0]).stiffest(),
-            mode: |lattice, theta, medium| Mode::new(&square::<S>(lattice), theta, medium),
-            gradient: |ratio, phase| square::<S>([ratio, 0.0]).gradient(phase),
-            gradient_factor: |ratio| square::<S>([ratio, 0.0]).gradient_factor(),
-            modes: |lattice, n, medium| time_step::modes(&square::<S>(lattice), n, medium),
+            weight: weight::<S::Kernel>,
+            lattice: SquareLattice::of::<S::Kernel>,
+            is_corrected: S::Forces::NORMALISES,
         }
     }
 
@@ -160,7 +155,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             dx,
             h,
             w_at_spacing: (self.weight)(h, dx * dx),
-            stiffest: (self.stiffest)(h / dx),
+            stiffest: self.square([h / dx, 0.0]).stiffest(),
             nu: 0.0,
             shear_modulus: 0.0,
             acceleration: Vector2::zeros(),
@@ -176,26 +171,32 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
         }
     }
 
+    /// The square lattice as its forces see it.
+    fn square(&self, [h_over_dx, eta2_over_h2]: Lattice) -> SquareLattice {
+        let lattice = (self.lattice)(h_over_dx, eta2_over_h2);
+        if self.is_corrected { lattice.corrected() } else { lattice }
+    }
+
     /// The wave with this phase difference between neighbouring particles \[rad\], on a square lattice with
     /// these h/dx and η²/h².
     pub fn mode(&self, lattice: Lattice, theta: Vector2<f64>, medium: &time_step::Medium) -> Mode {
-        (self.mode)(lattice, theta, medium)
+        Mode::new(&self.square(lattice), theta, medium)
     }
 
     /// g(k) h of the gradient on a square lattice with this h/dx, for a wave of phase k dx \[rad\].
     pub fn gradient(&self, h_over_dx: f64, phase: Vector2<f64>) -> Vector2<f64> {
-        (self.gradient)(h_over_dx, phase)
+        self.square([h_over_dx, 0.0]).gradient(phase)
     }
 
     /// The factor by which the method multiplies a uniform gradient on a square lattice with this
     /// h/dx: G₁ = Σ V F x².
     pub fn gradient_factor(&self, h_over_dx: f64) -> f64 {
-        (self.gradient_factor)(h_over_dx)
+        self.square([h_over_dx, 0.0]).gradient_factor()
     }
 
     /// The waves of a periodic square lattice of n × n particles with these h/dx and η²/h².
     pub fn modes(&self, lattice: Lattice, n: usize, medium: &time_step::Medium) -> Vec<Mode> {
-        (self.modes)(lattice, n, medium)
+        time_step::modes(&self.square(lattice), n, medium)
     }
 
     /// The limits of a step by these waves.

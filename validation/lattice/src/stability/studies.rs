@@ -91,7 +91,7 @@ fn weak_table(weak: &[[f64; 2]]) -> Table {
 
 /// The theoretical limit over c₀h/ν, without artificial damping.
 fn theory_line<K: Kernel>(h_over_dx: f64, integrator: time_step::Integrator) -> Vec<(f64, f64)> {
-    let lattice = SquareLattice::<K>::new(h_over_dx, noisy_box::ETA2);
+    let lattice = SquareLattice::of::<K>(h_over_dx, noisy_box::ETA2);
     let at = |k: u32| {
         let stiffness = 0.8 * powf(400.0 / 0.8, f64::from(k) / 60.0);
         let medium =

@@ -14,7 +14,6 @@
 
 use consistent::FluidPairs;
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 use solver::{
     ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
     NoSlipImages, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
@@ -184,11 +183,13 @@ where
 }
 
 /// Works since the first sample, by the trapezoidal rule over the powers of each sample.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default)]
 pub struct Account {
     last: Option<(f64, Named)>,
     works: Named,
 }
+
+base::bits! { Account { last, works } }
 
 /// Items that own their names.
 type Named = Vec<(String, f64)>;

@@ -46,7 +46,7 @@ pub fn stiffness<K: Kernel>(h_over_dx: f64, layers: usize, poisson: f64) -> f64 
     // E = 1.
     let mu = 0.5 / (1.0 + poisson);
     let lambda = 2.0 * mu * poisson / (1.0 - 2.0 * poisson);
-    let factor = SquareLattice::<K>::new(h_over_dx, 0.0).gradient_factor();
+    let factor = SquareLattice::of::<K>(h_over_dx, 0.0).gradient_factor();
     let c = hourglass(mu, HOURGLASS, factor);
     let (matrix, vector) = (DMatrix::zeros(layers, layers), DVector::zeros(layers));
     let mut squares = Squares { matrix, vector, constant: 0.0 };

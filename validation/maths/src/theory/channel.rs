@@ -445,7 +445,7 @@ mod tests {
     fn curved_ghosts_reach_the_lattice_floor() {
         fn check<K: Kernel>(kernel: (f64, f64), printed: [&str; 3]) {
             let floor =
-                (1.0 - 1.0 / SquareLattice::<K>::new(kernel.0, kernel.1).laplacian_factor()).abs();
+                (1.0 - 1.0 / SquareLattice::of::<K>(kernel.0, kernel.1).laplacian_factor()).abs();
             let errors =
                 [10, 20, 40].map(|n| poiseuille_error::<K>(WallRule::CurvedGhosts, kernel, n));
             assert_rounds_to(&format!("{} {kernel:?}", K::NAME), &printed, &errors);
@@ -488,7 +488,7 @@ mod tests {
             };
             let model = channel.reduce::<CubicSpline>(h, eta2).expect("a wide channel");
             let steady = model.steady().expect("regular");
-            let factor = SquareLattice::<CubicSpline>::new(h, eta2).sheared_laplacian_factor();
+            let factor = SquareLattice::of::<CubicSpline>(h, eta2).sheared_laplacian_factor();
             let error = model.relative_error(&steady, |y| POISEUILLE.steady(y) / factor);
             assert!(error < 1e-7, "h/dx {h}: {error:.1e}");
         }

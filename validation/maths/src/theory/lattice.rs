@@ -16,7 +16,6 @@ use base::functions::{cos, sin};
 use nalgebra::{Matrix2, Vector2};
 use solver::kernel::{Kernel, Smoothing};
 use std::f64::consts::PI;
-use std::marker::PhantomData;
 
 /// A lattice point other than the origin, in units of dx.
 struct Site {
@@ -27,8 +26,8 @@ struct Site {
     guard: f64,
 }
 
-/// A square lattice seen through kernel `K`.
-pub struct SquareLattice<K> {
+/// A square lattice seen through a kernel.
+pub struct SquareLattice {
     /// h/dx.
     h: f64,
     /// η²/dx².
@@ -36,7 +35,10 @@ pub struct SquareLattice<K> {
     /// By which gradients are multiplied: 1, or 1/G₁.
     correction: f64,
     sites: Vec<Site>,
-    kernel: PhantomData<K>,
+    /// Support radius \[h\].
+    support: f64,
+    /// F and W of the kernel from h and r².
+    kernel: [fn(f64, f64) -> f64; 2],
 }
 
 /// The largest values of the symbols over a set of wave vectors, made dimensionless with h.
@@ -52,10 +54,10 @@ pub struct Maxima {
     pub diffusion: f64,
 }
 
-impl<K: Kernel> SquareLattice<K> {
-    /// The lattice with smoothing length `h_over_dx` \[dx\] and η² = `eta2_over_h2` \[h²\]; both
+impl SquareLattice {
+    /// The lattice seen through kernel `K` with smoothing length `h_over_dx` \[dx\] and η² = `eta2_over_h2` \[h²\]; both
     /// must be finite, the first positive, the second not negative.
-    pub fn new(h_over_dx: f64, eta2_over_h2: f64) -> Self {
+    pub fn of<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) -> Self {
         let (h, eta2) = (h_over_dx, eta2_over_h2 * h_over_dx * h_over_dx);
         let kernel = Smoothing::<K>::new(h);
         let reach = kernel.support().ceil() as i32;
@@ -69,7 +71,9 @@ impl<K: Kernel> SquareLattice<K> {
                 }
             }
         }
-        Self { h, eta2, correction: 1.0, sites, kernel: PhantomData }
+        let f = |h, r2| Smoothing::<K>::new(h).f(r2);
+        let w = |h, r2| Smoothing::<K>::new(h).w(r2);
+        Self { h, eta2, correction: 1.0, sites, support: K::SUPPORT, kernel: [f, w] }
     }
 
     /// The same with gradients, and their conjugate forces, that are corrected by the inverse of the moments,
@@ -109,8 +113,8 @@ impl<K: Kernel> SquareLattice<K> {
     /// Σ_y y² ⟨Σ_x V F r²/(r²+η²)⟩ₛ. Only rows y ≠ 0 count, so correlations between offsets of
     /// different rows do not matter.
     pub fn sheared_laplacian_factor(&self) -> f64 {
-        let kernel = Smoothing::<K>::new(self.h);
-        self.rows(|y| y * y * self.row_mean(y, |r2| kernel.f(r2) * r2 / (r2 + self.eta2), |_| 1.0))
+        let Self { h, eta2, kernel: [f, _], .. } = *self;
+        self.rows(|y| y * y * self.row_mean(y, |r2| f(h, r2) * r2 / (r2 + eta2), |_| 1.0))
     }
 
     /// A, the largest swing of the summation density Σ V W about its mean, relative to ρ₀, while
@@ -122,13 +126,13 @@ impl<K: Kernel> SquareLattice<K> {
     /// reached when the rows' phases agree. In simple shear they seldom do: the swing there is
     /// up to 40 % smaller. The pressure noise is about (c₀/U)² A ρU².
     pub fn density_swing(&self) -> f64 {
-        let kernel = Smoothing::<K>::new(self.h);
-        self.rows(|y| 2.0 * self.row_mean(y, |r2| kernel.w(r2), |s| cos(2.0 * PI * s)).abs())
+        let Self { h, kernel: [_, w], .. } = *self;
+        self.rows(|y| 2.0 * self.row_mean(y, |r2| w(h, r2), |s| cos(2.0 * PI * s)).abs())
     }
 
     /// Σ over the rows y ≠ 0 in reach; both signs are alike.
     fn rows(&self, term: impl Fn(f64) -> f64) -> f64 {
-        let reach = (K::SUPPORT * self.h).ceil() as i32;
+        let reach = (self.support * self.h).ceil() as i32;
         (1..=reach).map(|y| 2.0 * term(f64::from(y))).sum()
     }
 
@@ -136,7 +140,7 @@ impl<K: Kernel> SquareLattice<K> {
     /// and as smooth as the kernel, so the mean over equal steps converges quickly.
     fn row_mean(&self, y: f64, f: impl Fn(f64) -> f64, weight: impl Fn(f64) -> f64) -> f64 {
         const OFFSETS: i32 = 512;
-        let reach = (K::SUPPORT * self.h).ceil() as i32 + 1;
+        let reach = (self.support * self.h).ceil() as i32 + 1;
         let mut sum = 0.0;
         for k in 0..OFFSETS {
             let offset = f64::from(k) / f64::from(OFFSETS);
@@ -222,8 +226,8 @@ mod tests {
 
     fn check<K: Kernel>(rows: &[Row]) {
         for (ratio, neighbours, printed) in rows {
-            let bare = SquareLattice::<K>::new(*ratio, 0.0);
-            let guarded = SquareLattice::<K>::new(*ratio, 0.01);
+            let bare = SquareLattice::of::<K>(*ratio, 0.0);
+            let guarded = SquareLattice::of::<K>(*ratio, 0.01);
             let computed = [
                 bare.gradient_factor() - 1.0,
                 guarded.laplacian_factor() - 1.0,
@@ -263,8 +267,8 @@ mod tests {
     #[test]
     fn maxima_match_the_design_table() {
         fn check<K: Kernel>(ratio: f64, printed: [&str; 4]) {
-            let guarded = SquareLattice::<K>::new(ratio, 0.01).maxima(120);
-            let bare = SquareLattice::<K>::new(ratio, 0.0).maxima(120);
+            let guarded = SquareLattice::of::<K>(ratio, 0.01).maxima(120);
+            let bare = SquareLattice::of::<K>(ratio, 0.0).maxima(120);
             let computed =
                 [guarded.gradient, guarded.laplacian, bare.laplacian, guarded.artificial];
             assert_rounds_to(&format!("{} {ratio}", K::NAME), &printed, &computed);
@@ -281,7 +285,7 @@ mod tests {
     /// Long waves see the factors: g = G₁ k, λ = L₁ k².
     #[test]
     fn symbols_tend_to_the_factors() {
-        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
         let theta = Vector2::new(1e-4, 0.0);
         let kh = theta.x * 1.2;
         assert_relative_eq!(
@@ -302,8 +306,8 @@ mod tests {
     /// Long waves have no error of the factor, and every wave has its share of it less.
     #[test]
     fn corrected_gradients_have_the_factor_one() {
-        let plain = SquareLattice::<CubicSpline>::new(1.5, 0.01);
-        let corrected = SquareLattice::<CubicSpline>::new(1.5, 0.01).corrected();
+        let plain = SquareLattice::of::<CubicSpline>(1.5, 0.01);
+        let corrected = SquareLattice::of::<CubicSpline>(1.5, 0.01).corrected();
         assert_relative_eq!(corrected.gradient_factor(), 1.0, max_relative = 1e-15);
         let ratio = plain.maxima(24).gradient / corrected.maxima(24).gradient;
         assert_relative_eq!(ratio, plain.gradient_factor(), max_relative = 1e-14);
@@ -314,7 +318,7 @@ mod tests {
     fn the_stiffest_wave_has_opposite_velocities_side_by_side() {
         fn check<K: Kernel>(ratios: &[f64]) {
             for ratio in ratios {
-                let lattice = SquareLattice::<K>::new(*ratio, 0.0);
+                let lattice = SquareLattice::of::<K>(*ratio, 0.0);
                 let share = lattice.stiffest() / lattice.maxima(120).diffusion;
                 assert!((0.97..=1.0 + 1e-12).contains(&share), "{} {ratio}: {share}", K::NAME);
             }

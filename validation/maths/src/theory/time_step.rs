@@ -17,7 +17,7 @@ use super::{
 };
 use base::functions::{ln, ln_1p, modulus};
 use nalgebra::{Complex, Matrix3, Vector2};
-use solver::{kernel::Kernel, super_steps::stages};
+use solver::super_steps::stages;
 
 /// The fluid that the limits are for. All numbers must be finite and not negative, `h` and `c0`
 /// positive.
@@ -120,7 +120,7 @@ pub fn explicit_limit(stiffest: f64, h: f64, nu: f64) -> f64 {
 }
 
 /// The waves of a periodic box of `n` × `n` particles, one of each symmetry class.
-pub fn modes<K: Kernel>(lattice: &SquareLattice<K>, n: usize, medium: &Medium) -> Vec<Mode> {
+pub fn modes(lattice: &SquareLattice, n: usize, medium: &Medium) -> Vec<Mode> {
     wave_vectors(n).map(|theta| Mode::new(lattice, theta, medium)).collect()
 }
 
@@ -143,7 +143,7 @@ pub fn growth_per_step(modes: &[Mode], integrator: Integrator, dt: f64) -> f64 {
 /// min over k of (λ_max (λ_max - λ))^(1/2) h/|g|.
 ///
 /// With an even n the wave of λ_max is one that g does not see.
-pub fn free_sound<K: Kernel>(lattice: &SquareLattice<K>, n: usize) -> f64 {
+pub fn free_sound(lattice: &SquareLattice, n: usize) -> f64 {
     let max = lattice.maxima(n).laplacian;
     let audible = wave_vectors(n).filter(|theta| !acoustically_silent(lattice, *theta));
     let ratio = |theta| {
@@ -164,11 +164,7 @@ const SEARCHED: i32 = 500;
 
 impl Mode {
     /// The wave with phase `theta` = k dx \[rad\].
-    pub fn new<K: Kernel>(
-        lattice: &SquareLattice<K>,
-        theta: Vector2<f64>,
-        medium: &Medium,
-    ) -> Self {
+    pub fn new(lattice: &SquareLattice, theta: Vector2<f64>, medium: &Medium) -> Self {
         let Medium { c0, h, nu, alpha, delta } = *medium;
         let g = lattice.gradient(theta);
         // At the corners of the zone g is round-off; P is diagonal there.
@@ -373,8 +369,8 @@ fn midpoint_root(c: f64) -> f64 {
 /// The largest c₀h/ν at which the predictor-corrector is stable at the Courant number `cfl` =
 /// c₀ dt/h in a box of `n` × `n` particles: sound needs this much viscosity. `None` if the viscous
 /// limit itself forbids it.
-pub fn predictor_corrector_stiffest_sound<K: Kernel>(
-    lattice: &SquareLattice<K>,
+pub fn predictor_corrector_stiffest_sound(
+    lattice: &SquareLattice,
     n: usize,
     cfl: f64,
 ) -> Option<f64> {
@@ -385,8 +381,8 @@ pub fn predictor_corrector_stiffest_sound<K: Kernel>(
 
 /// The smallest always-on α that keeps the predictor-corrector stable at the Courant number `cfl`
 /// without viscosity, in a box of `n` × `n` particles. `None` if no α does.
-pub fn predictor_corrector_smallest_alpha<K: Kernel>(
-    lattice: &SquareLattice<K>,
+pub fn predictor_corrector_smallest_alpha(
+    lattice: &SquareLattice,
     n: usize,
     cfl: f64,
 ) -> Option<f64> {
@@ -394,13 +390,13 @@ pub fn predictor_corrector_smallest_alpha<K: Kernel>(
     smallest(|alpha| stable(lattice, n, &Medium { alpha, ..rest }, cfl), cfl)
 }
 
-fn stable<K: Kernel>(lattice: &SquareLattice<K>, n: usize, medium: &Medium, dt: f64) -> bool {
+fn stable(lattice: &SquareLattice, n: usize, medium: &Medium, dt: f64) -> bool {
     let bound = |theta| Mode::new(lattice, theta, medium).limit(Integrator::PredictorCorrector);
     wave_vectors(n).all(|theta| acoustically_silent(lattice, theta) || bound(theta) >= dt)
 }
 
 /// Waves without a gradient symbol are no sound: without viscosity they neither grow nor decay.
-fn acoustically_silent<K: Kernel>(lattice: &SquareLattice<K>, theta: Vector2<f64>) -> bool {
+fn acoustically_silent(lattice: &SquareLattice, theta: Vector2<f64>) -> bool {
     lattice.gradient(theta).norm() < 1e-12
 }
 
@@ -422,7 +418,7 @@ mod tests {
     use super::*;
     use crate::theory::printed::assert_rounds_to;
     use approx::assert_relative_eq;
-    use solver::kernel::{CubicSpline, QuinticSpline, WendlandC2};
+    use solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
     const WATER: Medium = Medium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
     use Integrator::{Euler, Leapfrog, PredictorCorrector};
@@ -445,7 +441,7 @@ mod tests {
     #[test]
     fn separate_limits_match_the_design_table() {
         fn check<K: Kernel>(ratio: f64, printed: [&str; 2]) {
-            let lattice = SquareLattice::<K>::new(ratio, 0.01);
+            let lattice = SquareLattice::of::<K>(ratio, 0.01);
             let limits = SeparateLimits::of(&modes(&lattice, 120, &Medium { nu: 1.0, ..WATER }));
             let row = format!("{} {ratio}", K::NAME);
             assert_rounds_to(&row, &printed, &[limits.acoustic, limits.viscous]);
@@ -465,7 +461,7 @@ mod tests {
     /// 0.3551).
     #[test]
     fn measured_box_matches_the_design_table() {
-        let lattice = SquareLattice::<CubicSpline>::new(1.3, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.3, 0.01);
         let limit = |n: usize, nu: f64, integrator| {
             time_step_limit(&modes(&lattice, n, &Medium { nu, ..WATER }), integrator)
         };
@@ -483,7 +479,7 @@ mod tests {
     /// R4 and R5 of 2.4: 1.03 h/(α c) and 0.347 h/(δ c).
     #[test]
     fn dissipation_limits_match_the_design_text() {
-        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
         let medium = Medium { alpha: 1.0, delta: 1.0, ..WATER };
         let limits = SeparateLimits::of(&modes(&lattice, 120, &medium));
         let computed = [limits.artificial_viscosity, limits.density_diffusion];
@@ -494,7 +490,7 @@ mod tests {
     /// for 80. At 40 the fastest mode is the density checkerboard, which g does not see: neutral.
     #[test]
     fn measured_threshold_of_the_predictor_corrector() {
-        let lattice = SquareLattice::<CubicSpline>::new(1.3, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.3, 0.01);
         let threshold = predictor_corrector_stiffest_sound(&lattice, 20, 0.5).expect("a window");
         assert_rounds_to("threshold", &["53.5"], &[threshold]);
         let growth = [40.0, 80.0].map(|x| {
@@ -507,7 +503,7 @@ mod tests {
 
     #[test]
     fn mixed_limits_match_the_design_text() {
-        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
         let limit = |medium: Medium| time_step_limit(&modes(&lattice, 80, &medium), Leapfrog);
         let mixed = [10.0, 30.0, 100.0].map(|x: f64| limit(Medium { nu: 1.0 / x, ..WATER }));
         assert_rounds_to("c h/nu = 10, 30, 100", &["1.655", "1.797", "1.846"], &mixed);
@@ -520,7 +516,7 @@ mod tests {
     /// notes say 12 % at most, which is their value at c₀h/ν = 10.
     #[test]
     fn separate_limits_are_optimistic() {
-        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
         let excess = [3.0, 5.3, 10.0, 30.0, 100.0].map(|x: f64| {
             let medium = Medium { nu: 1.0 / x, ..WATER };
             let modes = modes(&lattice, 80, &medium);
@@ -535,7 +531,7 @@ mod tests {
     #[test]
     fn free_sound_speed_leaves_the_viscous_limit() {
         fn check<K: Kernel>(ratio: f64, eta2: f64, printed: &str) {
-            let lattice = SquareLattice::<K>::new(ratio, eta2);
+            let lattice = SquareLattice::of::<K>(ratio, eta2);
             let free = free_sound(&lattice, 80);
             let limit = |x: f64| {
                 let modes = modes(&lattice, 80, &Medium { nu: 1.0 / x, ..WATER });
@@ -569,7 +565,7 @@ mod tests {
     /// Table 2.3: how much damping the predictor-corrector needs, cubic, h = 1.2 dx.
     #[test]
     fn predictor_corrector_needs_match_the_design_table() {
-        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
         for (cfl, printed) in [
             (0.1, ["6073", "4.8e-4"]),
             (0.2, ["770", "3.8e-3"]),
@@ -592,7 +588,7 @@ mod tests {
     /// just above growing, for coupled and uncoupled waves.
     #[test]
     fn spectral_radius_crosses_one_at_the_limit() {
-        let lattice = SquareLattice::<CubicSpline>::new(1.2, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
         for (nu, alpha, delta) in
             [(0.1, 0.0, 0.0), (0.0, 0.5, 0.0), (0.02, 1.0, 0.1), (1.0, 0.1, 0.1)]
         {
@@ -615,7 +611,7 @@ mod tests {
             assert_relative_eq!(growth, predictor_corrector_growth(omega_dt), max_relative = 1e-10);
             assert_relative_eq!(growth, omega_dt.powi(4) / 8.0, max_relative = 0.01);
         }
-        let lattice = SquareLattice::<CubicSpline>::new(1.3, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(1.3, 0.01);
         let modes = modes(&lattice, 20, &WATER);
         let growth = [0.4, 0.5].map(|cfl| growth_per_step(&modes, PredictorCorrector, cfl));
         assert_rounds_to("growth", &["4.19e-3", "1.02e-2"], &growth);

@@ -66,7 +66,7 @@ mod tests {
         for (layers, excess) in [(5, 0.30061), (10, 0.15282), (20, 0.07315), (40, 0.03309)] {
             assert_relative_eq!(period_excess(layers, 1.5), excess, max_relative = 1e-4);
         }
-        let inside = SquareLattice::<CubicSpline>::new(1.5, 0.01).gradient_factor();
+        let inside = SquareLattice::of::<CubicSpline>(1.5, 0.01).gradient_factor();
         let many = period_excess(2000, 1.5);
         assert!((many - (1.0 / inside - 1.0)).abs() < 1e-3, "{many}");
     }

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 use solver::{EquationOfState, Evolved, Flow, Observer, Role, Stepper, Tait};
 
 use super::{Dam, metrics, setup::near_the_floor};
@@ -59,7 +58,7 @@ fn foremost<'a>(
 
 /// One sample: t \[s\]; front, residual height, levels \[m\]; particles outside; kinetic Mach
 /// number; excursion of the density.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 struct Sample {
     time: f64,
     front: f64,
@@ -70,6 +69,8 @@ struct Sample {
     speed: f64,
     density: [f64; 2],
 }
+
+base::bits! { Sample { time, front, height, levels, outside, deepest, speed, density } }
 
 /// Samples of a run.
 pub struct Samples<'a> {

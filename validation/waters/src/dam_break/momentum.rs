@@ -1,8 +1,6 @@
 //! The momentum of the water against what walls and gravity give it.
 
-use harness::checkpoint::vector;
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 use solver::Stepper;
 
 use super::{Dam, metrics::MOMENTUM_GAP};
@@ -16,18 +14,16 @@ pub struct Momentum {
 }
 
 /// Time, force, and the momentum of the start; the impulse so far, and the largest gap.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 struct Balance {
     time: f64,
-    #[serde(with = "vector")]
     start: Vector2<f64>,
-    #[serde(with = "vector")]
     force: Vector2<f64>,
-    #[serde(with = "vector")]
     impulse: Vector2<f64>,
     gap: f64,
 }
 
+base::bits! { Balance { time, start, force, impulse, gap } }
 harness::observed! { Momentum: changes(balance), parts(), stays(gravity) }
 
 impl Momentum {

@@ -1,6 +1,5 @@
 //! One run: scene, stepping, what is measured.
 
-use serde::{Deserialize, Serialize};
 use solver::{EquationOfState, Particle, Role, Stepper};
 
 use super::{HydrostaticSettings, NAME, column::Column};
@@ -72,7 +71,6 @@ fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
 }
 
 /// What is measured of the water at one time.
-#[derive(Serialize, Deserialize)]
 struct Moment {
     /// t \[4 H/c₀\].
     time: f64,
@@ -86,6 +84,8 @@ struct Moment {
     kinetic: f64,
     outside: usize,
 }
+
+base::bits! { Moment { time, pressure, level, gap, kinetic, outside } }
 
 struct History<'a> {
     column: &'a Column,
