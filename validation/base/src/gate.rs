@@ -174,15 +174,18 @@ pub struct Cause {
     pub what: Cow<'static, str>,
     /// what would remove it, a sentence
     pub mend: Cow<'static, str>,
-    /// since when it is known: year, month, day
-    pub since: Cow<'static, str>,
 }
 
 impl Cause {
-    /// A cause, what would remove it, and since when it is known.
-    pub const fn new(what: &'static str, mend: &'static str, since: &'static str) -> Self {
-        let [what, mend, since] = [Cow::Borrowed(what), Cow::Borrowed(mend), Cow::Borrowed(since)];
-        Self { what, mend, since }
+    /// A cause, and what would remove it.
+    pub const fn new(what: &'static str, mend: &'static str) -> Self {
+        Self { what: Cow::Borrowed(what), mend: Cow::Borrowed(mend) }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} What would remove it: {}", self.what, self.mend)
     }
 }
 

@@ -191,9 +191,7 @@ fn by_cause(gates: &[&Judged]) -> String {
     let mut text = String::new();
     for (cause, gates) in causes {
         let words = match cause {
-            Some(Cause { what, mend, since }) => {
-                format!("{what} What would remove it: {mend} Known since {since}.")
-            }
+            Some(cause) => cause.to_string(),
             None => {
                 "Gates with a cause of their own, which `touchstone explain GATE` states:".into()
             }

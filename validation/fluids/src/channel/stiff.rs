@@ -77,14 +77,12 @@ static SOUND: Cause = Cause::new(
     "Morris' rule makes sound in Poiseuille flow 2.8 times as fast as in Couette flow, and sound sets the \
      step.",
     "A sound speed chosen by the pressure of the flow, which is 0 here, and not by its force.",
-    "2026-11-23",
 );
 
 static EDGE: Cause = Cause::new(
     "With h/dx = 1 some neighbours are at the edge of the support, where round-off decides whether they are \
      counted, though they exert no force.",
     "A count of pair sweeps in the record beside that of pair interactions.",
-    "2026-11-23",
 );
 
 /// The gates of one pair.
