@@ -45,11 +45,6 @@ pub fn report_bug(info: &PanicHookInfo) {
     say(&format!("{BUG}\n{message}\nat {place}, touchstone {version}, commit {commit}"));
 }
 
-/// `1 run`, `2 runs`.
-pub fn count((number, what): (usize, &str)) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
-}
-
 /// Rows under their heads, columns two spaces apart; a column of numbers stands on the right.
 pub fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
     let width = |text: &str| text.chars().count();

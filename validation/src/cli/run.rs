@@ -119,7 +119,7 @@ fn carry_out(
             format!("; touchstone run --resume {} goes on with it", folder.output.path().display())
         });
         let what =
-            format!("after {step} steps, at t = {time:.4e} s; no record is written{kept}{goes_on}");
+            format!("after step {step}, at t = {time:.4e} s; no record is written{kept}{goes_on}");
         return Err(Failure::interrupted(what));
     }
     let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();

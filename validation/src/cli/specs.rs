@@ -11,6 +11,7 @@ use harness::{
     plan,
     store::Store,
 };
+use report::counted;
 use validation::cases;
 
 use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
@@ -38,7 +39,7 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
         output::print_whole(&record.to_json()?)?;
     }
-    let [runs, lines] = [(jobs.len(), "run"), (lines, "line")].map(output::count);
+    let (runs, lines) = (counted(jobs.len(), "run", "runs"), counted(lines, "line", "lines"));
     let words = format!("{runs} in {lines}: {}", ended(&made));
     if made.interrupted {
         let rest = "the same command makes the missing runs";
@@ -95,7 +96,8 @@ fn planned(
         lines = lines.get(index).copied().into_iter().collect();
         if lines.is_empty() {
             return Err(Failure::usage(anyhow::anyhow!(
-                "there is no run {index}; the file has {count} runs, counted from 0"
+                "there is no run {index}; the file has {}, counted from 0",
+                counted(count, "run", "runs")
             )));
         }
     }
