@@ -181,7 +181,7 @@ impl World {
         Ok(made)
     }
 
-    /// Refuses to judge cases by a reference that was changed, or to show one that no case uses.
+    /// Refuses to run or judge cases by a reference that was changed, or to show one that no case uses.
     fn check_references(&self, cases: &[&'static dyn Case]) -> Result<(), Failure> {
         let mut words = Vec::new();
         for (error, users) in (self.references)() {

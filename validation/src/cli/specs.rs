@@ -30,6 +30,7 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
         Ok(Job { case: cases::find_in(world.cases, &planned.spec.case)?, planned })
     };
     let jobs = plan::merged(planned).into_iter().map(job).collect::<Result<Vec<Job>, _>>()?;
+    world.check_references(&jobs.iter().map(|job| job.case).collect::<Vec<_>>())?;
     let store = Store::open(path)?;
     let allow_long = arguments.allow_long;
     // Nothing is timed here.
