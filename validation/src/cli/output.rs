@@ -11,12 +11,23 @@ pub const BUG: &str = "touchstone: this is a bug of touchstone, not of your sett
 
 /// A line or more for a person, on standard error. Nobody listening is no error.
 pub fn say(text: &str) {
-    let _ = writeln!(io::stderr(), "{}", text.trim_end_matches('\n'));
+    let _ = writeln!(io::stderr(), "{}", visible(text.trim_end_matches('\n')));
+}
+
+/// Text whose control characters are seen and not obeyed, as `\u{1b}`: that of a file or of an argument must
+/// not move a cursor or change a title.
+fn visible(text: &str) -> String {
+    let seen = |char: char| match char {
+        '\n' | '\t' => char.to_string(),
+        char if char.is_control() => char.escape_default().to_string(),
+        char => char.to_string(),
+    };
+    text.chars().map(seen).collect()
 }
 
 /// A result, on standard output. A reader that has had enough (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
-    match write(text) {
+    match write(&visible(text)) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(refused(&error)),
         _ => Ok(()),
     }
