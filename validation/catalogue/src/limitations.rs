@@ -60,7 +60,7 @@ fn describe(cause: Option<&Cause>, found: &[Found]) -> (String, Vec<String>) {
 
 /// The gate, its value and its bound.
 fn gate(found: &Found) -> String {
-    let Judged { gate, judgement } = found.judged;
+    let Judged { gate, judgement, .. } = found.judged;
     let value = judgement.value.map_or("not measured".into(), |value| sig(value, 4));
     format!("[{0}](#{0}): {value}; {1}", gate.id, gate.bounds())
 }

@@ -161,7 +161,7 @@ const READING: [&str; 2] = [
 ];
 
 fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Notes<'a>) -> GateRow {
-    let Judged { gate, judgement } = judged;
+    let Judged { gate, judgement, .. } = judged;
     let mut reasons = vec![notes.number(&gate.because)];
     if let (Verdict::Limitation(_), Purpose::Limitation(known)) =
         (&judgement.verdict, &gate.purpose)
