@@ -92,7 +92,7 @@ fn gates(flow: Flow, row: &Row) -> Vec<(Gate, f64)> {
     let [modern, error] = row.errors(tau);
     let spacing = match flow {
         Flow::Couette => extremes::matrix_error::<QuinticSpline>(row.rows, 1.0, 1e-6),
-        Flow::Poiseuille => Some(modern),
+        Flow::Poiseuille => Some(modern).filter(|error| error.is_finite()),
     };
     let goal = spacing.map_or(1e-3, |spacing| (spacing + 2e-4).max(1e-3));
     let because = "The bound is 0.1 %, or where the spacing allows no less its error and 0.02 % for time and \

@@ -98,7 +98,8 @@ fn energies(record: &Record) -> Figure {
     let t = budget.column("t");
     let points = |values: &[f64]| t.iter().copied().zip(values.iter().copied()).collect::<Vec<_>>();
     let sum = |names: &[&str]| -> Vec<f64> {
-        (0..t.len()).map(|k| names.iter().map(|name| budget.column(name)[k]).sum()).collect()
+        let at = |k: usize, name: &&str| budget.column(name).get(k).copied().unwrap_or(f64::NAN);
+        (0..t.len()).map(|k| names.iter().map(|name| at(k, name)).sum()).collect()
     };
     let plot = |label: &str, lines: &[(&str, Vec<f64>)]| {
         let plot = Plot::new("", Axis::linear("t [L/c0]"), Axis::linear(label));
