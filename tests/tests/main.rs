@@ -2,6 +2,7 @@
 
 mod consistent;
 mod cost;
+mod damaged;
 mod documents;
 mod extremes;
 mod frozen_lattice;

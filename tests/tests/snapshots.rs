@@ -185,7 +185,7 @@ fn kept_solid(case: &str) -> Vec<Kept> {
             vec![(vec!["bare"], steps.to_vec())]
         }
         "oscillating_plate" => vec![(vec!["bare"], vec!["n=5"])],
-        "rubber_rings" => vec![(vec!["seed"], vec!["spacing=0.2"])],
+        "rubber_rings" => vec![(vec!["lagrangian", "seed"], vec!["spacing=0.2"])],
         _ => Vec::new(),
     }
 }

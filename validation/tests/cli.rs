@@ -238,7 +238,7 @@ fn verdicts_are_results_and_how_they_came_about_is_not() {
     assert_eq!(output.status.code(), Some(1), "{text}{words}");
     assert!(text.starts_with("case ") && text.contains("\ncouette "), "{text}");
     assert!(text.contains(" more gates fail: ") && text.lines().count() < 110, "{text}");
-    assert!(words.contains("note: of ") && words.contains(" runs in "), "{words}");
+    assert!(words.contains("; the store lacks ") && words.contains(" runs in "), "{words}");
     let all = touchstone_in(folder.path(), &["judge", "couette", "--store", "empty", "--all"]);
     let gates = stdout(&all).lines().filter(|line| line.starts_with("FAIL ")).count();
     assert!(gates > 20 && stdout(&all).ends_with(&text), "{gates} gates, then the same");

@@ -295,6 +295,41 @@ fn a_checkpoint_that_cannot_be_written_names_the_last_good_one() {
     assert!(names(&out).contains(&"record.json".to_string()), "{:?}", names(&out));
 }
 
+/// The escape characters of a spec and of arguments reached the terminal.
+#[test]
+fn control_characters_are_shown_and_not_sent_to_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let escape = "\u{1b}]0;title\u{7}\u{9b}2J";
+    let unknown = SPEC.replace("settings", r"\u001b]0;title\u0007\u009b2J");
+    fs::write(folder.path().join("specs"), format!("{unknown}\n{escape}\n")).unwrap();
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::write(folder.path().join("out/checkpoint"), escape).unwrap();
+    let verdicts = r#"{"tier":"quick","commit":"","counts":{},"runs":[],"studies":[]}"#;
+    fs::write(folder.path().join("verdicts.json"), verdicts).unwrap();
+    for line in [
+        MAKE.to_string(),
+        "run --resume out".into(),
+        format!("run {escape}"),
+        format!("run couette --variant {escape}"),
+        format!("run couette --set {escape}=1"),
+        format!("run couette --set re={escape}"),
+        format!("run couette --rows {escape}"),
+        format!("run --{escape}"),
+        format!("run couette --vtk {escape}"),
+        format!("plan couette --set re={escape}"),
+        format!("judge --store {escape}"),
+        format!("explain {escape} --reports ."),
+        format!("compare {escape} {escape}"),
+    ] {
+        let output = touchstone(folder.path(), &line);
+        let text = said(&output) + &String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(2), "{line:?}: {text:?}");
+        let sent: Vec<char> = text.chars().filter(|c| c.is_control() && *c != '\n').collect();
+        assert_eq!(sent, [], "{line:?}: {text:?}");
+        assert!(!text.is_empty(), "{line:?}");
+    }
+}
+
 #[test]
 fn a_setting_that_is_given_twice_and_a_sweep_without_end_are_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -406,6 +406,39 @@ mod tests {
         assert!(unfinished().is_empty());
     }
 
+    /// Written in place, a file is half there for a while, and a reader of the old one loses the rest of it.
+    #[cfg(unix)]
+    #[test]
+    fn a_reader_of_the_old_file_reads_all_of_it_while_it_is_replaced() {
+        use std::io::Read;
+        let _turn = turn();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("record.json");
+        let [old, new] = [b'o', b'n'].map(|byte| vec![byte; 1 << 22]);
+        let by_name: fn(&Path, &[u8]) -> Result<(), FileError> =
+            |path, bytes| write_atomically_by(path, |temporary| fs::write(temporary, bytes));
+        for replace in [write_atomically, by_name] {
+            fs::write(&path, &old).unwrap();
+            let mut reader = File::open(&path).unwrap();
+            let mut read = vec![0; 1 << 10];
+            reader.read_exact(&mut read).unwrap();
+            let is_written = std::sync::atomic::AtomicBool::new(false);
+            std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    replace(&path, &new).unwrap();
+                    is_written.store(true, std::sync::atomic::Ordering::Relaxed);
+                });
+                while !is_written.load(std::sync::atomic::Ordering::Relaxed) {
+                    let found = fs::read(&path).unwrap();
+                    assert!(found == old || found == new, "{} bytes are half a file", found.len());
+                }
+            });
+            reader.read_to_end(&mut read).unwrap();
+            assert!(read == old, "the old file was changed while it was read");
+            assert!(fs::read(&path).unwrap() == new && names(folder.path()) == ["record.json"]);
+        }
+    }
+
     #[test]
     fn a_name_that_leads_out_of_the_folder_is_refused() {
         let _turn = turn();

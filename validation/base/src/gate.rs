@@ -144,8 +144,7 @@ pub enum Evidence {
 }
 
 /// What a gate does with its judgement.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Purpose {
     /// inside passes, outside fails
     Judge,
@@ -156,14 +155,13 @@ pub enum Purpose {
 }
 
 /// How far outside the bound of its gate a metric is known to lie, and why.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Known {
     /// from the evidence for the cause: outside of it, the gate fails
     pub bound: Bound,
     /// what causes it, and where its bound comes from
     pub reason: String,
     /// the cause that it shares with other gates
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cause: Option<Cause>,
 }
 
@@ -174,20 +172,23 @@ pub struct Cause {
     pub what: Cow<'static, str>,
     /// what would remove it, a sentence
     pub mend: Cow<'static, str>,
-    /// since when it is known: year, month, day
-    pub since: Cow<'static, str>,
 }
 
 impl Cause {
-    /// A cause, what would remove it, and since when it is known.
-    pub const fn new(what: &'static str, mend: &'static str, since: &'static str) -> Self {
-        let [what, mend, since] = [Cow::Borrowed(what), Cow::Borrowed(mend), Cow::Borrowed(since)];
-        Self { what, mend, since }
+    /// A cause, and what would remove it.
+    pub const fn new(what: &'static str, mend: &'static str) -> Self {
+        Self { what: Cow::Borrowed(what), mend: Cow::Borrowed(mend) }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} What would remove it: {}", self.what, self.mend)
     }
 }
 
 /// A metric, its bound and its reasons.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Gate {
     /// dotted name, starting with the case
     pub id: String,
@@ -202,10 +203,8 @@ pub struct Gate {
     /// what the judgement is for
     pub purpose: Purpose,
     /// is a run that ends early the limitation or the failure that is expected?
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub may_end_early: bool,
     /// does it judge what was measured of a run that did not reach its end?
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub even_if_diverged: bool,
 }
 
@@ -414,8 +413,7 @@ pub fn check_all(gates: &[Gate]) -> Result<(), GateError> {
 }
 
 /// What came of a gate.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Verdict {
     /// a finite number inside the bound
     Pass,
@@ -446,17 +444,15 @@ impl fmt::Display for Verdict {
 }
 
 /// A verdict with the number it rests on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
     /// name of the gate
     pub id: String,
     /// what came of it
     pub verdict: Verdict,
     /// the metric, if it was measured
-    #[serde(with = "crate::number::optional", default, skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// what is left of the allowance, of the gate or else of its limitation, see [`Bound::margin`]
-    #[serde(with = "crate::number::optional", default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
 }
 
@@ -647,15 +643,5 @@ mod tests {
     #[should_panic(expected = "does not say why")]
     fn a_gate_without_a_reason_cannot_be_made() {
         Gate::new("case.metric", "metric", Bound::Below(1.0), Evidence::Theory, "");
-    }
-
-    #[test]
-    fn judgements_round_trip_without_null() {
-        for value in [Some(0.5), Some(f64::INFINITY), None] {
-            let judgement = gate(Bound::Within(0.0, 1.0)).judge(value);
-            let text = serde_json::to_string(&judgement).unwrap();
-            assert!(!text.contains("null"), "{text}");
-            assert_eq!(serde_json::from_str::<Judgement>(&text).unwrap(), judgement);
-        }
     }
 }

@@ -3,8 +3,8 @@
 //! JSON has no NaN and no infinity, and `serde_json` writes both as `null`, which a reader would take
 //! for "not measured". Here they are written as objects with one key and read back without change:
 //! `{"not_finite": "NaN"}`, `{"not_finite": "inf"}`, `{"not_finite": "-inf"}`.
-//! `null` itself is refused. Use `#[serde(with = "crate::number")]` on an `f64` field,
-//! `crate::number::optional` on an `Option<f64>` and `crate::number::list` on a `Vec<f64>`.
+//! `null` itself is refused. Use `#[serde(with = "crate::number")]` on an `f64` field, `Option<Number>` for
+//! one that may be missing, and `crate::number::list` on a `Vec<f64>`.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -76,22 +76,6 @@ pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::
 /// For `#[serde(with = …)]` on an `f64`.
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Number::deserialize(deserializer).map(|number| number.0)
-}
-
-/// The same for an `Option<f64>`; add `default, skip_serializing_if = "Option::is_none"`,
-/// so that a missing number is a missing key and not `null`.
-pub mod optional {
-    use super::{Deserialize, Deserializer, Number, Serialize, Serializer};
-
-    /// Writes the number; the field is skipped when there is none.
-    pub fn serialize<S: Serializer>(value: &Option<f64>, to: S) -> Result<S::Ok, S::Error> {
-        value.map(Number).serialize(to)
-    }
-
-    /// Reads a number that is there.
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
-        Number::deserialize(from).map(|number| Some(number.0))
-    }
 }
 
 /// The same for a `Vec<f64>`.

@@ -176,12 +176,12 @@ impl fmt::Display for Status {
             Self::Completed => f.write_str("completed"),
             Self::Diverged { step, time, particle, field, value_text } => write!(
                 f,
-                "diverged after {step} steps, at t = {time:.4e} s: {field} of particle {particle} \
+                "diverged after step {step}, at t = {time:.4e} s: {field} of particle {particle} \
                  is {value_text}"
             ),
             Self::Refused { reason } => write!(f, "refused: {reason}"),
             Self::Interrupted { step, time } => {
-                write!(f, "interrupted after {step} steps, at t = {time:.4e} s")
+                write!(f, "interrupted after step {step}, at t = {time:.4e} s")
             }
         }
     }

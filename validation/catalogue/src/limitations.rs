@@ -52,12 +52,7 @@ pub fn section(suite: &Suite) -> Section {
 fn describe(cause: Option<&Cause>, found: &[Found]) -> (String, Vec<String>) {
     let mut cases: Vec<&str> = found.iter().map(|found| found.results.case.name()).collect();
     cases.dedup();
-    let what = match cause {
-        Some(Cause { what, mend, since }) => {
-            format!("{what} What would remove it: {mend} Known since {since}.")
-        }
-        None => "Other causes.".into(),
-    };
+    let what = cause.map_or("Other causes.".into(), Cause::to_string);
     let command = found.iter().find_map(command).unwrap_or_default();
     let text = format!("{what} Cases: {}. To see it: `{command}`.", cases.join(", "));
     (text, found.iter().map(gate).collect())
@@ -65,7 +60,7 @@ fn describe(cause: Option<&Cause>, found: &[Found]) -> (String, Vec<String>) {
 
 /// The gate, its value and its bound.
 fn gate(found: &Found) -> String {
-    let Judged { gate, judgement } = found.judged;
+    let Judged { gate, judgement, .. } = found.judged;
     let value = judgement.value.map_or("not measured".into(), |value| sig(value, 4));
     format!("[{0}](#{0}): {value}; {1}", gate.id, gate.bounds())
 }

@@ -17,7 +17,7 @@ use harness::{
     suite::{CaseResults, Of, Suite},
 };
 use report::{
-    Block, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS,
+    Block, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS, counted,
 };
 
 use crate::{limitations, margins, stiffness, time};
@@ -77,8 +77,8 @@ fn cost(suite: &Suite) -> String {
     let stepping: f64 = cost().map(|cost| cost.cpu_s).sum();
     let pairs: f64 = cost().map(|cost| cost.pair_interactions as f64).sum();
     format!(
-        "{} runs took {} of processor time for stepping and {} pair interactions.",
-        records().count(),
+        "{} took {} of processor time for stepping and {} pair interactions.",
+        counted(records().count(), "run", "runs"),
         report::seconds(stepping + repeated),
         report::sci(pairs, 2)
     )
@@ -95,11 +95,14 @@ fn tier_name(suite: &Suite) -> &'static str {
 fn reused(suite: &Suite) -> String {
     let other = match suite.made.of_other_sources {
         0 => String::new(),
-        count => format!(" **{count} of them were made by a build of other sources.**"),
+        count => format!(" **Made by a build of other sources: {count} of them.**"),
     };
     match suite.made.reused {
         0 => String::new(),
-        count => format!(" {count} records were in the store before.{other}"),
+        count => {
+            let were = counted(count, "record was", "records were");
+            format!(" {were} in the store before.{other}")
+        }
     }
 }
 
@@ -111,8 +114,13 @@ fn provenance(m: &Manifest) -> String {
     };
     let commit: String = m.commit.chars().take(12).collect();
     format!(
-        "Made by touchstone {} at commit `{commit}`{dirty} ({} build, {}) on {}, {} cores, {} threads.",
-        m.touchstone, m.profile, m.rustc, m.cpu, m.cores, m.threads
+        "Made by touchstone {} at commit `{commit}`{dirty} ({} build, {}) on {}, {}, {}.",
+        m.touchstone,
+        m.profile,
+        m.rustc,
+        m.cpu,
+        counted(m.cores, "core", "cores"),
+        counted(m.threads, "thread", "threads")
     )
 }
 
@@ -153,7 +161,7 @@ const READING: [&str; 2] = [
 ];
 
 fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Notes<'a>) -> GateRow {
-    let Judged { gate, judgement } = judged;
+    let Judged { gate, judgement, .. } = judged;
     let mut reasons = vec![notes.number(&gate.because)];
     if let (Verdict::Limitation(_), Purpose::Limitation(known)) =
         (&judgement.verdict, &gate.purpose)

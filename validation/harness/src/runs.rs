@@ -38,19 +38,24 @@ pub struct Judged {
     pub gate: Gate,
     /// The judgement.
     pub judgement: Judgement,
+    /// Unit of the metric; none of one that the record lacks.
+    pub unit: Option<String>,
 }
 
 impl Judged {
-    /// Judges a value.
+    /// Judges a number of a study, which has no unit unless the name of its metric ends with one in brackets.
     pub fn new(gate: Gate, value: Option<f64>) -> Self {
         let judgement = gate.judge(value);
-        Self { gate, judgement }
+        let bracketed = gate.metric.strip_suffix(']').and_then(|name| name.rsplit_once('['));
+        let unit = bracketed.map_or("-", |(_, unit)| unit).to_string();
+        Self { gate, judgement, unit: Some(unit) }
     }
 
     /// Judges the record of a run.
     pub fn of_record(gate: Gate, record: &Record) -> Self {
         let judgement = gate.judge_record(record);
-        Self { gate, judgement }
+        let unit = record.metrics.get(&gate.metric).map(|metric| metric.unit.clone());
+        Self { gate, judgement, unit }
     }
 
     /// How the verdict is shown.
@@ -122,5 +127,45 @@ impl Runs {
     /// Runs that were asked for and not planned, in their canonical form.
     pub fn unplanned(&self) -> Vec<String> {
         self.unplanned.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use base::gate::{Bound, Evidence};
+    use base::record::Metric;
+
+    use super::*;
+
+    fn gate(metric: &str) -> Gate {
+        let id = format!("made_up.{metric}");
+        Gate::new(id, metric, Bound::Below(1.0), Evidence::Theory, "made up")
+    }
+
+    /// Gates of metrics that a record lacks could be dropped, and no test failed.
+    #[test]
+    fn a_gate_whose_metric_is_missing_fails_and_is_there() {
+        let spec = RunSpec::new("made_up", "plain", serde_json::json!({}));
+        let mut record = Record::new("made_up", "plain", spec.settings.clone(), 1);
+        record.metrics.insert("there".into(), Metric::new(0.5, "m", "made up"));
+        let planned = Planned::new(spec).judged(["there", "missing"].map(gate).to_vec());
+        let run = JudgedRun::new(planned, record);
+        let found: Vec<_> =
+            run.judged.iter().map(|j| (&*j.gate.metric, &j.judgement.verdict, &j.unit)).collect();
+        let unit = Some("m".to_string());
+        let expected =
+            [("there", &Verdict::Pass, &unit), ("missing", &Verdict::Fail, &None::<String>)];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn the_unit_of_a_number_of_a_study_is_that_of_its_name() {
+        for (metric, unit) in [("ratio", "-"), ("period [2L/c0]", "2L/c0"), ("[a] of b", "-")] {
+            assert_eq!(
+                Judged::new(gate(metric), Some(0.5)).unit.as_deref(),
+                Some(unit),
+                "{metric}"
+            );
+        }
     }
 }

@@ -326,6 +326,22 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
+    /// A report that was killed left a part of a figure, and no later one removed it.
+    #[test]
+    fn what_a_killed_report_left_among_the_figures_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let figures = folder.path().join("figures");
+        std::fs::create_dir(&figures).unwrap();
+        let left = std::fs::File::create(figures.join(".unfinished-a8Zk29xYb01q-map.png")).unwrap();
+        let hours_ago = std::time::SystemTime::now() - std::time::Duration::from_secs(7200);
+        left.set_modified(hours_ago).unwrap();
+        real_page().write(&folder.path().join("index.html")).unwrap();
+        let names = std::fs::read_dir(&figures).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        assert_eq!(names, ["fig.png"]);
+    }
+
     fn page(body: &str) -> String {
         format!("<!DOCTYPE html><html><head><title>t</title></head><body>{body}</body></html>")
     }

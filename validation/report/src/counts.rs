@@ -1,5 +1,6 @@
 //! How gates ended, in numbers.
 
+use super::number::counted;
 use super::table::Status;
 use maud::{Markup, html};
 
@@ -39,18 +40,15 @@ impl Counts {
 
     /// What came of all gates, failures first, and of the runs, in a sentence.
     pub fn headline(self) -> String {
-        let of = |count: usize, one: &str, many: &str| match count {
-            0 => None,
-            1 => Some(format!("1 {one}")),
-            n => Some(format!("{n} {many}")),
-        };
+        let of =
+            |count: usize, one: &str, many: &str| (count > 0).then(|| counted(count, one, many));
         let parts = [
             of(self.fail, "gate fails", "gates fail"),
             of(self.pass, "gate passes", "gates pass"),
             of(
                 self.limitation,
-                "is outside its bound for a known reason",
-                "are outside their bounds for known reasons",
+                "gate is outside its bound for a known reason",
+                "gates are outside their bounds for known reasons",
             ),
             of(self.expected_failure, "control fails as it must", "controls fail as they must"),
             of(self.diverged, "run diverged", "runs diverged"),
@@ -110,8 +108,8 @@ mod tests {
         assert_eq!((counts.pass, counts.fail, counts.expected_failure), (2, 0, 1));
         assert_eq!(counts.headline(), "2 gates pass, 1 control fails as it must");
         let all = Counts { fail: 1, limitation: 2, diverged: 3, ..counts };
-        let headline = "1 gate fails, 2 gates pass, 2 are outside their bounds for known reasons, 1 control \
-                        fails as it must, 3 runs diverged";
+        let headline = "1 gate fails, 2 gates pass, 2 gates are outside their bounds for known reasons, 1 \
+                        control fails as it must, 3 runs diverged";
         assert_eq!(
             (all.worst(), counts.worst()),
             (Some(Status::Fail), Some(Status::ExpectedFailure))
@@ -119,5 +117,9 @@ mod tests {
         assert_eq!(all.headline(), headline);
         assert!(all.html().into_string().contains(headline));
         assert_eq!(Counts::default().headline(), "Nothing was judged");
+        let one = Counts { pass: 1, fail: 1, limitation: 1, expected_failure: 1, diverged: 1 };
+        let headline = "1 gate fails, 1 gate passes, 1 gate is outside its bound for a known reason, 1 \
+                        control fails as it must, 1 run diverged";
+        assert_eq!(one.headline(), headline);
     }
 }

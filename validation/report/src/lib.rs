@@ -41,7 +41,7 @@ pub use figure::{
     Shape,
 };
 pub use film::Film;
-pub use number::{exact, percent, sci, seconds, sig};
+pub use number::{counted, exact, percent, sci, seconds, sig};
 pub use page::{Block, Page, Section};
 pub use render::{png, svg};
 pub use table::{Cell, Column, Status, Table, first_sentence};

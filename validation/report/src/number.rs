@@ -53,6 +53,11 @@ pub fn sci(x: f64, digits: usize) -> String {
     }
 }
 
+/// A number of things with the noun, and the verb, that agree with it: `1 gate fails`, `2 gates fail`.
+pub fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
 /// A fraction as per cent: `0.0123` with two digits is `1.2 %`.
 pub fn percent(fraction: f64, digits: usize) -> String {
     format!("{}\u{a0}%", sig(100.0 * fraction, digits))

@@ -199,10 +199,11 @@ impl Page {
     pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
         if !self.png_folder.is_empty() {
-            let images = folder.join(&self.png_folder);
-            std::fs::create_dir_all(&images)?;
+            // What a report that was killed left there goes, too.
+            let images = files::OutputFolder::create(&folder.join(&self.png_folder));
+            let images = images.map_err(io::Error::other)?;
             let drawings: Vec<Drawing> = self.sections.iter().flat_map(drawings).collect();
-            drawings.par_iter().try_for_each(|drawing| drawing.write(&images))?;
+            drawings.par_iter().try_for_each(|drawing| drawing.write(images.path()))?;
         }
         files::write_atomically(path, html.as_bytes()).map_err(io::Error::other)
     }

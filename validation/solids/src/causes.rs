@@ -7,7 +7,6 @@ pub static FREE_FACES: Cause = Cause::new(
     "Velocity gradients are not corrected where neighbours are missing, so free faces of an elastic body are \
      too soft and mistake rotation for strain.",
     "Corrected gradients at free faces, or the total Lagrangian form of the variant `lagrangian`.",
-    "2026-11-21",
 );
 
 /// Corrected gradients are of first order at faces.
@@ -15,7 +14,6 @@ pub static LINEAR_GRADIENTS: Cause = Cause::new(
     "Corrected gradients are exact for linear fields alone, so layers near the faces of a bent body have the \
      smaller strain of their neighbours.",
     "The variant `lagrangian` with fewer neighbours, or finer spacing.",
-    "2026-11-23",
 );
 
 /// Bodies act on each other before they touch.
@@ -23,7 +21,6 @@ pub static SOFT_CONTACT: Cause = Cause::new(
     "Bodies push each other as soon as their kernels overlap, so contact begins before they touch and yields \
      like a spring.",
     "A law of contact between the surfaces of bodies, or finer spacing.",
-    "2026-11-21",
 );
 
 /// Short waves are slow.
@@ -31,7 +28,6 @@ pub static DISPERSION: Cause = Cause::new(
     "Waves of some spacings are slower than long ones, so a front leaves waves behind it, which keep a share \
      of the energy.",
     "Finer spacing, or viscosity that acts in shocks alone.",
-    "2026-11-23",
 );
 
 /// Folds of few spacings.
@@ -39,14 +35,12 @@ pub static FOLDS: Cause = Cause::new(
     "Where a thin ring is folded, its curvature changes within a few spacings, so that flattened rings are \
      too stiff.",
     "More particles through the thickness.",
-    "2026-11-23",
 );
 
 /// Bodies that touch are one.
 pub static ONE_LATTICE: Cause = Cause::new(
     "Two bodies on one lattice are one body to the equations, so their contact can pull as well as push.",
     "A law of contact between bodies, which pushes and does not pull.",
-    "2026-11-21",
 );
 
 /// What artificial viscosity does beside damping shocks.
@@ -54,7 +48,6 @@ pub static VISCOSITY: Cause = Cause::new(
     "Artificial viscosity, which is proportional to the spacing, takes energy from motion and shifts and \
      widens the front of a wave.",
     "Viscosity that acts in shocks alone, a Riemann solver with reconstruction, or finer spacing.",
-    "2026-11-21",
 );
 
 /// What its absence does.
@@ -62,14 +55,12 @@ pub static NO_VISCOSITY: Cause = Cause::new(
     "Without artificial viscosity and artificial stress, motion at the scale of the particle spacing takes \
      up energy and slows a plate.",
     "Artificial viscosity and artificial stress, as the variant `plain` has them.",
-    "2026-11-21",
 );
 
 /// Artificial stress is not elastic.
 pub static STRESS_ADDS_ENERGY: Cause = Cause::new(
     "Artificial stress weakens tension and stores no energy for it, so it adds energy to a body that bends.",
     "The variant `lagrangian`, which needs no artificial stress.",
-    "2026-11-21",
 );
 
 /// Artificial stress does not hold everything.
@@ -77,7 +68,6 @@ pub static TEARING: Cause = Cause::new(
     "Artificial stress delays the tensile instability without removing it, so rubber tears at high speeds \
      or fine spacing.",
     "The variant `lagrangian`, which has no tensile instability.",
-    "2026-11-21",
 );
 
 /// Known in part alone.
@@ -85,7 +75,6 @@ pub static SHARED_IMPULSE: Cause = Cause::new(
     "The two phases of contact share the impulse differently from finite elements; artificial viscosity \
      explains a part, and the rest is unexplained.",
     "This is not known: XSPH, softness in bending and softness of the contact do not explain it.",
-    "2026-11-21",
 );
 
 /// Layers that cannot keep their volume.
@@ -93,5 +82,4 @@ pub static LOCKING: Cause = Cause::new(
     "An even number of layers cannot keep the volume of every layer of a bent plate, so nearly \
      incompressible plates are too stiff.",
     "An odd number of layers, finer spacing, or a pressure that is taken over several particles.",
-    "2026-11-23",
 );

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use base::gate::Verdict;
 use base::spec::Measure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use harness::case;
+use serde::{Deserialize, Serialize};
 
 /// Measures how wrong a particle method (SPH) is, what smaller errors cost, and when it breaks.
 #[derive(Debug, Parser)]
@@ -353,7 +355,8 @@ pub struct Explain {
 }
 
 /// A verdict by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// Inside its bound
     Pass,
@@ -363,6 +366,18 @@ pub enum Status {
     Limitation,
     /// A control that lies outside its bound, as it must
     ExpectedFailure,
+}
+
+impl Status {
+    /// That of a verdict.
+    pub fn of(verdict: &Verdict) -> Self {
+        match verdict {
+            Verdict::Pass => Status::Pass,
+            Verdict::Fail => Status::Fail,
+            Verdict::Limitation(_) => Status::Limitation,
+            Verdict::ExpectedFailure => Status::ExpectedFailure,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -175,7 +175,7 @@ fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
     let mut text = String::new();
     if let (Some(old), Some(new)) = (&before.records, &after.records) {
         let shared = new.keys().filter(|name| old.contains_key(*name)).count();
-        let before = output::count((old.len(), "run"));
+        let before = ::report::counted(old.len(), "run", "runs");
         text += &format!("{before} before, {} after, {shared} in both\n", new.len());
     }
     for of_kind in changes.chunk_by(|a, b| a.kind == b.kind) {

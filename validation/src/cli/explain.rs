@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use ::report;
-use base::gate::{Cause, Evidence, Gate, Purpose, Verdict};
+use base::gate::{Cause, Evidence, Gate, Purpose};
 use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
@@ -17,7 +17,8 @@ use harness::store::Store;
 use harness::suite::{self, Of};
 
 use super::{
-    Exit, Failure, Outcome, World, arguments,
+    Exit, Failure, Outcome, World,
+    arguments::{self, Status},
     judged::{Judged, Verdicts, tier_name},
     output, verify,
 };
@@ -161,13 +162,13 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
 }
 
 /// Those of the gates that have this verdict, one per line; limitations by cause.
-pub fn listed(gates: Vec<&Judged>, status: arguments::Status) -> String {
-    let has = |judged: &&Judged| is(&judged.judgement.verdict, status);
+pub fn listed(gates: Vec<&Judged>, status: Status) -> String {
+    let has = |judged: &&Judged| Status::of(&judged.judgement.verdict) == status;
     let chosen: Vec<&Judged> = gates.into_iter().filter(has).collect();
     if chosen.is_empty() {
         return "no gate has this verdict\n".into();
     }
-    if status == arguments::Status::Limitation { by_cause(&chosen) } else { table(&chosen) }
+    if status == Status::Limitation { by_cause(&chosen) } else { table(&chosen) }
 }
 
 fn table(gates: &[&Judged]) -> String {
@@ -191,9 +192,7 @@ fn by_cause(gates: &[&Judged]) -> String {
     let mut text = String::new();
     for (cause, gates) in causes {
         let words = match cause {
-            Some(Cause { what, mend, since }) => {
-                format!("{what} What would remove it: {mend} Known since {since}.")
-            }
+            Some(cause) => cause.to_string(),
             None => {
                 "Gates with a cause of their own, which `touchstone explain GATE` states:".into()
             }
@@ -203,17 +202,6 @@ fn by_cause(gates: &[&Judged]) -> String {
         text.push('\n');
     }
     text + "`touchstone explain GATE` gives the reason of each bound and a command that shows it.\n"
-}
-
-fn is(verdict: &Verdict, status: arguments::Status) -> bool {
-    use arguments::Status;
-    let of_verdict = match verdict {
-        Verdict::Pass => Status::Pass,
-        Verdict::Fail => Status::Fail,
-        Verdict::Limitation(_) => Status::Limitation,
-        Verdict::ExpectedFailure => Status::ExpectedFailure,
-    };
-    of_verdict == status
 }
 
 /// Names that an error suggests, at most.

@@ -35,9 +35,10 @@ fn junit(suite: &Suite) -> String {
         let runs = results.runs.all().iter().flat_map(|run| &run.judged);
         let all: Vec<_> = runs.chain(results.studies.iter().flat_map(|s| &s.judged)).collect();
         let failed = all.iter().filter(|j| j.judgement.verdict.is_failure()).count();
-        let name = escaped(results.case.name());
+        let passed = all.iter().filter(|j| j.judgement.verdict == Verdict::Pass).count();
+        let (name, skipped) = (escaped(results.case.name()), all.len() - failed - passed);
         text += &format!(
-            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\">\n",
+            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\" skipped=\"{skipped}\">\n",
             all.len()
         );
         for judged in all {

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use ::report;
-use base::gate::{Gate, Judgement, Verdict};
+use base::gate::{Bound, Cause, Evidence, Gate, Judgement, Known, Purpose, Verdict};
+use base::number::Number;
 use base::record;
 use harness::case::{self, Case, Tier};
 use harness::notes::Notes;
@@ -12,6 +13,7 @@ use harness::study::Study;
 use harness::suite::Suite;
 use serde::{Deserialize, Serialize};
 
+use super::arguments::Status;
 use super::output;
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
@@ -25,7 +27,7 @@ pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
     };
     let rows: Vec<Vec<String>> = judged
         .into_iter()
-        .map(|runs::Judged { gate, judgement }| {
+        .map(|runs::Judged { gate, judgement, .. }| {
             let number = |number: Option<f64>| number.map(|number| report::sig(number, 4));
             vec![
                 word(&judgement.verdict),
@@ -94,16 +96,101 @@ pub struct StudyVerdicts {
 
 /// A gate and its judgement.
 #[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(from = "Entry", into = "Entry")]
 pub struct Judged {
     /// what was asked
     pub gate: Gate,
     /// what came of it
     pub judgement: Judgement,
+    /// of the metric; none of one that the record lacks
+    pub unit: Option<String>,
 }
 
 impl From<&runs::Judged> for Judged {
     fn from(judged: &runs::Judged) -> Self {
-        Judged { gate: judged.gate.clone(), judgement: judged.judgement.clone() }
+        let runs::Judged { gate, judgement, unit } = judged.clone();
+        Judged { gate, judgement, unit }
+    }
+}
+
+/// A gate and its judgement in one object, from whose numbers the verdict follows.
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    gate: String,
+    metric: String,
+    unit: Option<String>,
+    bound: Bound,
+    known: Option<Bound>,
+    evidence: Evidence,
+    because: String,
+    reason: Option<String>,
+    cause: Option<Cause>,
+    control: bool,
+    may_end_early: bool,
+    even_if_diverged: bool,
+    value: Option<Number>,
+    margin: Option<Number>,
+    verdict: Status,
+}
+
+impl From<Judged> for Entry {
+    fn from(judged: Judged) -> Self {
+        let status = Status::of(&judged.judgement.verdict);
+        let Judged { gate, judgement, unit } = judged;
+        let control = gate.purpose == Purpose::ExpectFailure;
+        let (known, reason, cause) = match gate.purpose {
+            Purpose::Limitation(Known { bound, reason, cause }) => {
+                (Some(bound), Some(reason), cause)
+            }
+            _ => (None, None, None),
+        };
+        Entry {
+            gate: gate.id,
+            metric: gate.metric,
+            unit,
+            bound: gate.bound,
+            known,
+            evidence: gate.evidence,
+            because: gate.because,
+            reason,
+            cause,
+            control,
+            may_end_early: gate.may_end_early,
+            even_if_diverged: gate.even_if_diverged,
+            value: judgement.value.map(Number),
+            margin: judgement.margin.map(Number),
+            verdict: status,
+        }
+    }
+}
+
+impl From<Entry> for Judged {
+    fn from(entry: Entry) -> Self {
+        let reason = entry.reason.unwrap_or_default();
+        let verdict = match entry.verdict {
+            Status::Pass => Verdict::Pass,
+            Status::Fail => Verdict::Fail,
+            Status::Limitation => Verdict::Limitation(reason.clone()),
+            Status::ExpectedFailure => Verdict::ExpectedFailure,
+        };
+        let purpose = match entry.known {
+            Some(bound) => Purpose::Limitation(Known { bound, reason, cause: entry.cause }),
+            None if entry.control => Purpose::ExpectFailure,
+            None => Purpose::Judge,
+        };
+        let [value, margin] = [entry.value, entry.margin].map(|number| number.map(|n| n.0));
+        let gate = Gate {
+            id: entry.gate.clone(),
+            metric: entry.metric,
+            bound: entry.bound,
+            evidence: entry.evidence,
+            because: entry.because,
+            purpose,
+            may_end_early: entry.may_end_early,
+            even_if_diverged: entry.even_if_diverged,
+        };
+        let judgement = Judgement { id: entry.gate, verdict, value, margin };
+        Judged { gate, judgement, unit: entry.unit }
     }
 }
 

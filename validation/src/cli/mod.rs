@@ -181,7 +181,7 @@ impl World {
         Ok(made)
     }
 
-    /// Refuses to judge cases by a reference that was changed, or to show one that no case uses.
+    /// Refuses to run or judge cases by a reference that was changed, or to show one that no case uses.
     fn check_references(&self, cases: &[&'static dyn Case]) -> Result<(), Failure> {
         let mut words = Vec::new();
         for (error, users) in (self.references)() {
@@ -272,9 +272,13 @@ pub fn main() -> ExitCode {
     tell_source(SOURCE);
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => {
-            let _ = error.print(); // help and version on standard output, errors on standard error
-            return code(if error.use_stderr() { Exit::Usage } else { Exit::Pass });
+        Err(error) if error.use_stderr() => {
+            output::say(&error.render().to_string()); // it quotes arguments
+            return code(Exit::Usage);
+        }
+        Err(help) => {
+            let _ = help.print();
+            return code(Exit::Pass);
         }
     };
     let world = World { cases: cases::CASES, sources, references, interrupt: interrupt::flag() };

@@ -54,7 +54,7 @@ fn error(declared: &Declaration, record: &Record, verdicts: &[Judged]) -> (Strin
 /// The bound of that metric, with the verdict.
 fn bound(verdicts: &[Judged], metric: &str) -> String {
     let of_metric = verdicts.iter().filter(|judged| judged.gate.metric == metric);
-    let Some(Judged { gate, judgement }) = summary::worst(of_metric) else {
+    let Some(Judged { gate, judgement, .. }) = summary::worst(of_metric) else {
         return "none: no plan has a gate on this number for this variant with these settings"
             .into();
     };

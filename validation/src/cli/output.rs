@@ -11,12 +11,23 @@ pub const BUG: &str = "touchstone: this is a bug of touchstone, not of your sett
 
 /// A line or more for a person, on standard error. Nobody listening is no error.
 pub fn say(text: &str) {
-    let _ = writeln!(io::stderr(), "{}", text.trim_end_matches('\n'));
+    let _ = writeln!(io::stderr(), "{}", visible(text.trim_end_matches('\n')));
+}
+
+/// Text whose control characters are seen and not obeyed, as `\u{1b}`: that of a file or of an argument must
+/// not move a cursor or change a title.
+fn visible(text: &str) -> String {
+    let seen = |char: char| match char {
+        '\n' | '\t' => char.to_string(),
+        char if char.is_control() => char.escape_default().to_string(),
+        char => char.to_string(),
+    };
+    text.chars().map(seen).collect()
 }
 
 /// A result, on standard output. A reader that has had enough (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
-    match write(text) {
+    match write(&visible(text)) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(refused(&error)),
         _ => Ok(()),
     }
@@ -43,11 +54,6 @@ pub fn report_bug(info: &PanicHookInfo) {
     let (version, commit) = (env!("CARGO_PKG_VERSION"), super::SOURCE.commit);
     let place = info.location().map(ToString::to_string).unwrap_or_default();
     say(&format!("{BUG}\n{message}\nat {place}, touchstone {version}, commit {commit}"));
-}
-
-/// `1 run`, `2 runs`.
-pub fn count((number, what): (usize, &str)) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
 /// Rows under their heads, columns two spaces apart; a column of numbers stands on the right.

@@ -64,7 +64,7 @@ impl Bar {
     /// Shows how far the runs of a plan are.
     pub fn show_runs(&self, done: Done) {
         let Done { runs, all, share, left, last } = done;
-        let mut words = format!("{runs} of {all} runs");
+        let mut words = format!("{runs} of {}", report::counted(all, "run", "runs"));
         if runs > 0 {
             words += &format!(", last {last}");
         }

@@ -49,6 +49,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     if let Some(path) = &arguments.resume {
         let (asked, earlier) = checkpoint::read(path, world.sources).map_err(Failure::usage)?;
         let case = cases::find_in(world.cases, &asked.spec.case)?;
+        world.check_references(&[case])?;
         let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
         let order = Order {
             case,
@@ -61,6 +62,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         return carry_out(order, Some(folder), arguments, world);
     }
     let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
+    world.check_references(&[case])?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
     let mut spec = case::spec(case, variant, &set(arguments)?)?;
     spec.allow_unstable = arguments.allow_unstable;
@@ -119,7 +121,7 @@ fn carry_out(
             format!("; touchstone run --resume {} goes on with it", folder.output.path().display())
         });
         let what =
-            format!("after {step} steps, at t = {time:.4e} s; no record is written{kept}{goes_on}");
+            format!("after step {step}, at t = {time:.4e} s; no record is written{kept}{goes_on}");
         return Err(Failure::interrupted(what));
     }
     let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();

@@ -11,6 +11,7 @@ use harness::{
     plan,
     store::Store,
 };
+use report::counted;
 use validation::cases;
 
 use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
@@ -29,6 +30,7 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
         Ok(Job { case: cases::find_in(world.cases, &planned.spec.case)?, planned })
     };
     let jobs = plan::merged(planned).into_iter().map(job).collect::<Result<Vec<Job>, _>>()?;
+    world.check_references(&jobs.iter().map(|job| job.case).collect::<Vec<_>>())?;
     let store = Store::open(path)?;
     let allow_long = arguments.allow_long;
     // Nothing is timed here.
@@ -38,7 +40,7 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
         output::print_whole(&record.to_json()?)?;
     }
-    let [runs, lines] = [(jobs.len(), "run"), (lines, "line")].map(output::count);
+    let (runs, lines) = (counted(jobs.len(), "run", "runs"), counted(lines, "line", "lines"));
     let words = format!("{runs} in {lines}: {}", ended(&made));
     if made.interrupted {
         let rest = "the same command makes the missing runs";
@@ -95,7 +97,8 @@ fn planned(
         lines = lines.get(index).copied().into_iter().collect();
         if lines.is_empty() {
             return Err(Failure::usage(anyhow::anyhow!(
-                "there is no run {index}; the file has {count} runs, counted from 0"
+                "there is no run {index}; the file has {}, counted from 0",
+                counted(count, "run", "runs")
             )));
         }
     }

@@ -24,6 +24,7 @@ struct Declared {
 
 pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
+    world.check_references(&cases)?;
     if arguments.theory {
         return theory(&cases, arguments.json);
     }

@@ -5,7 +5,7 @@ use harness::{
     runs::Judged,
     suite::{CaseResults, Suite},
 };
-use report::Status;
+use report::{Counts, Status};
 
 use super::{explain, output};
 
@@ -32,18 +32,14 @@ pub fn summary(suite: &Suite) -> String {
              share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
     text += &failures(suite);
     let counts = suite.counts();
+    let limited = Counts { limitation: counts.limitation, ..Counts::default() };
     if counts.limitation > 0 {
         text += &format!(
-            "\n{} outside their bounds for known reasons; `touchstone explain --status limitation` lists \
-             them by cause.\n",
-            gates(counts.limitation)
+            "\n{}; `touchstone explain --status limitation` lists what limits them, by cause.\n",
+            limited.headline()
         );
     }
     text + &format!("\n{}\n", counts.headline())
-}
-
-fn gates(count: usize) -> String {
-    if count == 1 { "1 gate is".into() } else { format!("{count} gates are") }
 }
 
 /// How the gates of a case ended, the error of its best variant with the cost, and the gate that is the
@@ -93,7 +89,8 @@ fn failures(suite: &Suite) -> String {
         .collect();
     let more: Vec<&str> = all.iter().skip(IN_FULL).map(|(_, _, j)| j.gate.id.as_str()).collect();
     if !more.is_empty() {
-        let words = format!("{} more gates fail: {}", more.len(), more.join(", "));
+        let words = report::counted(more.len(), "more gate fails", "more gates fail");
+        let words = format!("{words}: {}", more.join(", "));
         text += &format!("\n{}", output::wrap(&words, 100, ""));
     }
     text

@@ -225,6 +225,8 @@ fn changed() -> Vec<(ReferenceError, &'static [&'static str])> {
 fn a_changed_table_fails_every_case_that_uses_it_by_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("a plain path");
+    let spec = case::spec(&RIGHT, "right", &[]).expect("staged settings");
+    std::fs::write(folder.path().join("specs"), spec.canonical()).expect("a file");
     let fails = |line: String| {
         let words = ["touchstone"].into_iter().chain(line.split(' '));
         let arguments = Arguments::try_parse_from(words).expect("a sound command line");
@@ -239,17 +241,18 @@ fn a_changed_table_fails_every_case_that_uses_it_by_name() {
         format!("verify --store {out}/store"),
         format!("judge --store {out}"),
         format!("report --out {out}/report"),
+        "run right --variant right".into(),
+        format!("run --specs {out}/specs --store {out}/store"),
+        "stability right".into(),
     ] {
         let words = fails(line.clone()).unwrap_or_else(|| panic!("{line} passes"));
         for part in ["the hash of reference peers_channel/errors.csv", "it judges right"] {
             assert!(words.contains(part), "{line}: {words}");
         }
     }
-    assert_eq!(
-        fails(format!("verify wrong --store {out}/store")),
-        None,
-        "it does not use the table"
-    );
+    for line in [format!("verify wrong --store {out}/store"), "run wrong --variant right".into()] {
+        assert_eq!(fails(line.clone()), None, "{line}: it does not use the table");
+    }
 }
 
 /// A second report makes nothing, a store is judged and rendered without a run, and a comparison of two
@@ -492,14 +495,15 @@ fn limited(id: &str, cause: &Cause) -> Judged {
 #[test]
 fn limitations_are_listed_by_cause_those_of_most_gates_first() {
     let causes = [("One.", "Mend one."), ("Two.", "Mend two.")];
-    let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend, "2026-11-01"));
+    let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend));
     let all = [limited("a", &one), limited("b", &two), limited("c", &two)];
     let all: Vec<super::judged::Judged> = all.iter().map(Into::into).collect();
     let status = super::arguments::Status::Limitation;
     let text = super::explain::listed(all.iter().collect(), status);
     let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
-    assert!(at("Two. What would remove it: Mend two. Known since 2026-11-01.") < at("    b"));
+    assert!(at("Two. What would remove it: Mend two.") < at("    b"));
     assert!(at("    b") < at("    c") && at("    c") < at("One."), "{text}");
+    assert!(!text.contains("since"), "a date that says nothing: {text}");
 }
 
 #[test]

@@ -65,9 +65,10 @@ pub fn runs(suite: &Suite) -> String {
         0 => String::new(),
         count => format!(", {count} of these made by a build of other sources"),
     };
+    let all = report::counted(all, "run", "runs");
     match suite.made.reused {
-        0 => format!("{all} runs"),
-        count => format!("{all} runs, {count} of them from the store{other},"),
+        0 => all,
+        count => format!("{all}, {count} of them from the store{other},"),
     }
 }
 
@@ -96,11 +97,10 @@ pub fn run(
         let (kept, all) = (made.records.len() - made.not_kept.len(), jobs.len());
         return Err(Failure::interrupted(match fresh {
             true => format!(
-                "nothing is judged; {kept} of {all} runs were made again, and the other records are those of \
-                 before"
+                "nothing is judged; runs made again: {kept} of {all}; the other records are those of before"
             ),
             false => format!(
-                "nothing is judged; {kept} of {all} records are stored, and the same command makes the others"
+                "nothing is judged; records stored: {kept} of {all}; the same command makes the others"
             ),
         }));
     }
@@ -126,8 +126,8 @@ pub fn of_store(
     if !missing.is_empty() {
         let (all, missing) = (made.reused + missing.len(), missing.len() - other);
         output::say(&format!(
-            "note: of {all} runs of the {} tier the store lacks {missing}, and {other} were made by a build \
-             of other sources (--any-build accepts them); the gates of both fail",
+            "note: runs of the {} tier: {all}; the store lacks {missing}, and has {other} made by a build of \
+             other sources (--any-build accepts them); the gates of both fail",
             judged::tier_name(tier)
         ));
     }

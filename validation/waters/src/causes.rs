@@ -8,7 +8,6 @@ pub static NO_SLIP_IMAGES: Cause = Cause::new(
      for changes of density where particles are disordered.",
     "Images that reverse the velocity for viscosity alone, as in `ghosts-split`, or walls that extrapolate \
      the pressure, as in `modern`.",
-    "2026-11-21",
 );
 
 /// Nothing holds a particle in the plane of a ghost wall.
@@ -16,7 +15,6 @@ pub static PRESSED_THROUGH: Cause = Cause::new(
     "A particle that is pressed into the plane of a ghost wall feels equal forces from both sides and may \
      cross it.",
     "Walls of particles, as in `modern`, or a rule that returns particles that cross.",
-    "2026-11-21",
 );
 
 /// What artificial viscosity does beside damping noise.
@@ -24,7 +22,6 @@ pub static VISCOSITY: Cause = Cause::new(
     "Artificial viscosity, which is proportional to spacing and sound speed, takes energy from the water and \
      slows its front.",
     "Finer spacing, or less artificial viscosity together with density diffusion, as in `modern`.",
-    "2026-11-21",
 );
 
 /// The equations are not the experiment.
@@ -32,7 +29,6 @@ pub static TWO_DIMENSIONS: Cause = Cause::new(
     "Water in two dimensions, released at once and without friction and air, runs faster than in the \
      experiment, in a thinner layer.",
     "A computation in three dimensions with the moving wall of the experiment, friction and air.",
-    "2026-11-21",
 );
 
 /// A reference that is not fine enough.
@@ -40,14 +36,12 @@ pub static UNCERTAIN_REFERENCE: Cause = Cause::new(
     "The reference by volume of fluid is uncertain where a thin jet has just arrived, because the jet is a \
      few cells wide.",
     "The reference on its finest mesh beyond the arrival at the far wall.",
-    "2026-11-23",
 );
 
 /// Powers between samples.
 pub static SAMPLED: Cause = Cause::new(
     "Powers are sampled at intervals, and single particles meet for a shorter time than that.",
     "Samples after every step.",
-    "2026-11-23",
 );
 
 /// Walls without friction.
@@ -55,14 +49,12 @@ pub static FREE_SLIP: Cause = Cause::new(
     "Water slips along its walls without friction, and runs ahead of codes and experiments whose walls drag \
      it.",
     "Friction at the walls, with a boundary layer that is resolved or modelled.",
-    "2026-11-23",
 );
 
 /// Water that pulls.
 pub static TENSION: Cause = Cause::new(
     "Pressure is not cut off at zero, so water that is less dense than at rest pulls at the walls.",
     "Walls that cannot pull, as in `modern`, or pressure that is cut off at zero.",
-    "2026-11-21",
 );
 
 /// Sums over too few neighbours.
@@ -70,7 +62,6 @@ pub static SHORT_KERNEL: Cause = Cause::new(
     "The strain moves rows of particles two initial spacings apart, and a smoothing length of 1.5 spacings \
      is too short for accurate sums there.",
     "A smoothing length of 2.5 initial spacings, as in `modern`.",
-    "2026-11-21",
 );
 
 /// A mirror knows no gravity.
@@ -78,7 +69,6 @@ pub static MIRRORED_PRESSURE: Cause = Cause::new(
     "Ghost particles mirror the pressure of the water at the bottom, where it should go on rising, so the \
      lowest row bears too much.",
     "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
-    "2026-11-21",
 );
 
 /// Density from its rate alone.
@@ -86,5 +76,4 @@ pub static RATE_OF_DENSITY: Cause = Cause::new(
     "The continuity equation (3) knows changes of density alone, so water that starts too near to a wall is \
      not pushed away.",
     "Water that starts half a spacing from the walls, or density as a sum over neighbours.",
-    "2026-11-21",
 );

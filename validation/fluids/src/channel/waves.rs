@@ -129,7 +129,7 @@ pub fn study(case: &ChannelCase, tier: Tier, runs: &Runs) -> Study {
     );
     for rings in found.iter().filter(|rings| rings.re == 20.0) {
         let id = format!("poiseuille.h3.period.c{}", rings.sound);
-        let gate = Gate::new(id, "period", PERIOD, Evidence::Regression, because);
+        let gate = Gate::new(id, "period [2L/c0]", PERIOD, Evidence::Regression, because);
         // NaN, which fails, if no run filled its window.
         study = study.judge(gate, rings.median(|run| run.period));
         let Some(run) = rings.typical() else { continue };

@@ -7,7 +7,6 @@ pub static NOT_MEASURED: Cause = Cause::new(
     "Some constants, such as the density of an incompressible flow, hardly affect what is measured, so no \
      gate detects an error in them.",
     "Gates on quantities that depend on these constants, such as stresses in pascals.",
-    "2026-11-23",
 );
 
 /// The effect of the error is inside the bounds.
@@ -15,7 +14,6 @@ pub static WIDE_BOUNDS: Cause = Cause::new(
     "Coarse spacing and uncertain references make some bounds wider than the effect of a small error in a \
      constant.",
     "Finer spacing in the runs that are judged, and references with a smaller uncertainty.",
-    "2026-11-23",
 );
 
 /// The constant is chosen with a margin.
@@ -23,7 +21,6 @@ pub static SAFETY_MARGIN: Cause = Cause::new(
     "Time step and neighbour lists have a safety margin, so an error of some ten per cent in them hardly \
      changes a result.",
     "A gate on the error of time integration alone, and one on neighbours that a list misses.",
-    "2026-11-23",
 );
 
 /// Why no gate detects an error of the time step.
@@ -35,5 +32,4 @@ pub static ENOUGH_OR_IDLE: Cause = Cause::new(
     "Terms that keep particles evenly spread or together have little effect in some flows, or suffice when \
      weaker.",
     "Gates on each term alone, in a scene made for it, such as the decay of a disturbed lattice.",
-    "2026-11-23",
 );

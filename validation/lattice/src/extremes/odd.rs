@@ -140,7 +140,7 @@ fn rested(kernel: &str, record: &Record) -> Vec<Entry> {
     let energy = Entry::new(&name("energy"), what("lattice at rest"), "½v²/c₀²", cold)
         .because(Evidence::Invariant, "Round-off of forces that cancel must not heat the lattice.");
     let exact = Bound::Equals(0.0);
-    let time = Entry::new(&name("time"), what("clock of a long run"), "|t - n dt|", exact)
+    let time = Entry::new(&name("time"), what("clock of a long run"), "|t - n dt| [dx/c0]", exact)
         .because(Evidence::Invariant, "Time is counted in whole steps, so it does not drift.");
     let clock = format!("; t = {} after {} steps", steps as f64 * dt, record.cost.steps);
     vec![measured(energy, record, HEAT, ""), measured(time, record, CLOCK_ERROR, &clock)]

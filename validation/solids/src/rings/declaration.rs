@@ -60,37 +60,32 @@ fn card(accuracy: &Accuracy) -> Card {
     }
 }
 
-/// The variant with the most spacings at the paper's speed; of equals the cheapest.
-pub fn shown(tier: Tier) -> &'static str {
-    match tier {
-        Tier::Quick => "leapfrog",
-        Tier::Full => "seed",
-    }
-}
-
+/// The best variant and the paper's, each with the reference of its law.
 fn histories(tier: Tier) -> Curves {
-    let variant = shown(tier);
-    let reference = Reference::of(variant, &RingSettings::default());
+    let variants = [RUBBER_RINGS.best.variant, "seed"];
+    let named = ["finite elements", ""]; // the other law is a thin line
+    let of_laws = variants.map(|variant| Reference::of(variant, &RingSettings::default()));
     let labels = ["centre of mass [L]", "its velocity [c0]", "width [L]", "height [L]"];
     let panel = |(k, name): (usize, &'static str)| {
-        let line = |spacing: &f64| CurveOf {
-            name: format!("spacing {} L", exact(*spacing)),
-            spec: collision(variant, *spacing, SPEED),
+        let line = |(variant, spacing): (&str, f64)| CurveOf {
+            name: format!("{variant}, spacing {} L", exact(spacing)),
+            spec: collision(variant, spacing, SPEED),
             points: Box::new(move |record| {
                 let [t, y] = ["t", name].map(|name| record.column("series", name));
                 t.iter().copied().zip(y.iter().copied()).collect()
             }),
         };
-        let exact = reference.iter().map(|reference| {
+        let exact = of_laws.iter().zip(named).filter_map(|(reference, name)| {
+            let reference = reference.as_ref()?;
             let points = reference.times.iter().zip(&reference.columns[k]);
-            let points = points.map(|(t, (y, _))| (*t, *y)).collect();
-            ("finite elements".to_string(), points)
+            Some((name.to_string(), points.map(|(t, (y, _))| (*t, *y)).collect()))
         });
+        let of = |variant| plan::spacings(variant, tier).iter().map(move |dx| (variant, *dx));
         CurvePanel {
             title: String::new(),
             x: Axis::linear("t [L/c0]"),
             y: Axis::linear(labels[k]),
-            lines: plan::spacings(variant, tier).iter().map(line).collect(),
+            lines: variants.into_iter().flat_map(of).map(line).collect(),
             references: exact.collect(),
             symbols: false,
         }
@@ -100,9 +95,10 @@ fn histories(tier: Tier) -> Curves {
         title: "Histories over finite elements".into(),
         caption: format!(
             "Centre of mass of one of two rubber rings that collide at 0.059 c0 each, its velocity, and \
-             the width along and height across the line of flight. Coloured: variant `{variant}` at \
-             several spacings. Black: finite elements, whose uncertainty is less than the width of the \
-             line."
+             the width along and height across the line of flight. Coloured: the best variant, `{}`, and \
+             the paper's, `{}`. Black: finite elements with the law of the best; thin and grey, mostly \
+             hidden by it: with the law of the paper. Their uncertainty is less than the width of the lines.",
+            variants[0], variants[1]
         ),
         columns: 2,
         panels: Reference::COLUMNS.into_iter().enumerate().map(panel).collect(),

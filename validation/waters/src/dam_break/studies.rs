@@ -1,14 +1,17 @@
 //! What the runs say together: fronts, heights, levels and pressures over the experiments, pictures,
 //! energies, and error against run time.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use super::{
-    DamSettings, ablation, front,
+    DAM_BREAK, DamSettings, ablation, front,
     measure::{PROBES, SENSORS},
     metrics::{self, FRONT, HEIGHT, LEVELS},
-    reference::{self, Curve, FRONT_SPREAD, Lobovsky, PEERS},
+    reference::{self, Curve, FRONT_SPREAD, Lobovsky, PEERS, scaled},
     run::{self, PICTURES},
     specs::{self, FILM_ROWS, FRAMES},
-    stability, volume_of_fluid,
+    stability,
+    volume_of_fluid::{self, VolumeOfFluid, until},
 };
 use crate::water::{curve, ledger};
 use base::{
@@ -97,8 +100,13 @@ fn with_runs(
 /// Martin & Moyce.
 fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
     let records = runs.records(specs::all_free(tier));
-    let shown: Vec<&Record> = records.iter().copied().filter(|record| n(record) >= 20).collect();
+    let shown = [DAM_BREAK.best.variant, "seed"];
+    let is_shown = |record: &&Record| n(record) >= 20 && shown.contains(&&*record.variant);
+    let shown: Vec<&Record> = records.iter().copied().filter(is_shown).collect();
     let [front, height] = reference::martin_moyce()?;
+    let [model_front, model_height] = VolumeOfFluid::load()?.free;
+    // Its clock is in √(H/g), and H is 2a.
+    let model_height = scaled(&model_height, FRAC_1_SQRT_2, 1.0, 0.0);
     let band = |curve: &Curve, by: f64| curve.iter().map(|(t, y)| (*t, y - by, y + by)).collect();
     let legend = [Legend::TopLeft, Legend::Hidden];
     let labels = [
@@ -108,14 +116,18 @@ fn free(tier: Tier, runs: &Runs) -> Result<Study, ReferenceError> {
     let spreads = [FRONT_SPREAD, 0.5 / 18.0];
     let caption = "Front from the back wall (left) and height near it, at 0.2 a (right), of a water column \
                    of width a = 57.15 mm and height 2a. Circles are the experiment of Martin & Moyce 1952 \
-                   with its spread (grey), diamonds three other SPH codes. No clock is shifted.";
+                   with its spread (grey), the black line is volume of fluid, which solves the same model, \
+                   and diamonds are three other SPH codes. Coloured: the best variant, `modern`, and the \
+                   paper's, `seed`. No clock is shifted.";
     let mut figure = Figure::new("dam-break-martin-moyce", caption).columns(2);
-    for (k, measured) in [&front, &height].into_iter().enumerate() {
+    for (k, (measured, model)) in [(front, model_front), (height, model_height)].iter().enumerate()
+    {
         let end = if k == 0 { 3.6 } else { 2.6 };
         let x = Axis::linear(labels[k][0]).range(0.0, end);
         let mut plot = Plot::new("", x, Axis::linear(labels[k][1])).legend(legend[k]);
-        let until: Curve = measured.iter().filter(|(t, _)| *t <= end).copied().collect();
+        let [until, model] = [measured, model].map(|curve| until(curve, end));
         plot = plot.layer(Layer::band("", band(&until, spreads[k]), Colour::GREY));
+        plot = plot.layer(Series::line("volume of fluid", model).colour(Colour::BLACK));
         plot = with_runs(plot, &shown, "a", |record| {
             let DamSettings { width: a, gravity: g, .. } = settings(record);
             match k {
@@ -207,9 +219,7 @@ fn levels(records: &[&Record], lobovsky: &Lobovsky) -> Figure {
         let (x, y) = axis("depth [H]".into());
         let title = format!("H{}, x = {} m", k + 1, place);
         let mut plot = Plot::new(title, x.range(0.0, end), y).legend(Legend::Hidden);
-        let until =
-            |curve: &Curve| -> Curve { curve.iter().filter(|(t, _)| *t <= end).copied().collect() };
-        let series: Vec<Curve> = lobovsky.levels[k].iter().map(until).collect();
+        let series: Vec<Curve> = lobovsky.levels[k].iter().map(|level| until(level, end)).collect();
         if let [a, b] = &series[..] {
             let between = a.iter().zip(b).map(|((t, a), (_, b))| (*t, a.min(*b), a.max(*b)));
             plot = plot.layer(Layer::band("", between.collect(), Colour::GREY));

@@ -38,7 +38,7 @@ const UNCERTAIN: f64 = 0.23;
 pub struct VolumeOfFluid {
     package: Package,
     /// Front Z \[a\] over T, and residual height, of the column of Martin & Moyce.
-    free: [Curve; 2],
+    pub free: [Curve; 2],
     /// Front in the tank of Lobovsky et al., from the back wall.
     front: Curve,
     /// Levels at H1 to H4.
@@ -114,7 +114,8 @@ pub fn compare(
     Ok(())
 }
 
-fn until(curve: &[(f64, f64)], end: f64) -> Curve {
+/// A curve until a time.
+pub fn until(curve: &[(f64, f64)], end: f64) -> Curve {
     curve.iter().filter(|(t, _)| *t <= end).copied().collect()
 }
 

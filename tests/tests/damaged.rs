@@ -1,0 +1,113 @@
+//! Records that say less, or other things, than a study expects: judging them is no panic.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use base::record::{Profile, Record, Status};
+use base::spec::{RunSpec, Task};
+use harness::{
+    case::{Case, Planned, Tier},
+    context::Context,
+    make::{self, Made},
+    plan, suite,
+};
+use rayon::prelude::*;
+use validation::{cases::CASES, page};
+
+use crate::tidy::assert_none;
+
+/// What is done to each profile of a record, and to each metric.
+type Damage = (&'static str, fn(&mut Profile), fn(f64) -> Option<f64>);
+
+const DAMAGES: [Damage; 6] = [
+    ("no metrics and no columns", |profile| profile.columns.clear(), |_| None),
+    ("one column", |profile| profile.columns.truncate(1), Some),
+    ("empty columns", |profile| each(profile, |_, values| values.clear()), Some),
+    ("columns of different lengths", |profile| each(profile, cut), Some),
+    ("NaN", |profile| each(profile, |_, values| values.fill(f64::NAN)), |_| Some(f64::NAN)),
+    ("infinity", |profile| each(profile, |_, v| v.fill(f64::INFINITY)), |_| Some(f64::INFINITY)),
+];
+
+fn each(profile: &mut Profile, damage: fn(usize, &mut Vec<f64>)) {
+    profile.columns.iter_mut().enumerate().for_each(|(k, column)| damage(k, &mut column.values));
+}
+
+/// Later columns lose more.
+fn cut(k: usize, values: &mut Vec<f64>) {
+    values.truncate(values.len() / (k + 1));
+}
+
+fn damaged(record: &Record, (_, of_profile, of_metric): Damage) -> Record {
+    let mut record = record.clone();
+    record.profiles.values_mut().for_each(of_profile);
+    record.metrics.retain(|_, metric| of_metric(metric.value).is_some());
+    for metric in record.metrics.values_mut() {
+        metric.value = of_metric(metric.value).unwrap_or(metric.value);
+    }
+    record
+}
+
+/// Simulations of a variant that are tried until one reaches its end.
+const TRIED: usize = 4;
+
+/// The record of the cheapest planned run that reaches its end, of two variants of a case: of the best and of
+/// the paper's, if they have one.
+fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
+    let mut planned = plan::of_case(case, Tier::Quick);
+    planned.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    let best = case.best().expect("a best variant");
+    let of = |variant: &'static str| {
+        let is_one = |spec: &RunSpec| spec.variant == variant && spec.task == Task::Simulate;
+        let specs = planned.iter().map(|planned| planned.spec.clone()).filter(is_one);
+        let run = |spec: RunSpec| make::run(case, &spec.measure_all(), &Context::default()).ok();
+        let mut records = specs.take(TRIED).filter_map(run);
+        let record = records.find(|record| record.status == Status::Completed)?;
+        Some((variant.to_string(), record))
+    };
+    let named = [Some(best.variant), best.papers].into_iter().flatten();
+    let others = case.variants().into_iter().map(|variant| variant.name);
+    named.chain(others).filter_map(of).take(2).collect()
+}
+
+/// What these records of a case hold, damaged, as the records of all of its runs.
+fn made(case: &'static dyn Case, damage: Damage, records: &BTreeMap<String, Record>) -> Made {
+    let of = |planned: Planned| {
+        let any = || records.values().next();
+        let record = records.get(&planned.spec.variant).or_else(any)?;
+        let settings = planned.spec.settings.clone();
+        let record = Record { settings, ..damaged(record, damage) }.of(&planned.spec);
+        Some((planned.spec.key(), record))
+    };
+    let records = plan::of_case(case, Tier::Quick).into_iter().filter_map(of).collect();
+    Made { records, ..Made::default() }
+}
+
+/// Faults of judging these records: a panic, or a gate that is none.
+fn faults(case: &'static dyn Case, damage: &str, made: Made) -> Vec<String> {
+    let tier = Tier::Quick;
+    let plans = suite::plans(&[case], tier);
+    let judged = catch_unwind(AssertUnwindSafe(|| {
+        let suite = suite::judge(plans, tier, made);
+        page::assemble(&suite, "now").html();
+        let refused = suite.judged().filter_map(|judged| judged.gate.check().err());
+        refused.map(|error| error.to_string()).collect()
+    }));
+    let told = |panic: Box<dyn std::any::Any + Send>| -> Vec<String> {
+        let words = panic.downcast_ref::<String>().cloned();
+        vec![words.unwrap_or_else(|| "a panic without words".into())]
+    };
+    let faults: Vec<String> = judged.unwrap_or_else(told);
+    faults.into_iter().map(|fault| format!("{}, {}: {fault}", case.name(), damage)).collect()
+}
+
+/// `judge` ended with 4: an index out of bounds in a study of the rings, and a bound "at most inf".
+#[test]
+fn no_record_makes_a_study_panic() {
+    let of_case = |case: &&'static dyn Case| {
+        let records = cheapest(*case);
+        assert!(!records.is_empty(), "no run of {} reaches its end", case.name());
+        let of = move |damage: Damage| faults(*case, damage.0, made(*case, damage, &records));
+        DAMAGES.into_iter().flat_map(of).collect::<Vec<_>>()
+    };
+    assert_none("records of any content are judged", CASES.par_iter().flat_map(of_case).collect());
+}
