@@ -254,8 +254,9 @@ mod tests {
     }
 
     /// The trace of a stress has τᶻᶻ too. At small strains the mean is K tr ε and the deviator
-    /// 2μ (ε − tr ε/3), of all laws; at a large uniaxial stretch by a Saint-Venant's law has τˣˣ = (λ + 2μ) E a² and
-    /// τʸʸ = τᶻᶻ = λ E with E = (a² − 1)/2, so that τˣˣ − mean is two thirds of τˣˣ − τᶻᶻ.
+    /// 2μ (ε − tr ε/3), of all laws; at a large uniaxial stretch by a Saint-Venant's law has
+    /// τˣˣ = (λ + 2μ) E a² and τʸʸ = τᶻᶻ = λ E with E = (a² − 1)/2, so that τˣˣ − mean is two thirds of
+    /// τˣˣ − τᶻᶻ.
     #[test]
     fn the_mean_stress_is_a_third_of_the_trace_in_three_dimensions() {
         fn check<L: Law>() {

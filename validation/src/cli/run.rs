@@ -112,17 +112,7 @@ fn carry_out(
         }
     };
     if let Status::Interrupted { step, time } = record.status {
-        folder.iter().for_each(Folder::remove_if_new_and_empty);
-        let kept = if vtk.is_some() { "; frames so far are whole" } else { "" };
-        let checkpoint = folder.as_ref().filter(|folder| folder.checkpointed().is_some());
-        let again = "; the same command begins again, and with --out DIR --checkpoint-every SECONDS an \
-                     interrupted run can go on";
-        let goes_on = checkpoint.map_or(again.to_string(), |folder| {
-            format!("; touchstone run --resume {} goes on with it", folder.output.path().display())
-        });
-        let what =
-            format!("after step {step}, at t = {time:.4e} s; no record is written{kept}{goes_on}");
-        return Err(Failure::interrupted(what));
+        return Err(interrupted(folder.as_ref(), vtk.is_some(), step, time));
     }
     let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();
     let is_asked = |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| why != NOT_ASKED);
@@ -162,6 +152,23 @@ fn carry_out(
             Ok(Exit::Usage)
         }
     }
+}
+
+/// What is there of a run that was interrupted, and how it goes on.
+fn interrupted(folder: Option<&Folder>, has_frames: bool, step: u64, time: f64) -> Failure {
+    folder.iter().for_each(|folder| folder.remove_if_new_and_empty());
+    let kept = if has_frames { "; frames so far are whole" } else { "" };
+    let goes_on = match folder.filter(|folder| folder.checkpointed().is_some()) {
+        Some(folder) => {
+            format!("touchstone run --resume {} goes on with it", folder.output.path().display())
+        }
+        None => "the same command begins again, and with --out DIR --checkpoint-every SECONDS an \
+                 interrupted run can go on"
+            .to_string(),
+    };
+    let what =
+        format!("after step {step}, at t = {time:.4e} s; no record is written{kept}; {goes_on}");
+    Failure::interrupted(what)
 }
 
 /// Frames and checkpoints that could not be written, and when a checkpoint was last.

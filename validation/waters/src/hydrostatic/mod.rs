@@ -144,7 +144,8 @@ pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
     problem: "Water at rest in an open tank",
     best: Best {
         variant: "modern",
-        because: "with 20 rows its pressure is wrong by 0.8 %, the paper's by 1.2 %, for a third of the pairs",
+        because: "with 20 rows its pressure is wrong by 0.8 %, the paper's by 1.2 %, for a third of the \
+                  pairs",
         papers: Some("seed"),
     },
     about: "Water rests in an open tank and is compressed by g H/c0^2 by its own weight. The exact \
