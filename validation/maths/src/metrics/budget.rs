@@ -16,7 +16,7 @@ use consistent::FluidPairs;
 use nalgebra::Vector2;
 use solver::{
     ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
-    NoSlipImages, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
+    NoSlipImages, Numbers, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
     terms::{Rest, Switch, Tensile},
 };
 
@@ -56,36 +56,46 @@ impl<'a, S: Scheme> Meter<'a, S> {
 
     /// The power of these terms together \[W/m\].
     pub fn power<T: Term<S::Extra>>(&self, terms: &T) -> f64 {
-        let rates = self.simulation.rates(terms);
-        let each = self.simulation.fluid().zip(&rates);
-        each.fold(0.0, |sum, ((mass, particle), rate)| sum + (self.slope)(mass, particle, rate))
+        power(&mut self.simulation.fluid(), &self.simulation.rates(terms), self.slope)
     }
 
     /// The power of the walls' own terms on wall particles \[W/m\].
     pub fn wall_power(&self) -> f64 {
-        let rates = self.simulation.wall_rates();
-        let each = self.simulation.walls().zip(&rates);
-        each.fold(0.0, |sum, ((mass, particle), rate)| sum + (self.slope)(mass, particle, rate))
+        power(&mut self.simulation.walls(), &self.simulation.wall_rates(), self.slope)
     }
 
     /// What these terms do together.
     fn sums<T: Term<S::Extra>>(&self, terms: &T) -> Sums {
-        let rates = self.simulation.rates(terms);
-        let mut sums = Sums { power: [0.0; 3], force: Vector2::zeros() };
-        for ((mass, particle), rate) in self.simulation.fluid().zip(&rates) {
-            let (none, no_extra) = (Vector2::zeros(), S::Extra::default());
-            let parts = [
-                Rate { density: 0.0, position: none, extra: no_extra, ..*rate },
-                Rate { velocity: none, position: none, ..*rate },
-                Rate { velocity: none, density: 0.0, extra: no_extra, ..*rate },
-            ];
-            for (sum, part) in sums.power.iter_mut().zip(&parts) {
-                *sum += (self.slope)(mass, particle, part);
-            }
-            sums.force += rate.velocity * mass;
-        }
-        sums
+        sums(&mut self.simulation.fluid(), &self.simulation.rates(terms), self.slope)
     }
+}
+
+/// Masses and states of particles.
+type Masses<'a, X> = dyn Iterator<Item = (f64, &'a Evolved<X>)> + 'a;
+
+// Compiled once for all schemes.
+
+fn power<X>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X>) -> f64 {
+    particles
+        .zip(rates)
+        .fold(0.0, |sum, ((mass, particle), rate)| sum + slope(mass, particle, rate))
+}
+
+fn sums<X: Numbers>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X>) -> Sums {
+    let mut sums = Sums { power: [0.0; 3], force: Vector2::zeros() };
+    for ((mass, particle), rate) in particles.zip(rates) {
+        let (none, no_extra) = (Vector2::zeros(), X::default());
+        let parts = [
+            Rate { density: 0.0, position: none, extra: no_extra, ..*rate },
+            Rate { velocity: none, position: none, ..*rate },
+            Rate { velocity: none, density: 0.0, extra: no_extra, ..*rate },
+        ];
+        for (sum, part) in sums.power.iter_mut().zip(&parts) {
+            *sum += slope(mass, particle, part);
+        }
+        sums.force += rate.velocity * mass;
+    }
+    sums
 }
 
 /// Items of a budget and their powers \[W/m\] or works \[J/m\]; a name may come twice.
