@@ -59,9 +59,11 @@ pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};
 pub use super_steps::SuperSteps;
 pub use terms::{
-    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Continuity,
-    DensityDiffusion, Hydrostatic, JaumannRate, NoSlipImages, Pressure, PrincipalStress,
-    ShiftAdvection, Shifting, Split, Term, Viscosity, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
+    ConjugateStress, ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure,
+    ConsistentViscosity, Continuity, DensityDiffusion, FluidPairs, Hydrostatic, JaumannRate,
+    NoSlipImages, Pressure, PrincipalStress, ShiftAdvection, Shifting, Split, Term, Viscosity,
+    Xsph,
 };
 pub use walls::{
     ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall, SlipGhosts,

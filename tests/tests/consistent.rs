@@ -1,8 +1,10 @@
 //! Terms that are exact for linear fields, on particles that lie anyhow.
 
-use consistent::{ConsistentContinuity, ConsistentPressure, ConsistentViscosity};
 use nalgebra::{Matrix2, Vector2};
-use solver::{Linear, Particle, QuinticSpline, Term, Viscosity, WendlandC2, lattice};
+use solver::{
+    ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Linear, Particle, QuinticSpline,
+    Term, Viscosity, WendlandC2, lattice,
+};
 use touchstone_tests::{Random, open_rates, patch};
 
 const N: usize = 14;

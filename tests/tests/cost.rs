@@ -1,12 +1,12 @@
 //! A scene pays for what it uses: memory by type, rows by motion.
 
-use consistent::{ConsistentContinuity, ConsistentPressure, ConsistentViscosity, FluidPairs};
 use nalgebra::Vector2;
 use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, Domain, Evolved, ExtrapolatingWall, Hydrostatic, Integrator, Leapfrog,
-    NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure, QuinticSpline, Scene,
-    ShiftAdvection, Shifting, Simulation, Stepper, Tait, Term, Viscosity, Xsph, particles::Column,
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
+    ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
+    Evolved, ExtrapolatingWall, FluidPairs, Hydrostatic, Integrator, Leapfrog, NoSlip, Open,
+    Outcome, Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, ShiftAdvection,
+    Shifting, Simulation, Stepper, Tait, Term, Viscosity, Xsph, particles::Column,
     physics::Derived,
 };
 use touchstone_tests::{difference, patch};

@@ -8,29 +8,20 @@ use std::path::{Path, PathBuf};
 use crate::tidy::root;
 
 /// A crate, its folder, and the crates of this project that it may know.
-const LAYERS: [(&str, &str, &[&str]); 15] = [
+const LAYERS: [(&str, &str, &[&str]); 14] = [
     ("lanes", "solver/lanes", &[]),
     ("solver", "solver", &["lanes"]),
-    ("consistent", "solver/consistent", &["lanes", "solver"]),
     ("lagrangian", "solver/lagrangian", &["lanes", "solver"]),
     ("base", "validation/base", &[]),
     ("report", "validation/report", &["base"]),
-    ("maths", "validation/maths", &["solver", "consistent", "lagrangian", "base"]),
-    ("harness", "validation/harness", &["solver", "consistent", "base", "report", "maths"]),
-    (
-        "fluids",
-        "validation/fluids",
-        &["solver", "consistent", "base", "report", "maths", "harness"],
-    ),
-    (
-        "waters",
-        "validation/waters",
-        &["solver", "consistent", "base", "report", "maths", "harness"],
-    ),
+    ("maths", "validation/maths", &["solver", "lagrangian", "base"]),
+    ("harness", "validation/harness", &["solver", "base", "report", "maths"]),
+    ("fluids", "validation/fluids", &["solver", "base", "report", "maths", "harness"]),
+    ("waters", "validation/waters", &["solver", "base", "report", "maths", "harness"]),
     (
         "solids",
         "validation/solids",
-        &["solver", "consistent", "lagrangian", "base", "report", "maths", "harness"],
+        &["solver", "lagrangian", "base", "report", "maths", "harness"],
     ),
     ("lattice", "validation/lattice", &["solver", "base", "report", "maths", "harness"]),
     ("validation", "validation/catalogue", &EVERY),
@@ -39,9 +30,8 @@ const LAYERS: [(&str, &str, &[&str]); 15] = [
 ];
 const EVERY: [&str; 9] =
     ["solver", "base", "report", "maths", "harness", "fluids", "waters", "solids", "lattice"];
-const WITH_VALIDATION: [&str; 11] = [
+const WITH_VALIDATION: [&str; 10] = [
     "solver",
-    "consistent",
     "base",
     "report",
     "maths",

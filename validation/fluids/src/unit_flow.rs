@@ -1,9 +1,8 @@
 //! Flows whose length, velocity and density are 1: the settings, methods and rules that the flow over hills
 //! and the vortices have in common.
 
-use consistent::ConsistentContinuity;
 use nalgebra::Vector2;
-use solver::{DensityDiffusion, Domain, Limits, Particle, Shifting, Tait};
+use solver::{ConsistentContinuity, DensityDiffusion, Domain, Limits, Particle, Shifting, Tait};
 
 use harness::{
     case::{Rules, RunError, Step},

@@ -17,15 +17,14 @@ mod steadiness;
 mod streamlines;
 mod studies;
 
-use consistent::{ConsistentPressure, ConsistentViscosity};
 use harness::{
     case::Case,
     composed::{Best, Composed, Composition, Variants},
     method::{self, Method, Standard},
 };
 use solver::{
-    BodyForce, Continuity, ExtrapolatingWall, InterfaceWall, NoSlip, Pressure, ShiftAdvection,
-    Tait, Viscosity,
+    BodyForce, ConsistentPressure, ConsistentViscosity, Continuity, ExtrapolatingWall,
+    InterfaceWall, NoSlip, Pressure, ShiftAdvection, Tait, Viscosity,
 };
 
 use crate::{

@@ -8,15 +8,14 @@ mod sound;
 mod studies;
 mod viscous;
 
-use consistent::{ConsistentPressure, ConsistentViscosity};
 use harness::{
     case::{Case, Planned, Tier},
     composed::{self, Best, Composed, Composition, Variants},
     method::Method,
 };
 use solver::{
-    Compose, Continuity, Leapfrog, Open, Pressure, QuinticSpline, ShiftAdvection, Shifting, Split,
-    SuperSteps, Tait, Viscosity,
+    Compose, ConsistentPressure, ConsistentViscosity, Continuity, Leapfrog, Open, Pressure,
+    QuinticSpline, ShiftAdvection, Shifting, Split, SuperSteps, Tait, Viscosity,
 };
 
 use crate::{

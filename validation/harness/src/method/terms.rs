@@ -1,13 +1,11 @@
 //! How each term and each wall is constructed from the parameters of a medium, and which settings it reads.
 
-use consistent::{
-    ConjugateStress, ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure,
-    ConsistentViscosity, FluidPairs,
-};
 use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, Continuity, DensityDiffusion,
-    ExtrapolatingWall, Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open,
-    PlaneWall, Pressure, ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConjugateStress,
+    ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure, ConsistentViscosity,
+    Continuity, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall,
+    JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall, Pressure, ShiftAdvection, Shifting,
+    SlipGhosts, Split, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension, Switch},
 };
 

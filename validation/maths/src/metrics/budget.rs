@@ -12,11 +12,10 @@
 //! the last one. What the first sweep has more than the second is artificial viscosity in dv/dt and density
 //! diffusion in dρ/dt. An artificial stress, which acts in dv/dt too, takes a sweep of its own.
 
-use consistent::FluidPairs;
 use nalgebra::Vector2;
 use solver::{
     ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
-    NoSlipImages, Numbers, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
+    FluidPairs, NoSlipImages, Numbers, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
     terms::{Rest, Switch, Tensile},
 };
 

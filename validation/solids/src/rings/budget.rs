@@ -1,12 +1,12 @@
 //! Where the energy of the rings goes: kinetic and elastic energy through time, and the work of each
 //! term that is not elastic.
 
-use consistent::{ConjugateStress, ConsistentContinuity, ConsistentJaumannRate};
 use harness::method::FromMedium;
 use lagrangian::{Law, Load, Solid};
 use solver::{
-    ArtificialViscosity, CauchyStress, Continuity, JaumannRate, Kernel, Linear, Scheme, Simulation,
-    Stepper, Symmetric, Term, terms::TensileStress,
+    ArtificialViscosity, CauchyStress, ConjugateStress, ConsistentContinuity,
+    ConsistentJaumannRate, Continuity, JaumannRate, Kernel, Linear, Scheme, Simulation, Stepper,
+    Symmetric, Term, terms::TensileStress,
 };
 
 use super::{

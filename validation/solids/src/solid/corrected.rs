@@ -7,11 +7,11 @@
 //! factor. Artificial stress in principal axes (ξ = 0.3, n = 4) lowers the largest s² to 0.18, and artificial
 //! viscosity makes what is left slow. So tearing is delayed and not removed, as without correction.
 
-use consistent::{ConjugateStress, ConsistentContinuity, ConsistentJaumannRate};
 use harness::method::{Boundary, FirstRow, FromMedium, Medium};
 use solver::{
-    ArtificialViscosity, Compose, CubicSpline, JaumannRate, Leapfrog, Linear, Open, PlaneWall,
-    Symmetric, kernel::Smoothing, walls::Walls,
+    ArtificialViscosity, Compose, ConjugateStress, ConsistentContinuity, ConsistentJaumannRate,
+    CubicSpline, JaumannRate, Leapfrog, Linear, Open, PlaneWall, Symmetric, kernel::Smoothing,
+    walls::Walls,
 };
 
 use super::Clamp;

@@ -10,7 +10,6 @@ use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricName, Record},
 };
-use consistent::FluidPairs;
 use harness::{
     limits::Limits,
     method::{self, FirstRow, Medium, Method, Standard},
@@ -22,7 +21,7 @@ use maths::{
 use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, ExtrapolatingWall, InterfaceWall, Leapfrog, Mirrors, Open,
+    DensityDiffusion, ExtrapolatingWall, FluidPairs, InterfaceWall, Leapfrog, Mirrors, Open,
     PredictorCorrector, Pressure, Role, Tait, WendlandC2, Xsph, terms::Hydrostatic,
 };
 

@@ -1,9 +1,6 @@
-use lanes::Lane;
-use nalgebra::Vector2;
-use solver::{In, Kernel, Rate, Symmetric, Term, particles::Common, terms::Pair};
+use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 
-/// A term without its pairs with boundary particles, [`solver::Role::Wall`] and
-/// [`solver::Role::Interface`].
+/// A term without its pairs with boundary particles, [`crate::Role::Wall`] and [`crate::Role::Interface`].
 ///
 /// Boundary particles stand still however the fluid slides past them, so artificial viscosity makes it stick
 /// to them. Without these pairs it exchanges momentum within the fluid only. Each column carries the share in
@@ -57,7 +54,7 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use solver::{
+    use crate::{
         ArtificialViscosity, Compose, Continuity, Domain, ExtrapolatingWall, InterfaceWall,
         Leapfrog, Particle, Pressure, Role, Scene, Stepper, Tait, WendlandC2, terms::Approaching,
         walls::Walls,
@@ -82,7 +79,7 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5) * disorder
         };
-        let fluid = solver::lattice(Vector2::repeat(0.5 * DX), DX, 10, ROWS).map(|x| {
+        let fluid = crate::lattice(Vector2::repeat(0.5 * DX), DX, 10, ROWS).map(|x| {
             let place = x + Vector2::new(random(), random()) * DX;
             let velocity = Vector2::new(3.0 + random(), random());
             Particle::fluid(place, velocity, 2.1 + 0.1 * random(), DX * DX)
@@ -91,7 +88,7 @@ mod tests {
         for (row, role) in boundary.iter().enumerate() {
             let first = Vector2::new(0.5, -0.5 - row as f64) * DX;
             let at = |x| Particle::fluid(x, Vector2::zeros(), 2.0, DX * DX).with_role(*role);
-            particles.extend(solver::lattice(first, DX, 10, 1).map(at));
+            particles.extend(crate::lattice(first, DX, 10, 1).map(at));
         }
         particles
     }

@@ -1,23 +1,17 @@
 //! Terms of a fluid that are exact for linear fields (schemes of Negi & Ramachandran 2022).
 //!
 //! What they cost is conservation: the forces of a pair are not opposite any more, and nothing pushes crowded
-//! particles apart. They need [`solver::Shifting`].
+//! particles apart. They need [`super::Shifting`].
 
-use lanes::Lane;
-use nalgebra::Vector2;
-use solver::{
-    EquationOfState, In, Kernel, Rate, Symmetric, Term,
-    particles::Common,
-    terms::{
-        Pair,
-        moments::{inverse, weights},
-    },
+use super::{
+    Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2,
+    moments::{inverse, weights},
 };
 
 /// Least trace of the moments: 2 inside a body of particles.
 const LEAST_TRACE: f64 = 1e-3;
 
-/// dvᵢ/dt += −∇p/ρᵢ \[m/s²\], in place of [`solver::Pressure`]. Where neighbours lie on a line, 0.
+/// dvᵢ/dt += −∇p/ρᵢ \[m/s²\], in place of [`crate::Pressure`]. Where neighbours lie on a line, 0.
 #[derive(Clone, Copy, Debug)]
 pub struct ConsistentPressure<E> {
     /// Equation of state p(ρ).
@@ -54,7 +48,7 @@ impl<X, E: EquationOfState> Term<X> for ConsistentPressure<E> {
     }
 }
 
-/// dvᵢ/dt += −(4ν/tr M) Σⱼ Vⱼ F (vᵢⱼ − (rᵢⱼ·∇)v) \[m/s²\], in place of [`solver::Viscosity`]: 0 for a linear
+/// dvᵢ/dt += −(4ν/tr M) Σⱼ Vⱼ F (vᵢⱼ − (rᵢⱼ·∇)v) \[m/s²\], in place of [`crate::Viscosity`]: 0 for a linear
 /// field on any particles, exact for a parabola where M is a number times the unit matrix, as on a
 /// lattice. Where neighbours lie on a line, without the second part.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +84,7 @@ impl<X> Term<X> for ConsistentViscosity {
     }
 }
 
-/// dρᵢ/dt += −ρᵢ ∇·v \[kg/m³/s\], in place of [`solver::Continuity`]. Where neighbours lie on a line, 0.
+/// dρᵢ/dt += −ρᵢ ∇·v \[kg/m³/s\], in place of [`crate::Continuity`]. Where neighbours lie on a line, 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConsistentContinuity;
 

@@ -1,12 +1,12 @@
 //! Stress and its rate with corrected gradients: what holds to round-off on particles that lie anyhow, at
 //! free surfaces, across a period, and before particles that are held.
 
-use consistent::{ConjugateStress, ConsistentContinuity, ConsistentJaumannRate};
 use nalgebra::{Matrix2, Vector2};
 use solver::{
-    CauchyStress, Compose, CubicSpline, Domain, EquationOfState, Evolved, JaumannRate, Leapfrog,
-    Linear, Open, Particle, PredictorCorrector, PrincipalStress, Rate, Role, Scene, Scheme,
-    Simulation, Smoothing, Stepper, Symmetric, lattice, terms::TensileStress, walls::Walls,
+    CauchyStress, Compose, ConjugateStress, ConsistentContinuity, ConsistentJaumannRate,
+    CubicSpline, Domain, EquationOfState, Evolved, JaumannRate, Leapfrog, Linear, Open, Particle,
+    PredictorCorrector, PrincipalStress, Rate, Role, Scene, Scheme, Simulation, Smoothing, Stepper,
+    Symmetric, lattice, terms::TensileStress, walls::Walls,
 };
 
 type Drift = (ConsistentContinuity, ConsistentJaumannRate);

@@ -12,15 +12,10 @@
 //! momentum are exact on any particles (Bonet & Lok 1999). Particles whose neighbours lie on a line have
 //! neither a gradient nor a stress that acts.
 
-use lanes::Lane;
-use nalgebra::Vector2;
-use solver::{
-    EquationOfState, In, JaumannRate, Kernel, Rate, Symmetric, Term,
-    particles::Common,
-    terms::{
-        Pair, TensileStress,
-        moments::{inverse, weights},
-    },
+use super::{
+    Common, EquationOfState, In, JaumannRate, Kernel, Lane, Pair, Rate, Symmetric, TensileStress,
+    Term, Vector2,
+    moments::{inverse, weights},
 };
 
 /// (11) with Gᵢ in place of the gradient, in place of [`JaumannRate`]. Its density is that of
@@ -60,13 +55,13 @@ impl Term<Symmetric> for ConsistentJaumannRate {
 }
 
 /// dvᵢ/dt = −(1/ρᵢ) Σⱼ Vⱼ (σᵢ M⁻¹ᵢ + σⱼ M⁻¹ⱼ + Rᵢⱼ φᵢⱼⁿ) F rᵢⱼ \[m/s²\] with (10) σ = −p δ + S, in place of
-/// [`solver::CauchyStress`]. Artificial stress R ≠ () is as there, not conjugate to anything, and its torque
+/// [`crate::CauchyStress`]. Artificial stress R ≠ () is as there, not conjugate to anything, and its torque
 /// is not 0.
 #[derive(Clone, Copy, Debug)]
 pub struct ConjugateStress<E, R = ()> {
     /// Equation of state p(ρ).
     pub eos: E,
-    /// `()`, [`solver::PrincipalStress`] or [`solver::ComponentStress`].
+    /// `()`, [`crate::PrincipalStress`] or [`crate::ComponentStress`].
     pub tensile: R,
 }
 
