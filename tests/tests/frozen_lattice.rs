@@ -319,10 +319,10 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
 
 #[test]
 fn every_variant_is_its_matrix() {
-    for variant in variants::<BodyForce>(&POISEUILLE) {
+    for variant in variants::of_poiseuille(&POISEUILLE) {
         check_variant(&variant, Flow::Poiseuille);
     }
-    for variant in variants::<()>(&COUETTE) {
+    for variant in variants::of_couette(&COUETTE) {
         check_variant(&variant, Flow::Couette);
     }
 }

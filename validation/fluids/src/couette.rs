@@ -17,7 +17,7 @@ pub static COUETTE: ChannelCase = ChannelCase {
     about: "Water rests between two infinite plates, L = 1 mm apart, until the upper one starts at t = 0 \
             with constant speed V = Re nu/L, Re = 0.5. The exact velocity is a Fourier series in y, and \
             pressure and cross-flow are exactly zero.",
-    variants: || variants::<()>(&channel::COUETTE),
+    variants: || variants::of_couette(&channel::COUETTE),
     is_stable: channel::is_stable,
     declaration: |tier| channel::declaration(CHANNEL, tier),
     plan: |tier| channel::plan(CHANNEL, tier),

@@ -1,7 +1,5 @@
 //! Case 2, start-up Poiseuille flow (the paper's figure 2).
 
-use solver::BodyForce;
-
 use harness::composed::Best;
 
 use super::channel::{self, Channel, ChannelCase, Flow, variants};
@@ -19,7 +17,7 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
     about: "Water rests between two infinite plates, L = 1 mm apart. At t = 0 a body force F = 8 nu V/L^2 \
             along the plates sets in; V = Re nu/L is the centre-line velocity of the steady parabola. The \
             exact velocity is a Fourier series; pressure and cross-flow are exactly zero.",
-    variants: || variants::<BodyForce>(&channel::POISEUILLE),
+    variants: || variants::of_poiseuille(&channel::POISEUILLE),
     is_stable: channel::is_stable,
     declaration: |tier| channel::declaration(CHANNEL, tier),
     plan: |tier| channel::plan(CHANNEL, tier),

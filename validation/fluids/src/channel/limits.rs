@@ -119,14 +119,6 @@ const BEFORE: &[(&str, [f64; 2])] = &[
     ("modern", [1.3336, 1.0250]),
     ("stiff", [1.3970, 1.0478]),
     ("modern-mirror", [1.3336, 1.0250]),
-    ("cure-background", [2.8596, 1.0148]),
-    ("cure-stress", [2.8455, 1.0098]),
-    ("cure-viscosity", [2.8173, 1.0100]),
-    ("cure-xsph", [2.8455, 1.0098]),
-    ("cure-diffusion", [2.8455, 1.0098]),
-    ("cure-shifting", [2.8455, 1.0098]),
-    ("cure-both", [2.8455, 1.0098]),
-    ("cure-leapfrog", [2.8877, 1.0248]),
     ("extrapolating-wall", [1.3401, 1.0299]),
 ];
 

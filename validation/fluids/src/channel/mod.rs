@@ -16,7 +16,7 @@ mod setup;
 mod starts;
 mod stiff;
 mod studies;
-mod variants;
+pub mod variants;
 mod waves;
 
 pub use declaration::{declaration, ladder};
@@ -26,7 +26,7 @@ pub use run::{COUETTE, POISEUILLE};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};
 pub use studies::studies;
-pub use variants::{Drive, Fluid, Modern, Seed, Stabilised, Stiff, variants};
+pub use variants::{Drive, Fluid, Modern, Seed, Stabilised, Stiff};
 
 use harness::{
     composed::{Composed, Program},

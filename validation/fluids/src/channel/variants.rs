@@ -5,9 +5,10 @@ use harness::{
     method::{FromMedium, Method},
 };
 use solver::{
-    ArtificialStress, ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion,
-    ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlip, PredictorCorrector, Pressure,
-    QuinticSpline, Shifting, Split, SuperSteps, Tait, Term, Viscosity, WendlandC2, Xsph,
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
+    DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlip,
+    PredictorCorrector, Pressure, QuinticSpline, Shifting, Split, SuperSteps, Tait, Term,
+    Viscosity, WendlandC2, Xsph,
 };
 
 use super::{ChannelProgram, ChannelSettings};
@@ -15,7 +16,7 @@ use super::{ChannelProgram, ChannelSettings};
 /// Forces of a channel flow: pressure, viscosity, and the driving force `B`, `()` for Couette flow.
 pub type Fluid<B, R = ()> = (Pressure<Tait, R>, Viscosity, B);
 /// The same with artificial viscosity.
-type Damped<B> = (Pressure<Tait>, Viscosity, B, ArtificialViscosity<Tait>);
+type Damped = (Pressure<Tait>, Viscosity, BodyForce, ArtificialViscosity<Tait>);
 /// The same with viscosity by super-time-stepping.
 pub type StiffFluid<B> = Split<(Pressure<Tait>, B), Viscosity>;
 /// What stabilises the modern variants.
@@ -54,10 +55,18 @@ pub type Modern<F, D, W = Ghosts> = Compose<QuinticSpline, F, D, W, Leapfrog>;
 
 type All<'a> = Variants<'a, ChannelSettings, Method>;
 
-/// All variants of a channel flow driven by `B`.
-pub fn variants<B: Drive>(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>> {
-    let all = moderns::<B>(methods::<B>(Variants::of(program)));
-    cures::<B>(all).all
+/// The variants of Couette flow.
+pub fn of_couette(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>> {
+    both::<()>(program).all
+}
+
+/// Those of Poiseuille flow, in which the seed is unstable.
+pub fn of_poiseuille(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>> {
+    cures(both::<BodyForce>(program)).all
+}
+
+fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
+    moderns::<B>(methods::<B>(Variants::of(program)))
 }
 
 /// The seed's method, and what changing its parts one by one leads to.
@@ -159,53 +168,53 @@ fn moderns<B: Drive>(all: All) -> All {
 }
 
 /// The seed's method with one thing against its instability.
-fn cures<B: Drive>(all: All) -> All {
+fn cures(all: All) -> All {
     all.with(
         "cure-background",
         "seed with a background pressure of 0.05 rho c0^2",
-        Method::of::<Seed<Fluid<B>, Continuity>>(),
+        Method::of::<Seed<Fluid<BodyForce>, Continuity>>(),
         |s| s.background = 0.05,
     )
     .with(
         "cure-stress",
         "seed with artificial stress, equations (18) and (19)",
-        Method::of::<Seed<Fluid<B, ArtificialStress>, Continuity>>(),
+        Method::of::<Seed<Fluid<BodyForce, ArtificialStress>, Continuity>>(),
         |_| {},
     )
     .with(
         "cure-viscosity",
         "seed with artificial viscosity, equations (16) and (17), alpha 0.1",
-        Method::of::<Seed<Damped<B>, Continuity>>(),
+        Method::of::<Seed<Damped, Continuity>>(),
         |_| {},
     )
     .with(
         "cure-xsph",
         "seed with XSPH, equation (22), epsilon 0.5",
-        Method::of::<Seed<Fluid<B>, (Continuity, Xsph)>>(),
+        Method::of::<Seed<Fluid<BodyForce>, (Continuity, Xsph)>>(),
         |_| {},
     )
     .with(
         "cure-diffusion",
         "seed with density diffusion 0.1",
-        Method::of::<Seed<Fluid<B>, (Continuity, DensityDiffusion)>>(),
+        Method::of::<Seed<Fluid<BodyForce>, (Continuity, DensityDiffusion)>>(),
         |_| {},
     )
     .with(
         "cure-shifting",
         "seed with particle shifting 0.5",
-        Method::of::<Seed<Fluid<B>, (Continuity, Shifting)>>(),
+        Method::of::<Seed<Fluid<BodyForce>, (Continuity, Shifting)>>(),
         |_| {},
     )
     .with(
         "cure-both",
         "seed with density diffusion and shifting",
-        Method::of::<Seed<Fluid<B>, Stabilised>>(),
+        Method::of::<Seed<Fluid<BodyForce>, Stabilised>>(),
         |_| {},
     )
     .with(
         "cure-leapfrog",
         "seed with the staggered leapfrog",
-        Method::of::<Compose<CubicSpline, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
+        Method::of::<Compose<CubicSpline, Fluid<BodyForce>, Continuity, Ghosts, Leapfrog>>(),
         |_| {},
     )
 }
