@@ -135,7 +135,11 @@ fn a_rigid_rotation_turns_the_stress_and_changes_it_in_no_other_way() {
         let s = Matrix2::new(p.extra.xx, p.extra.xy, p.extra.xy, p.extra.yy);
         let turned = spin * s - s * spin;
         let found = Matrix2::new(rate.extra.xx, rate.extra.xy, rate.extra.xy, rate.extra.yy);
-        assert!((found - turned).norm() < 1e-12, "{found} {turned}");
+        let off = (found - turned).norm();
+        assert!(
+            off < 1e-12,
+            "dσ/dt of a body that spins is {off:e} off Ωσ - σΩ, expected below 1e-12"
+        );
         assert!(rate.density.abs() < 1e-12);
     }
 }
@@ -144,16 +148,26 @@ fn a_rigid_rotation_turns_the_stress_and_changes_it_in_no_other_way() {
 fn any_stress_on_any_particles_adds_up_to_no_force_and_no_torque() {
     for seed in 0..5 {
         let found = force_and_torque(scene::<Method>(cloud(seed), stress(()), Open));
-        assert!(found.iter().all(|sum| sum.abs() < ROUND_OFF), "{found:?}");
+        let is_none = found.iter().all(|sum| sum.abs() < ROUND_OFF);
+        assert!(
+            is_none,
+            "force along x and y and torque over their sizes: expected none, not {found:?}"
+        );
     }
     // What shows that the test can fail: forces that are not corrected, and artificial stress.
     type Uncorrected = Compose<CubicSpline, CauchyStress<Linear>, Drift, Open, Leapfrog, Symmetric>;
     let uncorrected = CauchyStress { eos: EOS, tensile: () };
     let [x, y, torque] = force_and_torque(scene::<Uncorrected>(cloud(0), uncorrected, Open));
-    assert!(x.abs().max(y.abs()) < ROUND_OFF && torque.abs() > 1e-4, "{x:e} {y:e} {torque:e}");
+    assert!(
+        x.abs().max(y.abs()) < ROUND_OFF && torque.abs() > 1e-4,
+        "force along x {x:e} and y {y:e}: expected none; torque {torque:e}: expected above 1e-4"
+    );
     let [x, y, torque] =
         force_and_torque(scene::<Method<PrincipalStress>>(cloud(0), stress(principal()), Open));
-    assert!(x.abs().max(y.abs()) < ROUND_OFF && torque.abs() > 1e-5, "{x:e} {y:e} {torque:e}");
+    assert!(
+        x.abs().max(y.abs()) < ROUND_OFF && torque.abs() > 1e-5,
+        "force along x {x:e} and y {y:e}: expected none; torque {torque:e}: expected above 1e-5"
+    );
 }
 
 /// Particles that are held, whose density and stress follow the motion of the others.
@@ -180,7 +194,11 @@ fn the_work_of_the_forces_is_what_the_stress_stores() {
         }
         let held = balance(scene::<Method<(), Held>>(particles, stress(()), Held));
         for sum in [open, periodic, held] {
-            assert!(sum.abs() < ROUND_OFF, "{open:e} {periodic:e} {held:e}");
+            assert!(
+                sum.abs() < ROUND_OFF,
+                "power of all forces over its size: expected none, open {open:e}, periodic {periodic:e}, \
+                 held {held:e}"
+            );
         }
     }
     let uncorrected =
@@ -232,11 +250,17 @@ where
 #[test]
 fn a_body_that_spins_and_shakes_keeps_its_momentum_and_its_angular_momentum() {
     let (leapfrog, _) = drift_of_momentum::<Method>(usize::MAX);
-    assert!(leapfrog.iter().all(|drift| drift.abs() < 1e-12), "{leapfrog:?}");
+    let is_none = leapfrog.iter().all(|drift| drift.abs() < 1e-12);
+    assert!(
+        is_none,
+        "momentum along x and y and angular momentum: expected no drift, not {leapfrog:?}"
+    );
     let (midpoint, _) = drift_of_momentum::<Method<(), Open, PredictorCorrector<Symmetric>>>(1);
     // x × v of the midpoint rule changes by dt² v̇ × v: of third order in dt a step.
-    assert!(midpoint[..2].iter().all(|drift| drift.abs() < 1e-12), "{midpoint:?}");
-    assert!(midpoint[2].abs() < 1e-3, "{midpoint:?}");
+    let is_none = midpoint[..2].iter().all(|drift| drift.abs() < 1e-12);
+    assert!(is_none, "momentum along x and y: expected no drift, not {:?}", &midpoint[..2]);
+    let turned = midpoint[2];
+    assert!(turned.abs() < 1e-3, "angular momentum drifted by {turned:e}, expected below 1e-3");
 }
 
 #[test]

@@ -77,8 +77,17 @@ fn sorting_and_search_are_told_when_lists_are_built() {
     let phases = phases(&mut simulation::<_, Leapfrog>((Open, 0), 70.0));
     let inside = [Refresh, Search, Refresh, Rest];
     let built = [Refresh, Sorting, Search, Refresh, Rest, Forces];
-    assert!(phases.windows(4).any(|told| told == inside), "{phases:?}");
-    assert!(phases.windows(6).any(|told| told == built), "{phases:?}");
+    let first = &phases[..phases.len().min(24)];
+    let has =
+        |phases: &[Phase], part: &[Phase]| phases.windows(part.len()).any(|told| told == part);
+    assert!(
+        has(&phases, &inside),
+        "expected {inside:?} among the phases, which begin with {first:?}"
+    );
+    assert!(
+        has(&phases, &built),
+        "expected {built:?} among the phases, which begin with {first:?}"
+    );
 }
 
 #[test]
@@ -88,10 +97,15 @@ fn lists_are_those_that_sweeps_count() {
     let columns = simulation.plain_columns();
     let mut inside = 0;
     for (own, list) in columns.iter().zip(simulation.lists()) {
-        assert!(list.len() % 4 == 0 && list.len() >= 20);
+        let count = list.len();
+        assert!(
+            count % 4 == 0 && count >= 20,
+            "expected fours, 20 neighbours or more, not {count}"
+        );
         for other in list.iter().filter_map(|place| columns.get(*place as usize)) {
             let distance = (own.position - other.position).norm();
-            assert!(distance <= 2.0 * H + 0.4 * H);
+            let most = 2.4 * H;
+            assert!(distance <= most, "a neighbour {distance} m away, expected at most {most} m");
             inside += u64::from(distance < 2.0 * H);
         }
     }

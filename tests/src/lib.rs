@@ -23,6 +23,25 @@ pub fn snapshot(name: &str) -> Option<Value> {
     serde_json::from_str(text.split_once("\n---\n")?.1).ok()
 }
 
+/// Fails unless a magnitude is at most this, saying what it is of; a NaN fails.
+#[track_caller]
+pub fn assert_small(what: &str, found: f64, most: f64) {
+    assert!(
+        found.abs() <= most,
+        "{what}: expected at most {most:e} in magnitude, and it is {found:e}"
+    );
+}
+
+/// Fails unless a number is as near as this to what it should be, saying what it is; a NaN fails.
+#[track_caller]
+pub fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
+    let apart = (found - expected).abs();
+    assert!(
+        apart <= tolerance,
+        "{what}: expected {expected} within {tolerance:e}, and it is {found}"
+    );
+}
+
 /// A plane vector.
 pub type V2 = Vector2<f64>;
 

@@ -9,7 +9,7 @@ use solver::{
     Shifting, Simulation, Stepper, Tait, Term, Viscosity, Xsph, particles::Column,
     physics::Derived,
 };
-use touchstone_tests::{difference, patch};
+use touchstone_tests::{assert_small, difference, patch};
 
 type Fluid = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
 
@@ -87,7 +87,10 @@ fn flight<I: Integrator<Flight<()>>>(skin: f64, share: f64) -> (Vec<Particle>, u
 fn check_skin<I: Integrator<Flight<()>>>() {
     let torus = [Some(1.0), Some(1.0)];
     let (exact, every_time) = flight::<I>(0.0, 0.5);
-    assert!(every_time >= 64);
+    assert!(
+        every_time >= 64,
+        "expected 64 builds of lists without a skin, and there were {every_time}"
+    );
     for skin in [0.05, 0.12, 0.5] {
         let (kept, builds) = flight::<I>(skin, 0.5);
         assert!(builds > 1 && builds < every_time, "{builds} builds with a skin of {skin} h");
@@ -124,5 +127,6 @@ fn particles_at_rest_build_their_rows_once() {
     assert_eq!(simulation.advance(1.0, 0.01, &mut ()), Outcome::Reached);
     let work = simulation.work();
     assert_eq!((work.steps, work.list_builds, work.right_hand_sides), (100, 1, 100 * 144));
-    assert!(difference(&simulation.particles(), &start, [None, None]) < 1e-13);
+    let apart = difference(&simulation.particles(), &start, [None, None]);
+    assert_small("what is left of the start after the way back", apart, 1e-13);
 }

@@ -148,8 +148,10 @@ fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
         return Some(gate.map(ends).unwrap_or_default());
     }
     let [name, run, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
-    let document = snapshot(name).unwrap_or_default();
-    let value = [&document[run]["metrics"][metric], &document[run][metric]];
+    // Metrics are in the snapshot of the variant, steps and pair interactions in that of its work.
+    let [results, work] = [name.to_string(), format!("work.{name}")].map(|name| snapshot(&name));
+    let [results, work] = [results.unwrap_or_default(), work.unwrap_or_default()];
+    let value = [&results[run]["metrics"][metric], &work[run][metric]];
     Some(value.into_iter().filter_map(Value::as_f64).collect())
 }
 

@@ -6,6 +6,7 @@ use base::gate::{Cause, Gate, Purpose};
 use base::spec::RunSpec;
 use harness::{
     case::{self, Case, Planned, RunError, Tier},
+    declare::{Budget, Change},
     make::Made,
     plan,
     runs::Runs,
@@ -48,6 +49,41 @@ fn studies_ask_for_no_more_than_is_planned() {
             assert!(asked.is_empty(), "{}: {}", case.case.name(), asked.join("\n"));
         }
     }
+}
+
+/// A budget changes one thing at a time: a run differs in one setting, or in as many as its name lists with
+/// commas, or in its variant, from the run that it is compared with, which its name states or is unchanged.
+#[test]
+fn a_budget_compares_each_change_with_the_run_that_it_names() {
+    let (mut named, mut count) = (0, 0);
+    for (case, tier) in CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)]) {
+        let budgets = case.declaration(tier).budgets.into_iter().flat_map(|budgets| budgets.of);
+        for Budget { variant, changes } in budgets {
+            let budget = format!("the budget of {} {variant}, {tier:?} tier", case.name());
+            assert_eq!((changes[0].what.as_str(), changes[0].against), ("none", 0), "{budget}");
+            for change in &changes[1..] {
+                count += 1;
+                let Change { what, spec, against, .. } = change;
+                let other = &changes[*against];
+                let name = what.split_once(", against ").or(what.split_once(" over "));
+                let (changed, expected) = name.unwrap_or((what, "none"));
+                named += usize::from(name.is_some());
+                assert!(
+                    other.what.starts_with(expected),
+                    "{budget}: `{what}` is compared with `{}`, expected `{expected}`",
+                    other.what
+                );
+                let settings = spec.settings.as_object().expect("settings");
+                let apart =
+                    settings.iter().filter(|(name, value)| other.spec.settings[*name] != **value);
+                let apart: Vec<&String> = apart.map(|(name, _)| name).collect();
+                let listed = 1 + changed.matches(',').count();
+                let is_one = spec.variant != other.spec.variant || apart.len() == listed;
+                assert!(is_one, "{budget}: `{what}` and `{}` differ in {apart:?}", other.what);
+            }
+        }
+    }
+    assert!(named >= 4 && count > 50, "{count} changes, {named} of which name another run");
 }
 
 /// The gates of a case that are known without a run: of its plan, and those that its studies declare.

@@ -5,7 +5,7 @@ use solver::{
     Domain, Kernel, Open, Particle, QuinticSpline, Scene, ShiftAdvection, Shifting, Smoothing,
     WendlandC2,
 };
-use touchstone_tests::{Random, RatesOf, open_rates, patch, rates, relative_sum};
+use touchstone_tests::{Random, RatesOf, assert_small, open_rates, patch, rates, relative_sum};
 
 const N: usize = 16;
 const DX: f64 = 1.0 / N as f64;
@@ -51,7 +51,7 @@ fn shifting_moves_no_centre_of_mass() {
     let shifts = shifts::<QuinticSpline>(DX, &particles);
     for axis in 0..2 {
         let sum = relative_sum(particles.iter().zip(&shifts).map(|(p, s)| p.mass * s[axis]));
-        assert!(sum.abs() < 1e-6, "{sum:e}");
+        assert_small("the shift of the centre of mass over that of the particles", sum, 1e-6);
     }
 }
 
@@ -68,10 +68,14 @@ fn a_shifted_particle_takes_the_velocity_of_its_new_place() {
         let rates =
             open_rates::<QuinticSpline, _, _, _>(h, &particles, ShiftAdvection(shifting), shifting);
         let largest = rates.iter().map(|r| r.velocity.norm()).fold(0.0, f64::max);
-        assert!(largest > 0.01);
+        assert!(
+            largest > 0.01,
+            "a shift to see: expected more than 0.01 dx, the largest is {largest}"
+        );
         for (rate, p) in rates.iter().zip(&particles) {
             let expected = gradient * (rate.position - p.velocity);
-            assert!((rate.velocity - expected).norm() < ROUND_OFF * (1.0 + largest));
+            let off = (rate.velocity - expected).norm();
+            assert_small("a rate less the expected one", off, ROUND_OFF * (1.0 + largest));
         }
     }
 }

@@ -1,12 +1,15 @@
 //! What the quick tier measures, as snapshots that fail on a change, and bounds that say what may
 //! be accepted: whoever accepts a snapshot cannot move the truth.
 //!
-//! Metrics are compared to 1e-6 of themselves and a floor for those that are round-off; steps, pair
-//! interactions and right-hand sides exactly. No snapshot holds seconds.
+//! Each case and variant has two snapshots. `case.variant` holds the metrics, which are compared to 1e-6 of
+//! themselves and a floor for those that are round-off. `work.case.variant` holds steps, pair interactions
+//! and right-hand sides, which are compared exactly. A change that costs work and moves no metric changes
+//! the second alone, and is not accepted together with a change of results. No snapshot holds seconds.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
     f64::consts::TAU,
+    panic::{AssertUnwindSafe, catch_unwind},
 };
 
 use base::{
@@ -169,23 +172,30 @@ fn kept_water(case: &str) -> Vec<Kept> {
 /// Of solid cases: short runs, before a start without stress has made much of a rounding.
 fn kept_solid(case: &str) -> Vec<Kept> {
     match case {
-        "elastic_bar" => vec![(
-            vec!["bare", "plain", "seed"],
-            vec![
+        "elastic_bar" => {
+            let bars = [
                 "n=40",
                 "collide=true speed=0.1",
                 "collide=true speed=1e-2",
                 "collide=true speed=1e-3",
                 "collide=true speed=1e-4",
-            ],
-        )],
+            ];
+            let apart = "collide=true gap=2.05 speed=0.1 end=3"; // the contact of two bodies
+            vec![
+                (vec!["bare", "plain", "seed"], bars.to_vec()),
+                (vec!["lagrangian"], vec![bars[0], bars[1], bars[2], apart]),
+            ]
+        }
         "spinning_disk" => {
             let steps =
                 ["n=8 end=0.1 courant=0.1", "n=8 end=0.1 courant=0.4", "n=8 end=0.1 courant=0.8"];
             vec![(vec!["bare"], steps.to_vec())]
         }
         "oscillating_plate" => vec![(vec!["bare"], vec!["n=5"])],
-        "rubber_rings" => vec![(vec!["lagrangian", "seed"], vec!["spacing=0.2"])],
+        "rubber_rings" => vec![
+            (vec!["seed"], vec!["spacing=0.2"]),
+            (vec!["lagrangian"], vec!["spacing=0.2", "spacing=0.2 speed=0.03"]),
+        ],
         _ => Vec::new(),
     }
 }
@@ -219,13 +229,17 @@ fn runs(case: &dyn Case) -> Vec<Run> {
     runs
 }
 
-/// Metrics and counts of one run.
-fn numbers(record: &Record) -> Value {
+/// Metrics of one run.
+fn metrics(record: &Record) -> Value {
     let metrics: Map<String, Value> =
         record.metrics.iter().map(|(name, m)| (name.clone(), json!(m.value))).collect();
+    json!({ "metrics": metrics })
+}
+
+/// What one run took.
+fn work(record: &Record) -> Value {
     let cost = &record.cost;
     json!({
-        "metrics": metrics,
         "steps": cost.steps,
         "pair_interactions": cost.pair_interactions,
         "particle_rhs": cost.particle_rhs,
@@ -477,24 +491,52 @@ fn outside_bounds(case: &str, Run { name: set, spec }: &Run, record: &Record) ->
     outside
 }
 
-/// Runs what is kept and compares, one snapshot for each case and variant.
+/// The name of the snapshot of the work of a variant, of which the other one has the metrics.
+fn of_work(name: &str) -> String {
+    format!("work.{name}")
+}
+
+/// Runs what is kept and compares, two snapshots for each case and variant, metrics and work. All of them are
+/// compared before the test fails, so that it tells whether one of these changed or both.
 fn check(name: &str) {
     let case = cases::find(name).expect("a case");
     let runs = runs(case);
     let record = |run: &Run| case.run(&run.spec, &Context::default()).expect("a planned run");
     let records: Vec<Record> = runs.par_iter().map(record).collect();
-    let mut documents: BTreeMap<&str, Map<String, Value>> = BTreeMap::new();
+    let mut documents: BTreeMap<String, Map<String, Value>> = BTreeMap::new();
     let mut outside = Vec::new();
     for (run, record) in runs.iter().zip(&records) {
-        let document = documents.entry(&run.spec.variant).or_default();
-        document.insert(run.name.into(), numbers(record));
+        let snapshot = format!("{name}.{}", run.spec.variant);
+        documents.entry(of_work(&snapshot)).or_default().insert(run.name.into(), work(record));
+        let document = documents.entry(snapshot).or_default();
+        document.insert(run.name.into(), metrics(record));
         document.entry("layout").or_insert_with(|| layout(record));
         outside.extend(outside_bounds(name, run, record));
     }
     assert!(outside.is_empty(), "{}", outside.join("\n"));
-    for (variant, document) in documents {
-        assert_close(&format!("{name}.{variant}"), &Value::Object(document));
+    let mut changed = Vec::new();
+    for (snapshot, document) in documents {
+        let compare = || assert_close(&snapshot, &Value::Object(document));
+        if catch_unwind(AssertUnwindSafe(compare)).is_err() {
+            changed.push(snapshot);
+        }
     }
+    assert!(changed.is_empty(), "{}", told(&changed));
+}
+
+/// What changed, results and work apart.
+fn told(changed: &[String]) -> String {
+    let (work, results): (Vec<&String>, Vec<&String>) =
+        changed.iter().partition(|name| name.starts_with("work."));
+    let list = |names: &[&String]| match names {
+        [] => "of none".to_string(),
+        names => format!("of {}", names.iter().map(|n| n.as_str()).collect::<Vec<_>>().join(", ")),
+    };
+    format!(
+        "metrics changed {}; work changed {}: the differences are above",
+        list(&results),
+        list(&work)
+    )
 }
 
 #[test]
@@ -646,6 +688,45 @@ fn gates_have_names_of_their_own() {
         assert!(gates.len() > 80, "{}", gates.len());
         check_all(&gates).expect("sound gates with names of their own");
     }
+}
+
+/// Metrics and work have a file each: a change of one cannot be accepted within the other.
+#[test]
+fn results_and_work_are_kept_apart() {
+    let runs = |name: &str| -> BTreeSet<String> {
+        let snapshot = touchstone_tests::snapshot(name);
+        let snapshot = snapshot.unwrap_or_else(|| panic!("there is no snapshot `{name}`"));
+        let runs = snapshot.as_object().expect("runs").iter();
+        let runs = runs.filter(|(name, _)| *name != "layout");
+        let keys = |of: &Value| of.as_object().map_or(0, Map::len);
+        for (run, of) in runs.clone() {
+            let (expected, what) = match name.starts_with("work.") {
+                true => (["pair_interactions", "particle_rhs", "steps"].as_slice(), "work"),
+                false => (["metrics"].as_slice(), "metrics"),
+            };
+            let has = expected.iter().all(|key| !of[key].is_null()) && keys(of) == expected.len();
+            assert!(has, "`{name}` holds {what} alone, {expected:?}, and of {run} it holds {of:#}");
+        }
+        runs.map(|(run, _)| run.clone()).collect()
+    };
+    let mut count = 0;
+    for case in cases::CASES {
+        for variant in kept(case.name()).into_iter().flat_map(|(variants, _)| variants) {
+            let name = format!("{}.{variant}", case.name());
+            assert_eq!(runs(&of_work(&name)), runs(&name), "the runs of `{name}` in both files");
+            count += 1;
+        }
+    }
+    assert!(count > 40, "only {count} variants have snapshots");
+    let changed = ["couette.plain", "work.couette.plain", "work.couette.seed"].map(String::from);
+    let [both, none] = [&changed[..], &changed[..0]].map(told);
+    assert!(
+        both.starts_with(
+            "metrics changed of couette.plain; work changed of work.couette.plain, work"
+        ),
+        "{both}"
+    );
+    assert!(none.starts_with("metrics changed of none; work changed of none"), "{none}");
 }
 
 /// The comparison itself: what it lets pass, and what it does not.

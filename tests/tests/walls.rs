@@ -9,7 +9,7 @@ use solver::{
     Smoothing, Stepper, Tait, WendlandC2,
     walls::{NoSlip, WallVelocity},
 };
-use touchstone_tests::{Random, V2, open_rates, relative_sum};
+use touchstone_tests::{Random, V2, assert_near, open_rates, relative_sum};
 
 const H: f64 = 0.1;
 const LENGTH: f64 = 1.0;
@@ -112,12 +112,18 @@ fn check<K: Kernel>() {
             let found = water().pressure(seen.density);
             assert!(
                 (found - pressure).abs() < 1e-7 * pressure.abs().max(1e3),
-                "{found} {pressure}"
+                "the pressure at the wall: expected {pressure} Pa, and it is {found} Pa"
             );
-            assert!((seen.velocity - velocity).norm() < 1e-12, "{seen:?}");
-            assert!((seen.mass_over_volume / seen.density - 1.0).abs() < 1e-15);
+            let off = (seen.velocity - velocity).norm();
+            assert!(
+                off < 1e-12,
+                "velocity at the wall: expected {velocity:?}, it is {:?}",
+                seen.velocity
+            );
+            let ratio = seen.mass_over_volume / seen.density;
+            assert_near("mass over volume, over density", ratio, 1.0, 1e-15);
             let stress = found / (seen.density * seen.density);
-            assert!((seen.stress - stress).abs() <= 1e-15 * stress.abs());
+            assert_near("the stress at the wall", seen.stress, stress, 1e-15 * stress.abs());
             assert_eq!(seen.place, wall.position);
         };
         near(&sticky[k], expected, velocity);

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
+use std::panic::AssertUnwindSafe;
 use std::path::Path;
 use std::process::{Child, ChildStderr, Command, Output, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -18,6 +19,7 @@ use harness::runner::Context;
 use harness::size::Size;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
+use rayon::prelude::*;
 use serde_json::Value;
 use validation::cases;
 
@@ -803,50 +805,63 @@ fn small(case: &dyn Case, variant: &str) -> Vec<String> {
     all.into_iter().filter(is_known).collect()
 }
 
+/// The ends of the ranges of the settings of a case, as `key=value`.
+fn ends(case: &dyn Case) -> Vec<String> {
+    // The most particles that are allowed take half a minute to be placed, so that end is left out.
+    let is_large = |end: &String| case.name() == "elliptic_drop" && end == "n=2000";
+    let ends = case.fields().iter().flat_map(|field| {
+        let words = field.range.split(' ').filter(|word| word.parse::<f64>().is_ok());
+        words.map(move |end| format!("{}={end}", field.name))
+    });
+    ends.filter(|end| !is_large(end)).collect()
+}
+
+/// Was a run of these settings begun, after its size was told, or was it refused in words? It is stopped
+/// after its first step.
+fn is_begun(case: &dyn Case, variant: &str, set: &[String]) -> bool {
+    let run = format!("{} {variant} {}", case.name(), set.join(" "));
+    let (stop, told) = (AtomicBool::new(false), AtomicUsize::new(0));
+    let tell = |size: &Size| {
+        assert!(!size.is_too_much(), "{run} is begun, and is too much: {size}");
+        told.fetch_add(1, Ordering::Relaxed);
+        stop.store(true, Ordering::Relaxed);
+    };
+    let context = Context { interrupt: Some(&stop), estimate: Some(&tell), ..Context::default() };
+    let made = std::panic::catch_unwind(AssertUnwindSafe(|| {
+        let spec = spec(case, variant, set)?;
+        case.run(&RunSpec { allow_unstable: true, ..spec }, &context)
+    }));
+    match made.unwrap_or_else(|_| panic!("{run} panics, and should be refused or run")) {
+        Err(error) => {
+            let words = error.to_string();
+            assert!(words.len() > 10, "{run} is refused with no reason but {words:?}");
+            false
+        }
+        Ok(record) => {
+            let told = told.load(Ordering::Relaxed);
+            let is_none = record.cost.steps == 0; // an experiment without a simulation
+            assert!(told == 1 || is_none, "{run} told its size {told} times, expected once");
+            true
+        }
+    }
+}
+
 /// The ends of the range of each setting of each case, in each case's first variant and its last: refused in
 /// words, or begun after its size was told.
 #[test]
 fn the_ends_of_every_range_are_refused_or_run() {
-    let (mut begun, mut refusals) = (0, 0);
-    for case in cases::CASES {
-        let variants = case.variants();
-        // The most particles that are allowed take half a minute to be placed, so that end is left out.
-        let is_large = |end: &String| case.name() == "elliptic_drop" && end == "n=2000";
-        let ends = case.fields().iter().flat_map(|field| {
-            let words = field.range.split(' ').filter(|word| word.parse::<f64>().is_ok());
-            words.map(move |end| format!("{}={end}", field.name))
-        });
-        let ends: Vec<String> = ends.filter(|end| !is_large(end)).collect();
-        for (variant, end) in [variants.first(), variants.last()]
-            .into_iter()
-            .flatten()
-            .flat_map(|v| ends.iter().map(move |e| (v.name, e)))
-        {
-            let mut set = small(*case, variant);
-            set.push(end.clone());
-            let (stop, told) = (AtomicBool::new(false), AtomicUsize::new(0));
-            let tell = |size: &Size| {
-                assert!(!size.is_too_much(), "{} {set:?}: {size}", case.name());
-                told.fetch_add(1, Ordering::Relaxed);
-                stop.store(true, Ordering::Relaxed); // after the first step
-            };
-            let context =
-                Context { interrupt: Some(&stop), estimate: Some(&tell), ..Context::default() };
-            let run = |spec: RunSpec| case.run(&RunSpec { allow_unstable: true, ..spec }, &context);
-            match spec(*case, variant, &set).and_then(run) {
-                Err(error) => {
-                    refusals += 1;
-                    assert!(error.to_string().len() > 10, "{} {set:?}", case.name());
-                }
-                Ok(record) => {
-                    begun += 1;
-                    let told = told.load(Ordering::Relaxed);
-                    let is_none = record.cost.steps == 0; // an experiment without a simulation
-                    assert!(told == 1 || is_none, "{} {variant} {set:?}: {told}", case.name());
-                }
-            }
-        }
-    }
+    let of_case = |case: &&'static dyn Case| {
+        let (variants, ends) = (case.variants(), ends(*case));
+        let both = [variants.first(), variants.last()].into_iter().flatten().map(|v| v.name);
+        let each = both.flat_map(|variant| ends.iter().map(move |end| (variant, end)));
+        let with = |(variant, end): (&'static str, &String)| {
+            (*case, variant, [small(*case, variant), vec![end.clone()]].concat())
+        };
+        each.map(with).collect::<Vec<_>>()
+    };
+    let all: Vec<(&dyn Case, &str, Vec<String>)> = cases::CASES.iter().flat_map(of_case).collect();
+    let begun = all.par_iter().filter(|(case, variant, set)| is_begun(*case, variant, set)).count();
+    let refusals = all.len() - begun;
     assert!(begun > 200 && refusals > 50, "{begun} runs, {refusals} refusals");
 }
 

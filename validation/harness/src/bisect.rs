@@ -193,8 +193,19 @@ impl Growth {
 
 #[cfg(test)]
 mod tests {
+    use base::{
+        functions::{exp, sin},
+        settings::Field,
+        spec::EndAfter,
+    };
+    use serde_json::{Value, json};
+
     use super::*;
-    use base::functions::{exp, sin};
+    use crate::{
+        case::{Planned, Tier, Variant},
+        runs::Runs,
+        study::Study,
+    };
 
     #[test]
     fn bisection_finds_a_limit_far_from_the_guess() {
@@ -203,6 +214,145 @@ mod tests {
             assert!(found.stable <= limit && limit <= found.unstable, "{limit}: {found:?}");
             assert!(found.unstable - found.stable <= 1e-3);
         }
+    }
+
+    /// What is tried of a limit up to which all is stable.
+    fn tried(limit: f64) -> Vec<f64> {
+        let tried = RefCell::new(Vec::new());
+        let is_stable = |x: f64| {
+            tried.borrow_mut().push(x);
+            x <= limit
+        };
+        let found = largest_stable(1.0, 0.5, is_stable);
+        assert!(found.is_none_or(|found| found.stable <= limit && limit < found.unstable));
+        tried.into_inner()
+    }
+
+    /// The bracket is 4 % to either side of the guess, and every step beyond it is 1.5 times as wide as the
+    /// one before: 6 %, 9 %, 13.5 %, 20.25 %. A step that is widened before it is made, or not widened,
+    /// costs runs.
+    #[test]
+    fn the_bracket_grows_by_half_of_itself_after_each_step() {
+        let is = |found: &[f64], expected: &[f64]| {
+            let near = |(a, b): (&f64, &f64)| (a / b - 1.0).abs() < 1e-12;
+            let all = found.len() == expected.len() && found.iter().zip(expected).all(near);
+            assert!(all, "expected {expected:?} to be tried, and {found:?} were");
+        };
+        is(&tried(1.0), &[0.96, 1.04]);
+        is(
+            &tried(1.35),
+            &[0.96, 1.04, 1.04 * 1.06, 1.04 * 1.06 * 1.09, 1.04 * 1.06 * 1.09 * 1.135],
+        );
+        let down = [0.96, 0.96 * 0.96, 0.96 * 0.96 * 0.94, 0.96 * 0.96 * 0.94 * 0.91];
+        is(&tried(0.8), &down);
+        // Nothing farther than 16 times the guess is tried.
+        let up = tried(f64::MAX);
+        let [last, before] = [1, 2].map(|back| up[up.len() - back]);
+        assert!(last <= 16.0 && last * last / before > 16.0, "{before} and {last} were the last");
+    }
+
+    base::metrics! {
+        GREW = "grew" ["-"] "1 of a run that was not stable";
+    }
+
+    /// Stable up to a step of 3 ms; what a run was asked for is kept as (dt, end).
+    #[derive(Default)]
+    struct Spring(std::sync::Mutex<Vec<(f64, f64)>>);
+
+    impl Case for Spring {
+        fn name(&self) -> &'static str {
+            "spring"
+        }
+        fn problem(&self) -> &'static str {
+            "A spring swings"
+        }
+        fn about(&self) -> &'static str {
+            "A spring swings."
+        }
+        fn variants(&self) -> Vec<Variant> {
+            vec![Variant { name: "only", about: "as it is" }]
+        }
+        fn fields(&self) -> &'static [Field] {
+            &[]
+        }
+        fn settings(&self, _: &str, _: &[String]) -> Result<Value, RunError> {
+            Ok(json!({"dt": 1.0, "end": 1.0}))
+        }
+        fn run(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
+            let setting = |name: &str| spec.settings[name].as_f64().unwrap_or(f64::NAN);
+            let (dt, end) = (setting("dt"), setting("end"));
+            assert_eq!(spec.task, Task::Simulate, "one simulation at a time");
+            let mut asked = self.0.lock().expect("no panic before");
+            asked.push((dt, end));
+            let mut record = Record::new("spring", "only", spec.settings.clone(), 1).of(spec);
+            record.put(GREW, f64::from(dt > 3e-3));
+            let more = asked.len() as u64;
+            record.cost = Cost {
+                steps: more,
+                pair_interactions: 10 * more,
+                particle_rhs: 100 * more,
+                particles: 7,
+                cpu_s: 0.5,
+                largest_dt_s: dt,
+                ..record.cost
+            };
+            Ok(record)
+        }
+        fn is_stable(&self, record: &Record) -> bool {
+            record.value(GREW) == Some(0.0)
+        }
+        fn plan(&self, _: Tier) -> Vec<Planned> {
+            Vec::new()
+        }
+        fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
+            Vec::new()
+        }
+    }
+
+    /// x is in units of 2 ms, so the limit is 1.5; the setting is x times the unit, and a run of 40 steps
+    /// ends after 40 times that, in units of half a second.
+    #[test]
+    fn a_setting_is_bisected_in_its_unit_and_the_record_has_the_cost_of_all_runs() {
+        let bisect = Bisect {
+            setting: "dt".into(),
+            guess: 1.0,
+            unit: 2e-3,
+            resolution: 0.01,
+            end: Some(EndAfter { steps: 40.0, unit: 0.5 }),
+        };
+        let case = Spring::default();
+        let spec =
+            RunSpec::new("spring", "only", json!({"dt": 1.0, "end": 1.0})).bisect(bisect.clone());
+        let record = run(&case, &spec, &bisect, &Context::default()).expect("runs");
+        let asked = case.0.into_inner().expect("no panic");
+        for (dt, end) in &asked {
+            assert!(
+                (end / (40.0 * dt / 0.5) - 1.0).abs() < 1e-12,
+                "dt {dt} s, end {end} half seconds"
+            );
+        }
+        assert_eq!(asked[0].0, 0.96 * 2e-3, "the first step, 4 % below the guess [s]");
+        let [stable, unstable] =
+            [STABLE, UNSTABLE].map(|name| record.metric(name).expect("a limit"));
+        assert!(
+            stable <= 1.5 && 1.5 < unstable && unstable - stable <= 0.01,
+            "{stable} to {unstable}"
+        );
+        let count = asked.len() as u64;
+        let sum = count * (count + 1) / 2;
+        let cost = &record.cost;
+        assert_eq!(
+            [cost.steps, cost.pair_interactions, cost.particle_rhs],
+            [sum, 10 * sum, 100 * sum]
+        );
+        assert_eq!(
+            (cost.particles, cost.cpu_s),
+            (7, 0.5 * count as f64),
+            "the largest, and the sum"
+        );
+        let longest = asked.iter().map(|(dt, _)| *dt).fold(0.0, f64::max);
+        assert_eq!(cost.largest_dt_s, longest, "the longest step of all runs [s]");
+        assert_eq!(record.spec(), spec, "the record is that of the bisection");
     }
 
     #[test]
@@ -231,6 +381,27 @@ mod tests {
         // A weak mode below decaying ones, still far below the start.
         assert_eq!(watched(|k| exp(-0.1 * k) + 1e-4 * exp(0.01 * k)), (true, 400));
         assert_eq!(watched(|k| if k > 7.0 { f64::NAN } else { 1.0 }), (true, 8));
+    }
+
+    /// Of eight steps the second quarter is the third and the fourth, the last the seventh and the eighth;
+    /// what the others have does not count. By half more is growth, by less it is not.
+    #[test]
+    fn growth_compares_the_last_quarter_with_the_second() {
+        let grew = |energies: [f64; 8]| {
+            let mut growth = Growth::new(1.0, 8);
+            energies.iter().for_each(|energy| _ = growth.see(*energy));
+            growth.grew()
+        };
+        assert!(!grew([90.0, 90.0, 1.0, 1.0, 90.0, 90.0, 1.0, 1.0]), "quarters that do not count");
+        assert!(!grew([0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.4, 1.5]), "1.45 times as much is no growth");
+        for counted in [[2.0, 0.0, 3.1, 0.0], [2.0, 0.0, 0.0, 3.1], [0.0, 2.0, 3.1, 0.0]] {
+            let [third, fourth, seventh, eighth] = counted;
+            let all = [0.0, 0.0, third, fourth, 0.0, 0.0, seventh, eighth];
+            assert!(grew(all), "1.55 times as much is growth: {all:?}");
+        }
+        // A hundred times the start, not more, may pass.
+        let peak = |energy: f64| Growth::new(2.0, 8).see(energy);
+        assert_eq!([peak(200.0), peak(200.1)], [false, true]);
     }
 
     /// Both together on a mode with a known limit: growth 2(dt/1.7 - 1) a step beyond it.

@@ -334,6 +334,38 @@ mod tests {
         assert_relative_eq!(width, 2.0 * 12.7062 * found.standard_error, epsilon = 1e-12);
     }
 
+    /// By hand: the line through (0, 1), (1, 3), (2, 2), (3, 5) is 1.1 + 1.1 x, its residuals are -0.1, 0.8,
+    /// -1.3 and 0.6, whose squares add up to 2.7, and Σ (x - x̄)² = 5: (2.7/2/5)^(1/2).
+    #[test]
+    fn the_standard_error_is_that_of_two_fewer_than_the_points() {
+        let (found, error) = slope(&[0.0, 1.0, 2.0, 3.0], &[1.0, 3.0, 2.0, 5.0]);
+        assert_relative_eq!(found, 1.1, max_relative = 1e-14);
+        assert_relative_eq!(error, 0.27_f64.sqrt(), max_relative = 1e-14);
+        // Residuals -1/6, 1/3, -1/6, and 2 for Σ (x - x̄)²: 1/12 with one degree of freedom.
+        let (found, error) = slope(&[5.0, 6.0, 7.0], &[-1.0, 0.0, 0.0]);
+        assert_relative_eq!(found, 0.5, max_relative = 1e-14);
+        assert_relative_eq!(error, (1.0 / 12.0_f64).sqrt(), max_relative = 1e-14);
+    }
+
+    /// Errors 1, 1/2, 1/2, 1/8 over spacings that are halved: in powers of two the points (0, 0), (-1, -1),
+    /// (-2, -1), (-3, -3), whose slope is 0.9. The squares of the residuals -0.1, -0.2, 0.7, -0.4 add up to
+    /// 0.7, so the standard error is (0.7/2/5)^(1/2), and Student's t with two degrees of freedom is 4.3027.
+    #[test]
+    fn an_order_has_the_interval_of_its_standard_error() {
+        let errors = [(1.0, 1.0), (0.5, 0.5), (0.25, 0.5), (0.125, 0.125)];
+        let levels = errors.map(|(spacing, value)| Level { spacing, value });
+        let found = convergence(&levels).expect("usable");
+        assert_relative_eq!(found.order, 0.9, max_relative = 1e-12);
+        for (local, expected) in found.local_orders.iter().zip([1.0, 0.0, 2.0]) {
+            assert_relative_eq!(*local, expected, epsilon = 1e-12);
+        }
+        assert_relative_eq!(found.standard_error, 0.07_f64.sqrt(), max_relative = 1e-12);
+        let half_width = 4.3027 * found.standard_error;
+        for (end, expected) in found.interval.iter().zip([0.9 - half_width, 0.9 + half_width]) {
+            assert_relative_eq!(*end, expected, max_relative = 1e-12);
+        }
+    }
+
     /// 5 % of noise: the interval holds the true order, and a fit of many levels is still believed.
     #[test]
     fn noise_widens_the_interval() {
@@ -386,6 +418,48 @@ mod tests {
             let found = convergence(&levels).expect("usable");
             assert_eq!(found.label, Label::NotAsymptotic, "{errors:?}");
             assert!(found.floor.is_none());
+        }
+    }
+
+    /// The rule of the module's documentation, on either side of each of its numbers.
+    #[test]
+    fn labels_change_where_their_rule_says() {
+        for (order, local, expected) in [
+            (2.0, [2.28, 1.72], Label::Asymptotic),   // 14 % off
+            (2.0, [2.32, 2.0], Label::NotAsymptotic), // 16 % off
+            (-2.0, [-2.0, -2.0], Label::NotAsymptotic),
+            (1.5, [2.0, 0.98], Label::FloorReached), // below half of the largest
+            (1.5, [2.0, 1.02], Label::NotAsymptotic),
+            (0.3, [0.52, 0.1], Label::FloorReached),
+            (0.3, [0.48, 0.1], Label::NotAsymptotic), // never fell with an order of 0.5
+            (0.5, [0.1, 2.0], Label::NotAsymptotic),
+        ] {
+            assert_eq!(label(order, &local), expected, "order {order}, local orders {local:?}");
+        }
+    }
+
+    /// Differences of successive values over spacings that are halved fall by 2^p: two triplets of orders 2
+    /// and 2 (1 + `apart`).
+    #[test]
+    fn an_index_needs_orders_that_agree_within_fifteen_percent() {
+        let index = |apart: f64| {
+            let mut differences = vec![1.0];
+            for order in [2.0 * (1.0 + apart), 2.0] {
+                differences.push(differences[differences.len() - 1] / powf(2.0, order));
+            }
+            let value = |k: usize| differences[..k].iter().sum::<f64>();
+            let levels =
+                [0, 1, 2, 3].map(|k| Level { spacing: powf(0.5, k as f64), value: value(k) });
+            extrapolate(&levels, 1.0).expect("usable").gci
+        };
+        for apart in [-0.14, 0.0, 0.14] {
+            let found = index(apart).unwrap_or(f64::NAN);
+            // The last difference over 2² - 1.
+            let expected = 1.25 * powf(2.0, -4.0 - 2.0 * apart) / 3.0;
+            assert_relative_eq!(found, expected, max_relative = 1e-9);
+        }
+        for apart in [-0.16, 0.16] {
+            assert_eq!(index(apart), None, "orders that are {apart} of themselves apart");
         }
     }
 

@@ -151,12 +151,13 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
-    use base::{gate::Bound, settings::Field};
+    use base::{gate::Bound, settings::Field, spec::Measure};
     use serde_json::{Value, json};
 
     use super::*;
     use crate::{
         case::{Planned, Variant},
+        declare::Declaration,
         runs::Runs,
         study::Study,
     };
@@ -190,9 +191,15 @@ mod tests {
         fn run(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
             let mut record = Record::new("balance", "only", json!({}), 1).of(spec);
             let factor = spec.mutation.map_or(1.0, |m| m.factor_of(Constant::BodyForce));
-            record.put(FORCE, factor);
+            if spec.measure == Measure::All {
+                record.put(FORCE, factor);
+            }
             record.cost.steps = 1;
             Ok(record)
+        }
+        /// The gates read a metric that a run does not measure unless it is asked to.
+        fn declaration(&self, _: Tier) -> Declaration {
+            Declaration { costly: &[FORCE], ..Declaration::default() }
         }
         fn plan(&self, _: Tier) -> Vec<Planned> {
             let gate = |id: &str, bound, evidence| Gate::new(id, FORCE, bound, evidence, "staged");

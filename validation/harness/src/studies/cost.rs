@@ -316,6 +316,72 @@ mod tests {
         assert!(cheapest(&points, 1e-5).is_none());
     }
 
+    fn names<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a str> {
+        points.into_iter().map(|p| p.ladder.as_str()).collect()
+    }
+
+    /// What is a tenth worse at a higher cost is beaten, what is a hundredth better is not.
+    #[test]
+    fn the_front_drops_what_is_a_little_worse_and_keeps_what_is_a_little_better() {
+        let points = [
+            point("a hundredth better", 0.99e-2, &[4.0]),
+            point("a tenth worse", 1.1e-2, &[2.0]),
+            point("cheapest", 1e-2, &[1.0]),
+            point("a thousandth worse", 1.001e-2, &[3.0]),
+            point("equal and dearer", 1e-2, &[1.5]),
+            point("worse than the best alone", 0.9901e-2, &[5.0]),
+        ];
+        assert_eq!(names(pareto(&points, Point::median)), ["cheapest", "a hundredth better"]);
+        // By work, of which they all have as much as the number of their place, the first comes first.
+        let work = |k: usize| Point { pairs: k as f64, ..points[k].clone() };
+        let work: Vec<Point> = (0..points.len()).map(work).collect();
+        assert_eq!(names(pareto(&work, |p| p.pairs)), ["a hundredth better"]);
+    }
+
+    /// The median, not the mean or the fastest, decides on what is cheapest.
+    #[test]
+    fn the_cheapest_is_that_of_the_least_median_and_every_finer_level_counts() {
+        let points = [
+            point("disturbed once", 1e-3, &[2.0, 2.1, 30.0]),
+            point("fast once", 1e-3, &[0.1, 2.5, 2.6]),
+        ];
+        assert_eq!(cheapest(&points, 1e-3).map(|p| p.ladder.as_str()), Some("disturbed once"));
+        assert_eq!(points[1].spread(), (0.1, 2.6));
+        // A failure has no error, so what is coarser than it does not count either.
+        let failed = Point { spacing: 0.05, ..point("failed later", f64::NAN, &[9.0]) };
+        let points = [point("failed later", 1e-3, &[1.0]), failed];
+        assert_eq!(names(cheapest(&points, 1e-2)), [""; 0]);
+    }
+
+    #[test]
+    fn another_code_is_compared_at_its_error_and_at_its_spacing() {
+        let of = |ladder: &str, spacing: f64, error: f64, seconds: f64| Point {
+            spacing,
+            ..point(ladder, error, &[seconds])
+        };
+        let points = [
+            of("coarse", 0.1, 1.9e-2, 0.5),
+            of("best at 0.05", 0.05, 0.8e-2, 2.0),
+            of("worse at 0.05", 0.05, 1.2e-2, 1.0),
+        ];
+        let peer = Peer {
+            name: "other".into(),
+            label: "20 rows".into(),
+            seconds: 3.0,
+            spacing: 0.05,
+            error: 2e-2,
+            timed: "made up".into(),
+        };
+        let table = peer_table(&[peer], &points);
+        let cells: Vec<String> =
+            table.rows[0].iter().map(|cell| cell.text.replace('\u{a0}', " ")).collect();
+        assert_eq!(
+            cells[4..],
+            ["`coarse`, 10 rows", "1.9 %", "500 ms", "6.0", "`best at 0.05`", "0.80 %", "1.5"],
+            "at no more than its 2 % 3 s / 0.5 s = 6, at its spacing the most accurate 3 s / 2 s"
+        );
+    }
+
     #[test]
     fn work_is_seen_to_grow_as_it_does() {
         let at =

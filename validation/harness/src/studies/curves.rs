@@ -48,3 +48,100 @@ fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
     }
     plot.legend(Legend::Auto)
 }
+
+#[cfg(test)]
+mod tests {
+    use report::{Axis, Block, Layer, Panel};
+
+    use super::*;
+    use crate::{
+        declare::CurveOf,
+        studies::made_up::{ERROR, runs, spec},
+    };
+
+    fn line(name: &str, variant: &str, n: usize) -> CurveOf {
+        let points =
+            |record: &base::record::Record| vec![(1.0, record.value(ERROR).unwrap_or(f64::NAN))];
+        CurveOf { name: name.into(), spec: spec(variant, n), points: Box::new(points) }
+    }
+
+    fn panel_of(lines: Vec<CurveOf>, references: &[&str], symbols: bool) -> CurvePanel {
+        let references =
+            references.iter().map(|name| (name.to_string(), vec![(0.0, 7.0)])).collect();
+        let axis = || Axis::linear("x");
+        CurvePanel { title: "panel".into(), x: axis(), y: axis(), lines, references, symbols }
+    }
+
+    /// Name, first point, colour, and whether symbols are drawn in place of a line.
+    type Drawn = (String, (f64, f64), Option<Colour>, bool);
+
+    fn drawn(panels: Vec<CurvePanel>) -> Vec<Vec<Drawn>> {
+        let curves = Curves {
+            id: "case-curves".into(),
+            title: "Curves".into(),
+            caption: "Made up.".into(),
+            columns: 2,
+            panels,
+        };
+        let runs = runs([(spec("seed", 1), 1.5), (spec("best", 1), 2.5)]);
+        let study = study(&curves, &runs);
+        let [Block::Figure(figure)] = study.blocks.as_slice() else { panic!("one figure") };
+        let of = |panel: &Panel| -> Vec<Drawn> {
+            let Panel::Plot(plot) = panel else { panic!("a plot") };
+            let series = plot.layers.iter().map(|layer| match layer {
+                Layer::Series(s) => (s.name.clone(), s.points[0], s.colour, s.line.is_none()),
+                _ => panic!("series alone"),
+            });
+            series.collect()
+        };
+        figure.panels.iter().map(of).collect()
+    }
+
+    #[test]
+    fn a_name_keeps_its_colour_from_panel_to_panel() {
+        let panels = drawn(vec![
+            panel_of(vec![line("a", "seed", 1), line("b", "best", 1)], &["exact", ""], false),
+            // The run of `c` was not made.
+            panel_of(vec![line("b", "best", 1), line("c", "seed", 2)], &[], false),
+        ]);
+        let reference = |name: &str, colour| (name.to_string(), (0.0, 7.0), Some(colour), false);
+        let run =
+            |name: &str, y: f64, k| (name.to_string(), (1.0, y), Some(Colour::cycle(k)), false);
+        assert_eq!(
+            panels[0],
+            [
+                reference("exact", Colour::BLACK),
+                reference("", Colour::GREY),
+                run("a", 1.5, 0),
+                run("b", 2.5, 1)
+            ]
+        );
+        assert_eq!(panels[1], [run("b", 2.5, 1)]);
+    }
+
+    #[test]
+    fn symbols_have_the_colour_of_the_line_at_the_same_place() {
+        let both = || vec![line("", "seed", 1), line("", "best", 1)];
+        let panels = drawn(vec![
+            panel_of(both(), &["one", "two", "guide"], true),
+            panel_of(both(), &["one"], true),
+        ]);
+        let colours = |panel: &[Drawn]| -> Vec<(String, Option<Colour>, bool)> {
+            panel.iter().map(|(name, _, colour, marks)| (name.clone(), *colour, *marks)).collect()
+        };
+        let is = |name: &str, colour, marks| (name.to_string(), Some(colour), marks);
+        let [first, second] = [0, 1].map(Colour::cycle);
+        assert_eq!(
+            colours(&panels[0]),
+            [
+                is("", first, false),
+                is("", second, false),
+                is("guide", Colour::BLACK, false),
+                is("", first, true),
+                is("", second, true)
+            ]
+        );
+        // One line for two runs is nobody's partner.
+        assert_eq!(colours(&panels[1])[0], is("one", Colour::BLACK, false));
+    }
+}

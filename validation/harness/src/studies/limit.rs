@@ -43,3 +43,66 @@ pub fn of_theory(limit: &StepLimit, runs: &Runs) -> Option<f64> {
 fn stable(limit: &StepLimit, runs: &Runs) -> Option<f64> {
     runs.completed(&limit.spec)?.metric(STABLE)
 }
+
+#[cfg(test)]
+mod tests {
+    use base::{
+        gate::{Bound, Evidence, Gate, Verdict},
+        record::{Metric, Record},
+        spec::Bisect,
+    };
+
+    use super::*;
+    use crate::studies::made_up::{column, records, spec, tables};
+
+    /// A limit of x = 1.2 where theory has 0.8 and the default is 0.6: 1.5 of theory, 2 of the default, and
+    /// default/theory 0.75. Theory is 4 ms, so 6 ms were measured.
+    #[test]
+    fn a_limit_is_stated_over_theory_and_over_the_default_step() {
+        let bisect =
+            Bisect { setting: "n".into(), guess: 1.0, unit: 1.0, resolution: 0.02, end: None };
+        let gate = |id: &str, low: f64, high: f64| {
+            Gate::new(id, STABLE, Bound::Within(low, high), Evidence::Theory, "made up")
+        };
+        let limit = |n: usize| StepLimit {
+            variant: "seed",
+            scene: "made up".into(),
+            spec: spec("seed", n).bisect(bisect.clone()),
+            theory: 4e-3,
+            theory_at: 0.8,
+            default_at: 0.6,
+            of_theory: vec![gate("of theory", 1.49, 1.51)],
+            of_default: vec![gate("of default", 1.99, 2.01)],
+        };
+        let limits = StepLimits::new("case", "Made up.", [limit(8), limit(9)]);
+        let stable = |record: &mut Record| {
+            record.metrics.insert(STABLE.into(), Metric::new(1.2, "-", "made up"));
+        };
+        let runs = records([(limits.of[0].spec.clone(), stable)]);
+        let study = study("case", &limits, &runs);
+        let table = tables(&study)[0];
+        for (head, expected) in [
+            ("measured", "6.00·10⁻³"),
+            ("measured/theory", "1.50"),
+            ("default/theory", "0.750"),
+            ("measured/default", "2.00"),
+        ] {
+            assert_eq!(column(table, head)[0], expected, "{head}");
+        }
+        let verdicts: Vec<(&str, Verdict)> = study
+            .judged
+            .iter()
+            .map(|judged| (judged.gate.id.as_str(), judged.judgement.verdict.clone()))
+            .collect();
+        // The second was not made, so its gates fail.
+        assert_eq!(
+            verdicts,
+            [
+                ("of theory", Verdict::Pass),
+                ("of default", Verdict::Pass),
+                ("of theory", Verdict::Fail),
+                ("of default", Verdict::Fail),
+            ]
+        );
+    }
+}

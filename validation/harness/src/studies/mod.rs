@@ -6,6 +6,8 @@ pub mod causes;
 mod cost;
 mod curves;
 mod limit;
+#[cfg(test)]
+mod made_up;
 mod map;
 mod order;
 mod sensitivity;

@@ -139,3 +139,97 @@ fn table(about: String, rows: Vec<Row>) -> Table {
         .num(["fitted floor", "-"], floor)
         .table(about, rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use base::{gate::Verdict, record::Record};
+
+    use super::*;
+    use crate::{
+        declare::{Level, OrderGate},
+        planned::Planned,
+        runs::Runs,
+        studies::made_up::{ERROR, column, runs, spec},
+    };
+
+    /// Ladders of `seed` and `best` at n = 10, 20, 40, 80; the order of the second is judged.
+    fn accuracy(error: ErrorOf) -> Accuracy {
+        let mut accuracy = Accuracy::new("case", error, "Error [-]").over(
+            &["seed", "best"],
+            [10, 20, 40, 80],
+            |variant, n| Planned::new(spec(variant, n)),
+        );
+        accuracy.ladders[1].order = Some(OrderGate {
+            id: "case.order".into(),
+            bound: Bound::Within(2.9, 3.1),
+            evidence: Evidence::Theory,
+            because: "made up".into(),
+        });
+        accuracy
+    }
+
+    /// Runs with these errors, a function of variant and n.
+    fn made(of: impl Fn(&str, f64) -> f64) -> Runs {
+        let levels = [10, 20, 40, 80];
+        let each = ["seed", "best"].into_iter().flat_map(|v| levels.map(|n| (v, n)));
+        runs(each.map(|(variant, n)| (spec(variant, n), of(variant, n as f64))))
+    }
+
+    #[test]
+    fn each_ladder_has_the_order_of_its_own_errors() {
+        let runs = made(|variant, n| match variant {
+            "seed" => -4.0 / (n * n), // a metric with a sign
+            _ => 8.0 / n.powi(3),
+        });
+        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &runs);
+        assert_eq!(column(&orders.table, "variant"), ["`seed`", "`best`"]);
+        let local = column(&orders.table, "local orders, coarse to fine");
+        assert_eq!(local, ["2.0, 2.0, 2.0", "3.0, 3.0, 3.0"]);
+        assert_eq!(column(&orders.table, "label"), ["asymptotic", "asymptotic"]);
+        let finest = column(&orders.table, "finest error");
+        assert_eq!(finest, ["0.062 %", "0.0016 %"], "4/80² and 8/80³");
+        let [(gate, order)] = orders.judged.as_slice() else { panic!("one order is judged") };
+        assert_eq!(
+            (gate.id.as_str(), gate.judge(Some(*order)).verdict),
+            ("case.order", Verdict::Pass)
+        );
+        assert!((order - 3.0).abs() < 1e-12, "order {order} of errors 8/n³");
+        // Order 2 of the method, and 3, the middle of what the gate allows.
+        assert_eq!(orders.caption, " The left triangles show orders 2 and 3.");
+    }
+
+    /// Values 1 + 1/n²: their distances are 3/4 of the error of the coarser one, and are drawn there. At the
+    /// finer spacing, or against the finest run, other orders would be found.
+    #[test]
+    fn distances_of_successive_runs_stand_at_the_coarser_spacing() {
+        let between = |a: &Record, b: &Record| {
+            (a.value(ERROR).unwrap_or(f64::NAN) - b.value(ERROR).unwrap_or(f64::NAN)).abs()
+        };
+        let accuracy = accuracy(ErrorOf::Distance { finest: spec("best", 80), between });
+        let runs = made(|_, n| 1.0 + 1.0 / (n * n));
+        let points = points(&accuracy, &accuracy.ladders[0], &runs);
+        assert_eq!(points.len(), 3, "three distances of four runs");
+        for (point, n) in points.iter().zip([10.0, 20.0, 40.0_f64]) {
+            let expected = 0.75 / (n * n);
+            assert_eq!(point.spacing, 1.0 / n);
+            assert!(
+                (point.value / expected - 1.0).abs() < 1e-9,
+                "n = {n}: {} for {expected}",
+                point.value
+            );
+        }
+        let fine = accuracy.ladders[1].levels.last().map(|Level { run, .. }| run.spec.clone());
+        let finest = runs.record(&fine.expect("levels")).expect("made");
+        assert_eq!(accuracy.error.value(finest, &runs), None, "others are compared with it");
+    }
+
+    #[test]
+    fn a_level_that_failed_leaves_no_order_and_its_gate_fails() {
+        let runs = made(|_, n| if n == 20.0 { f64::NAN } else { 1.0 / n });
+        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &runs);
+        assert!(orders.judged[0].1.is_nan(), "order {}", orders.judged[0].1);
+        assert!(
+            column(&orders.table, "label")[0].starts_with("no order: a level with spacing 0.05")
+        );
+    }
+}

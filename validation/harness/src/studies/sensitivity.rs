@@ -93,17 +93,14 @@ fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> R
     let searches = sensitivity.searches(watched.constant);
     let records: Vec<Option<&Record>> = searches.map(|spec| runs.completed(&spec)).collect();
     let is_whole = records.iter().all(Option::is_some);
-    let (mut detected, mut undetected) = (None, None);
-    for record in records.into_iter().flatten() {
-        let Some(error) = record.value(DETECTED) else {
-            undetected = undetected.or(record.value(UNDETECTED));
-            continue;
-        };
-        let best = detected.and_then(|best: &Record| best.value(DETECTED)).unwrap_or(NONE);
-        if error < best {
-            (detected, undetected) = (Some(record), record.value(UNDETECTED));
-        }
-    }
+    let made = || records.iter().copied().flatten();
+    let error = |record: &&Record| record.value(DETECTED).unwrap_or(NONE);
+    let detects = made().filter(|record| record.value(DETECTED).is_some());
+    let detected = detects.min_by(|a, b| error(a).total_cmp(&error(b)));
+    let undetected = match detected {
+        Some(record) => record.value(UNDETECTED),
+        None => made().find_map(|record| record.value(UNDETECTED)),
+    };
     let failed = |factor: &f64| failed(sensitivity, watched.constant, *factor, runs).len();
     let faults = watched.faults.iter().map(|factor| (*factor, failed(factor))).collect();
     Row { watched, detected, undetected, faults, is_whole }
@@ -155,7 +152,14 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::{planned::Tier, studies::causes::NOT_MEASURED};
+    use crate::{
+        planned::{Planned, Tier},
+        runs::JudgedRun,
+        studies::{
+            causes::NOT_MEASURED,
+            made_up::{ERROR, column, records, spec, tables},
+        },
+    };
 
     /// A search that was not made counted as one that found nothing, which a limitation allows.
     #[test]
@@ -171,5 +175,90 @@ mod tests {
         for judged in study.judged {
             assert_eq!(judged.judgement.verdict, Verdict::Fail, "{}", judged.gate.id);
         }
+    }
+
+    /// What a search has found: the smallest detected error, and the largest smaller one that is not
+    /// detected.
+    fn search(detected: Option<f64>, undetected: Option<f64>) -> impl FnOnce(&mut Record) {
+        move |record: &mut Record| {
+            if let Some(error) = detected {
+                record.put(DETECTED, error);
+                record.numerics.insert(GATES.into(), format!("case.at_{error}").into());
+            }
+            if let Some(error) = undetected {
+                record.put(UNDETECTED, error);
+            }
+        }
+    }
+
+    /// Of two runs, that counts which detects the smaller error, in whichever order they come, with its own
+    /// gates and its own largest error that goes undetected. A later run that detects nothing had left its
+    /// own 30 % beside an error of 2 % that another one detects.
+    #[test]
+    fn the_run_that_sees_most_counts() {
+        let of = [spec("seed", 1), spec("seed", 2)];
+        let sensitivity =
+            Sensitivity::new("case", Tier::Full, of, [Watched::new(Constant::Viscosity)]);
+        for (first, second, expected) in [
+            (
+                (Some(0.02), Some(0.01)),
+                (Some(0.05), Some(0.03)),
+                ["2.0 %", "1.0 %", "`case.at_0.02`"],
+            ),
+            (
+                (Some(0.05), Some(0.03)),
+                (Some(0.02), Some(0.01)),
+                ["2.0 %", "1.0 %", "`case.at_0.02`"],
+            ),
+            ((None, Some(0.3)), (Some(0.02), None), ["2.0 %", "–", "`case.at_0.02`"]),
+            ((Some(0.02), None), (None, Some(0.3)), ["2.0 %", "–", "`case.at_0.02`"]),
+            ((None, Some(0.3)), (None, Some(0.3)), ["none", "30 %", ""]),
+        ] {
+            let searches = sensitivity.searches(Constant::Viscosity);
+            let found = [first, second].map(|(detected, undetected)| search(detected, undetected));
+            let study = study(&sensitivity, &records(searches.zip(found)));
+            let table = tables(&study)[0];
+            let shown = ["detected from", "not detected", "gates that detect it"]
+                .map(|head| column(table, head).concat());
+            assert_eq!(shown, expected, "of {first:?} and {second:?}");
+            let verdict = &study.judged[0].judgement.verdict;
+            let passes = expected[0] != "none";
+            assert_eq!(*verdict == Verdict::Pass, passes, "3 % must be detected: {verdict:?}");
+        }
+    }
+
+    /// Gates count once, whichever of the runs fails them, and one that compares the program with itself does
+    /// not count.
+    #[test]
+    fn a_gross_fault_counts_the_gates_that_it_fails() {
+        let of = [spec("seed", 1), spec("seed", 2)];
+        let watched = Watched::new(Constant::Viscosity).faults(&[-1.0]);
+        let sensitivity = Sensitivity::new("case", Tier::Full, of.clone(), [watched]);
+        let gate =
+            |id: &str, evidence| Gate::new(id, ERROR, Bound::Below(0.1), evidence, "made up");
+        let planned = |spec: RunSpec, gates: Vec<Gate>| {
+            let record = Record::new("case", "seed", spec.settings.clone(), 1).of(&spec);
+            JudgedRun::new(Planned::new(spec).judged(gates), record)
+        };
+        let both = |k: usize| {
+            let own = gate(&format!("case.own_{k}"), Evidence::Analytic);
+            vec![
+                gate("case.shared", Evidence::Theory),
+                own,
+                gate("case.before", Evidence::Regression),
+            ]
+        };
+        let mut runs: Vec<JudgedRun> =
+            of.iter().enumerate().map(|(k, spec)| planned(spec.clone(), both(k))).collect();
+        for ((_, spec), error) in sensitivity.faulty(Constant::Viscosity, -1.0).zip([0.2, 0.05]) {
+            let mut run = planned(spec, Vec::new());
+            run.record.put(ERROR, error);
+            runs.push(run);
+        }
+        let study = study(&sensitivity, &Runs::new(runs));
+        let shown = column(tables(&study)[0], "gates that detect a gross fault");
+        assert_eq!(shown, ["× -1: 2"], "`case.shared` and `case.own_0` of the first run");
+        let of_fault = study.judged.iter().find(|judged| judged.gate.id.contains("_x_-1"));
+        assert_eq!(of_fault.expect("a gate").judgement.verdict, Verdict::Pass);
     }
 }

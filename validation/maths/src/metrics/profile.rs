@@ -106,8 +106,18 @@ mod tests {
     #[test]
     fn constants_are_exact_and_linear_fields_nearly() {
         let stations: Vec<_> = (0..37).map(|k| Vector2::new(0.31, 0.027 * f64::from(k))).collect();
+        // At the edge of the particles, where half of the kernel is empty, and in their corner.
+        let edge = [Vector2::new(-1.0, 0.5), Vector2::new(-1.0, -1.0)];
+        for (value, x) in profile(|_| 3.0, &edge).iter().zip(&edge) {
+            assert!(
+                (value - 3.0).abs() < 1e-14,
+                "a constant of 3 is {value} at ({}, {})",
+                x.x,
+                x.y
+            );
+        }
         for value in profile(|_| 3.0, &stations) {
-            assert!((value - 3.0).abs() < 1e-14);
+            assert!((value - 3.0).abs() < 1e-14, "a constant of 3 is {value}");
         }
         for (value, x) in profile(|r| r.y, &stations).iter().zip(&stations) {
             assert!((value - x.y).abs() < 1e-3 * DX);

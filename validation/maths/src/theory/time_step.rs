@@ -437,6 +437,25 @@ mod tests {
         }
     }
 
+    /// With Wendland's kernel and h = dx, in its support of 2 h are the four nearest particles, with
+    /// F = 35/(4π h⁴) (1 - 1/2)³, and four across. The wave whose neighbours are opposite along both axes
+    /// has the largest eigenvalue: four times 2 · 2 F dx² = 35/(2π h²), to which those across add nothing.
+    /// The step of forward Euler is 2 over 1.1 times that: 0.3264 h²/ν.
+    #[test]
+    fn the_explicit_limit_is_that_of_the_stiffest_wave_and_a_tenth_for_disorder() {
+        let lattice = SquareLattice::of::<WendlandC2>(1.0, 0.0);
+        let (h, nu) = (0.02, 3e-3);
+        let expected = 2.0 / (1.1 * 35.0 / (2.0 * std::f64::consts::PI)) * h * h / nu;
+        assert!((expected * nu / (h * h) - 0.3264).abs() < 1e-4, "{expected} s by hand");
+        let found = explicit_limit(lattice.stiffest(), h, nu);
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} s, expected {expected} s");
+        let medium = Medium { c0: 1.0, h, nu, alpha: 0.0, delta: 0.0 };
+        for mode in modes(&lattice, 8, &medium) {
+            let apart = (mode.explicit / expected - 1.0).abs();
+            assert!(apart < 1e-12, "{} s of a wave, expected {expected} s", mode.explicit);
+        }
+    }
+
     /// Table 2.1: leapfrog limit of sound c₀ dt/h and limit of viscosity ν dt/h² at η² = 0.01 h².
     #[test]
     fn separate_limits_match_the_design_table() {

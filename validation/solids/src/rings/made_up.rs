@@ -195,8 +195,14 @@ fn a_run_that_is_late_has_errors_with_their_sign() {
     }
     // Behind the way out by 4 L/c0 of its last speed; on the way in it is as far ahead, which is more.
     let (last, worst) = (value(&record, X_C_END_ERROR), value(&record, X_C_WORST));
-    assert!((last + 4.0 * 0.0470).abs() < 4.0 * 5e-4, "{last}");
-    assert!((worst - 4.0 * 0.059).abs() < 4.0 * 5e-4, "{worst}");
+    assert!(
+        (last + 4.0 * 0.0470).abs() < 4.0 * 5e-4,
+        "last x_c: expected -0.188 L, it is {last} L"
+    );
+    assert!(
+        (worst - 4.0 * 0.059).abs() < 4.0 * 5e-4,
+        "worst x_c: expected 0.236 L, it is {worst} L"
+    );
 }
 
 #[test]
@@ -207,10 +213,10 @@ fn reach_is_when_finite_elements_come_near_and_leave() {
     };
     // Until it touches the ring flies freely: the gap is 1 - 0.059 t.
     let first = exact.within(0.1, 0);
-    assert!(is_near(first, [0.9 / 0.059, 69.5]), "{first:?}");
+    assert!(is_near(first, [0.9 / 0.059, 69.5]), "near from 15.25 to 69.5 L/c0, found {first:?}");
     let second = exact.within(0.1, 1);
-    assert!(is_near(second, [75.0, 126.0]), "{second:?}");
+    assert!(is_near(second, [75.0, 126.0]), "near again from 75 to 126 L/c0, found {second:?}");
     // Between the phases it is never farther than 0.14 L.
     let never = [exact.within(0.2, 0)[1], exact.within(0.2, 1)[0]];
-    assert!(is_near(never, [72.5, 72.5]), "{never:?}");
+    assert!(is_near(never, [72.5, 72.5]), "the phases part at 72.5 L/c0, found {never:?}");
 }

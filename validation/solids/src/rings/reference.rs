@@ -1,5 +1,7 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
+use std::sync::OnceLock;
+
 use ::lagrangian::{Hencky, Law as _};
 
 use super::{
@@ -21,6 +23,17 @@ const JAUMANN: &str = "jaumann";
 /// The law that a variant solves, as the tables name it.
 fn law(variant: &str) -> &'static str {
     if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN }
+}
+
+/// Read and checked once: every run and every figure asks for it.
+static PACKAGE: OnceLock<Package> = OnceLock::new();
+
+fn package() -> Result<&'static Package, ReferenceError> {
+    if let Some(package) = PACKAGE.get() {
+        return Ok(package);
+    }
+    let package = Package::load("rubber_rings")?;
+    Ok(PACKAGE.get_or_init(|| package))
 }
 
 /// Which rows of a table are looked for: of a law, at a speed.
@@ -69,7 +82,7 @@ pub struct Reference {
 
 /// The faces of the right ring at a time of the table \[L\]; empty at any other.
 pub fn outlines(speed: f64, time: f64) -> Result<Vec<Vec<(f64, f64)>>, ReferenceError> {
-    let package = Package::load("rubber_rings")?;
+    let package = package()?;
     let table = package.table("outlines")?;
     let (t, faces) = (table.numbers("t")?, table.texts("face")?);
     let (x, y) = (table.numbers("x")?, table.numbers("y")?);
@@ -112,7 +125,7 @@ impl Reference {
     }
 
     fn at(of: Of) -> Result<Option<Self>, ReferenceError> {
-        let package = Package::load("rubber_rings")?;
+        let package = package()?;
         let table = package.table("summary")?;
         let rows = rows(table, of)?;
         if rows.is_empty() {

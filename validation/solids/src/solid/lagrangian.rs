@@ -1,5 +1,8 @@
 //! The total Lagrangian solid as a method of the harness.
 
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
 use lagrangian::{BetweenFaces, Contact, Law, Moduli, Solid, SolidScene, Weight};
 use nalgebra::Vector2;
 use solver::{
@@ -128,9 +131,28 @@ fn moduli(medium: &Medium) -> Moduli {
 /// Poisson's ratio 0.4 about 1.05 dx/c_p. Waves inside would allow 1.4 times as much.
 fn step_limit(medium: &Medium) -> f64 {
     let moduli = moduli(medium);
-    let moduli = [moduli.longitudinal(), moduli.shear];
-    let stiffness = fastest_of_block::<WendlandC2>(medium.h / medium.dx, moduli);
+    let stiffness = stiffness([medium.h / medium.dx, moduli.longitudinal(), moduli.shear]);
     2.0 * medium.dx * (medium.density / stiffness).sqrt()
+}
+
+/// What [`fastest_of_block`] finds for h/dx and moduli \[Pa\]. It takes as long as hundreds of steps of a
+/// small body, and runs of many settings ask for the same, so it is kept.
+fn stiffness(of: [f64; 3]) -> f64 {
+    /// More than a plan has; beyond that all are found anew.
+    const MOST: usize = 1000;
+    static FOUND: Mutex<BTreeMap<[u64; 3], f64>> = Mutex::new(BTreeMap::new());
+    let (key, [h_over_dx, moduli @ ..]) = (of.map(f64::to_bits), of);
+    let found = || FOUND.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = found().get(&key) {
+        return *known;
+    }
+    let stiffness = fastest_of_block::<WendlandC2>(h_over_dx, moduli);
+    let mut found = found();
+    if found.len() >= MOST {
+        found.clear();
+    }
+    found.insert(key, stiffness);
+    stiffness
 }
 
 /// The same of bodies that press against each other with this pressure \[Pa\], from the limit of the

@@ -586,4 +586,30 @@ mod tests {
         let all: f64 = spots(kernel, 1.0, 0.3).iter().map(|s| s.share).sum();
         assert!((all - 1.0).abs() < 1e-12);
     }
+
+    /// The disks of the experiment are 4.2 mm across, at 3, 15, 30 and 80 mm. Over a disk of radius R the
+    /// mean of the square of the distance along one axis from its middle is R²/4; five chords, each in the
+    /// middle of its fifth, have 5 % more. A linear pressure, which has no curvature, does not show how wide
+    /// a sensor is.
+    #[test]
+    fn a_sensor_is_as_wide_as_in_the_experiment() {
+        let tank = dam(lobovsky);
+        let smoothing = Smoothing::<WendlandC2>::new(0.01);
+        let gauge = Gauge::new(&tank, smoothing.support(), &|r2| smoothing.w(r2));
+        assert_eq!(gauge.sensors.len(), 4, "sensors on the far wall");
+        let radius = 2.1e-3;
+        for (spots, height) in gauge.sensors.iter().zip([3e-3, 15e-3, 30e-3, 80e-3]) {
+            let mean = |f: &dyn Fn(f64) -> f64| -> f64 {
+                spots.iter().map(|spot| spot.share * f(spot.place.y - height)).sum()
+            };
+            let off = mean(&|y| y);
+            assert!(off.abs() < 1e-12, "the middle of the sensor at {height} m is {off} m off");
+            let square = mean(&|y| y * y) / (0.25 * radius * radius);
+            let expected = "1 for 4.2 mm, 4 for twice as much";
+            assert!((0.95..1.1).contains(&square), "mean square {square} of R²/4, {expected}");
+            let wall = tank.tank.width();
+            let off = spots.iter().map(|spot| (spot.place.x - wall).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-12, "the sensor at {height} m is {off} m away from the far wall");
+        }
+    }
 }

@@ -1,0 +1,53 @@
+//! Runs whose records are made up by hand, for the tests of studies.
+
+use base::{record::Record, spec::RunSpec};
+use report::{Block, Table};
+use serde_json::json;
+
+use crate::{
+    planned::Planned,
+    runs::{JudgedRun, Runs},
+    study::Study,
+};
+
+base::metrics! {
+    ERROR = "error" ["-"] "as it was made up";
+}
+
+/// The run of a variant at a resolution n.
+pub fn spec(variant: &str, n: usize) -> RunSpec {
+    RunSpec::new("case", variant, json!({ "n": n }))
+}
+
+/// Runs that reached their end with these errors.
+pub fn runs(errors: impl IntoIterator<Item = (RunSpec, f64)>) -> Runs {
+    records(
+        errors.into_iter().map(|(spec, error)| (spec, move |r: &mut Record| r.put(ERROR, error))),
+    )
+}
+
+/// Runs that reached their end, and what their records hold.
+pub fn records<F: FnOnce(&mut Record)>(of: impl IntoIterator<Item = (RunSpec, F)>) -> Runs {
+    let run = |(spec, fill): (RunSpec, F)| {
+        let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(&spec);
+        fill(&mut record);
+        JudgedRun::new(Planned::new(spec), record)
+    };
+    Runs::new(of.into_iter().map(run).collect())
+}
+
+/// The tables of a study, in its order.
+pub fn tables(study: &Study) -> Vec<&Table> {
+    let tables = study.blocks.iter().filter_map(|block| match block {
+        Block::Table(table) => Some(table),
+        _ => None,
+    });
+    tables.collect()
+}
+
+/// What a column of a table shows, from top to bottom, with common blanks.
+pub fn column(table: &Table, head: &str) -> Vec<String> {
+    let of = table.columns.iter().position(|column| column.head == head);
+    let of = of.unwrap_or_else(|| panic!("a column `{head}` of {:?}", table.columns));
+    table.rows.iter().map(|row| row[of].text.replace('\u{a0}', " ")).collect()
+}
