@@ -51,8 +51,8 @@ pub trait Observed {
 }
 
 /// Implements [`Observed`] for a struct: which of its fields change during a run and are [`Bits`], which are
-/// [`Observed`] themselves, and which stay as they were at the start. Every field must be named, so that a new
-/// one cannot be forgotten.
+/// [`Observed`] themselves, and which stay as they were at the start. Every field must be named, so that a
+/// new one cannot be forgotten.
 #[macro_export]
 macro_rules! observed {
     (

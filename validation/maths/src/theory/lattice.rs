@@ -55,8 +55,8 @@ pub struct Maxima {
 }
 
 impl SquareLattice {
-    /// The lattice seen through kernel `K` with smoothing length `h_over_dx` \[dx\] and η² = `eta2_over_h2` \[h²\]; both
-    /// must be finite, the first positive, the second not negative.
+    /// The lattice seen through kernel `K` with smoothing length `h_over_dx` \[dx\] and
+    /// η² = `eta2_over_h2` \[h²\]; both must be finite, the first positive, the second not negative.
     pub fn of<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) -> Self {
         let (h, eta2) = (h_over_dx, eta2_over_h2 * h_over_dx * h_over_dx);
         let kernel = Smoothing::<K>::new(h);
