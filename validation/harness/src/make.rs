@@ -145,10 +145,15 @@ pub struct Stored {
 
 /// Looks for the records of the jobs. A record does not serve if other sources made it, unless that is
 /// allowed, nor one of a run that was refused, if longer runs are allowed now: to try again takes no time.
-/// That of a timed run must have been made while no other run was.
+/// That of a timed run must have been made while no other run was. If it is interrupted, see
+/// [`Made::interrupted`], what it has is not told of all runs.
 pub fn stored(jobs: &[Job], making: &Making) -> Stored {
     let mut stored = Stored::default();
-    for job in jobs.iter().take_while(|_| !making.is_interrupted()) {
+    for job in jobs {
+        if making.is_interrupted() {
+            stored.made.interrupted = true;
+            break;
+        }
         let spec = &job.planned.spec;
         let serves = |record: &Record| match record.status {
             Status::Refused { .. } => !making.allow_long,
@@ -653,6 +658,19 @@ mod tests {
         assert_eq!(completed(&making), (0, false));
         assert_eq!(completed(&making), (1, false));
         assert_eq!(completed(&Making { allow_long: true, ..making }), (0, true));
+    }
+
+    /// `judge` failed the gates of the records that it had not come to, and ended with 1.
+    #[test]
+    fn a_look_into_a_store_that_is_cut_short_says_so() {
+        let sources = |_: &str| "one".to_string();
+        let looked = |stop: bool| {
+            let stop = AtomicBool::new(stop);
+            let making = Making { interrupt: Some(&stop), ..Making::new(Tier::Quick, &sources) };
+            let Stored { made, missing, .. } = stored(&[job("1")], &making);
+            (made.interrupted, missing.len())
+        };
+        assert_eq!([false, true].map(looked), [(false, 1), (true, 0)]);
     }
 
     /// A run that was made beside others served as timed, and the quiet phase took wall time.

@@ -86,6 +86,9 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
         }
         let plans = suite::plans(&[*case], Tier::Quick);
         let Stored { made, missing, .. } = verify::stored(&plans, &store, false, world);
+        if made.interrupted {
+            return Err(Failure::interrupted("no gate is shown"));
+        }
         if missing.is_empty() {
             let of_case = Verdicts::of(&suite::judge(plans, Tier::Quick, made));
             match &mut all {

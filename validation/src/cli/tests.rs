@@ -175,6 +175,23 @@ fn verify_ends_with_the_verdict() {
     assert_eq!(exit_with(&ALREADY, line, folder.path()), Exit::Interrupted);
 }
 
+/// Of the records of a store those before the interrupt were judged, and the gates of the others failed.
+#[test]
+fn an_interrupt_while_a_store_is_read_judges_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(exit_with(&NEVER, "verify right --store OUT/records", folder.path()), Exit::Pass);
+    for line in [
+        "judge right --store OUT/records",
+        "report --store OUT/records --out OUT/report",
+        "explain right --reports OUT",
+    ] {
+        assert_eq!(exit_with(&ALREADY, line, folder.path()), Exit::Interrupted, "{line}");
+    }
+    for name in ["index.html", "verdicts.json"] {
+        assert!(!folder.path().join("report").join(name).exists(), "{name}");
+    }
+}
+
 #[test]
 fn a_report_is_whole_and_explain_reads_it() {
     let folder = tempfile::tempdir().expect("a folder");

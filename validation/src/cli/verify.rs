@@ -122,6 +122,10 @@ pub fn of_store(
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);
     let Stored { made, missing, other } = stored(&plans, &store, any_build, world);
+    if made.interrupted {
+        let words = "nothing is judged; the same command reads the store from its beginning";
+        return Err(Failure::interrupted(words));
+    }
     tell_trouble(&made);
     if !missing.is_empty() {
         let (all, missing) = (made.reused + missing.len(), missing.len() - other);
