@@ -44,8 +44,8 @@ pub enum StoreError {
     },
 }
 
-/// A record with a million particles has 100 MB.
-const MOST_BYTES: u64 = 1 << 30;
+/// More than this is no record \[bytes\]: one with a million particles has 100 MB.
+pub const MOST_BYTES: u64 = 1 << 30;
 
 /// What a store contains for a run.
 #[derive(Debug)]

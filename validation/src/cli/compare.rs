@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
-    judged::{Judged, Verdicts},
+    judged::{self, Judged, VERDICTS, Verdicts},
     output,
 };
 
@@ -31,9 +31,9 @@ struct Side {
 
 impl Side {
     fn read(path: &Path) -> Result<Self, Failure> {
-        let file = path.join("verdicts.json");
-        let verdicts = match std::fs::read_to_string(&file) {
-            Ok(text) => {
+        let verdicts = match judged::read(path)? {
+            Some(text) => {
+                let file = path.join(VERDICTS);
                 let all: Verdicts = serde_json::from_str(&text)
                     .with_context(|| format!("{} holds no verdicts", file.display()))
                     .map_err(Failure::usage)?;
@@ -41,7 +41,7 @@ impl Side {
                 let judged = judged.chain(all.studies.into_iter().flat_map(|study| study.judged));
                 Some(judged.map(|judged| (judged.gate.id.clone(), judged)).collect())
             }
-            Err(_) => None,
+            None => None,
         };
         let below = path.join("records");
         let records = match (below.is_dir(), &verdicts) {
