@@ -61,7 +61,11 @@ fn a_line_that_no_run_can_have_is_told_with_its_field_and_costs_no_other_line() 
     let odd = [
         (couette("x/../../../../EVIL", "{}", ""), "letters, digits, - and _ (column "),
         (couette("sed", "{}", ""), "has no variant \"sed\" (did you mean seed?)"),
-        (couette("seed", "null", ""), "settings is null; allowed is an object"),
+        (couette("seed", "null", ""), "null, expected an object of settings by name"),
+        (
+            couette("seed", "{\"re\":1,\"re\":2}", ""),
+            "setting re is given twice, the first time as 1",
+        ),
         (couette("seed", "{\"re\":-1}", ""), "setting re is -1"),
         (couette("seed", "{\"ra\":1}", ""), "no setting is called \"ra\""),
         (
