@@ -17,6 +17,7 @@ use super::{
 
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
+    export::check(&arguments.export)?;
     let folder = OutputFolder::create(&arguments.out)?;
     let tier = arguments.tier.into();
     let suite = match &arguments.store {

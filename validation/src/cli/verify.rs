@@ -20,6 +20,7 @@ use super::{
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
+    export::check(&arguments.export)?;
     let start = Instant::now();
     let store = Store::open(&arguments.store)?;
     let (tier, reuse) = (arguments.tier.into(), arguments.reuse);
@@ -30,6 +31,7 @@ pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
 
 pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
+    export::check(&arguments.export)?;
     let start = Instant::now();
     let suite =
         of_store(&cases, arguments.tier.into(), &arguments.store, arguments.any_build, world)?;
