@@ -529,14 +529,15 @@ mod tests {
     fn what_killed_processes_left_behind_is_removed_after_an_hour_and_nothing_else() {
         let _turn = turn();
         let folder = tempfile::tempdir().unwrap();
-        let long_ago = SystemTime::now() - 2 * ORPHANED_AFTER;
+        let minutes_ago = |count: u64| SystemTime::now() - Duration::from_secs(60 * count);
+        let long_ago = minutes_ago(70);
         let make = |name: &str, time: SystemTime| {
             let file = File::create(folder.path().join(name)).unwrap();
             file.set_modified(time).unwrap();
         };
         make(".unfinished-1-0-record.json", long_ago); // as earlier versions named them
         make(".unfinished-a8Zk29xYb01q-dam-break.json", long_ago);
-        make(".unfinished-a8Zk29xYb01r-series.csv", SystemTime::now());
+        make(".unfinished-a8Zk29xYb01r-series.csv", minutes_ago(50));
         let foreign = [".unfinished-", ".unfinished-notes.txt", ".unfinished-a.b-c", "record.json"];
         for name in foreign {
             make(name, long_ago);

@@ -479,7 +479,12 @@ pub fn jobs(plans: Vec<(&'static dyn Case, Vec<Planned>)>) -> Vec<Job> {
 
 #[cfg(test)]
 mod tests {
-    use base::{record::MetricKey, settings::Field};
+    use base::{
+        mutation::{Constant, Detect},
+        record::MetricKey,
+        settings::Field,
+        spec::Bisect,
+    };
     use serde_json::{Value, json};
 
     use super::*;
@@ -520,6 +525,14 @@ mod tests {
             (record.cost.wall_s, record.cost.cpu_s) = (7.0, 0.02);
             match spec.settings["set"][0].as_str() {
                 Some("k=panic") => panic!("staged"),
+                Some("k=cut") => {
+                    record.status = Status::Interrupted { step: 1, time: 0.1 };
+                    Ok(record)
+                }
+                Some("k=slow") => {
+                    record.cost.cpu_s = 0.3;
+                    Ok(record)
+                }
                 Some("k=file") => Err(RunError::Reference("staged".into())),
                 Some("k=long") if !context.allow_long => Err(RunError::Estimated), // a refusal
                 _ => Ok(record),
@@ -690,6 +703,38 @@ mod tests {
         assert_eq!(alone(&timed, &making), (0, vec![0.02; 3]), "so it is made again, three times");
         assert_eq!(alone(&timed, &making), (1, vec![0.02; 3]));
         assert_eq!(alone(&plain, &making), (1, vec![0.02; 3]), "one that was timed serves as well");
+    }
+
+    #[test]
+    fn the_quick_tier_repeats_only_what_takes_a_tenth_of_a_second() {
+        let sources = |_: &str| "one".to_string();
+        let timings = |tier: Tier, k: &str| {
+            let job = Job { planned: job(k).planned.timed(), ..job(k) };
+            let made = made(std::slice::from_ref(&job), &Making::new(tier, &sources));
+            made.records[&job.planned.spec.key()].cost.alone_s.len()
+        };
+        assert_eq!([Tier::Quick, Tier::Full].map(|tier| timings(tier, "1")), [3, 3]);
+        assert_eq!([Tier::Quick, Tier::Full].map(|tier| timings(tier, "slow")), [1, 3]);
+    }
+
+    /// A search that was cut short would be kept as one that found no limit.
+    #[test]
+    fn what_is_interrupted_is_no_record_whatever_its_task() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let sources = |_: &str| "one".to_string();
+        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        let cut = job("cut").planned.spec;
+        let bisect =
+            Bisect { setting: "dt".into(), guess: 1.0, unit: 1.0, resolution: 0.1, end: None };
+        let detect = Detect { of: Constant::Viscosity, only_allowed: false };
+        for spec in [cut.clone(), cut.clone().bisect(bisect), cut.detect(detect)] {
+            for planned in [Planned::new(spec.clone()), Planned::new(spec.clone()).timed()] {
+                let made = made(&[Job { case: &Quick, planned }], &making);
+                let stored = Store::all(store.path()).unwrap();
+                assert_eq!((made.records.len(), stored.len()), (0, 0), "{spec:?}");
+            }
+        }
     }
 
     /// A full disk, a folder that is read-only: here a file stands in place of the folder.

@@ -412,6 +412,11 @@ mod tests {
         one(|r| r.cost.alone_s = vec![0.8], Kind::Seconds, "1.0000 to 0.8000 s, 0.800 times");
         one(|r| r.cost.alone_s = vec![1.2], Kind::Seconds, "1.0000 to 1.2000 s, 1.200 times");
         assert_eq!(changes(|record| record.cost.alone_s = vec![1.09]), []);
+        let elsewhere = |record: &mut Record| {
+            record.cost.alone_s = vec![3.0];
+            record.manifest.cpu = "another".into();
+        };
+        assert_eq!(changes(elsewhere), [], "seconds of another machine say nothing");
         one(|r| r.cost.steps = 7, Kind::Work, "0 to 7 steps, 0 to 0 pair interactions");
         let other = "other bits at the end (completed to completed)";
         one(|record| record.state = Some("other".into()), Kind::State, other);
