@@ -61,7 +61,11 @@ fn a_line_that_no_run_can_have_is_told_with_its_field_and_costs_no_other_line() 
     let odd = [
         (couette("x/../../../../EVIL", "{}", ""), "letters, digits, - and _ (column "),
         (couette("sed", "{}", ""), "has no variant \"sed\" (did you mean seed?)"),
-        (couette("seed", "null", ""), "settings is null; allowed is an object"),
+        (couette("seed", "null", ""), "null, expected an object of settings by name"),
+        (
+            couette("seed", "{\"re\":1,\"re\":2}", ""),
+            "setting re is given twice, the first time as 1",
+        ),
         (couette("seed", "{\"re\":-1}", ""), "setting re is -1"),
         (couette("seed", "{\"ra\":1}", ""), "no setting is called \"ra\""),
         (
@@ -79,11 +83,11 @@ fn a_line_that_no_run_can_have_is_told_with_its_field_and_costs_no_other_line() 
     ];
     for (line, words) in odd {
         let folder = tempfile::tempdir().unwrap();
-        let output = make(folder.path(), &[SPEC, &line]);
+        let output = make(folder.path(), &[SPEC, "", &line]);
         let message = said(&output);
         assert_eq!(output.status.code(), Some(2), "{line}: {message}");
         assert!(
-            message.contains("line 2 of specs: ") && message.contains(words),
+            message.contains("line 3 of specs: ") && message.contains(words),
             "{line}: {message}"
         );
         assert_eq!(names(folder.path()), ["specs", "store"], "{line}");
@@ -166,6 +170,91 @@ fn a_pipe_in_place_of_a_record_is_told_and_not_waited_for() {
     }
 }
 
+/// `compare`, `explain`, `run --out` and `run --resume` hung until somebody wrote into the pipe.
+#[test]
+fn a_pipe_in_place_of_what_a_run_or_a_report_left_is_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["verdicts.json", "record.json", "checkpoint"] {
+        assert!(Command::new("mkfifo").arg(folder.path().join(name)).status().unwrap().success());
+    }
+    let not_regular = "not a regular file";
+    for (line, exit, words) in [
+        ("compare . .", 2, not_regular),
+        ("explain couette --reports .", 2, not_regular),
+        ("explain --status fail --reports .", 2, not_regular),
+        ("run --resume .", 2, not_regular),
+        // The checkpoint is given up, and the record takes the place of the pipe.
+        (
+            "run couette --variant seed --rows 8 --set end=0.01 --out . --overwrite",
+            0,
+            "profile.csv",
+        ),
+    ] {
+        let mut command = Command::new(TOUCHSTONE);
+        command.current_dir(folder.path()).args(line.split(' ')).stdout(Stdio::null());
+        let (code, message) = ended(command.stderr(Stdio::piped()).spawn().unwrap(), 20.0);
+        assert_eq!(code, Some(exit), "{line}: {message}");
+        assert!(message.contains(words), "{line}: {message}");
+    }
+}
+
+/// Two reports whose verdicts were damaged were compared without them: "nothing changed".
+#[test]
+fn verdicts_that_cannot_be_read_are_told_and_not_passed_over() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(make(folder.path(), &[SPEC]).status.code(), Some(0));
+    fs::create_dir(folder.path().join("report")).unwrap();
+    fs::rename(folder.path().join("store"), folder.path().join("report/records")).unwrap();
+    assert_eq!(touchstone(folder.path(), "compare report report").status.code(), Some(0));
+    fs::write(folder.path().join("report/verdicts.json"), b"{\"tier\": \"quick\xff").unwrap();
+    for line in ["compare report report", "explain couette --reports report"] {
+        let output = touchstone(folder.path(), line);
+        let message = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert!(message.contains("cannot read report/verdicts.json"), "{line}: {message}");
+    }
+}
+
+/// The second file took the place of the first.
+#[test]
+fn one_file_for_two_documents_is_refused_before_anything_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("store")).unwrap();
+    for line in ["judge couette --store store", "verify couette --store s", "report --out r"] {
+        let line = format!("{line} --junit f --markdown f");
+        let output = touchstone(folder.path(), &line);
+        assert_eq!(output.status.code(), Some(2), "{line}: {}", said(&output));
+        assert!(said(&output).contains("name the same file, f"), "{line}: {}", said(&output));
+    }
+    assert_eq!(names(folder.path()), ["store"]);
+}
+
+/// A figure of runs that were missing was empty, which was called a bug of the program.
+#[test]
+fn a_report_of_older_records_fails_its_gates_and_is_no_bug() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = touchstone(folder.path(), "plan couette");
+    let plan = String::from_utf8(plan.stdout).unwrap();
+    let is_small = |line: &&str| line.contains("\"rows\":10,");
+    let line = plan.lines().find(is_small).expect("a run of 10 rows");
+    assert_eq!(make(folder.path(), &[line]).status.code(), Some(0));
+    let path = folder.path().join("store").join(&names(&folder.path().join("store"))[0]);
+    let whole = fs::read_to_string(&path).unwrap();
+    // As it was before records had a digest.
+    let (head, _) = whole.rsplit_once(",\n  \"digest\"").expect("a digest");
+    fs::write(&path, head.replace("\"schema\": 3", "\"schema\": 2") + "\n}\n").unwrap();
+    for (line, exit) in [
+        ("judge couette --store store", 1),
+        ("report --store store --out report", 1),
+        ("compare store store", 2),
+    ] {
+        let output = touchstone(folder.path(), line);
+        let message = said(&output);
+        assert_eq!(output.status.code(), Some(exit), "{line}: {message}");
+        assert!(message.contains("made by an older version"), "{line}: {message}");
+    }
+}
+
 /// Waits for a child, at most so long \[s\]; how it ended and what it said.
 fn ended(mut child: Child, seconds: f64) -> (Option<i32>, String) {
     let start = Instant::now();
@@ -221,6 +310,36 @@ fn a_signal_ends_every_command_within_a_second() {
         ["", "out/vtk", "store", "other", "report"].map(|at| folder.path().join(at)).into();
     let parts = all.iter().flat_map(|path| names(path)).filter(is_part);
     assert_eq!(parts.collect::<Vec<_>>(), Vec::<String>::new());
+}
+
+/// What a first signal leaves 0.7 s for ends at once by a second one, without the words of the first.
+#[test]
+fn a_second_signal_does_not_wait() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    let mut command = Command::new(TOUCHSTONE);
+    command.current_dir(folder.path()).args("report --store empty --out out".split(' '));
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    lines.find(|line| line.contains("the store lacks")).expect("it has begun to judge");
+    send("-INT", &child);
+    lines.find(|line| line.contains("interrupt once more to end at once")).expect("it listens");
+    send("-INT", &child);
+    let rest: Vec<String> = lines.collect();
+    assert_eq!((child.wait().unwrap().code(), rest), (Some(130), Vec::new()));
+}
+
+#[test]
+fn the_last_setting_of_a_sweep_is_the_fastest() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = touchstone(folder.path(), "plan couette --set re=1,2 --set rows=10,20");
+    let text = String::from_utf8(output.stdout).unwrap();
+    let number = |line: &str, name: &str| {
+        let rest = line.split(&format!("\"{name}\":")).nth(1).expect(name);
+        rest.split([',', '}']).next().unwrap().parse::<f64>().unwrap()
+    };
+    let all: Vec<_> = text.lines().map(|line| (number(line, "re"), number(line, "rows"))).collect();
+    assert_eq!(all, [(1.0, 10.0), (1.0, 20.0), (2.0, 10.0), (2.0, 20.0)]);
 }
 
 /// `nohup touchstone …` ended with the terminal.

@@ -104,12 +104,26 @@ fn remove_all(paths: &mut BTreeSet<PathBuf>) -> usize {
     removed
 }
 
-/// Reads a text of at most so many bytes from a regular file: a pipe in its place would be waited for without
-/// end.
+/// Reads a regular file: a pipe in its place would be waited for without end.
+///
+/// # Errors
+/// Those of the system; or if it is no regular file.
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    check_regular(path, u64::MAX)?;
+    fs::read(path)
+}
+
+/// Reads a text of at most so many bytes from a regular file.
 ///
 /// # Errors
 /// Those of the system; or if it is no regular file, larger, or no UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
+    check_regular(path, most)?;
+    fs::read_to_string(path)
+}
+
+/// Refuses what is no regular file, or is larger.
+fn check_regular(path: &Path, most: u64) -> io::Result<()> {
     let refused = |why: String| Err(io::Error::new(io::ErrorKind::InvalidData, why));
     let file = fs::metadata(path)?;
     if !file.is_file() {
@@ -118,7 +132,7 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     if file.len() > most {
         return refused(format!("it has {} bytes; allowed are at most {most}", file.len()));
     }
-    fs::read_to_string(path)
+    Ok(())
 }
 
 /// Begins the name of every temporary file; random letters and digits, a hyphen and the final name follow.
@@ -515,14 +529,15 @@ mod tests {
     fn what_killed_processes_left_behind_is_removed_after_an_hour_and_nothing_else() {
         let _turn = turn();
         let folder = tempfile::tempdir().unwrap();
-        let long_ago = SystemTime::now() - 2 * ORPHANED_AFTER;
+        let minutes_ago = |count: u64| SystemTime::now() - Duration::from_secs(60 * count);
+        let long_ago = minutes_ago(70);
         let make = |name: &str, time: SystemTime| {
             let file = File::create(folder.path().join(name)).unwrap();
             file.set_modified(time).unwrap();
         };
         make(".unfinished-1-0-record.json", long_ago); // as earlier versions named them
         make(".unfinished-a8Zk29xYb01q-dam-break.json", long_ago);
-        make(".unfinished-a8Zk29xYb01r-series.csv", SystemTime::now());
+        make(".unfinished-a8Zk29xYb01r-series.csv", minutes_ago(50));
         let foreign = [".unfinished-", ".unfinished-notes.txt", ".unfinished-a.b-c", "record.json"];
         for name in foreign {
             make(name, long_ago);

@@ -653,6 +653,23 @@ mod tests {
         assert!(matches!(Record::from_json(&text.repeat(2)), Err(RecordError::Unreadable(_))));
     }
 
+    /// The records of this test are small; a digest of their first 4096 bytes passed.
+    #[test]
+    fn no_digit_of_a_large_record_can_change_unseen() {
+        let mut record = record();
+        let values: Vec<f64> = (0..20_000).map(|k| 1.0 / f64::from(k + 3)).collect();
+        record.profiles.insert("all".into(), Profile::default().with("x", "m", values));
+        let text = record.to_json().unwrap();
+        for part in 1..=40 {
+            let from = text.len() * part / 41;
+            let digit = text[from..].find(|c: char| c.is_ascii_digit()).expect("a digit") + from;
+            let mut bytes = text.clone().into_bytes();
+            bytes[digit] = if bytes[digit] == b'7' { b'8' } else { b'7' };
+            let read = Record::from_json(&String::from_utf8(bytes).unwrap());
+            assert!(matches!(read, Err(RecordError::Damaged)), "digit {digit} of {}", text.len());
+        }
+    }
+
     #[test]
     fn a_name_that_is_a_path_is_refused() {
         let text = record().to_json().unwrap();

@@ -15,8 +15,9 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
-use serde_json::Value;
+use serde::de::{Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Value};
 use thiserror::Error;
 
 use crate::{
@@ -35,6 +36,7 @@ pub struct RunSpec {
     #[serde(deserialize_with = "name")]
     pub variant: String,
     /// every setting of the case, by name
+    #[serde(deserialize_with = "settings")]
     pub settings: Value,
     /// one simulation, or a bisection of many
     #[serde(default, skip_serializing_if = "Task::is_simulation")]
@@ -70,6 +72,32 @@ pub(crate) fn name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Erro
             name.chars().take(LONGEST_NAME).collect::<String>()
         ))),
     }
+}
+
+/// Reads settings by name, each given once: of two values the last would be used in silence.
+///
+/// # Errors
+/// If they are no object, or one is given twice.
+fn settings<'de, D: Deserializer<'de>>(from: D) -> Result<Value, D::Error> {
+    struct Once;
+    impl<'de> Visitor<'de> for Once {
+        type Value = Value;
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("an object of settings by name")
+        }
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Value, A::Error> {
+            let mut settings = Map::new();
+            while let Some((name, value)) = map.next_entry::<String, Value>()? {
+                if let Some(before) = settings.insert(name.clone(), value) {
+                    let words =
+                        format!("setting {name} is given twice, the first time as {before}");
+                    return Err(A::Error::custom(words));
+                }
+            }
+            Ok(Value::Object(settings))
+        }
+    }
+    from.deserialize_map(Once)
 }
 
 /// A field of a spec that has a value which no run can have.
@@ -374,6 +402,19 @@ mod tests {
             let error = found.expect_err(expected);
             assert!(error.starts_with(expected), "expected {expected}, found {error}");
         }
+    }
+
+    /// The last of several values was used, and the others were lost in silence.
+    #[test]
+    fn a_setting_that_is_given_twice_is_refused() {
+        let read = |settings: &str| {
+            let line = format!(r#"{{"case":"c","variant":"v","settings":{settings}}}"#);
+            RunSpec::from_canonical(&line).map_err(|error| error.to_string())
+        };
+        let twice = read(r#"{"rows":8,"re":1,"rows":10}"#).unwrap_err();
+        assert!(twice.starts_with("setting rows is given twice, the first time as 8"), "{twice}");
+        assert!(read("null").unwrap_err().contains("expected an object of settings by name"));
+        assert_eq!(read(r#"{"rows":8}"#).unwrap().settings, json!({"rows": 8}));
     }
 
     #[test]

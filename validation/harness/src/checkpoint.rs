@@ -137,8 +137,8 @@ pub(crate) struct Stage {
     pub reached: usize,
     /// What it took so far.
     pub cost: Cost,
-    /// The frames of it.
-    pub frames: Option<Collection>,
+    /// The frames of it, and how many were tried.
+    pub frames: Option<(Collection, usize)>,
     /// How it ended, if it did.
     pub ended: Option<Status>,
 }

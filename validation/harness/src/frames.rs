@@ -39,19 +39,16 @@ impl<'a> Frames<'a> {
         Ok(Self { folder, pressure, end, count, written, come: 0 })
     }
 
-    /// The frames so far.
-    pub fn written(&self) -> Collection {
-        self.written.clone()
+    /// The frames so far, and how many were tried.
+    pub fn written(&self) -> (Collection, usize) {
+        (self.written.clone(), self.come)
     }
 
-    /// Goes on after these frames of an earlier run until this time \[s\], of which some may have been
-    /// removed.
-    pub fn go_on(&mut self, mut written: Collection, time: f64) {
+    /// Goes on after these frames of an earlier run, of which some may have been removed. One whose time had
+    /// come when that run was interrupted may be still to be written.
+    pub fn go_on(&mut self, (mut written, come): (Collection, usize)) {
         written.retain(|name| self.folder.path().join(name).is_file());
-        self.written = written;
-        while self.is_due(time) {
-            self.come += 1;
-        }
+        (self.written, self.come) = (written, come);
     }
 
     /// Has the time of the next frame come? That of the last one is the end.

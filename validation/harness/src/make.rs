@@ -145,10 +145,15 @@ pub struct Stored {
 
 /// Looks for the records of the jobs. A record does not serve if other sources made it, unless that is
 /// allowed, nor one of a run that was refused, if longer runs are allowed now: to try again takes no time.
-/// That of a timed run must have been made while no other run was.
+/// That of a timed run must have been made while no other run was. If it is interrupted, see
+/// [`Made::interrupted`], what it has is not told of all runs.
 pub fn stored(jobs: &[Job], making: &Making) -> Stored {
     let mut stored = Stored::default();
-    for job in jobs.iter().take_while(|_| !making.is_interrupted()) {
+    for job in jobs {
+        if making.is_interrupted() {
+            stored.made.interrupted = true;
+            break;
+        }
         let spec = &job.planned.spec;
         let serves = |record: &Record| match record.status {
             Status::Refused { .. } => !making.allow_long,
@@ -474,7 +479,12 @@ pub fn jobs(plans: Vec<(&'static dyn Case, Vec<Planned>)>) -> Vec<Job> {
 
 #[cfg(test)]
 mod tests {
-    use base::{record::MetricKey, settings::Field};
+    use base::{
+        mutation::{Constant, Detect},
+        record::MetricKey,
+        settings::Field,
+        spec::Bisect,
+    };
     use serde_json::{Value, json};
 
     use super::*;
@@ -515,6 +525,14 @@ mod tests {
             (record.cost.wall_s, record.cost.cpu_s) = (7.0, 0.02);
             match spec.settings["set"][0].as_str() {
                 Some("k=panic") => panic!("staged"),
+                Some("k=cut") => {
+                    record.status = Status::Interrupted { step: 1, time: 0.1 };
+                    Ok(record)
+                }
+                Some("k=slow") => {
+                    record.cost.cpu_s = 0.3;
+                    Ok(record)
+                }
                 Some("k=file") => Err(RunError::Reference("staged".into())),
                 Some("k=long") if !context.allow_long => Err(RunError::Estimated), // a refusal
                 _ => Ok(record),
@@ -655,6 +673,19 @@ mod tests {
         assert_eq!(completed(&Making { allow_long: true, ..making }), (0, true));
     }
 
+    /// `judge` failed the gates of the records that it had not come to, and ended with 1.
+    #[test]
+    fn a_look_into_a_store_that_is_cut_short_says_so() {
+        let sources = |_: &str| "one".to_string();
+        let looked = |stop: bool| {
+            let stop = AtomicBool::new(stop);
+            let making = Making { interrupt: Some(&stop), ..Making::new(Tier::Quick, &sources) };
+            let Stored { made, missing, .. } = stored(&[job("1")], &making);
+            (made.interrupted, missing.len())
+        };
+        assert_eq!([false, true].map(looked), [(false, 1), (true, 0)]);
+    }
+
     /// A run that was made beside others served as timed, and the quiet phase took wall time.
     #[test]
     fn a_timed_run_is_made_alone_and_its_time_is_that_of_the_processor() {
@@ -672,6 +703,38 @@ mod tests {
         assert_eq!(alone(&timed, &making), (0, vec![0.02; 3]), "so it is made again, three times");
         assert_eq!(alone(&timed, &making), (1, vec![0.02; 3]));
         assert_eq!(alone(&plain, &making), (1, vec![0.02; 3]), "one that was timed serves as well");
+    }
+
+    #[test]
+    fn the_quick_tier_repeats_only_what_takes_a_tenth_of_a_second() {
+        let sources = |_: &str| "one".to_string();
+        let timings = |tier: Tier, k: &str| {
+            let job = Job { planned: job(k).planned.timed(), ..job(k) };
+            let made = made(std::slice::from_ref(&job), &Making::new(tier, &sources));
+            made.records[&job.planned.spec.key()].cost.alone_s.len()
+        };
+        assert_eq!([Tier::Quick, Tier::Full].map(|tier| timings(tier, "1")), [3, 3]);
+        assert_eq!([Tier::Quick, Tier::Full].map(|tier| timings(tier, "slow")), [1, 3]);
+    }
+
+    /// A search that was cut short would be kept as one that found no limit.
+    #[test]
+    fn what_is_interrupted_is_no_record_whatever_its_task() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let sources = |_: &str| "one".to_string();
+        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        let cut = job("cut").planned.spec;
+        let bisect =
+            Bisect { setting: "dt".into(), guess: 1.0, unit: 1.0, resolution: 0.1, end: None };
+        let detect = Detect { of: Constant::Viscosity, only_allowed: false };
+        for spec in [cut.clone(), cut.clone().bisect(bisect), cut.detect(detect)] {
+            for planned in [Planned::new(spec.clone()), Planned::new(spec.clone()).timed()] {
+                let made = made(&[Job { case: &Quick, planned }], &making);
+                let stored = Store::all(store.path()).unwrap();
+                assert_eq!((made.records.len(), stored.len()), (0, 0), "{spec:?}");
+            }
+        }
     }
 
     /// A full disk, a folder that is read-only: here a file stands in place of the folder.

@@ -124,6 +124,17 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         !self.after_step.is_empty() || self.frames.is_some() || self.context.checkpoints.is_some()
     }
 
+    /// Writes the frames whose time has come, unless it is interrupted: those are written when it goes on.
+    fn write_frames(&mut self, simulation: &(impl Stepper<X> + ?Sized)) {
+        let Some(frames) = &mut self.frames else { return };
+        self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
+        while frames.is_due(simulation.time()) && !self.context.is_interrupted() {
+            let written = frames.write(simulation);
+            let lost = written.err().zip(self.context.lost);
+            lost.into_iter().for_each(|(error, lost)| lost(&error.into()));
+        }
+    }
+
     /// What the case observes, and what of it is written.
     fn observe(&mut self, simulation: &dyn Stepper<X>, now: Reading) -> Flow {
         let mut flow = Flow::Continue;
@@ -133,14 +144,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
                 flow = Flow::Stop;
             }
         }
-        if let Some(frames) = &mut self.frames {
-            self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
-            while frames.is_due(simulation.time()) && !self.context.is_interrupted() {
-                let written = frames.write(simulation);
-                let lost = written.err().zip(self.context.lost);
-                lost.into_iter().for_each(|(error, lost)| lost(&error.into()));
-            }
-        }
+        self.write_frames(simulation);
         // A run that ends here by itself has nothing to go on with.
         if let (Some(checkpoints), Flow::Continue) = (self.context.checkpoints, flow)
             && (now.wall - self.saved >= checkpoints.every.as_secs_f64()
@@ -231,7 +235,10 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         self.cost = Cost { threads: self.cost.threads, resumed, ..cost };
         self.reached = reached;
         if let (Some(all), Some(written)) = (&mut self.frames, frames) {
-            all.go_on(written, simulation.time());
+            all.go_on(written);
+        }
+        if ended.is_none() {
+            self.write_frames(simulation);
         }
         if ended == Some(Status::Completed) {
             // No step: derives again what may be asked for at the end.
@@ -694,6 +701,55 @@ mod tests {
         std::fs::remove_file(folder.path().join("particles_0000.vtp")).unwrap();
         resumable(None, kept, frames);
         assert_eq!(names(), [false, true, true, true]);
+    }
+
+    /// The frame of the step after which a run was interrupted was missing when the run had gone on.
+    #[test]
+    fn a_frame_that_an_interrupt_left_unwritten_is_written_when_the_run_goes_on() {
+        let [alone, cut] = [(), ()].map(|()| tempfile::tempdir().unwrap());
+        let frames = |folder: &tempfile::TempDir| Some((folder.path().to_path_buf(), 4));
+        resumable(None, Vec::new(), frames(&alone));
+        let (cost, kept) = resumable(Some(10), Vec::new(), frames(&cut));
+        let name = "particles_0000.vtp";
+        assert!(cost.steps == 10 && !cut.path().join(name).exists());
+        resumable(None, kept, frames(&cut));
+        for name in [name, "particles_0001.vtp", "particles_0003.vtp", "particles.pvd"] {
+            let [alone, cut] = [&alone, &cut].map(|folder| folder.path().join(name));
+            assert!(std::fs::read(alone).unwrap() == std::fs::read(cut).expect(name), "{name}");
+        }
+    }
+
+    /// Each of several simulations goes on from its own bytes, and those that had ended count for nothing.
+    #[test]
+    fn simulations_that_have_ended_keep_their_order_and_do_not_go_on() {
+        let ends = [10.0 * DT, 20.0 * DT, 30.0 * DT];
+        let run = |stop: bool, earlier: Vec<Vec<u8>>| {
+            let (flag, kept) = (AtomicBool::new(false), Mutex::new(Vec::new()));
+            let write = |simulations: &[Vec<u8>]| {
+                *kept.lock().unwrap() = simulations.to_vec();
+                Ok(())
+            };
+            let checkpoints = Checkpoints::new(Duration::MAX, earlier, &write);
+            let (interrupt, checkpoints) = (Some(&flag), Some(&checkpoints));
+            let context = Context { interrupt, checkpoints, ..Context::default() };
+            let costs = ends.map(|end| {
+                let (times, mut wave) = ([end], wave());
+                let after = |_: &mut (), simulation: &dyn Stepper<()>| {
+                    let is_last = end == ends[2] && simulation.work().steps == 15;
+                    flag.store(stop && is_last, Ordering::Relaxed);
+                    Flow::Continue
+                };
+                let (_, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+                    .after_step("stop", &after)
+                    .run(&context)
+                    .unwrap();
+                (cost.steps, cost.resumed)
+            });
+            (costs, kept.into_inner().unwrap())
+        };
+        let (costs, kept) = run(true, Vec::new());
+        assert_eq!((costs, kept.len()), ([(10, 0), (20, 0), (15, 0)], 3));
+        assert_eq!(run(false, kept).0, [(10, 0), (20, 0), (30, 1)]);
     }
 
     /// 9,999 frames of two steps were written before an interrupt was looked at.

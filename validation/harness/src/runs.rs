@@ -158,6 +158,18 @@ mod tests {
         assert_eq!(found, expected);
     }
 
+    /// A study showed gaps, and no gate failed.
+    #[test]
+    fn a_run_of_which_less_is_measured_than_a_study_reads_is_not_planned() {
+        let spec = RunSpec::new("made_up", "plain", serde_json::json!({}));
+        let record = Record::new("made_up", "plain", spec.settings.clone(), 1);
+        let runs = Runs::new(vec![JudgedRun::new(Planned::new(spec.clone()), record)]);
+        assert!(runs.record(&spec).is_some() && runs.unplanned().is_empty());
+        let all = spec.measure_all();
+        assert!(runs.record(&all).is_none());
+        assert_eq!(runs.unplanned(), [all.canonical()]);
+    }
+
     #[test]
     fn the_unit_of_a_number_of_a_study_is_that_of_its_name() {
         for (metric, unit) in [("ratio", "-"), ("period [2L/c0]", "2L/c0"), ("[a] of b", "-")] {

@@ -44,8 +44,8 @@ pub enum StoreError {
     },
 }
 
-/// A record with a million particles has 100 MB.
-const MOST_BYTES: u64 = 1 << 30;
+/// More than this is no record \[bytes\]: one with a million particles has 100 MB.
+pub const MOST_BYTES: u64 = 1 << 30;
 
 /// What a store contains for a run.
 #[derive(Debug)]
@@ -145,6 +145,7 @@ fn read(path: PathBuf) -> Result<Record, StoreError> {
 
 #[cfg(test)]
 mod tests {
+    use base::mutation::{Constant, Detect, Mutation};
     use base::record::MetricKey;
     use serde_json::json;
 
@@ -172,11 +173,23 @@ mod tests {
         let finer = whole.spec().with_setting("rows", 40);
         assert!(matches!(store.find(&finer, "abc"), Found::Nothing));
         let path = store.path().join(Store::name(&whole.spec()));
-        let of_finer = store.path().join(Store::name(&finer));
-        fs::copy(&path, &of_finer).unwrap();
-        let found = store.find(&finer, "abc");
-        assert!(matches!(found, Found::Nothing), "the record of another run: {found:?}");
-        fs::remove_file(of_finer).unwrap();
+        let of = Constant::Viscosity;
+        // A mutated run that was taken for a healthy one passed.
+        let others = [
+            finer,
+            RunSpec { variant: "w".into(), ..whole.spec() },
+            whole.spec().allow_unstable(),
+            whole.spec().keep_particles(),
+            whole.spec().mutated(Mutation { of, factor: 1.03 }),
+            whole.spec().detect(Detect { of, only_allowed: false }),
+        ];
+        for other in others {
+            let in_its_place = store.path().join(Store::name(&other));
+            fs::copy(&path, &in_its_place).unwrap();
+            let found = store.find(&other, "abc");
+            assert!(matches!(found, Found::Nothing), "the record of another run: {found:?}");
+            fs::remove_file(in_its_place).unwrap();
+        }
         assert_eq!(Store::all(store.path()).unwrap(), [whole]);
     }
 

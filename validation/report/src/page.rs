@@ -233,6 +233,7 @@ impl Drawing<'_> {
 fn drawings(section: &Section) -> Vec<Drawing<'_>> {
     fn of(block: &Block) -> Vec<Drawing<'_>> {
         match block {
+            Block::Figure(figure) if figure.panels.is_empty() => Vec::new(),
             Block::Figure(figure) => vec![Drawing::Figure(figure)],
             Block::Film(film) => vec![Drawing::Film(film)],
             Block::Details { blocks, .. } => blocks.iter().flat_map(of).collect(),
@@ -284,6 +285,10 @@ impl Writer<'_> {
         match block {
             Block::Prose(paragraphs) => html! { @for p in paragraphs { (prose(p)) } },
             Block::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
+            // What is linked to is there all the same.
+            Block::Figure(figure) if figure.panels.is_empty() => {
+                html! { p id=(figure.id) { "No figure: none of the runs that it shows was completed." } }
+            }
             Block::Figure(figure) => self.figure(&figure.id, &figure.caption, drawing(figure)),
             Block::Film(film) => self.figure(&film.id, &film.caption, moving(film)),
             Block::Table(table) => {
@@ -369,6 +374,18 @@ mod tests {
     fn the_script_is_plain_xml_text() {
         assert!(!SCRIPT.contains(['<', '&']) && !STYLE.contains(['<', '&']));
         assert!(SCRIPT.lines().count() < 200);
+    }
+
+    /// `report` of a store that lacks the runs of a figure ended with 4, as by a bug.
+    #[test]
+    fn a_figure_without_panels_is_a_line_of_text_with_its_anchor() {
+        let section = Section::new("s", "S").prose("See [it](#empty).");
+        let section = section.block(Figure::new("empty", "What is shown where there are runs"));
+        let drawn = drawings(&section).len();
+        let html = Page { sections: vec![section], ..Page::default() }.html();
+        let summary = crate::check_page(&html).expect("a page that opens");
+        assert_eq!((summary.figures, drawn), (0, 0));
+        assert!(html.contains("<p id=\"empty\">No figure: "), "{html}");
     }
 
     #[test]

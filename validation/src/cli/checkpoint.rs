@@ -1,12 +1,11 @@
 //! The file of a checkpoint in the folder of a run. Its first line names the format and has the digest of all
 //! that follows; the second line is what was asked for, as JSON; then come the simulations, as bytes.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use base::{
-    files::{FileError, OutputFolder},
+    files::{self, FileError, OutputFolder},
     reference::sha256,
     spec::RunSpec,
 };
@@ -118,7 +117,7 @@ fn bytes(asked: &Asked, simulations: &[Vec<u8>]) -> Vec<u8> {
 pub fn read(folder: &Path, sources: fn(&str) -> String) -> Result<(Asked, Vec<Vec<u8>>), Refusal> {
     let path = folder.join(CHECKPOINT);
     let missing = |reason| Refusal::Missing { folder: folder.into(), reason };
-    parse(&fs::read(&path).map_err(missing)?, path, sources)
+    parse(&files::read(&path).map_err(missing)?, path, sources)
 }
 
 fn parse(

@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
-    judged::{Judged, Verdicts},
+    judged::{self, Judged, VERDICTS, Verdicts},
     output,
 };
 
@@ -31,9 +31,9 @@ struct Side {
 
 impl Side {
     fn read(path: &Path) -> Result<Self, Failure> {
-        let file = path.join("verdicts.json");
-        let verdicts = match std::fs::read_to_string(&file) {
-            Ok(text) => {
+        let verdicts = match judged::read(path)? {
+            Some(text) => {
+                let file = path.join(VERDICTS);
                 let all: Verdicts = serde_json::from_str(&text)
                     .with_context(|| format!("{} holds no verdicts", file.display()))
                     .map_err(Failure::usage)?;
@@ -41,7 +41,7 @@ impl Side {
                 let judged = judged.chain(all.studies.into_iter().flat_map(|study| study.judged));
                 Some(judged.map(|judged| (judged.gate.id.clone(), judged)).collect())
             }
-            Err(_) => None,
+            None => None,
         };
         let below = path.join("records");
         let records = match (below.is_dir(), &verdicts) {
@@ -412,6 +412,11 @@ mod tests {
         one(|r| r.cost.alone_s = vec![0.8], Kind::Seconds, "1.0000 to 0.8000 s, 0.800 times");
         one(|r| r.cost.alone_s = vec![1.2], Kind::Seconds, "1.0000 to 1.2000 s, 1.200 times");
         assert_eq!(changes(|record| record.cost.alone_s = vec![1.09]), []);
+        let elsewhere = |record: &mut Record| {
+            record.cost.alone_s = vec![3.0];
+            record.manifest.cpu = "another".into();
+        };
+        assert_eq!(changes(elsewhere), [], "seconds of another machine say nothing");
         one(|r| r.cost.steps = 7, Kind::Work, "0 to 7 steps, 0 to 0 pair interactions");
         let other = "other bits at the end (completed to completed)";
         one(|record| record.state = Some("other".into()), Kind::State, other);

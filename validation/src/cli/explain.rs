@@ -1,7 +1,6 @@
 //! `explain`: what a gate checks and why.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
 
 use ::report;
@@ -19,7 +18,7 @@ use harness::suite::{self, Of};
 use super::{
     Exit, Failure, Outcome, World,
     arguments::{self, Status},
-    judged::{Judged, Verdicts, tier_name},
+    judged::{self, Judged, Verdicts, tier_name},
     output, verify,
 };
 
@@ -73,7 +72,7 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Outcome {
 /// The verdicts of the last report or, without one, those on the records that `verify` keeps: of the cases
 /// whose gates may begin with `asked`, if all runs of the quick tier are there.
 fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Verdicts>, Failure> {
-    let text = fs::read_to_string(reports.join("verdicts.json")).unwrap_or_default();
+    let text = judged::read(reports)?.unwrap_or_default();
     if let Ok(verdicts) = serde_json::from_str(&text) {
         return Ok(Some(verdicts)); // of another version: none
     }
@@ -86,6 +85,9 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
         }
         let plans = suite::plans(&[*case], Tier::Quick);
         let Stored { made, missing, .. } = verify::stored(&plans, &store, false, world);
+        if made.interrupted {
+            return Err(Failure::interrupted("no gate is shown"));
+        }
         if missing.is_empty() {
             let of_case = Verdicts::of(&suite::judge(plans, Tier::Quick, made));
             match &mut all {

@@ -9,6 +9,17 @@ use harness::suite::Suite;
 
 use super::{Failure, arguments};
 
+/// Refuses one file for both, of which only the later one would be left.
+pub fn check(export: &arguments::Export) -> Result<(), Failure> {
+    match (&export.junit, &export.markdown) {
+        (Some(junit), Some(markdown)) if junit == markdown => Err(Failure::usage(anyhow::anyhow!(
+            "--junit and --markdown name the same file, {}; name two",
+            junit.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// Writes the files that were asked for; if the first one cannot be written, the other one is all the same.
 pub fn write(suite: &Suite, export: &arguments::Export) -> Result<(), Failure> {
     let mut written = Ok(());

@@ -1,8 +1,11 @@
 //! Judgements as tables, and as JSON that `explain` reads back.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::Path;
 
 use ::report;
+use base::files;
 use base::gate::{Bound, Cause, Evidence, Gate, Judgement, Known, Purpose, Verdict};
 use base::number::Number;
 use base::record;
@@ -14,7 +17,7 @@ use harness::suite::Suite;
 use serde::{Deserialize, Serialize};
 
 use super::arguments::Status;
-use super::output;
+use super::{Failure, output};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
 pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
@@ -44,6 +47,29 @@ pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
         text += &format!("{head:<5}{}", output::wrap(reason, 100, "     ").trim_start());
     }
     text
+}
+
+/// Name of the file of the verdicts in the folder of a report.
+pub const VERDICTS: &str = "verdicts.json";
+
+/// More than this are no verdicts \[bytes\].
+const MOST_BYTES: u64 = 1 << 28;
+
+/// The text of the verdicts of a report, if it has them.
+///
+/// # Errors
+/// If they are there and cannot be read: a report without verdicts is another thing.
+pub fn read(folder: &Path) -> Result<Option<String>, Failure> {
+    let path = folder.join(VERDICTS);
+    match files::read_text(&path, MOST_BYTES) {
+        Ok(text) => Ok(Some(text)),
+        Err(reason) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&reason.kind()) => {
+            Ok(None)
+        }
+        Err(reason) => {
+            Err(Failure::usage(anyhow::anyhow!("cannot read {}: {reason}", path.display())))
+        }
+    }
 }
 
 /// Everything that a suite decided: `verify --json` and `verdicts.json` of a report.

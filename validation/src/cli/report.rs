@@ -8,11 +8,16 @@ use harness::store::Store;
 use validation::page;
 
 use super::{
-    Failure, Outcome, World, arguments, export, judged::Verdicts, output, summary::summary, verify,
+    Failure, Outcome, World, arguments, export,
+    judged::{VERDICTS, Verdicts},
+    output,
+    summary::summary,
+    verify,
 };
 
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
+    export::check(&arguments.export)?;
     let folder = OutputFolder::create(&arguments.out)?;
     let tier = arguments.tier.into();
     let suite = match &arguments.store {
@@ -27,7 +32,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     // A file that cannot be written keeps none of the others from being written: the runs took minutes.
     let exported = export::write(&suite, &arguments.export);
     let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";
-    let written = folder.write("verdicts.json", verdicts.as_bytes()).map_err(Failure::from);
+    let written = folder.write(VERDICTS, verdicts.as_bytes()).map_err(Failure::from);
     let path = folder.path().join("index.html");
     let page = page::assemble(&suite, &now());
     let html = page.html();

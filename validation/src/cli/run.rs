@@ -12,7 +12,7 @@ use std::time::{Duration, SystemTime};
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series, Status as Verdict};
 use base::{
-    files::{Cell, CsvTable, FileError, OutputFolder},
+    files::{self, Cell, CsvTable, FileError, OutputFolder},
     gate::Gate,
     record::{NOT_ASKED, Profile, Record, Status},
     spec::RunSpec,
@@ -24,6 +24,7 @@ use harness::{
     plan,
     runs::Judged,
     size::Size,
+    store::MOST_BYTES,
 };
 use humantime::format_rfc3339_seconds;
 use serde_json::Value;
@@ -340,7 +341,7 @@ impl Folder {
 
 /// The case of the record that an earlier run left in a folder, of whatever version.
 fn case_in(folder: &Path) -> Option<String> {
-    let text = fs::read_to_string(folder.join(RECORD)).ok()?;
+    let text = files::read_text(&folder.join(RECORD), MOST_BYTES).ok()?;
     let record: Value = serde_json::from_str(&text).ok()?;
     record["case"].as_str().map(String::from)
 }

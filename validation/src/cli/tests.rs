@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use ::report::check_page;
 use base::{
+    files::OutputFolder,
     gate::{Bound, Cause, Evidence, Gate},
     record::{MetricKey, Record, Status},
     reference::{Reference, ReferenceError},
@@ -23,7 +24,9 @@ use harness::{
 use serde_json::{Value, json};
 use validation::cases;
 
-use super::{Exit, World, arguments::Arguments, conclude, dispatch, judged::Verdicts};
+use super::{
+    Exit, World, arguments::Arguments, checkpoint::Asked, conclude, dispatch, judged::Verdicts,
+};
 
 /// A case whose variants are the ways in which a run can end.
 struct Staged {
@@ -175,6 +178,23 @@ fn verify_ends_with_the_verdict() {
     assert_eq!(exit_with(&ALREADY, line, folder.path()), Exit::Interrupted);
 }
 
+/// Of the records of a store those before the interrupt were judged, and the gates of the others failed.
+#[test]
+fn an_interrupt_while_a_store_is_read_judges_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(exit_with(&NEVER, "verify right --store OUT/records", folder.path()), Exit::Pass);
+    for line in [
+        "judge right --store OUT/records",
+        "report --store OUT/records --out OUT/report",
+        "explain right --reports OUT",
+    ] {
+        assert_eq!(exit_with(&ALREADY, line, folder.path()), Exit::Interrupted, "{line}");
+    }
+    for name in ["index.html", "verdicts.json"] {
+        assert!(!folder.path().join("report").join(name).exists(), "{name}");
+    }
+}
+
 #[test]
 fn a_report_is_whole_and_explain_reads_it() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -236,7 +256,11 @@ fn a_changed_table_fails_every_case_that_uses_it_by_name() {
             failure.reason.to_string()
         })
     };
+    let output = OutputFolder::create(folder.path()).expect("a folder");
+    let asked = Asked { spec, sources: sources(""), every: 60, vtk: None, allow_long: false };
+    super::checkpoint::write(&output, &asked, &[]).expect("a checkpoint");
     for line in [
+        format!("run --resume {out}"),
         format!("verify right --store {out}/store"),
         format!("verify --store {out}/store"),
         format!("judge --store {out}"),
@@ -276,6 +300,11 @@ fn records_are_reused_judged_rendered_and_compared() {
     let made = time();
     assert_eq!(good("touchstone report --out OUT/a"), Exit::Pass);
     assert_eq!(made, time(), "nothing was made again");
+    assert_eq!(good("touchstone verify right --store OUT/a/records --fresh"), Exit::Pass);
+    let afresh = time();
+    assert!(afresh > made, "it was not made afresh");
+    assert_eq!(good("touchstone report --out OUT/a --fresh"), Exit::Pass);
+    assert!(time() > afresh, "it was not made afresh");
     let export = "--junit OUT/junit.xml --markdown OUT/verdicts.md";
     assert_eq!(good(&format!("touchstone judge --store OUT/a/records {export}")), Exit::Pass);
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
@@ -365,6 +394,8 @@ fn a_build_judges_its_own_records_unless_any_build_will_do() {
     for (line, of_its_own, of_another) in [
         ("judge --store OUT", Exit::Pass, Exit::GateFailed),
         ("judge --store OUT --any-build", Exit::Pass, Exit::Pass),
+        ("report --store OUT --out OUT/page", Exit::Pass, Exit::GateFailed),
+        ("report --store OUT --out OUT/page --any-build", Exit::Pass, Exit::Pass),
     ] {
         assert_eq!(build(sources, line), of_its_own, "{line}");
         assert_eq!(build(other, line), of_another, "{line}");
@@ -402,12 +433,20 @@ fn a_record_that_cannot_be_kept_is_reported_all_the_same() {
 fn a_file_of_a_report_that_cannot_be_written_keeps_no_other_from_being_written() {
     static GOOD: [&dyn Case; 1] = [&RIGHT];
     let folder = tempfile::tempdir().expect("a folder");
-    block(&folder.path().join("verdicts.json"));
-    block(&folder.path().join("junit.xml"));
-    let line = "report --out OUT --junit OUT/junit.xml --markdown OUT/verdicts.md";
-    assert_eq!(run_on(&GOOD, &NEVER, line, folder.path()), Exit::Usage);
-    for name in ["index.html", "verdicts.md"] {
+    block(&folder.path().join("out/verdicts.json"));
+    for name in ["junit.xml", "verdicts.md"] {
+        block(&folder.path().join("blocked").join(name));
+    }
+    let out = |line: &str| run_on(&GOOD, &NEVER, line, folder.path());
+    let line = "report --out OUT/out --junit OUT/blocked/junit.xml --markdown OUT/verdicts.md";
+    assert_eq!(out(line), Exit::Usage);
+    for name in ["out/index.html", "verdicts.md"] {
         assert!(folder.path().join(name).is_file(), "{name}");
+    }
+    // One of two alone: that the other one is written makes it no less an error.
+    for (junit, markdown) in [("OUT/blocked", "OUT"), ("OUT", "OUT/blocked")] {
+        let line = format!("verify --store OUT/store --junit {junit}/junit.xml");
+        assert_eq!(out(&format!("{line} --markdown {markdown}/verdicts.md")), Exit::Usage);
     }
 }
 

@@ -20,6 +20,7 @@ use super::{
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
+    export::check(&arguments.export)?;
     let start = Instant::now();
     let store = Store::open(&arguments.store)?;
     let (tier, reuse) = (arguments.tier.into(), arguments.reuse);
@@ -30,6 +31,7 @@ pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
 
 pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
+    export::check(&arguments.export)?;
     let start = Instant::now();
     let suite =
         of_store(&cases, arguments.tier.into(), &arguments.store, arguments.any_build, world)?;
@@ -122,6 +124,10 @@ pub fn of_store(
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);
     let Stored { made, missing, other } = stored(&plans, &store, any_build, world);
+    if made.interrupted {
+        let words = "nothing is judged; the same command reads the store from its beginning";
+        return Err(Failure::interrupted(words));
+    }
     tell_trouble(&made);
     if !missing.is_empty() {
         let (all, missing) = (made.reused + missing.len(), missing.len() - other);
