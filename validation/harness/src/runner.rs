@@ -522,6 +522,17 @@ mod tests {
         assert!(cost.steps <= 4, "{} steps", cost.steps);
     }
 
+    /// With steps of ten times the limit.
+    #[test]
+    fn a_divergence_is_told_after_the_steps_that_were_completed() {
+        let mut wave = wave();
+        let (status, cost) = Drive::new(&mut *wave, 1.0, &[100.0], &|_| 0.0, &mut ())
+            .run(&Context::default())
+            .unwrap();
+        let Status::Diverged { step, .. } = status else { panic!("the run is {status}") };
+        assert_eq!(step, cost.steps, "completed steps, as the message and as the cost have them");
+    }
+
     #[test]
     fn progress_is_shown_at_once_and_by_wall_time_and_changes_nothing() {
         let shown: Mutex<Vec<(Instant, f64)>> = Mutex::default();

@@ -170,6 +170,17 @@ mod tests {
         assert_eq!(runs.unplanned(), [all.canonical()]);
     }
 
+    /// A study would measure a state that is not a result.
+    #[test]
+    fn a_run_that_ended_early_has_a_record_and_is_not_completed() {
+        let spec = RunSpec::new("made_up", "plain", serde_json::json!({}));
+        let mut record = Record::new("made_up", "plain", spec.settings.clone(), 1);
+        record.status = Status::Interrupted { step: 1, time: 0.1 };
+        let runs = Runs::new(vec![JudgedRun::new(Planned::new(spec.clone()), record)]);
+        assert!(runs.record(&spec).is_some(), "the record is there");
+        assert!(runs.completed(&spec).is_none(), "its run did not reach its end");
+    }
+
     #[test]
     fn the_unit_of_a_number_of_a_study_is_that_of_its_name() {
         for (metric, unit) in [("ratio", "-"), ("period [2L/c0]", "2L/c0"), ("[a] of b", "-")] {
