@@ -19,7 +19,7 @@ use super::{
     Exit, Failure, Outcome, World,
     arguments::{self, Status},
     judged::{self, Judged, Verdicts, tier_name},
-    output, verify,
+    output,
 };
 
 /// A gate, what it is judged on, and what came of it last.
@@ -84,7 +84,7 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
             continue;
         }
         let plans = suite::plans(&[*case], Tier::Quick);
-        let Stored { made, missing, .. } = verify::stored(&plans, &store, false, world);
+        let Stored { made, missing, .. } = world.stored(&plans, &store, false);
         if made.interrupted {
             return Err(Failure::interrupted("no gate is shown"));
         }

@@ -48,8 +48,9 @@ use base::reference::{Reference, ReferenceError};
 use base::spec::RunKey;
 use clap::{CommandFactory, Parser};
 use harness::case::{Case, RunError, Tier};
-use harness::make::{self, Done, Failed, Job, Made, Making};
-use harness::store::StoreError;
+use harness::make::{self, Done, Failed, Job, Made, Making, Stored};
+use harness::store::{Store, StoreError};
+use harness::suite::Plans;
 use validation::cases;
 
 use arguments::{Arguments, Command};
@@ -163,6 +164,14 @@ impl World {
     /// How runs are made, until something else is asked for.
     fn making(&self, tier: Tier) -> Making<'_> {
         Making { interrupt: Some(self.interrupt), ..Making::new(tier, &self.sources) }
+    }
+
+    /// What a store has of plans, whether or not its timed runs were made alone.
+    fn stored(&self, plans: &Plans, store: &Store, any_build: bool) -> Stored {
+        let mut jobs = make::jobs(plans.clone());
+        jobs.iter_mut().for_each(|job| job.planned.timed = false);
+        let store = Some(store);
+        make::stored(&jobs, &Making { store, reuse_other: any_build, ..self.making(Tier::Quick) })
     }
 
     /// Makes the runs that a store lacks, on a pool of so many threads, with a bar, and says what of it did

@@ -7,7 +7,7 @@ use harness::{
     case::{Case, Tier},
     make::{self, Making, Stored},
     store::Store,
-    suite::{self, Plans, Suite},
+    suite::{self, Suite},
 };
 
 use super::{
@@ -123,7 +123,7 @@ pub fn of_store(
     }
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);
-    let Stored { made, missing, other } = stored(&plans, &store, any_build, world);
+    let Stored { made, missing, other } = world.stored(&plans, &store, any_build);
     if made.interrupted {
         let words = "nothing is judged; the same command reads the store from its beginning";
         return Err(Failure::interrupted(words));
@@ -138,12 +138,4 @@ pub fn of_store(
         ));
     }
     Ok(suite::judge(plans, tier, made))
-}
-
-/// What a store has of plans, whether or not its timed runs were made alone.
-pub fn stored(plans: &Plans, store: &Store, any_build: bool, world: &World) -> Stored {
-    let mut jobs = make::jobs(plans.clone());
-    jobs.iter_mut().for_each(|job| job.planned.timed = false);
-    let making = Making { store: Some(store), reuse_other: any_build, ..world.making(Tier::Quick) };
-    make::stored(&jobs, &making)
 }
