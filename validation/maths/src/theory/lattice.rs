@@ -37,8 +37,10 @@ pub struct SquareLattice {
     sites: Vec<Site>,
     /// Support radius \[h\].
     support: f64,
-    /// F and W of the kernel from h and r².
-    kernel: [fn(f64, f64) -> f64; 2],
+    /// F of the kernel from h and r².
+    f: fn(f64, f64) -> f64,
+    /// W of the kernel likewise.
+    w: fn(f64, f64) -> f64,
 }
 
 /// The largest values of the symbols over a set of wave vectors, made dimensionless with h.
@@ -73,7 +75,7 @@ impl SquareLattice {
         }
         let f = |h, r2| Smoothing::<K>::new(h).f(r2);
         let w = |h, r2| Smoothing::<K>::new(h).w(r2);
-        Self { h, eta2, correction: 1.0, sites, support: K::SUPPORT, kernel: [f, w] }
+        Self { h, eta2, correction: 1.0, sites, support: K::SUPPORT, f, w }
     }
 
     /// The same with gradients, and their conjugate forces, that are corrected by the inverse of the moments,
@@ -113,7 +115,7 @@ impl SquareLattice {
     /// Σ_y y² ⟨Σ_x V F r²/(r²+η²)⟩ₛ. Only rows y ≠ 0 count, so correlations between offsets of
     /// different rows do not matter.
     pub fn sheared_laplacian_factor(&self) -> f64 {
-        let Self { h, eta2, kernel: [f, _], .. } = *self;
+        let Self { h, eta2, f, .. } = *self;
         self.rows(|y| y * y * self.row_mean(y, |r2| f(h, r2) * r2 / (r2 + eta2), |_| 1.0))
     }
 
@@ -126,7 +128,7 @@ impl SquareLattice {
     /// reached when the rows' phases agree. In simple shear they seldom do: the swing there is
     /// up to 40 % smaller. The pressure noise is about (c₀/U)² A ρU².
     pub fn density_swing(&self) -> f64 {
-        let Self { h, kernel: [_, w], .. } = *self;
+        let Self { h, w, .. } = *self;
         self.rows(|y| 2.0 * self.row_mean(y, |r2| w(h, r2), |s| cos(2.0 * PI * s)).abs())
     }
 
