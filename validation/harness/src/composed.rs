@@ -171,11 +171,21 @@ impl<T: Settings + 'static> Composed<T> {
     /// The run of a variant with its default settings, changed by `set`. A name that no variant has, or a
     /// value out of range, makes a run that is refused, with the reason in its record.
     pub fn spec(&self, variant: &str, set: impl FnOnce(&mut T)) -> RunSpec {
+        self.spec_of(variant, &self.chosen(variant, set))
+    }
+
+    /// The settings of a variant, changed.
+    pub fn chosen(&self, variant: &str, set: impl FnOnce(&mut T)) -> T {
         let mut settings = T::default();
         if let Ok(chosen) = self.composition(variant) {
             (chosen.adjust)(&mut settings);
         }
         set(&mut settings);
+        settings
+    }
+
+    /// The run of a variant with these settings.
+    pub fn spec_of(&self, variant: &str, settings: &T) -> RunSpec {
         RunSpec::new(self.name, variant, serde_json::to_value(settings).unwrap_or_default())
     }
 

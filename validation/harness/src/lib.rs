@@ -37,4 +37,5 @@ pub mod store;
 pub mod studies;
 pub mod study;
 pub mod suite;
+pub mod table;
 mod words;

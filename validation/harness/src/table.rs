@@ -1,0 +1,112 @@
+//! The table of the runs of a case: variants over values of settings, for each tier, with what they are for.
+//!
+//! A case states its runs here once. Its plan, its ladders and its studies look them up by what they are for,
+//! so none of them states variants, resolutions or tiers again.
+
+use base::{gate::Gate, settings::Settings, spec::RunSpec};
+
+use crate::{
+    composed::Composed,
+    declare::{Ladder, Level},
+    planned::{Planned, Tier},
+};
+
+/// One run of a table.
+pub struct Row<T, G> {
+    /// What it is for.
+    pub group: G,
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// Its settings.
+    pub settings: T,
+    /// The run and its gates.
+    pub run: Planned,
+}
+
+/// The runs of a case in one tier. `G` is what runs are for, an enum of the case.
+pub struct Table<T: 'static, G> {
+    case: &'static Composed<T>,
+    tier: Tier,
+    /// The runs, in the order in which they are stated.
+    pub rows: Vec<Row<T, G>>,
+}
+
+impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
+    /// No runs yet.
+    pub fn new(case: &'static Composed<T>, tier: Tier) -> Self {
+        Self { case, tier, rows: Vec::new() }
+    }
+
+    /// Adds each of the variants with each of the values of the quick or of the full tier; `set` applies one.
+    pub fn over<V: Copy>(
+        &mut self,
+        group: G,
+        variants: &[&'static str],
+        [quick, full]: [&[V]; 2],
+        set: impl Fn(&mut T, V),
+    ) {
+        let values = if self.tier == Tier::Quick { quick } else { full };
+        for &variant in variants {
+            for &value in values {
+                self.one(group, variant, |settings| set(settings, value));
+            }
+        }
+    }
+
+    /// Adds one run, in both tiers, and gives its row, so that it can be timed, shown or kept.
+    pub fn one(
+        &mut self,
+        group: G,
+        variant: &'static str,
+        set: impl FnOnce(&mut T),
+    ) -> &mut Row<T, G> {
+        let settings = self.case.chosen(variant, set);
+        let run = Planned::new(self.case.spec_of(variant, &settings));
+        let place = self.rows.len();
+        self.rows.push(Row { group, variant, settings, run });
+        &mut self.rows[place]
+    }
+
+    /// Gives every row the gates that `gates` states of it.
+    pub fn judge(&mut self, gates: impl Fn(&Row<T, G>) -> Vec<Gate>) {
+        for row in &mut self.rows {
+            let gates = gates(row);
+            row.run.gates.extend(gates);
+        }
+    }
+
+    /// The rows of a group.
+    pub fn of(&self, group: G) -> impl Iterator<Item = &Row<T, G>> {
+        self.rows.iter().filter(move |row| row.group == group)
+    }
+
+    /// The runs of a group.
+    pub fn specs(&self, group: G) -> impl Iterator<Item = RunSpec> {
+        self.of(group).map(|row| row.run.spec.clone())
+    }
+
+    /// The ladder of a variant over the runs of some groups; `level` gives the spacing of a run and its
+    /// resolution in words.
+    pub fn ladder(
+        &self,
+        groups: &[G],
+        variant: &'static str,
+        level: impl Fn(&T) -> (f64, String),
+    ) -> Ladder {
+        let rows = self.rows.iter().filter(|row| row.variant == variant);
+        let rows = rows.filter(|row| groups.contains(&row.group));
+        let mut levels: Vec<Level> = rows
+            .map(|row| {
+                let (spacing, label) = level(&row.settings);
+                Level { run: row.run.clone(), spacing, label }
+            })
+            .collect();
+        levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
+        Ladder::new(variant, levels)
+    }
+
+    /// The plan: every run with its gates.
+    pub fn plan(self) -> Vec<Planned> {
+        self.rows.into_iter().map(|row| row.run).collect()
+    }
+}
