@@ -104,6 +104,8 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     fn bytes(&self) -> usize;
     /// Tells this watch of the phases of steps from now on; `None` tells nobody.
     fn watch(&mut self, watch: Option<PhaseWatch>);
+    /// Shows the present state to an observer, without a step.
+    fn show(&self, observer: &mut dyn Observer<X>);
     /// The energies that its forces derive from, if they do \[J/m\].
     fn potential(&self) -> Option<Potential> {
         None
@@ -180,6 +182,9 @@ fn diverged<X: Numbers>(data: &ParticleData<X>, fault: Fault) -> Outcome {
 impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn advance(&mut self, until: f64, dt: f64, observer: &mut dyn Observer<S::Extra>) -> Outcome {
         advance(self, until, dt, observer)
+    }
+    fn show(&self, observer: &mut dyn Observer<S::Extra>) {
+        observer.after_step(self);
     }
     fn checkpoint(&self) -> Checkpoint<S::Extra> {
         let mut checkpoint = self.engine.data.checkpoint(self.integrator.lag());

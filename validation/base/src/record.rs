@@ -28,6 +28,7 @@ use crate::mutation::Mutation;
 use crate::reference::sha256;
 use crate::settings::Settings;
 use crate::spec::{Keep, Measure, RunKey, RunSpec, Task};
+use crate::submission::Submission;
 
 /// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
 pub const NOT_ASKED: &str = "not asked for: --metrics all";
@@ -110,6 +111,9 @@ pub struct Record {
     /// a deliberate error of the scene
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mutation: Option<Mutation>,
+    /// the other code that made the run
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub submission: Option<Submission>,
     /// how the run ended
     pub status: Status,
     /// measured results by name
@@ -406,13 +410,13 @@ impl Record {
 
     /// The same record, which states that it is of this run.
     pub fn of(self, spec: &RunSpec) -> Self {
-        let RunSpec { task, allow_unstable, keep, mutation, .. } = spec.clone();
-        Self { task, allow_unstable, keep, mutation, ..self }
+        let RunSpec { task, allow_unstable, keep, mutation, submission, .. } = spec.clone();
+        Self { task, allow_unstable, keep, mutation, submission, ..self }
     }
 
     /// The run that it is of, whatever was measured of it.
     pub fn spec(&self) -> RunSpec {
-        let Self { case, variant, settings, task, allow_unstable, keep, mutation, .. } = self;
+        let Self { case, variant, settings, task, allow_unstable, keep, .. } = self;
         RunSpec {
             case: case.clone(),
             variant: variant.clone(),
@@ -420,7 +424,8 @@ impl Record {
             task: task.clone(),
             allow_unstable: *allow_unstable,
             keep: *keep,
-            mutation: *mutation,
+            mutation: self.mutation,
+            submission: self.submission.clone(),
             measure: Measure::default(),
         }
     }
@@ -450,6 +455,7 @@ impl Record {
             allow_unstable: false,
             keep: Keep::default(),
             mutation: None,
+            submission: None,
             status: Status::Completed,
             metrics: BTreeMap::new(),
             absent: BTreeMap::new(),

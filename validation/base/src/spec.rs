@@ -23,6 +23,7 @@ use thiserror::Error;
 use crate::{
     mutation::{Constant, Detect, Mutation},
     reference::sha256,
+    submission::Submission,
 };
 
 /// One run, resolved: no default is left to be filled in.
@@ -50,6 +51,9 @@ pub struct RunSpec {
     /// a deliberate error of the scene
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mutation: Option<Mutation>,
+    /// the other code that made the run
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub submission: Option<Submission>,
     /// how much is measured, which is no part of the key
     #[serde(default, skip_serializing_if = "Measure::is_headline")]
     pub measure: Measure,
@@ -211,7 +215,8 @@ impl RunSpec {
     pub fn new(case: &str, variant: &str, settings: Value) -> Self {
         let (case, variant) = (case.to_string(), variant.to_string());
         let (task, keep, measure) = (Task::Simulate, Keep::default(), Measure::default());
-        Self { case, variant, settings, task, allow_unstable: false, keep, mutation: None, measure }
+        let (allow_unstable, mutation, submission) = (false, None, None);
+        Self { case, variant, settings, task, allow_unstable, keep, mutation, submission, measure }
     }
 
     /// The same, whatever its time step.
@@ -282,6 +287,10 @@ impl RunSpec {
             let refused = || SpecError { field, value: format!("{value:?}"), allowed };
             range.contains(&value).then_some(()).ok_or_else(refused)
         };
+        if let Some(of) = &self.submission {
+            let allowed = "none: only `touchstone submit` records runs of other codes";
+            return Err(SpecError { field: "submission", value: of.to_string(), allowed });
+        }
         if let Some(count) = self.keep.pictures {
             within("keep.pictures", count as f64, 1.0..=1000.0, "1 to 1000")?;
         }

@@ -16,6 +16,8 @@ use crate::{
     checkpoint::Checkpoints,
     clock::{self, Clock},
     error::RunError,
+    outline::Sink,
+    playback::Playback,
     size::Size,
 };
 
@@ -66,6 +68,12 @@ pub struct Context<'a> {
     pub lost: Option<&'a (dyn Fn(&RunError) + Sync)>,
     /// What time it is, by default that of the system.
     pub clock: Option<&'a dyn Clock>,
+    /// Where the problem of the run is put: then no step is made.
+    pub outline: Option<Sink>,
+    /// Frames of another code, which are measured in place of steps.
+    pub playback: Option<&'a Playback>,
+    /// Told of the particles at each time at which the run is measured, when every quantity is at that time.
+    pub at_times: Option<&'a (dyn Fn(f64, Profile) + Sync)>,
     /// Where checkpoints go, and what the run goes on from; the last one is made at an interrupt.
     pub checkpoints: Option<&'a Checkpoints<'a>>,
     /// Set by another thread to stop the run.

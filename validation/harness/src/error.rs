@@ -104,6 +104,12 @@ pub enum RunError {
         /// The settings on which this number depends.
         setting: &'static str,
     },
+    /// The problem of the run was asked for, and no step.
+    #[error("no step was made: the problem of the run was asked for")]
+    Outlined,
+    /// Frames of another code that do not fit the run.
+    #[error("{0}")]
+    Playback(String),
     /// More time or memory than a run may take.
     #[error(
         "the run would be {size}; without --allow-long at most {} and {} MB are allowed; change {settings}",

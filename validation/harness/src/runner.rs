@@ -52,6 +52,7 @@ struct Watch<'a, X, S> {
     /// Wall time of the last checkpoint \[s\].
     saved: f64,
     seen: &'a mut S,
+    pressure: &'a dyn Fn(f64) -> f64,
     after_step: Named<AfterStep<'a, X, S>>,
     frames: Option<Frames<'a>>,
     profiler: Option<Profiler>,
@@ -208,11 +209,15 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
             let start = self.reached.checked_sub(1).map_or(0.0, |before| times[before]);
             let dt = if until > start { dt.min((until - start) / least) } else { dt };
             let is_last = self.reached + 1 == times.len();
-            self.synchronises = is_last || at.iter().any(|(_, (_, synchronised))| *synchronised);
+            let is_told = self.context.at_times.is_some();
+            self.synchronises = is_last || is_told || at.iter().any(|(_, (_, synchronised))| *synchronised);
             if let Some(ended) = self.step_to(simulation, until, dt) {
                 return ended;
             }
             let start = self.now();
+            if let Some(tell) = self.context.at_times {
+                tell(until, frames::columns(&simulation.particles(), self.pressure));
+            }
             for (name, (at, _)) in at {
                 self.profile(name);
                 at(self.seen, simulation, self.reached);
@@ -402,6 +407,10 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         if let Some(tell) = context.estimate {
             tell(&size);
         }
+        if let Some(outline) = &context.outline {
+            outline.drive(simulation, times, dt, pressure);
+            return Err(RunError::Outlined);
+        }
         let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
         let mut watch = Watch {
             context,
@@ -409,6 +418,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             shown: Instant::now(),
             saved: context.clock().read(context.threads).wall,
             seen,
+            pressure,
             after_step,
             frames: frames.transpose()?,
             profiler: None,
@@ -417,6 +427,13 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             reached: 0,
             synchronises: true,
         };
+        if let Some(playback) = context.playback {
+            let at = |watch: &mut Watch<'_, X, S>, simulation: &mut D, k: usize| {
+                at.iter().for_each(|(_, (at, _))| at(watch.seen, simulation, k));
+            };
+            let status = playback.play(simulation, times, &mut watch, at)?;
+            return Ok((status, watch.counted(simulation)));
+        }
         let mut ended = None;
         if let Some(bytes) = context.checkpoints.and_then(Checkpoints::next) {
             ended = watch.go_on(&bytes, simulation)?;

@@ -33,6 +33,9 @@ pub fn begin<X, D: ?Sized>(
     numbers: &[(&str, f64)],
     context: &Context,
 ) -> Record {
+    if let Some(outline) = &context.outline {
+        outline.method([method.kernel, method.integrator, method.walls], method.support);
+    }
     let json = serde_json::to_value(settings).unwrap_or_default();
     let mut record = Record::new(case, variant, json, context.threads.max(1));
     let words = [(KERNEL, method.kernel), (INTEGRATOR, method.integrator), (WALLS, method.walls)];

@@ -20,7 +20,7 @@ use solver::{
     Smoothing, Stepper, Tait, Term,
 };
 
-use crate::{context::Context, limits::Limits};
+use crate::{context::Context, limits::Limits, outline::Sink};
 pub use medium::{Knob, Medium};
 pub use mutate::mutate;
 pub use terms::{Boundary, FirstRow, FromMedium};
@@ -57,10 +57,13 @@ pub struct Parts<X = ()> {
     pub threads: usize,
     /// A deliberate error.
     pub mutation: Option<Mutation>,
+    /// Where these parts are told, if another code wants to know them.
+    pub outline: Option<Sink>,
 }
 
-impl<X> Parts<X> {
-    /// Parts without walls, with the usual skin and limits and the threads of a context.
+impl<X: Numbers> Parts<X> {
+    /// Parts without walls, with the usual skin and limits and the threads of a context; of another code's
+    /// run with its particles.
     pub fn new(
         medium: Medium,
         domain: Domain,
@@ -68,8 +71,13 @@ impl<X> Parts<X> {
         context: &Context,
     ) -> Self {
         let (mirrors, bodies, limits) = (Vec::new(), Vec::new(), solver::Limits::default());
-        let &Context { threads, mutation, .. } = context;
-        Self { medium, domain, particles, mirrors, bodies, skin: None, limits, threads, mutation }
+        let &Context { threads, mutation, ref outline, .. } = context;
+        let (skin, outline) = (None, outline.clone());
+        let particles = match context.playback {
+            Some(playback) => playback.particles(particles),
+            None => particles,
+        };
+        Self { medium, domain, particles, mirrors, bodies, skin, limits, threads, mutation, outline }
     }
 }
 

@@ -2,13 +2,16 @@
 
 use base::mutation::Constant;
 use nalgebra::Vector2;
-use solver::Role;
+use solver::{Numbers, Role};
 
 use super::Parts;
 
 /// Multiplies the constant that is wrong by its factor; the time step is not a part of a scene, and neither
-/// is the lifetime of neighbour lists.
-pub fn mutate<X>(parts: &mut Parts<X>) {
+/// is the lifetime of neighbour lists. Before, the parts are told to who wants to know them.
+pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
+    if let Some(outline) = &parts.outline {
+        outline.scene(parts);
+    }
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);
     let Parts { medium, particles, mirrors, .. } = parts;

@@ -1,0 +1,50 @@
+//! Which other code made a run, and how much of the problem it took over.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// A run of another code.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Submission {
+    /// name of the code
+    pub code: String,
+    /// its version
+    pub version: String,
+    /// the scheme in its own words, such as `WCSPH, quintic spline`
+    pub scheme: String,
+    /// what it took over of the problem
+    pub division: Division,
+    /// SHA-256 of the document that describes the method
+    pub method: String,
+    /// the seed from which a sealed problem was drawn
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+}
+
+/// What a submission took over of the problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Division {
+    /// the particles, their spacing and the support of the kernel: compares codes
+    Closed,
+    /// the problem alone: compares methods
+    Open,
+}
+
+impl fmt::Display for Division {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Division::Closed => "closed",
+            Division::Open => "open",
+        })
+    }
+}
+
+impl fmt::Display for Submission {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}, {}", self.code, self.version, self.scheme)?;
+        self.seed.map_or(Ok(()), |seed| write!(f, ", sealed by seed {seed}"))
+    }
+}

@@ -1,0 +1,147 @@
+//! Frames of a run that another code made, played back: particles are put where a frame has them, all that
+//! pair sweeps read is derived from them, and the case measures them as it measures its own.
+
+use base::record::Status;
+use nalgebra::Vector2;
+use solver::{Numbers, Observer, Outcome, Particle, Role, Stepper};
+
+use crate::error::RunError;
+
+/// A particle of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Number of the particle in the problem.
+    pub id: u32,
+    /// \[m\].
+    pub position: Vector2<f64>,
+    /// \[m/s\].
+    pub velocity: Vector2<f64>,
+    /// \[kg/m³\]; that of the start where a frame has none.
+    pub density: Option<f64>,
+}
+
+/// The particles at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// \[s\].
+    pub time: f64,
+    /// The particles that moved; the others are where they were.
+    pub particles: Vec<Placed>,
+}
+
+/// A particle that another code chose itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Own {
+    /// Its role in the scene.
+    pub role: Role,
+    /// Mass per unit depth \[kg/m\].
+    pub mass: f64,
+    /// Where it starts.
+    pub start: Placed,
+}
+
+/// Frames, ascending in time.
+#[derive(Clone, Debug, Default)]
+pub struct Playback {
+    /// The frames.
+    pub frames: Vec<Frame>,
+    /// The particles in place of those of the problem; none of a code that took these over.
+    pub own: Vec<Own>,
+}
+
+/// A frame counts for a time that differs from its own by at most this share of the end of the run.
+const SAME_TIME: f64 = 1e-6;
+
+impl Playback {
+    /// The particles of a scene: its own ones unless the other code chose others.
+    pub fn particles<X: Numbers>(&self, of_scene: Vec<Particle<X>>) -> Vec<Particle<X>> {
+        if self.own.is_empty() {
+            return of_scene;
+        }
+        let usual = of_scene.first().map_or(1.0, |particle| particle.density);
+        let particle = |own: &Own| {
+            let Own { role, mass, start: Placed { position, velocity, density, .. } } = *own;
+            let density = density.unwrap_or(usual);
+            Particle { role, position, velocity, density, mass, extra: X::default() }
+        };
+        self.own.iter().map(particle).collect()
+    }
+
+    /// The times that have no frame \[s\], of a run that ends with the last of them.
+    pub fn missing(&self, times: &[f64]) -> Vec<f64> {
+        let end = times.last().copied().unwrap_or_default();
+        let has = |time: &&f64| self.frames.iter().any(|frame| is_at(frame, **time, end));
+        times.iter().filter(|time| !has(time)).copied().collect()
+    }
+
+    /// Shows every frame to the observer, and calls `at` with the number of each of the times.
+    ///
+    /// # Errors
+    /// If a time has no frame, or a frame cannot be put in place of the particles of the scene.
+    pub fn play<X: Numbers, D: Stepper<X> + ?Sized, O: Observer<X>>(
+        &self,
+        simulation: &mut D,
+        times: &[f64],
+        observer: &mut O,
+        mut at: impl FnMut(&mut O, &mut D, usize),
+    ) -> Result<Status, RunError> {
+        let end = times.last().copied().unwrap_or_default();
+        if let Some(time) = self.missing(times).first() {
+            return Err(RunError::Playback(format!("there is no frame at t = {time} s")));
+        }
+        let mut reached = 0;
+        for frame in &self.frames {
+            let time = times.get(reached).copied().filter(|time| is_at(frame, *time, end));
+            if let Some(ended) = put(frame, time.unwrap_or(frame.time), simulation)? {
+                return Ok(ended);
+            }
+            simulation.show(observer);
+            if time.is_some() {
+                at(observer, simulation, reached);
+                reached += 1;
+            }
+        }
+        Ok(Status::Completed)
+    }
+}
+
+fn is_at(frame: &Frame, time: f64, end: f64) -> bool {
+    (frame.time - time).abs() <= SAME_TIME * end
+}
+
+/// Puts the particles of a frame in place; how the run counts as ended, if they are beyond its limits.
+fn put<X: Numbers, D: Stepper<X> + ?Sized>(
+    frame: &Frame,
+    time: f64,
+    simulation: &mut D,
+) -> Result<Option<Status>, RunError> {
+    let refused = |reason: String| RunError::Playback(format!("frame at t = {time} s: {reason}"));
+    let mut state = simulation.checkpoint();
+    let mut places = vec![usize::MAX; state.particles.len()];
+    for (place, (id, _)) in state.particles.iter().enumerate() {
+        places[*id as usize] = place;
+    }
+    for placed in &frame.particles {
+        let place = places.get(placed.id as usize).copied();
+        let Some((_, particle)) = place.and_then(|place| state.particles.get_mut(place)) else {
+            let most = places.len();
+            return Err(refused(format!("id is {}; the problem has ids below {most}", placed.id)));
+        };
+        (particle.position, particle.velocity) = (placed.position, placed.velocity);
+        particle.density = placed.density.unwrap_or(particle.density);
+    }
+    state.built_at = state.particles.iter().map(|(_, particle)| particle.position).collect();
+    state.lag = 0.0;
+    state.progress = solver::Progress { time, ..solver::Progress::default() };
+    simulation.restore(&state).map_err(|reason| refused(reason.into()))?;
+    match simulation.advance(time, 1.0, &mut ()) {
+        Outcome::Diverged(divergence) => Ok(Some(Status::Diverged {
+            step: 0,
+            time,
+            particle: divergence.fault.particle as usize,
+            field: divergence.fault.field.into(),
+            value_text: format!("{:.6e}", divergence.fault.value),
+        })),
+        Outcome::Reached | Outcome::Stopped => Ok(None),
+    }
+}
