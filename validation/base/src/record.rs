@@ -113,7 +113,7 @@ pub struct Record {
     pub mutation: Option<Mutation>,
     /// the other code that made the run
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub submission: Option<Submission>,
+    pub submission: Option<Box<Submission>>,
     /// how the run ended
     pub status: Status,
     /// measured results by name

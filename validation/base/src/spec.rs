@@ -53,7 +53,7 @@ pub struct RunSpec {
     pub mutation: Option<Mutation>,
     /// the other code that made the run
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub submission: Option<Submission>,
+    pub submission: Option<Box<Submission>>,
     /// how much is measured, which is no part of the key
     #[serde(default, skip_serializing_if = "Measure::is_headline")]
     pub measure: Measure,

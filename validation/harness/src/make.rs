@@ -2,7 +2,7 @@
 //! the longest first; then the timed runs, one at a time while this program does nothing else, in rounds over
 //! all of them, so that a change of the machine's speed affects every variant alike.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -108,6 +108,10 @@ pub struct Made {
     pub unsound: BTreeMap<RunKey, StoreError>,
     /// Why runs have no record. None of them costs another its record.
     pub failed: BTreeMap<RunKey, Failed>,
+    /// Runs that other codes made of the cases of the plan, as the store has them.
+    pub submissions: Vec<Record>,
+    /// Why files that say that they are such runs could not be read.
+    pub unread: Vec<StoreError>,
     /// Was it stopped from outside?
     pub interrupted: bool,
 }
@@ -181,6 +185,14 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
         } else {
             stored.other += usize::from(is_other);
             stored.missing.push(job.clone());
+        }
+    }
+    let cases: BTreeSet<&str> = jobs.iter().map(|job| job.case.name()).collect();
+    let of_case = |(case, store): (&str, &Store)| store.submissions(case);
+    for read in cases.into_iter().zip(making.store.into_iter().cycle()).flat_map(of_case) {
+        match read {
+            Ok(record) => stored.made.submissions.push(record),
+            Err(error) => stored.made.unread.push(error),
         }
     }
     stored

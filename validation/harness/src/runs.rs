@@ -23,6 +23,18 @@ pub struct JudgedRun {
 }
 
 impl JudgedRun {
+    /// Of a run of another code: the gates that apply, and the names of those whose metric its results do
+    /// not determine, each with the reason.
+    pub fn applicable(&self) -> (Vec<&Judged>, Vec<(&str, &str)>) {
+        let absent = |judged: &Judged| self.record.absent.get(&judged.gate.metric);
+        let applies = |judged: &&Judged| {
+            absent(judged).is_none() && self.record.metrics.contains_key(&judged.gate.metric)
+        };
+        let (apply, others): (Vec<&Judged>, Vec<&Judged>) = self.judged.iter().partition(applies);
+        let reason = |judged| absent(judged).map_or("it is not measured of results", String::as_str);
+        (apply, others.into_iter().map(|judged| (&*judged.gate.id, reason(judged))).collect())
+    }
+
     /// Judges a record by the gates of its plan.
     pub fn new(planned: Planned, record: Record) -> Self {
         let judged =
@@ -77,6 +89,7 @@ impl Judged {
 pub struct Runs {
     runs: Vec<JudgedRun>,
     by_key: BTreeMap<RunKey, usize>,
+    submissions: Vec<JudgedRun>,
     unplanned: Mutex<BTreeSet<String>>,
 }
 
@@ -85,7 +98,17 @@ impl Runs {
     pub fn new(runs: Vec<JudgedRun>) -> Self {
         let key = |(k, run): (usize, &JudgedRun)| (run.planned.spec.key(), k);
         let by_key = runs.iter().enumerate().map(key).collect();
-        Self { runs, by_key, unplanned: Mutex::default() }
+        Self { runs, by_key, ..Self::default() }
+    }
+
+    /// The same with runs of other codes beside them.
+    pub fn with_submissions(self, submissions: Vec<JudgedRun>) -> Self {
+        Self { submissions, ..self }
+    }
+
+    /// The runs that other codes made.
+    pub fn submissions(&self) -> &[JudgedRun] {
+        &self.submissions
     }
 
     /// All of them in the order of the plan.

@@ -47,6 +47,9 @@ pub enum StoreError {
 /// More than this is no record \[bytes\]: one with a million particles has 100 MB.
 pub const MOST_BYTES: u64 = 1 << 30;
 
+/// Begins the name of the record of a run that another code made.
+const SUBMITTED: &str = "submitted-";
+
 /// What a store contains for a run.
 #[derive(Debug)]
 pub enum Found {
@@ -80,7 +83,20 @@ impl Store {
     }
 
     pub(crate) fn name(spec: &RunSpec) -> String {
-        format!("{}-{}-{}.json", spec.case, spec.variant, spec.key())
+        let who = if spec.submission.is_some() { SUBMITTED } else { "" };
+        format!("{who}{}-{}-{}.json", spec.case, spec.variant, spec.key())
+    }
+
+    /// The records of runs that other codes made of a case, sorted by file name; a file that cannot be read
+    /// as one is an error in its place.
+    pub fn submissions(&self, case: &str) -> Vec<Result<Record, StoreError>> {
+        let entries = fs::read_dir(self.path()).into_iter().flatten().flatten();
+        let begin = format!("{SUBMITTED}{case}-");
+        let is_of_case = |name: &String| name.starts_with(&begin) && name.ends_with(".json");
+        let mut names: Vec<String> =
+            entries.filter_map(|e| e.file_name().into_string().ok()).filter(is_of_case).collect();
+        names.sort();
+        names.into_iter().map(|name| read(self.path().join(name))).collect()
     }
 
     /// The record of a run, if there is one, and whether sources of this digest made it. An interrupted

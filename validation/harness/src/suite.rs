@@ -3,6 +3,7 @@
 use base::{
     gate::{Bound, Evidence, Gate, Verdict},
     record::{Record, Status},
+    spec::RunSpec,
 };
 use rayon::prelude::*;
 use report::{Card, Counts};
@@ -125,7 +126,9 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
                 let record = record(&planned);
                 JudgedRun::new(planned, record)
             });
-            (case, Runs::new(judged.collect()))
+            let of_case = made.submissions.iter().filter(|record| record.case == case.name());
+            let submitted = of_case.map(|record| submitted(case, record.clone())).collect();
+            (case, Runs::new(judged.collect()).with_submissions(submitted))
         })
         .collect();
     let study = |(case, runs): (&'static dyn Case, Runs)| {
@@ -139,6 +142,13 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
     };
     let cases = of_plans.into_par_iter().map(study).collect();
     Suite { tier, cases, made }
+}
+
+/// The run of another code, judged by the gates that our plans have for the same settings.
+pub fn submitted(case: &dyn Case, record: Record) -> JudgedRun {
+    let spec = record.spec();
+    let gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
+    JudgedRun::new(Planned::new(spec).judged(gates), record)
 }
 
 /// A failing gate if a study asked for a run that the case did not plan.

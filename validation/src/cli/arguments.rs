@@ -38,6 +38,12 @@ pub enum Command {
     Judge(Judge),
     /// Do what `verify` does and write the report; with --store, write it without making any run
     Report(Report),
+    /// Write a problem into a folder for another code: particles, walls, material, times
+    Export(WriteProblem),
+    /// Write a problem whose settings are drawn from a seed and from the description of a method
+    Challenge(Challenge),
+    /// Measure and judge particles that another code wrote, and keep their record in a store
+    Submit(Submit),
     /// Show the differences between two reports or stores
     Compare(Compare),
     /// Find the largest stable time steps by bisection and compare them with theory
@@ -219,6 +225,98 @@ pub struct Plan {
     /// Variants of the sweep, separated by commas; by default that of `touchstone run`
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub variant: Vec<String>,
+}
+
+/// For whom a problem is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Tables of comma-separated values
+    Csv,
+    /// Also an unstructured grid of ParaView
+    Vtu,
+    /// Also a data file and an input script of LAMMPS
+    Lammps,
+    /// Also a Python script that runs PySPH
+    Pysph,
+}
+
+#[derive(Debug, Args)]
+pub struct WriteProblem {
+    /// Name of the case
+    pub case: String,
+    /// Name of the variant whose particles and walls are written; by default that of `touchstone run`
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Change a setting (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// What is written beside problem.json, README.md and particles.csv
+    #[arg(long, value_enum, default_value = "csv")]
+    pub format: Format,
+    /// The folder
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Also make the run and write its results as a submission of this program
+    #[arg(long)]
+    pub solve: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Challenge {
+    /// Name of the case
+    pub case: String,
+    /// Name of the variant whose particles and walls are written; by default that of `touchstone run`
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// The number from which settings are drawn, chosen by somebody else than who wrote the method
+    #[arg(long, value_name = "N")]
+    pub seed: u64,
+    /// The method.json that the submission will have; if it is changed afterwards, the submission is refused
+    #[arg(long, value_name = "FILE")]
+    pub method: PathBuf,
+    /// What is written beside problem.json, README.md, particles.csv and method.json
+    #[arg(long, value_enum, default_value = "csv")]
+    pub format: Format,
+    /// The folder
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Submit {
+    /// Name of the case
+    pub case: String,
+    /// The folder of the submission: method.json, system.json, results.csv (or *.dump, *.npz, *.vtu, *.vtp),
+    /// and the problem.json that `export` wrote
+    pub folder: PathBuf,
+    /// The folder for the record, as that of `verify` and `report`
+    #[arg(long, value_name = "DIR", required_unless_present = "check")]
+    pub store: Option<PathBuf>,
+    /// Name of the variant whose problem it solves, if the folder has no problem.json
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// A setting of the problem, if the folder has no problem.json (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Names of columns in the results, as in `--map x=pos_x,y=pos_y`
+    #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
+    pub map: Vec<(String, String)>,
+    /// Say everything that is missing or wrong, and record nothing
+    #[arg(long)]
+    pub check: bool,
+    /// Print every gate, not only those that did not pass
+    #[arg(long)]
+    pub all: bool,
+}
+
+/// `OURS=THEIRS`, where ours is a column of results.
+fn pair(text: &str) -> Result<(String, String), String> {
+    let (ours, theirs) = text.split_once('=').ok_or("expected OURS=THEIRS, as in x=pos_x")?;
+    let columns = exchange::read::COLUMNS.map(|(name, ..)| name);
+    match columns.contains(&ours) && !theirs.is_empty() {
+        true => Ok((ours.into(), theirs.into())),
+        false => Err(format!("{ours:?} is no column of results; these are {}", columns.join(", "))),
+    }
 }
 
 /// Which records may be reused.

@@ -18,6 +18,7 @@ mod doctor;
 #[cfg(test)]
 mod documents;
 mod estimate;
+mod exchange;
 mod explain;
 mod export;
 mod interrupt;
@@ -237,6 +238,8 @@ fn tell_trouble(made: &Made) {
         Failed::Bug => format!("run {key} has no record: it ended by the bug of which was told"),
     };
     tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
+    let unread = |error: &StoreError| format!("{error}; the submission does not count");
+    tell(&made.unread.iter().map(unread).collect::<Vec<_>>());
 }
 
 /// 4 if a run ended by a bug, 2 if a file could not be written or read, otherwise nothing.
@@ -332,6 +335,9 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
         Command::Verify(arguments) => verify::verify(arguments, world),
         Command::Judge(arguments) => verify::judge(arguments, world),
         Command::Report(arguments) => report::report(arguments, world),
+        Command::Export(arguments) => exchange::export(arguments, world),
+        Command::Challenge(arguments) => exchange::challenge(arguments, world),
+        Command::Submit(arguments) => exchange::submit(arguments, world),
         Command::Compare(arguments) => compare::compare(arguments, world),
         Command::Stability(arguments) => stability::stability(arguments, world),
         Command::Explain(arguments) => explain::explain(arguments, world),

@@ -12,7 +12,7 @@ use crate::{
     columns::Columns,
     declare::{Accuracy, Ladder, Peer},
     runs::Runs,
-    studies::order::orders,
+    studies::{order::orders, submissions},
     study::Study,
     words::name_of_error,
 };
@@ -123,6 +123,7 @@ fn at_spacing(points: &[Point], spacing: f64) -> Option<&Point> {
 }
 
 pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
+    let peers = [accuracy.peers.clone(), submissions::peers(accuracy, runs)].concat();
     let id = format!("{}-work-precision", accuracy.id);
     let all = accuracy.ladders.iter().chain(&accuracy.more);
     let (drawn, listed) = (points(accuracy, &accuracy.ladders, runs), points(accuracy, all, runs));
@@ -131,19 +132,19 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     let study =
         orders.judged.into_iter().fold(study, |study, (gate, order)| study.judge(gate, order));
     let study = study
-        .block(figure(&id, accuracy, &drawn, (orders.panel, orders.caption)))
+        .block(figure(&id, (accuracy, &peers), &drawn, (orders.panel, orders.caption)))
         .block(orders.table)
         .block(cheapest_table(&listed));
-    if accuracy.peers.is_empty() {
+    if peers.is_empty() {
         return study;
     }
-    study.block(peer_table(&accuracy.peers, &listed))
+    study.block(peer_table(&peers, &listed))
 }
 
 /// Beside the panel of orders and what its caption explains.
 fn figure(
     id: &str,
-    accuracy: &Accuracy,
+    (accuracy, peers): (&Accuracy, &[Peer]),
     points: &[Point],
     (orders, explained): (Plot, String),
 ) -> Figure {
@@ -151,8 +152,7 @@ fn figure(
     let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
     let failed = points.iter().any(|point| point.failure.is_some());
     let crosses = if failed { " Crosses above are runs that failed." } else { "" };
-    let others = accuracy
-        .peers
+    let others = peers
         .first()
         .map_or(String::new(), |peer| format!(" Grey: other codes ({}).", peer.timed));
     let caption = format!(
@@ -162,7 +162,7 @@ fn figure(
         name_of_error(&accuracy.label),
     );
     let clock = panel("Error against run time", "run time on one core [s]", points, Point::median);
-    let peers = peer_layers(&accuracy.peers);
+    let peers = peer_layers(peers);
     let clock = peers.into_iter().fold(clock, Plot::layer);
     let pairs = |p: &Point| p.pairs;
     let counted = panel("Error against work", "pair interactions [-]", points, pairs);

@@ -11,6 +11,7 @@ mod made_up;
 mod map;
 mod order;
 mod sensitivity;
+mod submissions;
 
 pub use card::{Headline, card};
 pub use limit::of_theory as limit_of_theory;
@@ -27,5 +28,6 @@ pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     let sensitivity = declared.sensitivity.iter().filter(|sensitivity| !sensitivity.of.is_empty());
     studies.extend(sensitivity.map(|of| sensitivity::study(of, runs)));
     studies.extend(declared.maps.iter().map(|map| map::study(map, runs)));
+    studies.extend(submissions::study(case, declared, runs));
     studies
 }

@@ -1,0 +1,15 @@
+//! Problems for other codes, and what these codes made of them.
+//!
+//! ```text
+//! case ──▶ problem: problem.json, README.md, particles ──▶ another code ──▶ results ──▶ measured and judged
+//! ```
+//!
+//! [`write`] puts a problem into a folder; [`read`] reads particles at times from the formats of other codes;
+//! [`submission`] reads a folder of results and measures it by the code that measures our own runs.
+
+pub mod challenge;
+pub mod flaw;
+pub mod problem;
+pub mod read;
+pub mod submission;
+pub mod write;

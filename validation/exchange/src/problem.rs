@@ -1,0 +1,258 @@
+//! A problem as a document: every number with its unit, every equation with its text.
+
+use base::{gate::Gate, spec::RunSpec};
+use harness::{
+    case::{Case, RunError},
+    context::Context,
+    method::Medium,
+    outline::{Outline, Sink},
+    plan,
+};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+/// Version of `problem.json`; raised with every change that an older reader would misread.
+pub const SCHEMA: u32 = 1;
+
+/// Name of the document in the folder of a problem.
+pub const PROBLEM: &str = "problem.json";
+
+/// A problem and the run of ours that it is taken from.
+pub struct Problem {
+    /// The run.
+    pub spec: RunSpec,
+    /// The problem in words.
+    pub about: &'static str,
+    /// What scene and drive are made of.
+    pub outline: Outline,
+    /// What a run of these settings is judged by.
+    pub gates: Vec<Gate>,
+    /// Of a sealed problem, what it was drawn from.
+    pub sealed: Option<Sealed>,
+}
+
+/// What a sealed problem was drawn from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sealed {
+    /// the seed
+    pub seed: u64,
+    /// SHA-256 of the document of the method as it was then
+    pub method: String,
+}
+
+/// What a reader needs of the document: the run that is asked for.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Asked {
+    schema: u32,
+    /// the run
+    pub spec: RunSpec,
+    /// what it was drawn from
+    #[serde(default)]
+    pub sealed: Option<Sealed>,
+}
+
+impl Asked {
+    /// Reads the document.
+    ///
+    /// # Errors
+    /// What is wrong with it, with line and column.
+    pub fn from_json(text: &str) -> Result<Self, String> {
+        let asked: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        match asked.schema {
+            SCHEMA => Ok(asked),
+            other => Err(format!("schema is {other}; this program reads schema {SCHEMA}")),
+        }
+    }
+}
+
+/// A number with its unit.
+fn with_unit(value: impl Serialize, unit: &str) -> Value {
+    json!({ "value": value, "unit": unit })
+}
+
+impl Problem {
+    /// The problem of a run.
+    ///
+    /// # Errors
+    /// If the run is refused, or is none of a scene.
+    pub fn of(case: &dyn Case, spec: RunSpec) -> Result<Self, RunError> {
+        let sink = Sink::default();
+        let context = Context {
+            outline: Some(sink.clone()),
+            allow_long: true,
+            ..Context::default()
+        };
+        match case.run(&spec, &context) {
+            Err(RunError::Outlined) | Ok(_) => {}
+            Err(error) => return Err(error),
+        }
+        let none = || RunError::Playback(format!("case {} has no scene to export", case.name()));
+        let outline = sink.take().filter(|of| !of.times.is_empty()).ok_or_else(none)?;
+        let gates = plan::gates_of(case, &spec);
+        Ok(Self { spec, about: case.about(), outline, gates, sealed: None })
+    }
+
+    /// The particles that the other code moves: their numbers in the problem.
+    pub fn moving(&self) -> Vec<u32> {
+        let roles = self.outline.particles.column("role").iter().enumerate();
+        roles.filter(|(_, role)| **role == 0.0).map(|(k, _)| k as u32).collect()
+    }
+
+    /// Is the material an elastic solid?
+    pub fn is_solid(&self) -> bool {
+        self.outline.medium.shear_modulus > 0.0
+    }
+
+    /// The document.
+    pub fn to_json(&self) -> Value {
+        let Outline { medium: m, domain, mirrors, times, dt, method, .. } = &self.outline;
+        let ([kernel, integrator, walls], support) = method;
+        let plane = |wall: &solver::PlaneWall| {
+            json!({
+                "point": with_unit(wall.point.as_slice(), "m"),
+                "normal_into_the_material": with_unit(wall.normal.as_slice(), "-"),
+                "velocity": with_unit(wall.velocity.as_slice(), "m/s"),
+            })
+        };
+        let gate = |gate: &Gate| json!({ "id": gate.id, "metric": gate.metric, "bound": gate.bound });
+        let mut document = json!({
+            "schema": SCHEMA,
+            "spec": self.spec,
+            "about": self.about,
+            "dimensions": 2,
+            "equations": self.equations().map(|(name, text)| json!({ "name": name, "text": text })),
+            "material": material(m, self.is_solid()),
+            "acceleration": with_unit(m.acceleration.as_slice(), "m/s^2"),
+            "domain": {
+                "low": with_unit(domain.low.as_slice(), "m"),
+                "period": domain.period.map(|p| p.map_or(json!("none"), |p| with_unit(p, "m"))),
+            },
+            "walls": {
+                "planes": mirrors.iter().map(plane).collect::<Vec<_>>(),
+                "of_particles": "particles whose role is 1 or 2, at rest or with their velocity along the wall",
+            },
+            "particles": {
+                "file": super::write::PARTICLES,
+                "count": self.outline.particles.column("id").len(),
+                "spacing": with_unit(m.dx, "m"),
+                "roles": { "0": "moves", "1": "behind a wall", "2": "on a wall" },
+                "columns": self.columns(),
+            },
+            "times": with_unit(times, "s"),
+            "end": with_unit(times.last(), "s"),
+            "judged_by": self.gates.iter().map(gate).collect::<Vec<_>>(),
+            "our_method": {
+                "kernel": kernel,
+                "smoothing_length": with_unit(m.h, "m"),
+                "support_radius": with_unit(support * m.h, "m"),
+                "integrator": integrator,
+                "walls": walls,
+                "time_step": with_unit(dt, "s"),
+            },
+        });
+        if let Some(sealed) = &self.sealed {
+            document["sealed"] = json!(sealed);
+        }
+        document
+    }
+
+    /// Names and units of the columns of the particles.
+    pub fn columns(&self) -> Vec<Value> {
+        let columns = self.outline.particles.columns.iter();
+        let columns = columns.map(|c| json!({ "name": c.name, "unit": c.unit }));
+        let body = json!({ "name": "body", "unit": "-" });
+        columns.chain((!self.outline.bodies.is_empty()).then_some(body)).collect()
+    }
+
+    /// The equations in words.
+    pub fn equations(&self) -> [(&'static str, &'static str); 3] {
+        let continuity = ("continuity", "dρ/dt = -ρ ∇·v");
+        if self.is_solid() {
+            return [
+                continuity,
+                ("momentum", "dv/dt = (1/ρ) ∇·σ + g, σ = -p I + S"),
+                (
+                    "material",
+                    "p = c0² (ρ - ρ0); dS/dt = 2 μ (ε̇ - tr(ε̇) I/2) + S·Ωᵀ + Ω·S (Jaumann rate), plane \
+                     strain",
+                ),
+            ];
+        }
+        [
+            continuity,
+            ("momentum", "dv/dt = -(1/ρ) ∇p + ν ∇²v + g"),
+            ("state", "p = p_b + (ρ0 c0²/γ) ((ρ/ρ0)^γ - 1)"),
+        ]
+    }
+
+    /// A page that a person can work from.
+    pub fn page(&self) -> String {
+        let Outline { medium: m, times, .. } = &self.outline;
+        let quantity = |(name, value): (&String, &Value)| {
+            let text = |value: &Value| value.as_str().map_or(value.to_string(), String::from);
+            format!("| {} | {} | {} |\n", name.replace('_', " "), text(&value["value"]), text(&value["unit"]))
+        };
+        let material = material(m, self.is_solid());
+        let material: String = material.as_object().into_iter().flatten().map(quantity).collect();
+        let equations: String =
+            self.equations().iter().map(|(name, text)| format!("- {name}: {text}\n")).collect();
+        let gates: String = self
+            .gates
+            .iter()
+            .map(|gate| format!("| `{}` | `{}` | {} |\n", gate.id, gate.metric, gate.bound))
+            .collect();
+        let times: Vec<String> = times.iter().map(f64::to_string).collect();
+        format!(
+            "# {case}, variant {variant}\n\n{about}\n\nAll numbers are in SI units, in two dimensions, masses \
+             per unit depth. `{PROBLEM}` has every number with its unit.\n\n## Equations\n\n{equations}\n\
+             ## Material and forces\n\n| quantity | value | unit |\n|---|---|---|\n{material}\
+             | acceleration g | {gx}, {gy} | m/s^2 |\n| spacing of particles | {dx} | m |\n\
+             | end | {end} | s |\n\n## Particles\n\n`{particles}` has one line a particle. Role 0 moves; role 1 \
+             is behind a wall and role 2 on it, and neither moves except along the wall with its velocity. Axes \
+             with a period repeat.\n\n## What to hand in\n\nA folder with these files:\n\n- `method.json`: \
+             `{{\"code\": \"...\", \"version\": \"...\", \"scheme\": \"...\", \"division\": \"closed\" or \
+             \"open\", \"settings\": {{...}}, \"changed\": \"what differs from the problem\"}}`. The division is \
+             closed if particles, spacing and support of the kernel are those of the problem.\n- `system.json`: \
+             `{{\"machine\": \"...\", \"threads\": 1, \"seconds\": 1.5, \"steps\": 1000, \"interactions\": \
+             \"unknown\"}}`. Each may be \"unknown\"; the seconds are wall time of the time loop.\n- `results.csv` \
+             with the columns `t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]`, sorted by t, every moving \
+             particle at each of the times below. Other formats: LAMMPS dump, `.npz`, `.vtu`, `.vtp`.\n- \
+             `{PROBLEM}`, as it is here.\n\n`touchstone submit {case} DIR --store STORE` measures and judges \
+             it.\n\nTimes [s]: {times}\n\n## How it is judged\n\n| gate | metric | bound |\n|---|---|---|\n\
+             {gates}",
+            case = self.spec.case,
+            variant = self.spec.variant,
+            about = self.about,
+            gx = m.acceleration.x,
+            gy = m.acceleration.y,
+            dx = m.dx,
+            end = times.last().map_or("", String::as_str),
+            particles = super::write::PARTICLES,
+            times = times.join(", "),
+        )
+    }
+}
+
+/// The parameters of the material.
+fn material(m: &Medium, is_solid: bool) -> Value {
+    let (density, sound_speed) = (m.eos.density, m.eos.sound_speed);
+    let common = [
+        ("density", with_unit(density, "kg/m^3")),
+        ("sound_speed", with_unit(sound_speed, "m/s")),
+    ];
+    let own = match is_solid {
+        true => vec![
+            ("bulk_modulus", with_unit(density * sound_speed * sound_speed, "Pa")),
+            ("shear_modulus", with_unit(m.shear_modulus, "Pa")),
+        ],
+        false => vec![
+            ("kinematic_viscosity", with_unit(m.nu, "m^2/s")),
+            ("exponent_gamma", with_unit(m.eos.gamma, "-")),
+            ("background_pressure", with_unit(m.eos.background, "Pa")),
+            ("artificial_viscosity_alpha", with_unit(m.alpha, "-")),
+        ],
+    };
+    let all = common.into_iter().chain(own).map(|(name, value)| (name.to_string(), value));
+    Value::Object(all.collect())
+}

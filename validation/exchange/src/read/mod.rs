@@ -1,0 +1,266 @@
+//! Reads particles at times from the formats of other codes. Each reader gives tables with the same columns,
+//! from which [`frames`] makes frames or says what is wrong with them.
+
+mod dump;
+#[cfg(feature = "npz")]
+mod npz;
+mod table;
+#[cfg(feature = "vtk")]
+mod vtk;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use base::files;
+use harness::playback::{Frame, Placed};
+use nalgebra::Vector2;
+
+use crate::flaw::Flaw;
+
+/// More than this is no result of a run of a laptop \[bytes\].
+pub const MOST_BYTES: u64 = 1 << 32;
+
+/// Flaws that are told of one file.
+const MOST_FLAWS: usize = 20;
+
+/// The columns of results: name, unit, and whether results may lack it.
+pub const COLUMNS: [(&str, &str, bool); 9] = [
+    ("t", "s", false),
+    ("id", "-", false),
+    ("x", "m", false),
+    ("y", "m", false),
+    ("u", "m/s", false),
+    ("v", "m/s", false),
+    ("density", "kg/m^3", true),
+    ("mass", "kg/m", true),
+    ("role", "-", true),
+];
+
+/// New names of columns: ours by theirs.
+pub type Renamed = BTreeMap<String, String>;
+
+/// Rows of one file, column by column.
+pub struct Rows {
+    file: String,
+    /// Line of the first row.
+    first_line: u64,
+    /// Values by the names of [`COLUMNS`], all of one length.
+    columns: BTreeMap<&'static str, Vec<f64>>,
+}
+
+/// A row of results.
+struct Row {
+    time: f64,
+    placed: Placed,
+    mass: Option<f64>,
+    role: Option<f64>,
+}
+
+/// Particles at times as they were read.
+#[derive(Debug, Default)]
+pub struct Results {
+    /// Frames, ascending in time.
+    pub frames: Vec<Frame>,
+    /// Mass and role of the particles of the first frame, where files have them.
+    pub own: Vec<(Option<f64>, Option<f64>)>,
+    /// The file of each frame, and the line of its first row where it has lines.
+    pub places: Vec<(String, u64)>,
+}
+
+/// Reads all results of a folder: `results.csv`, or `*.dump`, `*.npz`, `*.vtu`, `*.vtp` in the order of
+/// their names.
+///
+/// # Errors
+/// Every flaw that was found, at least one.
+pub fn read(folder: &Path, renamed: &Renamed) -> Result<Results, Vec<Flaw>> {
+    let mut names = Vec::new();
+    let entries = std::fs::read_dir(folder);
+    let entries = entries.map_err(|reason| {
+        vec![Flaw::of(folder.display().to_string(), format!("cannot be read: {reason}"))]
+    })?;
+    for entry in entries.flatten() {
+        names.extend(entry.file_name().into_string().ok().filter(|name| is_of_results(name)));
+    }
+    names.sort_by_key(|name| (number_in(name), name.clone()));
+    if names.is_empty() {
+        let what = "there are no results; expected results.csv, *.dump, *.npz, *.vtu or *.vtp";
+        return Err(vec![Flaw::of(folder.display().to_string(), what)]);
+    }
+    let mut kinds: Vec<&str> = names.iter().map(|name| ending(name)).collect();
+    kinds.dedup();
+    if kinds.len() > 1 {
+        let what = format!("results in several formats ({}); leave one", kinds.join(", "));
+        return Err(vec![Flaw::of(folder.display().to_string(), what)]);
+    }
+    let (mut all, mut flaws) = (Vec::new(), Vec::new());
+    for name in names {
+        match rows(folder, &name, renamed) {
+            Ok(rows) => all.extend(rows),
+            Err(of_file) => flaws.extend(of_file),
+        }
+    }
+    if flaws.is_empty() { frames(&all) } else { Err(flaws) }
+}
+
+fn ending(name: &str) -> &str {
+    name.rsplit_once('.').map_or("", |(_, ending)| ending)
+}
+
+fn is_of_results(name: &str) -> bool {
+    name == "results.csv" || ["dump", "npz", "vtu", "vtp"].contains(&ending(name))
+}
+
+/// The last number in a name, so that frame 10 comes after frame 9.
+fn number_in(name: &str) -> u64 {
+    let digits = name.rsplit(|c: char| !c.is_ascii_digit()).find(|part| !part.is_empty());
+    digits.and_then(|digits| digits.parse().ok()).unwrap_or(0)
+}
+
+fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<Flaw>> {
+    let path = folder.join(name);
+    let unread = |reason: std::io::Error| vec![Flaw::of(name, format!("cannot be read: {reason}"))];
+    let text = || files::read_text(&path, MOST_BYTES).map_err(unread);
+    match ending(name) {
+        "csv" => Ok(vec![table::rows(name, &text()?, renamed)?]),
+        "dump" => dump::rows(name, &text()?, renamed),
+        #[cfg(feature = "vtk")]
+        "vtu" | "vtp" => Ok(vec![vtk::rows(name, &text()?, renamed)?]),
+        #[cfg(feature = "npz")]
+        "npz" => Ok(vec![npz::rows(name, &path, renamed)?]),
+        other => {
+            let what = format!("this build does not read .{other}; its feature was left out");
+            Err(vec![Flaw::of(name, what)])
+        }
+    }
+}
+
+/// The name of ours that a column has, and the unit that it states.
+fn ours<'a>(head: &'a str, renamed: &'a Renamed) -> (Option<&'static str>, Option<&'a str>) {
+    let (name, unit) = match head.trim().split_once('[') {
+        Some((name, unit)) => (name.trim(), Some(unit.trim_end().trim_end_matches(']'))),
+        None => (head.trim(), None),
+    };
+    let name = renamed.get(name).map_or(name, String::as_str);
+    (COLUMNS.iter().map(|(ours, ..)| *ours).find(|ours| *ours == name), unit)
+}
+
+/// Where each column of ours is among these heads.
+///
+/// # Errors
+/// Those that are missing, twice, or in another unit.
+fn places(
+    file: &str,
+    line: u64,
+    heads: &[&str],
+    renamed: &Renamed,
+    given: &[&str],
+) -> Result<Vec<(&'static str, usize)>, Vec<Flaw>> {
+    let (mut found, mut flaws) = (Vec::<(&'static str, usize)>::new(), Vec::new());
+    for (place, head) in heads.iter().enumerate() {
+        let (Some(name), unit) = ours(head, renamed) else { continue };
+        let expected = COLUMNS.iter().find(|(ours, ..)| *ours == name).map_or("-", |c| c.1);
+        if let Some(unit) = unit.filter(|unit| *unit != expected) {
+            let what = format!("its unit is {unit}; expected {expected}");
+            flaws.push(Flaw::of(file, what).at(line).in_column(name));
+        }
+        if found.iter().any(|(known, _)| *known == name) {
+            flaws.push(Flaw::of(file, "it is there twice; expected once").at(line).in_column(name));
+        }
+        found.push((name, place));
+    }
+    for (name, unit, may_lack) in COLUMNS {
+        let is_there = given.contains(&name) || found.iter().any(|(known, _)| *known == name);
+        if !is_there && !may_lack {
+            let what = format!(
+                "it is missing; expected a column {name} in {unit}, or --map {name}=NAME; the columns are {}",
+                heads.join(", ")
+            );
+            flaws.push(Flaw::of(file, what).at(line).in_column(name));
+        }
+    }
+    if flaws.is_empty() { Ok(found) } else { Err(flaws) }
+}
+
+impl Rows {
+    fn len(&self) -> usize {
+        self.columns.get("x").map_or(0, Vec::len)
+    }
+
+    fn value(&self, name: &str, k: usize) -> Option<f64> {
+        self.columns.get(name).and_then(|column| column.get(k)).copied()
+    }
+
+    /// A row, or what is wrong with it.
+    fn row(&self, k: usize) -> Result<Row, Flaw> {
+        let flaw = |name: &str, what: String| {
+            Flaw::of(&self.file, what).at(self.first_line + k as u64).in_column(name)
+        };
+        let finite = |name: &'static str| {
+            let value = self.value(name, k).unwrap_or(f64::NAN);
+            match value.is_finite() {
+                true => Ok(value),
+                false => Err(flaw(name, format!("it is {value}; expected a finite number"))),
+            }
+        };
+        let optional = |name: &'static str| match self.value(name, k) {
+            Some(value) if value.is_finite() && value >= 0.0 => Ok(Some(value)),
+            Some(value) => {
+                Err(flaw(name, format!("it is {value}; expected a finite number, not below 0")))
+            }
+            None => Ok(None),
+        };
+        let id = finite("id")?;
+        if id < 0.0 || id.fract() != 0.0 || id > f64::from(u32::MAX) {
+            return Err(flaw("id", format!("it is {id}; expected a whole number, not below 0")));
+        }
+        let placed = Placed {
+            id: id as u32,
+            position: Vector2::new(finite("x")?, finite("y")?),
+            velocity: Vector2::new(finite("u")?, finite("v")?),
+            density: optional("density")?,
+        };
+        Ok(Row { time: finite("t")?, placed, mass: optional("mass")?, role: optional("role")? })
+    }
+}
+
+/// Frames of rows that are sorted by time.
+fn frames(all: &[Rows]) -> Result<Results, Vec<Flaw>> {
+    let (mut results, mut flaws) = (Results::default(), Vec::new());
+    for rows in all {
+        for k in 0..rows.len() {
+            if flaws.len() >= MOST_FLAWS {
+                flaws.push(Flaw::of(&rows.file, "more flaws like these; nothing after them was read"));
+                return Err(flaws);
+            }
+            let line = rows.first_line + k as u64;
+            let Row { time, placed, mass, role } = match rows.row(k) {
+                Ok(row) => row,
+                Err(flaw) => {
+                    flaws.push(flaw);
+                    continue;
+                }
+            };
+            let last = results.frames.last().map(|frame| frame.time);
+            if let Some(last) = last.filter(|last| time < *last) {
+                let what = format!("it is {time}, after {last}; expected rows sorted by t");
+                flaws.push(Flaw::of(&rows.file, what).at(line).in_column("t"));
+                continue;
+            }
+            if last != Some(time) {
+                results.frames.push(Frame { time, particles: Vec::new() });
+                results.places.push((rows.file.clone(), line));
+            }
+            if results.frames.len() == 1 {
+                results.own.push((mass, role));
+            }
+            if let Some(frame) = results.frames.last_mut() {
+                frame.particles.push(placed);
+            }
+        }
+    }
+    if results.frames.is_empty() && flaws.is_empty() {
+        let file = all.first().map_or("results", |rows| &rows.file);
+        flaws.push(Flaw::of(file, "it has no rows; expected one a particle and time"));
+    }
+    if flaws.is_empty() { Ok(results) } else { Err(flaws) }
+}

@@ -1,0 +1,37 @@
+//! Tidy tables of comma-separated values: one line a particle and time.
+
+use std::collections::BTreeMap;
+
+use super::{MOST_FLAWS, Renamed, Rows, places};
+use crate::flaw::Flaw;
+
+pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let unread = |error: csv::Error| {
+        let line = error.position().map_or(1, csv::Position::line);
+        vec![Flaw::of(file, error.to_string()).at(line)]
+    };
+    let heads = reader.headers().map_err(unread)?.clone();
+    // Of a byte order mark, which some programs put before a table, nothing is said.
+    let heads: Vec<&str> = heads.iter().map(|head| head.trim_start_matches('\u{feff}')).collect();
+    let places = places(file, 1, &heads, renamed, &[])?;
+    let mut columns: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
+    let mut flaws = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(unread)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        for (name, place) in &places {
+            let text = record.get(*place).unwrap_or_default();
+            let value = text.parse().unwrap_or_else(|_| {
+                let what = format!("it is {text:?}; expected a number");
+                flaws.push(Flaw::of(file, what).at(line).in_column(*name));
+                f64::NAN
+            });
+            columns.entry(name).or_default().push(value);
+        }
+        if flaws.len() >= MOST_FLAWS {
+            break;
+        }
+    }
+    if flaws.is_empty() { Ok(Rows { file: file.into(), first_line: 2, columns }) } else { Err(flaws) }
+}

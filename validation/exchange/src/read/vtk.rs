@@ -1,0 +1,174 @@
+//! Particles of ParaView, `.vtu` and `.vtp`: arrays as text or base64, plain or compressed by zlib. The time
+//! is the array `TimeValue` of the field data.
+
+use std::collections::BTreeMap;
+use std::io::Read;
+
+use roxmltree::{Document, Node};
+
+use super::{Renamed, Rows, places};
+use crate::flaw::Flaw;
+
+/// Names that need no `--map`.
+const KNOWN: [(&str, &str); 4] =
+    [("rho", "density"), ("velocity.x", "u"), ("velocity.y", "v"), ("TimeValue", "t")];
+
+pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
+    let known = KNOWN.iter().map(|(theirs, ours)| (theirs.to_string(), ours.to_string()));
+    let renamed: Renamed = known.chain(renamed.clone()).collect();
+    let document = Document::parse(text).map_err(|error| {
+        vec![Flaw::of(file, error.to_string()).at(error.pos().row.into())]
+    })?;
+    let root = document.root_element();
+    let line = |node: Node| u64::from(document.text_pos_at(node.range().start).row);
+    let mut arrays: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for node in root.descendants().filter(|node| node.has_tag_name("DataArray")) {
+        let parent = node.parent().map_or("", |parent| parent.tag_name().name());
+        if !["PointData", "Points", "FieldData"].contains(&parent) {
+            continue;
+        }
+        let name = node.attribute("Name").unwrap_or("Points");
+        let flaw = |what: String| vec![Flaw::of(file, what).at(line(node)).in_column(name)];
+        let values = values(root, node).map_err(flaw)?;
+        let components: usize =
+            node.attribute("NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
+        if components < 2 {
+            arrays.insert(name.into(), values);
+            continue;
+        }
+        for (k, axis) in ["x", "y"].iter().enumerate() {
+            let values = values.iter().skip(k).step_by(components).copied().collect();
+            let name = if parent == "Points" { axis.to_string() } else { format!("{name}.{axis}") };
+            arrays.insert(name, values);
+        }
+    }
+    let count = arrays.get("x").map_or(0, Vec::len);
+    // Without numbers, particles are in the order of the problem.
+    if !arrays.contains_key("id") && !renamed.values().any(|ours| ours == "id") {
+        arrays.insert("id".into(), (0..count).map(|k| k as f64).collect());
+    }
+    let heads: Vec<&str> = arrays.keys().map(String::as_str).collect();
+    let mut columns = BTreeMap::new();
+    for (name, place) in places(file, 1, &heads, &renamed, &[])? {
+        let mut values = arrays[heads[place]].clone();
+        if name == "t" && values.len() == 1 {
+            values = vec![values[0]; count];
+        }
+        if values.len() != count {
+            let what = format!("it has {} numbers; expected {count}", values.len());
+            return Err(vec![Flaw::of(file, what).in_column(name)]);
+        }
+        columns.insert(name, values);
+    }
+    Ok(Rows { file: file.into(), first_line: 1, columns })
+}
+
+/// The numbers of an array.
+fn values(root: Node, node: Node) -> Result<Vec<f64>, String> {
+    let text = node.text().unwrap_or_default();
+    match node.attribute("format") {
+        Some("ascii") => {
+            let number = |word: &str| word.parse().map_err(|_| format!("it has {word:?}; expected numbers"));
+            text.split_whitespace().map(number).collect()
+        }
+        Some("binary") => {
+            let wide = root.attribute("header_type") == Some("UInt64");
+            let bytes = match root.attribute("compressor") {
+                None => plain(text.trim(), if wide { 8 } else { 4 })?,
+                Some("vtkZLibDataCompressor") => compressed(text.trim(), if wide { 8 } else { 4 })?,
+                Some(other) => return Err(format!("it is compressed by {other}; expected zlib or nothing")),
+            };
+            floats(node.attribute("type").unwrap_or_default(), &bytes)
+        }
+        other => Err(format!(
+            "its format is {}; expected ascii or binary (inline base64)",
+            other.unwrap_or("not stated")
+        )),
+    }
+}
+
+fn floats(kind: &str, bytes: &[u8]) -> Result<Vec<f64>, String> {
+    macro_rules! numbers {
+        ($type:ty) => {{
+            let (numbers, rest) = bytes.as_chunks::<{ size_of::<$type>() }>();
+            let numbers = numbers.iter().map(|bytes| <$type>::from_le_bytes(*bytes) as f64);
+            if rest.is_empty() { Ok(numbers.collect()) } else { Err("it ends within a number".into()) }
+        }};
+    }
+    match kind {
+        "Float64" => numbers!(f64),
+        "Float32" => numbers!(f32),
+        "Int64" => numbers!(i64),
+        "Int32" => numbers!(i32),
+        "UInt8" => numbers!(u8),
+        other => Err(format!("its type is {other}; expected Float64, Float32, Int64, Int32 or UInt8")),
+    }
+}
+
+/// A whole number of so many bytes.
+fn number(bytes: &[u8], at: usize, width: usize) -> Result<usize, String> {
+    let bytes = bytes.get(at * width..(at + 1) * width).ok_or("it ends within its head")?;
+    Ok(bytes.iter().rev().fold(0_u64, |all, byte| all << 8 | u64::from(*byte)) as usize)
+}
+
+/// A block with the number of its bytes before it.
+fn plain(text: &str, width: usize) -> Result<Vec<u8>, String> {
+    let bytes = base64(text)?;
+    let count = number(&bytes, 0, width)?;
+    match bytes.get(width..).filter(|rest| rest.len() == count) {
+        Some(rest) => Ok(rest.to_vec()),
+        None => Err(format!("it has {} bytes; its head says {count}", bytes.len().saturating_sub(width))),
+    }
+}
+
+/// Blocks that zlib compressed; before them their number, the size of each, that of the last one, and the
+/// compressed sizes, encoded apart.
+fn compressed(text: &str, width: usize) -> Result<Vec<u8>, String> {
+    let letters = |bytes: usize| bytes.div_ceil(3) * 4;
+    let start = base64(text.get(..letters(3 * width)).ok_or("it ends within its head")?)?;
+    let [blocks, size, last] = [0, 1, 2].map(|k| number(&start, k, width));
+    let (blocks, size, last) = (blocks?, size?, last?);
+    let head = letters(blocks.checked_add(3).and_then(|n| n.checked_mul(width)).ok_or("its head")?);
+    let sizes = base64(text.get(..head).ok_or("it ends within its head")?)?;
+    let data = base64(text.get(head..).unwrap_or_default())?;
+    let (mut all, mut at) = (Vec::new(), 0_usize);
+    for k in 0..blocks {
+        let length = number(&sizes, 3 + k, width)?;
+        let end = at.checked_add(length).ok_or("a block is too long")?;
+        let block = data.get(at..end).ok_or("it ends within a block")?;
+        let expected = if k + 1 == blocks && last > 0 { last } else { size };
+        // One byte more than was announced is enough to see that the head is wrong.
+        let mut reader = flate2::read::ZlibDecoder::new(block).take(expected as u64 + 1);
+        let before = all.len();
+        reader.read_to_end(&mut all).map_err(|error| error.to_string())?;
+        if all.len() - before != expected {
+            return Err(format!("a block has {} bytes; its head says {expected}", all.len() - before));
+        }
+        at = end;
+    }
+    Ok(all)
+}
+
+/// Base64 with padding (RFC 4648, section 4).
+fn base64(text: &str) -> Result<Vec<u8>, String> {
+    let value = |letter: u8| match letter {
+        b'A'..=b'Z' => Some(letter - b'A'),
+        b'a'..=b'z' => Some(letter - b'a' + 26),
+        b'0'..=b'9' => Some(letter - b'0' + 52),
+        b'+' => Some(62),
+        b'/' => Some(63),
+        _ => None,
+    };
+    let letters = text.trim_end_matches('=').bytes().filter(|byte| !byte.is_ascii_whitespace());
+    let (mut bytes, mut bits, mut held) = (Vec::with_capacity(text.len() / 4 * 3), 0_u32, 0);
+    for letter in letters {
+        let value = value(letter).ok_or("it is no base64")?;
+        bits = bits << 6 | u32::from(value);
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            bytes.push((bits >> held) as u8);
+        }
+    }
+    Ok(bytes)
+}

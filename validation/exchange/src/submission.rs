@@ -1,0 +1,343 @@
+//! A folder of results of another code: what it says of its method and its machine, and its particles, measured
+//! by the code that measures our own runs.
+
+use std::path::Path;
+
+use base::{
+    files,
+    record::{Cost, NOT_ASKED, Record, Status},
+    reference::sha256,
+    spec::{Measure, RunSpec},
+    submission::{Division, Submission},
+};
+use harness::{
+    case::{Case, RunError},
+    context::Context,
+    playback::{Own, Playback},
+};
+use serde::{Deserialize, de::DeserializeOwned};
+use serde_json::{Map, Value};
+
+use crate::{
+    flaw::Flaw,
+    problem::{Asked, PROBLEM, Problem},
+    read::{self, Renamed, Results},
+};
+
+/// Name of the document that describes the method.
+pub const METHOD: &str = "method.json";
+/// Name of the document that describes the machine and the cost.
+pub const SYSTEM: &str = "system.json";
+
+/// More than this is no document [bytes].
+const MOST_BYTES: u64 = 1 << 24;
+
+/// A method as its document describes it.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Method {
+    /// name of the code
+    pub code: String,
+    /// its version
+    pub version: String,
+    /// the scheme in words
+    pub scheme: String,
+    /// what it took over
+    pub division: Division,
+    /// settings by name
+    pub settings: Map<String, Value>,
+    /// what differs from the problem
+    pub changed: String,
+}
+
+/// A machine and what the run took, as the document says.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct System {
+    /// name of the machine or of its processor
+    pub machine: String,
+    /// threads that the run used
+    pub threads: Known,
+    /// wall time of the time loop \[s\]
+    pub seconds: Known,
+    /// time steps
+    pub steps: Known,
+    /// pairs of particles inside the support, summed over all sums
+    pub interactions: Known,
+}
+
+/// A number that may be unknown.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum Known {
+    /// the number
+    Number(f64),
+    /// the word `unknown`
+    Unknown(Unknown),
+}
+
+/// The word `unknown`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Unknown {
+    /// nobody knows
+    Unknown,
+}
+
+impl Known {
+    fn number(self) -> Option<f64> {
+        match self {
+            Known::Number(number) => Some(number),
+            Known::Unknown(_) => None,
+        }
+    }
+}
+
+/// A submission as it was read.
+pub struct Entry {
+    /// The method.
+    pub method: Method,
+    /// SHA-256 of its document.
+    pub digest: String,
+    /// The machine.
+    pub system: System,
+    /// The problem that it says it solves, if the folder has one.
+    pub asked: Option<Asked>,
+    /// The particles.
+    pub results: Results,
+}
+
+/// Reads a document.
+fn document<T: DeserializeOwned>(folder: &Path, name: &str, what: &str) -> Result<(T, String), Flaw> {
+    let text = files::read_text(&folder.join(name), MOST_BYTES).map_err(|reason| {
+        Flaw::of(name, format!("cannot be read: {reason}; expected {what}"))
+    })?;
+    let read = serde_json::from_str(&text).map_err(|error| {
+        let flaw = Flaw::of(name, format!("{error}; expected {what}"));
+        flaw.at(error.line() as u64)
+    })?;
+    Ok((read, text))
+}
+
+/// Reads a folder.
+///
+/// # Errors
+/// Everything that is missing or wrong.
+pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
+    let mut flaws = Vec::new();
+    let method = document::<Method>(
+        folder,
+        METHOD,
+        "code, version, scheme, division (closed or open), settings (an object) and changed",
+    );
+    let system = document::<System>(
+        folder,
+        SYSTEM,
+        "machine, threads, seconds, steps and interactions, each a number or \"unknown\"",
+    );
+    let asked = asked(folder);
+    let results = read::read(folder, renamed);
+    let method = method.map_err(|flaw| flaws.push(flaw));
+    let system = system.map_err(|flaw| flaws.push(flaw));
+    let asked = asked.map_err(|flaw| flaws.push(flaw));
+    let results = results.map_err(|all| flaws.extend(all));
+    if let Ok((method, _)) = &method {
+        let fields = [("code", &method.code), ("version", &method.version), ("scheme", &method.scheme)];
+        for (name, text) in fields {
+            let is_plain = |c: char| !c.is_control();
+            if text.trim().is_empty() || text.len() > 100 || !text.chars().all(is_plain) {
+                let what = format!("it is {text:?}; expected 1 to 100 characters");
+                flaws.push(Flaw::of(METHOD, what).in_column(name));
+            }
+        }
+    }
+    if let Ok((system, _)) = &system {
+        let System { threads, seconds, steps, interactions, .. } = system;
+        for (name, known, most) in [
+            ("threads", threads, 1e6),
+            ("seconds", seconds, 1e12),
+            ("steps", steps, 1e15),
+            ("interactions", interactions, 1e18),
+        ] {
+            if let Some(number) = known.number().filter(|n| !(*n > 0.0 && *n <= most)) {
+                let what = format!("it is {number}; expected a number above 0 and at most {most:e}");
+                flaws.push(Flaw::of(SYSTEM, what).in_column(name));
+            }
+        }
+    }
+    match (method, system, asked, results) {
+        (Ok((method, text)), Ok((system, _)), Ok(asked), Ok(results)) if flaws.is_empty() => {
+            let digest = sha256(text.as_bytes());
+            Ok(Entry { method, digest, system, asked, results })
+        }
+        _ => Err(flaws),
+    }
+}
+
+fn asked(folder: &Path) -> Result<Option<Asked>, Flaw> {
+    let text = match files::read_text(&folder.join(PROBLEM), MOST_BYTES) {
+        Err(reason) if reason.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        read => read.map_err(|reason| Flaw::of(PROBLEM, format!("cannot be read: {reason}")))?,
+    };
+    Asked::from_json(&text).map(Some).map_err(|what| Flaw::of(PROBLEM, what))
+}
+
+impl Entry {
+    /// Everything that does not fit the problem.
+    pub fn check(&self, problem: &Problem) -> Vec<Flaw> {
+        let mut flaws = Vec::new();
+        let Results { frames, own, places } = &self.results;
+        let file = places.first().map_or("results", |(file, _)| file.as_str());
+        let playback = Playback { frames: frames.clone(), own: Vec::new() };
+        for time in playback.missing(&problem.outline.times) {
+            let what = format!("there are no particles at t = {time} s, at which the problem is measured");
+            flaws.push(Flaw::of(file, what).in_column("t"));
+        }
+        let expected: Vec<u32> = match self.method.division {
+            Division::Closed => problem.moving(),
+            Division::Open => {
+                let mut ids: Vec<u32> =
+                    frames.first().into_iter().flat_map(|f| &f.particles).map(|p| p.id).collect();
+                ids.sort_unstable();
+                if ids.iter().enumerate().any(|(k, id)| *id as usize != k) {
+                    let what = "ids of the first frame are not 0, 1, 2 and so on, each once";
+                    flaws.push(Flaw::of(file, what).at(places[0].1).in_column("id"));
+                }
+                if own.iter().any(|(mass, _)| mass.is_none()) {
+                    let what = "it is missing; in the open division each particle states its mass";
+                    flaws.push(Flaw::of(file, what).at(places[0].1).in_column("mass"));
+                }
+                if frames.first().is_some_and(|frame| frame.time != 0.0) {
+                    let what = "the first frame is not at t = 0, at which an open submission starts";
+                    flaws.push(Flaw::of(file, what).at(places[0].1).in_column("t"));
+                }
+                ids
+            }
+        };
+        let all = problem.outline.particles.column("id").len();
+        for (frame, (file, line)) in frames.iter().zip(places) {
+            let flaw = |what: String| Flaw::of(file, what).in_column("id");
+            let mut ids: Vec<(u32, usize)> =
+                frame.particles.iter().enumerate().map(|(k, p)| (p.id, k)).collect();
+            ids.sort_unstable();
+            if let Some(twice) = ids.windows(2).find(|two| two[0].0 == two[1].0) {
+                let what = format!("particle {} is there twice at t = {} s", twice[0].0, frame.time);
+                flaws.push(flaw(what).at(line + twice[1].1 as u64));
+            }
+            let has = |id: &u32| ids.binary_search_by_key(id, |(id, _)| *id).is_ok();
+            let lacking = expected.iter().filter(|id| !has(id)).count();
+            let beyond = match self.method.division {
+                Division::Closed => ids.iter().find(|(id, _)| *id as usize >= all),
+                Division::Open => ids.iter().find(|(id, _)| expected.binary_search(id).is_err()),
+            };
+            if lacking > 0 {
+                let what = format!(
+                    "{lacking} of {} moving particles are missing at t = {} s",
+                    expected.len(),
+                    frame.time
+                );
+                flaws.push(flaw(what).at(*line));
+            }
+            if let Some((id, k)) = beyond {
+                let what = format!("particle {id} is none of the problem");
+                flaws.push(flaw(what).at(line + *k as u64));
+            }
+        }
+        if let Some(sealed) = self.asked.as_ref().and_then(|asked| asked.sealed.as_ref())
+            && sealed.method != self.digest
+        {
+            let what = format!(
+                "its SHA-256 is {}; the problem was sealed for {}, so the method was changed afterwards",
+                self.digest, sealed.method
+            );
+            flaws.push(Flaw::of(METHOD, what));
+        }
+        flaws
+    }
+
+    /// Who made the run.
+    pub fn submission(&self) -> Submission {
+        let Method { code, version, scheme, division, .. } = self.method.clone();
+        let sealed = self.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
+        let (method, seed) = (self.digest.clone(), sealed.map(|sealed| sealed.seed));
+        Submission { code, version, scheme, division, method, seed }
+    }
+
+    /// The frames, with the particles of the code itself in the open division.
+    fn playback(&self) -> Playback {
+        let Results { frames, own, .. } = &self.results;
+        let own = match (self.method.division, frames.first()) {
+            (Division::Open, Some(first)) => {
+                let start = first.particles.iter().zip(own);
+                let mut own: Vec<Own> = start
+                    .map(|(start, (mass, role))| Own {
+                        role: role.and_then(harness::outline::role).unwrap_or(solver::Role::Fluid),
+                        mass: mass.unwrap_or(0.0),
+                        start: *start,
+                    })
+                    .collect();
+                own.sort_by_key(|own| own.start.id);
+                own
+            }
+            _ => Vec::new(),
+        };
+        Playback { frames: frames.clone(), own }
+    }
+
+    /// Measures the particles as those of a run of this spec. What they do not determine is absent.
+    ///
+    /// # Errors
+    /// If the case refuses the run, or a frame cannot be put in place of its particles.
+    pub fn measure(&self, case: &dyn Case, spec: &RunSpec) -> Result<Record, RunError> {
+        let playback = self.playback();
+        let context = Context {
+            playback: Some(&playback),
+            allow_long: true,
+            allow_unstable: true,
+            ..Context::default()
+        };
+        let ours = RunSpec { measure: Measure::Headline, submission: None, ..spec.clone() };
+        let record = case.run(&ours, &context)?;
+        let spec = RunSpec { submission: Some(Box::new(self.submission())), ..ours };
+        let mut record = record.of(&spec);
+        let lacking: Vec<String> = record
+            .metrics
+            .iter()
+            .filter(|(_, metric)| !metric.value.is_finite())
+            .map(|(name, _)| name.clone())
+            .collect();
+        for name in lacking {
+            record.metrics.remove(&name);
+            let reason = "the particles of the submission do not determine it".to_string();
+            record.absent.insert(name, reason);
+        }
+        for reason in record.absent.values_mut().filter(|reason| *reason == NOT_ASKED) {
+            *reason = "it needs the sums of this program's own terms".into();
+        }
+        record.numerics.clear();
+        if self.method.division == Division::Open {
+            record.profiles.clear(); // those that follow rows of the problem's own particles
+        }
+        record.cost = self.cost(&record);
+        if !matches!(record.status, Status::Diverged { .. }) {
+            record.status = Status::Completed;
+        }
+        Ok(record)
+    }
+
+    fn cost(&self, record: &Record) -> Cost {
+        let System { threads, seconds, steps, interactions, .. } = &self.system;
+        let count = |known: &Known| known.number().map_or(0, |number| number as u64);
+        let processor = seconds.number().zip(threads.number()).map(|(s, threads)| s * threads);
+        Cost {
+            wall_s: seconds.number().unwrap_or(f64::NAN),
+            cpu_s: processor.unwrap_or(f64::NAN),
+            alone_s: processor.into_iter().collect(),
+            steps: count(steps),
+            pair_interactions: count(interactions),
+            particles: record.cost.particles,
+            threads: count(threads) as usize,
+            ..Cost::default()
+        }
+    }
+}

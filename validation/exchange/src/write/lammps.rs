@@ -1,0 +1,123 @@
+//! LAMMPS: a data file of atom style `sph` and an input script for its package SPH, which writes one dump a
+//! time. The kernel of the package is Lucy's; its cut-off is the support radius of the problem.
+
+use std::fmt::Write;
+
+use harness::outline::Outline;
+
+use super::{WriteError, check_fluid};
+use crate::problem::Problem;
+
+/// Boxes of open axes reach so many spacings beyond the particles.
+const MARGIN: f64 = 50.0;
+
+/// Steps of our method are long for an explicit scheme of first order: it takes this share of the Courant
+/// number c0 dt/h = 0.2, with which the package's own examples are stable.
+const COURANT: f64 = 0.2;
+
+pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteError> {
+    check_fluid("LAMMPS", problem)?;
+    Ok(vec![("data.lmp", data(&problem.outline)), ("in.lmp", script(problem))])
+}
+
+/// Types of atoms: what moves, walls at rest, and walls that move along themselves.
+fn kind(outline: &Outline, k: usize) -> usize {
+    let of = |name: &str| outline.particles.column(name)[k];
+    match (of("role") == 0.0, of("u") == 0.0 && of("v") == 0.0) {
+        (true, _) => 1,
+        (false, true) => 2,
+        (false, false) => 3,
+    }
+}
+
+/// Lower and upper ends of the box along an axis, and the letter of its borders.
+fn ends(outline: &Outline, axis: usize) -> ([f64; 2], char) {
+    if let Some(period) = outline.domain.period[axis] {
+        let low = outline.domain.low[axis];
+        return ([low, low + period], 'p');
+    }
+    let places = outline.particles.column(["x", "y"][axis]);
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &place in places {
+        (low, high) = (low.min(place), high.max(place));
+    }
+    let margin = MARGIN * outline.medium.dx;
+    ([low - margin, high + margin], 'f')
+}
+
+fn data(outline: &Outline) -> String {
+    let column = |name: &str| outline.particles.column(name);
+    let count = column("id").len();
+    let ([x_low, x_high], _) = ends(outline, 0);
+    let ([y_low, y_high], _) = ends(outline, 1);
+    let dx = outline.medium.dx;
+    let mut text = format!(
+        "# particles of a problem of touchstone\n\n{count} atoms\n3 atom types\n{x_low} {x_high} xlo xhi\n\
+         {y_low} {y_high} ylo yhi\n{} {dx} zlo zhi\n\nMasses\n\n",
+        -dx
+    );
+    // One mass a type: problems have particles of one mass.
+    let mass = column("mass").first().copied().unwrap_or_default();
+    for kind in 1..=3 {
+        let _ = writeln!(text, "{kind} {mass}");
+    }
+    text += "\nAtoms # sph\n\n";
+    let (x, y, density) = (column("x"), column("y"), column("density"));
+    for k in 0..count {
+        let kind = kind(outline, k);
+        let _ = writeln!(text, "{} {kind} {} 0 1 {} {} 0", k + 1, density[k], x[k], y[k]);
+    }
+    text += "\nVelocities\n\n";
+    for (k, (u, v)) in column("u").iter().zip(column("v")).enumerate() {
+        let _ = writeln!(text, "{} {u} {v} 0", k + 1);
+    }
+    text
+}
+
+fn script(problem: &Problem) -> String {
+    let Outline { medium: m, times, method: (_, support), .. } = &problem.outline;
+    let borders = [0, 1].map(|axis| ends(&problem.outline, axis).1);
+    let cut = support * m.h;
+    let (rho, c0) = (m.eos.density, m.eos.sound_speed);
+    let pair = match m.nu > 0.0 {
+        true => format!(
+            "pair_style sph/taitwater/morris\npair_coeff * * {rho} {c0} {} {cut}",
+            m.nu * rho
+        ),
+        false => format!("pair_style sph/taitwater\npair_coeff * * {rho} {c0} {} {cut}", m.alpha),
+    };
+    let mass = problem.outline.particles.column("mass").first().copied().unwrap_or_default();
+    let force = m.acceleration * mass;
+    let force = match force.norm() > 0.0 {
+        true => format!("fix force fluid addforce {} {} 0\n", force.x, force.y),
+        false => String::new(),
+    };
+    let mut text = format!(
+        "# {} of touchstone, variant {}\n\
+         units si\ndimension 2\natom_style sph\natom_modify map array\nboundary {} {} p\nnewton on\n\
+         comm_modify vel yes\nread_data data.lmp\n\
+         group fluid type 1\ngroup wall type 2 3\n{pair}\n\
+         neighbor {} bin\nneigh_modify every 1 delay 0 check yes\n\
+         compute rho all sph/rho/atom\n{force}\
+         fix walls wall setforce 0 0 0\nfix move all sph\nfix plane all enforce2d\nthermo 1000\n",
+        problem.spec.case,
+        problem.spec.variant,
+        borders[0],
+        borders[1],
+        0.3 * m.dx,
+    );
+    let viscous = if m.nu > 0.0 { 0.1 * m.h * m.h / m.nu } else { f64::INFINITY };
+    let longest = (COURANT * m.h / c0).min(viscous);
+    let mut start = 0.0;
+    for (k, time) in times.iter().enumerate() {
+        let steps = ((time - start) / longest).ceil().max(1.0);
+        let _ = writeln!(text, "timestep {}\nrun {steps}", (time - start) / steps);
+        let _ = writeln!(
+            text,
+            "write_dump all custom frame_{k:04}.dump id type x y vx vy c_rho modify sort id time yes \
+             format float %.17g"
+        );
+        start = *time;
+    }
+    text
+}

@@ -1,0 +1,115 @@
+//! Writes a problem into a folder, with the files that another code reads.
+
+mod lammps;
+mod pysph;
+mod vtu;
+
+use base::files::{CsvTable, FileError, OutputFolder};
+use serde_json::Error as JsonError;
+use thiserror::Error;
+
+use crate::problem::{PROBLEM, Problem};
+
+/// Name of the table of particles.
+pub const PARTICLES: &str = "particles.csv";
+
+/// For whom a problem is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Tables alone.
+    Csv,
+    /// ParaView's unstructured grid.
+    Vtu,
+    /// LAMMPS with its package SPH: a data file and an input script.
+    Lammps,
+    /// PySPH: a script of Python.
+    Pysph,
+}
+
+/// Why a problem was not written.
+#[derive(Debug, Error)]
+pub enum WriteError {
+    /// A file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The document.
+    #[error("the problem cannot be written as JSON: {0}")]
+    Json(#[from] JsonError),
+    /// The other code cannot do it.
+    #[error("{code} cannot run {case}, variant {variant}: {why}")]
+    Cannot {
+        /// The code.
+        code: &'static str,
+        /// The case.
+        case: String,
+        /// The variant.
+        variant: String,
+        /// The reason.
+        why: &'static str,
+    },
+}
+
+/// Writes the problem; the names of the files.
+///
+/// # Errors
+/// If the code of the format cannot run it, or a file cannot be written.
+pub fn write(
+    problem: &Problem,
+    format: Format,
+    folder: &OutputFolder,
+) -> Result<Vec<String>, WriteError> {
+    let own: Vec<(&str, String)> = match format {
+        Format::Csv => Vec::new(),
+        Format::Vtu => vec![("particles.vtu", vtu::particles(problem))],
+        Format::Lammps => lammps::files(problem)?,
+        Format::Pysph => pysph::files(problem)?,
+    };
+    let document = serde_json::to_string_pretty(&problem.to_json())? + "\n";
+    let mut files: Vec<(&str, Vec<u8>)> = vec![
+        (PARTICLES, particles(problem)?),
+        ("README.md", problem.page().into_bytes()),
+        (PROBLEM, document.into_bytes()),
+    ];
+    files.extend(own.into_iter().map(|(name, text)| (name, text.into_bytes())));
+    for (name, bytes) in &files {
+        folder.write(name, bytes)?;
+    }
+    Ok(files.into_iter().map(|(name, _)| name.to_string()).collect())
+}
+
+/// One line a particle, with units in the head.
+fn particles(problem: &Problem) -> Result<Vec<u8>, FileError> {
+    let outline = &problem.outline;
+    let columns = &outline.particles.columns;
+    let mut heads: Vec<String> =
+        columns.iter().map(|column| format!("{}[{}]", column.name, column.unit)).collect();
+    let mut values: Vec<Vec<f64>> = columns.iter().map(|c| c.values.clone()).collect();
+    if !outline.bodies.is_empty() {
+        heads.push("body[-]".into());
+        values.push(outline.bodies.iter().map(|body| f64::from(*body)).collect());
+    }
+    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
+    for k in 0..outline.particles.column("id").len() {
+        let row: Vec<f64> = values.iter().map(|column| column[k]).collect();
+        table.numbers(&row)?;
+    }
+    Ok(table.into_bytes())
+}
+
+/// Refuses what a code of weakly compressible fluids with walls of particles cannot do.
+fn check_fluid(code: &'static str, problem: &Problem) -> Result<(), WriteError> {
+    let refused = |why| {
+        let (case, variant) = (problem.spec.case.clone(), problem.spec.variant.clone());
+        Err(WriteError::Cannot { code, case, variant, why })
+    };
+    if problem.is_solid() {
+        return refused("this format is for fluids; use --format csv for solids");
+    }
+    if !problem.outline.mirrors.is_empty() {
+        return refused(
+            "its walls are planes that mirror the fluid; choose a variant whose walls are particles \
+             (`touchstone list CASE` describes the variants)",
+        );
+    }
+    Ok(())
+}

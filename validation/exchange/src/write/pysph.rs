@@ -1,0 +1,109 @@
+//! PySPH: a script that reads `particles.csv` and `problem.json`, runs the scheme of its name, and writes
+//! `results.csv` and `system.json` as `touchstone submit` reads them.
+
+use super::{WriteError, check_fluid};
+use crate::problem::Problem;
+
+pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteError> {
+    check_fluid("PySPH", problem)?;
+    Ok(vec![("run_pysph.py", SCRIPT.to_string())])
+}
+
+/// Problems with walls or periods along both axes fill their domain: TVF is PySPH's scheme for these, and its
+/// weakly compressible scheme for free surfaces.
+const SCRIPT: &str = r#"# Runs the problem of this folder with PySPH: python run_pysph.py [wcsph|tvf|edac]
+import csv, json, sys, time
+import numpy as np
+import pysph
+from pysph.base.kernels import QuinticSpline
+from pysph.base.utils import get_particle_array
+from pysph.parallel.parallel_manager import ParallelManager  # noqa: F401  (an early, clear import error)
+from pysph.solver.application import Application
+from pysph.base.nnps import DomainManager
+from pysph.sph.scheme import WCSPHScheme, TVFScheme
+from pysph.sph.wc.edac import EDACScheme
+
+which = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else "tvf"
+problem = json.load(open("problem.json"))
+number = lambda quantity: quantity["value"]
+material, ours = problem["material"], problem["our_method"]
+rho0, c0, nu = (number(material[name]) for name in ("density", "sound_speed", "kinematic_viscosity"))
+gx, gy = number(problem["acceleration"])
+h, dx, times = number(ours["support_radius"]) / 3, number(problem["particles"]["spacing"]), number(problem["times"])
+with open("particles.csv") as file:
+    rows = list(csv.reader(file))
+names = [head.split("[")[0] for head in rows[0]]
+columns = dict(zip(names, np.array(rows[1:], dtype=float).T))
+
+
+class Run(Application):
+    def create_domain(self):
+        low, period = number(problem["domain"]["low"]), problem["domain"]["period"]
+        along = {}
+        for axis, name in enumerate("xy"):
+            if period[axis] != "none":
+                along.update({name + "min": low[axis], name + "max": low[axis] + number(period[axis]),
+                              "periodic_in_" + name: True})
+        return DomainManager(**along) if along else None
+
+    def create_particles(self):
+        arrays = []
+        for name, is_of in (("fluid", columns["role"] == 0), ("wall", columns["role"] > 0)):
+            if not is_of.any():
+                continue
+            of = {key: columns[key][is_of] for key in ("x", "y", "u", "v")}
+            array = get_particle_array(name=name, m=columns["mass"][is_of], rho=columns["density"][is_of],
+                                       p=columns["pressure"][is_of], h=h, **of)
+            array.add_property("touchstone", data=columns["id"][is_of])
+            arrays.append(array)
+        self.scheme.setup_properties(arrays)
+        for array in arrays:
+            array.add_output_arrays(["touchstone", "rho", "u", "v"])
+            if "V" in array.properties:
+                array.V[:] = array.rho / array.m
+        return arrays
+
+    def create_scheme(self):
+        walls = ["wall"] if (columns["role"] > 0).any() else []
+        if which == "wcsph":
+            return WCSPHScheme(["fluid"], walls, dim=2, rho0=rho0, c0=c0, h0=h, hdx=h / dx, gamma=7.0,
+                               alpha=number(material["artificial_viscosity_alpha"]), beta=0.0, nu=nu, gx=gx, gy=gy)
+        common = dict(dim=2, rho0=rho0, c0=c0, nu=nu, gx=gx, gy=gy)
+        if which == "edac":
+            return EDACScheme(["fluid"], walls, h=h, pb=rho0 * c0**2, **common)
+        return TVFScheme(["fluid"], walls, h0=h, p0=rho0 * c0**2, pb=rho0 * c0**2, **common)
+
+    def configure_scheme(self):
+        step = 0.25 * h / (1.1 * c0)
+        if nu > 0:
+            step = min(step, 0.125 * h**2 / nu)
+        self.scheme.configure_solver(kernel=QuinticSpline(dim=2), dt=step, tf=times[-1] * (1 + 1e-9),
+                                     output_at_times=times, adaptive_timestep=False, pfreq=10**9)
+
+
+app = Run(fname="pysph")
+app.steps = 0
+begin = time.perf_counter()
+app.run(["--max-steps", "1"] if "--check" in sys.argv else ["--openmp"] if "--openmp" in sys.argv else [])
+seconds = app.solver.solve_time if hasattr(app.solver, "solve_time") else time.perf_counter() - begin
+
+from pysph.solver.utils import iter_output
+with open("results.csv", "w") as file:
+    file.write("t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]\n")
+    nearest = {}
+    for data, array in iter_output(app.output_files, "fluid"):
+        for wanted in times:
+            if abs(data["t"] - wanted) <= 1e-6 * times[-1]:
+                nearest[wanted] = array
+    for t in times:
+        array = nearest[t]
+        order = np.argsort(array.touchstone)
+        density = array.rho if which != "edac" else np.full(len(array.x), rho0)
+        for k in order:
+            file.write(f"{t!r},{int(array.touchstone[k])},{array.x[k]!r},{array.y[k]!r},{array.u[k]!r},"
+                       f"{array.v[k]!r},{density[k]!r}\n".replace("np.float64(", "").replace(")", ""))
+json.dump({"machine": "unknown", "threads": 1, "seconds": seconds, "steps": int(app.solver.count),
+           "interactions": "unknown"}, open("system.json", "w"))
+json.dump({"code": "PySPH", "version": pysph.__version__, "scheme": which, "division": "closed",
+           "settings": {"h": h, "dt": app.solver.dt}, "changed": "nothing"}, open("method.json", "w"))
+"#;

@@ -1,0 +1,235 @@
+//! `export`, `challenge` and `submit`: problems for other codes, and what these made of them.
+
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+use ::exchange::{
+    challenge,
+    flaw::Flaw,
+    problem::{Problem, Sealed},
+    submission::{self, Entry, METHOD, SYSTEM},
+    write::{self, Format, WriteError},
+};
+use base::{
+    files::{self, CsvTable, OutputFolder},
+    record::{Profile, Record, Status},
+    reference::sha256,
+    spec::RunSpec,
+};
+use harness::{
+    case::{self, Case},
+    context::Context,
+    runs::JudgedRun,
+    store::Store,
+    suite,
+};
+use serde_json::json;
+use validation::cases;
+
+use super::{
+    Exit, Failure, Outcome, World, arguments, judged, list::default_variant, outcome::outcome, output,
+};
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Failure::usage(error)
+    }
+}
+
+/// More than this is no description of a method [bytes].
+const MOST_BYTES: u64 = 1 << 24;
+
+/// Name of our own results.
+const RESULTS: &str = "results.csv";
+
+pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Outcome {
+    let case = cases::find_in(world.cases, &arguments.case)?;
+    let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
+    let problem = Problem::of(case, case::spec(case, variant, &arguments.set)?)?;
+    let folder = OutputFolder::create(&arguments.out)?;
+    let mut names = write::write(&problem, format(arguments.format), &folder)?;
+    if arguments.solve {
+        names.extend(solve(case, &problem, &folder, world)?);
+    }
+    output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
+    Ok(Exit::Pass)
+}
+
+fn format(format: arguments::Format) -> Format {
+    match format {
+        arguments::Format::Csv => Format::Csv,
+        arguments::Format::Vtu => Format::Vtu,
+        arguments::Format::Lammps => Format::Lammps,
+        arguments::Format::Pysph => Format::Pysph,
+    }
+}
+
+/// Makes the run and writes it as another code would: an example of a submission.
+fn solve(
+    case: &dyn Case,
+    problem: &Problem,
+    folder: &OutputFolder,
+    world: &World,
+) -> Result<Vec<String>, Failure> {
+    let columns = ["id", "x", "y", "u", "v", "density"];
+    let heads = ["t[s]", "id[-]", "x[m]", "y[m]", "u[m/s]", "v[m/s]", "density[kg/m^3]"];
+    let table = Mutex::new((CsvTable::new(&heads)?, Ok(())));
+    let tell = |time: f64, particles: Profile| {
+        let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
+        for k in 0..particles.column("id").len() {
+            let row = columns.map(|name| particles.column(name)[k]);
+            let written = table.0.numbers(&[&[time], &row[..]].concat());
+            table.1 = std::mem::replace(&mut table.1, Ok(())).and(written);
+        }
+    };
+    let context = Context {
+        at_times: Some(&tell),
+        allow_long: true,
+        interrupt: Some(world.interrupt),
+        ..Context::default()
+    };
+    let record = case.run(&problem.spec, &context)?;
+    if let Status::Interrupted { .. } = record.status {
+        return Err(Failure::interrupted("the problem is written, its results are not"));
+    }
+    let (table, written) = table.into_inner().unwrap_or_else(PoisonError::into_inner);
+    written?;
+    let method = json!({
+        "code": "touchstone",
+        "version": env!("CARGO_PKG_VERSION"),
+        "scheme": problem.spec.variant,
+        "division": "closed",
+        "settings": problem.spec.settings,
+        "changed": "nothing",
+    });
+    let cost = &record.cost;
+    let system = json!({
+        "machine": record.manifest.cpu,
+        "threads": cost.threads,
+        "seconds": cost.wall_s,
+        "steps": cost.steps,
+        "interactions": cost.pair_interactions,
+    });
+    folder.write(RESULTS, &table.into_bytes())?;
+    folder.write(METHOD, (serde_json::to_string_pretty(&method)? + "\n").as_bytes())?;
+    folder.write(SYSTEM, (serde_json::to_string_pretty(&system)? + "\n").as_bytes())?;
+    Ok([RESULTS, METHOD, SYSTEM].map(String::from).into())
+}
+
+pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
+    let case = cases::find_in(world.cases, &arguments.case)?;
+    let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
+    let text = files::read_text(&arguments.method, MOST_BYTES).map_err(|reason| {
+        Failure::usage(anyhow::anyhow!("cannot read {}: {reason}", arguments.method.display()))
+    })?;
+    let sealed = Sealed { seed: arguments.seed, method: sha256(text.as_bytes()) };
+    let set = challenge::draw(case, variant, &sealed)?;
+    let mut problem = Problem::of(case, case::spec(case, variant, &set)?)?;
+    problem.sealed = Some(sealed);
+    let folder = OutputFolder::create(&arguments.out)?;
+    let mut names = write::write(&problem, format(arguments.format), &folder)?;
+    folder.write(METHOD, text.as_bytes())?;
+    names.push(METHOD.into());
+    output::print(&format!("{}\n", set.join(" ")))?;
+    output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
+    Ok(Exit::Pass)
+}
+
+pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
+    let case = cases::find_in(world.cases, &arguments.case)?;
+    world.check_references(&[case])?;
+    let renamed = arguments.map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
+    let entry = submission::read(&arguments.folder, &renamed).map_err(|flaws| refused(&flaws))?;
+    let problem = problem(case, &entry, arguments)?;
+    let flaws = entry.check(&problem);
+    if !flaws.is_empty() {
+        return Err(refused(&flaws));
+    }
+    let record = measured(case, &entry, &problem.spec, &arguments.folder, world)?;
+    if arguments.check {
+        output::say("complete: every fact that a submission needs is there; nothing was recorded");
+        return Ok(Exit::Pass);
+    }
+    let Some(store) = &arguments.store else {
+        return Err(Failure::usage(anyhow::anyhow!("--store DIR names the folder of its record")));
+    };
+    let path = Store::open(store)?.write(&record)?;
+    let run = suite::submitted(case, record);
+    show(case, &run, arguments.all)?;
+    output::say(&path.display().to_string());
+    let fails = run.applicable().0.iter().any(|judged| judged.judgement.verdict.is_failure());
+    Ok(if fails { Exit::GateFailed } else { Exit::Pass })
+}
+
+/// The problem that the folder says it solves, or that the arguments describe.
+fn problem(
+    case: &dyn Case,
+    entry: &Entry,
+    arguments: &arguments::Submit,
+) -> Result<Problem, Failure> {
+    let is_given = arguments.variant.is_some() || !arguments.set.is_empty();
+    let spec: RunSpec = match &entry.asked {
+        Some(_) if is_given => {
+            let words = "the folder has a problem.json, which states variant and settings; leave out \
+                         --variant and --set";
+            return Err(Failure::usage(anyhow::anyhow!(words)));
+        }
+        Some(asked) if asked.spec.case != case.name() => {
+            let words = format!("problem.json is of the case {}, not of {}", asked.spec.case, case.name());
+            return Err(Failure::usage(anyhow::anyhow!(words)));
+        }
+        Some(asked) => case::resolved(case, asked.spec.clone())?,
+        None => {
+            let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
+            case::spec(case, variant, &arguments.set)?
+        }
+    };
+    if let Some(sealed) = entry.asked.as_ref().and_then(|asked| asked.sealed.as_ref()) {
+        let drawn = challenge::draw(case, &spec.variant, sealed)?;
+        if case::spec(case, &spec.variant, &drawn)?.settings != spec.settings {
+            let words = "problem.json is not the one that its seed and method give: settings differ";
+            return Err(Failure::usage(anyhow::anyhow!(words)));
+        }
+    }
+    Ok(Problem::of(case, spec)?)
+}
+
+/// The record of the submission.
+fn measured(
+    case: &dyn Case,
+    entry: &Entry,
+    spec: &RunSpec,
+    folder: &Path,
+    world: &World,
+) -> Result<Record, Failure> {
+    let mut record = entry.measure(case, spec).map_err(|error| {
+        refused(&[Flaw::of(folder.display().to_string(), error.to_string())])
+    })?;
+    record.manifest.sources = (world.sources)(case.name());
+    record.manifest.cpu = entry.system.machine.clone();
+    Ok(record)
+}
+
+/// All flaws as the reason why nothing is judged.
+fn refused(flaws: &[Flaw]) -> Failure {
+    let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
+    Failure::usage(anyhow::anyhow!("the submission is refused, and nothing is judged:\n{}", lines.join("\n")))
+}
+
+fn show(case: &dyn Case, run: &JudgedRun, all: bool) -> Result<(), Failure> {
+    let (apply, others) = run.applicable();
+    let shown: Vec<_> = apply
+        .iter()
+        .copied()
+        .filter(|judged| all || judged.status() != ::report::Status::Pass)
+        .collect();
+    let mut text = if shown.is_empty() { String::new() } else { judged::table(shown) + "\n" };
+    if !others.is_empty() {
+        let rows: Vec<Vec<String>> =
+            others.iter().map(|(id, why)| vec![id.to_string(), why.to_string()]).collect();
+        text += &(output::table(&["not applicable", "because"], &rows) + "\n");
+    }
+    let judged: Vec<_> = apply.into_iter().cloned().collect();
+    text += &outcome(case, &run.planned.spec, &run.record, &judged);
+    output::print(&text)
+}
