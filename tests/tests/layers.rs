@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::tidy::root;
 
 /// A crate, its folder, and the crates of this project that it may know.
-const LAYERS: [(&str, &str, &[&str]); 14] = [
+const LAYERS: [(&str, &str, &[&str]); 15] = [
     ("lanes", "solver/lanes", &[]),
     ("solver", "solver", &["lanes"]),
     ("lagrangian", "solver/lagrangian", &["lanes", "solver"]),
@@ -16,6 +16,7 @@ const LAYERS: [(&str, &str, &[&str]); 14] = [
     ("report", "validation/report", &["base"]),
     ("maths", "validation/maths", &["solver", "lagrangian", "base"]),
     ("harness", "validation/harness", &["solver", "base", "report", "maths"]),
+    ("exchange", "validation/exchange", &["solver", "base", "harness"]),
     ("fluids", "validation/fluids", &["solver", "base", "report", "maths", "harness"]),
     ("waters", "validation/waters", &["solver", "base", "report", "maths", "harness"]),
     (
@@ -30,9 +31,10 @@ const LAYERS: [(&str, &str, &[&str]); 14] = [
 ];
 const EVERY: [&str; 9] =
     ["solver", "base", "report", "maths", "harness", "fluids", "waters", "solids", "lattice"];
-const WITH_VALIDATION: [&str; 10] = [
+const WITH_VALIDATION: [&str; 11] = [
     "solver",
     "base",
+    "exchange",
     "report",
     "maths",
     "harness",

@@ -78,11 +78,8 @@ impl Problem {
     /// If the run is refused, or is none of a scene.
     pub fn of(case: &dyn Case, spec: RunSpec) -> Result<Self, RunError> {
         let sink = Sink::default();
-        let context = Context {
-            outline: Some(sink.clone()),
-            allow_long: true,
-            ..Context::default()
-        };
+        let context =
+            Context { outline: Some(sink.clone()), allow_long: true, ..Context::default() };
         match case.run(&spec, &context) {
             Err(RunError::Outlined) | Ok(_) => {}
             Err(error) => return Err(error),
@@ -115,7 +112,8 @@ impl Problem {
                 "velocity": with_unit(wall.velocity.as_slice(), "m/s"),
             })
         };
-        let gate = |gate: &Gate| json!({ "id": gate.id, "metric": gate.metric, "bound": gate.bound });
+        let gate =
+            |gate: &Gate| json!({ "id": gate.id, "metric": gate.metric, "bound": gate.bound });
         let mut document = json!({
             "schema": SCHEMA,
             "spec": self.spec,
@@ -191,7 +189,12 @@ impl Problem {
         let Outline { medium: m, times, .. } = &self.outline;
         let quantity = |(name, value): (&String, &Value)| {
             let text = |value: &Value| value.as_str().map_or(value.to_string(), String::from);
-            format!("| {} | {} | {} |\n", name.replace('_', " "), text(&value["value"]), text(&value["unit"]))
+            format!(
+                "| {} | {} | {} |\n",
+                name.replace('_', " "),
+                text(&value["value"]),
+                text(&value["unit"])
+            )
         };
         let material = material(m, self.is_solid());
         let material: String = material.as_object().into_iter().flatten().map(quantity).collect();
@@ -237,10 +240,8 @@ impl Problem {
 /// The parameters of the material.
 fn material(m: &Medium, is_solid: bool) -> Value {
     let (density, sound_speed) = (m.eos.density, m.eos.sound_speed);
-    let common = [
-        ("density", with_unit(density, "kg/m^3")),
-        ("sound_speed", with_unit(sound_speed, "m/s")),
-    ];
+    let common =
+        [("density", with_unit(density, "kg/m^3")), ("sound_speed", with_unit(sound_speed, "m/s"))];
     let own = match is_solid {
         true => vec![
             ("bulk_modulus", with_unit(density * sound_speed * sound_speed, "Pa")),

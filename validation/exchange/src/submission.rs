@@ -11,7 +11,7 @@ use base::{
     submission::{Division, Submission},
 };
 use harness::{
-    case::{Case, RunError},
+    case::{Case, RunError, Tier},
     context::Context,
     playback::{Own, Playback},
 };
@@ -108,10 +108,13 @@ pub struct Entry {
 }
 
 /// Reads a document.
-fn document<T: DeserializeOwned>(folder: &Path, name: &str, what: &str) -> Result<(T, String), Flaw> {
-    let text = files::read_text(&folder.join(name), MOST_BYTES).map_err(|reason| {
-        Flaw::of(name, format!("cannot be read: {reason}; expected {what}"))
-    })?;
+fn document<T: DeserializeOwned>(
+    folder: &Path,
+    name: &str,
+    what: &str,
+) -> Result<(T, String), Flaw> {
+    let text = files::read_text(&folder.join(name), MOST_BYTES)
+        .map_err(|reason| Flaw::of(name, format!("cannot be read: {reason}; expected {what}")))?;
     let read = serde_json::from_str(&text).map_err(|error| {
         let flaw = Flaw::of(name, format!("{error}; expected {what}"));
         flaw.at(error.line() as u64)
@@ -142,7 +145,8 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     let asked = asked.map_err(|flaw| flaws.push(flaw));
     let results = results.map_err(|all| flaws.extend(all));
     if let Ok((method, _)) = &method {
-        let fields = [("code", &method.code), ("version", &method.version), ("scheme", &method.scheme)];
+        let fields =
+            [("code", &method.code), ("version", &method.version), ("scheme", &method.scheme)];
         for (name, text) in fields {
             let is_plain = |c: char| !c.is_control();
             if text.trim().is_empty() || text.len() > 100 || !text.chars().all(is_plain) {
@@ -160,7 +164,8 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
             ("interactions", interactions, 1e18),
         ] {
             if let Some(number) = known.number().filter(|n| !(*n > 0.0 && *n <= most)) {
-                let what = format!("it is {number}; expected a number above 0 and at most {most:e}");
+                let what =
+                    format!("it is {number}; expected a number above 0 and at most {most:e}");
                 flaws.push(Flaw::of(SYSTEM, what).in_column(name));
             }
         }
@@ -190,7 +195,8 @@ impl Entry {
         let file = places.first().map_or("results", |(file, _)| file.as_str());
         let playback = Playback { frames: frames.clone(), own: Vec::new() };
         for time in playback.missing(&problem.outline.times) {
-            let what = format!("there are no particles at t = {time} s, at which the problem is measured");
+            let what =
+                format!("there are no particles at t = {time} s, at which the problem is measured");
             flaws.push(Flaw::of(file, what).in_column("t"));
         }
         let expected: Vec<u32> = match self.method.division {
@@ -208,7 +214,8 @@ impl Entry {
                     flaws.push(Flaw::of(file, what).at(places[0].1).in_column("mass"));
                 }
                 if frames.first().is_some_and(|frame| frame.time != 0.0) {
-                    let what = "the first frame is not at t = 0, at which an open submission starts";
+                    let what =
+                        "the first frame is not at t = 0, at which an open submission starts";
                     flaws.push(Flaw::of(file, what).at(places[0].1).in_column("t"));
                 }
                 ids
@@ -221,7 +228,8 @@ impl Entry {
                 frame.particles.iter().enumerate().map(|(k, p)| (p.id, k)).collect();
             ids.sort_unstable();
             if let Some(twice) = ids.windows(2).find(|two| two[0].0 == two[1].0) {
-                let what = format!("particle {} is there twice at t = {} s", twice[0].0, frame.time);
+                let what =
+                    format!("particle {} is there twice at t = {} s", twice[0].0, frame.time);
                 flaws.push(flaw(what).at(line + twice[1].1 as u64));
             }
             let has = |id: &u32| ids.binary_search_by_key(id, |(id, _)| *id).is_ok();
@@ -310,6 +318,11 @@ impl Entry {
             record.metrics.remove(&name);
             let reason = "the particles of the submission do not determine it".to_string();
             record.absent.insert(name, reason);
+        }
+        for metric in case.declaration(Tier::Quick).stepwise {
+            if record.metrics.remove(&String::from(*metric)).is_some() {
+                record.leave_out(*metric, "it is measured after every step");
+            }
         }
         for reason in record.absent.values_mut().filter(|reason| *reason == NOT_ASKED) {
             *reason = "it needs the sums of this program's own terms".into();

@@ -37,6 +37,8 @@ pub struct Declaration {
     /// The metrics that take pair sweeps of their own, and which a run leaves out unless a gate reads one of
     /// them or all is asked for.
     pub costly: &'static [MetricKey],
+    /// The metrics that need the state after every step, which results of other codes do not have.
+    pub stepwise: &'static [MetricKey],
 }
 
 /// What the report says first of a case: its error with the best variant and with the paper's.

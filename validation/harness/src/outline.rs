@@ -51,7 +51,12 @@ impl Sink {
         let outline = Outline {
             medium: *medium,
             domain: *domain,
-            mirrors: mirrors.clone(),
+            // Walls of particles need no planes.
+            mirrors: if particles.iter().all(|p| p.role == Role::Fluid) {
+                mirrors.clone()
+            } else {
+                Vec::new()
+            },
             bodies: bodies.clone(),
             limits: *limits,
             particles: columns(particles, &|_| 0.0),

@@ -91,12 +91,16 @@ impl Playback {
         }
         let mut reached = 0;
         for frame in &self.frames {
-            let time = times.get(reached).copied().filter(|time| is_at(frame, *time, end));
-            if let Some(ended) = put(frame, time.unwrap_or(frame.time), simulation)? {
+            let next = |reached: usize| {
+                times.get(reached).copied().filter(|time| is_at(frame, *time, end))
+            };
+            let time = next(reached).unwrap_or(frame.time);
+            if let Some(ended) = put(frame, time, simulation)? {
                 return Ok(ended);
             }
             simulation.show(observer);
-            if time.is_some() {
+            // A time may be stated twice, such as that of a sample and of a picture.
+            while next(reached).is_some() {
                 at(observer, simulation, reached);
                 reached += 1;
             }
@@ -129,11 +133,18 @@ fn put<X: Numbers, D: Stepper<X> + ?Sized>(
         };
         (particle.position, particle.velocity) = (placed.position, placed.velocity);
         particle.density = placed.density.unwrap_or(particle.density);
+        // What another code integrates beside these is not known, and so is what is measured of it.
+        particle.extra = particle.extra.advanced(f64::NAN, X::default());
     }
-    state.built_at = state.particles.iter().map(|(_, particle)| particle.position).collect();
+    let places = state.particles.iter().map(|(_, particle)| particle.position).collect();
+    let reference = std::mem::replace(&mut state.built_at, places);
     state.lag = 0.0;
     state.progress = solver::Progress { time, ..solver::Progress::default() };
-    simulation.restore(&state).map_err(|reason| refused(reason.into()))?;
+    if simulation.restore(&state).is_err() {
+        // A total Lagrangian solid keeps the lists of its reference.
+        state.built_at = reference;
+        simulation.restore(&state).map_err(|reason| refused(reason.into()))?;
+    }
     match simulation.advance(time, 1.0, &mut ()) {
         Outcome::Diverged(divergence) => Ok(Some(Status::Diverged {
             step: 0,

@@ -210,7 +210,8 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
             let dt = if until > start { dt.min((until - start) / least) } else { dt };
             let is_last = self.reached + 1 == times.len();
             let is_told = self.context.at_times.is_some();
-            self.synchronises = is_last || is_told || at.iter().any(|(_, (_, synchronised))| *synchronised);
+            self.synchronises =
+                is_last || is_told || at.iter().any(|(_, (_, synchronised))| *synchronised);
             if let Some(ended) = self.step_to(simulation, until, dt) {
                 return ended;
             }

@@ -31,7 +31,8 @@ impl JudgedRun {
             absent(judged).is_none() && self.record.metrics.contains_key(&judged.gate.metric)
         };
         let (apply, others): (Vec<&Judged>, Vec<&Judged>) = self.judged.iter().partition(applies);
-        let reason = |judged| absent(judged).map_or("it is not measured of results", String::as_str);
+        let reason =
+            |judged| absent(judged).map_or("it is not measured of results", String::as_str);
         (apply, others.into_iter().map(|judged| (&*judged.gate.id, reason(judged))).collect())
     }
 

@@ -27,7 +27,8 @@ use serde_json::json;
 use validation::cases;
 
 use super::{
-    Exit, Failure, Outcome, World, arguments, judged, list::default_variant, outcome::outcome, output,
+    Exit, Failure, Outcome, World, arguments, judged, list::default_variant, outcome::outcome,
+    output,
 };
 
 impl From<WriteError> for Failure {
@@ -73,9 +74,12 @@ fn solve(
 ) -> Result<Vec<String>, Failure> {
     let columns = ["id", "x", "y", "u", "v", "density"];
     let heads = ["t[s]", "id[-]", "x[m]", "y[m]", "u[m/s]", "v[m/s]", "density[kg/m^3]"];
-    let table = Mutex::new((CsvTable::new(&heads)?, Ok(())));
+    let table = Mutex::new((CsvTable::new(&heads)?, Ok(()), f64::NAN));
     let tell = |time: f64, particles: Profile| {
         let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
+        if std::mem::replace(&mut table.2, time) == time {
+            return; // stated twice
+        }
         for k in 0..particles.column("id").len() {
             let row = columns.map(|name| particles.column(name)[k]);
             let written = table.0.numbers(&[&[time], &row[..]].concat());
@@ -92,7 +96,7 @@ fn solve(
     if let Status::Interrupted { .. } = record.status {
         return Err(Failure::interrupted("the problem is written, its results are not"));
     }
-    let (table, written) = table.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let (table, written, _) = table.into_inner().unwrap_or_else(PoisonError::into_inner);
     written?;
     let method = json!({
         "code": "touchstone",
@@ -138,7 +142,8 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
 pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let case = cases::find_in(world.cases, &arguments.case)?;
     world.check_references(&[case])?;
-    let renamed = arguments.map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
+    let renamed =
+        arguments.map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
     let entry = submission::read(&arguments.folder, &renamed).map_err(|flaws| refused(&flaws))?;
     let problem = problem(case, &entry, arguments)?;
     let flaws = entry.check(&problem);
@@ -175,7 +180,8 @@ fn problem(
             return Err(Failure::usage(anyhow::anyhow!(words)));
         }
         Some(asked) if asked.spec.case != case.name() => {
-            let words = format!("problem.json is of the case {}, not of {}", asked.spec.case, case.name());
+            let words =
+                format!("problem.json is of the case {}, not of {}", asked.spec.case, case.name());
             return Err(Failure::usage(anyhow::anyhow!(words)));
         }
         Some(asked) => case::resolved(case, asked.spec.clone())?,
@@ -187,7 +193,8 @@ fn problem(
     if let Some(sealed) = entry.asked.as_ref().and_then(|asked| asked.sealed.as_ref()) {
         let drawn = challenge::draw(case, &spec.variant, sealed)?;
         if case::spec(case, &spec.variant, &drawn)?.settings != spec.settings {
-            let words = "problem.json is not the one that its seed and method give: settings differ";
+            let words =
+                "problem.json is not the one that its seed and method give: settings differ";
             return Err(Failure::usage(anyhow::anyhow!(words)));
         }
     }
@@ -202,9 +209,9 @@ fn measured(
     folder: &Path,
     world: &World,
 ) -> Result<Record, Failure> {
-    let mut record = entry.measure(case, spec).map_err(|error| {
-        refused(&[Flaw::of(folder.display().to_string(), error.to_string())])
-    })?;
+    let mut record = entry
+        .measure(case, spec)
+        .map_err(|error| refused(&[Flaw::of(folder.display().to_string(), error.to_string())]))?;
     record.manifest.sources = (world.sources)(case.name());
     record.manifest.cpu = entry.system.machine.clone();
     Ok(record)
@@ -213,7 +220,10 @@ fn measured(
 /// All flaws as the reason why nothing is judged.
 fn refused(flaws: &[Flaw]) -> Failure {
     let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
-    Failure::usage(anyhow::anyhow!("the submission is refused, and nothing is judged:\n{}", lines.join("\n")))
+    Failure::usage(anyhow::anyhow!(
+        "the submission is refused, and nothing is judged:\n{}",
+        lines.join("\n")
+    ))
 }
 
 fn show(case: &dyn Case, run: &JudgedRun, all: bool) -> Result<(), Failure> {

@@ -16,11 +16,15 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
     let flaw = |line: usize, what: String| vec![Flaw::of(file, what).at(line as u64 + 1)];
     while let Some((line, head)) = lines.next() {
         let Some(item) = head.strip_prefix("ITEM: ") else {
-            let what = format!("it begins {:?}; expected ITEM:", head.chars().take(20).collect::<String>());
+            let what = format!(
+                "it begins {:?}; expected ITEM:",
+                head.chars().take(20).collect::<String>()
+            );
             return Err(flaw(line, what));
         };
         let mut next = |what: &str| {
-            let (line, text) = lines.next().ok_or_else(|| flaw(line, format!("{what} is missing")))?;
+            let (line, text) =
+                lines.next().ok_or_else(|| flaw(line, format!("{what} is missing")))?;
             let number: Result<f64, _> = text.trim().parse();
             number.map_err(|_| flaw(line, format!("{what} is {text:?}; expected a number")))
         };
@@ -32,7 +36,8 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
             "BOX" => drop((lines.next(), lines.next(), lines.next())),
             "ATOMS" => {
                 let Some(time) = time else {
-                    let what = "there is no ITEM: TIME before the atoms; write it by dump_modify time yes";
+                    let what =
+                        "there is no ITEM: TIME before the atoms; write it by dump_modify time yes";
                     return Err(flaw(line, what.into()));
                 };
                 let heads: Vec<&str> = item.split_whitespace().skip(1).collect();
@@ -45,7 +50,8 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
                 };
                 let mut flaws = Vec::new();
                 for k in 0..atoms {
-                    let Some((line, text)) = lines.next().filter(|(_, l)| !l.starts_with("ITEM")) else {
+                    let Some((line, text)) = lines.next().filter(|(_, l)| !l.starts_with("ITEM"))
+                    else {
                         let what = format!("{k} atoms follow; expected {atoms}");
                         return Err(flaw(line, what));
                     };

@@ -229,7 +229,10 @@ fn frames(all: &[Rows]) -> Result<Results, Vec<Flaw>> {
     for rows in all {
         for k in 0..rows.len() {
             if flaws.len() >= MOST_FLAWS {
-                flaws.push(Flaw::of(&rows.file, "more flaws like these; nothing after them was read"));
+                flaws.push(Flaw::of(
+                    &rows.file,
+                    "more flaws like these; nothing after them was read",
+                ));
                 return Err(flaws);
             }
             let line = rows.first_line + k as u64;

@@ -51,11 +51,18 @@ fn numbers<R: std::io::Read>(array: npyz::NpyFile<R>) -> Result<Vec<f64>, String
         Err(array) => array,
     };
     let array = match array.try_data::<f32>() {
-        Ok(data) => return data.map(|x| x.map(f64::from)).collect::<Result<_, _>>().map_err(|e| e.to_string()),
+        Ok(data) => {
+            return data
+                .map(|x| x.map(f64::from))
+                .collect::<Result<_, _>>()
+                .map_err(|e| e.to_string());
+        }
         Err(array) => array,
     };
     match array.try_data::<i64>() {
-        Ok(data) => data.map(|x| x.map(|x| x as f64)).collect::<Result<_, _>>().map_err(|e| e.to_string()),
+        Ok(data) => {
+            data.map(|x| x.map(|x| x as f64)).collect::<Result<_, _>>().map_err(|e| e.to_string())
+        }
         Err(_) => Err(what),
     }
 }

@@ -33,5 +33,9 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>
             break;
         }
     }
-    if flaws.is_empty() { Ok(Rows { file: file.into(), first_line: 2, columns }) } else { Err(flaws) }
+    if flaws.is_empty() {
+        Ok(Rows { file: file.into(), first_line: 2, columns })
+    } else {
+        Err(flaws)
+    }
 }

@@ -16,9 +16,8 @@ const KNOWN: [(&str, &str); 4] =
 pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
     let known = KNOWN.iter().map(|(theirs, ours)| (theirs.to_string(), ours.to_string()));
     let renamed: Renamed = known.chain(renamed.clone()).collect();
-    let document = Document::parse(text).map_err(|error| {
-        vec![Flaw::of(file, error.to_string()).at(error.pos().row.into())]
-    })?;
+    let document = Document::parse(text)
+        .map_err(|error| vec![Flaw::of(file, error.to_string()).at(error.pos().row.into())])?;
     let root = document.root_element();
     let line = |node: Node| u64::from(document.text_pos_at(node.range().start).row);
     let mut arrays: BTreeMap<String, Vec<f64>> = BTreeMap::new();
@@ -68,7 +67,8 @@ fn values(root: Node, node: Node) -> Result<Vec<f64>, String> {
     let text = node.text().unwrap_or_default();
     match node.attribute("format") {
         Some("ascii") => {
-            let number = |word: &str| word.parse().map_err(|_| format!("it has {word:?}; expected numbers"));
+            let number =
+                |word: &str| word.parse().map_err(|_| format!("it has {word:?}; expected numbers"));
             text.split_whitespace().map(number).collect()
         }
         Some("binary") => {
@@ -76,7 +76,9 @@ fn values(root: Node, node: Node) -> Result<Vec<f64>, String> {
             let bytes = match root.attribute("compressor") {
                 None => plain(text.trim(), if wide { 8 } else { 4 })?,
                 Some("vtkZLibDataCompressor") => compressed(text.trim(), if wide { 8 } else { 4 })?,
-                Some(other) => return Err(format!("it is compressed by {other}; expected zlib or nothing")),
+                Some(other) => {
+                    return Err(format!("it is compressed by {other}; expected zlib or nothing"));
+                }
             };
             floats(node.attribute("type").unwrap_or_default(), &bytes)
         }
@@ -92,7 +94,11 @@ fn floats(kind: &str, bytes: &[u8]) -> Result<Vec<f64>, String> {
         ($type:ty) => {{
             let (numbers, rest) = bytes.as_chunks::<{ size_of::<$type>() }>();
             let numbers = numbers.iter().map(|bytes| <$type>::from_le_bytes(*bytes) as f64);
-            if rest.is_empty() { Ok(numbers.collect()) } else { Err("it ends within a number".into()) }
+            if rest.is_empty() {
+                Ok(numbers.collect())
+            } else {
+                Err("it ends within a number".into())
+            }
         }};
     }
     match kind {
@@ -101,7 +107,9 @@ fn floats(kind: &str, bytes: &[u8]) -> Result<Vec<f64>, String> {
         "Int64" => numbers!(i64),
         "Int32" => numbers!(i32),
         "UInt8" => numbers!(u8),
-        other => Err(format!("its type is {other}; expected Float64, Float32, Int64, Int32 or UInt8")),
+        other => {
+            Err(format!("its type is {other}; expected Float64, Float32, Int64, Int32 or UInt8"))
+        }
     }
 }
 
@@ -117,7 +125,10 @@ fn plain(text: &str, width: usize) -> Result<Vec<u8>, String> {
     let count = number(&bytes, 0, width)?;
     match bytes.get(width..).filter(|rest| rest.len() == count) {
         Some(rest) => Ok(rest.to_vec()),
-        None => Err(format!("it has {} bytes; its head says {count}", bytes.len().saturating_sub(width))),
+        None => Err(format!(
+            "it has {} bytes; its head says {count}",
+            bytes.len().saturating_sub(width)
+        )),
     }
 }
 
@@ -142,7 +153,10 @@ fn compressed(text: &str, width: usize) -> Result<Vec<u8>, String> {
         let before = all.len();
         reader.read_to_end(&mut all).map_err(|error| error.to_string())?;
         if all.len() - before != expected {
-            return Err(format!("a block has {} bytes; its head says {expected}", all.len() - before));
+            return Err(format!(
+                "a block has {} bytes; its head says {expected}",
+                all.len() - before
+            ));
         }
         at = end;
     }

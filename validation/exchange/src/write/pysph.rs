@@ -17,8 +17,8 @@ import numpy as np
 import pysph
 from pysph.base.kernels import QuinticSpline
 from pysph.base.utils import get_particle_array
-from pysph.parallel.parallel_manager import ParallelManager  # noqa: F401  (an early, clear import error)
 from pysph.solver.application import Application
+from pysph.solver.solver import Solver
 from pysph.base.nnps import DomainManager
 from pysph.sph.scheme import WCSPHScheme, TVFScheme
 from pysph.sph.wc.edac import EDACScheme
@@ -56,7 +56,7 @@ class Run(Application):
                                        p=columns["pressure"][is_of], h=h, **of)
             array.add_property("touchstone", data=columns["id"][is_of])
             arrays.append(array)
-        self.scheme.setup_properties(arrays)
+        self.scheme.setup_properties(arrays, clean=False)
         for array in arrays:
             array.add_output_arrays(["touchstone", "rho", "u", "v"])
             if "V" in array.properties:
@@ -81,11 +81,16 @@ class Run(Application):
                                      output_at_times=times, adaptive_timestep=False, pfreq=10**9)
 
 
+def timed(self, *given, **named):
+    begin = time.perf_counter()
+    whole(self, *given, **named)
+    Run.seconds = time.perf_counter() - begin  # without setting up and compiling
+
+
+whole, Solver.solve = Solver.solve, timed
 app = Run(fname="pysph")
-app.steps = 0
-begin = time.perf_counter()
 app.run(["--max-steps", "1"] if "--check" in sys.argv else ["--openmp"] if "--openmp" in sys.argv else [])
-seconds = app.solver.solve_time if hasattr(app.solver, "solve_time") else time.perf_counter() - begin
+seconds = Run.seconds
 
 from pysph.solver.utils import iter_output
 with open("results.csv", "w") as file:

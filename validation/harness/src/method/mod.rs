@@ -77,7 +77,18 @@ impl<X: Numbers> Parts<X> {
             Some(playback) => playback.particles(particles),
             None => particles,
         };
-        Self { medium, domain, particles, mirrors, bodies, skin, limits, threads, mutation, outline }
+        Self {
+            medium,
+            domain,
+            particles,
+            mirrors,
+            bodies,
+            skin,
+            limits,
+            threads,
+            mutation,
+            outline,
+        }
     }
 }
 

@@ -152,9 +152,8 @@ fn figure(
     let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
     let failed = points.iter().any(|point| point.failure.is_some());
     let crosses = if failed { " Crosses above are runs that failed." } else { "" };
-    let others = peers
-        .first()
-        .map_or(String::new(), |peer| format!(" Grey: other codes ({}).", peer.timed));
+    let others =
+        peers.first().map_or(String::new(), |peer| format!(" Grey: other codes ({}).", peer.timed));
     let caption = format!(
         "{} {} over spacing (left), run time on one core (middle) and work (right).\
          {explained}{crosses}{others}",

@@ -59,7 +59,8 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
 }
 
 fn table(declared: &Declaration, caption: &str, runs: Vec<&JudgedRun>) -> report::Table {
-    let words = |run: &JudgedRun| run.record.submission.as_ref().map_or(String::new(), |of| of.to_string());
+    let words =
+        |run: &JudgedRun| run.record.submission.as_ref().map_or(String::new(), |of| of.to_string());
     let error = |run: &JudgedRun| {
         let card = declared.card.as_ref();
         let error = card.and_then(|card| run.record.value(card.metric.clone()));

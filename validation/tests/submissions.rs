@@ -1,0 +1,290 @@
+//! Submissions of other codes: our own results come back with the values of the run itself, and what is damaged
+//! is refused with file, line and column.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use base::record::Record;
+use base::spec::RunSpec;
+
+const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
+
+fn touchstone(folder: &Path, line: &str) -> Output {
+    Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A folder with a whole submission of Couette flow with eight rows, made once.
+fn whole() -> &'static Path {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let line = "export couette --variant seed --set rows=8 --set end=0.1 --out whole --solve";
+        let made = touchstone(folder.path(), line);
+        assert!(made.status.success(), "{}", said(&made));
+        folder
+    });
+    folder.path()
+}
+
+/// A copy of the whole submission in a folder of its own.
+fn copy() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let copy = folder.path().join("copy");
+    fs::create_dir(&copy).unwrap();
+    for entry in fs::read_dir(whole().join("whole")).unwrap().flatten() {
+        fs::copy(entry.path(), copy.join(entry.file_name())).unwrap();
+    }
+    (folder, copy)
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Measured from their particles alone, with no step made: the values of the run, except for round-off.
+#[test]
+fn our_own_results_are_measured_as_the_run_was() {
+    let cases = [
+        "couette --variant seed --set rows=8",
+        "poiseuille --variant seed --set rows=8",
+        "taylor_green --set n=16",
+        "dam_break --variant seed --set n=8 --set end=1",
+        "elliptic_drop --set n=10",
+        "rubber_rings --variant lagrangian --set spacing=0.5",
+    ];
+    for line in cases {
+        let folder = tempfile::tempdir().unwrap();
+        let made = touchstone(folder.path(), &format!("export {line} --out own --solve"));
+        assert!(made.status.success(), "{line}: {}", said(&made));
+        let case = line.split(' ').next().unwrap();
+        let submitted = touchstone(folder.path(), &format!("submit {case} own --store store"));
+        assert!(
+            submitted.stderr.is_empty() || submitted.status.code() < Some(2),
+            "{}",
+            said(&submitted)
+        );
+        let file = fs::read_dir(folder.path().join("store")).unwrap().flatten().next();
+        let file = file.unwrap_or_else(|| panic!("{line}: {}", said(&submitted)));
+        let found = Record::from_json(&read(&file.path())).unwrap();
+        let run = touchstone(folder.path(), &format!("run {line} --json"));
+        let own = Record::from_json(&String::from_utf8_lossy(&run.stdout)).unwrap();
+        let mut compared = 0;
+        for (name, metric) in &found.metrics {
+            let (found, own) = (metric.value, own.metrics[name].value);
+            assert!(
+                (found - own).abs() <= 1e-12 * own.abs().max(1.0),
+                "{name} of {line}: the submission has {found}, the run {own}"
+            );
+            compared += 1;
+        }
+        assert!(compared >= 5, "{line}: only {compared} metrics were compared");
+        let of = found.submission.as_ref().expect("the record says who made the run");
+        assert_eq!((&*of.code, &*of.scheme), ("touchstone", &*own.variant), "{line}");
+        assert_eq!(found.cost.steps, own.cost.steps, "steps of {line} as system.json states them");
+    }
+}
+
+/// What is wrong, and the file, line and column that the message names.
+#[test]
+fn a_damaged_submission_is_refused_with_file_line_and_column() {
+    type Damage = fn(&Path);
+    fn edit(folder: &Path, file: &str, from: &str, to: &str) {
+        let text = read(&folder.join(file));
+        assert!(text.contains(from), "{file} has no {from}");
+        fs::write(folder.join(file), text.replacen(from, to, 1)).unwrap();
+    }
+    /// Changes the value of a column in a line, counted from 1.
+    fn set(folder: &Path, line: usize, column: usize, value: &str) {
+        let path = folder.join("results.csv");
+        let mut lines: Vec<String> = read(&path).lines().map(String::from).collect();
+        let mut cells: Vec<&str> = lines[line - 1].split(',').collect();
+        cells[column] = value;
+        lines[line - 1] = cells.join(",");
+        fs::write(path, lines.join("\n") + "\n").unwrap();
+    }
+    fn drop_lines(folder: &Path, from: usize, to: usize) {
+        let path = folder.join("results.csv");
+        let text = read(&path);
+        let kept = text.lines().enumerate().filter(|(k, _)| !(from..to).contains(&(k + 1)));
+        fs::write(&path, kept.map(|(_, line)| format!("{line}\n")).collect::<String>()).unwrap();
+    }
+    let damages: [(&str, Damage, &[&str]); 24] = [
+        (
+            "no method",
+            |f| fs::remove_file(f.join("method.json")).unwrap(),
+            &["method.json", "expected code"],
+        ),
+        (
+            "no machine",
+            |f| fs::remove_file(f.join("system.json")).unwrap(),
+            &["system.json", "expected machine"],
+        ),
+        (
+            "no results",
+            |f| fs::remove_file(f.join("results.csv")).unwrap(),
+            &["expected results.csv"],
+        ),
+        (
+            "another division",
+            |f| edit(f, "method.json", "\"closed\"", "\"half\""),
+            &["method.json, line", "closed"],
+        ),
+        (
+            "no version",
+            |f| edit(f, "method.json", "\"version\"", "\"versio\""),
+            &["method.json, line", "version"],
+        ),
+        (
+            "an empty code",
+            |f| edit(f, "method.json", "\"touchstone\"", "\"\""),
+            &["method.json, column code"],
+        ),
+        (
+            "negative threads",
+            |f| edit(f, "system.json", "\"threads\": 1", "\"threads\": -1"),
+            &["system.json, column threads", "above 0"],
+        ),
+        (
+            "seconds in words",
+            |f| edit(f, "system.json", "\"threads\": 1", "\"threads\": \"some\""),
+            &["system.json, line", "unknown"],
+        ),
+        (
+            "another unit",
+            |f| edit(f, "results.csv", "x[m]", "x[mm]"),
+            &["results.csv, line 1, column x", "mm; expected m"],
+        ),
+        (
+            "a column is missing",
+            |f| edit(f, "results.csv", "v[m/s]", "w[m/s]"),
+            &["results.csv, line 1, column v", "missing"],
+        ),
+        (
+            "a column twice",
+            |f| edit(f, "results.csv", "y[m]", "x[m]"),
+            &["results.csv, line 1, column x", "twice"],
+        ),
+        ("not a number", |f| set(f, 3, 4, "fast"), &["results.csv, line 3, column u", "\"fast\""]),
+        ("not finite", |f| set(f, 5, 5, "NaN"), &["results.csv, line 5, column v", "finite"]),
+        ("infinite", |f| set(f, 5, 2, "inf"), &["results.csv, line 5, column x", "finite"]),
+        (
+            "an id that is no whole number",
+            |f| set(f, 4, 1, "1.5"),
+            &["results.csv, line 4, column id", "whole"],
+        ),
+        ("a negative id", |f| set(f, 4, 1, "-3"), &["results.csv, line 4, column id"]),
+        ("a particle twice", |f| set(f, 3, 1, "0"), &["results.csv", "column id", "twice"]),
+        (
+            "a particle of another problem",
+            |f| set(f, 3, 1, "100000"),
+            &["results.csv, line 3, column id", "none of the problem"],
+        ),
+        ("a negative density", |f| set(f, 6, 6, "-1"), &["results.csv, line 6, column density"]),
+        ("a particle less", |f| drop_lines(f, 4, 5), &["results.csv, line 2, column id", "1 of"]),
+        ("not sorted", |f| set(f, 3, 0, "0.001"), &["results.csv, line 3, column t", "sorted"]),
+        (
+            "no times",
+            |f| drop_lines(f, 10, 1_000_000),
+            &["results.csv, column t", "no particles at t"],
+        ),
+        (
+            "a line is cut",
+            |f| {
+                let t = read(&f.join("results.csv"));
+                fs::write(f.join("results.csv"), &t[..t.len() - 40]).unwrap()
+            },
+            &["results.csv, line"],
+        ),
+        (
+            "another case",
+            |f| edit(f, "problem.json", "\"case\": \"couette\"", "\"case\": \"poiseuille\""),
+            &["problem.json is of the case poiseuille"],
+        ),
+    ];
+    for (what, damage, expected) in damages {
+        let (folder, copy) = copy();
+        damage(&copy);
+        for line in ["submit couette copy --store store", "submit couette copy --check"] {
+            let output = touchstone(folder.path(), line);
+            let words = said(&output);
+            assert_eq!(output.status.code(), Some(2), "{what}: {words}");
+            for part in expected {
+                assert!(words.contains(part), "{what}: expected {part:?} in {words}");
+            }
+            assert!(!words.contains("bug of touchstone"), "{what}: {words}");
+        }
+        let kept = fs::read_dir(folder.path().join("store")).map_or(0, Iterator::count);
+        assert_eq!(kept, 0, "{what}: something was recorded");
+    }
+}
+
+#[test]
+fn everything_that_is_missing_is_told_at_once() {
+    let (folder, copy) = copy();
+    fs::remove_file(copy.join("method.json")).unwrap();
+    let text =
+        read(&copy.join("results.csv")).replacen("x[m]", "pos_x", 1).replacen("u[m/s]", "vel", 1);
+    fs::write(copy.join("results.csv"), text).unwrap();
+    let words = said(&touchstone(folder.path(), "submit couette copy --check"));
+    for part in ["method.json", "column x", "column u"] {
+        assert!(words.contains(part), "expected {part} in {words}");
+    }
+    fs::copy(whole().join("whole/method.json"), copy.join("method.json")).unwrap();
+    let mapped = touchstone(folder.path(), "submit couette copy --check --map x=pos_x,u=vel");
+    assert_eq!(mapped.status.code(), Some(0), "{}", said(&mapped));
+}
+
+/// A method that was changed after the seed was known is refused, and so are settings that were not drawn.
+#[test]
+fn a_sealed_problem_holds_its_method_and_its_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::copy(whole().join("whole/method.json"), at.join("method.json")).unwrap();
+    let line = |seed: u32, out: &str| {
+        format!(
+            "challenge taylor_green --variant modern --seed {seed} --method method.json --out {out}"
+        )
+    };
+    let drawn = |seed: u32, out: &str| {
+        let output = touchstone(at, &line(seed, out));
+        assert!(output.status.success(), "{}", said(&output));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let (once, twice, other) = (drawn(7, "a"), drawn(7, "b"), drawn(8, "c"));
+    assert_eq!(once, twice, "the same seed draws the same settings");
+    assert_ne!(once, other, "another seed draws others");
+    // Particles that stand still will do: what is looked at comes before they are measured.
+    let problem = read(&at.join("a/problem.json"));
+    let spec: serde_json::Value = serde_json::from_str(&problem).unwrap();
+    let spec: RunSpec = serde_json::from_value(spec["spec"].clone()).unwrap();
+    assert!(spec.settings["re"] != 100.0, "the Reynolds number was drawn: {}", spec.settings);
+    for (file, from, to, expected) in [
+        ("method.json", "\"changed\": \"nothing\"", "\"changed\": \"a bit\"", "changed afterwards"),
+        ("problem.json", "\"seed\": 7", "\"seed\": 9", "settings differ"),
+    ] {
+        let copy = at.join("copy");
+        let _ = fs::remove_dir_all(&copy);
+        fs::create_dir(&copy).unwrap();
+        for name in ["problem.json", "method.json"] {
+            fs::copy(at.join("a").join(name), copy.join(name)).unwrap();
+        }
+        fs::copy(whole().join("whole/system.json"), copy.join("system.json")).unwrap();
+        fs::copy(whole().join("whole/results.csv"), copy.join("results.csv")).unwrap();
+        let text = read(&copy.join(file));
+        // The last one: the settings of vortices have a seed, too.
+        let place = text.rfind(from).unwrap_or_else(|| panic!("{file} has no {from}: {text}"));
+        fs::write(
+            copy.join(file),
+            format!("{}{to}{}", &text[..place], &text[place + from.len()..]),
+        )
+        .unwrap();
+        let words = said(&touchstone(at, "submit taylor_green copy --check"));
+        assert!(words.contains(expected), "{file}: expected {expected:?} in {words}");
+    }
+}
