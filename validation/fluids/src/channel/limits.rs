@@ -39,10 +39,10 @@ pub fn limits(channel: Channel, tier: Tier) -> StepLimits {
         (Flow::Poiseuille, Tier::Quick) => vec!["seed"],
     };
     let about = format!(
-        "The default step of each variant, and how many times longer it could be, for 20 rows between walls on a \
-         lattice disturbed by {DISORDER:e} dx, over {STEPS} steps. A run is unstable if it diverges, or if its \
-         cross-flow or error exceeds V. Theory is that of the periodic lattice with sound, viscosity and other \
-         damping, without walls, motion and stabilisers."
+        "The default step of each variant, and how many times longer it could be, for 20 rows between walls \
+         on a lattice disturbed by {DISORDER:e} dx, over {STEPS} steps. A run is unstable if it diverges, \
+         or if its cross-flow or error exceeds V. Theory is that of the periodic lattice with sound, \
+         viscosity and other damping, without walls, motion and stabilisers."
     );
     let of = variants.into_iter().map(|variant| limit(channel, variant));
     StepLimits::new(channel.case.name, &about, of)

@@ -1,7 +1,7 @@
-//! Poiseuille flow of the seed, which becomes unstable: hypotheses H4 and H5 of the paper, that waves grow with
-//! the Reynolds number until the run is unstable (H4) and that a lower sound speed stabilises (H5), and what
-//! cures the instability. It grows from the disorder of the start, or from round-off if there is none, so that a
-//! single run of a chaotic flow says little, and a cell of a map has several starts.
+//! Poiseuille flow of the seed, which becomes unstable: hypotheses H4 and H5 of the paper, that waves grow
+//! with the Reynolds number until the run is unstable (H4) and that a lower sound speed stabilises (H5), and
+//! what cures the instability. It grows from the disorder of the start, or from round-off if there is none,
+//! so that a single run of a chaotic flow says little, and a cell of a map has several starts.
 
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -26,8 +26,8 @@ const REYNOLDS: [f64; 6] = [0.5, 1.0, 5.0, 10.0, 20.0, 50.0];
 /// Sound speeds of the map \[V\]. H4 is judged at the middle one, Morris' rule with 1 % density variation.
 const SOUND: [f64; 3] = [5.0, 10.0, 20.0];
 
-/// What is tried against the instability, in the full tier: nothing, the remedies of the paper, those of others,
-/// and the best rule; and at which Reynolds numbers.
+/// What is tried against the instability, in the full tier: nothing, the remedies of the paper, those of
+/// others, and the best rule; and at which Reynolds numbers.
 const CURES: [&str; 7] = [
     "seed",
     "cure-stress",
@@ -73,7 +73,7 @@ pub fn declared(table: &ChannelTable) -> Vec<Map> {
     let mut maps = vec![map(
         "poiseuille-map",
         "Outcomes over Reynolds number and sound speed",
-        "the sound speed c0 over the centre-line velocity V, at Courant number 0.25",
+        "the sound speed c0 over the centre-line velocity V, for `seed` at Courant number 0.25",
         "sound speed c0/V [-]",
         over_sound,
     )];
@@ -109,11 +109,11 @@ fn of_sound(table: &ChannelTable, re: f64, sound: f64) -> impl Iterator<Item = R
 
 fn map(id: &str, title: &str, over: &str, y: &str, panel: MapPanel) -> Map {
     let caption = format!(
-        "Outcome of Poiseuille flow, variant `seed`, 20 rows, over the Reynolds number and {over}. A cell shows \
-         the largest relative L2 error of the velocity from νt/L² = 0.1 to 1 of the median start, or after t the \
-         νt/L² at which it diverged; a run fails if it diverges or if this error exceeds 5 %. In the quick tier \
-         and above Re 20 a cell is one start, with particles displaced by up to 1e-4 dx, otherwise three, by up \
-         to 1e-6, 1e-4 and 1e-2 dx."
+        "Outcome of Poiseuille flow, 20 rows, over the Reynolds number and {over}. A cell shows the largest \
+         relative L2 error of the velocity from νt/L² = 0.1 to 1 of the median start, or after t the νt/L² \
+         at which it diverged; a run fails if it diverges or if this error exceeds 5 %. In the quick tier \
+         and above Re 20 a cell is one start, with particles displaced by up to 1e-4 dx, otherwise three, \
+         by up to 1e-6, 1e-4 and 1e-2 dx."
     );
     let outcomes = [
         ("no start fails, error ≤ 1 %", Colour::GREEN),
@@ -265,11 +265,11 @@ fn h4(judged: &[(f64, &Starts)]) -> String {
         _ => "open",
     };
     format!(
-        "**H4** (with rising Re the waves grow until the run is unstable) is **{verdict}**. At c0 = \
-         {} V, {} starts fail. It counts as supported if no start fails at the lowest Re, every start \
-         at the highest, and never a smaller share at a higher Re. Starts that differ in nothing but round-off \
-         can end differently, so the single starts of the quick tier indicate it only. That waves are the reason \
-         is not shown.",
+        "**H4** (with rising Re the waves grow until the run is unstable) is **{verdict}**. At c0 = {} V, \
+         {} starts fail. It counts as supported if no start fails at the lowest Re, every start at the \
+         highest, and never a smaller share at a higher Re. Starts that differ in nothing but round-off can \
+         end differently, so the single starts of the quick tier indicate it only. That waves are the \
+         reason is not shown.",
         SOUND[1],
         counts.join(", ")
     )
@@ -288,9 +288,9 @@ fn h5(found: &[(f64, [Starts; SOUND.len()])]) -> String {
         words.push(format!("Re {re}: {said} ({} against {})", low.text(), high.text()));
     }
     format!(
-        "**H5** (a lower sound speed stabilises the run) is **{}**. The ranges over the starts at c0 = {} V and \
-         {} V are compared; in brackets stand for each the share of starts that failed, and the median error or, \
-         after t, the νt/L² of the divergence. {}.",
+        "**H5** (a lower sound speed stabilises the run) is **{}**. The ranges over the starts at c0 = {} V \
+         and {} V are compared; in brackets stand for each the share of starts that failed, and the median \
+         error or, after t, the νt/L² of the divergence. {}.",
         h5_verdict(first, second, overlap),
         SOUND[0],
         SOUND[2],

@@ -1,11 +1,11 @@
-//! Errors that channel flows have by their row-reduced matrices ([`maths::theory::channel`]), which bounds are
-//! made from. Tests compute them again.
+//! Errors that channel flows have by their row-reduced matrices ([`maths::theory::channel`]), which bounds
+//! are made from. Tests compute them again.
 
 use super::Flow;
 
-/// Of ghost walls with the quintic spline, h = dx, at the time of the comparison: rows of a flow, the lesser and
-/// the larger one of rows in columns and of rows that slid past each other, Couette flow with the steps of the
-/// leapfrog.
+/// Of ghost walls with the quintic spline, h = dx, at the time of the comparison: rows of a flow, the lesser
+/// and the larger one of rows in columns and of rows that slid past each other, Couette flow with the steps
+/// of the leapfrog.
 pub const GHOSTS: [(Flow, usize, [f64; 2]); 5] = [
     (Flow::Couette, 10, [1.2712e-3, 1.5453e-3]),
     (Flow::Couette, 20, [3.8402e-4, 6.7664e-4]),
@@ -25,8 +25,9 @@ pub const EXTRAPOLATED: [(usize, [f64; 2]); 4] = [
     (80, [4.3e-5, 4.0e-4]),
 ];
 
-/// Of 20 rows of Couette flow at νt/L² = 0.1 with the steps of the leapfrog, the larger one of rows in columns
-/// and of rows that slid past each other: h/dx, and the errors with the quintic spline and with Wendland C2.
+/// Of 20 rows of Couette flow at νt/L² = 0.1 with the steps of the leapfrog, the larger one of rows in
+/// columns and of rows that slid past each other: h/dx, and the errors with the quintic spline and with
+/// Wendland C2.
 pub const SMOOTHED: [(f64, [f64; 2]); 9] = [
     (0.9, [7.5582e-4, 3.3900e-2]),
     (1.0, [6.1280e-4, 1.0793e-2]),
@@ -83,8 +84,8 @@ mod tests {
         }
     }
 
-    /// Error of Couette flow at νt/L² = 0.1 with the steps of a leapfrog of at most `dt` \[L²/ν\], equal between
-    /// the times at which a run pauses: half a kick first, whole ones, half a kick last.
+    /// Error of Couette flow at νt/L² = 0.1 with the steps of a leapfrog of at most `dt` \[L²/ν\], equal
+    /// between the times at which a run pauses: half a kick first, whole ones, half a kick last.
     fn error_of_leapfrog(model: &RowModel, dt: f64) -> f64 {
         let (mut u, mut start, mut lag) = (DVector::zeros(model.y.len()), 0.0, 0.0);
         for until in TIMES.into_iter().filter(|tau| *tau <= 0.1) {

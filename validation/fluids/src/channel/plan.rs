@@ -108,9 +108,9 @@ fn of_couette(table: &mut ChannelTable) {
     });
 }
 
-/// The Reynolds number at which other codes were timed in Poiseuille flow. There rows hardly slide (by a quarter
-/// of a spacing at 20 rows), so the sum of the viscous term on the aligned lattice is what counts: 1 + 8.0e-4 for
-/// the quintic spline at h = dx, 1 - 1.4e-4 at 0.9.
+/// The Reynolds number at which other codes were timed in Poiseuille flow. There rows hardly slide (by a
+/// quarter of a spacing at 20 rows), so the sum of the viscous term on the aligned lattice is what counts: 1
+/// + 8.0e-4 for the quintic spline at h = dx, 1 - 1.4e-4 at 0.9.
 pub const PEERS_RE: f64 = 0.0125;
 
 fn of_poiseuille(table: &mut ChannelTable) {

@@ -48,7 +48,8 @@ fn gates(flow: Flow, pair: &Pair) -> Vec<(Gate, f64)> {
     let spacing = match flow {
         Flow::Couette if rows > 20 => 0.0,
         Flow::Couette => IN_COLUMNS,
-        Flow::Poiseuille => modern,
+        Flow::Poiseuille if modern.is_finite() => modern,
+        Flow::Poiseuille => 0.0,
     };
     let because = "The bound is 0.1 %, or where the spacing allows no less its error and 0.02 % for time and \
                    motion: in Couette flow that of the row-reduced matrix, which is exact in time, in \

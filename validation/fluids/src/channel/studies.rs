@@ -1,5 +1,5 @@
-//! What only the channel flows have to say: the paper's claims, one rule for every Reynolds number, and what a
-//! step saves that viscosity does not limit.
+//! What only the channel flows have to say: the paper's claims, one rule for every Reynolds number, and what
+//! a step saves that viscosity does not limit.
 
 use super::{
     Channel, ChannelSettings, Flow, maps,
@@ -82,7 +82,7 @@ fn reynolds(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
         .metric(["rms v", "V"], V_RMS, |value| Cell::sci(value, 2))
         .ended()
         .steps()
-        .table(caption, runs.records(table.specs(For::Reynolds)).into_iter());
+        .table(caption, runs.records(table.specs(For::Reynolds)));
     let id = format!("{}-reynolds", flow.name());
     Study::new(&id, "One rule for every Reynolds number").block(shown)
 }

@@ -75,11 +75,11 @@ pub fn study(table: &ChannelTable, runs: &Runs) -> Study {
                    period 2L/c0. No theory says by how much disorder lengthens it. The median was 1.16 at \
                    c0/V = 10 and 1.09 at 20, and a value outside of 0.8 to 1.25 is a change of the \
                    program.";
-    let caption = "The lowest pressure mode cos(πy/L) in Poiseuille flow of `seed` over the last 60 L/c0 of a \
-                   run, which ends by divergence or at νt/L² = 1.5. Numbers are medians of runs whose initial \
-                   places are disordered by 1e-6 to 1e-2 dx (quick tier: 1e-5 to 1e-3 dx), without those that \
-                   end too soon. In the exact flow the mode is 0, and a wave that bounces between the walls \
-                   has the period 2L/c0.";
+    let caption = "The lowest pressure mode cos(πy/L) in Poiseuille flow of `seed` over the last 60 L/c0 of \
+                   a run, which ends by divergence or at νt/L² = 1.5. Numbers are medians of runs whose \
+                   initial places are disordered by 1e-6 to 1e-2 dx (quick tier: 1e-5 to 1e-3 dx), without \
+                   those that end too soon. In the exact flow the mode is 0, and a wave that bounces \
+                   between the walls has the period 2L/c0.";
     let periods = |rings: &Rings| {
         rings.periods.iter().map(|period| sig(*period, 3)).collect::<Vec<String>>().join(", ")
     };
@@ -110,8 +110,8 @@ fn h3([slow, low, high]: &[Rings; 3]) -> String {
     };
     format!(
         "**H3** (pressure waves leave the ghost-particle walls and keep bouncing between them) is \
-         **{verdict}**: the median period of the lowest mode is {} times 2L/c0 at Re 20 and c0 = 10 V, {} times \
-         at 20 V, and {} times at Re 5 and 10 V.",
+         **{verdict}**: the median period of the lowest mode is {} times 2L/c0 at Re 20 and c0 = 10 V, {} \
+         times at 20 V, and {} times at Re 5 and 10 V.",
         sig(low.period(), 3),
         sig(high.period(), 3),
         sig(slow.period(), 3),
