@@ -36,11 +36,11 @@ impl Flow {
         if self == Flow::Couette { 0.1 } else { 1.0 }
     }
 
-    /// The exact velocity at height y and time t, where L, V and ν are 1.
-    pub fn exact(self, y: f64, t: f64) -> f64 {
+    /// The exact velocity at height y and time t where V, the width and ν are these.
+    pub fn exact(self, y: f64, t: f64, [v, l, nu]: [f64; 3]) -> f64 {
         match self {
-            Flow::Couette => Couette { v0: 1.0, l: 1.0, nu: 1.0 }.velocity(y, t),
-            Flow::Poiseuille => Poiseuille { v: 1.0, l: 1.0, nu: 1.0 }.velocity(y, t),
+            Flow::Couette => Couette { v0: v, l, nu }.velocity(y, t),
+            Flow::Poiseuille => Poiseuille { v, l, nu }.velocity(y, t),
         }
     }
 }
@@ -211,14 +211,12 @@ impl Setup {
 
     /// The exact velocity \[m/s\] of a fluid of viscosity `nu` \[m²/s\] under the same force.
     pub fn exact_with_viscosity(&self, y: f64, t: f64, nu: f64) -> f64 {
-        let (v, l) = (self.v, self.settings.width);
-        match self.flow {
-            Flow::Couette => Couette { v0: v, l, nu }.velocity(y, t),
-            Flow::Poiseuille => {
-                let v = self.force * l * l / (8.0 * nu);
-                Poiseuille { v, l, nu }.velocity(y, t)
-            }
-        }
+        let l = self.settings.width;
+        let v = match self.flow {
+            Flow::Couette => self.v,
+            Flow::Poiseuille => self.force * l * l / (8.0 * nu),
+        };
+        self.flow.exact(y, t, [v, l, nu])
     }
 
     /// Particles of the section, `count` rows from height `first` \[m\] up, at rest.

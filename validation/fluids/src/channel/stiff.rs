@@ -2,7 +2,7 @@
 //! over the Reynolds number.
 
 use super::{
-    Channel, ChannelSettings, Flow,
+    ChannelSettings, Flow,
     matrices::IN_COLUMNS,
     measure::L2,
     plan::{ChannelTable, For},
@@ -36,8 +36,10 @@ fn errors(pair: &Pair, flow: Flow) -> [f64; 2] {
     both(pair, |record| record.value(L2.at(flow.compared_at())).unwrap_or(f64::NAN))
 }
 
-fn pairs(pair: &Pair) -> [f64; 2] {
-    both(pair, |record| record.cost.pair_interactions as f64)
+/// Pair interactions of `stiff` over those of `modern`.
+fn share(pair: &Pair) -> f64 {
+    let [modern, stiff] = both(pair, |record| record.cost.pair_interactions as f64);
+    stiff / modern
 }
 
 /// The gates of one pair.
@@ -70,42 +72,33 @@ fn gates(flow: Flow, pair: &Pair) -> Vec<(Gate, f64)> {
             true => gate.with_limitation(Bound::Below(most), known).because_of(&SOUND),
             false => gate,
         };
-        let [modern, stiff] = pairs(pair);
-        (gate, stiff / modern)
+        (gate, share(pair))
     }));
     gates
 }
 
 /// The study.
-pub fn study(Channel { flow, .. }: Channel, table: &ChannelTable, runs: &Runs) -> Study {
+pub fn study(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
     let caption = format!(
         "Variant `stiff` (super-time-stepping of viscosity) against `modern`: relative L2 error of u at \
-         νt/L² = {}, steps, and pair interactions, each stage counted as one pair sweep.",
+         νt/L² = {}, and pair interactions, each stage counted as one pair sweep.",
         flow.compared_at()
     );
     let of = |variant| table.of(For::Stiff).filter(move |row| row.variant == variant);
     let found: Vec<Pair> = of("modern")
         .zip(of("stiff"))
-        .map(|pair| (&pair.0.settings, [pair.0, pair.1].map(|row| runs.record(&row.run.spec))))
+        .map(|(a, b)| (&a.settings, [a, b].map(|row| runs.record(&row.run.spec))))
         .collect();
     let error = move |k: usize| move |pair: &Pair| Cell::percent(errors(pair, flow)[k], 3);
-    let steps = |k: usize| {
-        move |pair: &Pair| Cell::count(both(pair, |record| record.cost.steps as f64)[k] as u64)
-    };
-    let table = Columns::<Pair>::default()
+    let shown = Columns::<Pair>::default()
         .num(["rows", "1"], |(s, _)| Cell::count(s.rows as u64))
         .num(["Re", "-"], |(s, _)| Cell::exact(s.re))
         .num(["error, modern", "-"], error(0))
         .num(["error, stiff", "-"], error(1))
-        .num(["steps, modern", "1"], steps(0))
-        .num(["steps, stiff", "1"], steps(1))
-        .num(["pairs, modern/stiff", "-"], |pair| {
-            let [modern, stiff] = pairs(pair);
-            Cell::num(modern / stiff, 3)
-        })
+        .num(["pairs, modern/stiff", "-"], |pair| Cell::num(1.0 / share(pair), 3))
         .table(caption, &found);
-    let id = format!("{}-stiff", flow.name());
-    let study = Study::new(&id, "Steps that viscosity does not limit").block(table);
+    let (id, title) = (format!("{}-stiff", flow.name()), "Steps that viscosity does not limit");
     let judged = found.iter().flat_map(|pair| gates(flow, pair));
-    judged.fold(study, |study, (gate, value)| study.judge(gate, value))
+    judged
+        .fold(Study::new(&id, title).block(shown), |study, (gate, value)| study.judge(gate, value))
 }

@@ -36,14 +36,19 @@ fn modern(s: &mut ChannelSettings) {
     (s.courant, s.viscous, s.c0_viscous) = (1.0, 0.4, 2.2);
 }
 
+/// The same with ghosts that know the curvature of the velocity at the wall.
+fn curved(s: &mut ChannelSettings) {
+    modern(s);
+    s.wall_curvature = true;
+}
+
 /// Super-time-stepping: c0 by Morris' rule alone, and the share of the theoretical limit that the steps of
 /// `modern` are of theirs. A flow that starts at rest changes over a time in proportion to its age, so that
 /// accuracy needs a number of steps to each time of comparison: with 8 the error of time at νt/L² = 0.1 is a
 /// tenth of the goal of 0.1 % (`theory::super_steps`).
 fn stiff(s: &mut ChannelSettings) {
-    modern(s);
+    curved(s);
     (s.c0_viscous, s.limit_share, s.least_steps) = (0.0, Some(0.75), 8);
-    s.wall_curvature = true;
 }
 
 /// The paper's: cubic spline and predictor-corrector.
@@ -62,16 +67,13 @@ pub fn of_couette(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>>
 
 /// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable.
 pub fn of_poiseuille(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>> {
-    let curved = both::<BodyForce>(program).with(
+    let both = both::<BodyForce>(program).with(
         "curved",
         "plain with ghosts that know the curvature of the velocity at the wall: is it their error?",
         Method::of::<Modern<Fluid<BodyForce>, Continuity>>(),
-        |s| {
-            modern(s);
-            s.wall_curvature = true;
-        },
+        curved,
     );
-    cures(curved).all
+    cures(both).all
 }
 
 fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
@@ -94,8 +96,7 @@ fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
             Method::of::<Compose<WendlandC2, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
             |s| {
                 modern(s);
-                s.h_over_dx = 2.0;
-                s.viscous = 0.23;
+                (s.h_over_dx, s.viscous) = (2.0, 0.23);
             },
         )
         .with(
@@ -114,10 +115,7 @@ fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
             "modern",
             "plain, curved ghosts, density diffusion and shifting: one rule for every Reynolds number?",
             Method::of::<Modern<Fluid<B>, Stabilised>>(),
-            |s| {
-                modern(s);
-                s.wall_curvature = true;
-            },
+            curved,
         )
         .with(
             "stiff",
@@ -130,12 +128,6 @@ fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
 /// The seed's method with one thing against its instability: does it cure it?
 fn cures(all: All) -> All {
     all.with(
-        "cure-background",
-        "seed with a background pressure of 0.05 rho c0^2: does it cure the seed's instability?",
-        Method::of::<Seed<Fluid<BodyForce>, Continuity>>(),
-        |s| s.background = 0.05,
-    )
-    .with(
         "cure-stress",
         "seed with artificial stress, equations (18) and (19): does it cure the seed's instability?",
         Method::of::<Seed<Fluid<BodyForce, ArtificialStress>, Continuity>>(),
