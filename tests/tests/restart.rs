@@ -378,7 +378,9 @@ fn every_case_goes_on_with_an_equal_record() {
     let lacks = |case: &&&dyn Case| !variants.iter().any(|name| name.starts_with(case.name()));
     let lacking: Vec<&str> = cases::CASES.iter().filter(lacks).map(|case| case.name()).collect();
     assert!(lacking.is_empty(), "no run of {lacking:?} went on; of others {variants:?} did");
-    assert!(variants.len() > 90, "{} variants went on, 96 did", variants.len());
+    // The others make no step: experiments that are refused or look at a start alone.
+    let (went, all) = (variants.len(), runs.len());
+    assert!(10 * went > 9 * all, "only {went} of {all} variants went on");
     for (case, _) in COARSE {
         assert!(cases::find(case).is_ok(), "{case} has coarser settings and is no case");
     }

@@ -11,19 +11,17 @@ use base::{
     record::{Profile, Record, Status},
 };
 use harness::{
-    case::{Case, Planned, Rules, RunError, Step, Tier},
+    case::{Case, Rules, RunError, Step, Tier},
     composed::{self, Best, Composed, Composition, Program, Variants},
     context::Context,
-    declare::{
-        Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Ladder, Level, OrderGate,
-    },
+    declare::{Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Ladder, OrderGate},
     method::{Medium, Method, Parts},
     simulate,
-    study::Study,
+    table::{Row, Table},
 };
 use maths::{
     exact::TaylorCouette,
-    geometry::{Curve, Row},
+    geometry::{Curve, Row as Particles},
     metrics::norms::{Scale, l2},
 };
 use report::Axis;
@@ -123,7 +121,7 @@ impl Cylinders {
         let behind = |curve: &Curve| curve.rows_behind(dx, first, method.support * h);
         let inside = behind(&inner).into_iter().map(|row| (row, flow.speed));
         let outside = behind(&outer).into_iter().map(|row| (row, 0.0));
-        let particles = |(row, speed): (Row, f64)| {
+        let particles = |(row, speed): (Particles, f64)| {
             let around = |x: Vector2<f64>| Vector2::new(-x.y, x.x) / x.norm() * speed;
             row.particles(dx, s.rho, around).collect::<Vec<Particle>>()
         };
@@ -201,10 +199,10 @@ static CASE: Composed<CylinderSettings> = Composed {
     name: NAME,
     problem: "Flow between two cylinders, the inner one turning",
     best: Best {
-        variant: "extrapolating-wall",
+        variant: EXTRAPOLATING,
         because: "with 20 spacings across the gap its velocity is wrong by 0.16 %, that of \
                   `interface-wall` by 0.36 %",
-        papers: Some("interface-wall"),
+        papers: Some(INTERFACE),
     },
     about: "Viscous flow between two cylinders, of which the inner one turns, becomes steady with the \
             exact velocity u = A r + B/r. It starts from rest. Both walls are curved, the inner one convex \
@@ -213,109 +211,62 @@ static CASE: Composed<CylinderSettings> = Composed {
     variants,
     is_stable: composed::completed,
     declaration,
-    plan,
-    studies: |_, _| vec![Study::new("taylor-couette", "Curved walls").prose(FALLING)],
+    plan: composed::no_plan,
+    studies: composed::no_studies,
 };
 
 /// Flow between two cylinders.
 pub const TAYLOR_COUETTE: &dyn Case = &CASE;
 
-/// The walls of both variants, the order that they should have, and why.
-const ORDERS: [(&str, f64, &str); 2] = [
-    (
-        INTERFACE,
-        1.0,
-        "Interface particles and the rows behind them carry the velocity of the wall, which is of first \
-         order, as in the row-reduced matrix of flat walls. A tolerance of 0.3 tells this from second \
-         order, whatever the number of levels.",
-    ),
-    (
-        EXTRAPOLATING,
-        2.0,
-        "Walls that extrapolate linearly are of second order, as in the row-reduced matrix of flat walls. \
-         A tolerance of 0.3 tells this from first order, whatever the number of levels, but not from an \
-         order that falls slowly.",
-    ),
-];
-
-fn planned(variant: &str, layers: usize) -> Planned {
-    CASE.planned(variant, |s| s.layers = layers).judged(gates(variant, layers))
-}
-
-fn plan(tier: Tier) -> Vec<Planned> {
-    let of = |&variant: &&'static str| levels(tier).iter().map(move |&n| planned(variant, n));
-    ORDERS.map(|(variant, ..)| variant).iter().flat_map(of).collect()
-}
-
-fn levels(tier: Tier) -> &'static [usize] {
-    match tier {
-        Tier::Quick => &[8, 10, 13],
-        Tier::Full => &[8, 11, 16, 22, 32],
-    }
+/// The runs: both walls, over the spacings across the gap.
+fn table(tier: Tier) -> Table<CylinderSettings, ()> {
+    let mut table = Table::new(&CASE, tier);
+    let layers: [&[usize]; 2] = [&[8, 10, 13], &[8, 11, 16, 22, 32]];
+    table.over((), &[INTERFACE, EXTRAPOLATING], layers, |s, layers| s.layers = layers);
+    table.judge(|row| gates(row.variant, row.settings.layers));
+    table
 }
 
 fn gates(variant: &str, layers: usize) -> Vec<Gate> {
-    let id = |metric: &str| format!("{NAME}.{variant}.{layers}.{metric}");
-    let (across, of_plates) = (layers as f64, [1.9, 0.22]);
+    let across = layers as f64;
     // The matrix of plane Poiseuille flow at 10 and 20 rows: 1.9e-2, 4.6e-3; 2.2e-2, 1.0e-2.
-    let most = match variant {
-        EXTRAPOLATING => of_plates[0] / (across * across),
-        _ => of_plates[1] / across,
-    };
+    let most = if variant == EXTRAPOLATING { 1.9 / (across * across) } else { 0.22 / across };
+    let because = "Curved walls must have no larger error than flat ones. The bound is the error of plane \
+                   Poiseuille flow, whose profile is more curved, by the row-reduced matrix of the same \
+                   wall: 1.9/N^2 where it extrapolates, 0.22/N with interface particles.";
+    let inside = "No particle passes a cylinder.";
+    let run = format!("{variant}.{layers}");
     vec![
-        Gate::new(
-            id("l2"),
-            "l2",
-            Bound::Below(most),
-            Evidence::Theory,
-            "Curved walls must have no larger error than flat ones. The bound is the error of plane \
-             Poiseuille flow, whose profile is more curved, by the row-reduced matrix of the same wall: \
-             1.9/N^2 where it extrapolates, 0.22/N with interface particles.",
-        ),
-        Gate::new(
-            id("outside"),
-            "outside",
-            Bound::Equals(0.0),
-            Evidence::Invariant,
-            "No particle passes a cylinder.",
-        ),
+        CASE.gate(&run, L2, Bound::Below(most), Evidence::Theory, because),
+        CASE.gate(&run, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, inside),
     ]
 }
 
-/// What is known of the local orders, measured once outside of the plan.
-const FALLING: &str = "The order of walls that extrapolate falls from 1.9 between 8 and 11 spacings to 1.6 \
-     between 22 and 32. The scatter of a fit through all levels does not show this. Part of it is due to \
-     the start: in runs by hand to 2 d^2/nu, where nothing of the start is left, the orders from 8 to 16 \
-     and from 16 to 32 are 1.89 and 1.76, and the error at 32 is 0.00045 in place of 0.00048. The rest \
-     depends on how many neighbours a sum has: at h/dx = 1.1, 1.2 and 1.5 the two orders are 1.93 and \
-     1.82, 1.99 and 1.98, 2.06 and 1.80. So the sums have an error that a smaller spacing at the same h/dx \
-     does not reduce, in a layer that becomes thinner, near the walls or where rings meet; which of these \
-     is not known, and at 1.2 parts may cancel. A sound speed twice as high moves the errors at 16 and 22 \
-     by 0.1 %, half the time step by 0.3 %.";
-
 fn declaration(tier: Tier) -> Declaration {
+    let table = table(tier);
     Declaration {
-        curves: vec![profiles(tier)],
-        accuracy: vec![accuracy(tier)],
+        curves: vec![profiles(&table)],
+        accuracy: vec![accuracy(&table)],
         ..Declaration::default()
     }
 }
 
-fn accuracy(tier: Tier) -> Accuracy {
-    let level = |variant: &str, n: usize| Level {
-        run: CASE.planned(variant, |s| s.layers = n),
-        spacing: 1.0 / n as f64,
-        label: format!("{n} spacings across"),
-    };
-    let ladder = |(variant, expected, because): (&'static str, f64, &str)| {
+/// Both walls with the order that they should have.
+fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
+    let because = "As in the row-reduced matrix of flat walls, interface particles and the rows behind them, \
+                   which carry the velocity of the wall, are of first order, and walls that extrapolate \
+                   linearly of second. A tolerance of 0.3 tells one from the other, whatever the number of \
+                   levels, but not an order that falls slowly.";
+    let ladder = |(variant, expected): (&'static str, f64)| {
         let order = OrderGate {
             id: format!("{NAME}.{variant}.order"),
             bound: Bound::Within(expected - 0.3, expected + 0.3),
             evidence: Evidence::Theory,
             because: because.into(),
         };
-        let levels = levels(tier).iter().map(|&n| level(variant, n));
-        Ladder { order: Some(order), ..Ladder::new(variant, levels) }
+        let level =
+            |s: &CylinderSettings| (1.0 / s.layers as f64, format!("{} spacings across", s.layers));
+        Ladder { order: Some(order), ..table.ladder(&[()], variant, level) }
     };
     let label = "relative L2 error of the velocity [-]";
     Accuracy {
@@ -323,14 +274,14 @@ fn accuracy(tier: Tier) -> Accuracy {
                 inner radius."
             .into(),
         spacing: "dx/d [-]",
-        ladders: ORDERS.map(ladder).into(),
+        ladders: [(INTERFACE, 1.0), (EXTRAPOLATING, 2.0)].map(ladder).into(),
         ..Accuracy::new("taylor-couette", ErrorOf::Metric(L2.into()), label)
     }
 }
 
 /// Velocity over the radius at the finest level.
-fn profiles(tier: Tier) -> Curves {
-    let finest = levels(tier).last().copied().unwrap_or_default();
+fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
+    let finest = table.rows.iter().map(|row| row.settings.layers).max().unwrap_or_default();
     let caption = format!(
         "Velocity u around the axis between two cylinders at t = d²/ν, Re = 0.5: every seventeenth \
          particle, with {finest} spacings across the gap d, and the exact A r + B/r (line). The inner \
@@ -340,22 +291,22 @@ fn profiles(tier: Tier) -> Curves {
         let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));
         r.iter().zip(u).step_by(17).map(|(r, u)| (*r, *u)).collect()
     };
-    let line = |(variant, ..): (&str, f64, &str)| CurveOf {
-        name: variant.into(),
-        spec: CASE.spec(variant, |s| s.layers = finest),
+    let line = |row: &Row<CylinderSettings, ()>| CurveOf {
+        name: row.variant.into(),
+        spec: row.run.spec.clone(),
         points: Box::new(points),
     };
     let flow = TaylorCouette { inner: 1.0, outer: CylinderSettings::default().ratio, speed: 1.0 };
-    let exact = |k: u32| flow.inner + (flow.outer - flow.inner) * f64::from(k) / 100.0;
+    let exact = |k: u32| {
+        let r = flow.inner + (flow.outer - flow.inner) * f64::from(k) / 100.0;
+        (r, flow.velocity(r))
+    };
     let panel = CurvePanel {
         title: String::new(),
         x: Axis::linear("r/inner radius [-]"),
         y: Axis::linear("u/V [-]"),
-        lines: ORDERS.map(line).into(),
-        references: vec![(
-            "exact".into(),
-            (0..=100).map(exact).map(|r| (r, flow.velocity(r))).collect(),
-        )],
+        lines: table.rows.iter().filter(|row| row.settings.layers == finest).map(line).collect(),
+        references: vec![("exact".into(), (0..=100).map(exact).collect())],
         symbols: true,
     };
     let (id, title) = ("taylor-couette-profiles".into(), "Velocity between the cylinders".into());

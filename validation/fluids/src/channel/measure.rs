@@ -55,9 +55,7 @@ pub const OUTSIDE: MetricKey =
 
 /// What is measured of a simulation: nothing here knows its scheme, so that it is compiled once.
 pub struct Sample {
-    /// All particles in the order of the scene.
-    all: Vec<Particle>,
-    /// The fluid ones.
+    /// The particles of the fluid in the order of the scene.
     fluid: Vec<Particle>,
     /// The interpolated velocity along the channel at the stations, if it can be had \[m/s\].
     field: Option<Vec<f64>>,
@@ -66,15 +64,15 @@ pub struct Sample {
 impl Sample {
     /// Reads a simulation.
     pub fn of(setup: &Setup, simulation: &dyn Stepper<()>) -> Self {
-        let all = simulation.particles();
-        let fluid = all.iter().filter(|p| p.role == Role::Fluid).copied().collect();
+        let mut fluid = simulation.particles();
+        fluid.retain(|p| p.role == Role::Fluid);
         let columns = simulation.plain_columns();
         let positions: Vec<_> = columns.iter().map(|c| c.position).collect();
         let volumes: Vec<_> = columns.iter().map(|c| c.common.volume).collect();
         let values: Vec<_> = columns.iter().map(|c| c.velocity.x).collect();
         let field = Field { positions: &positions, volumes: &volumes, values: &values };
         let field = interpolate(|r2| simulation.weight(r2), field, &stations(setup)).ok();
-        Self { all, fluid, field }
+        Self { fluid, field }
     }
 }
 
@@ -128,18 +126,6 @@ pub fn at_the_end(setup: &Setup, sample: &Sample, record: &mut Record) {
     record.put(MOMENTUM_Y, momentum / (initial * s.rho * v));
     let outside = fluid.iter().filter(|p| !(0.0..=s.width).contains(&p.position.y)).count();
     record.put(OUTSIDE, outside as f64);
-}
-
-/// The particles themselves: x, y, u, v, p.
-pub fn particles(setup: &Setup, sample: &Sample) -> Profile {
-    let all = &sample.all;
-    let column = |f: &dyn Fn(&Particle) -> f64| all.iter().map(f).collect::<Vec<f64>>();
-    Profile::default()
-        .with("x", "m", column(&|p| p.position.x))
-        .with("y", "m", column(&|p| p.position.y))
-        .with("u", "m/s", column(&|p| p.velocity.x))
-        .with("v", "m/s", column(&|p| p.velocity.y))
-        .with("p", "Pa", column(&|p| setup.medium.eos.pressure(p.density)))
 }
 
 /// Means over the rows of the initial lattice: y, u, the exact u there, v, p.
@@ -368,7 +354,7 @@ mod tests {
         let t = setup.time(tau);
         fluid.iter_mut().for_each(|p| p.velocity.x = velocity(p.position.y, t));
         let field = stations(setup).iter().map(|s| velocity(s.y, t)).collect();
-        let sample = Sample { all: fluid.clone(), fluid, field: Some(field) };
+        let sample = Sample { fluid, field: Some(field) };
         let mut record = Record::new(setup.flow.name(), "seed", serde_json::Value::Null, 1);
         compare(setup, &sample, tau, &mut record);
         record
@@ -426,7 +412,7 @@ mod tests {
         fluid.iter_mut().enumerate().for_each(set);
         fluid[0].position.y = -1e-9;
         let volume: f64 = fluid.iter().map(|p| p.mass / p.density).sum();
-        let sample = Sample { all: fluid.clone(), fluid, field: None };
+        let sample = Sample { fluid, field: None };
         let mut record = Record::new("poiseuille", "seed", serde_json::Value::Null, 1);
         at_the_end(&setup, &sample, &mut record);
         assert_near(&record, V_RMS.into(), (0.02_f64.powi(2) + 0.03_f64.powi(2)).sqrt(), 1e-9);

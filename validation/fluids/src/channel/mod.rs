@@ -1,27 +1,24 @@
 //! Flow between two parallel plates from rest, what Couette and Poiseuille flow have in common:
 //! settings, the rules that turn them into a scene, variants and measurements.
 
-mod cures;
 mod declaration;
-mod extremes;
-mod floor;
 mod limits;
-mod map;
+mod maps;
+mod matrices;
 mod measure;
 mod plan;
 mod run;
 mod sensitivity;
 mod settings;
 mod setup;
-mod starts;
 mod stiff;
 mod studies;
 pub mod variants;
 mod waves;
 
-pub use declaration::{declaration, ladder};
+pub use declaration::declaration;
 pub use limits::is_stable;
-pub use plan::plan;
+pub use plan::{ladder, plan};
 pub use run::{COUETTE, POISEUILLE};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};

@@ -60,11 +60,7 @@ fn run(
         .run(context)?;
     (record.status, record.cost) = (status, cost);
     if record.status == record::Status::Completed {
-        let sample = Sample::of(setup, &*simulation);
-        measure::at_the_end(setup, &sample, &mut record);
-        if context.keep_particles {
-            record.profiles.insert("particles".into(), measure::particles(setup, &sample));
-        }
+        measure::at_the_end(setup, &Sample::of(setup, &*simulation), &mut record);
     }
     let mode = series.mode_until(simulation.time());
     record.profiles.extend(mode.map(|mode| (measure::MODE.into(), mode)));

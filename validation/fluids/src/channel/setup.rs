@@ -36,12 +36,11 @@ impl Flow {
         if self == Flow::Couette { 0.1 } else { 1.0 }
     }
 
-    /// The exact velocity at height y and time t of a fluid of viscosity `nu`, where L, V and the viscosity
-    /// that V is stated for are 1.
-    pub fn exact(self, y: f64, t: f64, nu: f64) -> f64 {
+    /// The exact velocity at height y and time t where V, the width and ν are these.
+    pub fn exact(self, y: f64, t: f64, [v, l, nu]: [f64; 3]) -> f64 {
         match self {
-            Flow::Couette => Couette { v0: 1.0, l: 1.0, nu }.velocity(y, t),
-            Flow::Poiseuille => Poiseuille { v: 1.0 / nu, l: 1.0, nu }.velocity(y, t),
+            Flow::Couette => Couette { v0: v, l, nu }.velocity(y, t),
+            Flow::Poiseuille => Poiseuille { v, l, nu }.velocity(y, t),
         }
     }
 }
@@ -212,14 +211,12 @@ impl Setup {
 
     /// The exact velocity \[m/s\] of a fluid of viscosity `nu` \[m²/s\] under the same force.
     pub fn exact_with_viscosity(&self, y: f64, t: f64, nu: f64) -> f64 {
-        let (v, l) = (self.v, self.settings.width);
-        match self.flow {
-            Flow::Couette => Couette { v0: v, l, nu }.velocity(y, t),
-            Flow::Poiseuille => {
-                let v = self.force * l * l / (8.0 * nu);
-                Poiseuille { v, l, nu }.velocity(y, t)
-            }
-        }
+        let l = self.settings.width;
+        let v = match self.flow {
+            Flow::Couette => self.v,
+            Flow::Poiseuille => self.force * l * l / (8.0 * nu),
+        };
+        self.flow.exact(y, t, [v, l, nu])
     }
 
     /// Particles of the section, `count` rows from height `first` \[m\] up, at rest.
@@ -233,27 +230,17 @@ impl Setup {
     /// Particles of both plates: rows out to the support, the first one `first` dx behind the surface,
     /// all with the velocity of the plate. On the surface, at 0, they are of the interface.
     fn wall_rows(&self, first: f64, support: f64) -> Vec<Particle> {
-        let mut particles = self.rows_behind([0.0, -1.0], 0.0, first, support);
-        let (top, speed) = (self.settings.width, self.plate_speed());
-        particles.extend(self.rows_behind([top, 1.0], speed, first, support));
-        particles
-    }
-
-    /// Those of the plate at y, with the fluid on the other side than `outwards`.
-    fn rows_behind(
-        &self,
-        [y, outwards]: [f64; 2],
-        speed: f64,
-        first: f64,
-        support: f64,
-    ) -> Vec<Particle> {
-        let last = (support / self.medium.dx - first - 1e-9).floor() as usize;
+        let dx = self.medium.dx;
+        let last = (support / dx - first - 1e-9).floor() as usize;
         let mut particles = Vec::new();
-        for behind in (0..=last).map(|k| first + k as f64) {
-            let role = if behind == 0.0 { Role::Interface } else { Role::Wall };
-            for p in self.rows(y + outwards * behind * self.medium.dx, 1) {
+        for (y, outwards, speed) in
+            [(0.0, -1.0, 0.0), (self.settings.width, 1.0, self.plate_speed())]
+        {
+            for behind in (0..=last).map(|k| first + k as f64) {
+                let role = if behind == 0.0 { Role::Interface } else { Role::Wall };
                 let velocity = Vector2::new(speed, 0.0);
-                particles.push(Particle { velocity, ..p }.with_role(role));
+                let row = self.rows(y + outwards * behind * dx, 1).into_iter();
+                particles.extend(row.map(|p| Particle { velocity, ..p }.with_role(role)));
             }
         }
         particles

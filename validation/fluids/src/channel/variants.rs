@@ -36,14 +36,19 @@ fn modern(s: &mut ChannelSettings) {
     (s.courant, s.viscous, s.c0_viscous) = (1.0, 0.4, 2.2);
 }
 
+/// The same with ghosts that know the curvature of the velocity at the wall.
+fn curved(s: &mut ChannelSettings) {
+    modern(s);
+    s.wall_curvature = true;
+}
+
 /// Super-time-stepping: c0 by Morris' rule alone, and the share of the theoretical limit that the steps of
 /// `modern` are of theirs. A flow that starts at rest changes over a time in proportion to its age, so that
 /// accuracy needs a number of steps to each time of comparison: with 8 the error of time at νt/L² = 0.1 is a
 /// tenth of the goal of 0.1 % (`theory::super_steps`).
 fn stiff(s: &mut ChannelSettings) {
-    modern(s);
+    curved(s);
     (s.c0_viscous, s.limit_share, s.least_steps) = (0.0, Some(0.75), 8);
-    s.wall_curvature = true;
 }
 
 /// The paper's: cubic spline and predictor-corrector.
@@ -60,161 +65,90 @@ pub fn of_couette(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>>
     both::<()>(program).all
 }
 
-/// Those of Poiseuille flow, in which the seed is unstable.
+/// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable.
 pub fn of_poiseuille(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>> {
-    cures(both::<BodyForce>(program)).all
+    let both = both::<BodyForce>(program).with(
+        "curved",
+        "plain with ghosts that know the curvature of the velocity at the wall: is it their error?",
+        Method::of::<Modern<Fluid<BodyForce>, Continuity>>(),
+        curved,
+    );
+    cures(both).all
 }
 
 fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
-    moderns::<B>(methods::<B>(Variants::of(program)))
+    Variants::of(program)
+        .with(
+            "seed",
+            "as in the paper: cubic spline, h/dx 1.2, eta^2 = 0.01 h^2, ghosts, predictor-corrector",
+            Method::of::<Seed<Fluid<B>, Continuity>>(),
+            |_| {},
+        )
+        .with(
+            "interface-wall",
+            "seed with interface and wall particles (section 4.2 of the paper): as good as ghosts?",
+            Method::of::<Seed<Fluid<B>, Continuity, InterfaceWall>>(),
+            |_| {},
+        )
+        .with(
+            "wendland-leapfrog",
+            "Wendland C2, h/dx 2, small eta, leapfrog: is the error of another kernel cheaper?",
+            Method::of::<Compose<WendlandC2, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
+            |s| {
+                modern(s);
+                (s.h_over_dx, s.viscous) = (2.0, 0.23);
+            },
+        )
+        .with(
+            "plain",
+            "quintic spline, h/dx 1, small eta, leapfrog: what is the error without stabilisers?",
+            Method::of::<Modern<Fluid<B>, Continuity>>(),
+            modern,
+        )
+        .with(
+            "extrapolating-wall",
+            "plain with walls that extrapolate (Adami, Hu & Adams 2012): are they better than ghosts?",
+            Method::of::<Modern<Fluid<B>, Continuity, ExtrapolatingWall<Tait, NoSlip>>>(),
+            modern,
+        )
+        .with(
+            "modern",
+            "plain, curved ghosts, density diffusion and shifting: one rule for every Reynolds number?",
+            Method::of::<Modern<Fluid<B>, Stabilised>>(),
+            curved,
+        )
+        .with(
+            "stiff",
+            "modern with super-time-stepping: what does a step save that viscosity does not limit?",
+            Method::of::<Stiff<B>>(),
+            stiff,
+        )
 }
 
-/// The seed's method, and what changing its parts one by one leads to.
-fn methods<B: Drive>(all: All) -> All {
-    all.with(
-        "seed",
-        "as in the paper: cubic spline, h/dx 1.2, eta^2 = 0.01 h^2, ghosts, predictor-corrector",
-        Method::of::<Seed<Fluid<B>, Continuity>>(),
-        |_| {},
-    )
-    .with(
-        "interface-wall",
-        "seed with interface and wall particles (section 4.2 of the paper) in place of ghosts",
-        Method::of::<Seed<Fluid<B>, Continuity, InterfaceWall>>(),
-        |_| {},
-    )
-    .with(
-        "seed-small-eta",
-        "seed with eta^2 = 1e-6 h^2",
-        Method::of::<Seed<Fluid<B>, Continuity>>(),
-        |s| s.eta2_over_h2 = 1e-6,
-    )
-    .with(
-        "cubic-leapfrog",
-        "cubic spline, h/dx 1.5, small eta, leapfrog with long steps",
-        Method::of::<Compose<CubicSpline, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
-        |s| {
-            modern(s);
-            s.h_over_dx = 1.5;
-            s.viscous = 0.27;
-        },
-    )
-    .with(
-        "wendland-leapfrog",
-        "Wendland C2, h/dx 2, small eta, leapfrog with long steps",
-        Method::of::<Compose<WendlandC2, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
-        |s| {
-            modern(s);
-            s.h_over_dx = 2.0;
-            s.viscous = 0.23;
-        },
-    )
-    .with(
-        "quintic-pc",
-        "quintic spline, h/dx 1, small eta, predictor-corrector, c0 as low as the seed's",
-        Method::of::<Compose<QuinticSpline, Fluid<B>, Continuity, Ghosts, PredictorCorrector>>(),
-        |s| {
-            modern(s);
-            s.courant = 0.25;
-            s.c0_viscous = 0.0;
-        },
-    )
-}
-
-/// Quintic spline and leapfrog, from bare to stabilised.
-fn moderns<B: Drive>(all: All) -> All {
-    all.with(
-        "plain",
-        "quintic spline, h/dx 1, small eta, leapfrog: the modern variant without stabilisers",
-        Method::of::<Modern<Fluid<B>, Continuity>>(),
-        modern,
-    )
-    .with(
-        "curved",
-        "plain with ghosts that know the curvature of the velocity at the wall",
-        Method::of::<Modern<Fluid<B>, Continuity>>(),
-        |s| {
-            modern(s);
-            s.wall_curvature = true;
-        },
-    )
-    .with(
-        "extrapolating-wall",
-        "plain with wall particles that extrapolate velocity and pressure (Adami, Hu & Adams 2012)",
-        Method::of::<Modern<Fluid<B>, Continuity, ExtrapolatingWall<Tait, NoSlip>>>(),
-        modern,
-    )
-    .with(
-        "modern",
-        "curved with density diffusion and shifting: one rule for every Reynolds number",
-        Method::of::<Modern<Fluid<B>, Stabilised>>(),
-        |s| {
-            modern(s);
-            s.wall_curvature = true;
-        },
-    )
-    .with(
-        "stiff",
-        "modern with super-time-stepping of viscosity, which limits neither step nor c0",
-        Method::of::<Stiff<B>>(),
-        stiff,
-    )
-    .with(
-        "modern-mirror",
-        "modern with ghosts that do not know the curvature",
-        Method::of::<Modern<Fluid<B>, Stabilised>>(),
-        modern,
-    )
-}
-
-/// The seed's method with one thing against its instability.
+/// The seed's method with one thing against its instability: does it cure it?
 fn cures(all: All) -> All {
     all.with(
-        "cure-background",
-        "seed with a background pressure of 0.05 rho c0^2",
-        Method::of::<Seed<Fluid<BodyForce>, Continuity>>(),
-        |s| s.background = 0.05,
-    )
-    .with(
         "cure-stress",
-        "seed with artificial stress, equations (18) and (19)",
+        "seed with artificial stress, equations (18) and (19): does it cure the seed's instability?",
         Method::of::<Seed<Fluid<BodyForce, ArtificialStress>, Continuity>>(),
         |_| {},
     )
     .with(
         "cure-viscosity",
-        "seed with artificial viscosity, equations (16) and (17), alpha 0.1",
+        "seed with artificial viscosity, equations (16) and (17): does it cure the seed's instability?",
         Method::of::<Seed<Damped, Continuity>>(),
         |_| {},
     )
     .with(
         "cure-xsph",
-        "seed with XSPH, equation (22), epsilon 0.5",
+        "seed with XSPH, equation (22), epsilon 0.5: does it cure the seed's instability?",
         Method::of::<Seed<Fluid<BodyForce>, (Continuity, Xsph)>>(),
         |_| {},
     )
     .with(
-        "cure-diffusion",
-        "seed with density diffusion 0.1",
-        Method::of::<Seed<Fluid<BodyForce>, (Continuity, DensityDiffusion)>>(),
-        |_| {},
-    )
-    .with(
         "cure-shifting",
-        "seed with particle shifting 0.5",
+        "seed with particle shifting 0.5: does it cure the seed's instability?",
         Method::of::<Seed<Fluid<BodyForce>, (Continuity, Shifting)>>(),
-        |_| {},
-    )
-    .with(
-        "cure-both",
-        "seed with density diffusion and shifting",
-        Method::of::<Seed<Fluid<BodyForce>, Stabilised>>(),
-        |_| {},
-    )
-    .with(
-        "cure-leapfrog",
-        "seed with the staggered leapfrog",
-        Method::of::<Compose<CubicSpline, Fluid<BodyForce>, Continuity, Ghosts, Leapfrog>>(),
         |_| {},
     )
 }

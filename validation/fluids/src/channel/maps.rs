@@ -1,0 +1,267 @@
+//! Poiseuille flow of the seed, which becomes unstable: hypotheses H4 and H5 of the paper, that waves grow
+//! with the Reynolds number until the run is unstable (H4) and that a lower sound speed stabilises (H5), and
+//! what cures the instability. It grows from the disorder of the start, or from round-off if there is none,
+//! so that a single run of a chaotic flow says little, and a cell of a map has several starts.
+
+use std::cmp::Ordering;
+
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::{Record, Status},
+    spec::RunSpec,
+};
+use harness::{
+    declare::{Map, MapPanel},
+    runs::Runs,
+    study::Study,
+};
+use report::{Colour, percent, sig};
+
+use super::{
+    ChannelSettings,
+    measure::L2_WORST,
+    plan::{ChannelTable, For},
+};
+
+/// Reynolds numbers of H4 and H5, the last one in the full tier.
+const REYNOLDS: [f64; 6] = [0.5, 1.0, 5.0, 10.0, 20.0, 50.0];
+/// Sound speeds of the map \[V\]. H4 is judged at the middle one, Morris' rule with 1 % density variation.
+const SOUND: [f64; 3] = [5.0, 10.0, 20.0];
+
+/// What is tried against the instability, in the full tier: nothing, the remedies of the paper, those of
+/// others, and the best rule; and at which Reynolds numbers.
+const CURES: [&str; 6] =
+    ["seed", "cure-stress", "cure-viscosity", "cure-xsph", "cure-shifting", "modern"];
+const CURED: [f64; 3] = [5.0, 20.0, 50.0];
+
+/// Disorder of the starts \[dx\]; the quick tier, and Re above 20, have the middle one.
+const DISORDER: [f64; 3] = [1e-6, 1e-4, 1e-2];
+
+/// c0 of the map \[m/s\], where ν/L is 1e-3 m/s.
+fn sound_speed(re: f64, sound: f64) -> f64 {
+    sound * (re * 1e-3)
+}
+
+/// Adds the runs of both maps.
+pub fn runs(table: &mut ChannelTable) {
+    let starts = |re: f64| if re <= 20.0 { &DISORDER[..] } else { &DISORDER[1..2] };
+    let set = |s: &mut ChannelSettings, re, jitter| (s.re, s.end, s.jitter) = (re, 1.0, jitter);
+    for re in REYNOLDS {
+        let quick = if re <= 20.0 { &DISORDER[1..2] } else { &[] };
+        for sound in SOUND {
+            table.over(For::Map, &["seed"], [quick, starts(re)], |s, jitter| {
+                set(s, re, jitter);
+                s.c0 = Some(sound_speed(re, sound));
+            });
+        }
+    }
+    for re in CURED {
+        table.over(For::Cures, &CURES, [&[], starts(re)], |s, jitter| set(s, re, jitter));
+    }
+}
+
+/// The maps as they are declared; the quick tier has no cures.
+pub fn declared(table: &ChannelTable) -> Vec<Map> {
+    let over_sound = MapPanel::over("", &reynolds(table), &SOUND, |re, sound| {
+        of_sound(table, re, sound).collect()
+    });
+    let over_cures = MapPanel::over("", &CURED, &CURES, |re, cure: &str| {
+        let is_of = |s: &ChannelSettings, variant: &str| (s.re, variant) == (re, cure);
+        let rows = table.of(For::Cures).filter(|row| is_of(&row.settings, row.variant));
+        rows.map(|row| row.run.spec.clone()).collect()
+    });
+    let (sound, cures) = ("sound speed c0/V [-], of `seed`", "what is changed of `seed`");
+    let title = "Outcomes over Reynolds number and sound speed";
+    let mut maps = vec![map("poiseuille-map", title, sound, over_sound)];
+    if table.of(For::Cures).next().is_some() {
+        maps.push(map("poiseuille-cures", "What cures the instability", cures, over_cures));
+    }
+    maps
+}
+
+/// Those of a tier.
+fn reynolds(table: &ChannelTable) -> Vec<f64> {
+    let is_run = |re: &f64| of_sound(table, *re, SOUND[0]).next().is_some();
+    REYNOLDS.into_iter().filter(is_run).collect()
+}
+
+/// The runs of a cell of the first map.
+fn of_sound(table: &ChannelTable, re: f64, sound: f64) -> impl Iterator<Item = RunSpec> {
+    let is_of = move |s: &ChannelSettings| (s.re, s.c0) == (re, Some(sound_speed(re, sound)));
+    let rows = table.of(For::Map).filter(move |row| is_of(&row.settings));
+    rows.map(|row| row.run.spec.clone())
+}
+
+fn map(id: &str, title: &str, y: &str, panel: MapPanel) -> Map {
+    let caption = format!(
+        "Outcome of Poiseuille flow, 20 rows, over the Reynolds number and {y}. A cell shows the largest \
+         relative L2 error of the velocity from νt/L² = 0.1 to 1 of the median start, or after t the νt/L² \
+         at which it diverged; a run fails if it diverges or if this error exceeds 5 %. In the quick tier \
+         and above Re 20 a cell is one start, with particles displaced by up to 1e-4 dx, otherwise three, \
+         by up to 1e-6, 1e-4 and 1e-2 dx."
+    );
+    let outcomes = [
+        ("no start fails, error ≤ 1 %", Colour::GREEN),
+        ("no start fails, error ≤ 5 %", Colour::YELLOW),
+        ("some starts fail", Colour::ORANGE),
+        ("every start fails", Colour::VERMILLION),
+    ];
+    Map {
+        id: id.into(),
+        title: title.into(),
+        caption,
+        x: "Reynolds number Re [-]".into(),
+        y: y.into(),
+        outcomes: outcomes.map(|(name, colour)| (name.to_string(), colour)).into(),
+        panels: vec![panel],
+        outcome,
+    }
+}
+
+/// Which of the outcomes a cell is, and its text.
+fn outcome(records: &[&Record]) -> (usize, String) {
+    let starts = Starts::of(records);
+    match (starts.failed(), starts.median()) {
+        (_, None) => (3, "refused".into()),
+        (0, Some(median @ Outcome::Reached(error))) => (usize::from(error > 0.01), median.text()),
+        (failed, Some(_)) if failed < starts.0.len() => {
+            (2, format!("{failed} of {} fail", starts.0.len()))
+        }
+        (_, Some(median)) => (3, median.text()),
+    }
+}
+
+/// How one run ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Outcome {
+    /// νt/L² of the divergence.
+    Diverged(f64),
+    /// Worst relative L2 error of a run that reached its end.
+    Reached(f64),
+}
+
+impl Outcome {
+    /// Diverged, or wrong at the end.
+    fn fails(&self) -> bool {
+        !matches!(self, Self::Reached(error) if *error <= 0.05)
+    }
+
+    /// Larger is worse: an error is worse than a lesser one, and a divergence, the earlier it came.
+    fn badness(self) -> f64 {
+        match self {
+            Self::Diverged(time) => 1e6 - time,
+            Self::Reached(error) => error.min(1e3), // NaN too
+        }
+    }
+
+    /// `0.54 %`, or `t = 0.55` for νt/L² of the divergence.
+    fn text(self) -> String {
+        match self {
+            Self::Diverged(time) => format!("t = {}", sig(time, 2)),
+            Self::Reached(error) => percent(error, 2),
+        }
+    }
+}
+
+/// The outcomes of one cell, worst first, without runs that were refused.
+struct Starts(Vec<Outcome>);
+
+impl Starts {
+    fn of(records: &[&Record]) -> Self {
+        let ended = records.iter().filter_map(|record| match record.status {
+            // L²/ν is 1 s in these channels.
+            Status::Diverged { time, .. } => Some(Outcome::Diverged(time)),
+            Status::Refused { .. } => None,
+            _ => Some(Outcome::Reached(record.value(L2_WORST).unwrap_or(f64::NAN))),
+        });
+        Self::new(ended.collect())
+    }
+
+    fn new(mut outcomes: Vec<Outcome>) -> Self {
+        outcomes.sort_by(|a, b| b.badness().total_cmp(&a.badness()));
+        Self(outcomes)
+    }
+
+    fn failed(&self) -> usize {
+        self.0.iter().filter(|outcome| outcome.fails()).count()
+    }
+
+    /// Did more than half fail? A setting that is refused from every start fails too.
+    fn mostly_fails(&self) -> bool {
+        self.0.is_empty() || 2 * self.failed() > self.0.len()
+    }
+
+    /// The middle outcome.
+    fn median(&self) -> Option<Outcome> {
+        self.0.get(self.0.len().saturating_sub(1) / 2).copied()
+    }
+}
+
+/// The hypotheses.
+pub fn study(table: &ChannelTable, runs: &Runs) -> Study {
+    let starts = |re, sound| Starts::of(&runs.records(of_sound(table, re, sound)));
+    let row = |re| (re, SOUND.map(|sound| starts(re, sound)));
+    let found: Vec<(f64, [Starts; 3])> = reynolds(table).into_iter().map(row).collect();
+    let first = found.iter().find(|(_, [_, usual, _])| usual.mostly_fails());
+    let gate = Gate::new(
+        "poiseuille.map.first-failing-re",
+        "first_failing_re",
+        Bound::Within(2.2, 14.0),
+        Evidence::Regression,
+        "H4: with the settings of `seed` and c0 = 10 V, every start holds at Re 1 and fails at Re 5, where \
+         only a perfect lattice holds (error 0.99 %, but 5.6 % with a disorder of 1e-6 dx). The ends of \
+         the bound are the geometric means of 1 and 5 and of 10 and 20, so no outcome of the map lies at \
+         an end.",
+    );
+    let failed = |k: usize| found.iter().map(|(_, starts)| starts[k].failed()).sum::<usize>();
+    let [low, usual, high] = [0, 1, 2].map(failed);
+    let all: usize = found.iter().map(|(_, [_, usual, _])| usual.0.len()).sum();
+    let words = format!(
+        "**H4** (with rising Re the waves grow until the run is unstable) is supported if the gate below \
+         passes; that waves are the reason is not shown. **H5** (a lower sound speed stabilises the run) is \
+         **{}**: of {all} starts fail {low} at c0 = {} V, {usual} at {} V and {high} at {} V.",
+        h5_verdict(low, high),
+        SOUND[0],
+        SOUND[1],
+        SOUND[2]
+    );
+    let title = "H4 and H5: when the seed's run becomes unstable";
+    let value = first.map_or(f64::NAN, |(re, _)| *re);
+    Study::new("poiseuille-h4-h5", title).prose(words).judge(gate, value)
+}
+
+/// The verdict on H5 from the numbers of starts that fail at the lowest and at the highest sound speed.
+fn h5_verdict(low: usize, high: usize) -> &'static str {
+    match low.cmp(&high) {
+        Ordering::Less => "supported",
+        Ordering::Equal => "open",
+        Ordering::Greater => "refuted here",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Outcome::{Diverged, Reached};
+
+    #[test]
+    fn the_median_and_the_count_of_failures_use_one_criterion() {
+        let starts = Starts::new(vec![Reached(0.004), Diverged(0.7), Reached(0.08)]);
+        assert_eq!((starts.failed(), starts.median()), (2, Some(Reached(0.08))));
+        assert!(starts.mostly_fails());
+        let starts = Starts::new(vec![Reached(0.004), Diverged(0.7), Diverged(0.5)]);
+        assert_eq!((starts.failed(), starts.median()), (2, Some(Diverged(0.7))));
+        assert_eq!(starts.median().map(Outcome::text), Some("t = 0.70".into()));
+        assert!(!Starts::new(vec![Reached(0.01), Reached(0.01), Diverged(0.5)]).mostly_fails());
+        assert!(Reached(f64::NAN).fails() && Starts::new(Vec::new()).mostly_fails());
+        let wrong = Starts::new(vec![Reached(0.2), Reached(f64::NAN), Reached(0.01)]);
+        assert_eq!((wrong.failed(), wrong.median()), (2, Some(Reached(0.2))));
+    }
+
+    #[test]
+    fn h5_is_supported_only_if_fewer_starts_fail_at_the_lower_sound_speed() {
+        assert_eq!(h5_verdict(3, 5), "supported");
+        assert_eq!(h5_verdict(3, 3), "open");
+        assert_eq!(h5_verdict(5, 3), "refuted here");
+    }
+}
