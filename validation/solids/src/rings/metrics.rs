@@ -61,26 +61,24 @@ pub enum Fate {
     Torn,
     /// There are more pieces than rings.
     InPieces,
+    /// The run did not reach its end.
+    Diverged,
 }
 
 impl Fate {
-    /// Of a run that reached its end; `None` where nothing was counted.
-    pub fn of(record: &Record) -> Option<Self> {
-        let (pieces, holes) = (record.value(PIECES_MOST)?, record.value(HOLES_LEAST));
-        Some(match holes {
-            _ if pieces > 2.0 => Self::InPieces,
-            Some(holes) if holes < 1.0 => Self::Torn,
+    /// Of a run.
+    pub fn of(record: &Record) -> Self {
+        match (record.value(PIECES_MOST), record.value(HOLES_LEAST)) {
+            (None, _) => Self::Diverged,
+            (Some(pieces), _) if pieces > 2.0 => Self::InPieces,
+            (_, Some(holes)) if holes < 1.0 => Self::Torn,
             _ => Self::Whole,
-        })
+        }
     }
 
-    /// For tables and captions.
+    /// For tables and maps.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Whole => "whole",
-            Self::Torn => "torn",
-            Self::InPieces => "in pieces",
-        }
+        ["whole", "torn", "in pieces", "diverged"][self as usize]
     }
 }
 
