@@ -1,6 +1,6 @@
 //! What the records of the rings state.
 
-use base::record::{MetricKey, Record};
+use base::record::{MetricKey, MetricName, Record};
 
 base::metrics! {
     RESTITUTION = "restitution" ["-"]
@@ -82,9 +82,6 @@ impl Fate {
     }
 }
 
-/// Of a phase of contact, for each of [`super::measure::SHARES`].
-pub const T_IMPULSE: [MetricKey; 3] = [T_IMPULSE_1, T_IMPULSE_50, T_IMPULSE_99];
-
 /// Numbers that finite elements have too, and the distance from these.
 pub const COMPARED: [(MetricKey, MetricKey); 4] = [
     (RESTITUTION, RESTITUTION_ERROR),
@@ -99,4 +96,17 @@ pub const RMS: [MetricKey; 4] = [X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS];
 /// The mark of the metrics of a phase of contact, counted from 0.
 pub fn phase(k: usize) -> String {
     format!("phase{}", k + 1)
+}
+
+/// Puts a metric, or says why there is none.
+pub fn put_or(
+    record: &mut Record,
+    metric: impl Into<MetricName>,
+    value: Option<f64>,
+    why: &'static str,
+) {
+    match value {
+        Some(value) => record.put(metric, value),
+        None => record.leave_out(metric, why),
+    }
 }
