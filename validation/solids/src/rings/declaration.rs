@@ -266,12 +266,13 @@ fn sensitivity(tier: Tier) -> Sensitivity {
     const SPEED: &str = "Rings of five layers miss the reference by 9 % in restitution and by 14 % in width, \
         and the bounds that allow this leave room for an error of this size.";
     const STIFF: &str = "Rings of five layers bend too softly, so a ring that is stiffer for its mass comes \
-        nearer to the reference, and one sign of the error passes. A shear modulus that is 11 % too low fails \
-        the path of the centre, and with ten layers one that is 2 % too low fails the end of contact.";
+        nearer to the reference, and one sign of the error passes. A shear modulus that is 11 % too low \
+        fails the path of the centre, and with ten layers one that is 2 % too low fails the end of \
+        contact.";
     const LOSS: &str = "Artificial viscosity takes a small part of the energy of the rings, and 30 % of that \
         part is inside the bounds on the restitution.";
-    const STRESS: &str = "Artificial stress that is 30 % weaker still keeps the rings whole at this speed. Its \
-        wrong sign and its absence are detected.";
+    const STRESS: &str = "Artificial stress that is 30 % weaker still keeps the rings whole at this speed. \
+        Its wrong sign and its absence are detected.";
     const XSPH: &str = "XSPH moves particles by a share of their relative velocities, which are small in a \
         ring. Not even its wrong sign fails a gate.";
     let watched = [

@@ -170,7 +170,7 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     variants,
     is_stable,
     declaration: declaration::declaration,
-    plan: |tier| plan::table(tier).plan(),
+    plan: plan::plan,
     studies: studies::studies,
 };
 

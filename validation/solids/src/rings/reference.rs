@@ -159,7 +159,8 @@ impl Reference {
     /// Begin, end and impulse of each phase. Of a run that has not as many phases, only the first begin and
     /// the last end have a partner.
     fn compare_phases(&self, found: &[Phase], record: &mut Record) {
-        const UNLIKE: &str = "the rings have another number of phases than finite elements, or still touch at the end";
+        const UNLIKE: &str = "the rings have another number of phases than finite elements, or still touch \
+                              at the end";
         let is_same = found.len() == self.phases.len();
         let is_over = |found: &&Phase| found.is_over;
         for (k, [(impulse, _), (begin, _), _, (end, _)]) in self.phases.iter().enumerate() {

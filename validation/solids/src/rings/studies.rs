@@ -1,5 +1,5 @@
-//! What the runs of the rings say together, beside what their declaration says: a table of all collisions with
-//! claim M2, pictures, and what must be the same in two runs.
+//! What the runs of the rings say together, beside what their declaration says: a table of all collisions
+//! with claim M2, pictures, and what must be the same in two runs.
 
 use super::{
     COMPONENTWISE, RUBBER_RINGS, RingSettings,
@@ -150,9 +150,9 @@ fn picture<'a>(
 /// What must be the same in two runs, or at any time of one.
 fn unchanged(rows: &[Row], runs: &Runs) -> Study {
     let study = Study::new("rubber-rings-unchanged", "What must not change").prose(
-        "Rings that nothing acts on keep their shape, and rings at half the speed of sound keep their momentum \
-         or end as diverged. Other moduli make the same motion in units of L and c0. A turned scene gives the \
-         turned answer; artificial stress component by component does not.",
+        "Rings that nothing acts on keep their shape, and rings at half the speed of sound keep their \
+         momentum or end as diverged. Other moduli make the same motion in units of L and c0. A turned scene \
+         gives the turned answer; artificial stress component by component does not.",
     );
     let judged = of(rows, &[Group::Still, Group::Stiff, Group::Fast, Group::Turned]).map(|row| {
         let (record, s) = (runs.record(&row.run.spec), &row.settings);
@@ -189,14 +189,14 @@ fn unchanged(rows: &[Row], runs: &Runs) -> Study {
     judged.fold(study, |study, (gate, value)| study.judge(gate, value.unwrap_or(f64::NAN)))
 }
 
-const STILL: &str = "Without strain nothing may start by itself: neither at rest, where nothing rounds, nor in \
-    flight 9000 L away, where every step does.";
-const STIFF: &str = "Only K has a unit of stress, so motion in units of L and c0 must be the same, except for \
-    round-off.";
-const FAST: &str = "Half the speed of sound is far beyond what rubber and (12) are for. The run must keep its \
-    momentum, or end as diverged with step, time and particle.";
-const TURNED: &str = "No direction is special. Artificial stress in principal axes rotates with the scene, and \
-    the round-off of rotated positions grows while rings bend.";
+const STILL: &str = "Without strain nothing may start by itself: neither at rest, where nothing rounds, nor \
+    in flight 9000 L away, where every step does.";
+const STIFF: &str = "Only K has a unit of stress, so motion in units of L and c0 must be the same, except \
+    for round-off.";
+const FAST: &str = "Half the speed of sound is far beyond what rubber and (12) are for. The run must keep \
+    its momentum, or end as diverged with step, time and particle.";
+const TURNED: &str = "No direction is special. Artificial stress in principal axes rotates with the scene, \
+    and the round-off of rotated positions grows while rings bend.";
 
 /// Largest change of width and height since the first sample \[L\].
 fn change_of_extents(record: &Record) -> f64 {
