@@ -25,6 +25,16 @@ const ELASTIC: &str = "elastic law";
 const ITEMS: [(&str, MetricKey); 3] =
     [(VISCOSITY, WORK_VISCOSITY), (STRESS, WORK_STRESS), (ELASTIC, WORK_ELASTIC)];
 
+const COLUMNS: [(&str, &str); 7] = [
+    ("t", "L/c0"),
+    ("kinetic", "E(0)"),
+    ("compression", "E(0)"),
+    ("shear", "E(0)"),
+    ("work_viscosity", "E(0)"),
+    ("work_stress", "E(0)"),
+    ("work_elastic", "E(0)"),
+];
+
 /// What a budget measures: it takes pair sweeps of its own.
 pub const METRICS: [MetricKey; 4] = [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_ELASTIC];
 
@@ -60,17 +70,11 @@ pub trait Metered: Stepper<Symmetric> {
 
 impl<S: Scheme<Extra = Symmetric, Forces: Stressed>> Metered for Simulation<S> {
     fn powers(&self, rings: &Rings) -> Items {
-        fn power<S: Scheme<Extra = Symmetric>, T: Term<Symmetric> + FromMedium>(
-            meter: &Meter<S>,
-            rings: &Rings,
-        ) -> f64 {
-            meter.power(&T::new(&rings.medium))
-        }
-        let slope = solid_slope(&rings.material);
+        let (slope, medium) = (solid_slope(&rings.material), &rings.medium);
         let meter = Meter::new(self, &slope);
-        let elastic = power::<S, <S::Forces as Stressed>::Elastic>(&meter, rings);
-        let stressed = power::<S, <S::Forces as Stressed>::Tensile>(&meter, rings);
-        let viscosity = power::<S, ArtificialViscosity<Linear>>(&meter, rings);
+        let elastic = meter.power(&<S::Forces as Stressed>::Elastic::new(medium));
+        let stressed = meter.power(&<S::Forces as Stressed>::Tensile::new(medium));
+        let viscosity = meter.power(&<ArtificialViscosity<Linear> as FromMedium>::new(medium));
         vec![(ELASTIC, elastic), (STRESS, stressed - elastic), (VISCOSITY, viscosity)]
     }
 }
@@ -113,13 +117,12 @@ impl Budget {
         for (name, work) in ITEMS {
             record.put(work, self.account.work(name) / start);
         }
-        let column = |k: usize, unit: f64| self.rows.iter().map(|row| row[k] / unit).collect();
-        let works = ITEMS.map(|(_, work)| String::from(work));
-        let names = ["kinetic", "compression", "shear"].map(String::from).into_iter().chain(works);
-        let times = Profile::default().with("t", "L/c0", column(0, 1.0 / rings.c0));
-        let profile = names
-            .zip(1..)
-            .fold(times, |profile, (name, k)| profile.with(&name, "E(0)", column(k, start)));
-        record.profiles.insert("budget".into(), profile);
+        let scaled = |row: &[f64; 7]| {
+            let mut scaled = row.map(|energy| energy / start);
+            scaled[0] = row[0] / (1.0 / rings.c0);
+            scaled
+        };
+        let rows: Vec<[f64; 7]> = self.rows.iter().map(scaled).collect();
+        record.profiles.insert("budget".into(), Profile::of_rows(&COLUMNS, &rows));
     }
 }

@@ -4,8 +4,8 @@ use nalgebra::Vector2;
 use solver::{Flow as Going, Observer, Particle, Stepper, Symmetric};
 
 use super::{Rings, metrics::*};
-use crate::solid::Energy;
-use base::record::{Profile, Record};
+use crate::solid::{Energy, largest};
+use base::record::{MetricKey, Profile, Record};
 use maths::geometry::{Bonds, Topology};
 
 /// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
@@ -14,19 +14,6 @@ const COUNTED_EVERY: usize = 8;
 /// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
 /// nearest one or two of the layers beside it.
 pub const NEIGHBOURS: f64 = 1.2;
-
-/// One ring at one time, in the frame whose x axis is the line of flight.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Side {
-    /// Centre of mass \[m\].
-    pub centre: Vector2<f64>,
-    /// Its velocity \[m/s\].
-    pub velocity: Vector2<f64>,
-    /// Extent along the line of flight, half a spacing beyond the outermost particles \[m\].
-    pub width: f64,
-    /// Extent across it \[m\].
-    pub height: f64,
-}
 
 /// The particles in the frame whose x axis is the line of flight, as the scene orders them.
 pub fn along_flight(
@@ -43,8 +30,9 @@ pub fn along_flight(
     particles
 }
 
-/// A ring's centre, velocity and extents.
-pub fn side(ring: &[Particle<Symmetric>], dx: f64) -> Side {
+/// A ring's centre of mass \[m\], its velocity \[m/s\], and its extents along and across the line of flight,
+/// half a spacing beyond the outermost particles \[m\].
+pub fn side(ring: &[Particle<Symmetric>], dx: f64) -> [Vector2<f64>; 3] {
     let (mut mass, mut centre, mut momentum) = (0.0, Vector2::zeros(), Vector2::zeros());
     let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
     for p in ring {
@@ -53,8 +41,7 @@ pub fn side(ring: &[Particle<Symmetric>], dx: f64) -> Side {
         momentum += p.velocity * p.mass;
         (low, high) = (low.inf(&p.position), high.sup(&p.position));
     }
-    let extent = high - low + Vector2::repeat(dx);
-    Side { centre: centre / mass, velocity: momentum / mass, width: extent.x, height: extent.y }
+    [centre / mass, momentum / mass, high - low + Vector2::repeat(dx)]
 }
 
 /// Where the particles of a ring are.
@@ -62,79 +49,9 @@ fn places(ring: &[Particle<Symmetric>]) -> Vec<Vector2<f64>> {
     ring.iter().map(|p| p.position).collect()
 }
 
-/// What is seen of the two rings holding together.
-struct Wholeness {
-    /// Area below which a hole is none of a ring \[m²\].
-    least_hole: f64,
-    /// Neighbours of each ring at the start.
-    bonds: [Bonds; 2],
-    /// Is each ring seen as one at the start? Not if its hole is narrower than a disc.
-    is_seen: bool,
-    /// Of both rings, at the last count; the fewest of one ring for holes.
-    pieces: usize,
-    holes: usize,
-    most_pieces: usize,
-    least_holes: usize,
-    /// \[L/c₀\].
-    torn_at: Option<f64>,
-}
-
-harness::observed! {
-    Wholeness:
-    changes(pieces, holes, most_pieces, least_holes, torn_at), parts(),
-    stays(least_hole, bonds, is_seen)
-}
-
-impl Wholeness {
-    fn new(rings: &Rings) -> Self {
-        let least_hole = Topology::least_hole_of_ring(rings.settings.inner, rings.settings.outer);
-        let start = rings.particles();
-        let mut this = Self {
-            least_hole,
-            bonds: halves(&start)
-                .map(|ring| Bonds::of(&places(ring), NEIGHBOURS * rings.medium.dx)),
-            is_seen: false,
-            pieces: 2,
-            holes: 1,
-            most_pieces: 2,
-            least_holes: usize::MAX,
-            torn_at: None,
-        };
-        this.is_seen = this.of(rings, &start).iter().all(|ring| ring.is_whole_ring());
-        this
-    }
-
-    fn of(&self, rings: &Rings, particles: &[Particle<Symmetric>]) -> [Topology; 2] {
-        halves(particles).map(|ring| Topology::of(&places(ring), rings.medium.dx, self.least_hole))
-    }
-
-    /// Counts pieces and holes at a time \[L/c₀\].
-    fn count(&mut self, time: f64, rings: &Rings, particles: &[Particle<Symmetric>]) {
-        let found = self.of(rings, particles);
-        self.pieces = found.iter().map(|ring| ring.pieces).sum();
-        self.holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
-        self.most_pieces = self.most_pieces.max(self.pieces);
-        self.least_holes = self.least_holes.min(self.holes);
-        if self.torn_at.is_none() && !found.iter().all(|ring| ring.is_whole_ring()) {
-            self.torn_at = Some(time);
-        }
-    }
-
-    /// Largest distance of particles that were neighbours at the start \[dx\].
-    fn stretch(&self, dx: f64, particles: &[Particle<Symmetric>]) -> f64 {
-        let rings = self.bonds.iter().zip(halves(particles));
-        rings.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx).fold(0.0, f64::max)
-    }
-
-    fn measure(&self, record: &mut Record) {
-        record.put(PIECES_MOST, self.most_pieces as f64);
-        if self.is_seen {
-            record.put(HOLES_LEAST, self.least_holes as f64);
-            if let Some(time) = self.torn_at {
-                record.put(TORN_AT, time);
-            }
-        }
-    }
+/// Are there two pieces, each with a hole?
+fn is_whole([pieces, holes]: [f64; 2]) -> bool {
+    pieces == 2.0 && holes >= 1.0
 }
 
 /// The ring on the left and the one on the right.
@@ -147,14 +64,23 @@ fn halves(particles: &[Particle<Symmetric>]) -> [&[Particle<Symmetric>]; 2] {
 pub struct Series<'a> {
     rings: &'a Rings,
     every: f64,
+    /// Area below which a hole is none of a ring \[m²\].
+    least_hole: f64,
+    /// Neighbours of each ring at the start.
+    bonds: [Bonds; 2],
+    /// Is each ring seen as one at the start? Not if its hole is narrower than a disc.
+    is_seen: bool,
     next: f64,
     samples: usize,
-    wholeness: Wholeness,
+    /// Pieces of both rings at the last count, and the fewest holes of one.
+    counted: Vec<f64>,
     rows: Vec<[f64; COLUMNS]>,
 }
 
 harness::observed! {
-    Series<'_>: changes(next, samples, rows), parts(wholeness), stays(rings, every)
+    Series<'_>:
+    changes(next, samples, counted, rows), parts(),
+    stays(rings, every, least_hole, bonds, is_seen)
 }
 
 const COLUMNS: usize = 12;
@@ -177,8 +103,23 @@ impl<'a> Series<'a> {
     /// A series over a run.
     pub fn new(rings: &'a Rings) -> Self {
         let every = rings.settings.end / rings.c0 / SAMPLES;
-        let wholeness = Wholeness::new(rings);
-        Self { rings, every, next: every, samples: 0, wholeness, rows: Vec::new() }
+        let least_hole = Topology::least_hole_of_ring(rings.settings.inner, rings.settings.outer);
+        let start = rings.particles();
+        let bonds =
+            halves(&start).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * rings.medium.dx));
+        let (next, samples, counted, rows) = (every, 0, Vec::new(), Vec::new());
+        let mut this =
+            Self { rings, every, least_hole, bonds, is_seen: false, next, samples, counted, rows };
+        this.is_seen = is_whole(this.count(&start));
+        this
+    }
+
+    /// Pieces of both rings, and the fewest holes of one.
+    fn count(&self, particles: &[Particle<Symmetric>]) -> [f64; 2] {
+        let found = halves(particles)
+            .map(|ring| Topology::of(&places(ring), self.rings.medium.dx, self.least_hole));
+        let holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
+        [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
     }
 
     /// Takes a sample: the ring on the right, whose centre has x > 0. The energies are those of the particles
@@ -187,25 +128,27 @@ impl<'a> Series<'a> {
         let (rings, dx) = (self.rings, self.rings.medium.dx);
         let [left, right] = halves(particles);
         if self.samples.is_multiple_of(COUNTED_EVERY) {
-            self.wholeness.count(time * rings.c0, rings, particles);
+            self.counted = self.count(particles).into();
         }
         self.samples += 1;
-        let ring = side(right, dx);
-        let energies = known.unwrap_or_else(|| Energy::of_all(particles, &rings.material));
-        let mirror = mirror_error(left, right) / dx;
+        let [centre, velocity, extent] = side(right, dx);
+        let Energy { kinetic, compression, shear } =
+            known.unwrap_or_else(|| Energy::of_all(particles, &rings.material));
+        let bonds = self.bonds.iter().zip([left, right]);
+        let stretch = largest(bonds.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx));
         self.rows.push([
             time * rings.c0,
-            ring.centre.x,
-            ring.velocity.x / rings.c0,
-            ring.width,
-            ring.height,
-            self.wholeness.pieces as f64,
-            energies.kinetic,
-            energies.compression,
-            energies.shear,
-            mirror,
-            self.wholeness.holes as f64,
-            self.wholeness.stretch(dx, particles),
+            centre.x,
+            velocity.x / rings.c0,
+            extent.x,
+            extent.y,
+            self.counted[0],
+            kinetic,
+            compression,
+            shear,
+            mirror_error(left, right) / dx,
+            self.counted[1],
+            stretch,
         ]);
     }
 
@@ -231,29 +174,35 @@ impl<'a> Series<'a> {
         let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
         let speed = self.rings.settings.speed;
         record.put(PIECES, last[5]);
-        self.wholeness.measure(record);
+        let most = |k: usize| column(k).fold(0.0, f64::max);
+        record.put(PIECES_MOST, most(5));
+        if self.is_seen {
+            record.put(HOLES_LEAST, least(10));
+            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[10]])) {
+                record.put(TORN_AT, torn[0]);
+            }
+        }
         let stretched = self.rows.iter().max_by(|a, b| a[11].total_cmp(&b[11]));
         if let Some(row) = stretched {
             record.put(STRETCH_MOST, row[11]);
             record.put(T_STRETCH_MOST, row[0]);
         }
         record.put(WIDTH_MIN, least(3));
-        record.put(HEIGHT_MAX, column(4).fold(f64::NEG_INFINITY, f64::max));
+        record.put(HEIGHT_MAX, most(4));
         record.put(X_C_MIN, least(1));
         record.put(X_C_END, last[1]);
-        record.put(MIRROR, column(9).fold(0.0, f64::max));
-        if speed > 0.0 {
-            let late = self.rows.iter().filter(|row| row[0] >= 0.9 * last[0]);
-            let pushed = late.map(|row| (row[2] - last[2]).abs()).fold(0.0, f64::max);
-            record.put(PUSHED_BY_ITSELF, pushed / speed);
-            let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
-            record.put(ENERGY_LOST, 1.0 - energy(last) / energy(first));
-            let largest = self.rows.iter().map(energy).fold(0.0, f64::max);
-            record.put(ENERGY_GAINED, largest / energy(first) - 1.0);
-        } else {
-            for metric in [PUSHED_BY_ITSELF, ENERGY_LOST, ENERGY_GAINED] {
-                record.leave_out(metric, "the rings are at rest at the start");
-            }
+        record.put(MIRROR, most(9));
+        let late = self.rows.iter().filter(|row| row[0] >= 0.9 * last[0]);
+        let pushed = late.map(|row| (row[2] - last[2]).abs()).fold(0.0, f64::max);
+        let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
+        let largest = self.rows.iter().map(energy).fold(0.0, f64::max);
+        for (metric, value) in [
+            (PUSHED_BY_ITSELF, pushed / speed),
+            (ENERGY_LOST, 1.0 - energy(last) / energy(first)),
+            (ENERGY_GAINED, largest / energy(first) - 1.0),
+        ] {
+            let moving = (speed > 0.0).then_some(value);
+            put_or(record, metric, moving, "the rings are at rest at the start");
         }
         self.measure_contact(last[2] / speed, record);
     }
@@ -262,22 +211,16 @@ impl<'a> Series<'a> {
     fn measure_contact(&self, restitution: f64, record: &mut Record) {
         let phases = self.phases();
         record.put(PHASES, phases.len() as f64);
-        match phases.last() {
-            Some(last) if last.is_over => record.put(RESTITUTION, restitution),
-            Some(_) => record.leave_out(RESTITUTION, "the rings still touch at the end"),
-            None => record.leave_out(RESTITUTION, "the rings never touch"),
-        }
-        for (k, found) in phases.iter().enumerate().take(2) {
-            if found.is_over {
-                record.put(IMPULSE.at(phase(k)), found.impulse);
-                for (metric, time) in T_IMPULSE.iter().zip(found.times) {
-                    record.put(metric.at(phase(k)), time);
-                }
-            } else {
-                record.leave_out(IMPULSE.at(phase(k)), NOT_OVER);
-                for metric in T_IMPULSE {
-                    record.leave_out(metric.at(phase(k)), NOT_OVER);
-                }
+        let parted = phases.last().filter(|last| last.is_over).map(|_| restitution);
+        let never = phases.is_empty();
+        let why = if never { "the rings never touch" } else { "the rings still touch at the end" };
+        put_or(record, RESTITUTION, parted, why);
+        const METRICS: [MetricKey; 4] = [IMPULSE, T_IMPULSE_1, T_IMPULSE_50, T_IMPULSE_99];
+        for (k, Phase { impulse, times: [early, half, late], is_over }) in
+            phases.into_iter().enumerate().take(2)
+        {
+            for (metric, value) in METRICS.into_iter().zip([impulse, early, half, late]) {
+                put_or(record, metric.at(phase(k)), is_over.then_some(value), NOT_OVER);
             }
         }
     }
@@ -379,10 +322,10 @@ mod tests {
         let rings = rings();
         let particles = rings.particles();
         let (left, _) = particles.split_at(particles.len() / 2);
-        let side = side(left, rings.medium.dx);
-        assert!((side.centre.x + 5.0).abs() < 1e-12 && side.centre.y.abs() < 1e-12);
-        assert!((side.width - 8.0).abs() < 1e-3 && (side.height - 8.0).abs() < 1e-3);
-        assert!((side.velocity.x - 0.059).abs() < 1e-12);
+        let [centre, velocity, extent] = side(left, rings.medium.dx);
+        assert!((centre.x + 5.0).abs() < 1e-12 && centre.y.abs() < 1e-12);
+        assert!((extent.x - 8.0).abs() < 1e-3 && (extent.y - 8.0).abs() < 1e-3);
+        assert!((velocity.x - 0.059).abs() < 1e-12);
     }
 
     /// A run of made-up places: the rings of the scene, changed.

@@ -1,6 +1,6 @@
 //! What the records of the rings state.
 
-use base::record::{MetricKey, Record};
+use base::record::{MetricKey, MetricName, Record};
 
 base::metrics! {
     RESTITUTION = "restitution" ["-"]
@@ -61,31 +61,26 @@ pub enum Fate {
     Torn,
     /// There are more pieces than rings.
     InPieces,
+    /// The run did not reach its end.
+    Diverged,
 }
 
 impl Fate {
-    /// Of a run that reached its end; `None` where nothing was counted.
-    pub fn of(record: &Record) -> Option<Self> {
-        let (pieces, holes) = (record.value(PIECES_MOST)?, record.value(HOLES_LEAST));
-        Some(match holes {
-            _ if pieces > 2.0 => Self::InPieces,
-            Some(holes) if holes < 1.0 => Self::Torn,
+    /// Of a run.
+    pub fn of(record: &Record) -> Self {
+        match (record.value(PIECES_MOST), record.value(HOLES_LEAST)) {
+            (None, _) => Self::Diverged,
+            (Some(pieces), _) if pieces > 2.0 => Self::InPieces,
+            (_, Some(holes)) if holes < 1.0 => Self::Torn,
             _ => Self::Whole,
-        })
-    }
-
-    /// For tables and captions.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Whole => "whole",
-            Self::Torn => "torn",
-            Self::InPieces => "in pieces",
         }
     }
-}
 
-/// Of a phase of contact, for each of [`super::measure::SHARES`].
-pub const T_IMPULSE: [MetricKey; 3] = [T_IMPULSE_1, T_IMPULSE_50, T_IMPULSE_99];
+    /// For tables and maps.
+    pub fn name(self) -> &'static str {
+        ["whole", "torn", "in pieces", "diverged"][self as usize]
+    }
+}
 
 /// Numbers that finite elements have too, and the distance from these.
 pub const COMPARED: [(MetricKey, MetricKey); 4] = [
@@ -101,4 +96,17 @@ pub const RMS: [MetricKey; 4] = [X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS];
 /// The mark of the metrics of a phase of contact, counted from 0.
 pub fn phase(k: usize) -> String {
     format!("phase{}", k + 1)
+}
+
+/// Puts a metric, or says why there is none.
+pub fn put_or(
+    record: &mut Record,
+    metric: impl Into<MetricName>,
+    value: Option<f64>,
+    why: &'static str,
+) {
+    match value {
+        Some(value) => record.put(metric, value),
+        None => record.leave_out(metric, why),
+    }
 }

@@ -6,28 +6,23 @@
 
 mod budget;
 mod declaration;
-mod extremes;
-mod lagrangian;
-#[cfg(test)]
-mod made_up;
 mod measure;
 mod metrics;
 mod plan;
 mod reference;
 mod run;
-mod sensitivity;
 mod setup;
 mod studies;
+#[cfg(test)]
+mod tests;
 
 use base::record::{Record, Status};
 use harness::{
     composed::{Best, Composed, Composition, Program, Variants},
-    method::{self, FromMedium, Method},
+    method::{self, Method, Standard},
 };
-use maths::theory::Stepping;
 use solver::{
-    ComponentStress, Integrator, Leapfrog, PredictorCorrector, PrincipalStress, Symmetric,
-    terms::TensileStress,
+    ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Simulation, Symmetric,
 };
 
 use crate::solid::{
@@ -86,16 +81,16 @@ base::settings! {
 /// A method without its type, whose simulations can say where their energy goes.
 pub type RingMethod = Method<Symmetric, dyn Metered>;
 
-/// The paper's terms with the artificial stress `R`, stepped by `I`.
-pub fn method<R, I>() -> RingMethod
+/// The method of a scheme.
+fn method<S: Standard<Extra = Symmetric>>() -> RingMethod
 where
-    R: TensileStress + FromMedium,
-    I: Stepping + Integrator<Rubber<R, ()>>,
+    Simulation<S>: Metered,
 {
-    Method::with::<Rubber<R, I>>(|parts| {
-        Ok(Box::new(method::scene::<Rubber<R, I>>(parts).build()?))
-    })
+    Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
 }
+
+/// The variant whose artificial stress depends on the axes.
+pub const COMPONENTWISE: &str = "componentwise";
 
 /// The variant with corrected gradients.
 pub const CORRECTED: &str = "corrected";
@@ -114,34 +109,28 @@ fn variants() -> Vec<Composition<RingSettings>> {
             "seed",
             "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \
              stress in principal axes",
-            method::<PrincipalStress, Midpoint>(),
+            method::<Rubber<PrincipalStress, Midpoint>>(),
             |_| {},
         )
         .with(
-            "no-artificial-stress",
-            "the seed without artificial stress",
-            method::<(), Midpoint>(),
-            |_| {},
-        )
-        .with(
-            "componentwise",
-            "the seed with artificial stress component by component, as the paper writes it",
-            method::<ComponentStress, Midpoint>(),
+            COMPONENTWISE,
+            "the seed with artificial stress component by component, as the paper writes it: does the \
+             answer depend on the axes?",
+            method::<Rubber<ComponentStress, Midpoint>>(),
             |_| {},
         )
         .with(
             "leapfrog",
-            "the seed with the staggered leapfrog: one right-hand side a step, and longer steps",
-            method::<PrincipalStress, Leapfrog>(),
+            "the seed with the staggered leapfrog, one right-hand side a step, and longer steps: does that \
+             change anything but the cost?",
+            method::<Rubber<PrincipalStress, Leapfrog>>(),
             |s| s.courant = LONG_STEPS,
         )
         .with(
             CORRECTED,
             "the terms of `leapfrog` without XSPH, with corrected gradients, and the forces that are \
-             conjugate to them",
-            Method::with::<Corrected<PrincipalStress>>(|parts| {
-                Ok(Box::new(method::scene::<Corrected<PrincipalStress>>(parts).build()?))
-            }),
+             conjugate to them: what do uncorrected gradients at free faces do?",
+            method::<Corrected<PrincipalStress>>(),
             |s| (s.courant, s.xsph) = (LONG_STEPS, 0.0),
         )
         .with(

@@ -22,14 +22,6 @@ use harness::{
 /// Times at which particles are kept for pictures, shares of the run.
 pub const PICTURES: [f64; 6] = [0.0, 0.16, 0.3, 0.4, 0.6, 1.0];
 
-/// Those times, or as many as were asked for.
-fn pictures(context: &Context) -> Vec<f64> {
-    match context.pictures {
-        Some(count) => (0..count).map(|k| k as f64 / (count - 1).max(1) as f64).collect(),
-        None => PICTURES.to_vec(),
-    }
-}
-
 /// What the rules choose.
 pub fn rules(method: &RingMethod, settings: &RingSettings) -> Result<Rules, RunError> {
     Ok(Rings::new(settings, method, &Context::of_rules())?.rules)
@@ -52,9 +44,11 @@ pub fn run(
     let particles = measure::along_flight(rings, &*simulation);
     series.sample(0.0, &particles, Energy::known(&*simulation));
     budget.iter_mut().for_each(|budget| budget.sample(rings, &*simulation));
-    keep(rings, &*simulation, 0.0, context, &mut record);
+    if context.keep_particles {
+        keep(rings, &*simulation, 0.0, &mut record);
+    }
     let stops = stops(rings, context);
-    let times: Vec<f64> = stops.iter().map(|stop| stop.time).collect();
+    let times: Vec<f64> = stops.iter().map(|(time, _)| *time).collect();
     let eos = rings.material.eos();
     let pressure = |density| eos.pressure(density);
     let has_budget = budget.is_some();
@@ -63,12 +57,14 @@ pub fn run(
         Drive::new(&mut *simulation, rings.rules.dt(), &times, &pressure, &mut seen)
             .after_step("series", &|(series, ..), simulation| series.after_step(simulation))
             .at_if(has_budget, "energy budget by term", &|(_, budget, _), s, k| {
-                if let Some(budget) = budget.as_mut().filter(|_| stops[k].is_sample) {
+                if let Some(budget) = budget.as_mut().filter(|_| stops[k].1.is_none()) {
                     budget.sample(rings, s);
                 }
             })
             .at_positions("pictures", &|(.., record), s, k| {
-                keep(rings, s, times[k], context, record)
+                if let Some(share) = stops[k].1.filter(|_| context.keep_particles) {
+                    keep(rings, s, share, record);
+                }
             })
             .run(context)?;
     let particles = measure::along_flight(rings, &*simulation);
@@ -100,37 +96,23 @@ fn numbers(rings: &Rings) -> Vec<(&'static str, f64)> {
     [&rings.rules.numbers([rings.settings.h_over_dx, rings.medium.dx])[..], &own].concat()
 }
 
-/// A stop of a run: for a picture, or for a sample of the energy budget.
-struct Stop {
-    /// \[s\].
-    time: f64,
-    is_sample: bool,
-}
-
-/// Ascending.
-fn stops(rings: &Rings, context: &Context) -> Vec<Stop> {
-    let end = rings.settings.end / rings.c0;
-    let pictures = pictures(context).into_iter().filter(|share| *share > 0.0);
-    let picture = |share: f64| Stop { time: share * end, is_sample: false };
-    let count = rings.settings.samples;
-    let sample = |k: usize| Stop { time: end * k as f64 / count as f64, is_sample: true };
-    let samples = (1..=count).map(sample);
-    let mut stops: Vec<Stop> = pictures.map(picture).chain(samples).collect();
-    stops.sort_by(|a, b| a.time.total_cmp(&b.time));
+/// Where a run stops, ascending: times \[s\], each with the share of the run if a picture is kept; the others
+/// are samples of the energy budget.
+fn stops(rings: &Rings, context: &Context) -> Vec<(f64, Option<f64>)> {
+    let (end, count) = (rings.settings.end / rings.c0, rings.settings.samples);
+    let shares = match context.pictures {
+        Some(count) => (0..count).map(|k| k as f64 / (count - 1).max(1) as f64).collect(),
+        None => PICTURES.to_vec(),
+    };
+    let pictures = shares.into_iter().map(|share| (share * end, Some(share)));
+    let samples = (1..=count).map(|k| (end * k as f64 / count as f64, None));
+    let mut stops: Vec<_> = pictures.filter(|(time, _)| *time > 0.0).chain(samples).collect();
+    stops.sort_by(|a, b| a.0.total_cmp(&b.0));
     stops
 }
 
-/// Keeps x, y and the largest principal stress at the times of pictures.
-fn keep(
-    rings: &Rings,
-    simulation: &dyn Stepper<Symmetric>,
-    time: f64,
-    context: &Context,
-    record: &mut Record,
-) {
-    let end = rings.settings.end / rings.c0;
-    let picture = pictures(context).into_iter().find(|share| share * end == time);
-    let (true, Some(share)) = (context.keep_particles, picture) else { return };
+/// Keeps x, y and the largest principal stress at a share of the run.
+fn keep(rings: &Rings, simulation: &dyn Stepper<Symmetric>, share: f64, record: &mut Record) {
     let all = measure::along_flight(rings, simulation);
     let column = |f: &dyn Fn(&Particle<Symmetric>) -> f64| all.iter().map(f).collect::<Vec<f64>>();
     let largest = |p: &Particle<Symmetric>| {

@@ -86,32 +86,22 @@ impl Rings {
     pub fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (s, dx) = (&self.settings, self.medium.dx);
         let rotation = self.to_flight().inverse();
-        let (mut left, mut right) = (Vec::new(), Vec::new());
-        let layers = ((s.outer - s.inner) / dx).round() as usize;
-        for k in 0..layers {
+        let mut places = Vec::new();
+        for k in 0..((s.outer - s.inner) / dx).round() as usize {
             let r = s.inner + (k as f64 + 0.5) * dx;
             let quarter = (TAU * r / (4.0 * dx)).round().max(1.0) as usize;
-            let count = 4 * quarter;
-            let volume = TAU * r * dx / count as f64;
-            for j in 0..count {
-                let place = r * quadrant_point(j, quarter);
-                let put = |side: f64, ring: &mut Vec<_>| {
-                    // On the right: the mirror image, to the last bit.
-                    let place = Vector2::new(side * (s.centre + place.x), place.y);
-                    let velocity = Vector2::new(-side * self.v, 0.0);
-                    ring.push(Particle::fluid(
-                        rotation * place,
-                        rotation * velocity,
-                        s.rho,
-                        volume,
-                    ));
-                };
-                put(-1.0, &mut left);
-                put(1.0, &mut right);
-            }
+            let volume = TAU * r * dx / (4 * quarter) as f64;
+            places.extend((0..4 * quarter).map(|j| (r * quadrant_point(j, quarter), volume)));
         }
-        left.extend(right);
-        left
+        let ring = |side: f64| {
+            // On the right: the mirror image, to the last bit.
+            places.iter().map(move |(place, volume)| {
+                let place = Vector2::new(side * (s.centre + place.x), place.y);
+                let velocity = Vector2::new(-side * self.v, 0.0);
+                Particle::fluid(rotation * place, rotation * velocity, s.rho, *volume)
+            })
+        };
+        ring(-1.0).chain(ring(1.0)).collect()
     }
 
     /// The scene.

@@ -27,12 +27,12 @@ fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record
     let method = Method::of::<Rubber<(), Leapfrog>>();
     let rings = Rings::new(settings, &method, &Context::default()).expect("sound settings");
     let (start, dx) = (rings.particles(), rings.medium.dx);
-    let ring = measure::side(&start[start.len() / 2..], dx);
+    let [_, _, extent] = measure::side(&start[start.len() / 2..], dx);
     let mut series = Series::new(&rings);
     for k in 0..=(4.0 * settings.end) as usize {
         let time = 0.25 * k as f64;
         let [x, v, width, height] = motion(time);
-        let stretch = [(width - dx) / (ring.width - dx), (height - dx) / (ring.height - dx)];
+        let stretch = [(width - dx) / (extent.x - dx), (height - dx) / (extent.y - dx)];
         let mut particles = start.clone();
         for p in &mut particles {
             let side = p.position.x.signum();
@@ -149,7 +149,7 @@ fn finite_elements(speed: f64, late: f64) -> impl Fn(f64) -> [f64; 4] {
         let place = ((time - late) / 0.5).clamp(0.0, 400.0);
         let (k, part) = (place as usize, place.fract());
         [0, 1, 2, 3].map(|column: usize| {
-            let [a, b] = [k, (k + 1).min(400)].map(|k| exact.columns[column][k].0);
+            let [a, b] = [k, (k + 1).min(400)].map(|k| exact.columns[column][k]);
             a + part * (b - a)
         })
     }
