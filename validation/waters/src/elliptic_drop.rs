@@ -13,7 +13,7 @@ use super::{
 };
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricKey, Profile, Record},
+    record::{Profile, Record},
 };
 use harness::{
     case::{Rules, RunError, Tier},
@@ -23,7 +23,7 @@ use harness::{
     method::{Medium, Parts},
     pictures,
     runner::{Context, Drive},
-    runs::{Judged, Runs},
+    runs::Runs,
     simulate,
     study::Study,
     table,
@@ -301,8 +301,6 @@ enum Group {
 type Row = table::Row<DropSettings, Group>;
 
 const VARIANTS: [&str; 3] = ["seed", "modern", "plain"];
-/// The variants that are judged by their shape in gravity.
-const FALLING: [&str; 2] = ["seed", "modern"];
 
 /// All runs of a tier.
 fn table(tier: Tier) -> table::Table<DropSettings, Group> {
@@ -313,7 +311,7 @@ fn table(tier: Tier) -> table::Table<DropSettings, Group> {
     table.over(Group::Ladder, &["seed"], [&[14, 28], &[28, 40, 56, 80]], across);
     table.over(Group::Ladder, &["modern", "plain"], [&[14, 28], &[28, 56]], across);
     table.one(Group::Narrow, "modern", |s| s.h_over_dx = 1.5);
-    for variant in FALLING {
+    for variant in ["seed", "modern"] {
         table.one(Group::Falling, variant, |s| (s.n, s.gravity) = (20, 1.0));
     }
     for row in &mut table.rows {
@@ -394,22 +392,6 @@ fn study(tier: Tier, runs: &Runs) -> Study {
     if let Some(record) = pictured.and_then(|row| runs.record(&row.run.spec)) {
         study = study.block(picture(record));
     }
-    for variant in FALLING {
-        let is_it = |row: &&Row| row.variant == variant && row.settings.n == 20;
-        let of = |group| table.of(group).find(is_it).and_then(|row| runs.record(&row.run.spec));
-        let both = of(Group::Judged).zip(of(Group::Falling));
-        let change = |metric: MetricKey| {
-            let (still, falling) = both?;
-            Some((still.value(metric)? - falling.value(metric)?).abs())
-        };
-        let because = "Gravity acts on all particles alike, so a falling drop deforms like one that does \
-                       not fall. Only round-off of positions is left.";
-        let id = format!("{NAME}.{variant}.falls-in-shape");
-        let (what, bound) = ("difference of a_end and b_end", Bound::Below(1e-9));
-        let gate = Gate::new(id, what, bound, Evidence::Invariant, because);
-        let largest = change(A_END).zip(change(B_END)).map(|(a, b)| a.max(b));
-        study.judged.push(Judged::new(gate, largest));
-    }
     study
 }
 
@@ -446,6 +428,7 @@ fn errors(runs: &Runs) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use base::record::MetricKey;
     use harness::case::Case;
 
     fn run(variant: &str, set: impl FnOnce(&mut DropSettings)) -> Result<Record, RunError> {

@@ -17,17 +17,16 @@ use harness::{
 };
 use report::{Axis, sig};
 
-/// A panel over time: title, axes with the range of the first, curves of runs, and those measured and
-/// (without a name) by volume of fluid, until its end.
+/// A panel over time until an end: title, axes, curves of runs, and those measured and (without a name) by
+/// volume of fluid.
 fn panel(
     title: String,
-    [x, y]: [&str; 2],
-    range: [f64; 2],
+    ([x, y], end): ([&str; 2], f64),
     lines: Vec<CurveOf>,
-    [measured, other]: [&Curve; 2],
+    curves: [&Curve; 2],
 ) -> CurvePanel {
-    let [measured, other] = [measured, other].map(|curve| until(curve, range[1]));
-    let (x, y) = (Axis::linear(x).range(range[0], range[1]), Axis::linear(y));
+    let [measured, other] = curves.map(|curve| until(curve, end));
+    let (x, y) = (Axis::linear(x).range(0.0, end), Axis::linear(y));
     let references = vec![("experiment".into(), measured), (String::new(), other)];
     CurvePanel { title, x, y, lines, references, symbols: false }
 }
@@ -65,15 +64,13 @@ fn column(tier: Tier, model: &VolumeOfFluid) -> Curves {
     let model_height = scaled(&model.free[1], FRAC_1_SQRT_2, 1.0, 0.0);
     let fronts = panel(
         "front".into(),
-        ["time T = t √(2g/a) [-]", "front Z [a]"],
-        [0.0, 3.6],
+        (["time T = t √(2g/a) [-]", "front Z [a]"], 3.6),
         lines(tier, Group::Free, front),
         [&measured_front, &model.free[0]],
     );
     let heights = panel(
         "residual height".into(),
-        ["time τ = t √(g/a) [-]", "height [2a]"],
-        [0.0, 2.6],
+        (["time τ = t √(g/a) [-]", "height [2a]"], 2.6),
         lines(tier, Group::Free, height),
         [&measured_height, &model_height],
     );
@@ -103,8 +100,7 @@ fn tank(tier: Tier, model: &VolumeOfFluid) -> Curves {
     let time = "time [√(H/g)]";
     let mut panels = vec![panel(
         "front".into(),
-        [time, "front from the gate [H]"],
-        [0.0, 2.8],
+        ([time, "front from the gate [H]"], 2.8),
         lines(tier, Group::Tank, of("front", 2.0)),
         [&lobovsky.front, &scaled(&model.front, 1.0, 1.0, 2.0)],
     )];
@@ -113,11 +109,11 @@ fn tank(tier: Tier, model: &VolumeOfFluid) -> Curves {
         let lines = lines(tier, Group::Tank, of(&name, 0.0));
         let curves = [&lobovsky.level(k, 6.0), &model.levels[k]];
         let title = format!("{name}, x = {place} m");
-        panels.push(panel(title, [time, "depth [H]"], [0.0, 6.0], lines, curves));
+        panels.push(panel(title, ([time, "depth [H]"], 6.0), lines, curves));
     }
     let since = |curve: &Curve, arrival: f64| -> Curve {
         let from = curve.iter().map(|(t, p)| (t - arrival, *p));
-        from.filter(|(t, _)| (-0.3..=3.4).contains(t)).collect()
+        from.filter(|(t, _)| *t >= 0.0).collect()
     };
     let [measured, computed] = [&lobovsky.pressure, &model.pressure]
         .map(|p| p.each_ref().map(|of| since(of, reference::arrival(&p[0]))));
@@ -130,9 +126,9 @@ fn tank(tier: Tier, model: &VolumeOfFluid) -> Curves {
             let arrival = record.value(metrics::ARRIVAL).unwrap_or(f64::NAN);
             since(&curve(record, "pressure", ["t", &name], [1.0, 1.0]), arrival)
         };
-        let axes = ["time since arrival [√(H/g)]", "pressure [ρ g H]"];
+        let axes = (["time since arrival [√(H/g)]", "pressure [ρ g H]"], 3.4);
         let lines = lines(tier, Group::Tank, pressure);
-        let of = panel(title, axes, [-0.3, 3.4], lines, [&measured[k], &computed[k]]);
+        let of = panel(title, axes, lines, [&measured[k], &computed[k]]);
         let mut of = CurvePanel { y: of.y.range(-0.2, 3.5), ..of };
         if k == 1 {
             of.references.push((String::new(), aside.clone()));

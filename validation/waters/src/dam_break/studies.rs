@@ -1,17 +1,14 @@
 //! What the runs say together: distances from the experiments and from the same model by volume of fluid,
-//! pictures, and energies.
+//! pictures, and what each ingredient buys.
 
 use super::{
     DamSettings, NAME, ablation,
     measure::SENSORS,
-    metrics::{
-        self, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS,
-    },
-    plan::{self, Group, free},
-    reference::{self, Curve, FREE_TIMES, Lobovsky, TANK_TIMES, VolumeOfFluid, WINDOWS},
+    metrics::{self, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVELS},
+    plan::{self, Group},
+    reference::{self, Curve, FREE_TIMES, Lobovsky, VolumeOfFluid, WINDOWS},
     run::PICTURES,
 };
-use crate::water::{curve, ledger};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
@@ -23,14 +20,11 @@ use harness::{
     runs::{Judged, Runs},
     study::Study,
 };
-use report::{
-    Axis, Cell, Colour, ColourMap, Dash, Figure, Legend, ParticleMap, Plot, Series, Table, percent,
-    sig,
-};
+use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, percent, sig};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    vec![column(tier, runs), tank(tier, runs), energies(runs), ablation::study(tier, runs)]
+    vec![column(tier, runs), tank(tier, runs), ablation::study(tier, runs)]
 }
 
 fn settings(record: &Record) -> DamSettings {
@@ -96,9 +90,7 @@ fn column_table(records: &[&Record]) -> Table {
 fn tank(tier: Tier, runs: &Runs) -> Study {
     let title = "Lobovsky et al. 2014: distances from experiment and model";
     let records = runs.records(plan::table(tier).specs(Group::Tank));
-    let study = Study::new("dam-break-lobovsky-distances", title)
-        .block(level_table(&records))
-        .block(wall_table(&records));
+    let study = Study::new("dam-break-lobovsky-distances", title).block(tank_table(&records));
     let mut study = with_pictures(study, tier, runs, Group::Tank);
     if tier == Tier::Full {
         study.judged.push(falls(&records));
@@ -106,13 +98,24 @@ fn tank(tier: Tier, runs: &Runs) -> Study {
     study
 }
 
-fn level_table(records: &[&Record]) -> Table {
-    let caption = "Distance from Lobovsky et al., as released and after the shift of the computed clock \
-                   that makes it least, and from the same model by volume of fluid (front, and rms of levels \
-                   until 5.5 √(H/g)). The speed of the front is its slope from t = 1 to 2.3 √(H/g); by \
-                   volume of fluid it is 1.761 ± 0.014 √(g H). Tongue is the relative error of the mean \
-                   level at H4 during one √(H/g) after the water arrives there.";
-    let mut columns = columns("H/dx")
+fn tank_table(records: &[&Record]) -> Table {
+    // Packages are embedded and checked by a test.
+    let lobovsky = Lobovsky::load().unwrap_or_default();
+    let model = VolumeOfFluid::load().unwrap_or_default();
+    let of =
+        |p: &[Curve; 4], k: usize| reference::impulse(&p[k], reference::arrival(&p[0]), WINDOWS[0]);
+    let away = |k: usize| percent(of(&model.pressure, k) / of(&lobovsky.pressure, k) - 1.0, 2);
+    let caption = format!(
+        "Distance from Lobovsky et al., as released and after the shift of the computed clock that makes it \
+         least. The speed of the front is its slope from t = 1 to 2.3 √(H/g), 1.761 ± 0.014 √(g H) by \
+         volume of fluid. Tongue is the relative error of the mean level at H4 during one √(H/g) after the \
+         water arrives there. Errors of impulses on the far wall are relative, during 1 (judged) and 2.5 \
+         √(H/g) after the arrival at P1, against the experiment and (VoF) against the same model by volume \
+         of fluid, which itself differs from the experiment by {} at P1 to P4. Two sensors at the height of \
+         P2 differ by 6.0 and 13.5 %. The experiment has a noise of 0.020 at P2.",
+        [0, 1, 2, 3].map(away).join(", ")
+    );
+    let mut table = columns("H/dx")
         .number("rms of front", "H", FRONT.rms)
         .number("after shift", "H", FRONT.rms_shifted)
         .number("front shift", "√(H/g)", FRONT.shift)
@@ -121,38 +124,9 @@ fn level_table(records: &[&Record]) -> Table {
         .number("rms of levels", "H", LEVELS.rms)
         .number("after shift", "H", LEVELS.rms_shifted)
         .number("levels shift", "√(H/g)", LEVELS.shift)
-        .percent("tongue at H4", "-", metrics::TONGUE, 1.0);
-    for t in TANK_TIMES {
-        let head = format!("less volume of fluid: front at {}", sig(t, 2));
-        columns = columns.number(&head, "H", FRONT_AWAY.at(t));
-    }
-    for (k, away) in LEVEL_AWAY.into_iter().enumerate() {
-        columns = columns.number(&format!("H{}", k + 1), "H", away);
-    }
-    columns.table(caption, records.iter().copied())
-}
-
-/// What strikes the far wall.
-fn wall_table(records: &[&Record]) -> Table {
-    // Packages are embedded and checked by a test.
-    let lobovsky = Lobovsky::load().unwrap_or_default();
-    let model = VolumeOfFluid::load().unwrap_or_default();
-    let of =
-        |p: &[Curve; 4], k: usize| reference::impulse(&p[k], reference::arrival(&p[0]), WINDOWS[0]);
-    let away = |k: usize| percent(of(&model.pressure, k) / of(&lobovsky.pressure, k) - 1.0, 2);
-    let caption = format!(
-        "Relative errors of impulses on the far wall during 1 (judged) and 2.5 √(H/g) after the arrival at \
-         P1, against the experiment of Lobovsky et al. and (VoF) against the same model by volume of fluid. \
-         The model itself, by volume of fluid, differs from the experiment by {} at P1 to P4 during 1 \
-         √(H/g). Two sensors at the height of P2 differ by 6.0 and 13.5 %. The experiment arrives at 2.44 \
-         √(H/g) with a noise of 0.020 at P2.",
-        [0, 1, 2, 3].map(away).join(", ")
-    );
-    let mut table = columns("H/dx").number("arrival at P1", "√(H/g)", metrics::ARRIVAL).number(
-        "less VoF",
-        "√(H/g)",
-        metrics::ARRIVAL_AWAY,
-    );
+        .percent("tongue at H4", "-", metrics::TONGUE, 1.0)
+        .number("arrival at P1", "√(H/g)", metrics::ARRIVAL)
+        .number("less VoF", "√(H/g)", metrics::ARRIVAL_AWAY);
     for window in WINDOWS {
         for k in 0..SENSORS.len() {
             let head = format!("P{} to {}", k + 1, sig(window, 2));
@@ -215,41 +189,6 @@ fn pictures(record: &Record) -> Figure {
         figure = figure.panel(map.diameter(dx).values(0.0, 1.0));
     }
     figure.panel_size(430.0, 430.0 * height / width)
-}
-
-/// Where the energy goes.
-fn energies(runs: &Runs) -> Study {
-    let caption = "Energy of the column of Martin & Moyce at a/dx = 20, over its potential energy on the \
-                   floor, M g H/2. Solid lines are what the water has, and dashed lines what each term has \
-                   taken so far. Black is the sum, which must keep its first value.";
-    let records = runs.records(["seed", "modern"].map(|variant| free(variant, 20).measure_all()));
-    let figure = Figure::new("dam-break-energy", caption).columns(2);
-    let figure =
-        records.into_iter().fold(figure, |figure, record| figure.panel(energy_plot(record)));
-    Study::new("dam-break-energy", "Energy, term by term").block(figure.panel_size(430.0, 280.0))
-}
-
-fn energy_plot(record: &Record) -> Plot {
-    let s = settings(record);
-    let mass = s.rho * s.width * s.height;
-    let [time, energy] = [s.unit_time(), 0.5 * mass * s.gravity * s.height];
-    let of = |name: &str, sign: f64| curve(record, "energy", ["t", name], [time, sign * energy]);
-    let axes = (Axis::linear("time [√(H/g)]"), Axis::linear("energy [M g H/2]"));
-    let mut plot = Plot::new(record.variant.as_str(), axes.0, axes.1).legend(Legend::Outside);
-    let has =
-        ["potential", "kinetic", "compression"].map(|name| (name, of(name, 1.0), Dash::Solid));
-    let taken =
-        ledger::ITEMS.map(|(name, work)| (name, of(&String::from(work), -1.0), Dash::Dashed));
-    // Black is the sum.
-    let grey = |k: usize| if k == 6 { Colour::GREY } else { Colour::cycle(k) };
-    let mut sum: Curve = has[0].1.iter().map(|(t, _)| (*t, 0.0)).collect();
-    for (k, (name, points, dash)) in has.into_iter().chain(taken).enumerate() {
-        sum.iter_mut().zip(&points).for_each(|(sum, point)| sum.1 += point.1);
-        if dash == Dash::Solid || points.iter().any(|(_, y)| y.abs() > 1e-4) {
-            plot = plot.layer(Series::line(name, points).colour(grey(k)).dash(dash));
-        }
-    }
-    plot.layer(Series::line("sum", sum).colour(Colour::BLACK))
 }
 
 #[cfg(test)]
