@@ -51,12 +51,6 @@ pub static FREE_SLIP: Cause = Cause::new(
     "Friction at the walls, with a boundary layer that is resolved or modelled.",
 );
 
-/// Water that pulls.
-pub static TENSION: Cause = Cause::new(
-    "Pressure is not cut off at zero, so water that is less dense than at rest pulls at the walls.",
-    "Walls that cannot pull, as in `modern`, or pressure that is cut off at zero.",
-);
-
 /// Sums over too few neighbours.
 pub static SHORT_KERNEL: Cause = Cause::new(
     "The strain moves rows of particles two initial spacings apart, and a smoothing length of 1.5 spacings \

@@ -9,27 +9,27 @@ use solver::{
 
 use super::{
     causes::SHORT_KERNEL,
-    water::{self, Ledger, Modern, Seed, WaterMethod, gate, ledger, method},
+    water::{Ledger, Modern, Seed, WaterMethod, gate, ledger, method},
 };
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricKey, Profile, Record},
-    spec::RunSpec,
+    record::{Profile, Record},
 };
 use harness::{
-    case::{Planned, Rules, RunError, Tier},
+    case::{Rules, RunError, Tier},
     columns::Columns,
     composed::{Best, Composed, Composition, Program, Variants, completed},
-    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level},
+    declare::{Accuracy, Declaration, ErrorOf},
     method::{Medium, Parts},
     pictures,
     runner::{Context, Drive},
-    runs::{Judged, Runs},
+    runs::Runs,
     simulate,
     study::Study,
+    table,
 };
 use maths::exact::EllipticDrop as Exact;
-use report::{self, Axis, Cell, Colour, ColourMap, Figure, ParticleMap, Plot, Series, Table, sig};
+use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, sig};
 
 crate::water_settings! {
     /// Settings of a drop that is cut from a square lattice.
@@ -164,12 +164,10 @@ fn shape(particles: impl Iterator<Item = (f64, Vector2<f64>, Vector2<f64>)> + Cl
     Shape { mass, centre, velocity, axes }
 }
 
-/// t, semi-axes, the exact ones \[s, m\].
-type Row = [f64; 5];
-
 /// What is measured through time.
 struct History {
-    rows: Vec<Row>,
+    /// t, semi-axes, the exact ones \[s, m\].
+    rows: Vec<[f64; 5]>,
     /// Largest errors of momentum and of the place of the centre.
     free_fall: [f64; 2],
 }
@@ -191,7 +189,7 @@ impl History {
 
     fn measure(&self, record: &mut Record) {
         let worst = |k: usize| {
-            let error = |row: &Row| (row[k] / row[k + 2] - 1.0).abs();
+            let error = |row: &[f64; 5]| (row[k] / row[k + 2] - 1.0).abs();
             self.rows.iter().map(error).fold(0.0, f64::max)
         };
         record.put(A_ERROR, worst(1));
@@ -202,10 +200,7 @@ impl History {
         record.put(B_END, last[2] / last[4]);
         record.put(A_END, last[1] / last[3]);
         let names = [("t", "s"), ("a", "m"), ("b", "m"), ("a_exact", "m"), ("b_exact", "m")];
-        let add = |profile: Profile, (k, (name, unit)): (usize, &(&str, &str))| {
-            profile.with(name, unit, self.rows.iter().map(|row| row[k]).collect())
-        };
-        let series = names.iter().enumerate().fold(Profile::default(), add);
+        let series = Profile::of_rows(&names, &self.rows);
         record.profiles.insert("series".into(), series);
     }
 }
@@ -286,204 +281,148 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     variants,
     is_stable: completed,
     declaration,
-    plan,
+    plan: |tier| table(tier).plan(),
     studies: |tier, runs| vec![study(tier, runs)],
 };
 
-/// Particles across the drops that are judged.
-fn judged(tier: Tier, variant: &str) -> &'static [usize] {
-    match (tier, variant) {
-        (Tier::Quick, "seed") => &[20],
-        (Tier::Quick, _) => &[20, 40],
-        (Tier::Full, _) => &[20, 40, 80],
-    }
+/// What a run is for.
+#[derive(Clone, Copy, PartialEq)]
+enum Group {
+    /// Judged, without gravity.
+    Judged,
+    /// Beside those, over resolutions.
+    Ladder,
+    /// With as short a smoothing length as the paper's variant.
+    Narrow,
+    /// In gravity.
+    Falling,
 }
 
-/// Particles across the drops of a ladder of resolutions.
-fn ladder(tier: Tier, variant: &str) -> &'static [usize] {
-    match (tier, variant) {
-        (Tier::Quick, "seed") => &[14, 20, 28],
-        (Tier::Quick, _) => &[14, 20, 28, 40],
-        (Tier::Full, _) => &[20, 28, 40, 56, 80],
-    }
-}
+type Row = table::Row<DropSettings, Group>;
 
 const VARIANTS: [&str; 3] = ["seed", "modern", "plain"];
-/// Particles across the drop of the figure.
-const SHOWN: usize = 40;
 
-/// A drop without gravity, of which the table shows the energy; with its particles where there is a picture
-/// of it.
-fn spec(variant: &str, n: usize) -> RunSpec {
-    let spec = ELLIPTIC_DROP.spec(variant, |s| s.n = n).measure_all();
-    if (variant, n) == ("modern", SHOWN) { spec.keep_particles() } else { spec }
+/// All runs of a tier.
+fn table(tier: Tier) -> table::Table<DropSettings, Group> {
+    let mut table = table::Table::new(&ELLIPTIC_DROP, tier);
+    let across = |s: &mut DropSettings, n: usize| s.n = n;
+    table.over(Group::Judged, &["seed"], [&[20], &[20]], across);
+    table.over(Group::Judged, &["modern", "plain"], [&[20, 40], &[20, 40, 80]], across);
+    table.over(Group::Ladder, &["seed"], [&[14, 28], &[28, 40, 56, 80]], across);
+    table.over(Group::Ladder, &["modern", "plain"], [&[14, 28], &[28, 56]], across);
+    table.one(Group::Narrow, "modern", |s| s.h_over_dx = 1.5);
+    for variant in ["seed", "modern"] {
+        table.one(Group::Falling, variant, |s| (s.n, s.gravity) = (20, 1.0));
+    }
+    for row in &mut table.rows {
+        row.run.seconds = 0.7 * (row.settings.n as f64 / 40.0).powi(3);
+        if is_pictured(row) {
+            row.run.spec = row.run.spec.clone().keep_particles();
+        }
+    }
+    table.judge(gates);
+    table
 }
 
-fn planned(variant: &str, n: usize) -> Planned {
-    Planned::new(spec(variant, n)).taking(0.7 * (n as f64 / 40.0).powi(3))
-}
-
-/// A falling drop.
-fn falling(variant: &str) -> RunSpec {
-    ELLIPTIC_DROP.spec(variant, |s| (s.n, s.gravity) = (20, FALL))
+/// Is it the run of the figures?
+fn is_pictured(row: &Row) -> bool {
+    (row.group, row.variant, row.settings.n) == (Group::Judged, "modern", 40)
 }
 
 fn declaration(tier: Tier) -> Declaration {
-    let level = |variant: &str, n: usize| Level {
-        run: planned(variant, n),
-        spacing: 2.0 / n as f64,
-        label: format!("{n} across"),
+    let table = table(tier);
+    let level = |s: &DropSettings| (2.0 / s.n as f64, format!("{} across", s.n));
+    let ladder = |variant| {
+        let mut ladder = table.ladder(&[Group::Judged, Group::Ladder], variant, level);
+        // The plan has the gates of judged runs.
+        ladder.levels.iter_mut().for_each(|level| level.run.gates.clear());
+        ladder
     };
-    let of = |variant: &'static str| {
-        Ladder::new(variant, ladder(tier, variant).iter().map(|n| level(variant, *n)))
-    };
-    let error = ErrorOf::Metric(B_ERROR.into());
     let accuracy = Accuracy {
         about: "A free drop until A t = 0.8, when it is four times as long as wide.".into(),
         spacing: "dx/R [-]",
         slope: Some(1.0),
-        ladders: VARIANTS.map(of).into(),
-        ..Accuracy::new("elliptic-drop", error, "largest error of the semi-axis b [-]")
+        ladders: VARIANTS.map(ladder).into(),
+        ..Accuracy::new(
+            "elliptic-drop",
+            ErrorOf::Metric(B_ERROR.into()),
+            "largest error of the semi-axis b [-]",
+        )
     };
     Declaration { accuracy: vec![accuracy], costly: &ledger::METRICS, ..Declaration::default() }
 }
 
-fn plan(tier: Tier) -> Vec<Planned> {
-    let mut runs = Vec::new();
-    for variant in VARIANTS {
-        for &n in judged(tier, variant) {
-            runs.push(planned(variant, n).judged(gates(&format!("{variant}.{n}"), n)));
-        }
-    }
-    for narrow in [1.5, 2.0] {
-        let run = ELLIPTIC_DROP.planned("modern", |s| (s.n, s.h_over_dx) = (40, narrow));
-        runs.push(run.judged(invariants(&format!("modern.h{narrow}"))));
-    }
-    for variant in ["seed", "modern"] {
-        let run = Planned::new(falling(variant));
-        runs.push(run.judged(invariants(&format!("{variant}.falling"))));
-    }
-    runs
-}
-
-/// Gravity of the falling drop \[A² R\].
-const FALL: f64 = 1.0;
-
-fn gates(id: &str, n: usize) -> Vec<Gate> {
-    let axes = "The surface is known to a fraction of the spacing, so the error of the semi-axes is of \
-                first order in it: 1 % at 40 particles across.";
-    let bound = Bound::Below(0.01 * (40.0 / n as f64).max(0.5));
-    let mut gates = invariants(id);
-    let known = [Bound::Below(0.058), Bound::Below(0.64 / n as f64)];
-    gates.extend([A_ERROR, B_ERROR].into_iter().zip(known).map(|(m, known)| {
-        let gate = gate(&format!("{NAME}.{id}"), m, bound, Evidence::Analytic, axes);
-        if id.starts_with("seed") {
-            gate.with_limitation(known, SHORT).because_of(&SHORT_KERNEL)
-        } else {
-            gate
-        }
-    }));
-    gates
-}
-
-const SHORT: &str = "`modern` with this h/dx of 1.5 has an error of a of 5.8 % at 40 particles across, \
-                     which is the bound of a. The bound of b is of first order in the spacing, from 4.6 % \
-                     at 14. Without artificial stress, which adds to it, errors at 20 are 3.4 and 2.6 % \
-                     instead of 4.0 and 3.1 %.";
-
-fn invariants(id: &str) -> Vec<Gate> {
+fn gates(row: &Row) -> Vec<Gate> {
     let round_off = "Forces of pairs are equal and opposite, and both integrators integrate gravity \
                      exactly, so only round-off of some thousand steps is left.";
     let closes = "Pressure and the continuity equation (3) exchange energy exactly, and every other term \
                   reports its power. The bound of 0.1 % is for the time step and for sampling the powers.";
-    let id = &format!("{NAME}.{id}");
-    vec![
-        gate(id, MOMENTUM_ERROR, Bound::Below(1e-11), Evidence::Invariant, round_off),
-        gate(id, CENTRE_ERROR, Bound::Below(1e-11), Evidence::Invariant, round_off),
-        gate(id, ledger::ENERGY_GAP, Bound::Below(1e-3), Evidence::Invariant, closes),
-    ]
+    let axes = "The surface is known to a fraction of the spacing, so the error of the semi-axes is of \
+                first order in it: 1 % at 40 particles across.";
+    let short = "`modern` with this h/dx of 1.5 has an error of a of 5.8 % at 40 particles across, which is \
+                 the bound of a. The bound of b is of first order in the spacing, from 4.6 % at 14.";
+    let (variant, n) = (row.variant, row.settings.n as f64);
+    let id = match row.group {
+        Group::Ladder => return Vec::new(),
+        Group::Judged => format!("{NAME}.{variant}.{n}"),
+        Group::Narrow => format!("{NAME}.{variant}.h{}", row.settings.h_over_dx),
+        Group::Falling => format!("{NAME}.{variant}.falling"),
+    };
+    let invariant =
+        |metric, most, because| gate(&id, metric, Bound::Below(most), Evidence::Invariant, because);
+    let mut gates = vec![
+        invariant(MOMENTUM_ERROR, 1e-11, round_off),
+        invariant(CENTRE_ERROR, 1e-11, round_off),
+        invariant(ledger::ENERGY_GAP, 1e-3, closes),
+    ];
+    if row.group == Group::Judged {
+        let bound = Bound::Below(0.01 * (40.0 / n).max(0.5));
+        gates.extend([(A_ERROR, 0.058), (B_ERROR, 0.64 / n)].map(|(metric, known)| {
+            let gate = gate(&id, metric, bound, Evidence::Analytic, axes);
+            match variant {
+                "seed" => {
+                    gate.with_limitation(Bound::Below(known), short).because_of(&SHORT_KERNEL)
+                }
+                _ => gate,
+            }
+        }));
+    }
+    gates
 }
 
 fn study(tier: Tier, runs: &Runs) -> Study {
-    let mut study = Study::new("elliptic-drop", "Semi-axes of a free drop")
-        .block(figure(tier, runs))
-        .block(table(runs));
-    for variant in ["seed", "modern"] {
-        let both = runs.record(&spec(variant, 20)).zip(runs.record(&falling(variant)));
-        let change = |metric: MetricKey| {
-            let (still, falling) = both?;
-            Some((still.value(metric)? - falling.value(metric)?).abs())
-        };
-        let because = "Gravity acts on all particles alike, so a falling drop deforms like one that does \
-                       not fall. Only round-off of positions is left.";
-        let id = format!("{NAME}.{variant}.falls-in-shape");
-        let (what, bound) = ("difference of a_end and b_end", Bound::Below(1e-9));
-        let gate = Gate::new(id, what, bound, Evidence::Invariant, because);
-        let largest = change(A_END).zip(change(B_END)).map(|(a, b)| a.max(b));
-        study.judged.push(Judged::new(gate, largest));
+    let mut study = Study::new("elliptic-drop-errors", "Errors of a free drop").block(errors(runs));
+    let table = table(tier);
+    let pictured = table.rows.iter().find(|row| is_pictured(row));
+    if let Some(record) = pictured.and_then(|row| runs.record(&row.run.spec)) {
+        study = study.block(picture(record));
     }
     study
 }
 
-fn figure(tier: Tier, runs: &Runs) -> Figure {
-    let caption = "Left: semi-axes of a drop of 40 particles across over time, with the exact ones. Right: \
-                   the drop of `modern` at the end, coloured by pressure over the exact initial pressure \
-                   at its centre; its rows are two initial spacings apart.";
-    let axes = (Axis::linear("A t [-]"), Axis::linear("semi-axis [R]"));
-    let mut plot = Plot::new("", axes.0, axes.1);
-    let at_40 = |variant: &str| {
-        let is_run = judged(tier, variant).contains(&SHOWN);
-        is_run.then(|| runs.record(&spec(variant, SHOWN))).flatten()
-    };
-    let points = |record: &Record, name: &str| {
-        let s = record.settings_as::<DropSettings>();
-        water::curve(record, "series", ["t", name], [1.0 / s.strain, s.radius])
-    };
-    let mut drop = None;
-    if let Some(record) = at_40("modern") {
-        let exact = |name: &str, axis| Series::line(name, points(record, axis));
-        plot = plot.layer(exact("exact", "a_exact").colour(Colour::BLACK));
-        plot = plot.layer(exact("", "b_exact").colour(Colour::BLACK));
-        drop = Some(picture(record));
-    }
-    for (k, variant) in ["seed", "modern"].into_iter().enumerate() {
-        let Some(record) = at_40(variant) else { continue };
-        for (name, axis) in [(variant, "a"), ("", "b")] {
-            let sparse = points(record, axis).into_iter().step_by(8).collect();
-            let markers = Series::markers(name, sparse).colour(Colour::cycle(k));
-            plot = plot.layer(markers.shape(report::Shape::cycle(k)).open());
-        }
-    }
-    let figure = Figure::new("elliptic-drop", caption).columns(2).panel(plot);
-    match drop {
-        Some(drop) => figure.panel(drop).panel_size(360.0, 320.0),
-        None => figure,
-    }
-}
-
-fn picture(record: &Record) -> ParticleMap {
+fn picture(record: &Record) -> Figure {
     let s = record.settings_as::<DropSettings>();
     let (r, scale) = (s.radius, s.rho * Exact::circle(s.radius, s.strain).central_pressure());
     let points = pictures::points(record, "particles", "p");
     let points = points.into_iter().map(|(x, y, p)| (x / r, y / r, p / scale)).collect();
     let axes = (Axis::linear("x [R]").range(-0.7, 0.7), Axis::linear("y [R]"));
     let title = format!("A t = {}", sig(s.end, 2));
-    ParticleMap::new(&title, axes, "p/p(0) [-]", ColourMap::Sequential, points)
-        .diameter(2.0 / s.n as f64)
+    let map = ParticleMap::new(&title, axes, "p/p(0) [-]", ColourMap::Sequential, points);
+    let caption = "The drop of `modern` at the end, 40 particles across, coloured by pressure over the exact \
+                   initial pressure at its centre; its rows are two initial spacings apart.";
+    Figure::new("elliptic-drop-picture", caption)
+        .panel(map.diameter(2.0 / s.n as f64))
+        .panel_size(360.0, 320.0)
 }
 
-fn table(runs: &Runs) -> Table {
+fn errors(runs: &Runs) -> Table {
     let caption = "Largest relative errors of the semi-axes until A t = 0.8. The drop is then four times \
                    as long as wide. Energies are over the initial kinetic energy.";
-    let s = |record: &Record| record.settings_as::<DropSettings>();
-    let digits = |digits| move |value| Cell::num(value, digits);
     Columns::of_variants()
-        .of(["particles across", "1"], |record| s(record).n as f64, digits(3))
-        .of(["h/dx", "-"], |record| s(record).h_over_dx, digits(2))
-        .of(["gravity", "A^2 R"], |record| s(record).gravity, digits(2))
+        .changed("settings", &ELLIPTIC_DROP)
         .percent("error of a", "-", A_ERROR, 1.0)
         .percent("error of b", "-", B_ERROR, 1.0)
-        .metric(["tip over b", "-"], TIP_END, digits(4))
+        .metric(["tip over b", "-"], TIP_END, |tip| Cell::num(tip, 4))
         .percent("energy that viscosity took", "-", ledger::WORK_VISCOSITY, -1.0)
         .percent("that artificial stress gave", "-", ledger::WORK_STRESS, 1.0)
         .metric(["energy not accounted for", "-"], ledger::ENERGY_GAP, |gap| Cell::sci(gap, 2))
@@ -494,6 +433,7 @@ fn table(runs: &Runs) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use base::record::MetricKey;
     use harness::case::Case;
 
     fn run(variant: &str, set: impl FnOnce(&mut DropSettings)) -> Result<Record, RunError> {

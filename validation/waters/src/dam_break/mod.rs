@@ -6,32 +6,27 @@
 //! every term accounts for its energy.
 
 mod ablation;
+mod curves;
 mod declared;
-mod front;
-mod limitations;
 mod measure;
 mod metrics;
 mod momentum;
 mod plan;
 mod reference;
 mod run;
-mod sensitivity;
 mod setup;
-mod specs;
-mod stability;
 mod studies;
-mod volume_of_fluid;
 
 use harness::composed::{Best, Composed, Composition, Variants};
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlipImages,
-    PredictorCorrector, Pressure, SlipGhosts, Tait, WendlandC2, Xsph,
+    ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlipImages, PredictorCorrector, Pressure,
+    SlipGhosts, Tait, WendlandC2, Xsph,
 };
 
 pub use setup::Dam;
 
-use crate::water::{Diffusion, Modern, Seed, Water, WaterMethod, method};
+use crate::water::{Diffusion, Modern, Seed, Water, method};
 
 crate::water_settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
@@ -84,9 +79,18 @@ fn modern(s: &mut DamSettings) {
     (s.alpha, s.courant) = (0.02, 1.0);
 }
 
-/// The variants that are judged, then those of the ablation.
+/// The seed's forces, for whose viscosity alone images have the velocity of those behind a no-slip wall.
+type Split = (Pressure<Tait, ArtificialStress>, NoSlipImages<ArtificialViscosity<Tait>>, BodyForce);
+/// The seed with them.
+type SeedSplit = Compose<CubicSpline, Split, (Continuity, Xsph), SlipGhosts, PredictorCorrector>;
+/// The drift of `modern`.
+type Drift = (Continuity, Diffusion);
+/// `modern` with artificial viscosity between water and walls too.
+type Sticking = Compose<WendlandC2, Water, Drift, ExtrapolatingWall<Tait>, Leapfrog>;
+
+/// The variants, each with the question that it answers.
 fn variants() -> Vec<Composition<DamSettings>> {
-    let judged = Variants::of(&run::PROGRAM)
+    Variants::of(&run::PROGRAM)
         .with(
             "seed",
             "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
@@ -108,101 +112,35 @@ fn variants() -> Vec<Composition<DamSettings>> {
              viscosity, and none between water and walls, so that water slips",
             method::<Modern>(),
             modern,
-        );
-    modern_ablations(seed_ablations(judged)).all
-}
-
-type All<'a> = Variants<'a, DamSettings, WaterMethod>;
-/// The seed with other kernels, terms and drift.
-type Changed<K, F = Water<ArtificialStress>, D = (Continuity, Xsph)> =
-    Compose<K, F, D, InterfaceWall, PredictorCorrector>;
-
-/// The seed with one part changed.
-fn seed_ablations(all: All) -> All {
-    all.with("seed-leapfrog", "the seed, leapfrog", method::<Seed<InterfaceWall, Leapfrog>>(), seed)
-        .with(
-            "seed-extrapolating",
-            "the seed with walls that extrapolate the pressure",
-            method::<Seed<ExtrapolatingWall<Tait>>>(),
-            seed,
         )
-        .with(
-            "seed-no-stress",
-            "the seed without artificial stress",
-            method::<Changed<CubicSpline, Water>>(),
-            seed,
-        )
-        .with(
-            "seed-diffusion",
-            "the seed with density diffusion",
-            method::<Changed<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph, Diffusion)>>(
-            ),
-            seed,
-        )
-        .with("seed-wendland", "the seed with Wendland C2", method::<Changed<WendlandC2>>(), seed)
         .with(
             "ghosts-slip",
-            "the seed with ghosts that keep the velocity along the wall",
+            "the seed with ghosts that keep the velocity along the wall: is the opposite velocity what makes \
+             `ghosts` noisy?",
             method::<Seed<SlipGhosts>>(),
             seed,
         )
         .with(
             "ghosts-split",
-            "the seed with ghosts that keep the velocity along the wall, except for viscosity, which sees \
-             the opposite one and so drags the water along the wall",
-            method::<
-                Compose<CubicSpline, Split, (Continuity, Xsph), SlipGhosts, PredictorCorrector>,
-            >(),
+            "the same with the opposite velocity for viscosity alone, which so drags the water along the \
+             wall: is it what (3) makes of the opposite velocity, or the drag?",
+            method::<SeedSplit>(),
             seed,
         )
-}
-
-/// The seed's forces, for whose viscosity alone images have the velocity of those behind a no-slip wall.
-type Split = (Pressure<Tait, ArtificialStress>, NoSlipImages<ArtificialViscosity<Tait>>, BodyForce);
-
-/// The modern variant with one part changed.
-fn modern_ablations(all: All) -> All {
-    type Walled<W> = Modern<(Continuity, Diffusion), W>;
-    all.with(
-        "modern-bare",
-        "modern without density diffusion",
-        method::<Modern<Continuity>>(),
-        modern,
-    )
-    .with(
-        "modern-plain-diffusion",
-        "modern with density diffusion that levels out a column at rest",
-        method::<Modern<(Continuity, DensityDiffusion)>>(),
-        modern,
-    )
-    .with(
-        "modern-interface",
-        "modern with interface and wall particles",
-        method::<Walled<InterfaceWall>>(),
-        modern,
-    )
-    .with(
-        "modern-sticking",
-        "modern with artificial viscosity that sees the particles of the walls too, which stand still, and \
-         so drags the water along them",
-        method::<
-            Compose<
-                WendlandC2,
-                Water,
-                (Continuity, Diffusion),
-                ExtrapolatingWall<Tait>,
-                Leapfrog,
-            >,
-        >(),
-        modern,
-    )
-    .with("modern-ghosts", "modern with ghosts", method::<Walled<Ghosts>>(), modern)
-    .with(
-        "modern-ghosts-slip",
-        "modern with ghosts that keep the velocity along the wall",
-        method::<Walled<SlipGhosts>>(),
-        modern,
-    )
+        .with(
+            "modern-interface",
+            "modern with interface and wall particles: what do walls buy that extrapolate the pressure?",
+            method::<Modern<Drift, InterfaceWall>>(),
+            modern,
+        )
+        .with(
+            "modern-sticking",
+            "modern with artificial viscosity that sees the particles of the walls too, which stand still: \
+             how much do they drag the water?",
+            method::<Sticking>(),
+            modern,
+        )
+        .all
 }
 
 /// Collapsing columns.
@@ -221,8 +159,8 @@ pub static DAM_BREAK: Composed<DamSettings> = Composed {
             residual height, levels, pressures and impulses are compared with the experiments and with the \
             same model by volume of fluid; energy and momentum are accounted for term by term.",
     variants,
-    is_stable: stability::is_stable,
+    is_stable: declared::is_stable,
     declaration: declared::declaration,
-    plan: plan::plan,
+    plan: |tier| plan::table(tier).plan(),
     studies: studies::studies,
 };

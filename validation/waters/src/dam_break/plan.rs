@@ -1,147 +1,360 @@
-//! The runs: both experiments over resolutions and variants with their gates, and what single studies need.
+//! The runs: both experiments over resolutions and variants, the ladders of resolutions, the ablation, and
+//! extremes, with the gates of each and what is known to lie outside of them.
 
 use super::{
-    NAME, ablation, limitations,
-    metrics::{self, FRONT, HEIGHT, IMPULSE, LEVELS},
-    reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS},
-    specs::{JUDGED, OTHER_IMAGES, film, in_tank, martin_moyce, planned_free, planned_tank},
-    stability::{self, Extreme},
-    volume_of_fluid,
+    DAM_BREAK, DamSettings, NAME, ablation, lobovsky,
+    metrics::{
+        self, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, Z,
+    },
+    reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS, WINDOWS},
 };
-use crate::water::{gate, ledger};
+use crate::{
+    causes::{
+        FREE_SLIP, NO_SLIP_IMAGES, PRESSED_THROUGH, RATE_OF_DENSITY, SAMPLED, TWO_DIMENSIONS,
+        UNCERTAIN_REFERENCE, VISCOSITY,
+    },
+    water::{gate, ledger},
+};
 use base::{
-    gate::{Bound, Evidence, Gate},
-    record::{MetricKey, MetricName},
+    gate::{Bound, Cause, Evidence, Gate},
+    record::MetricName,
+    spec::RunSpec,
 };
-use harness::case::{Planned, Tier};
+use harness::{case::Tier, table};
 
-/// The runs: Martin & Moyce variant by variant, then Lobovsky et al., then those of single studies.
-pub fn plan(tier: Tier) -> Vec<Planned> {
-    let mut runs = Vec::new();
-    for variant in JUDGED {
-        for &n in martin_moyce(variant, tier) {
-            runs.push(planned_free(tier, variant, n).judged(free_gates(variant, n)));
-        }
-    }
-    for variant in JUDGED {
-        for &n in in_tank(variant, tier) {
-            runs.push(planned_tank(tier, variant, n).judged(tank_gates(variant, n)));
-        }
-    }
-    for variant in OTHER_IMAGES {
-        for &n in martin_moyce(variant, tier) {
-            let gates = invariants(&format!("{NAME}.martin-moyce.{variant}.{n}"));
-            let gates = gates.into_iter().map(|gate| limitations::of_free(gate, variant, n));
-            runs.push(planned_free(tier, variant, n).judged(gates.collect()));
-        }
-        for &n in in_tank(variant, tier) {
-            let gates = invariants(&format!("{NAME}.lobovsky.{variant}.{n}"));
-            let gates = gates.into_iter().map(|gate| limitations::in_tank(gate, variant));
-            runs.push(planned_tank(tier, variant, n).judged(gates.collect()));
-        }
-    }
-    runs.push(Planned::new(film(tier)));
-    runs.push(planned_free(tier, "modern", stability::USUAL));
-    runs.extend(stability::extremes(tier).map(Extreme::planned));
-    if tier == Tier::Full {
-        runs.extend(ablation::specs().map(|spec| Planned::new(spec).taking(3.0)));
-        runs.extend(stability::SPEEDS.map(|c0| Planned::new(stability::at_speed(c0)).taking(2.0)));
-    }
-    runs
+/// What a run is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Group {
+    /// The column of Martin & Moyce, judged.
+    Free,
+    /// The tank of Lobovsky et al., judged.
+    Tank,
+    /// The column of Martin & Moyce over resolutions.
+    Ladder,
+    /// What each ingredient buys.
+    Ablation,
+    /// Settings far outside of the usual, by name.
+    Extreme(&'static str),
 }
 
-/// What holds whatever the water does.
+/// A run of this case.
+pub type Row = table::Row<DamSettings, Group>;
+
+const SINGLE: &str = "a column one particle wide";
+const CROWDED: &str = "water that starts on the surface of the walls";
+
+/// All runs of a tier. Spacings are along the width of the column of Martin & Moyce, and along the height of
+/// that of Lobovsky et al.; successive ones of a ladder differ by √2 or nearly so, and each fills the column.
+pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
+    use Group::{Ablation, Extreme, Free, Ladder, Tank};
+    let mut table = table::Table::new(&DAM_BREAK, tier);
+    let across = |s: &mut DamSettings, n: usize| s.n = n;
+    let along = |s: &mut DamSettings, n: usize| {
+        lobovsky(s);
+        s.n = n;
+    };
+    table.over(Free, &["seed", "ghosts"], [&[20], &[20]], across);
+    table.over(Free, &["modern"], [&[20, 40], &[20, 40, 80]], across);
+    table.over(Tank, &["modern"], [&[30], &[30, 60, 120]], along);
+    table.over(Free, &["ghosts-slip", "ghosts-split"], [&[20], &[20]], across);
+    let ladder: [&[usize]; 2] = [&[7, 10, 14, 20], &[10, 14, 20, 28, 40]];
+    table.over(Ladder, &["seed", "modern", "modern-interface"], ladder, across);
+    table.one(Extreme(SINGLE), "modern", |s| {
+        (s.width, s.height, s.n, s.tank) = (0.01, 0.2, 1, 0.5);
+    });
+    table.one(Extreme("impact on a dry corner near by"), "modern", |s| {
+        (s.width, s.height, s.tank, s.n) = (0.1, 0.2, 0.13, 10);
+    });
+    table.one(Extreme(CROWDED), "modern", |s| (s.n, s.offset) = (10, 0.5));
+    for (variants, values, set) in ablation::CHANGES {
+        table.over(Ablation, variants, [&[], values], |s, value| ablation::change(s, value, set));
+    }
+    let finest = match tier {
+        Tier::Quick => [(Free, 40), (Tank, 30)],
+        Tier::Full => [(Free, 80), (Tank, 120)],
+    };
+    for Row { group, variant, settings, run } in &mut table.rows {
+        if finest.contains(&(*group, settings.n)) {
+            run.spec = run.spec.clone().keep_particles();
+        }
+        let whole = if *group == Ladder || *group == Free { 6.0 } else { 12.0 };
+        // Two right-hand sides a step where the seed's integrator is.
+        let dear = if variant.starts_with("modern") { 1.0 } else { 2.5 };
+        run.seconds = whole * dear * (settings.n as f64 / 40.0).powi(3);
+        if *group == Ablation {
+            // Without viscosity the predictor-corrector has no stable step at all: it runs as it is.
+            run.spec = run.spec.clone().allow_unstable().measure_all();
+        }
+    }
+    table.judge(gates);
+    table
+}
+
+/// The finest run of `modern` in a group, of which there are pictures.
+pub fn finest(tier: Tier, group: Group) -> Option<RunSpec> {
+    let runs = table(tier).rows.into_iter().filter(|row| row.group == group).map(|row| row.run);
+    runs.map(|run| run.spec).find(|spec| spec.keep.particles)
+}
+
+/// The column of Martin & Moyce with so many spacings across.
+pub fn free(variant: &str, n: usize) -> RunSpec {
+    DAM_BREAK.spec(variant, |s| s.n = n)
+}
+
+/// The gates of a run.
+fn gates(row: &Row) -> Vec<Gate> {
+    let n = row.settings.n;
+    let id = |scene: &str| format!("{NAME}.{scene}.{}.{n}", row.variant);
+    let gates = match row.group {
+        Group::Free => {
+            let id = id("martin-moyce");
+            let mut gates = invariants(&id);
+            if !["ghosts-slip", "ghosts-split"].contains(&row.variant) {
+                gates.extend(free_references(&id));
+            }
+            if row.variant == "modern" {
+                gates.extend(free_model(&id, n));
+            }
+            gates
+        }
+        Group::Tank => {
+            let id = id("lobovsky");
+            [invariants(&id), tank_references(&id), tank_model(&id)].concat()
+        }
+        Group::Extreme(name) => extreme(&format!("{NAME}.extreme.{}", name.replace(' ', "-"))),
+        Group::Ladder | Group::Ablation => Vec::new(),
+    };
+    let known = known(row);
+    let limited = |gate: Gate| match known.iter().find(|known| known.0.name() == gate.metric) {
+        Some((_, to, (cause, reason))) => {
+            let bound = widened(gate.bound, *to);
+            gate.with_limitation(bound, *reason).because_of(cause)
+        }
+        None => gate,
+    };
+    gates.into_iter().map(limited).collect()
+}
+
+/// A bound that reaches to a value outside of it.
+fn widened(bound: Bound, to: f64) -> Bound {
+    match bound {
+        Bound::Within(low, high) => Bound::Within(low.min(to), high.max(to)),
+        Bound::Equals(value) => Bound::Within(value.min(to), value.max(to)),
+        Bound::Below(_) => Bound::Below(to),
+        Bound::Above(_) => Bound::Above(to),
+    }
+}
+
+/// What holds whatever the water does. Walls that only images of other velocities make are judged by it
+/// alone: neither is the wall of the experiment.
 fn invariants(id: &str) -> Vec<Gate> {
-    let tight = "No particle may pass a wall. A splash may dent a wall of particles by half a spacing, \
-                 because its surface lies that far before the first of them.";
+    let tight = "No particle may pass a wall, whose surface lies half a spacing before its first particles.";
     let kept = "Particles keep their masses, and none is added or removed.";
-    let closes = "Pressure and the continuity equation (3) exchange energy exactly, and each other term \
-                  reports its power. Only errors of the time step and of sampling the powers remain.";
-    let momentum = "The momentum of the water is what walls and gravity give it. Only the error of sampling \
-                    the force remains.";
-    let slow = "Above Mach 0.3 the density changes by 5 % and the speed of sound by a sixth, and the flow \
-                is no longer that of nearly incompressible water.";
-    let still = "Walls at rest do no work. The bound of 5 % is for the energy that their pressure stores \
-                 and gives back.";
+    let closes =
+        "Each term reports its power: only errors of the time step and of sampling it remain.";
+    let momentum =
+        "Walls and gravity alone give momentum: only the error of sampling the force remains.";
+    let slow =
+        "Above Mach 0.3 the density changes by 5 %, and water is no longer nearly incompressible.";
+    let still =
+        "Walls at rest do no work. The bound is for what their pressure stores and gives back.";
     let ends = "A run that ends early says nothing about what comes later.";
-    let invariant =
-        |metric: MetricKey, bound, because| gate(id, metric, bound, Evidence::Invariant, because);
-    vec![
-        invariant(metrics::REACHED, Bound::Above(1.0), ends),
-        invariant(ledger::WORK_WALLS, Bound::Within(-0.05, 0.05), still),
-        invariant(metrics::OUTSIDE, Bound::Equals(0.0), tight),
-        invariant(metrics::MASS_ERROR, Bound::Equals(0.0), kept),
-        invariant(ledger::ENERGY_GAP, Bound::Below(1e-3), closes),
-        invariant(metrics::MOMENTUM_GAP, Bound::Below(0.01), momentum),
-        gate(id, metrics::MACH, Bound::Below(0.3), Evidence::Theory, slow),
+    [
+        (metrics::REACHED, Bound::Above(1.0), Evidence::Invariant, ends),
+        (ledger::WORK_WALLS, Bound::Within(-0.05, 0.05), Evidence::Invariant, still),
+        (metrics::OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, tight),
+        (metrics::MASS_ERROR, Bound::Equals(0.0), Evidence::Invariant, kept),
+        (ledger::ENERGY_GAP, Bound::Below(1e-3), Evidence::Invariant, closes),
+        (metrics::MOMENTUM_GAP, Bound::Below(0.01), Evidence::Invariant, momentum),
+        (metrics::MACH, Bound::Below(0.3), Evidence::Theory, slow),
     ]
+    .map(|(metric, bound, evidence, because)| gate(id, metric, bound, evidence, because))
+    .into()
 }
 
-/// Gates of a column that runs out freely.
-fn free_gates(variant: &str, n: usize) -> Vec<Gate> {
-    let id = format!("{NAME}.martin-moyce.{variant}.{n}");
-    let mut gates = invariants(&id);
-    if n >= 20 {
-        gates.extend(free_references(&id)); // coarser runs are for the order and the cost alone
-        if variant == "modern" {
-            gates.extend(volume_of_fluid::free_gates(&id, n));
-        }
-    }
-    gates.into_iter().map(|gate| limitations::of_free(gate, variant, n)).collect()
-}
-
-/// Those that compare it with Martin & Moyce and with other codes.
+/// Gates of a column that runs out freely: Martin & Moyce and other codes.
 fn free_references(id: &str) -> Vec<Gate> {
-    let reference =
-        |metric: MetricName, bound, because| gate(id, metric, bound, Evidence::Reference, because);
-    let peers = "Three other codes agree within 0.04 on this place of the front of two-dimensional water \
-                 that is released at once. The bound adds 0.1, the spread of digitised curves of the \
-                 experiment, which is slower.";
+    let peers = "Three other codes agree within 0.04 on this place. The bound adds 0.1, the spread of \
+                 digitised curves of the experiment, which is slower.";
     let front = "The spread of digitised curves of the experiment is 0.1 a.";
     let late = "The experiment is late and never early, because the diaphragm takes time to open and a film \
-                of real water sticks. Its delay is usually assumed to be 0.175, and is 0.25 against other \
-                codes.";
+                of real water sticks. Its delay is 0.25 against other codes.";
     let height = "The height is measured at stations that are 1/18 of the column apart.";
     let clock =
         "A diaphragm that takes time to open can only delay the height, as it delays the front.";
-    let at = |(t, low, high): (f64, f64, f64)| {
-        let bound = Bound::Within(low - FRONT_SPREAD, high + FRONT_SPREAD);
-        reference(metrics::Z.at(t), bound, peers)
+    let place = |(t, low, high): (f64, f64, f64)| {
+        (Z.at(t), Bound::Within(low - FRONT_SPREAD, high + FRONT_SPREAD), peers)
     };
     let of_experiment = [
-        reference(FRONT.rms_shifted.into(), Bound::Below(FRONT_SPREAD), front),
-        reference(FRONT.shift.into(), Bound::Within(0.0, 0.4), late),
-        reference(HEIGHT.rms_shifted.into(), Bound::Below(1.0 / 18.0), height),
-        reference(HEIGHT.shift.into(), Bound::Above(0.0), clock),
+        (FRONT.rms_shifted.into(), Bound::Below(FRONT_SPREAD), front),
+        (FRONT.shift.into(), Bound::Within(0.0, 0.4), late),
+        (HEIGHT.rms_shifted.into(), Bound::Below(1.0 / 18.0), height),
+        (HEIGHT.shift.into(), Bound::Above(0.0), clock),
     ];
-    PEERS.map(at).into_iter().chain(of_experiment).collect()
+    let all = PEERS.map(place).into_iter().chain(of_experiment);
+    all.map(|(metric, bound, because)| gate(id, metric, bound, Evidence::Reference, because))
+        .collect()
 }
 
-/// Gates of a column in the tank.
-fn tank_gates(variant: &str, n: usize) -> Vec<Gate> {
-    let id = format!("{NAME}.lobovsky.{variant}.{n}");
-    let reference =
-        |metric: MetricName, bound, because| gate(&id, metric, bound, Evidence::Reference, because);
-    let front = "In two series of the experiment, water arrives at H2, H3 and H4 up to 0.038 √(H/g) apart, \
-                 which is √2 times the standard uncertainty of one series. Twice this uncertainty at the \
-                 measured speed of 1.515 √(g H) is 0.08 H.";
+/// Gates of the method on such a column: the same model by volume of fluid.
+fn free_model(id: &str, n: usize) -> Vec<Gate> {
+    let front =
+        "By volume of fluid the front is known to 0.017 a, a being the width of the column.";
+    let height =
+        "The bound is 1 % of the column. By volume of fluid the height is known to 0.002 H.";
+    let mut gates = vec![gate(id, HEIGHT_AWAY, Bound::Below(0.01), Evidence::Reference, height)];
+    if n >= 40 {
+        let within = Bound::Within(-0.02, 0.02);
+        gates.push(gate(id, FRONT_AWAY.at(2), within, Evidence::Reference, front));
+    }
+    gates
+}
+
+/// Gates of a column in the tank: Lobovsky et al.
+fn tank_references(id: &str) -> Vec<Gate> {
+    let front = "Water arrives up to 0.038 √(H/g) apart in two series of the experiment, which is √2 times \
+                 the standard uncertainty of one. Twice this at the measured speed of 1.515 √(g H) is 0.08 \
+                 H.";
     let levels =
         "The bound is twice the rms distance of two series of the experiment at H4, 0.024 H.";
-    let impulse = "Two sensors side by side at 15 mm differ by 6 % in one event in this window, which is √2 \
-                   times the standard uncertainty of one. The bound is twice this uncertainty, 8.5 %, for \
-                   the other heights too, where none is known.";
+    let impulse = "Two sensors side by side at 15 mm differ by 6 %, which is √2 times the standard \
+                   uncertainty of one. The bound is twice this, 8.5 %, for the other heights too.";
+    let model = "By volume of fluid this model differs from the experiment by 27, 19, -5 and -53 % at P1 to \
+                 P4. The bound adds, either way, 10 % of that impulse and its uncertainty, which is 6, 5, 11 \
+                 and 23 %.";
     let spread = 2.0 * IMPULSE_SPREAD / 2.0_f64.sqrt();
-    let mut gates = invariants(&id);
-    gates.push(reference(FRONT.rms_shifted.into(), Bound::Below(0.08), front));
-    gates.push(reference(LEVELS.rms_shifted.into(), Bound::Below(0.05), levels));
-    if variant == "modern" {
-        gates.extend(volume_of_fluid::tank_gates(&id));
-    }
-    gates.extend(
-        IMPULSE.map(|sensor| reference(sensor.at(1), Bound::Within(-spread, spread), impulse)),
-    );
-    gates.into_iter().map(|gate| limitations::in_tank(gate, variant)).collect()
+    let of_model = [(0.265, 0.16), (0.194, 0.15), (-0.049, 0.21), (-0.527, 0.33)];
+    let mut gates = vec![
+        gate(id, FRONT.rms_shifted, Bound::Below(0.08), Evidence::Reference, front),
+        gate(id, LEVELS.rms_shifted, Bound::Below(0.05), Evidence::Reference, levels),
+    ];
+    gates.extend(IMPULSE.into_iter().zip(of_model).map(|(sensor, (away, share))| {
+        let within = Bound::Within(-spread, spread);
+        let of = |share: f64| (1.0 + away) * (1.0 + share) - 1.0;
+        gate(id, sensor.at(1), within, Evidence::Reference, impulse)
+            .with_limitation(Bound::Within(of(-share), of(share)), model)
+            .because_of(&TWO_DIMENSIONS)
+    }));
+    gates
 }
+
+/// Gates of the method on such a column: the same model by volume of fluid.
+fn tank_model(id: &str) -> Vec<Gate> {
+    let level =
+        "The bound is 1 % of the column. By volume of fluid these levels are known to 0.006 H.";
+    let impulse = "The bound is 10 % of the impulse. By volume of fluid it is known to 6, 5, 11 and 23 % at \
+                   P1 to P4 during 1 √(H/g), and to 4, 2, 3 and 4 % during 2.5.";
+    let uncertain = "The impulse by volume of fluid is 0.153 and 0.137 ρ g H √(H/g) with cells of 10 and 5 \
+                     mm, 0.137 ± 0.032 in all, and falls towards that of these runs, 0.103 at H/dx = 120. \
+                     The bound adds this uncertainty, 23 %, to 10 %.";
+    let below = |away| gate(id, away, Bound::Below(0.01), Evidence::Reference, level);
+    let mut gates: Vec<Gate> = LEVEL_AWAY.map(below).into();
+    for window in WINDOWS {
+        for (k, away) in IMPULSE_AWAY.into_iter().enumerate() {
+            let tenth = Bound::Within(-0.1, 0.1);
+            let gate = gate(id, away.at(window), tenth, Evidence::Reference, impulse);
+            // Only a thin jet reaches the uppermost sensor so soon.
+            gates.push(match (k, window == WINDOWS[0]) {
+                (3, true) => gate
+                    .with_limitation(Bound::Within(-0.33, 0.33), uncertain)
+                    .because_of(&UNCERTAIN_REFERENCE),
+                _ => gate,
+            });
+        }
+    }
+    gates
+}
+
+/// Gates of settings far outside of the usual: the water must stay and keep its energy.
+fn extreme(id: &str) -> Vec<Gate> {
+    let stays = "Water in a tank stays in it.";
+    let closes =
+        "Each term reports its power. The bound is for a coarse spacing and for sampling it.";
+    vec![
+        gate(id, metrics::OUTSIDE_END, Bound::Equals(0.0), Evidence::Invariant, stays),
+        gate(id, ledger::ENERGY_GAP, Bound::Below(0.01), Evidence::Invariant, closes),
+    ]
+}
+
+/// Why a gate has a wider bound, and where that comes from.
+type Why = (&'static Cause, &'static str);
+
+/// The metrics of a run that are known to lie outside of their gates, how far, and why.
+fn known(row: &Row) -> Vec<(MetricName, f64, Why)> {
+    let [z2, z3] = PEERS.map(|(t, ..)| Z.at(t));
+    match (row.group, row.variant) {
+        (Group::Free, "seed") => vec![
+            (z2, 2.35, THICK),
+            (z3, 3.51, THICK),
+            (FRONT.shift.into(), -0.05, THICK),
+            (HEIGHT.shift.into(), -0.11, LAYER),
+        ],
+        (Group::Free, "ghosts") => vec![
+            (metrics::OUTSIDE.into(), 5.0, CROSSED),
+            (z2, 2.30, MIRRORED),
+            (z3, 3.32, MIRRORED),
+            (FRONT.shift.into(), -0.15, MIRRORED),
+            (HEIGHT.shift.into(), -0.12, MIRRORED),
+            (FRONT.rms_shifted.into(), 0.19, MIRRORED),
+            (ledger::WORK_WALLS.into(), 1.12, MIRRORED),
+            (ledger::ENERGY_GAP.into(), 0.0165, MIRRORED),
+            (metrics::MACH.into(), 0.60, MIRRORED),
+        ],
+        (Group::Free, "ghosts-slip") => vec![(metrics::OUTSIDE.into(), 5.0, CROSSED)],
+        (Group::Free, "modern") if row.settings.n > 40 => vec![(z3, 4.125, AHEAD)],
+        (Group::Tank, "modern") => vec![(FRONT.rms_shifted.into(), 0.14, FAST)],
+        (Group::Extreme(SINGLE), _) => vec![(ledger::ENERGY_GAP.into(), 0.034, IMPACTS)],
+        (Group::Extreme(CROWDED), _) => vec![(metrics::OUTSIDE_END.into(), 29.0, SLIP)],
+        _ => Vec::new(),
+    }
+}
+
+const MIRRORED: Why = (
+    &NO_SLIP_IMAGES,
+    "At a/dx = 10, 14, 28 and 40 the walls do work of 0.64, 0.66, 0.49 and 0.29 M g H/2 on the water, and \
+     energy is off by 0.006, 0.008, 0.009 and 0.002. The bounds of both are what a fifth run of that mean \
+     and scatter stays below with a probability of 97.5 % (Student's distribution, 3 degrees of freedom), \
+     that of the Mach number is its largest in the tank, and the others are the farthest of the four.",
+);
+const CROSSED: Why = (
+    &PRESSED_THROUGH,
+    "The lowest row of a layer that is stretched sinks into the plane of the floor, and feels no force \
+     across it there. `ghosts-slip` loses 5 particles in the tank, which is the bound.",
+);
+const AHEAD: Why = (
+    &FREE_SLIP,
+    "By volume of fluid Z is 4.081 ± 0.024 at T = 3. The bound adds 0.02 a, by which a front may differ \
+     from it. `modern-sticking`, whose viscosity sees the walls, has 3.98 at a/dx = 80, as those codes do.",
+);
+const THICK: Why = (
+    &VISCOSITY,
+    "The bounds are what `modern-sticking` has at a/dx = 20 with 1.4 times the artificial viscosity of this \
+     run, by a sound speed of 100 √(g H).",
+);
+const LAYER: Why = (
+    &VISCOSITY,
+    "Particles next to the back wall lag in proportion to artificial viscosity: the shift is -0.053 with \
+     half of alpha and -0.187 with twice the sound speed, which in proportion is -0.106 and -0.094 with the \
+     viscosity of this run.",
+);
+const FAST: Why = (
+    &TWO_DIMENSIONS,
+    "The front runs at 1.70, 1.74 and 1.76 √(g H) at H/dx = 30, 60 and 120, at 1.515 in the experiment, and \
+     at 1.761 ± 0.014 by volume of fluid, whose front is 0.119 H from the experiment after its best shift. \
+     The bound adds 0.02 H, by which a front may differ from that one.",
+);
+const IMPACTS: Why = (
+    &SAMPLED,
+    "20 particles fall on each other one by one. Sampled after every step, the gap is 0.0036. The bound is \
+     what a fourth run of the mean and scatter of three stays below with a probability of 97.5 % (Student's \
+     distribution, 2 degrees of freedom): with a half, a quarter and a twelfth of the step, 0.0215, 0.0155 \
+     and 0.0191.",
+);
+const SLIP: Why = (
+    &RATE_OF_DENSITY,
+    "Particles slip between those of the wall. The bound: the 29 particles of the lowest row and of the \
+     column at the back wall.",
+);
 
 #[cfg(test)]
 mod tests {
@@ -163,12 +376,11 @@ mod tests {
         for run in planned.iter().filter(|run| run.gates.iter().any(is_costly)) {
             assert_eq!(run.spec.measure, Measure::All, "{:?}", run.spec);
         }
-        let coarse = stability::USUAL;
-        for spec in [film(Tier::Quick), planned_free(Tier::Quick, "modern", coarse).spec] {
-            assert_eq!(of(&spec).spec.measure, Measure::Headline, "{spec:?}");
-        }
-        let extreme = stability::extremes(Tier::Quick).nth(1).expect("a column one particle wide");
-        let run = of(&extreme.planned().spec);
+        let ladder = DAM_BREAK.spec("modern", |s| s.n = 10);
+        assert_eq!(of(&ladder).spec.measure, Measure::Headline);
+        let table = table(Tier::Quick);
+        let extreme = table.of(Group::Extreme(SINGLE)).next().expect("a column one particle wide");
+        let run = of(&extreme.run.spec);
         let failed = |spec: RunSpec| {
             let record = DAM_BREAK.run(&spec, &Context::default()).expect("a run");
             let judged = JudgedRun::new(run.clone(), record).judged;

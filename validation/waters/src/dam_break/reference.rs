@@ -1,10 +1,12 @@
-//! The two experiments, and the distance from them.
+//! The two experiments, the same two-dimensional model computed by volume of fluid, and the distance from
+//! them: from the model it is an error of the method.
 
 use super::{
-    Dam,
+    Dam, DamSettings,
     measure::{Gauge, PROBES, SENSORS, Samples},
     metrics::{self, Distance, FRONT, HEIGHT, LEVELS},
 };
+use crate::water;
 use base::{
     record::{Profile, Record},
     reference::{Reference as Package, ReferenceError, Table},
@@ -57,6 +59,12 @@ pub fn best_shift(pairs: &[(Curve, Curve)], range: f64) -> f64 {
     best
 }
 
+/// Z over T of a run of the column of Martin & Moyce.
+pub fn front(record: &Record) -> Curve {
+    let DamSettings { width: a, gravity: g, .. } = record.settings_as();
+    water::curve(record, "series", ["t", "front"], [(0.5 * a / g).sqrt(), a])
+}
+
 /// A column of a table over another one.
 pub fn curve(table: &Table, t: &str, y: &str) -> Result<Curve, ReferenceError> {
     Ok(table.numbers(t)?.into_iter().zip(table.numbers(y)?).collect())
@@ -69,6 +77,7 @@ pub fn martin_moyce() -> Result<[Curve; 2], ReferenceError> {
 }
 
 /// The experiment of Lobovsky et al., in units of H, (H/g)^(1/2) and ρ g H.
+#[derive(Default)]
 pub struct Lobovsky {
     /// x of the tip from the gate.
     pub front: Curve,
@@ -109,6 +118,50 @@ impl Lobovsky {
             (*t, series.iter().map(|s| s[n].1).sum::<f64>() / series.len() as f64)
         };
         series[0].iter().enumerate().map(mean).filter(|(t, _)| *t <= until).collect()
+    }
+}
+
+/// T = t (2g/a)^(1/2) at which the fronts of the column of Martin & Moyce are compared.
+pub const FREE_TIMES: [f64; 3] = [1.0, 2.0, 3.0];
+/// t (g/H)^(1/2) at which those in the tank are, before any arrives.
+pub const TANK_TIMES: [f64; 3] = [1.0, 1.5, 2.0];
+/// t (g/H)^(1/2) until when levels are compared: later the overturning jet is above the last probe.
+const UNTIL: f64 = 5.5;
+/// The reference, in units of H, (H/g)^(1/2) and ρ g H unless it is said otherwise.
+#[derive(Default)]
+pub struct VolumeOfFluid {
+    /// Front Z \[a\] over T, and residual height, of the column of Martin & Moyce.
+    pub free: [Curve; 2],
+    /// Front in the tank of Lobovsky et al., from the back wall.
+    pub front: Curve,
+    /// Levels at H1 to H4.
+    pub levels: [Curve; 4],
+    /// P1 to P4.
+    pub pressure: [Curve; 4],
+}
+
+impl VolumeOfFluid {
+    /// Loads it.
+    pub fn load() -> Result<Self, ReferenceError> {
+        let package = Package::load("dam_break_vof")?;
+        let series = package.table("series")?;
+        let of = |scene: &str, name: &str| -> Result<Curve, ReferenceError> {
+            let rows = series.texts("scene")?.into_iter().zip(curve(series, "t", name)?);
+            Ok(rows.filter(|(of, _)| *of == scene).map(|(_, point)| point).collect())
+        };
+        let scene = "martin_moyce";
+        // H is 2a, so T = 2 t (g/H)^(1/2) and Z = 2 x/H.
+        let free = of(scene, "front")?.into_iter().map(|(t, x)| (2.0 * t, 2.0 * x)).collect();
+        let free = [free, of(scene, "height")?];
+        let front = of("lobovsky", "front")?;
+        let four = |table: &str, [a, b, c, d]: [&str; 4]| {
+            let table = package.table(table)?;
+            let of = |name: &str| curve(table, "t", name);
+            Ok::<_, ReferenceError>([of(a)?, of(b)?, of(c)?, of(d)?])
+        };
+        let levels = four("levels", ["H1", "H2", "H3", "H4"])?;
+        let pressure = four("pressure", ["P1", "P2", "P3", "P4"])?;
+        Ok(Self { free, front, levels, pressure })
     }
 }
 
@@ -186,18 +239,25 @@ pub fn scaled(curve: &[(f64, f64)], t: f64, y: f64, zero: f64) -> Curve {
     curve.iter().map(|(time, value)| (time / t, (value - zero) / y)).collect()
 }
 
-/// Adds the distance from the experiment that the settings are those of, if they are.
+/// A curve until a time.
+pub fn until(curve: &[(f64, f64)], end: f64) -> Curve {
+    curve.iter().filter(|(t, _)| *t <= end).copied().collect()
+}
+
+/// Adds the distance from the experiment that the settings are those of, if they are, and from the same model
+/// by volume of fluid.
 pub fn compare(
     dam: &Dam,
     samples: &Samples,
     gauge: &Gauge,
     record: &mut Record,
 ) -> Result<(), ReferenceError> {
+    let model = VolumeOfFluid::load()?;
     if dam.is_martin_moyce() {
-        with_martin_moyce(dam, samples, record)?;
+        with_martin_moyce(dam, samples, &model, record)?;
     }
     if dam.is_lobovsky() {
-        with_lobovsky(dam, samples, gauge, record)?;
+        with_lobovsky(dam, samples, gauge, &model, record)?;
     }
     Ok(())
 }
@@ -205,26 +265,31 @@ pub fn compare(
 fn with_martin_moyce(
     dam: &Dam,
     samples: &Samples,
+    model: &VolumeOfFluid,
     record: &mut Record,
 ) -> Result<(), ReferenceError> {
     let (a, g) = (dam.settings.width, dam.settings.gravity);
     let [measured_front, measured_height] = martin_moyce()?;
     let front = scaled(&samples.front(), (0.5 * a / g).sqrt(), a, 0.0);
     let height = scaled(&samples.height(), (a / g).sqrt(), dam.settings.height, 0.0);
-    let ends = |curve: &Curve| curve.last().map_or(0.0, |(t, _)| *t);
-    let within = |measured: Curve, end: f64| -> Curve {
-        measured.into_iter().filter(|(t, _)| *t <= end).collect()
+    let within = |measured: &Curve, computed: &Curve| {
+        until(measured, computed.last().map_or(0.0, |(t, _)| *t))
     };
-    let (front_end, height_end) = (ends(&front), ends(&height));
+    for t in FREE_TIMES {
+        record.put(metrics::FRONT_AWAY.at(t), value(&front, t) - value(&model.free[0], t));
+    }
+    let falls = scaled(&samples.height(), dam.settings.unit_time(), dam.settings.height, 0.0);
+    let away = rms(&falls, &until(&model.free[1], dam.settings.end), 0.0);
+    record.put(metrics::HEIGHT_AWAY, away);
     for t in [2.0, 3.0] {
         record.put(metrics::Z.at(t), value(&front, t));
     }
-    let pairs = [(front, within(measured_front, front_end))];
-    put_distance(record, FRONT, &pairs, 1.0, "Z at equal T");
-    let pairs = [(height, within(measured_height, height_end))];
+    let measured = within(&measured_front, &front);
+    put_distance(record, FRONT, &[(front, measured)], 1.0, "Z at equal T");
+    let measured = within(&measured_height, &height);
     let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
                 from what was read there, at equal tau";
-    put_distance(record, HEIGHT, &pairs, 1.0, what);
+    put_distance(record, HEIGHT, &[(height, measured)], 1.0, what);
     Ok(())
 }
 
@@ -232,54 +297,68 @@ fn with_lobovsky(
     dam: &Dam,
     samples: &Samples,
     gauge: &Gauge,
+    model: &VolumeOfFluid,
     record: &mut Record,
 ) -> Result<(), ReferenceError> {
     let lobovsky = Lobovsky::load()?;
     let (unit, h) = (dam.settings.unit_time(), dam.settings.height);
     let end = dam.settings.end;
     let front = scaled(&samples.front(), unit, h, dam.settings.width);
-    let measured: Curve = lobovsky.front.iter().filter(|(t, _)| *t <= end).copied().collect();
+    let from_wall = scaled(&samples.front(), unit, h, 0.0);
+    for t in TANK_TIMES {
+        record.put(metrics::FRONT_AWAY.at(t), value(&from_wall, t) - value(&model.front, t));
+    }
+    let measured = until(&lobovsky.front, end);
     record.put(metrics::FRONT_SPEED, front_speed(&front, &measured));
     record.put(metrics::FRONT_SPEED_MEASURED, front_speed(&measured, &measured));
     put_distance(record, FRONT, &[(front, measured)], 0.6, "x of the tip from the gate/H");
     let pairs: Vec<(Curve, Curve)> = (0..PROBES.len())
         .map(|k| (scaled(&samples.level(k), unit, h, 0.0), lobovsky.level(k, end)))
         .collect();
-    for (pair, level_rms) in pairs.iter().zip(metrics::LEVEL_RMS) {
-        record.put(level_rms, rms(&pair.0, &pair.1, 0.0));
+    for (k, (computed, measured)) in pairs.iter().enumerate() {
+        record.put(metrics::LEVEL_RMS[k], rms(computed, measured, 0.0));
+        let model = until(&model.levels[k], UNTIL.min(end));
+        record.put(metrics::LEVEL_AWAY[k], rms(computed, &model, 0.0));
     }
     put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
     let [ours, theirs] = [tongue(&pairs[3].0), tongue(&pairs[3].1)];
     record.put(metrics::TONGUE, ours / theirs - 1.0);
-    put_pressures(&lobovsky, &pressures(dam, gauge), record);
+    let pressure = |k| {
+        let blocks = gauge.pressure(k, BLOCK * unit);
+        scaled(&blocks, unit, dam.unit_pressure(), 0.0)
+    };
+    let pressures: Vec<Curve> = (0..SENSORS.len()).map(pressure).collect();
+    put_pressures(&lobovsky, model, &pressures, record);
     Ok(())
 }
 
-/// Computed pressures on P1 to P4, means over blocks.
-pub fn pressures(dam: &Dam, gauge: &Gauge) -> Vec<Curve> {
-    let (unit, scale) = (dam.settings.unit_time(), dam.unit_pressure());
-    let of = |k| scaled(&gauge.pressure(k, BLOCK * unit), unit, scale, 0.0);
-    (0..SENSORS.len()).map(of).collect()
-}
-
-fn put_pressures(lobovsky: &Lobovsky, curves: &[Curve], record: &mut Record) {
-    let (ours, theirs) = (arrival(&curves[0]), arrival(&lobovsky.pressure[0]));
+fn put_pressures(
+    lobovsky: &Lobovsky,
+    model: &VolumeOfFluid,
+    curves: &[Curve],
+    record: &mut Record,
+) {
+    let ours = arrival(&curves[0]);
+    let [theirs, models] =
+        [&lobovsky.pressure, &model.pressure].map(|pressure| arrival(&pressure[0]));
     record.put(metrics::ARRIVAL, ours);
     record.put(metrics::ARRIVAL_MEASURED, theirs);
+    record.put(metrics::ARRIVAL_AWAY, ours - models);
     for (k, computed) in curves.iter().enumerate() {
-        let measured = &lobovsky.pressure[k];
         for window in WINDOWS {
-            let (a, b) = (impulse(computed, ours, window), impulse(measured, theirs, window));
+            let [a, b, c] =
+                [(computed, ours), (&lobovsky.pressure[k], theirs), (&model.pressure[k], models)]
+                    .map(|(curve, from)| impulse(curve, from, window));
             record.put(metrics::IMPULSE[k].at(window), a / b - 1.0);
+            record.put(metrics::IMPULSE_AWAY[k].at(window), a / c - 1.0);
         }
         let peak = computed.iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
         record.put(metrics::PEAK[k], peak);
     }
     record.put(metrics::NOISE, noise(&curves[1], ours + WINDOWS[0]));
     record.put(metrics::NOISE_MEASURED, noise(&lobovsky.pressure[1], theirs + WINDOWS[0]));
-    let mut profile = Profile::default();
     let times = curves[0].iter().map(|(t, _)| *t).collect();
-    profile = profile.with("t", "(H/g)^(1/2)", times);
+    let mut profile = Profile::default().with("t", "(H/g)^(1/2)", times);
     for (k, curve) in curves.iter().enumerate() {
         let values = curve.iter().map(|(_, p)| *p).collect();
         profile = profile.with(&format!("P{}", k + 1), "rho g H", values);
@@ -288,10 +367,13 @@ fn put_pressures(lobovsky: &Lobovsky, curves: &[Curve], record: &mut Record) {
 }
 
 #[cfg(test)]
-pub mod tests {
+mod tests {
     use super::*;
     use crate::{
-        dam_break::{DAM_BREAK, DamSettings, lobovsky, metrics::IMPULSE},
+        dam_break::{
+            DAM_BREAK, DamSettings, lobovsky,
+            metrics::{FRONT_AWAY, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY},
+        },
         water::{Modern, method},
     };
     use base::record::MetricName;
@@ -360,14 +442,14 @@ pub mod tests {
     }
 
     /// A tank with these settings.
-    pub fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
+    fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
         let spec = DAM_BREAK.spec("modern", set);
         let settings = serde_json::from_value(spec.settings).expect("settings of the case");
         Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
     }
 
     /// The metrics that a comparison puts.
-    pub fn metrics_of<F>(dam: &Dam, compare: F) -> impl Fn(MetricName) -> f64 + use<F>
+    fn metrics_of<F>(dam: &Dam, compare: F) -> impl Fn(MetricName) -> f64 + use<F>
     where
         F: FnOnce(&mut Record) -> Result<(), ReferenceError>,
     {
@@ -378,7 +460,7 @@ pub mod tests {
 
     /// Is the value the one that is expected?
     #[track_caller]
-    pub fn is(value: f64, expected: f64, tolerance: f64) {
+    fn is(value: f64, expected: f64, tolerance: f64) {
         assert!((value - expected).abs() <= tolerance, "{value} instead of {expected}");
     }
 
@@ -458,5 +540,75 @@ pub mod tests {
         let left = noise(&p2, metric(metrics::ARRIVAL.into()) + 1.0);
         is(metric(metrics::NOISE.into()) / left, 1.0, 0.01);
         is(metric(metrics::NOISE_MEASURED.into()), 0.0201, 1e-4);
+    }
+
+    /// The numbers of the reference's README.
+    #[test]
+    fn the_reference_is_read_in_the_units_of_the_cases() {
+        let reference = VolumeOfFluid::load().unwrap();
+        for (t, z) in [(1.0, 1.557), (2.0, 2.655), (3.0, 4.081)] {
+            is(value(&reference.free[0], t), z, 1e-3);
+        }
+        is(value(&reference.free[1], 1.5), 0.4654, 1e-3);
+        is(value(&reference.front, 2.0), 4.640, 1e-3);
+        is(value(&reference.levels[3], 4.0), 0.1756, 1e-3);
+        let at = arrival(&reference.pressure[0]);
+        is(at, 2.38, 0.01);
+        for (k, expected) in [1.59, 1.322, 0.94, 0.137].into_iter().enumerate() {
+            is(impulse(&reference.pressure[k], at, 1.0), expected, 0.015);
+        }
+    }
+
+    /// A front 0.03 a ahead, a height 0.02 H too large.
+    #[test]
+    fn how_far_a_column_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
+        let (dam, reference) = (dam(|_| {}), VolumeOfFluid::load().unwrap());
+        let of = &dam.settings;
+        let row = |k: u32| {
+            let t = 0.002 * f64::from(k);
+            let front = of.width * (0.03 + value(&reference.free[0], 2.0 * t));
+            let height = of.height * (0.02 + value(&reference.free[1], t));
+            ([t * of.unit_time(), front, height], [0.0; 4])
+        };
+        let samples = Samples::made_up(&dam, (0..900).map(row));
+        let metric = metrics_of(&dam, |record| {
+            compare(&dam, &samples, &Gauge::made_up(&dam, Vec::new()), record)
+        });
+        for t in FREE_TIMES {
+            is(metric(FRONT_AWAY.at(t)), 0.03, 1e-4);
+        }
+        is(metric(HEIGHT_AWAY.into()), 0.02, 1e-4);
+    }
+
+    /// A front 0.03 H ahead, levels 0.01 to 0.04 H too high, pressures 5 to 20 % too high and late by 0.3.
+    #[test]
+    fn how_far_a_tank_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
+        let (dam, reference) = (dam(lobovsky), VolumeOfFluid::load().unwrap());
+        let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
+        let row = |k: u32| {
+            let t = 0.01 * f64::from(k);
+            let level = |k: usize| h * (0.01 * (k + 1) as f64 + value(&reference.levels[k], t));
+            let front = h * (0.03 + value(&reference.front, t));
+            ([t * unit, front, 0.0], [0, 1, 2, 3].map(level))
+        };
+        let samples = Samples::made_up(&dam, (0..600).map(row));
+        let too_much = |k: usize| 0.05 * (k + 1) as f64;
+        let sensor = |step: u32| {
+            let t = 0.001 * f64::from(step) + 0.0005;
+            let p = |k: usize| scale * (1.0 + too_much(k)) * value(&reference.pressure[k], t - 0.3);
+            [t * unit, p(0), p(1), p(2), p(3)]
+        };
+        let gauge = Gauge::made_up(&dam, (0..6000).map(sensor).collect());
+        let metric = metrics_of(&dam, |record| compare(&dam, &samples, &gauge, record));
+        for t in TANK_TIMES {
+            is(metric(FRONT_AWAY.at(t)), 0.03, 1e-4);
+        }
+        is(metric(metrics::ARRIVAL_AWAY.into()), 0.3, 0.011);
+        for k in 0..4 {
+            is(metric(LEVEL_AWAY[k].into()), 0.01 * (k + 1) as f64, 1e-4);
+            for window in WINDOWS {
+                is(metric(IMPULSE_AWAY[k].at(window)), too_much(k), 0.02);
+            }
+        }
     }
 }

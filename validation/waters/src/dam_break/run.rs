@@ -9,7 +9,7 @@ use super::{
     measure::{Gauge, Samples},
     metrics,
     momentum::Momentum,
-    reference, volume_of_fluid,
+    reference,
 };
 use crate::water::{Ledger, WaterMethod, ledger};
 use base::record::{MetricKey, Profile, Record, Status};
@@ -28,20 +28,6 @@ pub const PROGRAM: Program<DamSettings, WaterMethod> = Program {
 
 /// Times at which particles are kept for pictures, shares of the run.
 pub const PICTURES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-
-/// Those, or as many at equal intervals as the context asks for; none if no picture needs them.
-fn pictures(context: &Context) -> Vec<f64> {
-    match context.pictures {
-        Some(count) => (0..count).map(|k| share(k, count)).collect(),
-        None if context.keep_particles => PICTURES.to_vec(),
-        None => Vec::new(),
-    }
-}
-
-/// The share of the run at which one of so many pictures is taken.
-pub fn share(k: usize, count: usize) -> f64 {
-    k as f64 / (count.max(2) - 1) as f64
-}
 
 /// Time between samples \[h/(c0 + v)\], rounded to whole steps: powers and forces are summed over them,
 /// and those of an impact last as long as sound takes across a few smoothing lengths. With 0.015
@@ -110,7 +96,6 @@ fn run(
     }
     if record.status == Status::Completed
         && let Err(error) = reference::compare(dam, &samples, &gauge, &mut record)
-            .and_then(|()| volume_of_fluid::compare(dam, &samples, &gauge, &mut record))
     {
         // Packages are embedded and checked by a test.
         record.numerics.insert("reference".into(), error.to_string().into());
@@ -137,7 +122,8 @@ fn stops(dam: &Dam, context: &Context) -> (Vec<f64>, BTreeMap<usize, f64>) {
     times.push(end);
     let last = times.len() - 1;
     let nearest = |share: f64| ((share * end / every).round() as usize).min(last);
-    (times, pictures(context).into_iter().map(|share| (nearest(share), share)).collect())
+    let pictures = context.keep_particles.then_some(PICTURES).into_iter().flatten();
+    (times, pictures.map(|share| (nearest(share), share)).collect())
 }
 
 /// x, y and the pressure.
@@ -154,10 +140,7 @@ fn picture(dam: &Dam, simulation: &dyn Stepper<()>) -> Profile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        dam_break::{DAM_BREAK, front},
-        water::ledger::WORK_VISCOSITY,
-    };
+    use crate::{dam_break::DAM_BREAK, water::ledger::WORK_VISCOSITY};
     use base::{
         record::NOT_ASKED,
         spec::{Measure, RunSpec},
@@ -197,7 +180,7 @@ mod tests {
         let fall = 0.5 * (2000.0 * a * a) * g * (2.0 * a);
         let work = record.column("energy", "work_viscosity").last().expect("a series") / fall;
         assert!((value(WORK_VISCOSITY) / work - 1.0).abs() < 5e-3, "{work}");
-        let front = front::front(&record);
+        let front = reference::front(&record);
         let (t, z) = front[front.len() - 1];
         assert!((t / (0.5 * 2.0) - 1.0).abs() < 1e-9, "0.5 (H/g)^(1/2) is T = 1, not {t}");
         let start = record.column("series", "front")[0];

@@ -4,12 +4,12 @@ use nalgebra::Vector2;
 use solver::{Domain, Particle, Tait, lattice};
 
 use super::HydrostaticSettings;
-use crate::water;
+use crate::water::{self, WaterMethod};
 use base::random::Random;
 use harness::{
     case::{Rules, RunError, Step},
     context::Context,
-    method::{FirstRow, Medium, Method, Parts},
+    method::{FirstRow, Medium, Parts},
     simulate,
 };
 use maths::{exact, geometry};
@@ -39,7 +39,7 @@ impl Column {
     /// The numbers for a method, or why they are refused.
     pub fn new(
         s: &HydrostaticSettings,
-        method: &Method,
+        method: &WaterMethod,
         context: &Context,
     ) -> Result<Self, RunError> {
         let c0 = (s.g * s.depth / s.compressibility).sqrt();
@@ -127,7 +127,7 @@ impl Column {
     /// The scene. Particles of walls have the density of the water that would be in their place: that of the
     /// interface is frozen, and what others push with is their mass by p/ρ², so that with the mass of the
     /// surface a compressed column would sink into the bottom.
-    pub fn parts(&self, method: &Method, context: &Context) -> Parts {
+    pub fn parts(&self, method: &WaterMethod, context: &Context) -> Parts {
         let (medium, tank) = (self.medium, self.tank());
         let mut particles = self.water(method.first_row);
         let walls = water::wall_particles(method.first_row, &tank, method.support * medium.h);

@@ -4,15 +4,11 @@
 mod column;
 mod plan;
 mod run;
-mod studies;
 
-use harness::{
-    composed::{Best, Composed, Composition, Variants, completed},
-    method::Method,
-};
-use solver::{Continuity, DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Tait};
+use harness::composed::{Best, Composed, Composition, Variants, completed};
+use solver::{Continuity, DensityDiffusion, Ghosts, InterfaceWall};
 
-use crate::water::{Diffusion, Modern, Seed};
+use crate::water::{Diffusion, Modern, Seed, method};
 
 base::settings! {
     /// Settings of water at rest in an open tank.
@@ -64,73 +60,33 @@ fn modern(s: &mut HydrostaticSettings) {
     (s.h_over_dx, s.courant, s.alpha) = (1.5, 0.8, 0.02);
 }
 
-type Extrapolating = ExtrapolatingWall<Tait>;
-/// The modern method with this in its drift, and these walls.
-type With<D, W> = Modern<(Continuity, D), W>;
-
 fn variants() -> Vec<Composition<HydrostaticSettings>> {
     Variants::of(&run::PROGRAM)
         .with(
             "seed",
             "as in the paper: cubic spline, interface and wall particles, artificial viscosity and \
              stress, XSPH, predictor-corrector",
-            Method::of::<Seed<InterfaceWall>>(),
+            method::<Seed<InterfaceWall>>(),
             |_| {},
         )
-        .with("ghosts", "seed with ghosts for walls", Method::of::<Seed<Ghosts>>(), |_| {})
+        .with("ghosts", "seed with ghosts for walls", method::<Seed<Ghosts>>(), |_| {})
         .with(
             "modern",
             "Wendland C2, h/dx 1.5, walls that extrapolate pressure, density diffusion that keeps \
              a hydrostatic column, leapfrog",
-            Method::of::<With<Diffusion, Extrapolating>>(),
-            modern,
-        )
-        .with(
-            "extrapolating-none",
-            "modern without density diffusion",
-            Method::of::<With<(), Extrapolating>>(),
+            method::<Modern>(),
             modern,
         )
         .with(
             "extrapolating-molteni",
-            "modern with the diffusion of Molteni and Colagrossi",
-            Method::of::<With<DensityDiffusion, Extrapolating>>(),
-            modern,
-        )
-        .with(
-            "interface-none",
-            "modern with interface and wall particles, without density diffusion",
-            Method::of::<With<(), InterfaceWall>>(),
-            modern,
-        )
-        .with(
-            "interface-molteni",
-            "the same with that of Molteni and Colagrossi",
-            Method::of::<With<DensityDiffusion, InterfaceWall>>(),
+            "modern with the diffusion of Molteni and Colagrossi: does plain diffusion level out the column?",
+            method::<Modern<(Continuity, DensityDiffusion)>>(),
             modern,
         )
         .with(
             "interface-hydrostatic",
-            "the same with the diffusion that keeps a hydrostatic column",
-            Method::of::<With<Diffusion, InterfaceWall>>(),
-            modern,
-        )
-        .with(
-            "ghosts-none",
-            "modern with ghosts, without density diffusion",
-            Method::of::<With<(), Ghosts>>(),
-            modern,
-        )
-        .with(
-            "ghosts-molteni",
-            "the same with that of Molteni and Colagrossi",
-            Method::of::<With<DensityDiffusion, Ghosts>>(),
-            modern,
-        )
-        .with(
-            "ghosts-hydrostatic",
-            "the same with the diffusion that keeps a hydrostatic column",
-            Method::of::<With<Diffusion, Ghosts>>(),
+            "modern with interface and wall particles: are the paper's walls enough for the rest of it?",
+            method::<Modern<(Continuity, Diffusion), InterfaceWall>>(),
             modern,
         )
         .all
@@ -155,6 +111,6 @@ pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
     variants,
     is_stable: completed,
     declaration: plan::declaration,
-    plan: plan::plan,
-    studies: studies::studies,
+    plan: |tier| plan::table(tier).plan(),
+    studies: plan::studies,
 };

@@ -3,11 +3,11 @@
 use solver::{EquationOfState, Particle, Role, Stepper};
 
 use super::{HydrostaticSettings, NAME, column::Column};
+use crate::water::WaterMethod;
 use base::record::{Profile, Record, Status};
 use harness::{
     case::RunError,
     composed::Program,
-    method::Method,
     runner::{Context, Drive},
     simulate,
 };
@@ -26,13 +26,13 @@ base::metrics! {
 }
 
 /// Runs of the variants.
-pub const PROGRAM: Program<HydrostaticSettings, Method> = Program {
+pub const PROGRAM: Program<HydrostaticSettings, WaterMethod> = Program {
     run,
     rules: |method, settings| Ok(Column::new(settings, method, &Context::of_rules())?.rules),
 };
 
 fn run(
-    method: &Method,
+    method: &WaterMethod,
     variant: &str,
     settings: &HydrostaticSettings,
     context: &Context,
@@ -172,7 +172,10 @@ fn profile(column: &Column, mut water: Vec<Particle>) -> Profile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{hydrostatic::HYDROSTATIC, water::Modern};
+    use crate::{
+        hydrostatic::HYDROSTATIC,
+        water::{Modern, method},
+    };
     use harness::method::Parts;
     use nalgebra::Vector2;
 
@@ -183,7 +186,7 @@ mod tests {
         let spec = HYDROSTATIC.spec("modern", |_| {});
         let settings: HydrostaticSettings =
             serde_json::from_value(spec.settings).expect("settings");
-        let (method, context) = (Method::of::<Modern>(), Context::default());
+        let (method, context) = (method::<Modern>(), Context::default());
         let column = Column::new(&settings, &method, &context).expect("sound settings");
         let (dx, g) = (column.medium.dx, settings.g);
         let water = || -> Vec<Particle> {
