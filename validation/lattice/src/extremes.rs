@@ -69,9 +69,9 @@ pub static EXTREMES: Composed<ExtremeSettings> = Composed {
         because: "each variant is an experiment of its own, and this one is the plainest",
         papers: None,
     },
-    about: "Extreme scenes and settings must end well. They are a lattice at rest for very long, particles on \
-            top of each other, a block at a thousand times the speed of sound, and vortices with sound too \
-            slow and too fast and on a disturbed lattice. Each variant is an experiment of its own.",
+    about: "Extreme scenes and settings must end well. They are a lattice at rest for very long, particles \
+            on top of each other, a block at a thousand times the speed of sound, and vortices with sound \
+            too slow and too fast and on a disturbed lattice. Each variant is an experiment of its own.",
     variants,
     is_stable: composed::completed,
     declaration: |_| Declaration::default(),

@@ -384,8 +384,8 @@ fn gates(Row { group, variant, settings: s, .. }: &Row<BoxSettings, Group>) -> V
                 "The expected number of steps is ln(c0/noise)/growth. The run may end earlier, by ln(4/0.3) \
                  of that logarithm, because the largest of 800 normal numbers is 4 times their deviation and \
                  30 % of compression end the run as well. It may end later, by ln(20 · 20 · 2), because the \
-                 noise of 20 × 20 particles leaves 1/20 of itself to a wave, of 800 waves one starts 20 times \
-                 lower with a chance of 1/400, and a speed of 2 c0 ends the run.",
+                 noise of 20 × 20 particles leaves 1/20 of itself to a wave, of 800 waves one starts 20 \
+                 times lower with a chance of 1/400, and a speed of 2 c0 ends the run.",
             )
         }
     };
