@@ -11,7 +11,6 @@ mod integration;
 mod invariance;
 mod layers;
 mod limits;
-mod margins;
 mod new_case;
 mod pairs;
 mod plans;

@@ -4,7 +4,7 @@ pub use harness::case::find_in;
 use harness::case::{Case, RunError};
 
 use fluids::{couette, periodic_hill, poiseuille, taylor_couette, taylor_green};
-use lattice::{acoustic_wave, extremes, shear_wave, stability};
+use lattice::{extremes, resting_box, wave};
 use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
 use waters::{dam_break, elliptic_drop, hydrostatic};
 
@@ -23,10 +23,10 @@ pub const CASES: &[&dyn Case] = &[
     &spinning_disk::SPINNING_DISK,
     &oscillating_plate::OSCILLATING_PLATE,
     &cantilever::CANTILEVER,
-    &acoustic_wave::ACOUSTIC_WAVE,
-    &shear_wave::SHEAR_WAVE,
+    &wave::ACOUSTIC_WAVE,
+    &wave::SHEAR_WAVE,
     &elastic_wave::ELASTIC_WAVE,
-    &stability::RESTING_BOX,
+    &resting_box::RESTING_BOX,
     &extremes::EXTREMES,
 ];
 

@@ -7,7 +7,6 @@
 
 pub mod cases;
 mod limitations;
-pub mod margins;
 pub mod page;
 pub mod stiffness;
 mod time;

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use base::{
     gate::{Cause, Purpose, Verdict},
-    spec::{RunSpec, Task},
+    spec::Task,
 };
 use harness::{
-    case,
-    runs::Judged,
+    case::{self, Planned},
+    runs::{Judged, JudgedRun},
     suite::{CaseResults, Of, Suite},
 };
 use report::{Block, Section, sig};
@@ -53,7 +53,7 @@ fn describe(cause: Option<&Cause>, found: &[Found]) -> (String, Vec<String>) {
     let mut cases: Vec<&str> = found.iter().map(|found| found.results.case.name()).collect();
     cases.dedup();
     let what = cause.map_or("Other causes.".into(), Cause::to_string);
-    let command = found.iter().find_map(command).unwrap_or_default();
+    let command = found.first().map(command).unwrap_or_default();
     let text = format!("{what} Cases: {}. To see it: `{command}`.", cases.join(", "));
     (text, found.iter().map(gate).collect())
 }
@@ -65,18 +65,15 @@ fn gate(found: &Found) -> String {
     format!("[{0}](#{0}): {value}; {1}", gate.id, gate.bounds())
 }
 
-/// The command that shows it: the run, or the verdict of the study.
-fn command(found: &Found) -> Option<String> {
-    match found.of {
-        Of::Run(run) => simulation(found, &run.planned.spec),
-        Of::Study(_) => Some(format!("touchstone explain {}", found.judged.gate.id)),
-    }
-}
-
-fn simulation(found: &Found, spec: &RunSpec) -> Option<String> {
-    if spec.task != Task::Simulate || spec.mutation.is_some() {
-        return Some(format!("touchstone explain {}", found.judged.gate.id));
-    }
+/// The command that shows it: the run, or the verdict of a search or of a study.
+fn command(found: &Found) -> String {
     let case = found.results.case;
-    Some(case::command(case, &spec.variant, &case::changed(case, spec)))
+    match found.of {
+        Of::Run(JudgedRun { planned: Planned { spec, .. }, .. })
+            if spec.task == Task::Simulate && spec.mutation.is_none() =>
+        {
+            case::command(case, &spec.variant, &case::changed(case, spec))
+        }
+        _ => format!("touchstone explain {}", found.judged.gate.id),
+    }
 }

@@ -1,7 +1,7 @@
 //! The report: from a judged suite to one page.
 
 use base::{
-    gate::{Evidence, Purpose, Verdict},
+    gate::{Purpose, Verdict},
     manifest::{Known, Manifest},
     record::Record,
     reference::{Reference, ReferenceError},
@@ -9,7 +9,7 @@ use base::{
     spec::{RunSpec, Task},
 };
 use harness::{
-    case::{self, Case, Tier},
+    case::{self, Case},
     columns::Columns,
     notes::Notes,
     runs::{Judged, JudgedRun},
@@ -20,7 +20,7 @@ use report::{
     Block, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS, counted,
 };
 
-use crate::{limitations, margins, stiffness, time};
+use crate::{limitations, stiffness, time};
 
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
@@ -48,8 +48,8 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
     Page {
         title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
         lead: vec![format!(
-            "{} tier, {made}. {}{} {}",
-            tier_name(suite),
+            "{:?} tier, {made}. {}{} {}",
+            suite.tier,
             cost(suite),
             reused(suite),
             provenance(&manifest)
@@ -82,13 +82,6 @@ fn cost(suite: &Suite) -> String {
         report::seconds(stepping + repeated),
         report::sci(pairs, 2)
     )
-}
-
-fn tier_name(suite: &Suite) -> &'static str {
-    match suite.tier {
-        Tier::Quick => "Quick",
-        Tier::Full => "Full",
-    }
 }
 
 /// What was not made for this page.
@@ -141,7 +134,6 @@ fn verdicts(suite: &Suite) -> Section {
              bound. For a limitation, the wider bound counts. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
-        .block(margins::figure(suite))
         .block(Block::Details {
             summary: "How to read cost and convergence diagrams".into(),
             blocks: vec![Block::Prose(READING.map(String::from).into())],
@@ -183,7 +175,7 @@ fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Not
         value: judgement.value.map_or(Cell::text("not measured"), measured),
         bound: gate.bounds(),
         margin: judgement.margin.map_or(Cell::text("–"), |margin| Cell::percent(margin, 2)),
-        evidence: evidence(gate.evidence),
+        evidence: format!("{:?}", gate.evidence).to_lowercase(),
         reasons,
     }
 }
@@ -228,16 +220,6 @@ fn study_section(study: &Study) -> Section {
 fn measured(value: f64) -> Cell {
     let is_whole = value == value.trunc() && value.abs() < 1e6;
     if is_whole { Cell::exact(value) } else { Cell::num(value, 4) }
-}
-
-fn evidence(evidence: Evidence) -> &'static str {
-    match evidence {
-        Evidence::Analytic => "analytic",
-        Evidence::Invariant => "invariant",
-        Evidence::Theory => "theory",
-        Evidence::Reference => "reference",
-        Evidence::Regression => "regression",
-    }
 }
 
 fn settings_table(results: &CaseResults) -> Table {

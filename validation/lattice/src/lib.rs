@@ -1,20 +1,39 @@
 //! Particles on a lattice: waves, stability limits of the time step, extreme settings.
 
-pub mod acoustic_wave;
 pub mod extremes;
-pub mod shear_wave;
-pub mod stability;
+pub mod resting_box;
 pub mod wave;
 
-use harness::case::Case;
+use harness::{
+    case::Case,
+    context::Context,
+    method::{Medium, Parts},
+};
+use nalgebra::Vector2;
+use solver::{Domain, Particle};
 
 /// The cases of the family.
-pub const CASES: &[&dyn Case] = &[
-    &acoustic_wave::ACOUSTIC_WAVE,
-    &shear_wave::SHEAR_WAVE,
-    &stability::RESTING_BOX,
-    &extremes::EXTREMES,
-];
+pub const CASES: &[&dyn Case] =
+    &[&wave::ACOUSTIC_WAVE, &wave::SHEAR_WAVE, &resting_box::RESTING_BOX, &extremes::EXTREMES];
+
+/// A periodic square with this side \[m\] and n × n particles. `start` gives a particle's place and velocity
+/// from its place on the lattice, first counted in spacings and then in metres.
+fn torus(
+    (side, n): (f64, usize),
+    medium: Medium,
+    context: &Context,
+    mut start: impl FnMut(Vector2<f64>, Vector2<f64>) -> (Vector2<f64>, Vector2<f64>),
+) -> Parts {
+    let Medium { dx, density, .. } = medium;
+    let places = solver::lattice(Vector2::repeat(0.5 * dx), dx, n, n);
+    let labels = solver::lattice(Vector2::zeros(), 1.0, n, n);
+    let particle = |(label, place)| {
+        let (place, velocity) = start(label, place);
+        Particle::fluid(place, velocity, density, dx * dx)
+    };
+    let particles = labels.zip(places).map(particle).collect();
+    Parts::new(medium, Domain::torus(side, side), particles, context)
+}
 
 #[cfg(test)]
 mod tests {

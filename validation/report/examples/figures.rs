@@ -320,7 +320,7 @@ fn explorer() -> Explorer {
             value: Cell::num(k as f64, 2),
             bound: "at most 30".into(),
             margin: Cell::percent(1.0 - k as f64 / 40.0, 2),
-            evidence: if k.is_multiple_of(3) { "theory" } else { "analytic" },
+            evidence: if k.is_multiple_of(3) { "theory" } else { "analytic" }.into(),
             reasons: vec![1 + k % 2],
         }
     };

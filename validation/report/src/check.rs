@@ -281,7 +281,7 @@ mod tests {
             value: Cell::num(0.5, 2),
             bound: "at most 0.4".into(),
             margin: Cell::text("–"),
-            evidence: "theory",
+            evidence: "theory".into(),
             reasons: vec![1],
         };
         let explorer = Explorer { gates: vec![gate], reasons: vec!["because".into()] };

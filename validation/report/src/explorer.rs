@@ -29,7 +29,7 @@ pub struct GateRow {
     /// Share of the allowance that is left.
     pub margin: Cell,
     /// The kind of evidence behind the bound.
-    pub evidence: &'static str,
+    pub evidence: String,
     /// Numbers of its reasons.
     pub reasons: Vec<usize>,
 }
@@ -104,7 +104,7 @@ mod tests {
             value: Cell::num(0.5, 2),
             bound: "at most 0.4".into(),
             margin: Cell::percent(0.1, 2),
-            evidence: "theory",
+            evidence: "theory".into(),
             reasons: vec![1, 2],
         };
         let reasons = vec!["one".into(), "*two*".into()];

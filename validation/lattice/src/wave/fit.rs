@@ -4,47 +4,49 @@
 //! A mode obeys p' = -ω v, v' = ω p - γ v with p = -c₀ ρ̂/ρ₀, and one step is a matrix M of (p, v):
 //!
 //! - leapfrog, v at half steps: tr M = 2 - γ dt - (ω dt)², det M = 1 - γ dt;
-//! - the same with super-time-stepping, whose factor of a wave that decays is an exponential up to second
-//!   order in dt: det M = exp(-γ dt), tr M = 1 + det M - (ω dt)² (1 - det M)/(γ dt);
 //! - explicit midpoint: M = 1 + Z + Z²/2 with Z = A dt, so each eigenvalue ξ of M belongs to
-//!   z = (2ξ - 1)^(1/2) - 1, and Σz = -γ dt, Πz = (ω dt)²;
-//! - forward Euler: M = 1 + Z.
+//!   z = (2ξ - 1)^(1/2) - 1, and Σz = -γ dt, Πz = (ω dt)².
+//!
+//! No variant has another integrator; the numbers of one would be NaN, with which every gate fails.
 //!
 //! A transverse velocity v' = -γ v is the same with numbers for matrices.
 
 use nalgebra::{Complex, Matrix2, Vector2};
 
-use base::functions::{complex_sqrt, exp, ln};
-use maths::{exact::damped_mode::DampedMode, theory::time_step::Integrator};
+use base::functions::complex_sqrt;
+use maths::theory::time_step::Integrator;
 
-/// The matrix of one step of (p, v).
-pub fn step(mode: &DampedMode, integrator: Integrator, dt: f64) -> Matrix2<f64> {
-    step_with_diffusion(mode, 0.0, integrator, dt)
+/// Angular frequency and damping of a mode.
+#[derive(Clone, Copy, Debug)]
+pub struct DampedMode {
+    /// Undamped angular frequency ω ≥ 0 \[1/s\].
+    pub omega: f64,
+    /// Damping of the velocity γ ≥ 0 \[1/s\].
+    pub gamma: f64,
 }
 
-/// The same where density decays by itself too, p' = -ω v - γ_ρ p, γ_ρ = `diffusion` \[1/s\].
-pub fn step_with_diffusion(
-    mode: &DampedMode,
-    diffusion: f64,
-    integrator: Integrator,
-    dt: f64,
-) -> Matrix2<f64> {
+impl DampedMode {
+    /// The frequency that is seen, (ω² - γ²/4)^(1/2) \[1/s\]; 0 when overdamped.
+    pub fn frequency(&self) -> f64 {
+        (self.omega * self.omega - 0.25 * self.gamma * self.gamma).max(0.0).sqrt()
+    }
+}
+
+/// The matrix of one step of (p, v), where density decays by itself too: p' = -ω v - γ_ρ p, γ_ρ = `diffusion`
+/// \[1/s\].
+pub fn step(mode: &DampedMode, diffusion: f64, integrator: Integrator, dt: f64) -> Matrix2<f64> {
     let (w, g, d) = (mode.omega * dt, mode.gamma * dt, diffusion * dt);
-    let z = Matrix2::new(-d, -w, w, -g);
     match integrator {
         Integrator::Leapfrog => {
             let kick = Matrix2::new(1.0, 0.0, w, 1.0 - g);
             let drift = Matrix2::new(1.0 - d, -w, 0.0, 1.0);
             drift * kick
         }
-        Integrator::SuperLeapfrog => {
-            let left = exp(-g);
-            let kick = if g > 0.0 { (1.0 - left) / g } else { 1.0 };
-            let kick = Matrix2::new(1.0, 0.0, w * kick, left);
-            Matrix2::new(1.0 - d, -w, 0.0, 1.0) * kick
+        Integrator::PredictorCorrector => {
+            let z = Matrix2::new(-d, -w, w, -g);
+            Matrix2::identity() + z + z * z * 0.5
         }
-        Integrator::PredictorCorrector => Matrix2::identity() + z + z * z * 0.5,
-        Integrator::Euler => Matrix2::identity() + z,
+        _ => Matrix2::repeat(f64::NAN),
     }
 }
 
@@ -52,48 +54,40 @@ pub fn step_with_diffusion(
 pub fn shear_step(gamma: f64, integrator: Integrator, dt: f64) -> f64 {
     let z = -gamma * dt;
     match integrator {
+        Integrator::Leapfrog => 1.0 + z,
         Integrator::PredictorCorrector => 1.0 + z + 0.5 * z * z,
-        Integrator::SuperLeapfrog => exp(z),
-        Integrator::Leapfrog | Integrator::Euler => 1.0 + z,
+        _ => f64::NAN,
     }
 }
 
 /// ω and γ of the matrix of one step.
-pub fn mode_of_step(m: &Matrix2<f64>, integrator: Integrator, dt: f64) -> DampedMode {
+fn mode_of_step(m: &Matrix2<f64>, integrator: Integrator, dt: f64) -> DampedMode {
     let (trace, determinant) = (m.trace(), m.determinant());
-    if integrator == Integrator::Leapfrog {
-        let gamma = 1.0 - determinant;
-        let square = 2.0 - gamma - trace;
-        return DampedMode { omega: square.max(0.0).sqrt() / dt, gamma: gamma / dt };
-    }
-    if integrator == Integrator::SuperLeapfrog {
-        let gamma = -ln(determinant);
-        let kick = if gamma > 0.0 { (1.0 - determinant) / gamma } else { 1.0 };
-        let square = (1.0 + determinant - trace) / kick;
-        return DampedMode { omega: square.max(0.0).sqrt() / dt, gamma: gamma / dt };
-    }
-    let half = Complex::new(0.5 * trace, 0.0);
-    let root = complex_sqrt(half * half - determinant);
-    let z = [half + root, half - root].map(|xi| match integrator {
-        Integrator::PredictorCorrector => complex_sqrt(xi * 2.0 - 1.0) - 1.0,
-        _ => xi - 1.0,
-    });
-    let square = (z[0] * z[1]).re.max(0.0);
-    DampedMode { omega: square.sqrt() / dt, gamma: -(z[0] + z[1]).re / dt }
+    let (gamma, square) = match integrator {
+        Integrator::Leapfrog => (1.0 - determinant, 2.0 - (1.0 - determinant) - trace),
+        Integrator::PredictorCorrector => {
+            let half = Complex::new(0.5 * trace, 0.0);
+            let root = complex_sqrt(half * half - determinant);
+            let z = [half + root, half - root].map(|xi| complex_sqrt(xi * 2.0 - 1.0) - 1.0);
+            (-(z[0] + z[1]).re, (z[0] * z[1]).re)
+        }
+        _ => (f64::NAN, f64::NAN),
+    };
+    DampedMode { omega: square.max(0.0).sqrt() / dt, gamma: gamma / dt }
 }
 
 /// γ of the factor of one step of a transverse velocity.
-pub fn shear_of_step(factor: f64, integrator: Integrator, dt: f64) -> f64 {
+fn shear_of_step(factor: f64, integrator: Integrator, dt: f64) -> f64 {
     match integrator {
+        Integrator::Leapfrog => (1.0 - factor) / dt,
         Integrator::PredictorCorrector => (1.0 - (2.0 * factor - 1.0).sqrt()) / dt,
-        Integrator::SuperLeapfrog => -ln(factor) / dt,
-        Integrator::Leapfrog | Integrator::Euler => (1.0 - factor) / dt,
+        _ => f64::NAN,
     }
 }
 
 /// The matrix M of least squares |yₙ₊₁ - M yₙ|; `None` for fewer than three states or states on
 /// one line.
-pub fn matrix_between(states: &[Vector2<f64>]) -> Option<Matrix2<f64>> {
+fn matrix_between(states: &[Vector2<f64>]) -> Option<Matrix2<f64>> {
     let (mut forward, mut square) = (Matrix2::zeros(), Matrix2::zeros());
     for pair in states.windows(2) {
         forward += pair[1] * pair[0].transpose();
@@ -106,7 +100,7 @@ pub fn matrix_between(states: &[Vector2<f64>]) -> Option<Matrix2<f64>> {
 }
 
 /// The factor of least squares |yₙ₊₁ - f yₙ|.
-pub fn factor_between(values: &[f64]) -> Option<f64> {
+fn factor_between(values: &[f64]) -> Option<f64> {
     let pairs = values.windows(2).map(|pair| (pair[0], pair[1]));
     let (forward, square) = pairs.fold((0.0, 0.0), |(f, s), (a, b)| (f + a * b, s + a * a));
     (square > 0.0).then(|| forward / square)
@@ -127,16 +121,17 @@ pub fn decay_of(series: &[[f64; 3]], integrator: Integrator, dt: f64) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Integrator::{Euler, Leapfrog, PredictorCorrector, SuperLeapfrog};
+    use Integrator::{Leapfrog, PredictorCorrector};
     use approx::assert_relative_eq;
+    use base::functions::{cos, exp, sin};
 
     /// States of exact steps give back ω and γ: under- and overdamped, for each integrator.
     #[test]
     fn steps_give_back_the_mode() {
-        for integrator in [Leapfrog, SuperLeapfrog, PredictorCorrector, Euler] {
+        for integrator in [Leapfrog, PredictorCorrector] {
             for (omega, gamma) in [(3.0, 0.0), (3.0, 0.5), (1.0, 5.0)] {
                 let (mode, dt) = (DampedMode { omega, gamma }, 0.05);
-                let m = step(&mode, integrator, dt);
+                let m = step(&mode, 0.0, integrator, dt);
                 let mut states = vec![Vector2::new(0.3, 1.0)];
                 for k in 0..40 {
                     states.push(m * states[k]);
@@ -158,12 +153,13 @@ mod tests {
     #[test]
     fn a_step_tends_to_the_exact_solution() {
         let mode = DampedMode { omega: 2.0, gamma: 0.7 };
-        for integrator in [PredictorCorrector, Euler] {
-            let m = step(&mode, integrator, 1e-4);
-            let next = m * Vector2::new(0.4, -0.2);
-            let [p, v] = mode.state([0.4, -0.2], 1e-4);
-            assert_relative_eq!(next, Vector2::new(p, v), epsilon = 3e-8);
-        }
+        let next = step(&mode, 0.0, PredictorCorrector, 1e-4) * Vector2::new(0.4, -0.2);
+        // exp(-γt/2) (cos σt + ...), the solution of p' = -ω v, v' = ω p - γ v.
+        let ([p, v], t, sigma) = ([0.4, -0.2], 1e-4, mode.frequency());
+        let (decay, half) = (exp(-0.5 * mode.gamma * t), 0.5 * mode.gamma);
+        let (c, s) = (decay * cos(sigma * t), decay * sin(sigma * t) / sigma);
+        let exact = [p * c + (half * p - 2.0 * v) * s, v * c + (2.0 * p - half * v) * s];
+        assert_relative_eq!(next, Vector2::from(exact), epsilon = 3e-8);
     }
 
     #[test]

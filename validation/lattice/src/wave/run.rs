@@ -3,16 +3,18 @@
 use std::iter::once;
 
 use nalgebra::Vector2;
-use solver::{Domain, EquationOfState, Flow, Observer, Particle, Stepper, Tait};
+use solver::{EquationOfState, Flow, Observer, Stepper, Tait};
 
 use super::{
     DECAY_ERROR, FREQUENCY_ERROR, MOMENTUM_ERROR, Polarisation, SHEAR_DECAY_ERROR,
-    TRAJECTORY_ERROR, WaveCase, WaveSettings, fit,
+    TRAJECTORY_ERROR, WaveSettings,
+    fit::{self, DampedMode},
 };
+use crate::torus;
 use base::functions::{cos, sin};
 use base::{
     random::Random,
-    record::{self, Cost, MetricKey, Profile, Record, Status},
+    record::{self, MetricKey, Profile, Record},
 };
 use harness::{
     case::{Rules, RunError, Step},
@@ -23,14 +25,14 @@ use harness::{
     runner::{self, Drive},
     simulate,
 };
-use maths::{exact::damped_mode::DampedMode, theory::time_step};
+use maths::theory::time_step;
 
 /// The numbers of one run, SI units.
 #[derive(Clone, Debug)]
-pub struct Wave {
+pub(super) struct Wave {
     settings: WaveSettings,
     /// Which wave.
-    pub polarisation: Polarisation,
+    polarisation: Polarisation,
     /// Phase from one particle to the next.
     theta: Vector2<f64>,
     /// Unit vector along the gradient symbol.
@@ -38,13 +40,13 @@ pub struct Wave {
     /// What terms are made from.
     medium: Medium,
     /// Frequency and damping that theory gives to sound.
-    pub sound: DampedMode,
+    sound: DampedMode,
     /// Damping that theory gives to shear \[1/s\].
-    pub shear: f64,
+    shear: f64,
     /// Decay that theory gives to density by itself \[1/s\].
     diffusion: f64,
     /// A time step of which a whole number ends the run, the leapfrog's limits of it, sound speed, end.
-    pub rules: Rules,
+    rules: Rules,
 }
 
 /// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
@@ -59,24 +61,12 @@ struct Projection<'a> {
 
 harness::observed! { Projection<'_>: changes(series, momentum), parts(), stays(wave, basis) }
 
-/// What was measured.
-pub struct Measured {
-    /// Amplitudes after each step.
-    pub series: Vec<[f64; 3]>,
-    /// Change of Σ m v after the first step \[kg m/s\].
-    momentum_change: f64,
-    /// How the run ended.
-    pub status: Status,
-    /// What it took.
-    pub cost: Cost,
-}
-
 impl Wave {
     /// A wave of these settings in the lattice of a method.
     ///
     /// # Errors
     /// If the lattice does not carry it, or the step is beyond its limit.
-    pub fn new(
+    fn new(
         polarisation: Polarisation,
         s: &WaveSettings,
         method: &Method,
@@ -137,11 +127,6 @@ impl Wave {
         })
     }
 
-    /// Time step \[s\].
-    pub fn dt(&self) -> f64 {
-        self.rules.dt()
-    }
-
     /// Phase of each label, in the order of the scene.
     fn phases(&self) -> impl Iterator<Item = f64> {
         let (n, theta) = (self.settings.n, self.theta);
@@ -153,28 +138,25 @@ impl Wave {
     }
 
     /// The scene: a cosine of velocity at uniform density.
-    pub fn parts(&self, context: &Context) -> Parts {
-        let (s, Medium { dx, density, sound_speed, .. }) = (&self.settings, self.medium);
+    fn parts(&self, context: &Context) -> Parts {
+        let (s, Medium { dx, sound_speed, .. }) = (&self.settings, self.medium);
         let direction = match self.polarisation {
             Polarisation::Sound => self.along,
             Polarisation::Shear => self.across(),
         };
-        let places = solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n);
         let mut random = Random::new(1);
         let mut offset = || Vector2::new(random.normal(), random.normal()) * (s.jitter * dx);
-        let particles = places.zip(self.phases()).map(|(place, phase)| {
-            let velocity = direction * (s.amplitude * sound_speed * cos(phase));
-            let place = if s.jitter > 0.0 { place + offset() } else { place };
-            Particle::fluid(place, velocity, density, dx * dx)
-        });
-        let (domain, particles) = (Domain::torus(s.length, s.length), particles.collect());
-        Parts::new(self.medium, domain, particles, context)
+        let start = |label: Vector2<f64>, place| {
+            let velocity = direction * (s.amplitude * sound_speed * cos(self.theta.dot(&label)));
+            (if s.jitter > 0.0 { place + offset() } else { place }, velocity)
+        };
+        torus((s.length, s.n), self.medium, context, start)
     }
 
     /// What theory gives for the amplitudes after each of `steps` steps, exactly.
     fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<[f64; 3]> {
-        let (a, dt) = (self.settings.amplitude, self.dt());
-        let m = fit::step_with_diffusion(&self.sound, self.diffusion, integrator, dt);
+        let (a, dt) = (self.settings.amplitude, self.rules.dt());
+        let m = fit::step(&self.sound, self.diffusion, integrator, dt);
         let factor = fit::shear_step(self.shear, integrator, dt);
         let (mut y, mut shear) = match self.polarisation {
             Polarisation::Sound => (Vector2::new(0.0, a), 0.0),
@@ -229,37 +211,6 @@ fn without_pressure_at(density: f64, eos: Tait) -> Tait {
     Tait { background: -eos.pressure(density), ..eos }
 }
 
-/// Runs a wave and projects it on itself.
-///
-/// # Errors
-/// If its scene is impossible or a frame cannot be written.
-pub fn measure(wave: &Wave, method: &Method, context: &Context) -> Result<Measured, RunError> {
-    project(wave, (method.build)(wave.parts(context))?, context)
-}
-
-/// Runs a simulation and projects it on a wave.
-fn project(
-    wave: &Wave,
-    mut simulation: Box<dyn Stepper<()>>,
-    context: &Context,
-) -> Result<Measured, RunError> {
-    let mut projection = Projection::new(wave);
-    let pressure = |density: f64| wave.medium.eos.pressure(density);
-    // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
-    let (status, cost) =
-        Drive::new(&mut *simulation, wave.dt(), &[wave.rules.end], &pressure, &mut projection)
-            .after_step("projection", &Projection::after_step)
-            .run(context)?;
-    Ok(Measured {
-        momentum_change: projection
-            .momentum
-            .map_or(f64::NAN, |[a, b]| (Vector2::from(b) - Vector2::from(a)).norm()),
-        series: projection.series,
-        status,
-        cost,
-    })
-}
-
 /// What the rules choose.
 pub(super) fn rules(
     polarisation: Polarisation,
@@ -269,43 +220,51 @@ pub(super) fn rules(
     Ok(Wave::new(polarisation, settings, method, &Context::of_rules())?.rules)
 }
 
-/// Runs a wave and compares it with theory.
+/// Runs a wave, projects it on itself, and compares it with theory.
 pub(super) fn run(
-    case: &WaveCase,
+    (case, polarisation): (&str, Polarisation),
     method: &Method,
     variant: &str,
     settings: &WaveSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let wave = &Wave::new(case.polarisation, settings, method, context)?;
-    let simulation = (method.build)(wave.parts(context))?;
-    let (s, Medium { density, sound_speed, h, .. }) = (&wave.settings, wave.medium);
-    let measured = project(wave, simulation, context)?;
+    let wave = &Wave::new(polarisation, settings, method, context)?;
+    let mut simulation = (method.build)(wave.parts(context))?;
+    let (s, Medium { density, sound_speed, h, eos, .. }) = (&wave.settings, wave.medium);
+    let (mut projection, end) = (Projection::new(wave), [wave.rules.end]);
+    let pressure = |density: f64| eos.pressure(density);
+    // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
+    let (status, cost) =
+        Drive::new(&mut *simulation, wave.rules.dt(), &end, &pressure, &mut projection)
+            .after_step("projection", &Projection::after_step)
+            .run(context)?;
     let numbers = [
         ("h/dx", s.h_over_dx),
         ("c0 [m/s]", sound_speed),
         ("c0 h/nu", sound_speed * h / s.nu),
-        (PLANNED_DT, wave.dt()),
-        ("omega dt", wave.sound.omega * wave.dt()),
+        (PLANNED_DT, wave.rules.dt()),
+        ("omega dt", wave.sound.omega * wave.rules.dt()),
     ];
-    let mut record = simulate::begin((case.name, variant), s, method, &numbers, context);
-    compare(wave, method.theory, &measured.series, &mut record);
+    let mut record = simulate::begin((case, variant), s, method, &numbers, context);
+    let Projection { series, momentum, .. } = projection;
+    compare(wave, method.theory, &series, &mut record);
     let scale = density * s.length * s.length * s.amplitude * sound_speed;
-    record.put(MOMENTUM_ERROR, measured.momentum_change / scale);
-    let start = match wave.polarisation {
+    let [first, last] = momentum.unwrap_or([[f64::NAN; 2]; 2]).map(Vector2::from);
+    record.put(MOMENTUM_ERROR, (last - first).norm() / scale);
+    let start = match polarisation {
         Polarisation::Sound => [0.0, s.amplitude, 0.0],
         Polarisation::Shear => [0.0, 0.0, s.amplitude],
     };
-    let column = |k: usize| once(&start).chain(&measured.series).map(|a| a[k]).collect();
-    let times = (0..=measured.series.len()).map(|k| k as f64 * wave.dt()).collect();
+    let column = |k: usize| once(&start).chain(&series).map(|a| a[k]).collect();
+    let times = (0..=series.len()).map(|k| k as f64 * wave.rules.dt()).collect();
     let profile = Profile::default()
         .with("t", "s", times)
         .with("p", "rho c0^2", column(0))
         .with("v_along", "c0", column(1))
         .with("v_across", "c0", column(2));
     record.profiles.insert("amplitudes".into(), profile);
-    record.state = Some(record::digest(measured.series.as_flattened()));
-    (record.status, record.cost) = (measured.status, measured.cost);
+    record.state = Some(record::digest(series.as_flattened()));
+    (record.status, record.cost) = (status, cost);
     Ok(record)
 }
 
@@ -327,7 +286,7 @@ fn compare(
     let relative = |found: f64, expected: f64, scale: f64| (found - expected).abs() / scale;
     if wave.polarisation == Polarisation::Sound {
         let nothing = DampedMode { omega: f64::NAN, gamma: f64::NAN };
-        let found = fit::mode_of(series, integrator, wave.dt()).unwrap_or(nothing);
+        let found = fit::mode_of(series, integrator, wave.rules.dt()).unwrap_or(nothing);
         let expected = wave.sound;
         let scale = if expected.gamma > 0.0 { expected.gamma } else { expected.omega };
         let error = relative(found.omega, expected.omega, expected.omega);
@@ -339,7 +298,7 @@ fn compare(
             / wave.settings.length;
         record.put(SOUND_FACTOR, found.omega / sound);
     } else {
-        let found = fit::decay_of(series, integrator, wave.dt()).unwrap_or(f64::NAN);
+        let found = fit::decay_of(series, integrator, wave.rules.dt()).unwrap_or(f64::NAN);
         let scale = if wave.shear > 0.0 { wave.shear } else { wave.sound.omega };
         record.put(SHEAR_DECAY_ERROR, relative(found, wave.shear, scale));
         record.put(SHEAR_DECAY, found);

@@ -1,7 +1,6 @@
 //! Exact solutions of the continuous equations: what a run is compared with.
 
 pub mod couette;
-pub mod damped_mode;
 pub mod elliptic_drop;
 pub mod hydrostatic;
 pub mod impact;
@@ -10,7 +9,6 @@ pub mod taylor_couette;
 pub mod taylor_green;
 
 pub use couette::Couette;
-pub use damped_mode::DampedMode;
 pub use elliptic_drop::EllipticDrop;
 pub use hydrostatic::Hydrostatic;
 pub use poiseuille::Poiseuille;

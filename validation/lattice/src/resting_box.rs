@@ -1,0 +1,475 @@
+//! A lattice at rest: the largest stable time step, measured, against linear theory.
+//!
+//! A box of 12 × 12 particles at rest with velocity noise of 1e-8 c₀, which is every wave of the box at once
+//! and too small to be anything but linear, runs for N steps at a dt; dt is bisected to 0.4 %. It grows if
+//! its energy (kinetic and acoustic) exceeds a hundred times the start at some step, where the run stops, or
+//! if its mean over the last quarter of the steps exceeds that over the second quarter by half. N = ½/(the
+//! growth rate a step that theory gives 0.5 % beyond the limit), at least 300 and at most 12 000: so weakly
+//! growing modes have time to show. A larger box has waves between, of which one may be stiffer: with 20
+//! limits are up to 1.6 % shorter, measured and in theory, and take twice as long to find.
+
+use nalgebra::Vector2;
+use solver::{
+    ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion, EquationOfState, Flow,
+    Leapfrog, Limits, Observer, Open, PredictorCorrector, Pressure, QuinticSpline, Split, Stepper,
+    SuperSteps, Tait, Viscosity, terms::Always,
+};
+
+use base::{
+    functions::ln,
+    gate::{Bound, Evidence, Gate},
+    random::Random,
+    record::{MetricKey, Record, Status},
+    spec::Bisect,
+};
+use harness::{
+    bisect::Growth,
+    case::{Planned, Rules, RunError, Step, Tier},
+    composed::{self, Best, Composed, Composition, Program, Variants},
+    context::Context,
+    declare::{Declaration, StepLimit, StepLimits},
+    limits,
+    method::{Knob, Medium, Method, Parts},
+    rules::{PLANNED_DT, PLANNED_DT_OVER_LIMIT},
+    runner::Drive,
+    simulate,
+    table::{Row, Table},
+};
+use maths::theory::time_step::{self, Mode};
+
+use crate::{torus, wave::plain};
+
+base::settings! {
+    /// Settings of a periodic lattice at rest with velocity noise; its side, its density and its sound
+    /// speed are 1.
+    pub struct BoxSettings {
+        /// particles along each side
+        n: usize ["-"] in 4..=400 = 12,
+        /// smoothing length over spacing
+        h_over_dx: f64 ["-"] in 0.5..=5.0 = 1.3,
+        /// ratio of sound to viscosity, c0 h/nu; auto: no viscosity
+        stiffness: Option<f64> ["-"] in 1e-6..=1e9 = Some(10.0),
+        /// alpha of the artificial viscosity, on every pair
+        alpha: f64 ["-"] in 0.0..=10.0 = 0.0,
+        /// delta of the density diffusion
+        delta: f64 ["-"] in 0.0..=10.0 = 0.0,
+        /// time step
+        courant: f64 ["h/c0"] in 1e-9..=1e3 = 0.25,
+        /// number of time steps
+        steps: usize ["-"] in 4..=100000000 = 300,
+        /// do all steps; otherwise the run is over as soon as its energy exceeds a hundred times that of
+        /// the start
+        to_the_end: bool = false,
+    }
+}
+
+const GREW: MetricKey = MetricKey::new(
+    "grew",
+    "-",
+    "1 if the energy exceeded a hundred times that of the start at some step, or in the mean of the last \
+     quarter of the steps 1.5 times that of the second; else 0",
+);
+const ENERGY: MetricKey =
+    MetricKey::new("energy_ratio", "-", "kinetic and acoustic energy at the end/at the start");
+const LASTED: MetricKey = MetricKey::new("lasted", "1", "steps until the divergence");
+
+/// A lattice at rest.
+pub static RESTING_BOX: Composed<BoxSettings> = Composed {
+    name: "resting_box",
+    problem: "Small noise at rest: is the time step stable?",
+    best: Best {
+        variant: CUBIC,
+        because: "all have the limit that theory predicts, and this one takes the fewest pairs a step",
+        papers: None,
+    },
+    about: "Velocity noise of 1e-8 c0 excites every wave of a periodic lattice at rest. Its energy grows \
+            if the time step is beyond the limit that linear theory of the same box predicts.",
+    variants,
+    is_stable,
+    declaration,
+    plan,
+    studies: composed::no_studies,
+};
+
+fn is_stable(record: &Record) -> bool {
+    record.status == Status::Completed && record.value(GREW) == Some(0.0)
+}
+
+/// Viscosity by super-time-stepping.
+type Super =
+    Compose<CubicSpline, Split<Pressure<Tait>, Viscosity>, Continuity, Open, Leapfrog<SuperSteps>>;
+/// With artificial viscosity and density diffusion.
+type Damped = Compose<
+    CubicSpline,
+    (Pressure<Tait>, Viscosity, ArtificialViscosity<Tait, Always>),
+    (Continuity, DensityDiffusion),
+    Open,
+    Leapfrog,
+>;
+
+const CUBIC: &str = "cubic-leapfrog";
+const MIDPOINT: &str = "cubic-pc";
+const SUPER: &str = "cubic-super";
+const DAMPED: &str = "cubic-damped";
+const QUINTIC: &str = "quintic-leapfrog";
+
+/// The method of a variant.
+fn method(variant: &str) -> Method {
+    match variant {
+        MIDPOINT => plain::<CubicSpline, PredictorCorrector>(),
+        SUPER => Method::of::<Super>(),
+        DAMPED => Method::of::<Damped>(),
+        QUINTIC => plain::<QuinticSpline, Leapfrog>(),
+        _ => plain::<CubicSpline, Leapfrog>(),
+    }
+}
+
+fn variants() -> Vec<Composition<BoxSettings>> {
+    Variants::of(&Program { run, rules })
+        .with(
+            CUBIC,
+            "what sound and viscosity allow together: the kernel and the viscous term of the seed",
+            method(CUBIC),
+            |_| (),
+        )
+        .with(
+            MIDPOINT,
+            "what the predictor-corrector allows, which amplifies sound that nothing damps",
+            method(MIDPOINT),
+            |_| (),
+        )
+        .with(
+            SUPER,
+            "what is left of the limit of viscosity by super-time-stepping",
+            method(SUPER),
+            |_| (),
+        )
+        .with(
+            DAMPED,
+            "what artificial viscosity and density diffusion take from the step",
+            method(DAMPED),
+            |_| (),
+        )
+        .with(QUINTIC, "does theory hold for a kernel of wider support?", method(QUINTIC), |s| {
+            s.h_over_dx = 1.0
+        })
+        .all
+}
+
+/// The guard of the viscous and the artificial term, as the seed has it.
+const ETA2: f64 = 0.01;
+/// Initial velocity noise, standard deviation of each component \[c₀\].
+const NOISE: f64 = 1e-8;
+/// Resolution of the bisection, relative to the theoretical limit.
+const RESOLUTION: f64 = 0.004;
+/// A growth that theory gives at this much beyond the limit must be seen, so it sets the number of
+/// steps; the number has no other influence on the limit that is found.
+const SEEN_FROM: f64 = 1.005;
+/// Fewest and most steps of a run.
+const STEPS: [f64; 2] = [300.0, 12_000.0];
+
+/// Smoothing length \[m\].
+fn h(s: &BoxSettings) -> f64 {
+    s.h_over_dx / s.n as f64
+}
+
+/// c₀h/ν, infinite without viscosity.
+fn stiffness(s: &BoxSettings) -> f64 {
+    s.stiffness.unwrap_or(f64::INFINITY)
+}
+
+/// The waves of the box in the lattice of a method, in units of c₀ and h.
+fn modes(method: &Method, s: &BoxSettings) -> Vec<Mode> {
+    let (nu, alpha, delta) = (1.0 / stiffness(s), s.alpha, s.delta);
+    let medium = time_step::Medium { c0: 1.0, h: 1.0, nu, alpha, delta };
+    method.modes([s.h_over_dx, ETA2], s.n, &medium)
+}
+
+/// What the settings say, and theory.
+fn rules(method: &Method, s: &BoxSettings) -> Result<Rules, RunError> {
+    if s.delta > 0.0 && !method.uses.contains(&Knob::Diffusion) {
+        let variant = "without density diffusion".into();
+        return Err(RunError::Unused { key: "delta".into(), variant });
+    }
+    let limits = limits::Limits::of(&modes(method, s), method.theory).times(h(s));
+    let step = Step::courant(s.courant, h(s), [1.0, 0.0]);
+    Ok(Rules { step, limits, sound_speed: 1.0, end: s.steps as f64 * step.dt })
+}
+
+fn parts(method: &Method, s: &BoxSettings) -> Parts {
+    let medium = Medium {
+        nu: h(s) / stiffness(s),
+        eta2_over_h2: ETA2,
+        alpha: s.alpha,
+        diffusion: s.delta,
+        ..method.medium(Tait::new(1.0, 1.0), [1.0 / s.n as f64, h(s)])
+    };
+    let mut random = Random::new(7);
+    let mut noise = || NOISE * random.normal();
+    let limits = Limits { density: [0.7, 1.3], speed: 2.0 };
+    let velocity = |_, place| (place, Vector2::new(noise(), noise()));
+    Parts { limits, ..torus((1.0, s.n), medium, &Context::default(), velocity) }
+}
+
+/// Watches the energy, and ends the run if it grew beyond doubt.
+struct Watch {
+    growth: Growth,
+    to_the_end: bool,
+    stopped: bool,
+}
+
+harness::observed! { Watch: changes(growth, stopped), parts(), stays(to_the_end) }
+
+/// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
+fn energy(simulation: &dyn Stepper<()>) -> f64 {
+    let of = |(mass, e): (f64, &solver::Evolved<()>)| {
+        0.5 * mass * (e.velocity.norm_squared() + (e.density - 1.0) * (e.density - 1.0))
+    };
+    simulation.fluid().map(of).sum()
+}
+
+impl Observer<()> for Watch {
+    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
+        self.stopped = self.growth.see(energy(simulation)) && !self.to_the_end;
+        if self.stopped { Flow::Stop } else { Flow::Continue }
+    }
+}
+
+/// One run of the case.
+fn run(
+    method: &Method,
+    variant: &str,
+    s: &BoxSettings,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let rules = rules(method, s)?;
+    simulate::check_step(method.integrator, &rules, context)?;
+    let (dt, end) = (rules.dt(), [rules.end]);
+    let mut simulation = (method.build)(parts(method, s))?;
+    let start = energy(&*simulation);
+    let growth = Growth::new(start, s.steps as u64);
+    let mut watch = Watch { growth, to_the_end: s.to_the_end, stopped: false };
+    let pressure = |density| Tait::new(1.0, 1.0).pressure(density);
+    let (status, cost) = Drive::new(&mut *simulation, dt, &end, &pressure, &mut watch)
+        .after_step("energy", &Watch::after_step)
+        .run(context)?;
+    let numbers = [
+        ("h/dx", s.h_over_dx),
+        ("c0 [m/s]", rules.sound_speed),
+        ("c0 h/nu", stiffness(s)),
+        (PLANNED_DT, dt),
+        (PLANNED_DT_OVER_LIMIT, dt / rules.dt_limit()),
+    ];
+    let (name, serial) = ((RESTING_BOX.name, variant), Context::default());
+    let mut record = simulate::begin(name, s, method, &numbers, &serial);
+    if let Status::Diverged { step, .. } = status {
+        record.put(LASTED, step as f64);
+    }
+    let grew = matches!(status, Status::Diverged { .. }) || watch.growth.grew();
+    record.put(GREW, f64::from(u8::from(grew)));
+    record.put(ENERGY, energy(&*simulation) / start);
+    record.state = Some(simulate::state(&simulation.particles()));
+    // A run that is over early because its energy grew beyond doubt is complete.
+    record.status = if watch.stopped { Status::Completed } else { status };
+    record.cost = cost;
+    Ok(record)
+}
+
+/// What a run is for.
+#[derive(Clone, Copy, PartialEq)]
+enum Group {
+    /// A bisection of the time step.
+    Limit,
+    /// A step at the limit, where nothing grows.
+    At,
+    /// A step beyond it, where a run must diverge.
+    Beyond,
+}
+
+/// All runs.
+fn table(tier: Tier) -> Table<BoxSettings, Group> {
+    const INVISCID: f64 = f64::INFINITY;
+    let mut table = Table::new(&RESTING_BOX, tier);
+    // The limit of a box with what damps it: c₀h/ν, α, δ.
+    let limit = |variant| {
+        let method = method(variant);
+        move |s: &mut BoxSettings, [stiffness, alpha, delta]: [f64; 3]| {
+            s.stiffness = stiffness.is_finite().then_some(stiffness);
+            (s.alpha, s.delta) = (alpha, delta);
+            let modes = modes(&method, s);
+            s.courant = time_step::time_step_limit(&modes, method.theory);
+            let growth = time_step::growth_per_step(&modes, method.theory, SEEN_FROM * s.courant);
+            s.steps = (0.5 / growth).clamp(STEPS[0], STEPS[1]) as usize;
+        }
+    };
+    let viscous = |variant| {
+        let limit = limit(variant);
+        move |s: &mut BoxSettings, stiffness: f64| limit(s, [stiffness, 0.0, 0.0])
+    };
+    let all = &[1.0, 3.0, 10.0, 30.0, 100.0, INVISCID];
+    // Weak growth of the predictor-corrector needs thousands of steps to show beyond 10, and without
+    // viscosity it has no limit.
+    for (variant, values) in [
+        (CUBIC, [&all[..], all]),
+        (MIDPOINT, [&all[..3], &all[..5]]),
+        (SUPER, [&all[..4]; 2]),
+        (QUINTIC, [&[1.0, 10.0, INVISCID]; 2]),
+    ] {
+        table.over(Group::Limit, &[variant], values, viscous(variant));
+    }
+    let [alpha, delta] = [[INVISCID, 1.0, 0.0], [INVISCID, 0.0, 1.0]];
+    let together = [alpha, delta, [30.0, 0.1, 0.1]];
+    table.over(Group::Limit, &[DAMPED], [&together[..2], &together], limit(DAMPED));
+    let at = |s: &mut BoxSettings, stiffness| {
+        (s.n, s.to_the_end) = (20, true);
+        viscous(SUPER)(s, stiffness);
+    };
+    table.over(Group::At, &[SUPER], [&[1.0, 10.0]; 2], at);
+    for (variant, stiffness) in
+        [(CUBIC, INVISCID), (CUBIC, 1.0), (MIDPOINT, 1.0), (SUPER, 1.0), (SUPER, 10.0)]
+    {
+        table.over(Group::Beyond, &[variant], [&[1.05, 2.0]; 2], |s, factor| {
+            at(s, stiffness);
+            let method = method(variant);
+            s.courant = factor * time_step::time_step_limit(&modes(&method, s), method.theory);
+            s.steps = (3.0 * steps_to_divergence(&method, s) + 20.0).ceil() as usize;
+        });
+    }
+    table.judge(gates);
+    table
+}
+
+/// Steps in which the fastest wave grows from the noise to the speed of sound.
+fn steps_to_divergence(method: &Method, s: &BoxSettings) -> f64 {
+    let growth = time_step::growth_per_step(&modes(method, s), method.theory, s.courant);
+    ln(1.0 / NOISE) / growth
+}
+
+/// What is judged of a run, and why.
+fn gates(Row { group, variant, settings: s, .. }: &Row<BoxSettings, Group>) -> Vec<Gate> {
+    let (method, stiffness) = (method(variant), stiffness(s));
+    let (kernel, integrator) = (method.kernel, method.integrator);
+    let factor = s.courant / time_step::time_step_limit(&modes(&method, s), method.theory);
+    let percent = (100.0 * factor).round();
+    let step = format!("extremes.step.{integrator}.{stiffness}.{}", percent / 100.0);
+    let (id, metric, bound, because) = match group {
+        Group::Limit => {
+            let damping = match s.alpha > 0.0 || s.delta > 0.0 {
+                true => format!(".alpha{}.delta{}", s.alpha, s.delta),
+                false => String::new(),
+            };
+            let h = s.h_over_dx;
+            (
+                format!("stability.{kernel}.h{h}.{integrator}.stiffness{stiffness}{damping}.ratio"),
+                String::from("measured limit/theory"),
+                Bound::Within(0.97, 1.03),
+                "Linear theory of the same box is exact. Bisection resolves 0.4 %, and the criterion of \
+                 growth 0.5 %.",
+            )
+        }
+        Group::At => (
+            step,
+            GREW.into(),
+            Bound::Equals(0.0),
+            "Up to the limit of sound and viscosity together no wave grows, however stiff viscosity is.",
+        ),
+        Group::Beyond => {
+            let share = |times: f64| ln(times) / ln(1.0 / NOISE);
+            let [low, high] = [1.0 - share(4.0 / 0.3), 1.0 + share(800.0)];
+            let expected = steps_to_divergence(&method, s);
+            (
+                step,
+                LASTED.into(),
+                Bound::Within(low * expected, high * expected),
+                "The expected number of steps is ln(c0/noise)/growth. The run may end earlier, by ln(4/0.3) \
+                 of that logarithm, because the largest of 800 normal numbers is 4 times their deviation and \
+                 30 % of compression end the run as well. It may end later, by ln(20 · 20 · 2), because the \
+                 noise of 20 × 20 particles leaves 1/20 of itself to a wave, of 800 waves one starts 20 \
+                 times lower with a chance of 1/400, and a speed of 2 c0 ends the run.",
+            )
+        }
+    };
+    let gate = Gate::new(id, metric, bound, Evidence::Theory, because);
+    vec![if *group == Group::Beyond { gate.even_if_diverged() } else { gate }]
+}
+
+/// The bisection of a row, whose step is the limit of theory.
+fn bisected(row: Row<BoxSettings, Group>) -> StepLimit {
+    let Row { variant, settings: s, run, .. } = row;
+    let bisect = Bisect {
+        setting: "courant".into(),
+        guess: s.courant,
+        unit: 1.0,
+        resolution: RESOLUTION,
+        end: None,
+    };
+    StepLimit {
+        variant,
+        scene: format!("c0 h/nu = {}, alpha = {}, delta = {}", stiffness(&s), s.alpha, s.delta),
+        spec: run.spec.allow_unstable().bisect(bisect),
+        theory: s.courant * h(&s),
+        theory_at: s.courant,
+        default_at: BoxSettings::default().courant,
+        of_theory: run.gates,
+        of_default: Vec::new(),
+    }
+}
+
+fn declaration(tier: Tier) -> Declaration {
+    let about = "A box at rest is stable if the energy of its noise does not grow. Theory is linear \
+                 stability of the same box, with every wave vector and with sound and damping together. The \
+                 predictor-corrector has no limit without damping, because it grows at every step.";
+    let rows = table(tier).rows.into_iter().filter(|row| row.group == Group::Limit);
+    let limits = StepLimits::new("resting-box", about, rows.map(bisected));
+    Declaration { limits: Some(limits), ..Declaration::default() }
+}
+
+/// The runs that are not bisections.
+fn plan(tier: Tier) -> Vec<Planned> {
+    let rows = table(tier).rows.into_iter().filter(|row| row.group != Group::Limit);
+    rows.map(|Row { run, .. }| Planned { spec: run.spec.allow_unstable(), ..run }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::judged;
+    use base::gate::check_all;
+    use harness::case::Case;
+
+    #[test]
+    fn boxes_have_the_limits_of_theory_and_diverge_beyond_them() {
+        let judged = judged(&[&RESTING_BOX]);
+        assert_eq!(judged.len(), 6 + 3 + 4 + 3 + 2 + 2 + 10);
+        for judged in &judged {
+            let (id, value) = (&judged.gate.id, judged.judgement.value);
+            assert!(!judged.judgement.verdict.is_failure(), "{id}: {value:?}");
+        }
+    }
+
+    #[test]
+    fn a_step_beyond_the_limit_is_refused_unless_allowed() {
+        let spec = RESTING_BOX.spec("cubic-leapfrog", |s| s.courant = 2.0);
+        assert!(RESTING_BOX.run(&spec, &Context::default()).is_err());
+        let record = RESTING_BOX.run(&spec.allow_unstable(), &Context::default()).expect("a run");
+        assert!(!is_stable(&record) && record.value(GREW) == Some(1.0));
+    }
+
+    /// What a variant does not damp with must not be set: theory would have it, and the run not.
+    #[test]
+    fn damping_that_a_variant_lacks_is_refused() {
+        for set in [|s: &mut BoxSettings| s.alpha = 1.0, |s: &mut BoxSettings| s.delta = 1.0] {
+            let of =
+                |variant| RESTING_BOX.run(&RESTING_BOX.spec(variant, set), &Context::default());
+            assert!(matches!(of(CUBIC), Err(RunError::Unused { .. })));
+            assert!(of(DAMPED).is_ok());
+        }
+    }
+
+    #[test]
+    fn every_gate_has_a_name_of_its_own() {
+        let gates: Vec<Gate> =
+            table(Tier::Full).rows.into_iter().flat_map(|row| row.run.gates).collect();
+        assert_eq!(check_all(&gates), Ok(()));
+    }
+}
