@@ -48,7 +48,10 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
             }
             Some(&place) => {
                 let first = &mut merged[place];
-                first.gates.extend(planned.gates);
+                // A run of a table is in the plan and in a ladder, with the same gates.
+                let others = planned.gates.into_iter().filter(|gate| !first.gates.contains(gate));
+                let others: Vec<Gate> = others.collect();
+                first.gates.extend(others);
                 first.timed |= planned.timed;
                 first.spec.measure = first.spec.measure.max(planned.spec.measure);
                 first.seconds = first.seconds.max(planned.seconds);

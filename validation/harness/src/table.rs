@@ -98,8 +98,7 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         let mut levels: Vec<Level> = rows
             .map(|row| {
                 let (spacing, label) = level(&row.settings);
-                // The plan has its gates.
-                Level { run: Planned::new(row.run.spec.clone()), spacing, label }
+                Level { run: row.run.clone(), spacing, label }
             })
             .collect();
         levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));

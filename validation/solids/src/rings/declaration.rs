@@ -34,6 +34,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         maps: maps(tier),
         sensitivity: Some(sensitivity(tier)),
         costly: &budget::METRICS,
+        ..Declaration::default()
     }
 }
 
