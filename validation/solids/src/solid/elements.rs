@@ -1,34 +1,70 @@
-//! What finite elements say of a body: quantities by name, and the path of a place.
+//! What finite elements say of a place of a body: its path, and quantities by name.
 
-use base::reference::{ReferenceError, Table};
+use std::collections::BTreeMap;
+
+use base::{
+    record::{MetricKey, Record},
+    reference::{Reference, ReferenceError, Table},
+};
 use nalgebra::Vector2;
 
-/// The rows of a table whose columns have these texts.
-pub fn rows(table: &Table, of: &[(&str, &str)]) -> Result<Vec<usize>, ReferenceError> {
+/// Columns of a table with the texts that rows have in them.
+type Texts<'a> = &'a [(&'a str, &'a str)];
+
+/// The numbers of rows of a table, column by column.
+fn rows<const N: usize>(
+    table: &Table,
+    of: Texts,
+    columns: [&str; N],
+) -> Result<Vec<(usize, [f64; N])>, ReferenceError> {
     let mut rows: Vec<usize> = (0..table.len()).collect();
     for (column, text) in of {
         let texts = table.texts(column)?;
         rows.retain(|row| texts[*row] == *text);
     }
-    Ok(rows)
+    let mut found: Vec<(usize, [f64; N])> = rows.into_iter().map(|row| (row, [0.0; N])).collect();
+    for (k, column) in columns.into_iter().enumerate() {
+        let numbers = table.numbers(column)?;
+        found.iter_mut().for_each(|(row, values)| values[k] = numbers[*row]);
+    }
+    Ok(found)
 }
 
-/// Quantities of a summary by name, each with its uncertainty.
-#[derive(Clone, Debug)]
-pub struct Quantities(Vec<(String, [f64; 2])>);
+/// Finite elements of one place.
+pub struct Elements {
+    quantities: BTreeMap<String, f64>,
+    /// Where the place is.
+    pub path: Path,
+}
 
-impl Quantities {
-    /// Those of the rows whose columns have these texts.
-    pub fn of(summary: &Table, of: &[(&str, &str)]) -> Result<Self, ReferenceError> {
-        let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
-        let spread = summary.numbers("uncertainty")?;
-        let quantity = |row: usize| (names[row].to_string(), [values[row], spread[row]]);
-        Ok(Self(rows(summary, of)?.into_iter().map(quantity).collect()))
+impl Elements {
+    /// The rows of the summary and of the series of a package; the path has the columns x and y.
+    pub fn load(
+        package: &str,
+        [summary, series]: [Texts; 2],
+        [x, y]: [&str; 2],
+    ) -> Result<Self, ReferenceError> {
+        let package = Reference::load(package)?;
+        let table = package.table("summary")?;
+        let names = table.texts("quantity")?;
+        let quantities = rows(table, summary, ["value"])?;
+        let quantities = quantities.into_iter().map(|(row, [value])| (names[row].into(), value));
+        let path = rows(package.table("series")?, series, ["t", x, y])?;
+        let path = Path(path.into_iter().map(|(_, row)| row).collect());
+        Ok(Self { quantities: quantities.collect(), path })
     }
 
-    /// A value and its uncertainty.
-    pub fn get(&self, name: &str) -> Option<[f64; 2]> {
-        self.0.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
+    /// A quantity.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.quantities.get(name).copied()
+    }
+
+    /// Puts a quantity over that of finite elements, less 1, or why it is absent.
+    pub fn compare(&self, record: &mut Record, [quantity, error]: [MetricKey; 2], lacks: &str) {
+        match record.value(quantity).zip(self.number(&String::from(quantity))) {
+            Some((found, exact)) => record.put(error, found / exact - 1.0),
+            None => record.leave_out(error, lacks),
+        }
     }
 }
 
@@ -37,15 +73,9 @@ impl Quantities {
 pub struct Path(pub Vec<[f64; 3]>);
 
 impl Path {
-    /// That of a series, by the columns of its displacements along x and y, of the rows whose columns have
-    /// these texts.
-    pub fn of(
-        series: &Table,
-        [x, y]: [&str; 2],
-        of: &[(&str, &str)],
-    ) -> Result<Self, ReferenceError> {
-        let [t, x, y] = [series.numbers("t")?, series.numbers(x)?, series.numbers(y)?];
-        Ok(Self(rows(series, of)?.into_iter().map(|row| [t[row], x[row], y[row]]).collect()))
+    /// Its last time \[s\].
+    pub fn end(&self) -> f64 {
+        self.0.last().map_or(0.0, |row| row[0])
     }
 
     /// Where the place is at a time \[s\], between two rows; `None` before the first and after the last.

@@ -8,6 +8,7 @@ pub mod faces;
 pub mod lagrangian;
 mod material;
 mod method;
+mod plates;
 mod problem;
 
 #[cfg(test)]
@@ -16,10 +17,11 @@ use harness::{
     context::Context,
 };
 
-pub use elements::{Path, Quantities, rows};
+pub use elements::{Elements, Path};
 pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
 pub use material::{Material, limits};
-pub use method::{Bare, Clamp, HeavyPlain, HeavyRubber, Plain, Rubber};
+pub use method::{Bare, Clamp, HeavyRubber, Plain, Rubber};
+pub use plates::{FIRST_MODE, clamp, thin_plate_period};
 pub use problem::{
     Problem, SharedSettings, Watch, check_length, digest, leave_out, program, variants,
 };
