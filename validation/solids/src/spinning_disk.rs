@@ -17,17 +17,12 @@ use base::{
 };
 use harness::{
     case::Tier,
-    columns::Columns,
     composed::{self, Best, Composed, Composition, Variants},
     declare::{Accuracy, Budget, Budgets, Change, Declaration, ErrorOf},
     method::Method,
-    runs::Runs,
     simulate,
-    study::Study,
     table::{Row, Table},
 };
-use report::Cell;
-
 crate::solid_settings! {
     /// Settings of a disk cut from a square lattice.
     pub struct DiskSettings {
@@ -58,7 +53,7 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     is_stable: composed::completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |tier, runs| vec![study(tier, runs)],
+    studies: composed::no_studies,
 };
 
 fn variants() -> Vec<Composition<DiskSettings>> {
@@ -301,14 +296,6 @@ fn table(tier: Tier) -> Table<DiskSettings, For> {
     table
 }
 
-/// Why drift is what it is; measured beside it: `rim_strain`, and no dependence on dt.
-const RIM: &str = "The disk drifts because the velocity gradient in the rate of stress, equation (11), is \
-    a sum over neighbours that is not corrected. For a rotation this sum gives no strain inside, but a \
-    strain in the rim, 2 h wide, where neighbours are missing. There the rotation is taken for shear in \
-    axes that turn with the body, so the stress grows from the first step on, and its forces, which are \
-    not central, brake the disk. The error does not depend on the time step. It falls with finer spacing, \
-    but more slowly than the share of the rim.";
-
 /// How fast a disk is braked at first.
 const BRAKED: &str = "The stress in the rim brakes the disk from the first step on. The bound: disks of 4 \
     spacings lose 1.9 % of their angular momentum in a tenth of a revolution without viscosity and 13 % with \
@@ -406,22 +393,6 @@ fn declaration(tier: Tier) -> Declaration {
         ..Budgets::of(&accuracy, vec![Budget { variant: "bare", changes }])
     };
     Declaration { accuracy: vec![accuracy], budgets: Some(budgets), ..Declaration::default() }
-}
-
-fn study(tier: Tier, runs: &Runs) -> Study {
-    let caption = "A disk without stress that begins to spin, its rim at 0.05 c0. The change of angular \
-                   momentum, and the strain that one step sees in the rim, are 0 in a perfect method.";
-    let revolutions = |r: &Record| r.settings_as::<DiskSettings>().end;
-    let shown = Columns::default()
-        .text("variant", |r: &Record| r.variant.clone())
-        .changed("settings", &SPINNING_DISK)
-        .of(["revolutions", ""], revolutions, |end| Cell::num(end, 2))
-        .number("angular momentum, change a revolution", "", ANGULAR_MOMENTUM_DRIFT)
-        .number("stress a revolution", "rho U^2", STRESS_DRIFT)
-        .number("strain in the rim", "spin", RIM_STRAIN)
-        .number("energy, change a revolution", "", ENERGY_DRIFT)
-        .table(caption, runs.records(table(tier).plan().into_iter().map(|planned| planned.spec)));
-    Study::new("spinning-disk-drift", "Drift against spacing").prose(RIM).block(shown)
 }
 
 #[cfg(test)]

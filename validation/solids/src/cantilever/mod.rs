@@ -52,7 +52,7 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
     is_stable: composed::completed,
     declaration: plan::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: |tier, runs| vec![plan::study(tier, runs)],
+    studies: composed::no_studies,
 };
 
 base::metrics! {

@@ -1,24 +1,18 @@
 //! The runs of the bar, their gates, and what the report says of them.
 
-use base::{
-    gate::{Bound, Evidence, Gate},
-    mutation::Constant,
-    record::Record,
-};
-use harness::{
-    case::Tier,
-    columns::Columns,
-    declare::{Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Sensitivity, Watched},
-    runs::Runs,
-    study::Study,
-    table::{Row, Table},
-};
-use report::Cell;
-
 use super::*;
 use crate::{
     causes::{FREE_FACES, VISCOSITY},
     solid::faces,
+};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    mutation::Constant,
+};
+use harness::{
+    case::Tier,
+    declare::{Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Sensitivity, Watched},
+    table::{Row, Table},
 };
 
 /// What a run is for.
@@ -54,13 +48,6 @@ pub fn table(tier: Tier) -> Table<CantileverSettings, For> {
     }
     table
 }
-
-/// What the stiffness of few layers is.
-const FEW_LAYERS: &str = "At a face the neighbours are on one side, and the displacement gradient is that \
-    of a place a sixth of a spacing inside, where a bent bar is strained less. What resists modes that \
-    deform no particle is chosen so that it makes up for that: by the theory of a bent lattice the \
-    stiffness is wrong by +0.6 % with 5 layers, -0.05 % with 10 and -0.04 % with 20. Deflections go with \
-    its inverse, displacements along the bar with the square of that, and the frequency with its root.";
 
 fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
     let CantileverSettings { n, gravity, end, .. } = row.settings;
@@ -193,26 +180,4 @@ fn curves(table: &Table<CantileverSettings, For>) -> Curves {
         columns: 2,
         panels,
     }
-}
-
-/// Every judged run against finite elements.
-pub fn study(tier: Tier, runs: &Runs) -> Study {
-    let caption = "Bars under their own weight against finite elements of the same law; `seed`, whose law \
-                   has no table, against that of Hencky.";
-    let shown = Columns::default()
-        .text("variant", |r: &Record| r.variant.clone())
-        .changed("settings", &CANTILEVER)
-        .percent("frequency", "", FREQUENCY_ERROR, 1.0)
-        .percent("mean y", "", AVERAGE_Y_ERROR, 1.0)
-        .percent("amplitude y", "", HARMONIC_Y_ERROR, 1.0)
-        .percent("mean x", "", AVERAGE_X_ERROR, 1.0)
-        .percent("amplitude x", "", HARMONIC_X_ERROR, 1.0)
-        .percent("first fall", "", FIRST_LEAST_Y_ERROR, 1.0)
-        .percent("frequency against theory", "", BENDING_FREQUENCY_ERROR, 1.0)
-        .metric(["energy, change", ""], ENERGY_CHANGE, |change| Cell::num(change, 2))
-        .num(["time", "s"], |r| Cell::seconds(r.cost.cpu_s))
-        .table(caption, runs.records(table(tier).plan().into_iter().map(|planned| planned.spec)));
-    Study::new("cantilever-end", "The end of the bar against finite elements")
-        .prose(FEW_LAYERS)
-        .block(shown)
 }

@@ -53,7 +53,7 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
     is_stable: composed::completed,
     declaration: plan::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: |tier, runs| vec![plan::study(tier, runs)],
+    studies: composed::no_studies,
 };
 
 fn variants() -> Vec<Composition<PlateSettings>> {

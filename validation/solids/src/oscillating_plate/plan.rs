@@ -1,23 +1,18 @@
 //! The runs of the plate, their gates, and what the report says of them.
 
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::{MetricKey, Record},
-};
-use harness::{
-    case::{Case, Rules, Tier},
-    columns::Columns,
-    declare::{Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, StepLimit, StepLimits},
-    runs::Runs,
-    study::Study,
-    table::{Row, Table},
-};
-use report::Cell;
-
 use super::*;
 use crate::{
     causes::{FREE_FACES, LOCKING, STRESS_ADDS_ENERGY, VISCOSITY},
     solid::{faces, lagrangian},
+};
+use base::{
+    gate::{Bound, Evidence, Gate},
+    record::MetricKey,
+};
+use harness::{
+    case::{Case, Rules, Tier},
+    declare::{Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, StepLimit, StepLimits},
+    table::{Row, Table},
 };
 
 /// What a run is for.
@@ -273,24 +268,4 @@ fn step_limits() -> StepLimits {
     let about = "A plate of 5 layers swings for half a period, some 1,500 steps. A step counts as stable if \
                  the run reaches its end: beyond the limit the fastest mode grows by 2 % a step and more.";
     StepLimits::new("oscillating-plate", about, [StepLimit { of_theory: vec![gate], ..limit }])
-}
-
-/// Every run against theory and finite elements.
-pub fn study(tier: Tier, runs: &Runs) -> Study {
-    let theory = thin_plate_period(&PlateSettings::default());
-    let caption = format!("Period of the cantilever; {theory:.4} s in the theory of thin plates.");
-    let shown = Columns::default()
-        .text("variant", |r: &Record| r.variant.clone())
-        .changed("settings", &OSCILLATING_PLATE)
-        .metric(["period", "s"], PERIOD, |period| Cell::num(period, 4))
-        .metric(["longer than theory", ""], PERIOD_EXCESS, |excess| Cell::percent(excess, 3))
-        .percent("longer than finite elements", "", PERIOD_ERROR, 1.0)
-        .number("path, three periods", "", PATH_RMS)
-        .number("amplitude over v T/(2π)", "", AMPLITUDE_RATIO)
-        .percent("energy, change", "", ENERGY_CHANGE, 1.0)
-        .num(["time", "s"], |r| Cell::seconds(r.cost.cpu_s))
-        .table(caption, runs.records(table(tier).plan().into_iter().map(|planned| planned.spec)));
-    Study::new("oscillating-plate-period", "Period against resolution")
-        .prose(format!("The period is too long for a known reason. {} {FACES}", FREE_FACES.what))
-        .block(shown)
 }
