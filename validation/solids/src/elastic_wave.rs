@@ -245,9 +245,8 @@ fn table(tier: Tier) -> Table<WaveSettings, ()> {
 
 fn gates(row: &Row<WaveSettings, ()>) -> Vec<Gate> {
     let because = "On a stress-free lattice the gradient symbol of the kernel is exact, and the Jaumann rate \
-                   rotates the stress with the body. What is not linear is of order 1e-12 at an amplitude \
-                   of 1e-6, the fit over 400 steps leaves 1e-9, and one step of 1e-5 rad an error of 1e-10 \
-                   and round-off of the strain, 1e-7.";
+                   rotates the stress with the body. The fit over 400 steps leaves 1e-9, one step of 1e-5 \
+                   rad 1e-10 and round-off of the strain 1e-7.";
     let s = &row.settings;
     let kind = match (s.rotation, s.transverse) {
         (true, _) => "turning",

@@ -23,7 +23,7 @@ use harness::{
 
 crate::solid_settings! {
     /// Settings of a plate that is held at x = 0.
-    pub struct PlateSettings {
+    pub struct PlateSettings of [2e6, 0.3975] {
         /// particles through the thickness
         n: usize ["-"] in 2..=1000 = 10,
         /// length outside of the clamp

@@ -11,23 +11,14 @@ use nalgebra::Vector2;
 /// Columns of a table with the texts that rows have in them.
 type Texts<'a> = &'a [(&'a str, &'a str)];
 
-/// The numbers of rows of a table, column by column.
-fn rows<const N: usize>(
-    table: &Table,
-    of: Texts,
-    columns: [&str; N],
-) -> Result<Vec<(usize, [f64; N])>, ReferenceError> {
+/// The rows of a table that have these texts.
+fn rows(table: &Table, of: Texts) -> Result<Vec<usize>, ReferenceError> {
     let mut rows: Vec<usize> = (0..table.len()).collect();
     for (column, text) in of {
         let texts = table.texts(column)?;
         rows.retain(|row| texts[*row] == *text);
     }
-    let mut found: Vec<(usize, [f64; N])> = rows.into_iter().map(|row| (row, [0.0; N])).collect();
-    for (k, column) in columns.into_iter().enumerate() {
-        let numbers = table.numbers(column)?;
-        found.iter_mut().for_each(|(row, values)| values[k] = numbers[*row]);
-    }
-    Ok(found)
+    Ok(rows)
 }
 
 /// Finite elements of one place.
@@ -46,12 +37,13 @@ impl Elements {
     ) -> Result<Self, ReferenceError> {
         let package = Reference::load(package)?;
         let table = package.table("summary")?;
-        let names = table.texts("quantity")?;
-        let quantities = rows(table, summary, ["value"])?;
-        let quantities = quantities.into_iter().map(|(row, [value])| (names[row].into(), value));
-        let path = rows(package.table("series")?, series, ["t", x, y])?;
-        let path = Path(path.into_iter().map(|(_, row)| row).collect());
-        Ok(Self { quantities: quantities.collect(), path })
+        let (names, values) = (table.texts("quantity")?, table.numbers("value")?);
+        let quantity = |row: usize| (names[row].into(), values[row]);
+        let quantities = rows(table, summary)?.into_iter().map(quantity).collect();
+        let table = package.table("series")?;
+        let [t, x, y] = [table.numbers("t")?, table.numbers(x)?, table.numbers(y)?];
+        let path = rows(table, series)?.into_iter().map(|row| [t[row], x[row], y[row]]);
+        Ok(Self { quantities, path: Path(path.collect()) })
     }
 
     /// A quantity.

@@ -40,19 +40,9 @@ pub fn refused(case: &dyn Case, variant: &str, set: &str) -> Option<RunError> {
 }
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its
-/// [`SharedSettings`]. The material is the rubber of the rings unless the case names another one, by Young's
-/// modulus \[Pa\] and Poisson's ratio.
+/// [`SharedSettings`]. The material has this Young's modulus \[Pa\] and Poisson's ratio.
 #[macro_export]
 macro_rules! solid_settings {
-    (
-        $(#[doc = $doc:literal])+
-        pub struct $Struct:ident { $($own:tt)* }
-    ) => {
-        $crate::solid_settings! {
-            $(#[doc = $doc])+
-            pub struct $Struct of [2e6, 0.3975] { $($own)* }
-        }
-    };
     (
         $(#[doc = $doc:literal])+
         pub struct $Struct:ident of [$young:literal, $poisson:literal] { $($own:tt)* }
