@@ -13,14 +13,16 @@ const ENERGY_EVERY: usize = 10;
 
 /// The motion of the end.
 pub struct End {
-    settings: CantileverSettings,
-    until: f64,
+    /// Of the bar.
+    pub settings: CantileverSettings,
+    /// When it is sampled next \[s\].
+    pub until: f64,
     /// t \[s\], displacement of the end along x and y \[m\].
-    path: Vec<[f64; 3]>,
+    pub path: Vec<[f64; 3]>,
     /// t \[s\], kinetic energy and all energy, less that of the start \[J/m\].
-    energies: Vec<[f64; 3]>,
+    pub energies: Vec<[f64; 3]>,
     /// The middle of the bar when its end was lowest \[m\].
-    lowest: Vec<[f64; 2]>,
+    pub lowest: Vec<[f64; 2]>,
 }
 
 harness::observed! {
@@ -38,17 +40,6 @@ impl Observer<Symmetric> for End {
 }
 
 impl End {
-    /// What sees a run with these settings.
-    pub fn new(settings: &CantileverSettings) -> Self {
-        Self {
-            settings: settings.clone(),
-            until: 0.0,
-            path: vec![[0.0; 3]],
-            energies: vec![[0.0; 3]],
-            lowest: Vec::new(),
-        }
-    }
-
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
         let all = simulation.particles();
         let columns = self.settings.columns();
@@ -178,7 +169,7 @@ mod tests {
         let mut simulation = (method.build)(Parts { mirrors: s.held(), ..parts }).expect("a scene");
         let place = |x: Vector2<f64>| Vector2::new(0.01 * x.x + 0.3 * x.y, -0.2 * x.x);
         lagrangian::displace(&mut *simulation, place);
-        let mut end = End::new(&s);
+        let mut end = s.watch(&[], None);
         end.sample(&*simulation);
         let [_, x, y] = end.path[1];
         assert_relative_eq!(x, 0.01 * 0.35, max_relative = 1e-9);

@@ -8,12 +8,12 @@ use solver::{Flow, Observer, Particle, PlaneWall, PrincipalStress, Role, Stepper
 use std::f64::consts::TAU;
 
 use super::solid::{
-    self, Clamp, Elements, Energy, FIRST_MODE, Material, Path, Plain, Problem, SharedSettings,
-    Watch,
+    self, Clamp, Elements, Energy, FIRST_MODE, Path, Plain, Problem, SharedSettings, Watch,
 };
 use base::{
     functions::{cos, cosh, sin, sinh},
     record::{Profile, Record},
+    reference::Reference,
 };
 use harness::{
     case::RunError,
@@ -113,6 +113,13 @@ fn mode(x: f64) -> f64 {
     f(x) / f(1.0)
 }
 
+impl PlateSettings {
+    /// Columns of particles outside of the clamp.
+    fn columns(&self) -> usize {
+        (self.length / self.dx()).round() as usize
+    }
+}
+
 impl Problem for PlateSettings {
     const NAME: &'static str = "oscillating_plate";
     type Watch = Tip;
@@ -142,12 +149,11 @@ impl Problem for PlateSettings {
     /// Free particles, column by column from the clamp, then those of the clamp.
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, speed) = (self.dx(), self.speed());
-        let columns = (self.length / dx).round() as usize;
         let held = (2.0 * self.h_over_dx).ceil() as usize;
         let first =
             |columns: usize| Vector2::new((0.5 - columns as f64) * dx, 0.5 * (dx - self.thickness));
         let at = |x, v| Particle::fluid(x, Vector2::new(0.0, v), self.rho, dx * dx);
-        let free = solver::lattice(first(0), dx, columns, self.n);
+        let free = solver::lattice(first(0), dx, self.columns(), self.n);
         let held = solver::lattice(first(held), dx, held, self.n);
         let free = free.map(|x| at(x, speed * mode(x.x / self.length)));
         free.chain(held.map(|x| at(x, 0.0).with_role(Role::Wall))).collect()
@@ -158,24 +164,14 @@ impl Problem for PlateSettings {
     }
 
     fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Tip {
-        let free = start.iter().filter(|p| p.role == Role::Fluid).count();
-        let material = self.material();
-        Tip {
-            settings: self.clone(),
-            material,
-            columns: free / self.n,
-            until: 0,
-            energy: Energy::of_all(start, &material).kinetic,
-            series: vec![[0.0; 3]],
-        }
+        let energy = Energy::of_all(start, &self.material()).kinetic;
+        Tip { settings: self.clone(), until: 0, energy, series: vec![[0.0; 3]] }
     }
 }
 
 /// The motion of the tip.
 pub struct Tip {
     settings: PlateSettings,
-    material: Material,
-    columns: usize,
     until: u64,
     /// Energy at the start \[J/m\].
     energy: f64,
@@ -184,7 +180,7 @@ pub struct Tip {
 }
 
 harness::observed! {
-    Tip: changes(until, series), parts(), stays(settings, material, columns, energy)
+    Tip: changes(until, series), parts(), stays(settings, energy)
 }
 
 impl Observer<Symmetric> for Tip {
@@ -194,10 +190,10 @@ impl Observer<Symmetric> for Tip {
             return Flow::Continue;
         }
         self.until = EVERY - 1;
-        let all = simulation.particles();
-        let tip = (1..=self.settings.n).map(|row| all[row * self.columns - 1].position);
-        let mean = tip.fold(Vector2::zeros(), |sum, x| sum + x) / self.settings.n as f64;
-        let rest = (self.columns as f64 - 0.5) * self.settings.dx();
+        let (all, s, columns) = (simulation.particles(), &self.settings, self.settings.columns());
+        let tip = (1..=s.n).map(|row| all[row * columns - 1].position);
+        let mean = tip.fold(Vector2::zeros(), |sum, x| sum + x) / s.n as f64;
+        let rest = (columns as f64 - 0.5) * s.dx();
         self.series.push([simulation.time(), mean.x - rest, mean.y]);
         Flow::Continue
     }
@@ -226,7 +222,7 @@ impl Tip {
 impl Watch for Tip {
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
         self.measure_swing(record);
-        let after = Energy::of(simulation, &self.material).total();
+        let after = Energy::of(simulation, &self.settings.material()).total();
         record.put(ENERGY_CHANGE, after / self.energy - 1.0);
         let (s, path) = (self.settings, Path(self.series));
         compare(&s, &path, record);
@@ -274,7 +270,8 @@ fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
     let law = ("law", if variant == LAGRANGIAN { Hencky::NAME } else { "jaumann" });
     let [n, x, y] = ["", "x_", "y_"].map(|axis| format!("{axis}{}", s.n));
     let rows: [&[_]; 2] = [&[law, ("layers", &n)], &[law]];
-    let mut found = Elements::load(PlateSettings::NAME, rows, [&x, &y]).ok()?;
+    let package = Reference::load("oscillating_plate").ok()?;
+    let mut found = Elements::of(&package, rows, [&x, &y]).ok()?;
     let end = found.number("passage_6").unwrap_or(0.0);
     found.path.0.retain(|row| row[0] <= end);
     Some(found)

@@ -29,13 +29,12 @@ pub struct Elements {
 }
 
 impl Elements {
-    /// The rows of the summary and of the series of a package; the path has the columns x and y.
-    pub fn load(
-        package: &str,
+    /// Those of the rows of the summary and of the series of a package; the path has the columns x and y.
+    pub fn of(
+        package: &Reference,
         [summary, series]: [Texts; 2],
         [x, y]: [&str; 2],
     ) -> Result<Self, ReferenceError> {
-        let package = Reference::load(package)?;
         let table = package.table("summary")?;
         let (names, values) = (table.texts("quantity")?, table.numbers("value")?);
         let quantity = |row: usize| (names[row].into(), values[row]);
