@@ -378,7 +378,7 @@ fn every_case_goes_on_with_an_equal_record() {
     let lacks = |case: &&&dyn Case| !variants.iter().any(|name| name.starts_with(case.name()));
     let lacking: Vec<&str> = cases::CASES.iter().filter(lacks).map(|case| case.name()).collect();
     assert!(lacking.is_empty(), "no run of {lacking:?} went on; of others {variants:?} did");
-    assert!(variants.len() > 90, "{} variants went on, 96 did", variants.len());
+    assert!(variants.len() > 83, "{} variants went on, 89 did", variants.len());
     for (case, _) in COARSE {
         assert!(cases::find(case).is_ok(), "{case} has coarser settings and is no case");
     }

@@ -98,7 +98,9 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         let mut levels: Vec<Level> = rows
             .map(|row| {
                 let (spacing, label) = level(&row.settings);
-                Level { run: row.run.clone(), spacing, label }
+                // Its gates are those of the plan, once.
+                let run = Planned { gates: Vec::new(), ..row.run.clone() };
+                Level { run, spacing, label }
             })
             .collect();
         levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));

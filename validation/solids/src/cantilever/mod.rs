@@ -41,7 +41,7 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
     problem: "A clamped elastic bar swings under its own weight",
     best: Best {
         variant: "lagrangian",
-        because: "with 5 layers its end falls as far as in finite elements to 0.4 %, the paper's 26 % farther",
+        because: "with 5 layers its end falls as in finite elements to 0.4 %, the paper's 26 % farther",
         papers: Some("seed"),
     },
     about: "An elastic bar, held at one end and at rest without stress, begins to swing when its weight \
