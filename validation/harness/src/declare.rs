@@ -521,6 +521,36 @@ pub struct CurveOf {
 /// Points of a curve from a record.
 pub type PointsOf = Box<dyn Fn(&Record) -> Vec<(f64, f64)> + Send + Sync>;
 
+impl CurveOf {
+    /// Two columns of a profile of a run.
+    pub fn columns(
+        name: impl Into<String>,
+        spec: RunSpec,
+        profile: &'static str,
+        [x, y]: [&'static str; 2],
+    ) -> Self {
+        let points = move |record: &Record| {
+            let [x, y] = [x, y].map(|name| record.column(profile, name).iter().copied());
+            x.zip(y).collect()
+        };
+        Self { name: name.into(), spec, points: Box::new(points) }
+    }
+}
+
+impl CurvePanel {
+    /// Lines over one reference, on linear axes.
+    pub fn linear(
+        title: &str,
+        [x, y]: [&str; 2],
+        lines: Vec<CurveOf>,
+        (name, points): (&str, Vec<(f64, f64)>),
+    ) -> Self {
+        let (title, references) = (title.into(), vec![(name.into(), points)]);
+        let (x, y) = (Axis::linear(x), Axis::linear(y));
+        Self { title, x, y, lines, references, symbols: false }
+    }
+}
+
 impl Declaration {
     /// How much must be measured of a run with these gates.
     pub fn measure_for(&self, gates: &[Gate]) -> Measure {

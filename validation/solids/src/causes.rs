@@ -9,13 +9,6 @@ pub static FREE_FACES: Cause = Cause::new(
     "Corrected gradients at free faces, or the total Lagrangian form of the variant `lagrangian`.",
 );
 
-/// Corrected gradients are of first order at faces.
-pub static LINEAR_GRADIENTS: Cause = Cause::new(
-    "Corrected gradients are exact for linear fields alone, so layers near the faces of a bent body have the \
-     smaller strain of their neighbours.",
-    "The variant `lagrangian` with fewer neighbours, or finer spacing.",
-);
-
 /// Bodies act on each other before they touch.
 pub static SOFT_CONTACT: Cause = Cause::new(
     "Bodies push each other as soon as their kernels overlap, so contact begins before they touch and yields \
@@ -48,13 +41,6 @@ pub static VISCOSITY: Cause = Cause::new(
     "Artificial viscosity, which is proportional to the spacing, takes energy from motion and shifts and \
      widens the front of a wave.",
     "Viscosity that acts in shocks alone, a Riemann solver with reconstruction, or finer spacing.",
-);
-
-/// What its absence does.
-pub static NO_VISCOSITY: Cause = Cause::new(
-    "Without artificial viscosity and artificial stress, motion at the scale of the particle spacing takes \
-     up energy and slows a plate.",
-    "Artificial viscosity and artificial stress, as the variant `plain` has them.",
 );
 
 /// Artificial stress is not elastic.

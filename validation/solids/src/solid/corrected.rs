@@ -7,81 +7,27 @@
 //! factor. Artificial stress in principal axes (ξ = 0.3, n = 4) lowers the largest s² to 0.18, and artificial
 //! viscosity makes what is left slow. So tearing is delayed and not removed, as without correction.
 
-use harness::method::{Boundary, FirstRow, FromMedium, Medium};
 use solver::{
     ArtificialViscosity, Compose, ConjugateStress, ConsistentContinuity, ConsistentJaumannRate,
-    CubicSpline, JaumannRate, Leapfrog, Linear, Open, PlaneWall, Symmetric, kernel::Smoothing,
-    walls::Walls,
+    CubicSpline, Leapfrog, Linear, Open, Symmetric,
 };
 
-use super::Clamp;
-
-/// Period of bending with artificial stress over that without, less 1: of the stretched half of a plate it
-/// takes the share a = ξ Σ V F φⁿ x²/G₁ of the stiffness, and a beam of two moduli E and (1 − a) E has the
-/// stiffness 4 (1 − a)/(1 + √(1 − a))² of one.
-pub fn weakened_excess(h_over_dx: f64, xi: f64, exponent: i32) -> f64 {
-    let kernel = Smoothing::<CubicSpline>::new(h_over_dx);
-    let reach = kernel.support().ceil() as i32;
-    let mut sums = [0.0; 2];
-    for (x, y) in (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| (x, y))) {
-        let (x2, r2) = (f64::from(x * x), f64::from(x * x + y * y));
-        let phi = kernel.w(r2) / kernel.w(1.0);
-        sums = [sums[0] + kernel.f(r2) * x2 * phi.powi(exponent), sums[1] + kernel.f(r2) * x2];
-    }
-    let left = 1.0 - xi * sums[0] / sums[1];
-    (1.0 + left.sqrt()) / (2.0 * left.sqrt()) - 1.0
-}
-
 /// The rates of density and stress.
-pub type Drift = (ConsistentContinuity, ConsistentJaumannRate);
+type Drift = (ConsistentContinuity, ConsistentJaumannRate);
 
 /// The terms of [`super::Plain`] with corrected gradients.
-pub type Corrected<R, W = Open> = Compose<
+pub type Corrected<R> = Compose<
     CubicSpline,
     (ConjugateStress<Linear, R>, ArtificialViscosity<Linear>),
     Drift,
-    W,
+    Open,
     Leapfrog,
     Symmetric,
 >;
 
 /// Those of [`super::Bare`].
-pub type CorrectedBare<W = Open> =
-    Compose<CubicSpline, ConjugateStress<Linear>, Drift, W, Leapfrog, Symmetric>;
-
-/// Walls that hold a body, with those that do so where gradients are corrected.
-pub trait Held: Walls<Symmetric> + Boundary {
-    /// The latter.
-    type Corrected: Walls<Symmetric> + Boundary;
-}
-
-impl Held for Open {
-    type Corrected = Self;
-}
-
-impl Held for Clamp {
-    type Corrected = CorrectedClamp;
-}
-
-/// [`Clamp`] with corrected gradients: the work of the forces on the free particles is what free and held
-/// particles store.
-#[derive(Clone, Copy, Debug)]
-pub struct CorrectedClamp(Drift);
-
-impl Walls<Symmetric> for CorrectedClamp {
-    type Terms = Drift;
-    fn terms(&self) -> Drift {
-        self.0
-    }
-}
-
-impl Boundary for CorrectedClamp {
-    const NAME: &'static str = Clamp::NAME;
-    const FIRST_ROW: FirstRow = Clamp::FIRST_ROW;
-    fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
-        Self((ConsistentContinuity, ConsistentJaumannRate(JaumannRate::new(medium))))
-    }
-}
+pub type CorrectedBare =
+    Compose<CubicSpline, ConjugateStress<Linear>, Drift, Open, Leapfrog, Symmetric>;
 
 #[cfg(test)]
 mod tests {
@@ -113,15 +59,6 @@ mod tests {
         let mut simulation = (method.build)(parts).expect("a scene");
         assert_eq!(simulation.advance(60.0 * dt, dt, &mut ()), Outcome::Reached);
         simulation.fluid().map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max) / 1e-12
-    }
-
-    /// 0.293 of the sum is that of artificial stress, by an independent sum in another language.
-    #[test]
-    fn artificial_stress_lengthens_the_period_by_two_per_cent() {
-        let left: f64 = 1.0 - 0.3 * 0.293;
-        let found = weakened_excess(1.5, 0.3, 4);
-        assert!((found - (0.5 / left.sqrt() - 0.5)).abs() < 1e-4, "{found}");
-        assert_eq!(weakened_excess(1.5, 0.0, 4), 0.0);
     }
 
     #[test]

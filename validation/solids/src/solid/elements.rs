@@ -1,10 +1,18 @@
-//! What finite elements say of a body: quantities by name, and the path of a place.
+//! What finite elements say of a place of a body: its path, and quantities by name.
 
-use base::reference::{ReferenceError, Table};
+use std::collections::BTreeMap;
+
+use base::{
+    record::{MetricKey, Record},
+    reference::{Reference, ReferenceError, Table},
+};
 use nalgebra::Vector2;
 
-/// The rows of a table whose columns have these texts.
-pub fn rows(table: &Table, of: &[(&str, &str)]) -> Result<Vec<usize>, ReferenceError> {
+/// Columns of a table with the texts that rows have in them.
+type Texts<'a> = &'a [(&'a str, &'a str)];
+
+/// The rows of a table that have these texts.
+fn rows(table: &Table, of: Texts) -> Result<Vec<usize>, ReferenceError> {
     let mut rows: Vec<usize> = (0..table.len()).collect();
     for (column, text) in of {
         let texts = table.texts(column)?;
@@ -13,22 +21,41 @@ pub fn rows(table: &Table, of: &[(&str, &str)]) -> Result<Vec<usize>, ReferenceE
     Ok(rows)
 }
 
-/// Quantities of a summary by name, each with its uncertainty.
-#[derive(Clone, Debug)]
-pub struct Quantities(Vec<(String, [f64; 2])>);
+/// Finite elements of one place.
+pub struct Elements {
+    quantities: BTreeMap<String, f64>,
+    /// Where the place is.
+    pub path: Path,
+}
 
-impl Quantities {
-    /// Those of the rows whose columns have these texts.
-    pub fn of(summary: &Table, of: &[(&str, &str)]) -> Result<Self, ReferenceError> {
-        let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
-        let spread = summary.numbers("uncertainty")?;
-        let quantity = |row: usize| (names[row].to_string(), [values[row], spread[row]]);
-        Ok(Self(rows(summary, of)?.into_iter().map(quantity).collect()))
+impl Elements {
+    /// Those of the rows of the summary and of the series of a package; the path has the columns x and y.
+    pub fn of(
+        package: &Reference,
+        [summary, series]: [Texts; 2],
+        [x, y]: [&str; 2],
+    ) -> Result<Self, ReferenceError> {
+        let table = package.table("summary")?;
+        let (names, values) = (table.texts("quantity")?, table.numbers("value")?);
+        let quantity = |row: usize| (names[row].into(), values[row]);
+        let quantities = rows(table, summary)?.into_iter().map(quantity).collect();
+        let table = package.table("series")?;
+        let [t, x, y] = [table.numbers("t")?, table.numbers(x)?, table.numbers(y)?];
+        let path = rows(table, series)?.into_iter().map(|row| [t[row], x[row], y[row]]);
+        Ok(Self { quantities, path: Path(path.collect()) })
     }
 
-    /// A value and its uncertainty.
-    pub fn get(&self, name: &str) -> Option<[f64; 2]> {
-        self.0.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
+    /// A quantity.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.quantities.get(name).copied()
+    }
+
+    /// Puts a quantity over that of finite elements, less 1, or why it is absent.
+    pub fn compare(&self, record: &mut Record, [quantity, error]: [MetricKey; 2], lacks: &str) {
+        match record.value(quantity).zip(self.number(&String::from(quantity))) {
+            Some((found, exact)) => record.put(error, found / exact - 1.0),
+            None => record.leave_out(error, lacks),
+        }
     }
 }
 
@@ -37,15 +64,9 @@ impl Quantities {
 pub struct Path(pub Vec<[f64; 3]>);
 
 impl Path {
-    /// That of a series, by the columns of its displacements along x and y, of the rows whose columns have
-    /// these texts.
-    pub fn of(
-        series: &Table,
-        [x, y]: [&str; 2],
-        of: &[(&str, &str)],
-    ) -> Result<Self, ReferenceError> {
-        let [t, x, y] = [series.numbers("t")?, series.numbers(x)?, series.numbers(y)?];
-        Ok(Self(rows(series, of)?.into_iter().map(|row| [t[row], x[row], y[row]]).collect()))
+    /// Its last time \[s\].
+    pub fn end(&self) -> f64 {
+        self.0.last().map_or(0.0, |row| row[0])
     }
 
     /// Where the place is at a time \[s\], between two rows; `None` before the first and after the last.

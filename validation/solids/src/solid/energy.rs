@@ -62,14 +62,9 @@ impl Energy {
         }
     }
 
-    /// Elastic energy.
-    pub fn strain(&self) -> f64 {
-        self.compression + self.shear
-    }
-
     /// All of it.
     pub fn total(&self) -> f64 {
-        self.kinetic + self.strain()
+        self.kinetic + (self.compression + self.shear)
     }
 }
 

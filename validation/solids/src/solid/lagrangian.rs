@@ -9,6 +9,7 @@ use solver::{
     Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
 };
 
+use super::leave_out;
 use base::settings::Settings;
 use harness::method::{Medium, Method, Parts, mutate};
 use maths::theory::{
@@ -68,8 +69,9 @@ pub fn bending(layers: usize, poisson: f64) -> f64 {
     bending::stiffness::<WendlandC2>(H_OVER_DX, layers, poisson)
 }
 
-/// Sets what the method is used with.
+/// Sets what the method is used with, and the strengths of terms that it lacks to 0.
 pub fn choose(settings: &mut impl Settings) {
+    leave_out(settings, &["alpha", "beta", "xi", "xsph"]);
     for (name, value) in [("h_over_dx", H_OVER_DX), ("courant", COURANT)] {
         let _is_in_range = settings.set(name, &value.to_string());
     }
@@ -138,8 +140,6 @@ fn step_limit(medium: &Medium) -> f64 {
 /// What [`fastest_of_block`] finds for h/dx and moduli \[Pa\]. It takes as long as hundreds of steps of a
 /// small body, and runs of many settings ask for the same, so it is kept.
 fn stiffness(of: [f64; 3]) -> f64 {
-    /// More than a plan has; beyond that all are found anew.
-    const MOST: usize = 1000;
     static FOUND: Mutex<BTreeMap<[u64; 3], f64>> = Mutex::new(BTreeMap::new());
     let (key, [h_over_dx, moduli @ ..]) = (of.map(f64::to_bits), of);
     let found = || FOUND.lock().unwrap_or_else(PoisonError::into_inner);
@@ -147,11 +147,7 @@ fn stiffness(of: [f64; 3]) -> f64 {
         return *known;
     }
     let stiffness = fastest_of_block::<WendlandC2>(h_over_dx, moduli);
-    let mut found = found();
-    if found.len() >= MOST {
-        found.clear();
-    }
-    found.insert(key, stiffness);
+    found().insert(key, stiffness);
     stiffness
 }
 

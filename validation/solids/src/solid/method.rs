@@ -17,20 +17,16 @@ pub type Rubber<R, I, W = Open> =
 pub type Plain<R, W = Open> =
     Compose<CubicSpline, Stabilised<R>, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
 
-/// The same forces on a body that has weight.
+/// The forces of [`Rubber`] on a body that has weight.
 type Heavy<R> = (CauchyStress<Linear, R>, ArtificialViscosity<Linear>, BodyForce);
 
 /// [`Rubber`] that has weight.
 pub type HeavyRubber<R, I, W = Open> =
     Compose<CubicSpline, Heavy<R>, (Continuity, JaumannRate, Xsph), W, I, Symmetric>;
 
-/// [`Plain`] rubber that has weight.
-pub type HeavyPlain<R, W = Open> =
-    Compose<CubicSpline, Heavy<R>, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
-
 /// (3), (9)–(12) alone, stepped by the leapfrog: nothing stabilises, and nothing dissipates.
-pub type Bare<W = Open, K = CubicSpline> =
-    Compose<K, CauchyStress<Linear>, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
+pub type Bare<W = Open> =
+    Compose<CubicSpline, CauchyStress<Linear>, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
 
 /// Walls of an elastic body: particles of [`solver::Role::Wall`] that stand still and continue the
 /// body, so that it is held where they begin. Their density and their stress follow the motion of the

@@ -8,6 +8,7 @@ pub mod faces;
 pub mod lagrangian;
 mod material;
 mod method;
+mod plates;
 mod problem;
 
 #[cfg(test)]
@@ -16,10 +17,11 @@ use harness::{
     context::Context,
 };
 
-pub use elements::{Path, Quantities, rows};
+pub use elements::{Elements, Path};
 pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
 pub use material::{Material, limits};
-pub use method::{Bare, Clamp, HeavyPlain, HeavyRubber, Plain, Rubber};
+pub use method::{Bare, Clamp, HeavyRubber, Plain, Rubber};
+pub use plates::{FIRST_MODE, clamp, thin_plate_period};
 pub use problem::{
     Problem, SharedSettings, Watch, check_length, digest, leave_out, program, variants,
 };
@@ -38,19 +40,9 @@ pub fn refused(case: &dyn Case, variant: &str, set: &str) -> Option<RunError> {
 }
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its
-/// [`SharedSettings`]. The material is the rubber of the rings unless the case names another one, by Young's
-/// modulus \[Pa\] and Poisson's ratio.
+/// [`SharedSettings`]. The material has this Young's modulus \[Pa\] and Poisson's ratio.
 #[macro_export]
 macro_rules! solid_settings {
-    (
-        $(#[doc = $doc:literal])+
-        pub struct $Struct:ident { $($own:tt)* }
-    ) => {
-        $crate::solid_settings! {
-            $(#[doc = $doc])+
-            pub struct $Struct of [2e6, 0.3975] { $($own)* }
-        }
-    };
     (
         $(#[doc = $doc:literal])+
         pub struct $Struct:ident of [$young:literal, $poisson:literal] { $($own:tt)* }

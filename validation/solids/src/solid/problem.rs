@@ -4,14 +4,10 @@ use ::lagrangian::Hencky;
 use nalgebra::Vector2;
 use solver::{
     Domain, EquationOfState, Observer, Particle, PlaneWall, PredictorCorrector, PrincipalStress,
-    Stepper, Symmetric,
+    Stepper, Symmetric, walls::Walls,
 };
 
-use super::{
-    Bare, Energy, Material, Plain, Rubber,
-    corrected::{Corrected, Held},
-    lagrangian, limits,
-};
+use super::{Bare, Energy, Material, Rubber, lagrangian, limits};
 use base::{
     record::{self, Record},
     settings::Settings,
@@ -21,7 +17,7 @@ use harness::{
     checkpoint::Observed,
     composed::{Composition, Program, Variants},
     context::Context,
-    method::{Medium, Method, Parts},
+    method::{Boundary, Medium, Method, Parts},
     rules::PLANNED_DT,
     runner::{self, Drive},
     simulate,
@@ -93,7 +89,7 @@ pub trait Problem: SharedSettings {
     /// About how many particles there are, before they are made.
     fn count(&self) -> f64;
     /// The settings on which the number of particles and of time steps depends.
-    const DECISIVE: &'static str;
+    const DECISIVE: &'static str = "end, dt or n";
 }
 
 /// Sees every step of a run and measures it.
@@ -107,8 +103,8 @@ pub fn program<P: Problem>() -> Program<P, Method<Symmetric>> {
     Program { run: run::<P>, rules: |method, s| Ok(rules(method, s)) }
 }
 
-/// The variants of a problem whose particles these walls hold.
-pub fn variants<P: Problem, W: Held>() -> Vec<Composition<P>> {
+/// The variants that every problem has; these walls hold the particles of those of the paper.
+pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition<P>> {
     Variants::of(&program())
         .with(
             "seed",
@@ -118,32 +114,18 @@ pub fn variants<P: Problem, W: Held>() -> Vec<Composition<P>> {
             |_| {},
         )
         .with(
-            "plain",
-            "the same terms without XSPH, stepped by the leapfrog",
-            Method::of::<Plain<PrincipalStress, W>>(),
-            |s| leave_out(s, &["xsph"]),
-        )
-        .with(
             "bare",
-            "the equations (3), (9)-(12) and nothing that stabilises, stepped by the leapfrog",
+            "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what to \
+             the terms that stabilise?",
             Method::of::<Bare<W>>(),
             |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
         )
         .with(
-            "corrected",
-            "the terms of `plain` with corrected gradients, and the forces that are conjugate to them",
-            Method::of::<Corrected<PrincipalStress, W::Corrected>>(),
-            |s| leave_out(s, &["xsph"]),
-        )
-        .with(
             "lagrangian",
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
-             Hencky, contact between bodies, velocity Verlet; nothing dissipates",
+             Hencky, contact between bodies, velocity Verlet: what is left where nothing dissipates?",
             lagrangian::method::<Hencky>(),
-            |s| {
-                leave_out(s, &["alpha", "beta", "xi", "xsph"]);
-                lagrangian::choose(s);
-            },
+            lagrangian::choose,
         )
         .all
 }
