@@ -1,24 +1,23 @@
 //! The finite-element flow of this Reynolds number, and its field between the stations.
 
-use std::collections::BTreeMap;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::OnceLock;
 
 use nalgebra::Vector2;
 
-use super::HillSettings;
+use super::{HillSettings, measure::rms};
 use base::{
     record::MetricKey,
     reference::{Reference as Package, ReferenceError, Table},
 };
 use maths::geometry::Hill;
 
+/// Reynolds numbers that have a reference.
+pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];
 /// The settings that have a reference, in words.
 pub const KNOWN_SETTINGS: &str = "re = 10, 50 or 100, crest = 1 and flux = 1";
 
-/// Read and checked once: 25 000 rows, which every run and every figure asks for.
-static PACKAGE: OnceLock<Package> = OnceLock::new();
-/// What was taken from them, by the bits of the Reynolds number: every plan asks for it, too.
-static KNOWN: Mutex<BTreeMap<u64, Option<Reference>>> = Mutex::new(BTreeMap::new());
+/// Read and checked once: 25 000 rows, which every run, every plan and every figure asks for.
+static KNOWN: OnceLock<Vec<Reference>> = OnceLock::new();
 
 /// A profile across one section.
 #[derive(Clone, Debug, Default)]
@@ -44,44 +43,38 @@ pub struct Reference {
     pub line: Vec<(f64, f64)>,
     /// Name and value.
     numbers: Vec<(String, f64)>,
+    /// Root mean square of the uncertainty of u over all points of the profiles \[U_b\].
+    pub uncertainty: f64,
 }
 
 impl Reference {
     /// The reference of these settings; `None` where nothing was computed for their geometry, their flux or
     /// their Reynolds number.
-    pub fn of(settings: &HillSettings) -> Result<Option<Self>, ReferenceError> {
-        if (settings.crest, settings.flux) != (1.0, 1.0) {
-            return Ok(None);
-        }
-        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(reference) = known.get(&settings.re.to_bits()) {
-            return Ok(reference.clone());
-        }
-        let reference = Self::read(settings.re)?;
-        known.insert(settings.re.to_bits(), reference.clone());
-        Ok(reference)
+    pub fn of(settings: &HillSettings) -> Result<Option<&'static Self>, ReferenceError> {
+        let known = match KNOWN.get() {
+            Some(known) => known,
+            None => {
+                let package = Package::load("periodic_hill")?;
+                let known: Result<_, _> =
+                    REYNOLDS.into_iter().map(|re| Self::read(&package, re)).collect();
+                let known = known?;
+                KNOWN.get_or_init(|| known)
+            }
+        };
+        let place = REYNOLDS.iter().position(|re| *re == settings.re);
+        let is_known = (settings.crest, settings.flux) == (1.0, 1.0);
+        Ok(place.filter(|_| is_known).map(|place| &known[place]))
     }
 
     /// The rows of a Reynolds number.
-    fn read(reynolds: f64) -> Result<Option<Self>, ReferenceError> {
-        let package = match PACKAGE.get() {
-            Some(package) => package,
-            None => {
-                let package = Package::load("periodic_hill")?;
-                PACKAGE.get_or_init(|| package)
-            }
-        };
+    fn read(package: &Package, reynolds: f64) -> Result<Self, ReferenceError> {
         let rows = |table: &Table| -> Result<Vec<usize>, ReferenceError> {
             let re = table.numbers("re")?;
             Ok((0..re.len()).filter(|&k| re[k] == reynolds).collect())
         };
         let summary = package.table("summary")?;
-        let kept = rows(summary)?;
-        if kept.is_empty() {
-            return Ok(None);
-        }
         let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
-        let numbers = kept.iter().map(|&k| (names[k].to_string(), values[k])).collect();
+        let numbers = rows(summary)?.iter().map(|&k| (names[k].to_string(), values[k])).collect();
         let wall = package.table("wall")?;
         let [x, hill, lid] = ["x", "hill_shear", "lid_shear"].map(|name| wall.numbers(name));
         let (x, hill, lid) = (x?, hill?, lid?);
@@ -91,13 +84,15 @@ impl Reference {
         let line = rows(line)?.into_iter().map(|k| (x[k], y[k])).collect();
         let profiles = package.table("profiles")?;
         let stations = Self::stations(profiles, &profiles.numbers("y")?, &rows(profiles)?)?;
+        let own = profiles.numbers("u_uncertainty")?;
+        let uncertainty = rms(rows(profiles)?.into_iter().map(|k| own[k]));
         let starts = package.table("starts")?;
         let hill = Hill::new(1.0)?;
         let places = starts.numbers("x")?.into_iter().zip(starts.numbers("s")?);
         let height = |(x, s): (f64, f64)| hill.wall(x) * (1.0 - s) + hill.lid() * s;
         let heights: Vec<f64> = places.map(height).collect();
         let starts = Self::stations(starts, &heights, &rows(starts)?)?;
-        Ok(Some(Self { stations, starts, wall, line, numbers }))
+        Ok(Self { stations, starts, wall, line, numbers, uncertainty })
     }
 
     /// Rows of a table as stations, the heights being `y`.
@@ -152,18 +147,8 @@ impl Reference {
 
 /// What finite elements have at this Reynolds number. A reference that cannot be read makes every run
 /// fail: there is no need to say it once more.
-pub fn reference(re: f64) -> Option<Reference> {
+pub fn reference(re: f64) -> Option<&'static Reference> {
     Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
-}
-
-/// Root mean square of the uncertainty of u \[U_b\] over all points of the profiles of a Reynolds number.
-pub fn uncertainty(reynolds: f64) -> Option<f64> {
-    let package = Package::load("periodic_hill").ok()?;
-    let profiles = package.table("profiles").ok()?;
-    let (re, u) = (profiles.numbers("re").ok()?, profiles.numbers("u_uncertainty").ok()?);
-    let own = re.iter().zip(&u).filter(|(re, _)| **re == reynolds).map(|(_, u)| u * u);
-    let (sum, count) = own.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
-    (count > 0).then(|| (sum / f64::from(count)).sqrt())
 }
 
 /// The floor as a line.
