@@ -298,7 +298,9 @@ fn bubble(wall: &[[f64; 3]]) -> [Option<f64>; 2] {
         end - stretch.len()..end
     });
     let backward = stretches.filter(|s| s.end < wall.len() && wall[s.start][0] < 0.0);
-    let longest = backward.max_by_key(|stretch| stretch.len()).filter(|stretch| stretch.len() >= 3);
+    let longest = backward
+        .max_by_key(|stretch| (stretch.len(), wall.len() - stretch.start))
+        .filter(|stretch| stretch.len() >= 3);
     let zero = |after: usize| {
         let before = after.checked_sub(1)?;
         let (a, b) = (wall[before][0], wall[after][0]);
