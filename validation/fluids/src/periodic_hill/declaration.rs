@@ -57,9 +57,8 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
 
 /// Runs from rest alone: those from the reference end before they could leave it.
 fn accuracy(tier: Tier, table: &Table) -> Accuracy {
-    let about = "Flow over periodic hills at Re 50, steady after 40 H/U_b, against finite elements at ten \
-                 stations. In the quick tier at Re 10 after 10 H/U_b, when about 0.3 % of U_b is left of \
-                 the start from rest.";
+    let about = "Flow over periodic hills at Re 50 after 40 H/U_b, against finite elements at ten stations. \
+                 In the quick tier at Re 10 after 10 H/U_b, when 0.3 % of U_b is left of the start.";
     let level = |s: &HillSettings| (1.0 / s.n as f64, format!("H/dx = {}", s.n));
     let mut ladders = STABLE.map(|variant| table.ladder(&[For::Ladder], variant, level));
     for ladder in ladders.iter_mut().filter(|of| of.variant == BEST && tier == Tier::Full) {
@@ -67,15 +66,16 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
             id: format!("{NAME}.{BEST}.50.order"),
             bound: Bound::Above(1.0),
             evidence: Evidence::Theory,
-            because:
-                "The walls are of first order on disordered particles, and their sums of second."
-                    .into(),
+            because: "Walls are of first order on disordered particles, sums of second.".into(),
         });
     }
-    let accuracy =
-        Accuracy::new("periodic-hill", ErrorOf::Metric(L2_U.into()), "rms error of u [U_b]");
-    let (about, ladders) = (about.into(), ladders.into());
-    Accuracy { about, spacing: "dx/H [-]", slope: Some(1.0), ladders, ..accuracy }
+    Accuracy {
+        about: about.into(),
+        spacing: "dx/H [-]",
+        slope: Some(1.0),
+        ladders: ladders.into(),
+        ..Accuracy::new("periodic-hill", ErrorOf::Metric(L2_U.into()), "rms error of u [U_b]")
+    }
 }
 
 /// One thing changed at a time; the quick tier has the first five.
@@ -84,14 +84,9 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
     let about = "Runs from rest at Re 50, H/dx = 10, in the quick tier at Re 10, H/dx = 5. A change smaller \
                  than that by the start is within the effect of disorder.";
     let change = |what, part, variant, set: fn(&mut HillSettings)| {
-        Change::new(
-            what,
-            part,
-            CASE.spec(variant, |s| {
-                flow(s, base);
-                set(s);
-            }),
-        )
+        let mut settings = CASE.chosen(variant, |s| flow(s, base));
+        set(&mut settings);
+        Change::new(what, part, CASE.spec_of(variant, &settings))
     };
     let finer: fn(&mut HillSettings) = |s| s.n = if s.n == 5 { 7 } else { 20 };
     let mut changes = vec![
@@ -125,11 +120,10 @@ fn curve(
 
 /// Profiles at their stations, symbols on lines, and shear along the hill.
 fn profiles(table: &Table) -> Curves {
-    let caption = "Velocity u along the channel (left) and v across it (middle) at ten stations: lines are \
-                   finite elements, symbols the finest run of variant `carried`. A velocity is drawn from \
-                   the place of its station, where 1 H stands for 1.25 U_b of u or 0.4 U_b of v. Right: \
-                   shear stress over ρ U_b² on the hill at several spacings and of finite elements (black). \
-                   Where it is negative the flow goes backwards; the crests are at x = 0 and 9 H.";
+    let caption = "Velocities u along the channel and v across it at ten stations: lines are finite \
+                   elements, symbols the finest run of variant `carried`. A velocity is drawn from the \
+                   place of its station. Right: shear stress on the hill at several spacings and of finite \
+                   elements (black), negative where the flow goes backwards.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         let rows = shown(table, re);
@@ -177,15 +171,13 @@ fn shear(rows: &[&Row], reference: &Reference) -> CurvePanel {
         let [x, y] = ["x", "hill shear"].map(|name| record.column("wall", name).iter().copied());
         x.zip(y).collect()
     };
+    let exact = reference.wall.iter().map(|w| (w[0], w[1])).collect();
     CurvePanel {
         title: format!("Re {}: shear on the hill", rows[0].settings.re),
         x: Axis::linear("x/H"),
         y: Axis::linear("shear stress [ρ U_b²]"),
         lines: rows.iter().map(|row| curve(name(row), row, points)).collect(),
-        references: vec![(
-            "finite elements".into(),
-            reference.wall.iter().map(|w| (w[0], w[1])).collect(),
-        )],
+        references: vec![("finite elements".into(), exact)],
         symbols: false,
     }
 }
@@ -198,69 +190,51 @@ pub fn is_stable(record: &Record) -> bool {
     record.status == Status::Completed && energy.first().is_some_and(bounded)
 }
 
-/// The longest stable step over the theoretical one, by bisection.
+/// The longest stable step over the theoretical one, by bisection: in the full tier of one variant each with
+/// sums over pairs, with shifted velocities and with consistent sums.
 fn limits(tier: Tier) -> StepLimits {
     let (n, variants): (usize, &[&'static str]) = match tier {
         Tier::Quick => (5, &[BEST]),
-        // One each with sums over pairs, with shifted velocities and with consistent sums.
         Tier::Full => (10, &["modern", BEST, "consistent"]),
     };
-    let about = format!(
-        "The longest time step with which the flow at Re 50, H/dx = {n}, goes on for 3 H/U_b from the \
-         interpolated reference without diverging or doubling its kinetic energy, by bisection to 2 %, over \
-         the limit of linear theory for a periodic lattice at rest. Walls, curvature and particles in \
-         disorder are not in that theory."
-    );
-    let of = variants.iter().map(|variant| {
-        let limit = limit(variant, n);
-        if tier == Tier::Quick { limit } else { judged(limit) }
-    });
-    StepLimits::new("periodic-hill", &about, of)
+    let about = "The longest time step with which the flow at Re 50 goes on for 3 H/U_b from the reference \
+                 without diverging or doubling its kinetic energy, by bisection, over the limit of linear \
+                 theory for a lattice at rest, which has no walls, no curvature and no disorder.";
+    StepLimits::new("periodic-hill", about, variants.iter().map(|variant| limit(variant, n)))
 }
 
-/// The bisection of a variant.
+/// The bisection of a variant with its gates.
 fn limit(variant: &'static str, n: usize) -> StepLimit {
     let spec = CASE.spec(variant, |s| flow(s, (50.0, n, 3.0, true)));
     let rules = CASE.rules(&spec).unwrap_or(Rules::REFUSED);
     // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
-    let at_limit = HillSettings::default().courant / (rules.dt() / rules.dt_limit());
+    let default = rules.dt() / rules.dt_limit();
+    let at_limit = ("courant", HillSettings::default().courant / default);
     let scene = format!("Re 50, H/dx = {n}");
-    StepLimit::proportional(variant, &scene, spec, ("courant", at_limit), &rules)
-}
-
-/// The same with its gates.
-fn judged(limit: StepLimit) -> StepLimit {
-    let StepLimit { variant, default_at: default, .. } = limit;
     let gate = |what: &str, metric: &str, bound, evidence, because: &str| {
         Gate::new(format!("{NAME}.step.{variant}.{what}"), metric, bound, evidence, because)
     };
-    let theory = "The default step must be stable. Disorder makes neither sound slower nor the stencil \
-                  softer by a fifth, so a limit far above that of the lattice would show a wrong theory.";
-    let margin = "The bound is what was measured when this study was introduced, 1.577, less the resolution \
-                  of the bisection.";
+    let theory = "The default step is stable, and disorder makes neither sound slower nor the stencil \
+                  softer by a fifth.";
+    let margin =
+        "The bound was measured when this study was introduced, less the resolution of 2 %.";
     let (bound, longest) = (Bound::Within(default, 1.2), Bound::Above(1.577 - 0.02 / default));
     let metric = "longest stable dt/default dt";
     StepLimit {
         of_theory: vec![gate("theory", "measured/theory", bound, Evidence::Theory, theory)],
         of_default: vec![gate("margin", metric, longest, Evidence::Regression, margin)],
-        ..limit
+        ..StepLimit::proportional(variant, &scene, spec, at_limit, &rules)
     }
 }
 
-const BOUNDS: &str = "At ten spacings a hill, the error of the method takes up most of the bounds on \
-                      reattachment and force. A viscosity that is wrong by 10 % moves the force beyond its \
-                      bound.";
-const CONTROLLED: &str =
-    "A controller sets the force that keeps the flux, whatever force it begins with.";
-const STRESS: &str = "Velocity and force per mass do not depend on the density, and no gate judges a stress \
-                      in Pa. A density that is wrong by 30 % is detected, because it is outside the bounds \
-                      beyond which a run ends.";
-const SOUND: &str = "The reference is incompressible, and compressibility changes the velocity by less than \
-                     the spacing does.";
-const REACH: &str = "Sums over neighbours hold for any reach of the kernel, and the error that a longer \
-                     reach adds is inside the bounds at ten spacings a hill.";
-const DISORDER: &str = "The term keeps particles evenly spread, and does so with 30 % less or more of it as \
-                        well. Without shifting the run fails.";
+const BOUNDS: &str = "The error of the method at ten spacings a hill takes up most of the bounds.";
+const CONTROLLED: &str = "A controller sets the force, whatever force it begins with.";
+const STRESS: &str = "No gate judges a stress in Pa. Beyond 30 % the density ends the run.";
+const SOUND: &str = "Compressibility changes the velocity by less than the spacing does.";
+const REACH: &str =
+    "Sums hold for any reach, whose error is inside the bounds at ten spacings a hill.";
+const DISORDER: &str =
+    "Particles stay evenly spread with 30 % less or more of it, and not without.";
 
 /// Errors of constants that the gates of the cheapest judged run must detect.
 fn sensitivity(tier: Tier, table: &Table) -> Sensitivity {

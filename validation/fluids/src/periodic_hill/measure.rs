@@ -131,7 +131,6 @@ impl<'a> Field<'a> {
 /// Sums over samples of one part of the run.
 #[derive(Clone, Default)]
 pub struct Window {
-    count: f64,
     /// u and v at the points of the stations.
     sections: Vec<[f64; 2]>,
     /// Shear stress on the hill and on the lid, pressure on the hill.
@@ -142,7 +141,7 @@ pub struct Window {
     samples: Vec<Vec<f64>>,
 }
 
-base::bits! { Window { count, sections, wall, forces, samples } }
+base::bits! { Window { sections, wall, forces, samples } }
 
 /// The places of the stations: x, y, weight of the section's height.
 fn places(setup: &Setup) -> Vec<[f64; 2]> {
@@ -189,7 +188,6 @@ impl Window {
         self.samples.push(sections.iter().map(|[u, _]| *u).collect());
         add(&mut self.sections, sections.into_iter());
         add(&mut self.wall, (0..WALL).map(|k| wall(setup, &field, along(k))));
-        self.count += 1.0;
     }
 
     /// Adds force and flux, of every stretch.
@@ -198,7 +196,7 @@ impl Window {
     }
 
     fn mean<const N: usize>(&self, sums: &[[f64; N]]) -> Vec<[f64; N]> {
-        sums.iter().map(|s| s.map(|x| x / self.count)).collect()
+        sums.iter().map(|s| s.map(|x| x / self.samples.len() as f64)).collect()
     }
 }
 
@@ -366,15 +364,11 @@ pub fn wall_offset(setup: &Setup, s: &dyn Stepper<()>) -> f64 {
             walls().min_by(|a, b| distance(place, a).total_cmp(&distance(place, b))).map(depth);
         (nearest.unwrap_or(f64::INFINITY) / dx - setup.first).abs()
     };
-    let floor = |p: Vector2<f64>| behind_floor(setup, p);
-    let ceiling = |p: Vector2<f64>| p.y - lid;
-    (0..WALL)
-        .map(along)
-        .map(|x| {
-            let (below, above) = (Vector2::new(x, setup.floor(x)), Vector2::new(x, lid));
-            off(below, &floor).max(off(above, &ceiling))
-        })
-        .fold(0.0, f64::max)
+    let off_at = |x: f64| {
+        let below = off(Vector2::new(x, setup.floor(x)), &|p| behind_floor(setup, p));
+        below.max(off(Vector2::new(x, lid), &|p| p.y - lid))
+    };
+    (0..WALL).map(|k| off_at(along(k))).fold(0.0, f64::max)
 }
 
 /// Distance from the floor \[m\], positive behind it, by Gauss and Newton's iteration for its foot.

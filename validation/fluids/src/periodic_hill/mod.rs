@@ -124,15 +124,14 @@ static CASE: Composed<HillSettings> = Composed {
     problem: "Flow over a row of hills, with separation",
     best: Best {
         variant: BEST,
-        because: "with ten spacings a hill height its velocity is wrong by 1.4 % of the mean, and its \
-                  force and drag balance are the best, without sums that cost more for each pair",
+        because: "with ten spacings a hill its velocity is wrong by 1.4 % of the mean, and its force and \
+                  drag balance are the best, without sums that cost more for each pair",
         papers: Some("interface-wall"),
     },
     about: "A body force keeps a given flux through a channel with hills on its floor, one every nine \
-            heights, and a flat lid. From Re 50 on the flow leaves the wall behind the crest and comes \
-            back to it in the trough, or on the next hill. It is steady and laminar, along walls that are \
-            convex at the crest and concave at the foot. The reference is a finite-element computation of \
-            this project, because none is published.",
+            heights. From Re 50 on the flow leaves the wall behind the crest and comes back to it in the \
+            trough, or on the next hill. It is steady and laminar. The reference is a finite-element \
+            computation of this project, because none is published.",
     variants,
     is_stable: declaration::is_stable,
     declaration: declaration::declaration,

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::{HillSettings, measure::rms};
 use base::{
     record::MetricKey,
-    reference::{Reference as Package, ReferenceError, Table},
+    reference::{Reference as Package, ReferenceError},
 };
 use maths::geometry::Hill;
 
@@ -20,7 +20,7 @@ pub const KNOWN_SETTINGS: &str = "re = 10, 50 or 100, crest = 1 and flux = 1";
 static KNOWN: OnceLock<Vec<Reference>> = OnceLock::new();
 
 /// A profile across one section.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Station {
     /// Place \[H\].
     pub x: f64,
@@ -66,50 +66,29 @@ impl Reference {
         Ok(place.filter(|_| is_known).map(|place| &known[place]))
     }
 
-    /// The rows of a Reynolds number.
-    fn read(package: &Package, reynolds: f64) -> Result<Self, ReferenceError> {
-        let rows = |table: &Table| -> Result<Vec<usize>, ReferenceError> {
-            let re = table.numbers("re")?;
-            Ok((0..re.len()).filter(|&k| re[k] == reynolds).collect())
-        };
+    /// What the package has of a Reynolds number.
+    fn read(package: &Package, re: f64) -> Result<Self, ReferenceError> {
         let summary = package.table("summary")?;
-        let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
-        let numbers = rows(summary)?.iter().map(|&k| (names[k].to_string(), values[k])).collect();
-        let wall = package.table("wall")?;
-        let [x, hill, lid] = ["x", "hill_shear", "lid_shear"].map(|name| wall.numbers(name));
-        let (x, hill, lid) = (x?, hill?, lid?);
-        let wall = rows(wall)?.into_iter().map(|k| [x[k], hill[k], lid[k]]).collect();
-        let line = package.table("line")?;
-        let (x, y) = (line.numbers("x")?, line.numbers("y")?);
-        let line = rows(line)?.into_iter().map(|k| (x[k], y[k])).collect();
-        let profiles = package.table("profiles")?;
-        let stations = Self::stations(profiles, &profiles.numbers("y")?, &rows(profiles)?)?;
-        let own = profiles.numbers("u_uncertainty")?;
-        let uncertainty = rms(rows(profiles)?.into_iter().map(|k| own[k]));
-        let starts = package.table("starts")?;
+        let (of, names) = (summary.numbers("re")?, summary.texts("quantity")?);
+        let values = summary.numbers("value")?;
+        let own = (0..of.len()).filter(|&k| of[k] == re);
+        let numbers = own.map(|k| (names[k].to_string(), values[k])).collect();
+        let wall = rows(package, "wall", re, ["x", "hill_shear", "lid_shear"])?;
+        let line = rows(package, "line", re, ["x", "y"])?;
+        let profiles = rows(package, "profiles", re, ["x", "y", "u", "v"])?;
+        let uncertainty = rows(package, "profiles", re, ["u_uncertainty"])?;
         let hill = Hill::new(1.0)?;
-        let places = starts.numbers("x")?.into_iter().zip(starts.numbers("s")?);
-        let height = |(x, s): (f64, f64)| hill.wall(x) * (1.0 - s) + hill.lid() * s;
-        let heights: Vec<f64> = places.map(height).collect();
-        let starts = Self::stations(starts, &heights, &rows(starts)?)?;
-        Ok(Self { stations, starts, wall, line, numbers, uncertainty })
-    }
-
-    /// Rows of a table as stations, the heights being `y`.
-    fn stations(table: &Table, y: &[f64], rows: &[usize]) -> Result<Vec<Station>, ReferenceError> {
-        let x = table.numbers("x")?;
-        let (u, v) = (table.numbers("u")?, table.numbers("v")?);
-        let mut stations: Vec<Station> = Vec::new();
-        for &k in rows {
-            if stations.last().is_none_or(|s| s.x != x[k]) {
-                stations.push(Station { x: x[k], ..Station::default() });
-            }
-            if let Some(station) = stations.last_mut() {
-                station.y.push(y[k]);
-                station.v.push(Vector2::new(u[k], v[k]));
-            }
-        }
-        Ok(stations)
+        let height = |x: f64, s: f64| hill.wall(x) * (1.0 - s) + hill.lid() * s;
+        let starts = rows(package, "starts", re, ["x", "s", "u", "v"])?.into_iter();
+        let starts: Vec<_> = starts.map(|[x, s, u, v]| [x, height(x, s), u, v]).collect();
+        Ok(Self {
+            stations: stations(&profiles),
+            starts: stations(&starts),
+            wall,
+            line: line.into_iter().map(|[x, y]| (x, y)).collect(),
+            numbers,
+            uncertainty: rms(uncertainty.into_iter().map(|[u]| u)),
+        })
     }
 
     /// What the summary has for a metric.
@@ -143,6 +122,31 @@ impl Reference {
         };
         near.iter().enumerate().map(|(k, station)| at(station) * weight(k)).sum()
     }
+}
+
+/// Some columns of a table, the rows of a Reynolds number.
+fn rows<const N: usize>(
+    package: &Package,
+    table: &str,
+    reynolds: f64,
+    names: [&str; N],
+) -> Result<Vec<[f64; N]>, ReferenceError> {
+    let table = package.table(table)?;
+    let re = table.numbers("re")?;
+    let columns: Result<Vec<_>, _> = names.iter().map(|name| table.numbers(name)).collect();
+    let columns = columns?;
+    let own = (0..re.len()).filter(|&k| re[k] == reynolds);
+    Ok(own.map(|k| std::array::from_fn(|j| columns[j][k])).collect())
+}
+
+/// Rows of x, y, u, v as stations.
+fn stations(rows: &[[f64; 4]]) -> Vec<Station> {
+    let station = |rows: &[[f64; 4]]| Station {
+        x: rows[0][0],
+        y: rows.iter().map(|row| row[1]).collect(),
+        v: rows.iter().map(|row| Vector2::new(row[2], row[3])).collect(),
+    };
+    rows.chunk_by(|a, b| a[0] == b[0]).map(station).collect()
 }
 
 /// What finite elements have at this Reynolds number. A reference that cannot be read makes every run

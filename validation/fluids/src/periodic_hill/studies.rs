@@ -1,55 +1,39 @@
-//! What only the hills have to say: pictures, all runs, whether the start matters.
+//! What only the hills have to say: pictures and all runs.
 
 use super::{
-    BEST, CASE, NAME,
+    CASE,
     measure::{
-        DRAG_BALANCE, DRAGS, FORCE, FORCE_ERROR, L2_U, L2_V, REATTACHMENT, SECTION_FLUX,
-        SEPARATION, SHEAR_ERROR, UNSTEADY, rms,
+        DRAG_BALANCE, DRAGS, FORCE, FORCE_ERROR, L2_U, REATTACHMENT, SECTION_FLUX, SEPARATION,
+        UNSTEADY,
     },
-    plan::{For, Table, name, shown, table},
+    plan::{name, shown, table},
     reference::{REYNOLDS, floor, reference},
-};
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::Record,
 };
 use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Series};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let table = table(tier);
-    let mut studies = vec![pictures(&table, runs), all(runs)];
-    if tier == Tier::Full {
-        studies.push(starts(&table, runs));
-    }
-    studies
+    vec![pictures(tier, runs), all(runs)]
 }
 
 /// Every run.
 fn all(runs: &Runs) -> Study {
-    let caption = "All runs. Errors of u and v are rms over the points of ten stations. The error of shear \
-                   is rms over the hill, relative to the largest shear there. Flux of sections is the \
-                   largest error of ten. Drags are shear on the hill, shear on the lid and pressure on the \
-                   hill; the balance is their sum over the force, less 1. In `interface-wall` and `modern` \
-                   it fails by the pressure on the hill: the pressure of the field at the wall is not that \
-                   of the sums that move particles. Unsteady is what is left of the decay, extrapolated, \
-                   without the change that disorder explains. A dash stands for a run that diverged, for no \
-                   bubble, or for no finite elements to compare with. Runs from the reference start within \
-                   0.04 % of U_b of it: their error says that the flow stays there, and unsteady how far it \
-                   would still go.";
+    let caption = "All runs. The error of u is rms over the points of ten stations, the flux of sections the \
+                   largest error of ten. The drag balance is the sum of the three drags over the force, less 1; in \
+                   `interface-wall` and `modern` it fails by the pressure on the hill, for the pressure of \
+                   the field at the wall is not that of the sums that move particles. Unsteady is what is \
+                   left of the decay, extrapolated. Runs from the reference start within 0.04 % of U_b.";
     let [hill, lid, pressure] = DRAGS;
     let drag = "rho U_b^2 H";
     let table = Columns::of_variants()
         .changed("settings", &CASE)
         .ended()
         .percent("error of u", "U_b", L2_U, 1.0)
-        .percent("error of v", "U_b", L2_V, 1.0)
         .number("force", "U_b^2/H", FORCE)
         .percent("error of it", "-", FORCE_ERROR, 1.0)
         .number("separation", "H", SEPARATION)
         .number("reattachment", "H", REATTACHMENT)
-        .percent("error of shear", "-", SHEAR_ERROR, 1.0)
         .percent("flux of sections", "-", SECTION_FLUX, 1.0)
         .number("shear on the hill", drag, hill)
         .number("on the lid", drag, lid)
@@ -61,12 +45,12 @@ fn all(runs: &Runs) -> Study {
 }
 
 /// Particles by their velocity.
-fn pictures(table: &Table, runs: &Runs) -> Study {
-    let caption = "Particles of the finest run of variant `carried`, coloured by their velocity u along \
-                   the channel over the bulk velocity U_b; H is the height of a hill. A thick line encloses \
-                   the fluid that circulates in finite elements (none at Re 10).";
+fn pictures(tier: Tier, runs: &Runs) -> Study {
+    let table = table(tier);
+    let caption = "Particles of the finest run of variant `carried`, by their velocity u along the channel. \
+                   A line encloses the fluid that circulates in finite elements (none at Re 10).";
     let shown = REYNOLDS.into_iter().filter_map(|re| {
-        let (row, reference) = (*shown(table, re).last()?, reference(re)?);
+        let (row, reference) = (*shown(&table, re).last()?, reference(re)?);
         Some((row, reference, runs.completed(&row.run.spec)?))
     });
     let shown: Vec<_> = shown.collect();
@@ -84,29 +68,4 @@ fn pictures(table: &Table, runs: &Runs) -> Study {
     });
     let figure = panels.fold(Figure::new("periodic-hill-pictures", caption), Figure::panel);
     Study::new("periodic-hill-pictures", "Pictures").block(figure.panel_size(640.0, 230.0))
-}
-
-/// rms over stations of the difference of u of two runs \[U_b\].
-fn difference(a: &Record, b: &Record) -> f64 {
-    let [a, b] = [a, b].map(|record| record.column("stations", "u"));
-    rms(a.iter().zip(b).map(|(a, b)| a - b))
-}
-
-/// From rest and from near the answer.
-fn starts(table: &Table, runs: &Runs) -> Study {
-    let because = "Both starts must lead to the same steady flow, except for what disorder leaves in \
-                   averages over a fifth of the run, at least 3 H/U_b.";
-    let about = "Finer runs start from the reference. That this does not make the result is judged at ten \
-                 spacings a hill, where runs from rest end as well.";
-    let study = Study::new("periodic-hill-starts", "From rest and from the reference").prose(about);
-    table.of(For::Starts).fold(study, |study, row| {
-        let re = row.settings.re;
-        let rest = shown(table, re).into_iter().find(|rest| rest.settings.n == row.settings.n);
-        let rest = rest.and_then(|rest| runs.completed(&rest.run.spec));
-        let both = rest.zip(runs.completed(&row.run.spec));
-        let found = both.map_or(f64::NAN, |(rest, other)| difference(rest, other));
-        let id = format!("{NAME}.{BEST}.{re}.starts");
-        let metric = "rms over stations of the difference of u [U_b]";
-        study.judge(Gate::new(id, metric, Bound::Below(0.005), Evidence::Invariant, because), found)
-    })
 }

@@ -24,12 +24,13 @@ use std::f64::consts::TAU;
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
-    vec![pictures(&table, runs), all(runs), sound(&table, runs), viscous(&table, runs)]
+    let all = viscous(sound(all(runs), &table, runs), &table, runs);
+    vec![pictures(&table, runs), all]
 }
 
 /// Every run.
 fn all(runs: &Runs) -> Study {
-    let caption = "All runs at their end, by default t = 2 L/U. The largest error is that over time. The \
+    let caption = "All runs at their end, by default t = 2 L/U: what sound speed and super-time-stepping cost and buy. The largest error is that over time. The \
                    viscosity found follows from the fall of the kinetic energy. Momentum added is the change \
                    of the total momentum from start to end over the total mass, exactly 0 in theory; that of \
                    a disturbed start does not count. Each stage of `stiff` counts as one pair sweep.";
@@ -61,12 +62,9 @@ fn found(runs: &Runs, row: Option<&Row>, number: impl Fn(&Record) -> Option<f64>
 }
 
 /// Does faster sound pay?
-fn sound(table: &Table, runs: &Runs) -> Study {
-    let because = "Sound four times as fast takes four times the work and must not be needed: \
-                   compressibility at c0 = 10 U is 1 % of the pressure, and what irregular particles add to \
-                   the pressure grows as c0^2, so that the error has been seen to rise.";
-    let study = Study::new("taylor-green-sound", "What the sound speed costs and what it buys")
-        .prose("Errors and work over c0 are in the table of all runs.");
+fn sound(study: Study, table: &Table, runs: &Runs) -> Study {
+    let because = "Faster sound must not be needed: what irregular particles add to the pressure grows as \
+                   c0^2, so that the error has been seen to rise.";
     table.of(For::Sound).filter(|row| row.settings.c0 == 40.0).fold(study, |study, fast| {
         let (variant, n) = (fast.variant, fast.settings.n);
         let error = |row| found(runs, row, |record| record.value(L2));
@@ -78,18 +76,13 @@ fn sound(table: &Table, runs: &Runs) -> Study {
 }
 
 /// Does super-time-stepping have the error of short explicit steps, for less work?
-fn viscous(table: &Table, runs: &Runs) -> Study {
-    let same = "An explicit step leaves 1 - g dt of a velocity that decays at the rate g = 2 nu k^2, so \
-                that at the end it is wrong by g^2 t dt/2. The short explicit steps have this error, \
-                super-time-stepping one of second order, for which the bound adds 0.05 %.";
-    let fifth = "The goal of the channels at Re 0.5, where sound limits the step too: a fifth of the pair \
-                 interactions of explicit steps of about the same error.";
-    let gain = "It must not cost more than the longest explicit steps, whose error of time it does not \
-                have; sound limits both.";
-    let study = Study::new("taylor-green-viscous", "At Re 1, where viscosity is stiff").prose(
-        "Errors, steps and work are in the table of all runs. The error of long explicit steps has the \
-         sign opposite to that of the spacing.",
-    );
+fn viscous(study: Study, table: &Table, runs: &Runs) -> Study {
+    let same = "Explicit steps of a velocity that decays at the rate g = 2 nu k^2 have the error g^2 t dt/2 \
+                at the end, super-time-stepping one of second order, for which the bound adds 0.05 %.";
+    let fifth =
+        "The goal of the channels at Re 0.5: a fifth of the work of steps of about the same error.";
+    let gain =
+        "It costs less than the longest explicit steps, whose error of time it does not have.";
     let of = |variant| table.of(For::Viscous).filter(move |row| row.variant == variant);
     of(STIFF).fold(study, |study, stiff| {
         let (n, end) = (stiff.settings.n, stiff.settings.end);
@@ -119,29 +112,23 @@ fn viscous(table: &Table, runs: &Runs) -> Study {
     })
 }
 
-/// Particles at the end, by speed and by error.
+/// Particles at the end, by their error.
 fn pictures(table: &Table, runs: &Runs) -> Study {
     let caption = "Particles in half of the periodic box of Taylor-Green vortices at t = 2 L/U, Re 100, \
                    from the disturbed lattice, for variant `plain`, without stabilisers, and the best one, \
-                   `consistent`. Left: speed; right: logarithm of the error of the velocity, where −2 is 1 %.";
+                   by the logarithm of the error of the velocity, where −2 is 1 %.";
     let mut figure = Figure::new("taylor-green-pictures", caption).columns(2);
     for row in table.rows.iter().filter(|row| is_pictured(row)) {
         let Some(record) = runs.completed(&row.run.spec) else { continue };
         let n = row.settings.n;
-        let of = |name: &str, label: &str, value: fn(f64) -> f64, [low, high]: [f64; 2]| {
-            let title = format!("{}, {n} x {n}", row.variant);
-            let axis = |name: &str, end| Axis::linear(format!("{name} [L]")).range(0.0, end);
-            let points = pictures::points(record, "particles", name).into_iter();
-            let lower = points.filter(|(_, y, _)| *y < 0.5);
-            let points = lower.map(|(x, y, v)| (x, y, value(v))).collect();
-            let axes = (axis("x", 1.0), axis("y", 0.5));
-            let map = ParticleMap::new(title, axes, label, ColourMap::Sequential, points);
-            map.values(low, high).diameter(1.0 / n as f64)
-        };
-        let logarithm = |v: f64| log10(v.max(1e-12));
-        figure = figure
-            .panel(of("speed", "speed/largest exact speed [-]", |v| v, [0.0, 1.1]))
-            .panel(of("error", "log₁₀(error/largest exact speed)", logarithm, [-4.0, 0.0]));
+        let axis = |name: &str, end| Axis::linear(format!("{name} [L]")).range(0.0, end);
+        let points = pictures::points(record, "particles", "error").into_iter();
+        let lower = points.filter(|(_, y, _)| *y < 0.5);
+        let points = lower.map(|(x, y, error)| (x, y, log10(error.max(1e-12)))).collect();
+        let (title, label) = (format!("{}, {n} x {n}", row.variant), "log₁₀(error/exact speed)");
+        let axes = (axis("x", 1.0), axis("y", 0.5));
+        let map = ParticleMap::new(title, axes, label, ColourMap::Sequential, points);
+        figure = figure.panel(map.values(-4.0, 0.0).diameter(1.0 / n as f64));
     }
     Study::new("taylor-green-pictures", "Pictures").block(figure.panel_size(300.0, 170.0))
 }
