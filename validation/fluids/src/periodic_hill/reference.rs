@@ -199,9 +199,9 @@ mod tests {
             // The start: its own stations as they stand, and the finer profiles as far as it holds them.
             assert_eq!(reference.starts.len(), 29);
             assert!(reference.starts.iter().all(|s| s.y.len() == 100));
-            let on_them = distance(&reference, &reference.starts);
+            let on_them = distance(reference, &reference.starts);
             assert!(on_them < 1e-15, "{on_them:e} at Re {re}");
-            let off = distance(&reference, &reference.stations);
+            let off = distance(reference, &reference.stations);
             assert!(off < 5e-4, "{off:e} at Re {re}");
             // The flux does not depend on the place, whatever the gap there.
             for x in [0.0, 0.3, 1.7, 5.5, 8.7] {

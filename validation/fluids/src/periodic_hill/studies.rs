@@ -1,20 +1,21 @@
-//! What only the hills have to say: pictures and all runs.
+//! What only the hills have to say: pictures, all runs, whether the start matters.
 
 use super::{
-    CASE,
+    BEST, CASE, NAME,
     measure::{
         DRAG_BALANCE, DRAGS, FORCE, FORCE_ERROR, L2_U, REATTACHMENT, SECTION_FLUX, SEPARATION,
-        UNSTEADY,
+        UNSTEADY, rms,
     },
-    plan::{name, shown, table},
+    plan::{Row, name, shown, table},
     reference::{REYNOLDS, floor, reference},
 };
+use base::gate::{Bound, Evidence, Gate};
 use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Series};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    vec![pictures(tier, runs), all(runs)]
+    vec![pictures(tier, runs), starts(all(runs), tier, runs)]
 }
 
 /// Every run.
@@ -42,6 +43,23 @@ fn all(runs: &Runs) -> Study {
         .metric(["unsteady", "U_b"], UNSTEADY, |v| Cell::sci(v, 1))
         .table(caption, runs.simulations());
     Study::new("periodic-hill-runs", "All runs").block(table)
+}
+
+/// Runs from rest and from the reference, ten spacings a hill: only the full tier has both.
+fn starts(study: Study, tier: Tier, runs: &Runs) -> Study {
+    let because =
+        "Both starts lead to the same steady flow, but for what disorder leaves in averages.";
+    let table = table(tier);
+    REYNOLDS.into_iter().fold(study, |study, re| {
+        let rows = shown(&table, re).into_iter().filter(|row| row.settings.n == 10);
+        let [rest, other] = rows.collect::<Vec<_>>()[..] else { return study };
+        let u = |row: &Row| Some(runs.completed(&row.run.spec)?.column("stations", "u"));
+        let both = u(rest).zip(u(other));
+        let found = both.map_or(f64::NAN, |(a, b)| rms(a.iter().zip(b).map(|(a, b)| a - b)));
+        let metric = "rms over stations of the difference of u [U_b]";
+        let (id, bound) = (format!("{NAME}.{BEST}.{re}.starts"), Bound::Below(0.005));
+        study.judge(Gate::new(id, metric, bound, Evidence::Invariant, because), found)
+    })
 }
 
 /// Particles by their velocity.
