@@ -21,10 +21,11 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 /// Every run.
 fn all(runs: &Runs) -> Study {
     let caption = "All runs. The error of u is rms over the points of ten stations, the flux of sections the \
-                   largest error of ten. The drag balance is the sum of the three drags over the force, less 1; in \
-                   `interface-wall` and `modern` it fails by the pressure on the hill, for the pressure of \
-                   the field at the wall is not that of the sums that move particles. Unsteady is what is \
-                   left of the decay, extrapolated. Runs from the reference start within 0.04 % of U_b.";
+                   largest error of ten. The drag balance is the sum of the three drags over the force, less \
+                   1; in `interface-wall` and `modern` it fails by the pressure on the hill, for the \
+                   pressure of the field at the wall is not that of the sums that move particles. Unsteady \
+                   is what is left of the decay, extrapolated. Runs from the reference start within 0.04 % \
+                   of U_b.";
     let [hill, lid, pressure] = DRAGS;
     let drag = "rho U_b^2 H";
     let table = Columns::of_variants()

@@ -41,7 +41,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         about: "Taylor-Green vortices at Re 100 from the disturbed lattice, at t = 2 L/U.".into(),
         spacing: "dx/L [-]",
         ladders: ladders.into(),
-        // Codes whose numbers cannot be read are missing from the figure; the reference has a test of its own.
+        // Codes whose numbers cannot be read are missing; the reference has a test of its own.
         peers: peers().ok().filter(|_| tier == Tier::Full).unwrap_or_default(),
         ..Accuracy::new("taylor-green", error, "relative L2 error of the velocity [-]")
     };
