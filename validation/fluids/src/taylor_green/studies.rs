@@ -30,10 +30,10 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 
 /// Every run.
 fn all(runs: &Runs) -> Study {
-    let caption = "All runs at their end, by default t = 2 L/U: what sound speed and super-time-stepping cost \
-                   and buy. The largest error is that over time. The viscosity found follows from the fall \
-                   of the kinetic energy. Momentum added is the change of the total momentum over the total \
-                   mass, exactly 0 in theory. Each stage of `stiff` counts as one pair sweep.";
+    let caption = "All runs at their end, by default t = 2 L/U: what sound speed and super-time-stepping \
+                   cost and buy. The largest error is that over time. The viscosity found follows from the \
+                   fall of the kinetic energy. Momentum added is the change of the total momentum over the \
+                   total mass, exactly 0 in theory. Each stage of `stiff` counts as one pair sweep.";
     let step = |record: &Record| record.cost.largest_dt_s;
     let table = Columns::of_variants()
         .changed("settings", &CASE)
