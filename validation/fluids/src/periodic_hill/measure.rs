@@ -131,7 +131,6 @@ impl<'a> Field<'a> {
 /// Sums over samples of one part of the run.
 #[derive(Clone, Default)]
 pub struct Window {
-    count: f64,
     /// u and v at the points of the stations.
     sections: Vec<[f64; 2]>,
     /// Shear stress on the hill and on the lid, pressure on the hill.
@@ -142,7 +141,7 @@ pub struct Window {
     samples: Vec<Vec<f64>>,
 }
 
-base::bits! { Window { count, sections, wall, forces, samples } }
+base::bits! { Window { sections, wall, forces, samples } }
 
 /// The places of the stations: x, y, weight of the section's height.
 fn places(setup: &Setup) -> Vec<[f64; 2]> {
@@ -189,7 +188,6 @@ impl Window {
         self.samples.push(sections.iter().map(|[u, _]| *u).collect());
         add(&mut self.sections, sections.into_iter());
         add(&mut self.wall, (0..WALL).map(|k| wall(setup, &field, along(k))));
-        self.count += 1.0;
     }
 
     /// Adds force and flux, of every stretch.
@@ -198,7 +196,7 @@ impl Window {
     }
 
     fn mean<const N: usize>(&self, sums: &[[f64; N]]) -> Vec<[f64; N]> {
-        sums.iter().map(|s| s.map(|x| x / self.count)).collect()
+        sums.iter().map(|s| s.map(|x| x / self.samples.len() as f64)).collect()
     }
 }
 
@@ -232,54 +230,44 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     (sum / count).sqrt()
 }
 
+/// Puts a metric, or the reason why there is none.
+fn put(record: &mut Record, metric: MetricKey, value: Option<f64>, reason: &str) {
+    match value {
+        Some(value) => record.put(metric, value),
+        None => record.leave_out(metric, reason),
+    }
+}
+
 /// Metrics and profiles from the last three windows, in time.
-pub fn measure(setup: &Setup, [first, second, last]: &[Window; 3], area: f64, record: &mut Record) {
-    steadiness([first, second, last], record);
-    let sections = last.mean(&last.sections);
-    let wall = last.mean(&last.wall);
+pub fn measure(setup: &Setup, windows: &[Window; 3], area: f64, record: &mut Record) {
+    let few = format!("a window of averaging has fewer than {BATCHES} samples");
+    let steadiness = Steadiness::of(windows.each_ref().map(|w| &w.samples[..]));
+    put(record, DRIFT, steadiness.map(|s| s.change), &few);
+    put(record, DISORDER, steadiness.map(|s| s.disorder), &few);
+    put(record, UNSTEADY, steadiness.map(|s| s.left), &few);
+    let last = &windows[2];
+    let (sections, wall) = (last.mean(&last.sections), last.mean(&last.wall));
     let count = last.forces.len() as f64;
     let [force, flux] = [0, 1].map(|k| last.forces.iter().map(|f| f[k]).sum::<f64>() / count);
     record.put(FORCE, force);
     record.put(FORCE_RIPPLE, rms(last.forces.iter().map(|f| f[0] / force - 1.0)));
-    if setup.flux() == 0.0 {
-        for metric in [FLUX, FLUX_RIPPLE, SECTION_FLUX] {
-            record.leave_out(metric, "the flux wanted is 0, so no error relative to it exists");
-        }
-    } else {
-        record.put(FLUX, flux / setup.flux() - 1.0);
-        record.put(FLUX_RIPPLE, rms(last.forces.iter().map(|f| f[1] / flux - 1.0)));
-        record.put(SECTION_FLUX, section_flux(setup, &sections));
-    }
+    let relative = |value: f64| (setup.flux() != 0.0).then_some(value);
+    let ripple = rms(last.forces.iter().map(|f| f[1] / flux - 1.0));
+    let none = "the flux wanted is 0, so no error relative to it exists";
+    put(record, FLUX, relative(flux / setup.flux() - 1.0), none);
+    put(record, FLUX_RIPPLE, relative(ripple), none);
+    put(record, SECTION_FLUX, relative(section_flux(setup, &sections)), none);
     let drags = drags(setup, &wall);
     for (part, drag) in DRAGS.into_iter().zip(drags) {
         record.put(part, drag);
     }
     record.put(DRAG_BALANCE, drags.iter().sum::<f64>() / (force * area) - 1.0);
-    for (metric, sign) in [(SEPARATION, -1.0), (REATTACHMENT, 1.0)] {
-        match sign_change(&wall, sign) {
-            Some(x) => record.put(metric, x),
-            None => record.leave_out(metric, "no stretch of the hill has backward flow"),
-        }
-    }
+    let [separation, reattachment] = bubble(&wall);
+    let none = "no stretch of the hill has backward flow";
+    put(record, SEPARATION, separation, none);
+    put(record, REATTACHMENT, reattachment, none);
     compare(setup, &sections, &wall, record);
     profiles(setup, &sections, &wall, record);
-}
-
-/// How far the mean flow still moves.
-fn steadiness(windows: [&Window; 3], record: &mut Record) {
-    match Steadiness::of(windows.map(|w| &w.samples[..])) {
-        Some(Steadiness { change, disorder, left }) => {
-            record.put(DRIFT, change);
-            record.put(DISORDER, disorder);
-            record.put(UNSTEADY, left);
-        }
-        None => {
-            let reason = format!("a window of averaging has fewer than {BATCHES} samples");
-            for metric in [DRIFT, DISORDER, UNSTEADY] {
-                record.leave_out(metric, &reason);
-            }
-        }
-    }
 }
 
 /// The largest error of the flux through a station, relative to the flux wanted; sections are the means of u
@@ -299,57 +287,48 @@ fn drags(setup: &Setup, wall: &[[f64; 3]]) -> [f64; 3] {
     [over(&|k| wall[k][0]), over(&|k| wall[k][1]), over(&|k| wall[k][2] * setup.slope(along(k)))]
 }
 
-/// Where the shear on the hill turns negative (sign −1) or positive (sign 1): the start and the end of the
-/// longest stretch of backward flow.
-fn sign_change(wall: &[[f64; 3]], sign: f64) -> Option<f64> {
-    let (mut best, mut start) = ((0, 0), None);
-    for (k, stress) in wall.iter().enumerate() {
-        match (stress[0] < 0.0, start) {
-            (true, None) => start = Some(k),
-            (false, Some(from)) => {
-                if k - from > best.1 - best.0 {
-                    best = (from, k);
-                }
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    let after = if sign < 0.0 { best.0 } else { best.1 };
-    if best.1 - best.0 < 3 || after == 0 {
-        return None;
-    }
-    let (a, b) = (wall[after - 1][0], wall[after][0]);
-    Some(along(after - 1) + (along(1)) * a / (a - b))
+/// Where the longest stretch of backward flow on the hill starts and where it ends, of at least three places.
+/// One that reaches to the last crest does not count, and one that starts at the first has no start.
+fn bubble(wall: &[[f64; 3]]) -> [Option<f64>; 2] {
+    let mut end = 0;
+    let stretches = wall.chunk_by(|a, b| (a[0] < 0.0) == (b[0] < 0.0)).map(|stretch| {
+        end += stretch.len();
+        end - stretch.len()..end
+    });
+    let backward = stretches.filter(|s| s.end < wall.len() && wall[s.start][0] < 0.0);
+    let longest = backward
+        .max_by_key(|stretch| (stretch.len(), wall.len() - stretch.start))
+        .filter(|stretch| stretch.len() >= 3);
+    let zero = |after: usize| {
+        let before = after.checked_sub(1)?;
+        let (a, b) = (wall[before][0], wall[after][0]);
+        Some(along(before) + along(1) * a / (a - b))
+    };
+    longest.map_or([None; 2], |stretch| [zero(stretch.start), zero(stretch.end)])
 }
 
 /// Distances from the reference.
 fn compare(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mut Record) {
-    let Some(reference) = &setup.reference else {
+    let Some(reference) = setup.reference else {
         let reason = format!("no reference exists for these settings, only for {KNOWN_SETTINGS}");
         for metric in COMPARED {
             record.leave_out(metric, &reason);
         }
         return;
     };
-    let exact: Vec<Vector2<f64>> =
-        reference.stations.iter().flat_map(|s| s.v.iter().copied()).collect();
+    let exact = || reference.stations.iter().flat_map(|s| &s.v);
+    record.put(L2_U, rms(sections.iter().zip(exact()).map(|(f, e)| f[0] - e.x)));
+    record.put(L2_V, rms(sections.iter().zip(exact()).map(|(f, e)| f[1] - e.y)));
+    let stress = reference.wall.iter().map(|w| w[1].abs()).fold(0.0, f64::max);
+    let shear = rms(wall.iter().zip(&reference.wall).map(|(f, e)| f[0] - e[1])) / stress;
+    record.put(SHEAR_ERROR, shear);
     let gap = |metric: MetricKey| Some(record.value(metric)? - reference.number(metric)?);
     let force = gap(FORCE).zip(reference.number(FORCE)).map(|(gap, exact)| gap / exact);
     let (separation, reattachment) = (gap(SEPARATION), gap(REATTACHMENT));
-    let stress = reference.wall.iter().map(|w| w[1].abs()).fold(0.0, f64::max);
-    record.put(L2_U, rms(sections.iter().zip(&exact).map(|(f, e)| f[0] - e.x)));
-    record.put(L2_V, rms(sections.iter().zip(&exact).map(|(f, e)| f[1] - e.y)));
-    let shear = rms(wall.iter().zip(&reference.wall).map(|(f, e)| f[0] - e[1])) / stress;
-    record.put(SHEAR_ERROR, shear);
-    let gaps =
-        [(FORCE_ERROR, force), (SEPARATION_ERROR, separation), (REATTACHMENT_ERROR, reattachment)];
-    for (metric, gap) in gaps {
-        match gap {
-            Some(gap) => record.put(metric, gap),
-            None => record.leave_out(metric, "the run or the reference has no backward flow"),
-        }
-    }
+    let none = "the run or the reference has no backward flow";
+    put(record, FORCE_ERROR, force, none);
+    put(record, SEPARATION_ERROR, separation, none);
+    put(record, REATTACHMENT_ERROR, reattachment, none);
 }
 
 fn profiles(setup: &Setup, sections: &[[f64; 2]], wall: &[[f64; 3]], record: &mut Record) {
@@ -385,15 +364,11 @@ pub fn wall_offset(setup: &Setup, s: &dyn Stepper<()>) -> f64 {
             walls().min_by(|a, b| distance(place, a).total_cmp(&distance(place, b))).map(depth);
         (nearest.unwrap_or(f64::INFINITY) / dx - setup.first).abs()
     };
-    let floor = |p: Vector2<f64>| behind_floor(setup, p);
-    let ceiling = |p: Vector2<f64>| p.y - lid;
-    (0..WALL)
-        .map(along)
-        .map(|x| {
-            let (below, above) = (Vector2::new(x, setup.floor(x)), Vector2::new(x, lid));
-            off(below, &floor).max(off(above, &ceiling))
-        })
-        .fold(0.0, f64::max)
+    let off_at = |x: f64| {
+        let below = off(Vector2::new(x, setup.floor(x)), &|p| behind_floor(setup, p));
+        below.max(off(Vector2::new(x, lid), &|p| p.y - lid))
+    };
+    (0..WALL).map(|k| off_at(along(k))).fold(0.0, f64::max)
 }
 
 /// Distance from the floor \[m\], positive behind it, by Gauss and Newton's iteration for its foot.
@@ -431,7 +406,7 @@ mod tests {
     use solver::{QuinticSpline, Smoothing};
 
     use crate::channel::Stabilised;
-    use crate::periodic_hill::{HillSettings, Mixed, Quintic, method, setup};
+    use crate::periodic_hill::{Carried, HillSettings, Quintic, method, setup};
     use base::functions::{cos, sin};
     use harness::context::Context;
     use std::f64::consts::TAU;
@@ -440,7 +415,7 @@ mod tests {
     fn scene(set: fn(&mut HillSettings)) -> (Setup, Box<dyn super::super::Driving>) {
         let mut settings = HillSettings::default();
         set(&mut settings);
-        let method = method::<Quintic<Mixed, Stabilised>>();
+        let method = method::<Quintic<Carried, Stabilised>>();
         let setup = Setup::new(&settings, &method, &Context::default()).expect("sound settings");
         let simulation = (method.build)(setup.parts(&Context::default())).expect("a scene");
         (setup, simulation)
@@ -497,7 +472,7 @@ mod tests {
             window.force(force * (1.0 + ripple), flux * (1.0 + 2.0 * ripple));
         }
         let area = setup.area();
-        let mut record = Record::new("periodic_hill", "mixed", serde_json::Value::Null, 1);
+        let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
         measure(&setup, &[window.clone(), window.clone(), window], area, &mut record);
         (setup, area, record)
     }
@@ -561,8 +536,8 @@ mod tests {
     #[test]
     fn errors_that_are_put_in_are_measured() {
         let (setup, _) = scene(|_| {});
-        let reference = setup.reference.clone().expect("Re 50 has one");
-        let mut record = Record::new("periodic_hill", "mixed", serde_json::Value::Null, 1);
+        let reference = setup.reference.expect("Re 50 has one");
+        let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
         let number = |metric: MetricKey| reference.number(metric).expect("in the summary");
         record.put(FORCE, 1.02 * number(FORCE));
         record.put(SEPARATION, number(SEPARATION) - 0.03);
@@ -594,7 +569,7 @@ mod tests {
             [|s| s.re = 30.0, |s| s.crest = 0.5, |s| s.flux = 0.5];
         for set in others {
             let (setup, _) = scene(set);
-            let mut record = Record::new("periodic_hill", "mixed", serde_json::Value::Null, 1);
+            let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
             compare(&setup, &[], &[], &mut record);
             assert!(record.metrics.is_empty());
             assert!(COMPARED.iter().all(|m| record.absent[&String::from(*m)].contains("re = 10")));
@@ -604,7 +579,7 @@ mod tests {
     #[test]
     fn the_mean_velocity_is_that_of_the_volumes() {
         let (setup, _) = scene(|_| {});
-        let method = method::<Quintic<Mixed, Stabilised>>();
+        let method = method::<Quintic<Carried, Stabilised>>();
         let mut parts = setup.parts(&Context::default());
         for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
             p.velocity.x = 0.7 + 0.1 * (p.position.y - 1.0);
@@ -631,7 +606,7 @@ mod tests {
         let (_, higher) = scene(|s| s.crest = 1.02);
         let offset = wall_offset(&setup, &*higher);
         assert!((offset - 0.2).abs() < 0.02, "{offset}");
-        let method = method::<Quintic<Mixed, Stabilised>>();
+        let method = method::<Quintic<Carried, Stabilised>>();
         let mut parts = setup.parts(&Context::default());
         let fluid = parts.particles.iter_mut().filter(|p| p.role == Role::Fluid);
         for (p, y) in fluid.step_by(7).zip([setup.hill.lid() + 0.01, setup.hill.lid() - 0.01]) {

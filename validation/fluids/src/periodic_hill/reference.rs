@@ -1,27 +1,26 @@
 //! The finite-element flow of this Reynolds number, and its field between the stations.
 
-use std::collections::BTreeMap;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::OnceLock;
 
 use nalgebra::Vector2;
 
-use super::HillSettings;
+use super::{HillSettings, measure::rms};
 use base::{
     record::MetricKey,
-    reference::{Reference as Package, ReferenceError, Table},
+    reference::{Reference as Package, ReferenceError},
 };
 use maths::geometry::Hill;
 
+/// Reynolds numbers that have a reference.
+pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];
 /// The settings that have a reference, in words.
 pub const KNOWN_SETTINGS: &str = "re = 10, 50 or 100, crest = 1 and flux = 1";
 
-/// Read and checked once: 25 000 rows, which every run and every figure asks for.
-static PACKAGE: OnceLock<Package> = OnceLock::new();
-/// What was taken from them, by the bits of the Reynolds number: every plan asks for it, too.
-static KNOWN: Mutex<BTreeMap<u64, Option<Reference>>> = Mutex::new(BTreeMap::new());
+/// Read and checked once: 25 000 rows, which every run, every plan and every figure asks for.
+static KNOWN: OnceLock<Vec<Reference>> = OnceLock::new();
 
 /// A profile across one section.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Station {
     /// Place \[H\].
     pub x: f64,
@@ -44,77 +43,52 @@ pub struct Reference {
     pub line: Vec<(f64, f64)>,
     /// Name and value.
     numbers: Vec<(String, f64)>,
+    /// Root mean square of the uncertainty of u over all points of the profiles \[U_b\].
+    pub uncertainty: f64,
 }
 
 impl Reference {
     /// The reference of these settings; `None` where nothing was computed for their geometry, their flux or
     /// their Reynolds number.
-    pub fn of(settings: &HillSettings) -> Result<Option<Self>, ReferenceError> {
-        if (settings.crest, settings.flux) != (1.0, 1.0) {
-            return Ok(None);
-        }
-        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(reference) = known.get(&settings.re.to_bits()) {
-            return Ok(reference.clone());
-        }
-        let reference = Self::read(settings.re)?;
-        known.insert(settings.re.to_bits(), reference.clone());
-        Ok(reference)
-    }
-
-    /// The rows of a Reynolds number.
-    fn read(reynolds: f64) -> Result<Option<Self>, ReferenceError> {
-        let package = match PACKAGE.get() {
-            Some(package) => package,
+    pub fn of(settings: &HillSettings) -> Result<Option<&'static Self>, ReferenceError> {
+        let known = match KNOWN.get() {
+            Some(known) => known,
             None => {
                 let package = Package::load("periodic_hill")?;
-                PACKAGE.get_or_init(|| package)
+                let known: Result<_, _> =
+                    REYNOLDS.into_iter().map(|re| Self::read(&package, re)).collect();
+                let known = known?;
+                KNOWN.get_or_init(|| known)
             }
         };
-        let rows = |table: &Table| -> Result<Vec<usize>, ReferenceError> {
-            let re = table.numbers("re")?;
-            Ok((0..re.len()).filter(|&k| re[k] == reynolds).collect())
-        };
-        let summary = package.table("summary")?;
-        let kept = rows(summary)?;
-        if kept.is_empty() {
-            return Ok(None);
-        }
-        let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
-        let numbers = kept.iter().map(|&k| (names[k].to_string(), values[k])).collect();
-        let wall = package.table("wall")?;
-        let [x, hill, lid] = ["x", "hill_shear", "lid_shear"].map(|name| wall.numbers(name));
-        let (x, hill, lid) = (x?, hill?, lid?);
-        let wall = rows(wall)?.into_iter().map(|k| [x[k], hill[k], lid[k]]).collect();
-        let line = package.table("line")?;
-        let (x, y) = (line.numbers("x")?, line.numbers("y")?);
-        let line = rows(line)?.into_iter().map(|k| (x[k], y[k])).collect();
-        let profiles = package.table("profiles")?;
-        let stations = Self::stations(profiles, &profiles.numbers("y")?, &rows(profiles)?)?;
-        let starts = package.table("starts")?;
-        let hill = Hill::new(1.0)?;
-        let places = starts.numbers("x")?.into_iter().zip(starts.numbers("s")?);
-        let height = |(x, s): (f64, f64)| hill.wall(x) * (1.0 - s) + hill.lid() * s;
-        let heights: Vec<f64> = places.map(height).collect();
-        let starts = Self::stations(starts, &heights, &rows(starts)?)?;
-        Ok(Some(Self { stations, starts, wall, line, numbers }))
+        let place = REYNOLDS.iter().position(|re| *re == settings.re);
+        let is_known = (settings.crest, settings.flux) == (1.0, 1.0);
+        Ok(place.filter(|_| is_known).map(|place| &known[place]))
     }
 
-    /// Rows of a table as stations, the heights being `y`.
-    fn stations(table: &Table, y: &[f64], rows: &[usize]) -> Result<Vec<Station>, ReferenceError> {
-        let x = table.numbers("x")?;
-        let (u, v) = (table.numbers("u")?, table.numbers("v")?);
-        let mut stations: Vec<Station> = Vec::new();
-        for &k in rows {
-            if stations.last().is_none_or(|s| s.x != x[k]) {
-                stations.push(Station { x: x[k], ..Station::default() });
-            }
-            if let Some(station) = stations.last_mut() {
-                station.y.push(y[k]);
-                station.v.push(Vector2::new(u[k], v[k]));
-            }
-        }
-        Ok(stations)
+    /// What the package has of a Reynolds number.
+    fn read(package: &Package, re: f64) -> Result<Self, ReferenceError> {
+        let summary = package.table("summary")?;
+        let (of, names) = (summary.numbers("re")?, summary.texts("quantity")?);
+        let values = summary.numbers("value")?;
+        let own = (0..of.len()).filter(|&k| of[k] == re);
+        let numbers = own.map(|k| (names[k].to_string(), values[k])).collect();
+        let wall = rows(package, "wall", re, ["x", "hill_shear", "lid_shear"])?;
+        let line = rows(package, "line", re, ["x", "y"])?;
+        let profiles = rows(package, "profiles", re, ["x", "y", "u", "v"])?;
+        let uncertainty = rows(package, "profiles", re, ["u_uncertainty"])?;
+        let hill = Hill::new(1.0)?;
+        let height = |x: f64, s: f64| hill.wall(x) * (1.0 - s) + hill.lid() * s;
+        let starts = rows(package, "starts", re, ["x", "s", "u", "v"])?.into_iter();
+        let starts: Vec<_> = starts.map(|[x, s, u, v]| [x, height(x, s), u, v]).collect();
+        Ok(Self {
+            stations: stations(&profiles),
+            starts: stations(&starts),
+            wall,
+            line: line.into_iter().map(|[x, y]| (x, y)).collect(),
+            numbers,
+            uncertainty: rms(uncertainty.into_iter().map(|[u]| u)),
+        })
     }
 
     /// What the summary has for a metric.
@@ -150,20 +124,35 @@ impl Reference {
     }
 }
 
-/// What finite elements have at this Reynolds number. A reference that cannot be read makes every run
-/// fail: there is no need to say it once more.
-pub fn reference(re: f64) -> Option<Reference> {
-    Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
+/// Some columns of a table, the rows of a Reynolds number.
+fn rows<const N: usize>(
+    package: &Package,
+    table: &str,
+    reynolds: f64,
+    names: [&str; N],
+) -> Result<Vec<[f64; N]>, ReferenceError> {
+    let table = package.table(table)?;
+    let re = table.numbers("re")?;
+    let columns: Result<Vec<_>, _> = names.iter().map(|name| table.numbers(name)).collect();
+    let columns = columns?;
+    let own = (0..re.len()).filter(|&k| re[k] == reynolds);
+    Ok(own.map(|k| std::array::from_fn(|j| columns[j][k])).collect())
 }
 
-/// Root mean square of the uncertainty of u \[U_b\] over all points of the profiles of a Reynolds number.
-pub fn uncertainty(reynolds: f64) -> Option<f64> {
-    let package = Package::load("periodic_hill").ok()?;
-    let profiles = package.table("profiles").ok()?;
-    let (re, u) = (profiles.numbers("re").ok()?, profiles.numbers("u_uncertainty").ok()?);
-    let own = re.iter().zip(&u).filter(|(re, _)| **re == reynolds).map(|(_, u)| u * u);
-    let (sum, count) = own.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
-    (count > 0).then(|| (sum / f64::from(count)).sqrt())
+/// Rows of x, y, u, v as stations.
+fn stations(rows: &[[f64; 4]]) -> Vec<Station> {
+    let station = |rows: &[[f64; 4]]| Station {
+        x: rows[0][0],
+        y: rows.iter().map(|row| row[1]).collect(),
+        v: rows.iter().map(|row| Vector2::new(row[2], row[3])).collect(),
+    };
+    rows.chunk_by(|a, b| a[0] == b[0]).map(station).collect()
+}
+
+/// What finite elements have at this Reynolds number. A reference that cannot be read makes every run
+/// fail: there is no need to say it once more.
+pub fn reference(re: f64) -> Option<&'static Reference> {
+    Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
 }
 
 /// The floor as a line.
@@ -210,9 +199,9 @@ mod tests {
             // The start: its own stations as they stand, and the finer profiles as far as it holds them.
             assert_eq!(reference.starts.len(), 29);
             assert!(reference.starts.iter().all(|s| s.y.len() == 100));
-            let on_them = distance(&reference, &reference.starts);
+            let on_them = distance(reference, &reference.starts);
             assert!(on_them < 1e-15, "{on_them:e} at Re {re}");
-            let off = distance(&reference, &reference.stations);
+            let off = distance(reference, &reference.stations);
             assert!(off < 5e-4, "{off:e} at Re {re}");
             // The flux does not depend on the place, whatever the gap there.
             for x in [0.0, 0.3, 1.7, 5.5, 8.7] {

@@ -65,36 +65,23 @@ harness::observed! {
 }
 
 impl Monitor<'_> {
-    /// The window of a time.
-    fn window(&mut self, time: f64) -> Option<&mut Window> {
-        let s = &self.setup.settings;
-        window_of(time, s.end, s.average * s.end).map(|k| &mut self.windows[k])
-    }
-
-    /// After a stretch: the controller acts.
+    /// After a stretch: the controller acts, and the flow is sampled if it is time.
     fn look(&mut self, simulation: &mut dyn Driving, stretch: f64) {
-        let time = simulation.time();
+        let (setup, time, force) = (self.setup, simulation.time(), self.controller.force);
         let mean = measure::mean_velocity(simulation, self.area);
-        let flux = mean * self.area / self.setup.hill.period();
-        let force = self.controller.force;
-        if let Some(window) = self.window(time) {
-            window.force(force, flux);
+        let flux = mean * self.area / setup.hill.period();
+        let is_due = self.sample.has_come(time);
+        let end = setup.settings.end;
+        if let Some(k) = window_of(time, end, setup.settings.average * end) {
+            self.windows[k].force(force, flux);
+            if is_due {
+                self.windows[k].sample(setup, simulation);
+            }
         }
         self.controller.look(mean, stretch);
         simulation.drive(self.controller.force);
         if self.entry.has_come(time) {
             self.series.push([time, force, flux, kinetic_energy(simulation)]);
-        }
-    }
-
-    /// Samples the flow if it is time.
-    fn sample(&mut self, simulation: &dyn Driving) {
-        let time = simulation.time();
-        if self.sample.has_come(time) {
-            let setup = self.setup;
-            if let Some(window) = self.window(time) {
-                window.sample(setup, simulation);
-            }
         }
     }
 }
@@ -130,8 +117,7 @@ fn run(
     let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, &pressure, &mut monitor)
-            .at("controller of the flux", &|monitor, s, _| monitor.look(s, stretch))
-            .at("samples of the field", &|monitor, s, _| monitor.sample(s))
+            .at("controller and samples", &|monitor, s, _| monitor.look(s, stretch))
             .resumed(&|monitor, simulation| {
                 // Until its first look the force is that of the scene, which may have a deliberate error.
                 if !monitor.series.is_empty() {

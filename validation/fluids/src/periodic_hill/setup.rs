@@ -25,7 +25,7 @@ pub struct Setup {
     /// Depth of the first row of wall particles \[dx\].
     pub first: f64,
     /// What to compare with, where there is something.
-    pub reference: Option<Reference>,
+    pub reference: Option<&'static Reference>,
 }
 
 impl Setup {
@@ -115,7 +115,7 @@ impl Setup {
 
     /// The velocity at the start \[m/s\], s the height over that of the section, which is `gap`.
     fn start(&self, place: Vector2<f64>, s: f64, gap: f64) -> Vector2<f64> {
-        match &self.reference {
+        match self.reference {
             Some(reference) if self.settings.from_reference => reference.velocity(place.x, s, gap),
             _ => Vector2::zeros(),
         }

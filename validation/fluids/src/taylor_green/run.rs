@@ -124,18 +124,16 @@ base::bits! { Sample { time, error, energy, momentum } }
 impl Sample {
     fn of(setup: &Setup, time: f64, particles: &[Particle]) -> Self {
         let (mut difference, mut scale, mut energy, mut mass) = (0.0, 0.0, 0.0, 0.0);
-        let mut momentum = Vector2::zeros();
         for p in particles {
             let exact = setup.exact.velocity(p.position, time);
             difference += (p.velocity - exact).norm_squared();
             scale += exact.norm_squared();
             energy += 0.5 * p.mass * p.velocity.norm_squared();
             mass += p.mass;
-            momentum += p.velocity * p.mass;
         }
         let error = (difference / scale).sqrt();
         let energy = energy / setup.exact.kinetic_energy(time);
-        Self { time, error, energy, momentum: momentum / mass }
+        Self { time, error, energy, momentum: simulate::momentum(particles) / mass }
     }
 }
 
