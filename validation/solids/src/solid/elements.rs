@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 type Texts<'a> = &'a [(&'a str, &'a str)];
 
 /// The rows of a table that have these texts.
-fn rows(table: &Table, of: Texts) -> Result<Vec<usize>, ReferenceError> {
+pub fn rows(table: &Table, of: Texts) -> Result<Vec<usize>, ReferenceError> {
     let mut rows: Vec<usize> = (0..table.len()).collect();
     for (column, text) in of {
         let texts = table.texts(column)?;
@@ -21,9 +21,28 @@ fn rows(table: &Table, of: Texts) -> Result<Vec<usize>, ReferenceError> {
     Ok(rows)
 }
 
+/// Quantities of a summary by name, each with its uncertainty.
+#[derive(Clone, Debug)]
+pub struct Quantities(BTreeMap<String, [f64; 2]>);
+
+impl Quantities {
+    /// Those of the rows that have these texts.
+    pub fn of(summary: &Table, of: Texts) -> Result<Self, ReferenceError> {
+        let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
+        let spread = summary.numbers("uncertainty")?;
+        let quantity = |row: usize| (names[row].to_string(), [values[row], spread[row]]);
+        Ok(Self(rows(summary, of)?.into_iter().map(quantity).collect()))
+    }
+
+    /// A value and its uncertainty.
+    pub fn get(&self, name: &str) -> Option<[f64; 2]> {
+        self.0.get(name).copied()
+    }
+}
+
 /// Finite elements of one place.
 pub struct Elements {
-    quantities: BTreeMap<String, f64>,
+    quantities: Quantities,
     /// Where the place is.
     pub path: Path,
 }
@@ -35,10 +54,7 @@ impl Elements {
         [summary, series]: [Texts; 2],
         [x, y]: [&str; 2],
     ) -> Result<Self, ReferenceError> {
-        let table = package.table("summary")?;
-        let (names, values) = (table.texts("quantity")?, table.numbers("value")?);
-        let quantity = |row: usize| (names[row].into(), values[row]);
-        let quantities = rows(table, summary)?.into_iter().map(quantity).collect();
+        let quantities = Quantities::of(package.table("summary")?, summary)?;
         let table = package.table("series")?;
         let [t, x, y] = [table.numbers("t")?, table.numbers(x)?, table.numbers(y)?];
         let path = rows(table, series)?.into_iter().map(|row| [t[row], x[row], y[row]]);
@@ -47,7 +63,7 @@ impl Elements {
 
     /// A quantity.
     pub fn number(&self, name: &str) -> Option<f64> {
-        self.quantities.get(name).copied()
+        self.quantities.get(name).map(|[value, _]| value)
     }
 
     /// Puts a quantity over that of finite elements, less 1, or why it is absent.
