@@ -1,7 +1,6 @@
 //! The one font of the figures: a subset of DejaVu Sans, embedded in the program.
 
 use super::colour::Colour;
-use super::figure::Align;
 use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 use std::sync::OnceLock;
 
@@ -16,6 +15,17 @@ pub(super) const HEIGHT_PER_EM: f64 = (1901.0 + 483.0) / 2048.0;
 
 /// Height of a digit over the em.
 pub(super) const DIGIT_HEIGHT: f64 = 1493.0 / 2048.0;
+
+/// Which end of a text sits at its point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Align {
+    /// The text starts at the point.
+    Start,
+    /// The text is centred on the point.
+    Middle,
+    /// The text ends at the point.
+    End,
+}
 
 /// How a text is set.
 #[derive(Debug, Clone, Copy)]

@@ -114,13 +114,6 @@ pub enum Block {
         /// The blocks.
         blocks: Vec<Block>,
     },
-    /// Data for other programs, in a script element that no browser runs.
-    DataJson {
-        /// Unique on the page.
-        id: String,
-        /// The data.
-        data: serde_json::Value,
-    },
 }
 
 impl From<Figure> for Block {
@@ -305,9 +298,6 @@ impl Writer<'_> {
                     @for block in blocks { (self.block(block)) }
                 }
             },
-            Block::DataJson { id, data } => html! {
-                script id=(id) type="application/json" { (PreEscaped(json(data))) }
-            },
         }
     }
 
@@ -352,23 +342,9 @@ fn moving(film: &Film) -> Markup {
     }
 }
 
-/// JSON without characters that mean something to HTML or XML.
-fn json(data: &serde_json::Value) -> String {
-    let text = data.to_string();
-    text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn json_cannot_close_its_script() {
-        let data = serde_json::json!({"a": "</script><b>&"});
-        let text = json(&data);
-        assert!(!text.contains('<') && !text.contains('&'));
-        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), data);
-    }
 
     #[test]
     fn the_script_is_plain_xml_text() {
