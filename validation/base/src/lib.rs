@@ -13,4 +13,5 @@ pub mod record;
 pub mod reference;
 pub mod settings;
 pub mod spec;
+pub mod text;
 pub mod vtk;

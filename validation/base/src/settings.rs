@@ -262,20 +262,9 @@ pub fn by_similarity<'a>(names: &[&'a str], written: &str) -> Vec<&'a str> {
     sorted
 }
 
-/// Levenshtein distance: insertions, deletions and replacements between two words.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().take(100).collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, to) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(from != *to);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
+/// Insertions, deletions and replacements between a name and what was written, however long that is.
+fn edit_distance(name: &str, written: &str) -> usize {
+    strsim::levenshtein(name, &written.chars().take(100).collect::<String>())
 }
 
 /// A type that a setting may have.

@@ -24,6 +24,8 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::text::{base64, escaped};
+
 /// Why particles cannot be written.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum VtkError {
@@ -136,7 +138,7 @@ impl Particles {
         );
         for Array { name, components, values } in &self.arrays {
             let attributes =
-                format!("Name=\"{}\" NumberOfComponents=\"{components}\"", escape(name));
+                format!("Name=\"{}\" NumberOfComponents=\"{components}\"", escaped(name));
             data_array(&mut xml, "Float64", &attributes, &floats(values));
         }
         xml.push_str("</PointData>\n<Points>\n");
@@ -183,7 +185,7 @@ impl Collection {
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
         );
         for (time, file) in &self.files {
-            let file = escape(file);
+            let file = escaped(file);
             let _ = writeln!(xml, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>");
         }
         xml.push_str("</Collection>\n</VTKFile>\n");
@@ -213,25 +215,6 @@ fn data_array(xml: &mut String, kind: &str, attributes: &str, bytes: &[u8]) {
         xml,
         "<DataArray type=\"{kind}\" {attributes} format=\"binary\">{text}</DataArray>"
     );
-}
-
-/// Base64 with padding (RFC 4648, section 4).
-fn base64(bytes: &[u8]) -> String {
-    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for i in 0..4 {
-            let letter = ALPHABET[(bits >> (18 - 6 * i)) as usize & 63];
-            text.push(if i <= chunk.len() { letter as char } else { '=' });
-        }
-    }
-    text
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]
@@ -277,14 +260,6 @@ mod tests {
         let (header, data) = bytes.split_first_chunk::<8>().unwrap();
         assert_eq!(u64::from_le_bytes(*header), data.len() as u64);
         data.to_vec()
-    }
-
-    #[test]
-    fn base64_agrees_with_the_vectors_of_rfc_4648() {
-        let encoded = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
-        for (count, text) in encoded.into_iter().enumerate() {
-            assert_eq!(base64(&b"foobar"[..count]), text);
-        }
     }
 
     #[test]

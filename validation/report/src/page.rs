@@ -10,7 +10,7 @@ use super::inline::inline;
 use super::picture::{drawing, image};
 use super::render;
 use super::table::{Status, Table, first_sentence};
-use base::files;
+use base::{files, text::base64};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
 use std::io;
@@ -147,7 +147,7 @@ impl Page {
         let mut writer = Writer { png_folder: &self.png_folder, figures: 0, tables: 0 };
         let face = format!(
             "@font-face{{font-family:\"DejaVu Sans\";src:url(data:font/ttf;base64,{})}}\n",
-            font::base64(font::BYTES)
+            base64(font::BYTES)
         );
         let page = html! {
             (DOCTYPE)

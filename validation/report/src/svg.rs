@@ -5,7 +5,7 @@ use super::canvas::{Point, Sheet};
 use super::colour::Colour;
 use super::figure::Dash;
 use super::font::{self, Align, Type};
-use super::inline;
+use base::text::escaped;
 
 /// Units of the drawing per CSS pixel: coordinates are quarters of a pixel.
 const FINE: f64 = 4.0;
@@ -121,7 +121,7 @@ impl Sheet for Svg {
             false => format!("x=\"{x}\" y=\"{y}\""),
             true => format!("transform=\"translate({x} {y})rotate(-90)\""),
         };
-        self.text.push_str(&format!("<text {place}>{}</text>\n", inline::escape(text)));
+        self.text.push_str(&format!("<text {place}>{}</text>\n", escaped(text)));
     }
 }
 
@@ -131,7 +131,7 @@ pub(super) fn opening(name: &str, (width, height): (f64, f64)) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" width=\"{width}\" \
          height=\"{height}\" viewBox=\"0 0 {} {}\" font-family=\"{}\" fill=\"none\" \
          stroke-linejoin=\"round\">\n",
-        inline::escape(name),
+        escaped(name),
         units(width),
         units(height),
         font::FAMILY

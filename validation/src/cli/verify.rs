@@ -119,7 +119,7 @@ pub fn of_store(
 ) -> Result<Suite, Failure> {
     world.check_references(cases)?;
     if !path.is_dir() {
-        return Err(Failure::usage(anyhow::anyhow!("the store {} does not exist", path.display())));
+        return Err(Failure::usage(format!("the store {} does not exist", path.display())));
     }
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);

@@ -11,8 +11,8 @@ use harness::{
 };
 use validation::cases;
 
-use super::arguments::{Arguments, Command};
-use super::list::default_variant;
+use super::super::arguments::{Arguments, Command};
+use super::super::list::default_variant;
 
 /// What stands for `touchstone` before it is installed.
 const FROM_SOURCES: &str = "cargo run --release -- ";
