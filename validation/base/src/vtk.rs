@@ -26,36 +26,10 @@ use thiserror::Error;
 
 use crate::text::{base64, escaped};
 
-/// Why particles cannot be written.
+/// Why particles cannot be written, in words.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum VtkError {
-    /// An array has not one value a particle.
-    #[error("array {array} has {found} values for {expected} particles")]
-    Length {
-        /// name of the array
-        array: String,
-        /// particles
-        expected: usize,
-        /// values
-        found: usize,
-    },
-    /// Two arrays of the same name.
-    #[error("there are two arrays called {array}")]
-    Duplicate {
-        /// name of the arrays
-        array: String,
-    },
-    /// A particle is nowhere.
-    #[error("particle {particle} is at ({x}, {y}), which is not finite")]
-    Position {
-        /// index
-        particle: usize,
-        /// x coordinate
-        x: f64,
-        /// y coordinate
-        y: f64,
-    },
-}
+#[error("{0}")]
+pub struct VtkError(String);
 
 /// Particles at one time, with their fields.
 #[derive(Debug, Clone)]
@@ -78,7 +52,8 @@ impl Particles {
         let points: Vec<[f64; 3]> = positions.iter().map(|position| lift(*position)).collect();
         for (particle, [x, y, _]) in points.iter().copied().enumerate() {
             if !(x.is_finite() && y.is_finite()) {
-                return Err(VtkError::Position { particle, x, y });
+                let place = format!("particle {particle} is at ({x}, {y})");
+                return Err(VtkError(format!("{place}, which is not finite")));
             }
         }
         Ok(Particles { time, points, arrays: Vec::new() })
@@ -111,14 +86,15 @@ impl Particles {
         found: usize,
         values: Vec<f64>,
     ) -> Result<Self, VtkError> {
-        let (array, expected) = (name.to_string(), self.points.len());
+        let expected = self.points.len();
         if found != expected {
-            return Err(VtkError::Length { array, expected, found });
+            let words = format!("array {name} has {found} values for {expected} particles");
+            return Err(VtkError(words));
         }
         if self.arrays.iter().any(|known| known.name == name) {
-            return Err(VtkError::Duplicate { array });
+            return Err(VtkError(format!("there are two arrays called {name}")));
         }
-        self.arrays.push(Array { name: array, components, values });
+        self.arrays.push(Array { name: name.into(), components, values });
         Ok(self)
     }
 
@@ -295,7 +271,7 @@ mod tests {
         let error = particles.clone().scalar("rho", &[1.0]).unwrap_err().to_string();
         assert_eq!(error, "array rho has 1 values for 2 particles");
         let twice = particles.scalar("rho", &[1.0; 2]).unwrap().scalar("rho", &[1.0; 2]);
-        assert_eq!(twice.unwrap_err(), VtkError::Duplicate { array: "rho".into() });
+        assert_eq!(twice.unwrap_err().to_string(), "there are two arrays called rho");
         let error = Particles::new(0.0, &[[0.0, f64::NAN]]).unwrap_err().to_string();
         assert_eq!(error, "particle 0 is at (0, NaN), which is not finite");
     }

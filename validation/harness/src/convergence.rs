@@ -68,26 +68,10 @@ pub struct Convergence {
     pub floor: Option<Floor>,
 }
 
-/// Why no order can be computed.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum ConvergenceError {
-    /// Two levels always lie on a line.
-    #[error("there are {0} levels, but at least 3 are needed")]
-    TooFew(usize),
-    /// A spacing or error is 0, negative, infinite or NaN.
-    #[error(
-        "a level with spacing {spacing} and value {value} cannot be used, for its logarithm is needed"
-    )]
-    Unusable {
-        /// Spacing of the level.
-        spacing: f64,
-        /// Its error or value.
-        value: f64,
-    },
-    /// Two levels have the same spacing.
-    #[error("two levels have the same spacing {0}")]
-    Repeated(f64),
-}
+/// Why no order can be computed, in words.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{0}")]
+pub struct ConvergenceError(String);
 
 /// Order of the errors of three or more levels in any sequence, with the actual ratios of spacing.
 ///
@@ -110,17 +94,24 @@ pub fn convergence(levels: &[Level]) -> Result<Convergence, ConvergenceError> {
 /// The levels, coarse to fine.
 fn sorted(levels: &[Level]) -> Result<Vec<Level>, ConvergenceError> {
     if levels.len() < 3 {
-        return Err(ConvergenceError::TooFew(levels.len()));
+        let words = format!("there are {} levels, but at least 3 are needed", levels.len());
+        return Err(ConvergenceError(words));
     }
     let is_usable = |number: f64| number > 0.0 && number.is_finite();
     let usable = |level: &&Level| is_usable(level.spacing) && is_usable(level.value);
     if let Some(Level { spacing, value }) = levels.iter().find(|level| !usable(level)) {
-        return Err(ConvergenceError::Unusable { spacing: *spacing, value: *value });
+        let level = format!("a level with spacing {spacing} and value {value}");
+        return Err(ConvergenceError(format!(
+            "{level} cannot be used, for its logarithm is needed"
+        )));
     }
     let mut levels = levels.to_vec();
     levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
     match levels.windows(2).find(|w| w[0].spacing == w[1].spacing) {
-        Some(twins) => Err(ConvergenceError::Repeated(twins[0].spacing)),
+        Some(twins) => {
+            let words = format!("two levels have the same spacing {}", twins[0].spacing);
+            Err(ConvergenceError(words))
+        }
         None => Ok(levels),
     }
 }
@@ -371,16 +362,13 @@ mod tests {
     #[test]
     fn what_has_no_order_is_an_error() {
         let two = levels([0.2, 0.1], |h| h);
-        assert_eq!(convergence(&two).unwrap_err(), ConvergenceError::TooFew(2));
+        assert!(convergence(&two).unwrap_err().0.starts_with("there are 2 levels"));
         for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
             let broken = levels([0.4, 0.2, 0.1], |h| if h < 0.15 { bad } else { h });
-            assert!(
-                matches!(convergence(&broken), Err(ConvergenceError::Unusable { .. })),
-                "{bad}"
-            );
+            assert!(convergence(&broken).is_err_and(|e| e.0.contains("cannot be used")), "{bad}");
         }
         let twins = levels([0.2, 0.1, 0.1], |h| h);
-        assert_eq!(convergence(&twins).unwrap_err(), ConvergenceError::Repeated(0.1));
+        assert!(convergence(&twins).unwrap_err().0.ends_with("the same spacing 0.1"));
     }
 
     #[test]
