@@ -348,9 +348,11 @@ impl NoisyBox {
             let stepping = (courant, theory.steps);
             let run =
                 |simulation| self.run(method, simulation, stepping, false, &Context::default());
-            build().is_ok_and(|simulation| run(simulation).is_ok_and(|run| !run.grew))
+            let is_stable = |simulation| run(simulation).is_ok_and(|run| !run.grew);
+            Ok::<_, SceneError>(build().is_ok_and(is_stable))
         };
-        Limit { measured: largest_stable(theory.limit, RESOLUTION, is_stable), theory }
+        let measured = largest_stable(theory.limit, RESOLUTION, is_stable).unwrap_or_default();
+        Limit { measured, theory }
     }
 
     /// Growth a step of the amplitude of the stiffest wave of any simulation of this box, and ω dt of theory.

@@ -101,7 +101,7 @@ fn check(line: &str) -> Result<(), String> {
             let named = list.case.filter(|name| !is_placeholder(name));
             named.map_or(Ok(()), |name| find(&name).map(|_| ()))
         }
-        Command::Verify(verify) => all(&verify.cases),
+        Command::Verify(verify) => all(&verify.of.cases),
         Command::Stability(stability) => all(&stability.cases),
         Command::Explain(explain) => explain.gate.map_or(Ok(()), |name| check_gate(&name)),
         _ => Ok(()),
