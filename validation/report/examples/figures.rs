@@ -219,19 +219,6 @@ fn small() -> Figure {
         .panel_size(210.0, 180.0)
 }
 
-fn hopeless() -> Figure {
-    let nan = f64::NAN;
-    let empty = Plot::new("No data", Axis::linear("x [1]"), Axis::log("y [1]"))
-        .layer(Series::line("empty", vec![]))
-        .layer(Series::markers("not finite", vec![(nan, 1.0), (1.0, f64::INFINITY), (1.0, -1.0)]));
-    let particles = (Axis::linear("x"), Axis::linear("y"));
-    Figure::new("hopeless", "Nothing to draw is drawn as nothing, and said.")
-        .panel(empty)
-        .panel(ParticleMap::new("No particles", particles, "p [Pa]", ColourMap::Sequential, vec![]))
-        .columns(2)
-        .panel_size(240.0, 160.0)
-}
-
 fn table() -> Table {
     let columns = vec![
         Column::text("gate"),
@@ -313,7 +300,7 @@ fn page() -> Result<Page, String> {
     for figure in [convergence(), band_and_bars(), stability()] {
         section = section.block(figure);
     }
-    let maps = [particles(), outcomes(), small(), hopeless()];
+    let maps = [particles(), outcomes(), small()];
     let maps =
         maps.into_iter().fold(Section::new("maps", "Maps").status(Status::Pass), Section::block);
     let details = Block::Details { summary: "All settings".into(), blocks: vec![table().into()] };

@@ -25,7 +25,7 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// The bar of a map of such a height, for given ends or for those of the data, symmetric where the map is.
+    /// The bar of a map so high, for given ends or for those of the data, symmetric where the map is.
     pub fn new(
         map: ColourMap,
         label: &str,

@@ -104,9 +104,8 @@ fn parse(
     let ours = sources(&asked.spec.case);
     if asked.sources != ours {
         let theirs = asked.sources;
-        return Err(format!(
-            "the checkpoint {path:?} was made by another build, of the sources {theirs}; this one is of {ours}"
-        ));
+        let words = format!("was made by another build, of the sources {theirs}");
+        return Err(format!("the checkpoint {path:?} {words}; this one is of {ours}"));
     }
     let mut simulations = Vec::new();
     for length in lengths {
