@@ -48,32 +48,9 @@ pub enum FileError {
         #[source]
         reason: io::Error,
     },
-    /// A table was given a NaN or an infinity.
-    #[error("column {column} of row {row} is {value}, which is not finite")]
-    NotFinite {
-        /// header of the column
-        column: String,
-        /// row, counted from 0 after the header
-        row: usize,
-        /// `NaN`, `inf` or `-inf`
-        value: String,
-    },
-    /// A row has not as many cells as the header.
-    #[error("row {row} has {found} cells, but the header has {expected}")]
-    Width {
-        /// row, counted from 0 after the header
-        row: usize,
-        /// columns of the header
-        expected: usize,
-        /// cells of the row
-        found: usize,
-    },
-    /// A column header without its unit.
-    #[error("the column header {column:?} lacks a unit: write name[unit], or name[-] for none")]
-    NoUnit {
-        /// the header
-        column: String,
-    },
+    /// A table cannot have such a header or such a row.
+    #[error("{0}")]
+    Table(String),
 }
 
 /// Temporary files that exist now.
@@ -341,7 +318,10 @@ impl CsvTable {
     pub fn new(columns: &[&str]) -> Result<Self, FileError> {
         let lacks_unit = |column: &&&str| !(column.contains('[') && column.ends_with(']'));
         if let Some(column) = columns.iter().find(lacks_unit) {
-            return Err(FileError::NoUnit { column: (*column).into() });
+            let header = format!("the column header {column:?} lacks a unit");
+            return Err(FileError::Table(format!(
+                "{header}: write name[unit], or name[-] for none"
+            )));
         }
         let mut table = CsvTable {
             columns: columns.iter().map(|column| (*column).into()).collect(),
@@ -360,16 +340,16 @@ impl CsvTable {
     /// Adds a row of numbers, texts and gaps; on error the table stays as it was.
     pub fn cells(&mut self, row: &[Cell]) -> Result<(), FileError> {
         if row.len() != self.columns.len() {
-            let (expected, found) = (self.columns.len(), row.len());
-            return Err(FileError::Width { row: self.rows, expected, found });
+            let cells = format!("row {} has {} cells", self.rows, row.len());
+            let expected = self.columns.len();
+            return Err(FileError::Table(format!("{cells}, but the header has {expected}")));
         }
         let texts = row.iter().zip(&self.columns).map(|(cell, column)| match cell {
             Cell::Number(value) if value.is_finite() => Ok(format!("{value:?}")),
-            Cell::Number(value) => Err(FileError::NotFinite {
-                column: column.clone(),
-                row: self.rows,
-                value: value.to_string(),
-            }),
+            Cell::Number(value) => {
+                let cell = format!("column {column} of row {} is {value}", self.rows);
+                Err(FileError::Table(format!("{cell}, which is not finite")))
+            }
             Cell::Text(text) => Ok(text.clone()),
             Cell::Empty => Ok(String::new()),
         });
@@ -618,6 +598,6 @@ mod tests {
         let error = table.numbers(&[0.1]).unwrap_err().to_string();
         assert_eq!(error, "row 1 has 1 cells, but the header has 2");
         assert_eq!(table.into_bytes(), b"t[s],u[m/s]\n0.0,1.0\n");
-        assert!(matches!(CsvTable::new(&["t[s]", "u"]), Err(FileError::NoUnit { .. })));
+        assert!(matches!(CsvTable::new(&["t[s]", "u"]), Err(FileError::Table(_))));
     }
 }

@@ -23,7 +23,6 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use crate::record::{Record, Status};
 
@@ -208,64 +207,6 @@ pub struct Gate {
     pub even_if_diverged: bool,
 }
 
-/// What is wrong with a gate itself.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum GateError {
-    /// No reason, so nobody can tell whether the bound is right.
-    #[error("gate {id} does not say why its bound has this value")]
-    NoReason {
-        /// the gate
-        id: String,
-    },
-    /// Name or metric is empty.
-    #[error(
-        "a gate must have a name and a metric, but has the name {id:?} and the metric {metric:?}"
-    )]
-    NoName {
-        /// the gate
-        id: String,
-        /// its metric
-        metric: String,
-    },
-    /// Ends that are not finite or not in order.
-    #[error(
-        "the bound of gate {id} is {bound}, but its ends must be finite and in ascending order"
-    )]
-    Bound {
-        /// the gate
-        id: String,
-        /// its bound
-        bound: Bound,
-    },
-    /// A limitation without a bound that is wider than the gate's.
-    #[error(
-        "the limitation of gate {id} is {known}, which must have finite ends in ascending order and reach \
-         beyond the gate's {bound} on one side"
-    )]
-    Known {
-        /// the gate
-        id: String,
-        /// its bound
-        bound: Bound,
-        /// the bound of its limitation
-        known: Bound,
-    },
-    /// An early end is neither a limitation nor an expected failure.
-    #[error(
-        "gate {id} lets a run end early and names neither a limitation nor an expected failure"
-    )]
-    EndsEarly {
-        /// the gate
-        id: String,
-    },
-    /// Two gates of one name.
-    #[error("two gates are called {id}")]
-    Duplicate {
-        /// the gates
-        id: String,
-    },
-}
-
 impl Gate {
     /// A gate that judges and whose metric must be there.
     ///
@@ -343,32 +284,43 @@ impl Gate {
     }
 
     /// Has the gate a name, a metric, sound bounds and reasons?
-    pub fn check(&self) -> Result<(), GateError> {
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check(&self) -> Result<(), String> {
         let is_blank = |text: &str| text.trim().is_empty();
         let Gate { id, metric, bound, because, purpose, .. } = self;
-        if is_blank(id) || is_blank(metric) {
-            return Err(GateError::NoName { id: id.clone(), metric: metric.clone() });
-        }
-        let id = || id.clone();
-        if is_blank(because)
-            || matches!(purpose, Purpose::Limitation(known) if is_blank(&known.reason))
-        {
-            return Err(GateError::NoReason { id: id() });
-        }
-        if !bound.is_sound() {
-            return Err(GateError::Bound { id: id(), bound: *bound });
-        }
-        if self.may_end_early && *purpose == Purpose::Judge {
-            return Err(GateError::EndsEarly { id: id() });
-        }
-        match purpose {
-            Purpose::Limitation(Known { bound: known, .. })
-                if !known.is_sound() || known.is_inside(*bound) || known.is_open_where(*bound) =>
-            {
-                Err(GateError::Known { id: id(), bound: *bound, known: *known })
-            }
-            _ => Ok(()),
-        }
+        let known = match purpose {
+            Purpose::Limitation(known) => Some(known),
+            _ => None,
+        };
+        let is_wrong = |known: &&Known| {
+            let known = known.bound;
+            !known.is_sound() || known.is_inside(*bound) || known.is_open_where(*bound)
+        };
+        let words = if is_blank(id) || is_blank(metric) {
+            format!(
+                "a gate must have a name and a metric, but has the name {id:?} and the metric {metric:?}"
+            )
+        } else if is_blank(because) || known.is_some_and(|known| is_blank(&known.reason)) {
+            format!("gate {id} does not say why its bound has this value")
+        } else if !bound.is_sound() {
+            format!(
+                "the bound of gate {id} is {bound}, but its ends must be finite and in ascending order"
+            )
+        } else if self.may_end_early && *purpose == Purpose::Judge {
+            format!(
+                "gate {id} lets a run end early and names neither a limitation nor an expected failure"
+            )
+        } else if let Some(Known { bound: known, .. }) = known.filter(is_wrong) {
+            format!(
+                "the limitation of gate {id} is {known}, which must have finite ends in ascending order and \
+                 reach beyond the gate's {bound} on one side"
+            )
+        } else {
+            return Ok(());
+        };
+        Err(words)
     }
 
     /// Where the metric must lie, in words, with how far its limitation reaches.
@@ -401,12 +353,15 @@ impl Gate {
 }
 
 /// Checks every gate, and that no two have the same name.
-pub fn check_all(gates: &[Gate]) -> Result<(), GateError> {
+///
+/// # Errors
+/// What is wrong with the first that is not sound.
+pub fn check_all(gates: &[Gate]) -> Result<(), String> {
     let mut names = BTreeSet::new();
     for gate in gates {
         gate.check()?;
         if !names.insert(&gate.id) {
-            return Err(GateError::Duplicate { id: gate.id.clone() });
+            return Err(format!("two gates are called {}", gate.id));
         }
     }
     Ok(())
@@ -562,7 +517,7 @@ mod tests {
         assert_eq!(verdict(control), Verdict::ExpectedFailure);
         assert_eq!(plain.clone().even_if_diverged().judge_record(&record).verdict, Verdict::Pass);
         let silent = Gate { may_end_early: true, ..plain };
-        assert_eq!(silent.check(), Err(GateError::EndsEarly { id: "case.metric".into() }));
+        assert!(silent.check().is_err_and(|words| words.contains("lets a run end early")));
     }
 
     #[test]
@@ -586,7 +541,7 @@ mod tests {
         ];
         for (bound, narrow) in refused {
             let error = known(bound, narrow).unwrap_err();
-            assert!(matches!(error, GateError::Known { .. }), "{bound}, {narrow}");
+            assert!(error.starts_with("the limitation of gate"), "{bound}, {narrow}");
         }
     }
 
@@ -621,21 +576,18 @@ mod tests {
         let sound = gate(Bound::Below(1.0));
         let refused = |gate: Gate| gate.check().unwrap_err();
         let silent = Gate { because: " ".into(), ..sound.clone() };
-        assert_eq!(
-            refused(silent).to_string(),
-            "gate case.metric does not say why its bound has this value"
-        );
+        assert_eq!(refused(silent), "gate case.metric does not say why its bound has this value");
         let known = Known { bound: Bound::Below(2.0), reason: String::new(), cause: None };
         let causeless = Gate { purpose: Purpose::Limitation(known), ..sound.clone() };
-        assert!(matches!(refused(causeless), GateError::NoReason { .. }));
+        assert!(refused(causeless).contains("does not say why"));
         let nameless = Gate { metric: String::new(), ..sound.clone() };
-        assert!(matches!(refused(nameless), GateError::NoName { .. }));
+        assert!(refused(nameless).contains("must have a name"));
         for bound in [Bound::Below(f64::NAN), Bound::Within(1.0, 1.0), Bound::Within(1.0, 0.0)] {
             let unsound = Gate { bound, ..sound.clone() };
-            assert!(matches!(refused(unsound), GateError::Bound { .. }));
+            assert!(refused(unsound).starts_with("the bound of gate"));
         }
         let twice = check_all(&[sound.clone(), sound.clone()]);
-        assert_eq!(twice, Err(GateError::Duplicate { id: "case.metric".into() }));
+        assert_eq!(twice, Err("two gates are called case.metric".into()));
         assert_eq!(check_all(&[sound]), Ok(()));
     }
 

@@ -14,4 +14,5 @@ pub mod reference;
 pub mod settings;
 pub mod spec;
 pub mod submission;
+pub mod text;
 pub mod vtk;

@@ -124,70 +124,10 @@ impl Field {
     }
 }
 
-/// Why a setting was refused.
+/// Why a setting was refused: in words that name it, its value, and what is allowed.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum SettingError {
-    /// No setting has that name.
-    #[error("no setting is called {key:?}{}; the settings are {}", hint(.nearest), .keys.join(", "))]
-    UnknownKey {
-        /// as given
-        key: String,
-        /// the most similar name, if one is similar
-        nearest: Option<&'static str>,
-        /// all names
-        keys: Vec<&'static str>,
-    },
-    /// The text is not of the form `key=value`.
-    #[error("{text:?} is not of the form key=value")]
-    NotAnAssignment {
-        /// as given
-        text: String,
-    },
-    /// Two values for one setting.
-    #[error("setting {key} is given twice, as {first:?} and as {second:?}; give one of them")]
-    Twice {
-        /// the setting
-        key: String,
-        /// its first value, as given
-        first: String,
-        /// its second value, as given
-        second: String,
-    },
-    /// The text is not a value of the setting's kind.
-    #[error("setting {name} takes {kind} in the range {range}, not {text:?}")]
-    Unreadable {
-        /// the setting
-        name: &'static str,
-        /// what it takes
-        kind: Kind,
-        /// as given
-        text: String,
-        /// allowed
-        range: &'static str,
-    },
-    /// NaN or infinity.
-    #[error("setting {name} is {text}, which is not finite; allowed is {range}")]
-    NotFinite {
-        /// the setting
-        name: &'static str,
-        /// as given
-        text: String,
-        /// allowed
-        range: &'static str,
-    },
-    /// A number outside the range.
-    #[error("setting {name} is {value} [{unit}]; allowed is {range}")]
-    OutOfRange {
-        /// the setting
-        name: &'static str,
-        /// as given
-        value: String,
-        /// unit of the setting
-        unit: &'static str,
-        /// allowed
-        range: &'static str,
-    },
-}
+#[error("{0}")]
+pub struct SettingError(String);
 
 /// " (did you mean NAME?)", or nothing.
 pub fn hint(nearest: &Option<&'static str>) -> String {
@@ -227,13 +167,13 @@ pub fn apply<S: Settings>(
     for assignment in assignments {
         let text = assignment.as_ref();
         let Some((key, value)) = text.split_once('=') else {
-            return Err(SettingError::NotAnAssignment { text: text.into() });
+            return Err(SettingError(format!("{text:?} is not of the form key=value")));
         };
         let (key, value) = (key.trim(), value.trim());
         changed.set(key, value)?;
         if let Some((_, first)) = given.iter().find(|(other, _)| *other == key) {
-            let [first, second] = [first, value].map(String::from);
-            return Err(SettingError::Twice { key: key.into(), first, second });
+            let twice = format!("setting {key} is given twice, as {first:?} and as {value:?}");
+            return Err(SettingError(format!("{twice}; give one of them")));
         }
         given.push((key, value));
     }
@@ -244,7 +184,8 @@ pub fn apply<S: Settings>(
 /// The error for a key that is not among the fields.
 pub fn unknown(fields: &'static [Field], key: &str) -> SettingError {
     let keys: Vec<_> = fields.iter().map(|field| field.name).collect();
-    SettingError::UnknownKey { key: key.into(), nearest: nearest(&keys, key), keys }
+    let (hint, keys) = (hint(&nearest(&keys, key)), keys.join(", "));
+    SettingError(format!("no setting is called {key:?}{hint}; the settings are {keys}"))
 }
 
 /// The name most similar to what was written, if one is similar.
@@ -262,20 +203,9 @@ pub fn by_similarity<'a>(names: &[&'a str], written: &str) -> Vec<&'a str> {
     sorted
 }
 
-/// Levenshtein distance: insertions, deletions and replacements between two words.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().take(100).collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, to) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(from != *to);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
+/// Insertions, deletions and replacements between a name and what was written, however long that is.
+fn edit_distance(name: &str, written: &str) -> usize {
+    strsim::levenshtein(name, &written.chars().take(100).collect::<String>())
 }
 
 /// A type that a setting may have.
@@ -307,20 +237,24 @@ pub fn check<T: SettingType>(
     range: Option<std::ops::RangeInclusive<T::Limit>>,
     field: &Field,
 ) -> Result<T, SettingError> {
-    let Field { name, unit, range: allowed, .. } = *field;
     let text = value.value().to_string();
-    if !value.is_finite() {
-        return Err(SettingError::NotFinite { name, text, range: allowed });
-    }
     match value.is_within(&range) {
+        _ if !value.is_finite() => Err(not_finite(&text, field)),
         true => Ok(value),
-        false => Err(SettingError::OutOfRange { name, value: text, unit, range: allowed }),
+        false => Err(out_of_range(&text, field)),
     }
 }
 
-fn unreadable(text: &str, field: &Field) -> SettingError {
-    let Field { name, kind, range, .. } = *field;
-    SettingError::Unreadable { name, kind, text: text.into(), range }
+fn unreadable(text: &str, Field { name, kind, range, .. }: &Field) -> SettingError {
+    SettingError(format!("setting {name} takes {kind} in the range {range}, not {text:?}"))
+}
+
+fn not_finite(text: &str, Field { name, range, .. }: &Field) -> SettingError {
+    SettingError(format!("setting {name} is {text}, which is not finite; allowed is {range}"))
+}
+
+fn out_of_range(text: &str, Field { name, unit, range, .. }: &Field) -> SettingError {
+    SettingError(format!("setting {name} is {text} [{unit}]; allowed is {range}"))
 }
 
 impl SettingType for f64 {
@@ -375,15 +309,10 @@ impl SettingType for u64 {
         if let Ok(count) = text.parse() {
             return Ok(count);
         }
-        let Field { name, unit, range, .. } = *field;
         match text.parse::<f64>() {
             Ok(real) if (0.0..=EXACT).contains(&real) && real.fract() == 0.0 => Ok(real as u64),
-            Ok(real) if real.is_finite() && real.fract() == 0.0 => {
-                Err(SettingError::OutOfRange { name, value: text.into(), unit, range })
-            }
-            Ok(real) if !real.is_finite() => {
-                Err(SettingError::NotFinite { name, text: text.into(), range })
-            }
+            Ok(real) if real.is_finite() && real.fract() == 0.0 => Err(out_of_range(text, field)),
+            Ok(real) if !real.is_finite() => Err(not_finite(text, field)),
             _ => Err(unreadable(text, field)),
         }
     }
@@ -403,9 +332,7 @@ impl SettingType for usize {
 
     fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
         let count = u64::read(text, field)?;
-        let Field { name, unit, range, .. } = *field;
-        let too_big = |_| SettingError::OutOfRange { name, value: text.into(), unit, range };
-        usize::try_from(count).map_err(too_big)
+        usize::try_from(count).map_err(|_| out_of_range(text, field))
     }
 
     fn value(self) -> Value {
@@ -647,12 +574,12 @@ mod tests {
             "setting rows takes a whole number in the range 4 to 2000 [-], not \"20.5\""
         );
         assert_eq!(says("re"), "\"re\" is not of the form key=value");
-        assert!(matches!(
-            channel(&["rows=99999999999999999999999"]),
-            Err(SettingError::OutOfRange { .. })
-        ));
-        assert!(matches!(channel(&["re="]), Err(SettingError::Unreadable { .. })));
-        assert!(matches!(channel(&["verbose=yes"]), Err(SettingError::Unreadable { .. })));
+        assert_eq!(
+            says("rows=99999999999999999999999"),
+            "setting rows is 99999999999999999999999 [-]; allowed is 4 to 2000 [-]"
+        );
+        assert!(says("re=").starts_with("setting re takes a number in the range"));
+        assert!(says("verbose=yes").starts_with("setting verbose takes true or false"));
     }
 
     #[test]
@@ -673,9 +600,13 @@ mod tests {
     fn validate_finds_what_was_written_past_set() {
         assert_eq!(Channel::default().validate(), Ok(()));
         let wrong = Channel { re: f64::NAN, ..Channel::default() };
-        assert!(matches!(wrong.validate(), Err(SettingError::NotFinite { name: "re", .. })));
+        assert!(
+            wrong.validate().is_err_and(|e| e.0.starts_with("setting re is NaN, which is not"))
+        );
         let wrong = Channel { c0: Some(-1.0), ..Channel::default() };
-        assert!(matches!(wrong.validate(), Err(SettingError::OutOfRange { name: "c0", .. })));
+        assert!(
+            wrong.validate().is_err_and(|e| e.0.starts_with("setting c0 is -1.0 [m/s]; allowed"))
+        );
     }
 
     proptest! {

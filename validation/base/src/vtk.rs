@@ -24,36 +24,12 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Why particles cannot be written.
+use crate::text::{base64, escaped};
+
+/// Why particles cannot be written, in words.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum VtkError {
-    /// An array has not one value a particle.
-    #[error("array {array} has {found} values for {expected} particles")]
-    Length {
-        /// name of the array
-        array: String,
-        /// particles
-        expected: usize,
-        /// values
-        found: usize,
-    },
-    /// Two arrays of the same name.
-    #[error("there are two arrays called {array}")]
-    Duplicate {
-        /// name of the arrays
-        array: String,
-    },
-    /// A particle is nowhere.
-    #[error("particle {particle} is at ({x}, {y}), which is not finite")]
-    Position {
-        /// index
-        particle: usize,
-        /// x coordinate
-        x: f64,
-        /// y coordinate
-        y: f64,
-    },
-}
+#[error("{0}")]
+pub struct VtkError(String);
 
 /// Particles at one time, with their fields.
 #[derive(Debug, Clone)]
@@ -76,7 +52,8 @@ impl Particles {
         let points: Vec<[f64; 3]> = positions.iter().map(|position| lift(*position)).collect();
         for (particle, [x, y, _]) in points.iter().copied().enumerate() {
             if !(x.is_finite() && y.is_finite()) {
-                return Err(VtkError::Position { particle, x, y });
+                let place = format!("particle {particle} is at ({x}, {y})");
+                return Err(VtkError(format!("{place}, which is not finite")));
             }
         }
         Ok(Particles { time, points, arrays: Vec::new() })
@@ -109,14 +86,15 @@ impl Particles {
         found: usize,
         values: Vec<f64>,
     ) -> Result<Self, VtkError> {
-        let (array, expected) = (name.to_string(), self.points.len());
+        let expected = self.points.len();
         if found != expected {
-            return Err(VtkError::Length { array, expected, found });
+            let words = format!("array {name} has {found} values for {expected} particles");
+            return Err(VtkError(words));
         }
         if self.arrays.iter().any(|known| known.name == name) {
-            return Err(VtkError::Duplicate { array });
+            return Err(VtkError(format!("there are two arrays called {name}")));
         }
-        self.arrays.push(Array { name: array, components, values });
+        self.arrays.push(Array { name: name.into(), components, values });
         Ok(self)
     }
 
@@ -136,7 +114,7 @@ impl Particles {
         );
         for Array { name, components, values } in &self.arrays {
             let attributes =
-                format!("Name=\"{}\" NumberOfComponents=\"{components}\"", escape(name));
+                format!("Name=\"{}\" NumberOfComponents=\"{components}\"", escaped(name));
             data_array(&mut xml, "Float64", &attributes, &floats(values));
         }
         xml.push_str("</PointData>\n<Points>\n");
@@ -183,7 +161,7 @@ impl Collection {
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
         );
         for (time, file) in &self.files {
-            let file = escape(file);
+            let file = escaped(file);
             let _ = writeln!(xml, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>");
         }
         xml.push_str("</Collection>\n</VTKFile>\n");
@@ -213,25 +191,6 @@ fn data_array(xml: &mut String, kind: &str, attributes: &str, bytes: &[u8]) {
         xml,
         "<DataArray type=\"{kind}\" {attributes} format=\"binary\">{text}</DataArray>"
     );
-}
-
-/// Base64 with padding (RFC 4648, section 4).
-fn base64(bytes: &[u8]) -> String {
-    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for i in 0..4 {
-            let letter = ALPHABET[(bits >> (18 - 6 * i)) as usize & 63];
-            text.push(if i <= chunk.len() { letter as char } else { '=' });
-        }
-    }
-    text
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]
@@ -280,14 +239,6 @@ mod tests {
     }
 
     #[test]
-    fn base64_agrees_with_the_vectors_of_rfc_4648() {
-        let encoded = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
-        for (count, text) in encoded.into_iter().enumerate() {
-            assert_eq!(base64(&b"foobar"[..count]), text);
-        }
-    }
-
-    #[test]
     fn a_file_is_well_formed_and_its_counts_agree() {
         let positions = [Vector2::new(0.1, 0.2), Vector2::new(0.3, 0.4), Vector2::new(0.5, 0.6)];
         let particles = Particles::new(0.5, &positions).unwrap();
@@ -320,7 +271,7 @@ mod tests {
         let error = particles.clone().scalar("rho", &[1.0]).unwrap_err().to_string();
         assert_eq!(error, "array rho has 1 values for 2 particles");
         let twice = particles.scalar("rho", &[1.0; 2]).unwrap().scalar("rho", &[1.0; 2]);
-        assert_eq!(twice.unwrap_err(), VtkError::Duplicate { array: "rho".into() });
+        assert_eq!(twice.unwrap_err().to_string(), "there are two arrays called rho");
         let error = Particles::new(0.0, &[[0.0, f64::NAN]]).unwrap_err().to_string();
         assert_eq!(error, "particle 0 is at (0, NaN), which is not finite");
     }

@@ -4,7 +4,6 @@ use base::{
     record::{Cost, Metric, Record, Status},
     spec::{Bisect, RunSpec, Task},
 };
-use std::cell::RefCell;
 
 use crate::{
     case::{Case, RunError},
@@ -28,35 +27,25 @@ pub fn run(
     context: &Context,
 ) -> Result<Record, RunError> {
     let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(spec);
-    let cost = RefCell::new(Cost { threads: 1, ..Cost::default() });
-    let interrupted = RefCell::new(None);
-    let failed = RefCell::new(None);
-    let is_stable = |x: f64| {
-        if interrupted.borrow().is_some() || failed.borrow().is_some() {
-            return false;
+    record.cost.threads = 1;
+    let is_stable = |x: f64| match case.run(&at(spec, bisect, x), context) {
+        Ok(run) => {
+            add(&mut record.cost, &run.cost);
+            match run.status {
+                Status::Interrupted { .. } => Err(Ok(run.status)),
+                _ => Ok(case.is_stable(&run)),
+            }
         }
-        match case.run(&at(spec, bisect, x), context) {
-            Ok(run) => {
-                add(&mut cost.borrow_mut(), &run.cost);
-                if let Status::Interrupted { .. } = run.status {
-                    *interrupted.borrow_mut() = Some(run.status.clone());
-                }
-                case.is_stable(&run)
-            }
-            Err(error) if !error.is_refusal() => {
-                *failed.borrow_mut() = Some(error);
-                false
-            }
-            Err(_) => false,
+        Err(error) if error.is_refusal() => Ok(false),
+        Err(error) => Err(Err(error)),
+    };
+    let bracket = match largest_stable(bisect.guess, bisect.resolution, is_stable) {
+        Ok(bracket) => bracket,
+        Err(ended) => {
+            record.status = ended?;
+            None
         }
     };
-    let bracket = largest_stable(bisect.guess, bisect.resolution, is_stable);
-    if let Some(error) = failed.into_inner() {
-        return Err(error);
-    }
-    if let Some(status) = interrupted.into_inner() {
-        record.status = status;
-    }
     if let Some(Bracket { stable, unstable }) = bracket {
         let ends = [
             (STABLE, stable, "largest x that was stable"),
@@ -66,7 +55,6 @@ pub fn run(
             record.metrics.insert(name.into(), Metric::new(x, "-", formula));
         }
     }
-    record.cost = cost.into_inner();
     Ok(record)
 }
 
@@ -118,18 +106,21 @@ const FARTHEST: f64 = 16.0;
 /// Bisects down to a bracket of `resolution` times `guess`. The guess decides on how many runs it
 /// takes, not on the answer: the bracket grows until it holds the limit. `None` if there is no limit
 /// within a factor of 16 of the guess.
-pub fn largest_stable(
+///
+/// # Errors
+/// The first of the runs.
+pub fn largest_stable<E>(
     guess: f64,
     resolution: f64,
-    is_stable: impl Fn(f64) -> bool,
-) -> Option<Bracket> {
+    mut is_stable: impl FnMut(f64) -> Result<bool, E>,
+) -> Result<Option<Bracket>, E> {
     let (mut width, mut stable, mut unstable) = (FIRST_WIDTH, None, None);
     let mut step = guess * (1.0 - width);
     while stable.is_none() || unstable.is_none() {
         if !(guess / FARTHEST..=guess * FARTHEST).contains(&step) {
-            return None;
+            return Ok(None);
         }
-        if is_stable(step) {
+        if is_stable(step)? {
             stable = Some(step);
             step = if step < guess { guess * (1.0 + width) } else { step * (1.0 + width) };
         } else {
@@ -138,12 +129,13 @@ pub fn largest_stable(
         }
         width *= 1.5;
     }
-    let mut bracket = Bracket { stable: stable?, unstable: unstable? };
+    let Some((stable, unstable)) = stable.zip(unstable) else { return Ok(None) };
+    let mut bracket = Bracket { stable, unstable };
     while bracket.unstable - bracket.stable > resolution * guess {
         let middle = bracket.middle();
-        if is_stable(middle) { bracket.stable = middle } else { bracket.unstable = middle }
+        if is_stable(middle)? { bracket.stable = middle } else { bracket.unstable = middle }
     }
-    Some(bracket)
+    Ok(Some(bracket))
 }
 
 /// Energy that counts as growth beyond doubt, in units of the energy at the start.
@@ -207,10 +199,20 @@ mod tests {
         study::Study,
     };
 
+    /// The bisection of what cannot fail.
+    fn limit_of(
+        guess: f64,
+        resolution: f64,
+        mut is_stable: impl FnMut(f64) -> bool,
+    ) -> Option<Bracket> {
+        let is_stable = |x| Ok::<_, RunError>(is_stable(x));
+        largest_stable(guess, resolution, is_stable).expect("nothing fails")
+    }
+
     #[test]
     fn bisection_finds_a_limit_far_from_the_guess() {
         for limit in [0.2, 0.9, 0.999, 1.0, 1.03, 1.5, 7.0] {
-            let found = largest_stable(1.0, 1e-3, |dt| dt <= limit).expect("a limit");
+            let found = limit_of(1.0, 1e-3, |dt| dt <= limit).expect("a limit");
             assert!(found.stable <= limit && limit <= found.unstable, "{limit}: {found:?}");
             assert!(found.unstable - found.stable <= 1e-3);
         }
@@ -218,14 +220,14 @@ mod tests {
 
     /// What is tried of a limit up to which all is stable.
     fn tried(limit: f64) -> Vec<f64> {
-        let tried = RefCell::new(Vec::new());
+        let mut tried = Vec::new();
         let is_stable = |x: f64| {
-            tried.borrow_mut().push(x);
+            tried.push(x);
             x <= limit
         };
-        let found = largest_stable(1.0, 0.5, is_stable);
+        let found = limit_of(1.0, 0.5, is_stable);
         assert!(found.is_none_or(|found| found.stable <= limit && limit < found.unstable));
-        tried.into_inner()
+        tried
     }
 
     /// The bracket is 4 % to either side of the guess, and every step beyond it is 1.5 times as wide as the
@@ -357,8 +359,8 @@ mod tests {
 
     #[test]
     fn no_limit_is_no_answer() {
-        assert_eq!(largest_stable(1.0, 1e-3, |_| true), None);
-        assert_eq!(largest_stable(1.0, 1e-3, |_| false), None);
+        assert_eq!(limit_of(1.0, 1e-3, |_| true), None);
+        assert_eq!(limit_of(1.0, 1e-3, |_| false), None);
     }
 
     fn watched(energy: impl Fn(f64) -> f64) -> (bool, u64) {
@@ -418,7 +420,7 @@ mod tests {
             }
             !growth.grew()
         };
-        let found = largest_stable(1.6, 1e-3, is_stable).expect("a limit").middle();
+        let found = limit_of(1.6, 1e-3, is_stable).expect("a limit").middle();
         assert!((found / 1.7 - 1.0).abs() < 3e-3, "{found}");
     }
 }

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use base::{
@@ -200,7 +200,7 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
 
 /// Makes the runs that the store lacks. A run that is refused or diverges has a record; one that fails
 /// otherwise has none, see [`Made::failed`]. For what the store cannot keep see [`Made::not_kept`].
-pub fn make(Stored { mut made, missing, .. }: Stored, making: &Making) -> Made {
+pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
     let (timed, mut rest): (Vec<&Job>, Vec<&Job>) =
         missing.iter().partition(|job| job.planned.timed);
     rest.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
@@ -208,14 +208,12 @@ pub fn make(Stored { mut made, missing, .. }: Stored, making: &Making) -> Made {
     for job in rest.iter().chain(&timed) {
         tally.plan(job.case.name(), expected(job, making));
     }
-    let (not_kept, failed) = <_>::default();
-    let batch = Batch { making, tally: Mutex::new(tally), not_kept, failed };
+    let batch = Batch { making, tally: Mutex::new(tally), made: Mutex::new(made) };
     batch.tell(|_| ());
-    let records = side_by_side(&rest, &batch).into_iter().chain(alone(&timed, &batch));
-    made.records.extend(records.map(|record| (record.key(), record)));
+    side_by_side(&rest, &batch);
+    alone(&timed, &batch);
+    let mut made = batch.made.into_inner().unwrap_or_else(PoisonError::into_inner);
     made.interrupted = making.is_interrupted();
-    made.not_kept = batch.not_kept.into_inner().unwrap_or_else(PoisonError::into_inner);
-    made.failed = batch.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
     made
 }
 
@@ -337,8 +335,7 @@ fn sum(cases: &BTreeMap<&'static str, Times>) -> Times {
 struct Batch<'a> {
     making: &'a Making<'a>,
     tally: Mutex<Tally>,
-    not_kept: Mutex<BTreeMap<RunKey, StoreError>>,
-    failed: Mutex<BTreeMap<RunKey, Failed>>,
+    made: Mutex<Made>,
 }
 
 impl Batch<'_> {
@@ -352,26 +349,30 @@ impl Batch<'_> {
         progress(Done { runs: tally.runs, all: tally.all, share, left, last: &tally.last });
     }
 
-    /// Writes a record into the store, if there is one, or notes why it could not be written.
-    fn keep(&self, record: &Record) {
-        if let Some(Err(error)) = self.making.store.map(|store| store.write(record)) {
-            let mut not_kept = self.not_kept.lock().unwrap_or_else(PoisonError::into_inner);
-            not_kept.insert(record.key(), error);
+    fn made(&self) -> MutexGuard<'_, Made> {
+        self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Keeps a record, in the store too if there is one, or notes why it could not be written there.
+    fn keep(&self, record: Record) {
+        let written = self.making.store.map(|store| store.write(&record));
+        let mut made = self.made();
+        if let Some(Err(error)) = written {
+            made.not_kept.insert(record.key(), error);
         }
+        made.records.insert(record.key(), record);
     }
 
     /// Keeps a record and says that it is there; one that was interrupted is dropped.
-    fn done(&self, job: &Job, record: Record, start: Instant) -> Option<Record> {
+    fn done(&self, job: &Job, record: Record, start: Instant) {
         if matches!(record.status, Status::Interrupted { .. }) {
-            return None;
+            return;
         }
-        self.keep(&record);
-        let spec = &job.planned.spec;
-        let case = job.case.name();
-        let name = format!("{case} {}", spec.variant);
+        let (key, case) = (record.key(), job.case.name());
+        let name = format!("{case} {}", record.variant);
+        self.keep(record);
         let (expected, took) = (expected(job, self.making), took(job, self.making, start));
-        self.tell(|tally| tally.finish(spec.key(), case, name, expected, took));
-        Some(record)
+        self.tell(|tally| tally.finish(key, case, name, expected, took));
     }
 
     /// Makes a run, and finds out where its time goes if it is to be profiled; none if it failed.
@@ -397,72 +398,62 @@ impl Batch<'_> {
             Ok(Err(error)) => Failed::Error(error),
             Err(_) => Failed::Bug,
         };
-        self.failed.lock().unwrap_or_else(PoisonError::into_inner).insert(spec.key(), failed);
+        self.made().failed.insert(spec.key(), failed);
         None
     }
 }
 
 /// Each thread takes the longest run that is left.
-fn side_by_side(jobs: &[&Job], batch: &Batch) -> Vec<Record> {
-    let (next, made) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+fn side_by_side(jobs: &[&Job], batch: &Batch) {
+    let next = AtomicUsize::new(0);
     let work = || {
-        let mut mine = Vec::new();
         while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
             if batch.making.is_interrupted() {
                 break;
             }
             let start = Instant::now();
-            let record = batch.run(job, false);
-            mine.extend(record.and_then(|record| batch.done(job, record, start)));
+            if let Some(record) = batch.run(job, false) {
+                batch.done(job, record, start);
+            }
         }
-        mine
     };
     // Not a broadcast, which would wait for threads of the pool that are busy with other things.
     rayon::scope(|scope| {
-        for _ in 0..rayon::current_num_threads() {
-            scope.spawn(|_| {
-                let mine = work();
-                made.lock().unwrap_or_else(PoisonError::into_inner).extend(mine);
-            });
-        }
+        (0..rayon::current_num_threads()).for_each(|_| scope.spawn(|_| work()));
     });
-    made.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// One run at a time, the first of each profiled; cheap ones again in further rounds. A record is kept as
-/// soon as it is there, and again with the timings of a later round.
-fn alone(jobs: &[&Job], batch: &Batch) -> Vec<Record> {
-    let again_below = timed_again_below(batch.making.tier);
-    let mut made: Vec<(&Job, Record)> = Vec::new();
+/// soon as it is there, and again with the timings of the later rounds.
+fn alone(jobs: &[&Job], batch: &Batch) {
     for job in jobs {
         if batch.making.is_interrupted() {
             break;
         }
         let start = Instant::now();
-        let record = batch.run(job, true).and_then(|mut record| {
+        if let Some(mut record) = batch.run(job, true) {
             record.cost.alone_s = vec![record.cost.cpu_s];
-            batch.done(job, record, start)
-        });
-        made.extend(record.map(|record| (*job, record)));
+            batch.done(job, record, start);
+        }
     }
+    let record = |job: &Job| batch.made().records.get(&job.planned.spec.key()).cloned();
+    let is_cheap = |record: &Record| {
+        record.cost.alone_s.iter().any(|seconds| *seconds < timed_again_below(batch.making.tier))
+    };
+    let made = jobs.iter().filter_map(|job| Some((*job, record(job)?)));
+    let mut cheap: Vec<(&Job, Record)> = made.filter(|(_, record)| is_cheap(record)).collect();
     for _ in 1..REPETITIONS {
-        for (job, record) in &mut made {
-            if batch.making.is_interrupted() || record.cost.alone_s[0] >= again_below {
-                continue;
+        for (job, record) in &mut cheap {
+            if batch.making.is_interrupted() {
+                break;
             }
             let again = batch.run(job, false);
             let whole = again.filter(|again| !matches!(again.status, Status::Interrupted { .. }));
             record.cost.alone_s.extend(whole.map(|again| again.cost.cpu_s));
         }
     }
-    let records = made.into_iter().map(|(_, record)| record);
-    records
-        .inspect(|r| {
-            if r.cost.alone_s.len() > 1 {
-                batch.keep(r)
-            }
-        })
-        .collect()
+    let again = cheap.into_iter().map(|(_, record)| record);
+    again.filter(|record| record.cost.alone_s.len() > 1).for_each(|record| batch.keep(record));
 }
 
 /// One run of a case: a simulation, or a search by many. Settings that are refused give a

@@ -1,7 +1,7 @@
 //! Planning, making and judging of all runs, which `verify` and `report` share.
 
 use base::{
-    gate::{Bound, Evidence, Gate, Verdict},
+    gate::{Bound, Evidence, Gate},
     record::{Record, Status},
     spec::RunSpec,
 };
@@ -86,11 +86,6 @@ impl Suite {
     /// How all gates ended, and how many simulations diverged.
     pub fn counts(&self) -> Counts {
         Counts { diverged: self.diverged(), ..Counts::of(self.judged().map(Judged::status)) }
-    }
-
-    /// Gates that passed.
-    pub fn passes(&self) -> usize {
-        self.judged().filter(|j| j.judgement.verdict == Verdict::Pass).count()
     }
 }
 

@@ -136,7 +136,7 @@ pub enum Legend {
     Hidden,
 }
 
-/// Direction of a rule or a span.
+/// Direction of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Orientation {
     /// At one y, over all x.
@@ -145,33 +145,20 @@ pub enum Orientation {
     Vertical,
 }
 
-/// Which end of a text sits at its point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Align {
-    /// The text starts at the point.
-    Start,
-    /// The text is centred on the point.
-    Middle,
-    /// The text ends at the point.
-    End,
-}
-
 /// One thing drawn on a plot.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Layer {
     /// A line, markers, or both, with or without error bars.
     Series(Series),
-    /// A triangle that shows the slope `order` on two logarithmic axes.
+    /// A triangle that shows the slope `order` on two logarithmic axes, at a free place near the data (with
+    /// a smaller factor if need be); left out where there is none.
     Slope {
         /// d log y / d log x; negative where x counts particles.
         order: f64,
-        /// Corner (x, y) at which the hypotenuse starts; `None` finds a free place near the data
-        /// (with a smaller factor if need be) and leaves the triangle out where there is none.
-        anchor: Option<(f64, f64)>,
-        /// Ratio of the ends in x, 2 say; below 1 the triangle lies to the left of its anchor.
+        /// Ratio of the ends in x, 2 say.
         factor: f64,
     },
-    /// A line across the plot at one value, with a label above (right of) it.
+    /// A dashed grey line across the plot at one value, with a label beside it.
     Rule {
         /// Horizontal: `at` is a y.
         orientation: Orientation,
@@ -179,10 +166,6 @@ pub enum Layer {
         at: f64,
         /// May be empty.
         label: String,
-        /// Colour of line and label.
-        colour: Colour,
-        /// Dash pattern.
-        dash: Dash,
     },
     /// The area between two curves.
     Band {
@@ -193,71 +176,29 @@ pub enum Layer {
         /// Drawn as a pale tint of this colour.
         colour: Colour,
     },
-    /// The area between two values, across the plot: a gate's bounds.
-    Span {
-        /// Horizontal: `from` and `to` are values of y.
-        orientation: Orientation,
-        /// One end; may be infinite.
-        from: f64,
-        /// The other end; may be infinite.
-        to: f64,
-        /// Name in the legend; may be empty.
-        name: String,
-        /// Drawn as a pale tint of this colour.
-        colour: Colour,
-    },
-    /// Free text at a point of the plot.
-    Text {
-        /// Where, in the plot's values.
-        at: (f64, f64),
-        /// What.
-        text: String,
-        /// Which end of the text is at the point.
-        align: Align,
-    },
     /// Runs without a result, as crosses in a strip at the upper edge: (x, reason).
     Failed(Vec<(f64, String)>),
 }
 
 impl Layer {
-    /// A slope triangle of width factor 2 that finds its place.
+    /// A slope triangle of width factor 2.
     pub fn slope(order: f64) -> Self {
-        Self::Slope { order, anchor: None, factor: 2.0 }
-    }
-
-    /// A slope triangle of width factor 2 whose hypotenuse starts at a point.
-    pub fn slope_at(order: f64, anchor: (f64, f64)) -> Self {
-        Self::Slope { order, anchor: Some(anchor), factor: 2.0 }
+        Self::Slope { order, factor: 2.0 }
     }
 
     /// A dashed grey horizontal line.
     pub fn horizontal(at: f64, label: impl Into<String>) -> Self {
-        Self::rule(Orientation::Horizontal, at, label.into())
+        Self::Rule { orientation: Orientation::Horizontal, at, label: label.into() }
     }
 
     /// A dashed grey vertical line.
     pub fn vertical(at: f64, label: impl Into<String>) -> Self {
-        Self::rule(Orientation::Vertical, at, label.into())
-    }
-
-    fn rule(orientation: Orientation, at: f64, label: String) -> Self {
-        Self::Rule { orientation, at, label, colour: Colour::GREY, dash: Dash::Dashed }
+        Self::Rule { orientation: Orientation::Vertical, at, label: label.into() }
     }
 
     /// A shaded area between two curves, points (x, lower, upper).
     pub fn band(name: impl Into<String>, points: Vec<(f64, f64, f64)>, colour: Colour) -> Self {
         Self::Band { name: name.into(), points, colour }
-    }
-
-    /// A shaded area between two values of y.
-    pub fn span(name: impl Into<String>, from: f64, to: f64, colour: Colour) -> Self {
-        let orientation = Orientation::Horizontal;
-        Self::Span { orientation, from, to, name: name.into(), colour }
-    }
-
-    /// Text that starts at a point.
-    pub fn text(at: (f64, f64), text: impl Into<String>) -> Self {
-        Self::Text { at, text: text.into(), align: Align::Start }
     }
 }
 
@@ -276,8 +217,6 @@ pub enum Dash {
     Dashed,
     /// Dots.
     Dotted,
-    /// Long, short.
-    DashDot,
 }
 
 /// Shape of a marker.
@@ -295,8 +234,6 @@ pub enum Shape {
     Down,
     /// ✕
     Cross,
-    /// +
-    Plus,
 }
 
 impl Shape {
@@ -330,8 +267,6 @@ pub struct Series {
     pub open: bool,
     /// Diameter of a marker in CSS pixels.
     pub size: f64,
-    /// (lower, upper) end of the bar in y for each point; empty for none.
-    pub y_bars: Vec<(f64, f64)>,
     /// (lower, upper) end of the bar in x for each point; empty for none.
     pub x_bars: Vec<(f64, f64)>,
     /// A short text beside each point, left out where there is no room; empty for none.
@@ -351,7 +286,6 @@ impl Series {
             shape: None,
             open: false,
             size: 6.5,
-            y_bars: Vec::new(),
             x_bars: Vec::new(),
             labels: Vec::new(),
         }
@@ -403,11 +337,6 @@ impl Series {
     /// Sets the diameter of the markers.
     pub fn size(self, size: f64) -> Self {
         Self { size, ..self }
-    }
-
-    /// Bars in y, (lower, upper) for each point.
-    pub fn y_bars(self, y_bars: Vec<(f64, f64)>) -> Self {
-        Self { y_bars, ..self }
     }
 
     /// Bars in x, (lower, upper) for each point.

@@ -1,7 +1,6 @@
 //! The one font of the figures: a subset of DejaVu Sans, embedded in the program.
 
 use super::colour::Colour;
-use super::figure::Align;
 use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 use std::sync::OnceLock;
 
@@ -16,6 +15,17 @@ pub(super) const HEIGHT_PER_EM: f64 = (1901.0 + 483.0) / 2048.0;
 
 /// Height of a digit over the em.
 pub(super) const DIGIT_HEIGHT: f64 = 1493.0 / 2048.0;
+
+/// Which end of a text sits at its point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Align {
+    /// The text starts at the point.
+    Start,
+    /// The text is centred on the point.
+    Middle,
+    /// The text ends at the point.
+    End,
+}
 
 /// How a text is set.
 #[derive(Debug, Clone, Copy)]
@@ -58,31 +68,9 @@ pub(super) fn width(text: &str, em: f64) -> f64 {
     f64::from(right - left) / FINE * em
 }
 
-/// Standard base64, for the font inside a page.
-pub(super) fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let at = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
-        let word = at(0) << 16 | at(1) << 8 | at(2);
-        for k in 0..4 {
-            let digit = DIGITS[(word >> (18 - 6 * k) & 63) as usize];
-            out.push(if k <= chunk.len() { char::from(digit) } else { '=' });
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_pads() {
-        assert_eq!(base64(b"Man"), "TWFu");
-        assert_eq!(base64(b"Ma"), "TWE=");
-        assert_eq!(base64(b"M"), "TQ==");
-    }
 
     #[test]
     fn widths_are_plausible() {

@@ -1,9 +1,8 @@
 //! What plots and maps share: margins, axes with ticks, titles and labels.
 
 use super::axis::Mapping;
-use super::canvas::{Canvas, Rect, Type};
+use super::canvas::{Align, Canvas, Rect, Type};
 use super::colour::Colour;
-use super::figure::Align;
 use super::font;
 use super::ticks::Ticks;
 
@@ -55,49 +54,44 @@ pub(super) fn margins(texts: &Texts, y_labels: f64) -> Margins {
     }
 }
 
-/// Grid, ticks, tick labels and frame; the upper `strip` pixels belong to no value.
+/// Grid, ticks and tick labels.
 pub(super) fn axes(
     canvas: &mut Canvas,
     area: Rect,
-    strip: f64,
     (x, x_ticks): (&Mapping, &Ticks),
     (y, y_ticks): (&Mapping, &Ticks),
 ) {
-    let (bottom, height) = (area.bottom(), area.height - strip);
-    let at_x = |v: f64| Some(area.left + x.unit(v)? * area.width);
-    let at_y = |v: f64| Some(bottom - y.unit(v)? * height);
-    for px in x_ticks.major.iter().filter_map(|t| at_x(t.0)) {
-        canvas.line((px, area.top + strip), (px, bottom), GRID, 0.7);
-    }
-    for py in y_ticks.major.iter().filter_map(|t| at_y(t.0)) {
-        canvas.line((area.left, py), (area.right(), py), GRID, 0.7);
-    }
-    for px in x_ticks.major.iter().filter_map(|t| at_x(t.0)) {
-        canvas.line((px, bottom), (px, bottom - 5.0), Colour::BLACK, 1.0);
-    }
-    for py in y_ticks.major.iter().filter_map(|t| at_y(t.0)) {
-        canvas.line((area.left, py), (area.left + 5.0, py), Colour::BLACK, 1.0);
-    }
-    for px in x_ticks.minor.iter().filter_map(|&v| at_x(v)) {
-        canvas.line((px, bottom), (px, bottom - 3.0), Colour::BLACK, 0.7);
-    }
-    for py in y_ticks.minor.iter().filter_map(|&v| at_y(v)) {
-        canvas.line((area.left, py), (area.left + 3.0, py), Colour::BLACK, 0.7);
-    }
+    let places = |axis: &Mapping, ticks: &Ticks| {
+        let major: Vec<f64> = ticks.major.iter().filter_map(|tick| axis.unit(tick.0)).collect();
+        (major, ticks.minor.iter().filter_map(|v| axis.unit(*v)).collect::<Vec<f64>>())
+    };
+    let ((x_major, x_minor), (y_major, y_minor)) = (places(x, x_ticks), places(y, y_ticks));
+    let mut lines = |xs: &[f64], ys: &[f64], length: (f64, f64), colour, width| {
+        for at in xs.iter().map(|x| area.at((*x, 0.0))) {
+            canvas.line(at, (at.0, at.1 - length.1), colour, width);
+        }
+        for at in ys.iter().map(|y| area.at((0.0, *y))) {
+            canvas.line(at, (at.0 + length.0, at.1), colour, width);
+        }
+    };
+    lines(&x_major, &y_major, (area.width, area.height), GRID, 0.7);
+    lines(&x_major, &y_major, (5.0, 5.0), Colour::BLACK, 1.0);
+    lines(&x_minor, &y_minor, (3.0, 3.0), Colour::BLACK, 0.7);
     for (v, label) in &x_ticks.major {
-        let Some(px) = at_x(*v) else { continue };
-        canvas.text(label, (px, bottom + 12.0), Type::new(TICK_EM, Align::Middle));
+        let Some(unit) = x.unit(*v) else { continue };
+        let at = (area.at((unit, 0.0)).0, area.bottom() + 12.0);
+        canvas.text(label, at, Type::new(TICK_EM, Align::Middle));
     }
     for (v, label) in &y_ticks.major {
-        let Some(py) = at_y(*v) else { continue };
-        canvas.text(label, (area.left - 6.0, py), Type::new(TICK_EM, Align::End));
+        let Some(unit) = y.unit(*v) else { continue };
+        let at = (area.left - 6.0, area.at((0.0, unit)).1);
+        canvas.text(label, at, Type::new(TICK_EM, Align::End));
     }
-    canvas.frame(area, Colour::BLACK, 1.0);
 }
 
 /// Title, note and axis labels; `y_labels` is the width of the tick labels on the left.
 pub(super) fn labels(canvas: &mut Canvas, area: Rect, texts: &Texts, y_labels: f64) {
-    let (middle, centre) = (area.left + 0.5 * area.width, area.top + 0.5 * area.height);
+    let (middle, centre) = area.at((0.5, 0.5));
     let set = |text: &str, em, room| Type::new(fit(text, em, room), Align::Middle);
     let wide = area.width + 40.0;
     canvas.text(texts.title, (middle, area.top - 13.0), set(texts.title, TITLE_EM, wide));

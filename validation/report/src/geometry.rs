@@ -1,59 +1,12 @@
 //! Runs of points that can be drawn: split at gaps, thinned, clipped.
 
 use super::canvas::{Point, Rect};
-use super::figure::Align;
-use super::font;
-
-/// The point moved by the corner of the area.
-pub(super) fn shift((x, y): Point, by: Rect) -> Point {
-    (x + by.left, y + by.top)
-}
-
-/// The rectangle moved by the corner of the area.
-pub(super) fn shift_rect(rect: Rect, by: Rect) -> Rect {
-    Rect { left: rect.left + by.left, top: rect.top + by.top, ..rect }
-}
 
 /// The places of the points, split where a point has none.
-pub(super) fn runs(
-    points: &[(f64, f64)],
-    place: impl Fn((f64, f64)) -> Option<Point>,
-) -> Vec<Vec<Point>> {
-    let mut runs = vec![Vec::new()];
-    for &point in points {
-        match (place(point), runs.last_mut()) {
-            (Some(p), Some(run)) => run.push(p),
-            _ => runs.push(Vec::new()),
-        }
-    }
-    runs.retain(|run| !run.is_empty());
-    runs
-}
-
-/// The outlines of a band (x, lower, upper), split where a point has no place.
-pub(super) fn band_runs(
-    points: &[(f64, f64, f64)],
-    place: impl Fn((f64, f64)) -> Option<Point>,
-) -> Vec<Vec<Point>> {
-    let mut outlines = Vec::new();
-    let (mut lower, mut upper): (Vec<Point>, Vec<Point>) = (Vec::new(), Vec::new());
-    let mut close = |lower: &mut Vec<Point>, upper: &mut Vec<Point>| {
-        upper.reverse();
-        lower.append(upper);
-        outlines.push(std::mem::take(lower));
-    };
-    for &(x, lo, hi) in points {
-        match (place((x, lo)), place((x, hi))) {
-            (Some(a), Some(b)) => {
-                lower.push(a);
-                upper.push(b);
-            }
-            _ => close(&mut lower, &mut upper),
-        }
-    }
-    close(&mut lower, &mut upper);
-    outlines.retain(|outline| outline.len() > 2);
-    outlines
+pub(super) fn runs<P: Copy, T: Copy>(points: &[P], place: impl Fn(P) -> Option<T>) -> Vec<Vec<T>> {
+    let places: Vec<Option<T>> = points.iter().map(|point| place(*point)).collect();
+    let runs = places.split(Option::is_none).filter(|run| !run.is_empty());
+    runs.map(|run| run.iter().copied().flatten().collect()).collect()
 }
 
 /// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains.
@@ -163,17 +116,6 @@ pub(super) fn sample_rect(points: &mut Vec<Point>, rect: Rect) {
         let y = rect.top + rect.height * i as f64 / rows.max(1) as f64;
         sample_segment(points, (rect.left, y), (rect.right(), y));
     }
-}
-
-/// The room that a text takes, vertically centred on its point.
-pub(super) fn text_rect((x, y): Point, text: &str, em: f64, align: Align) -> Rect {
-    let width = font::width(text, em);
-    let left = match align {
-        Align::Start => x,
-        Align::Middle => x - 0.5 * width,
-        Align::End => x - width,
-    };
-    Rect { left, top: y - 0.5 * em, width, height: em }
 }
 
 #[cfg(test)]

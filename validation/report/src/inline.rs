@@ -1,27 +1,23 @@
 //! Inline markup of prose, captions and cells: `*emphasis*`, `**strong**`, `` `code` ``,
 //! `[label](target)`, and MathML copied as it stands.
 
+use base::text::escaped;
 use maud::{Markup, PreEscaped};
-
-/// Text that is safe inside an element or a quoted attribute.
-pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
 
 /// The text as HTML. Marks without a partner are plain text.
 pub(super) fn inline(text: &str) -> Markup {
     let mut out = String::with_capacity(text.len() + 16);
     let mut rest = text;
     while let Some(at) = rest.find(['*', '`', '[', '<']) {
-        out.push_str(&escape(&rest[..at]));
+        out.push_str(&escaped(&rest[..at]));
         rest = &rest[at..];
         let used = element(rest, &mut out);
         if used == 0 {
-            out.push_str(&escape(&rest[..1]));
+            out.push_str(&escaped(&rest[..1]));
         }
         rest = &rest[used.max(1)..];
     }
-    out.push_str(&escape(rest));
+    out.push_str(&escaped(rest));
     PreEscaped(out)
 }
 
@@ -34,7 +30,7 @@ fn element(text: &str, out: &mut String) -> usize {
     }
     if let Some(code) = text.strip_prefix('`') {
         let Some(end) = code.find('`') else { return 0 };
-        out.push_str(&format!("<code>{}</code>", escape(&code[..end])));
+        out.push_str(&format!("<code>{}</code>", escaped(&code[..end])));
         return end + 2;
     }
     for (mark, tag) in [("**", "strong"), ("*", "em")] {
@@ -57,7 +53,7 @@ fn link(text: &str, out: &mut String) -> Option<usize> {
         return None;
     }
     let label = inline(label).into_string();
-    out.push_str(&format!("<a href=\"{}\">{label}</a>", escape(target)));
+    out.push_str(&format!("<a href=\"{}\">{label}</a>", escaped(target)));
     Some(target_end + 1)
 }
 

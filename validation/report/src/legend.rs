@@ -1,8 +1,8 @@
 //! Legends: what stands for what, and where it hides nothing.
 
-use super::canvas::{Canvas, Point, Rect, Type};
+use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
-use super::figure::{Align, Dash, Legend, Shape};
+use super::figure::{Dash, Legend, Shape};
 use super::font;
 
 /// How a series is drawn, after the palette was consulted.
@@ -112,12 +112,9 @@ fn sample(canvas: &mut Canvas, look: Look, (x, y): Point) {
 /// The corner of the area where the box hides none of the obstacles, else outside.
 pub(super) fn place(entries: &[Entry], area: Rect, obstacles: &[Point]) -> Legend {
     let corners = [Legend::TopRight, Legend::TopLeft, Legend::BottomRight, Legend::BottomLeft];
-    let fits = |rect: Rect| {
-        area.contains((rect.left, rect.top)) && area.contains((rect.right(), rect.bottom()))
-    };
     let free = |corner: &Legend| {
         let rect = rect(entries, area, *corner);
-        fits(rect) && !obstacles.iter().any(|&p| rect.grown(4.0).contains(p))
+        area.encloses(&rect) && !obstacles.iter().any(|&p| rect.grown(4.0).contains(p))
     };
     corners.into_iter().find(free).unwrap_or(Legend::Outside)
 }

@@ -7,11 +7,13 @@
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 
 mod axis;
+mod bar;
 mod canvas;
 mod card;
 mod check;
 mod colour;
 mod counts;
+mod drawn;
 mod explorer;
 mod figure;
 mod film;
@@ -25,6 +27,7 @@ mod number;
 mod page;
 mod picture;
 mod plot;
+mod raster;
 mod render;
 mod svg;
 mod table;
@@ -37,8 +40,7 @@ pub use colour::{Colour, ColourMap};
 pub use counts::Counts;
 pub use explorer::{Explorer, GateRow, VERDICTS, verdicts_where};
 pub use figure::{
-    Align, CategoryMap, Dash, Figure, Layer, Legend, Orientation, Panel, ParticleMap, Plot, Series,
-    Shape,
+    CategoryMap, Dash, Figure, Layer, Legend, Orientation, Panel, ParticleMap, Plot, Series, Shape,
 };
 pub use film::Film;
 pub use number::{counted, exact, percent, sci, seconds, sig};

@@ -1,34 +1,29 @@
 //! Particle maps and category maps.
 
 use super::axis::{Axis, Mapping};
-use super::canvas::{Canvas, Point, Rect, Type};
-use super::colour::{Colour, ColourMap};
-use super::figure::{Align, CategoryMap, Dash, ParticleMap, Shape};
+use super::bar::{Bar, STEPS};
+use super::canvas::{Align, Canvas, Point, Rect, Type};
+use super::colour::Colour;
+use super::drawn::Drawn;
+use super::figure::{CategoryMap, Dash, ParticleMap, Shape};
 use super::font;
 use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
 use super::geometry::{clip_line, thin};
 use super::legend::{self, Entry, Sample};
 use super::ticks::{Scale, Ticks, with_exponent};
 
-const BAR_GAP: f64 = 12.0;
-const BAR_WIDTH: f64 = 13.0;
-/// Colours of a bar and of the dots: each is one more element.
-const STEPS: f64 = 32.0;
-
 /// A particle map with its scales decided.
 pub(super) struct Particles<'a> {
     map: &'a ParticleMap,
-    size: (f64, f64),
+    area: Rect,
     x: Mapping,
     y: Mapping,
-    values: Mapping,
     x_ticks: Ticks,
     y_ticks: Ticks,
-    value_ticks: Ticks,
+    bar: Bar,
     /// Radius of a dot in CSS pixels.
     radius: f64,
     note: String,
-    has_bar: bool,
 }
 
 impl<'a> Particles<'a> {
@@ -48,37 +43,20 @@ impl<'a> Particles<'a> {
         }
         let (width, height) = (x.hi - x.lo, y.hi - y.lo);
         let pixels = (room.0 / width).min(room.1 / height);
-        let size = (pixels * width, pixels * height);
-        let values = value_range(map);
+        let area = Rect::of((pixels * width, pixels * height));
         let lost = map.points.iter().filter(|p| !(p.0 + p.1 + p.2).is_finite()).count();
+        let data = map.points.iter().map(|p| p.2);
         Self {
             map,
-            size,
+            area,
+            x_ticks: x_axis.place_ticks(&x, (area.width / 60.0) as usize),
+            y_ticks: y_axis.place_ticks(&y, (area.height / 42.0) as usize),
             x,
             y,
-            values,
-            x_ticks: x_axis.place_ticks(&x, (size.0 / 60.0) as usize),
-            y_ticks: y_axis.place_ticks(&y, (size.1 / 42.0) as usize),
-            value_ticks: Axis::linear("").place_ticks(&values, (size.1 / 36.0) as usize),
+            bar: Bar::new(map.map, &map.label, map.values, data, area.height),
             radius: (0.5 * diameter * pixels).clamp(0.8, 9.0),
             note: if lost > 0 { format!("{lost} not finite") } else { String::new() },
-            has_bar: true,
         }
-    }
-
-    /// Whether the colour bar of another map says the same, because both state the same ends.
-    pub fn shares_bar_with(&self, other: &Self) -> bool {
-        let said = |map: &'a ParticleMap| (map.map, map.values, &map.label);
-        self.map.values.is_some() && said(self.map) == said(other.map)
-    }
-
-    /// Leaves the colour bar to the figure.
-    pub fn hide_bar(&mut self) {
-        self.has_bar = false;
-    }
-
-    pub fn size(&self) -> (f64, f64) {
-        self.size
     }
 
     fn with_texts<R>(&self, then: impl FnOnce(&Texts) -> R) -> R {
@@ -90,30 +68,36 @@ impl<'a> Particles<'a> {
         })
     }
 
-    pub fn margins(&self) -> Margins {
+    fn place(&self, (x, y): (f64, f64)) -> Option<Point> {
+        Some(self.area.at((self.x.unit(x)?, self.y.unit(y)?)))
+    }
+}
+
+impl Drawn for Particles<'_> {
+    fn size(&self) -> (f64, f64) {
+        (self.area.width, self.area.height)
+    }
+
+    fn bar(&mut self) -> Option<&mut Bar> {
+        Some(&mut self.bar)
+    }
+
+    fn margins(&self) -> Margins {
         let around = self.with_texts(|texts| margins(texts, widest_label(&self.y_ticks)));
-        Margins { right: if self.has_bar { self.bar_width() } else { 14.0 }, ..around }
+        Margins { right: if self.bar.is_shared { 14.0 } else { self.bar.width() }, ..around }
     }
 
-    /// Room for the colour bar.
-    pub fn bar_width(&self) -> f64 {
-        let bar = BAR_GAP + BAR_WIDTH + 8.0 + widest_label(&self.value_ticks);
-        bar + if self.map.label.is_empty() { 6.0 } else { 26.0 }
-    }
-
-    pub fn draw(&self, canvas: &mut Canvas, area: Rect) {
-        axes(canvas, area, 0.0, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
-        self.with_texts(|texts| labels(canvas, area, texts, widest_label(&self.y_ticks)));
-        let place = |&(x, y): &(f64, f64)| {
-            let (ux, uy) = (self.x.unit(x)?, self.y.unit(y)?);
-            Some((area.left + ux * area.width, area.bottom() - uy * area.height))
-        };
+    fn draw(&self, canvas: &mut Canvas) {
+        axes(canvas, self.area, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
+        self.with_texts(|texts| labels(canvas, self.area, texts, widest_label(&self.y_ticks)));
         // Dots of one colour after each other, for they are one element of an SVG.
-        let mut dots = vec![Vec::new(); STEPS as usize];
+        let mut dots = vec![Vec::new(); STEPS];
         for &(x, y, value) in &self.map.points {
-            let Some(at) = place(&(x, y)).filter(|at| area.contains(*at)) else { continue };
-            match self.values.unit(value) {
-                Some(t) => dots[((t * STEPS) as usize).min(STEPS as usize - 1)].push(at),
+            let Some(at) = self.place((x, y)).filter(|at| self.area.contains(*at)) else {
+                continue;
+            };
+            match self.bar.step(value) {
+                Some(step) => dots[step].push(at),
                 None => canvas.markers(&[at], Shape::Cross, 8.0, Colour::BLACK, false),
             }
         }
@@ -121,73 +105,19 @@ impl<'a> Particles<'a> {
             // Row by row, for near dots have short coordinates.
             let row = |at: &Point| (at.1 / (4.0 * self.radius)).round() as i64;
             dots.sort_by(|a, b| row(a).cmp(&row(b)).then(a.0.total_cmp(&b.0)));
-            let colour = self.map.map.at((step as f64 + 0.5) / STEPS);
-            dots.into_iter().for_each(|at| canvas.disc(at, self.radius, colour));
+            dots.into_iter().for_each(|at| canvas.disc(at, self.radius, self.bar.colour(step)));
         }
         for line in &self.map.lines {
-            let points: Vec<_> = line.points.iter().filter_map(place).collect();
+            let points: Vec<_> = line.points.iter().filter_map(|p| self.place(*p)).collect();
             let (colour, dash) = (line.colour.unwrap_or(Colour::BLACK), line.line);
-            for piece in clip_line(&thin(&points), area) {
+            for piece in clip_line(&thin(&points), self.area) {
                 canvas.dashed(&piece, colour, line.width, dash.unwrap_or(Dash::Solid));
             }
         }
-        canvas.frame(area, Colour::BLACK, 1.0);
-        if self.has_bar {
-            self.bar(canvas, area);
+        canvas.frame(self.area, Colour::BLACK, 1.0);
+        if !self.bar.is_shared {
+            self.bar.draw(canvas, self.area);
         }
-    }
-
-    /// The colour bar, right of an area.
-    pub fn bar(&self, canvas: &mut Canvas, area: Rect) {
-        let bar = Rect { left: area.right() + BAR_GAP, width: BAR_WIDTH, ..area };
-        let (middle, top) = (bar.left + 0.5 * bar.width, bar.top);
-        for step in 0..STEPS as u32 {
-            let t = f64::from(step) / STEPS;
-            let bottom = bar.bottom() - t * bar.height;
-            // Each step reaches to the top, so that no seam shows between two.
-            canvas.line(
-                (middle, bottom),
-                (middle, top),
-                self.map.map.at(t + 0.5 / STEPS),
-                BAR_WIDTH,
-            );
-        }
-        canvas.frame(bar, Colour::BLACK, 1.0);
-        for (v, _) in &self.value_ticks.major {
-            let Some(t) = self.values.unit(*v) else { continue };
-            let y = bar.bottom() - t * bar.height;
-            canvas.line((bar.right(), y), (bar.right() + 4.0, y), Colour::BLACK, 1.0);
-        }
-        for (v, label) in &self.value_ticks.major {
-            let Some(t) = self.values.unit(*v) else { continue };
-            let y = bar.bottom() - t * bar.height;
-            canvas.text(label, (bar.right() + 7.0, y), Type::new(TICK_EM, Align::Start));
-        }
-        let label = with_exponent(&self.map.label, self.value_ticks.exponent);
-        let em = fit(&label, 12.0, area.height + 20.0);
-        let x = bar.right() + 20.0 + widest_label(&self.value_ticks);
-        let middle = area.top + 0.5 * area.height;
-        canvas.text(&label, (x, middle), Type::new(em, Align::Middle).upright());
-    }
-}
-
-/// The ends of the colour bar: given, or the data's, symmetric where the map is.
-fn value_range(map: &ParticleMap) -> Mapping {
-    let finite = || map.points.iter().map(|p| p.2).filter(|v| v.abs() < 1e150);
-    let lo = finite().fold(f64::INFINITY, f64::min);
-    let hi = finite().fold(f64::NEG_INFINITY, f64::max);
-    let (lo, hi) = match map.values {
-        Some(ends) => ends,
-        None if map.map == ColourMap::Diverging => {
-            let most = lo.abs().max(hi.abs());
-            (-most, most)
-        }
-        None => (lo, hi),
-    };
-    if lo.is_finite() && hi.is_finite() && lo < hi {
-        Mapping { scale: Scale::Linear, lo, hi }
-    } else {
-        Axis::linear("").mapping([lo, hi].into_iter())
     }
 }
 
@@ -211,20 +141,6 @@ impl<'a> Categories<'a> {
         Self { map, size, entries: map.categories.iter().map(entry).collect(), upright }
     }
 
-    pub fn size(&self) -> (f64, f64) {
-        self.size
-    }
-
-    /// The entries of its legend, if that is drawn.
-    pub fn legend(&self) -> &[Entry] {
-        &self.entries
-    }
-
-    /// Leaves the legend to the figure.
-    pub fn hide_legend(&mut self) {
-        self.entries.clear();
-    }
-
     fn texts(&self) -> Texts<'_> {
         Texts { title: &self.map.title, note: "", x: "", y: &self.map.y_label }
     }
@@ -237,7 +153,34 @@ impl<'a> Categories<'a> {
         }
     }
 
-    pub fn margins(&self) -> Margins {
+    fn cell(&self, canvas: &mut Canvas, rect: Rect, cell: Option<&(usize, String)>) {
+        let known = cell.and_then(|(i, text)| Some((self.map.categories.get(*i)?.1, text)));
+        let Some((colour, text)) = known else {
+            canvas.frame(rect.grown(-0.5), Colour::LIGHT_GREY, 1.0);
+            return;
+        };
+        canvas.fill(rect, colour);
+        let em = fit(text, 11.0, rect.width - 4.0).min(0.8 * rect.height);
+        let ink = if colour.is_dark() { Colour::WHITE } else { Colour::BLACK };
+        let at = (rect.left + 0.5 * rect.width, rect.top + 0.5 * rect.height);
+        canvas.text(text, at, Type::new(em, Align::Middle).colour(ink));
+    }
+}
+
+impl Drawn for Categories<'_> {
+    fn size(&self) -> (f64, f64) {
+        self.size
+    }
+
+    fn legend(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    fn hide_legend(&mut self) {
+        self.entries.clear();
+    }
+
+    fn margins(&self) -> Margins {
         let label = if self.map.x_label.is_empty() { 4.0 } else { 22.0 };
         Margins {
             right: if self.entries.is_empty() {
@@ -250,8 +193,8 @@ impl<'a> Categories<'a> {
         }
     }
 
-    pub fn draw(&self, canvas: &mut Canvas, area: Rect) {
-        let map = self.map;
+    fn draw(&self, canvas: &mut Canvas) {
+        let (map, area) = (self.map, Rect::of(self.size));
         labels(canvas, area, &self.texts(), widest(&map.y));
         let width = area.width / map.x.len().max(1) as f64;
         let height = area.height / map.y.len().max(1) as f64;
@@ -277,19 +220,6 @@ impl<'a> Categories<'a> {
         let em = fit(&map.x_label, 12.0, area.width + 40.0);
         canvas.text(&map.x_label, below, Type::new(em, Align::Middle));
         legend::draw(canvas, &self.entries, (area.right() + 8.0, area.top - 4.0), false);
-    }
-
-    fn cell(&self, canvas: &mut Canvas, rect: Rect, cell: Option<&(usize, String)>) {
-        let known = cell.and_then(|(i, text)| Some((self.map.categories.get(*i)?.1, text)));
-        let Some((colour, text)) = known else {
-            canvas.frame(rect.grown(-0.5), Colour::LIGHT_GREY, 1.0);
-            return;
-        };
-        canvas.fill(rect, colour);
-        let em = fit(text, 11.0, rect.width - 4.0).min(0.8 * rect.height);
-        let ink = if colour.is_dark() { Colour::WHITE } else { Colour::BLACK };
-        let at = (rect.left + 0.5 * rect.width, rect.top + 0.5 * rect.height);
-        canvas.text(text, at, Type::new(em, Align::Middle).colour(ink));
     }
 }
 

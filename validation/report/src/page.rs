@@ -10,7 +10,7 @@ use super::inline::inline;
 use super::picture::{drawing, image};
 use super::render;
 use super::table::{Status, Table, first_sentence};
-use base::files;
+use base::{files, text::base64};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
 use std::io;
@@ -114,13 +114,6 @@ pub enum Block {
         /// The blocks.
         blocks: Vec<Block>,
     },
-    /// Data for other programs, in a script element that no browser runs.
-    DataJson {
-        /// Unique on the page.
-        id: String,
-        /// The data.
-        data: serde_json::Value,
-    },
 }
 
 impl From<Figure> for Block {
@@ -154,7 +147,7 @@ impl Page {
         let mut writer = Writer { png_folder: &self.png_folder, figures: 0, tables: 0 };
         let face = format!(
             "@font-face{{font-family:\"DejaVu Sans\";src:url(data:font/ttf;base64,{})}}\n",
-            font::base64(font::BYTES)
+            base64(font::BYTES)
         );
         let page = html! {
             (DOCTYPE)
@@ -305,9 +298,6 @@ impl Writer<'_> {
                     @for block in blocks { (self.block(block)) }
                 }
             },
-            Block::DataJson { id, data } => html! {
-                script id=(id) type="application/json" { (PreEscaped(json(data))) }
-            },
         }
     }
 
@@ -352,23 +342,9 @@ fn moving(film: &Film) -> Markup {
     }
 }
 
-/// JSON without characters that mean something to HTML or XML.
-fn json(data: &serde_json::Value) -> String {
-    let text = data.to_string();
-    text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn json_cannot_close_its_script() {
-        let data = serde_json::json!({"a": "</script><b>&"});
-        let text = json(&data);
-        assert!(!text.contains('<') && !text.contains('&'));
-        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), data);
-    }
 
     #[test]
     fn the_script_is_plain_xml_text() {

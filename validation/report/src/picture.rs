@@ -1,8 +1,8 @@
 //! A figure inside the page.
 
 use super::figure::Figure;
-use super::inline::escape;
-use super::{film, font, render};
+use super::{film, render};
+use base::text::{base64, escaped};
 use maud::{Markup, PreEscaped};
 
 /// Bytes of an SVG beyond which a page has the figure in pixels: some thousand dots.
@@ -19,6 +19,6 @@ pub(super) fn drawing(figure: &Figure) -> Markup {
 
 /// An image inside the page. The page is XML too: every element is closed.
 pub(super) fn image(caption: &str, png: &[u8]) -> Markup {
-    let (caption, data) = (escape(caption), font::base64(png));
+    let (caption, data) = (escaped(caption), base64(png));
     PreEscaped(format!("<img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"/>"))
 }

@@ -1,15 +1,13 @@
 //! Layout and drawing of one plot over two axes.
 
 use super::axis::Mapping;
-use super::canvas::{Canvas, Point, Rect, Type};
+use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
-use super::figure::{Align, Dash, Layer, Legend, Orientation, Plot, Series, Shape};
+use super::drawn::Drawn;
+use super::figure::{Dash, Layer, Legend, Orientation, Plot, Series, Shape};
 use super::font;
 use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
-use super::geometry::{
-    band_runs, clip_line, clip_polygon, runs, sample_rect, sample_segment, shift, shift_rect,
-    text_rect, thin,
-};
+use super::geometry::{clip_line, clip_polygon, runs, sample_rect, sample_segment, thin};
 use super::legend::{self, Entry, Look, Sample};
 use super::ticks::{Ticks, minus, with_exponent};
 
@@ -19,58 +17,71 @@ const STRIP_ROW: f64 = 15.0;
 const MARK_EM: f64 = 9.0;
 /// How many points of lines, which lie a few pixels apart, the label of a point may hide.
 const MARK_HIDES: usize = 2;
+/// Opacity of bands.
+const BAND: f64 = 0.22;
 
-/// A plot with everything decided that the page around it must know.
+/// A plot with everything decided but its place: all points count from the upper left corner of the axes.
 pub(super) struct Prepared<'a> {
     plot: &'a Plot,
-    size: (f64, f64),
+    /// What the axes enclose.
+    area: Rect,
+    /// The same below the strip of failed runs.
+    inner: Rect,
     x: Mapping,
     y: Mapping,
     x_ticks: Ticks,
     y_ticks: Ticks,
-    looks: Vec<Option<Look>>,
-    failed: Vec<Failure>,
-    strip: f64,
-    slopes: Vec<Option<[Point; 3]>>,
-    rules: Vec<Option<(Rect, Align)>>,
-    marks: Vec<Mark>,
+    series: Vec<(&'a Series, Look)>,
+    failed: Vec<Failure<'a>>,
+    /// Orders, and the corners of their triangles.
+    slopes: Vec<(f64, [Point; 3])>,
+    rules: Vec<Rule<'a>>,
+    marks: Vec<Mark<'a>>,
     entries: Vec<Entry>,
     legend: Legend,
     note: String,
 }
 
+/// A line across the plot, and the room of its label.
+struct Rule<'a> {
+    ends: (Point, Point),
+    label: &'a str,
+    room: Rect,
+    align: Align,
+}
+
 /// The label of a point, which starts in the middle of the left side of its room.
-struct Mark {
-    text: String,
+struct Mark<'a> {
+    text: &'a str,
     room: Rect,
     colour: Colour,
 }
 
 /// A failed run in the strip at the upper edge.
-struct Failure {
+struct Failure<'a> {
     x: f64,
     row: usize,
     align: Align,
-    reason: String,
+    reason: &'a str,
 }
 
 impl<'a> Prepared<'a> {
     pub fn new(plot: &'a Plot, size: (f64, f64)) -> Self {
         let (xs, ys) = extent(plot);
         let (x, y) = (plot.x.mapping(xs.into_iter()), plot.y.mapping(ys.into_iter()));
-        let y_ticks = plot.y.place_ticks(&y, (size.1 / 42.0) as usize);
-        let looks = looks(&plot.layers);
+        let series = with_looks(&plot.layers);
+        let area = Rect::of(size);
         let mut this = Self {
             plot,
-            size,
+            area,
+            inner: area,
+            x_ticks: x_ticks(plot, &x, size.0),
+            y_ticks: plot.y.place_ticks(&y, (size.1 / 42.0) as usize),
             x,
             y,
-            x_ticks: x_ticks(plot, &x, size.0),
-            y_ticks,
-            entries: entries(&plot.layers, &looks),
-            looks,
+            entries: entries(plot, &series),
+            series,
             failed: Vec::new(),
-            strip: 0.0,
             slopes: Vec::new(),
             rules: Vec::new(),
             marks: Vec::new(),
@@ -81,7 +92,7 @@ impl<'a> Prepared<'a> {
         this.note = this.dropped();
         let mut obstacles = this.obstacles();
         if !matches!(this.legend, Legend::Auto | Legend::Outside | Legend::Hidden) {
-            sample_rect(&mut obstacles, legend::rect(&this.entries, this.data_area(), this.legend));
+            sample_rect(&mut obstacles, legend::rect(&this.entries, this.inner, this.legend));
         }
         this.place_slopes(&mut obstacles);
         this.place_rules(&mut obstacles);
@@ -89,34 +100,9 @@ impl<'a> Prepared<'a> {
         if this.entries.is_empty() {
             this.legend = Legend::Hidden;
         } else if this.legend == Legend::Auto {
-            this.legend = legend::place(&this.entries, this.data_area(), &obstacles);
+            this.legend = legend::place(&this.entries, this.inner, &obstacles);
         }
         this
-    }
-
-    pub fn size(&self) -> (f64, f64) {
-        self.size
-    }
-
-    /// The entries of its legend, if that is drawn.
-    pub fn legend(&self) -> &[Entry] {
-        if self.legend == Legend::Hidden { &[] } else { &self.entries }
-    }
-
-    /// Leaves the legend to the figure.
-    pub fn hide_legend(&mut self) {
-        self.legend = Legend::Hidden;
-    }
-
-    pub fn margins(&self) -> Margins {
-        let overhang =
-            self.x_ticks.major.last().map_or(0.0, |(_, l)| font::width(l, TICK_EM) / 2.0);
-        let outside = match self.legend {
-            Legend::Outside => legend::size(&self.entries).0 + 12.0,
-            _ => 0.0,
-        };
-        let around = self.with_texts(|texts| margins(texts, widest_label(&self.y_ticks)));
-        Margins { right: (overhang + 2.0).max(10.0).max(outside), ..around }
     }
 
     fn with_texts<R>(&self, then: impl FnOnce(&Texts) -> R) -> R {
@@ -128,64 +114,9 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// Draws into the canvas; the axes enclose `area`.
-    pub fn draw(&self, canvas: &mut Canvas, area: Rect) {
-        for layer in &self.plot.layers {
-            self.background(canvas, area, layer);
-        }
-        axes(canvas, area, self.strip, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
-        self.with_texts(|texts| labels(canvas, area, texts, widest_label(&self.y_ticks)));
-        for (i, layer) in self.plot.layers.iter().enumerate() {
-            if let Layer::Rule { orientation, at, label, colour, dash } = layer {
-                let ends = self.across(*orientation, *at, area);
-                self.rule(canvas, area, ends, (label, *colour, *dash), self.rules[i]);
-            }
-        }
-        for (i, layer) in self.plot.layers.iter().enumerate() {
-            match layer {
-                Layer::Series(series) => {
-                    let look = self.looks[i].expect("every series has a look");
-                    self.series(canvas, area, series, look);
-                }
-                Layer::Slope { order, .. } => {
-                    if let Some(corners) = self.slopes[i] {
-                        slope(canvas, area, *order, corners);
-                    }
-                }
-                Layer::Text { at, text, align } => {
-                    if let Some(p) = self.place(*at).map(|p| shift(p, area)) {
-                        canvas.text(text, p, Type::new(RULE_EM, *align));
-                    }
-                }
-                _ => {}
-            }
-        }
-        for mark in &self.marks {
-            let room = shift_rect(mark.room, area);
-            let at = (room.left, room.top + 0.5 * room.height);
-            canvas.text(&mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
-        }
-        self.failures(canvas, area);
-        canvas.frame(area, Colour::BLACK, 1.0);
-        if self.legend != Legend::Hidden {
-            let place = if self.legend == Legend::Auto { Legend::TopRight } else { self.legend };
-            let inner = shift_rect(self.data_area(), area);
-            let rect = legend::rect(&self.entries, inner, place);
-            let boxed = place != Legend::Outside;
-            legend::draw(canvas, &self.entries, (rect.left, rect.top), boxed);
-        }
-    }
-
-    /// The area below the strip of failures, relative to the axes' upper left corner.
-    fn data_area(&self) -> Rect {
-        let (width, height) = self.size;
-        Rect { left: 0.0, top: self.strip, width, height: height - self.strip }
-    }
-
-    /// Where a point lies, relative to the axes' upper left corner.
+    /// Where a point lies.
     fn place(&self, (x, y): (f64, f64)) -> Option<Point> {
-        let (ux, uy) = (self.x.unit(x)?, self.y.unit(y)?);
-        Some((ux * self.size.0, self.strip + (1.0 - uy) * (self.size.1 - self.strip)))
+        Some(self.inner.at((self.x.unit(x)?, self.y.unit(y)?)))
     }
 
     fn place_failures(&mut self) {
@@ -194,11 +125,11 @@ impl<'a> Prepared<'a> {
             let Layer::Failed(runs) = layer else { continue };
             let mut runs: Vec<_> =
                 runs.iter().filter_map(|r| Some((self.x.unit(r.0)?, &r.1))).collect();
-            runs.retain(|r| (-1e-9..=1.0 + 1e-9).contains(&r.0));
+            runs.retain(|r| is_inside(r.0));
             runs.sort_by(|a, b| a.0.total_cmp(&b.0));
             for (unit, reason) in runs {
-                let (x, width) = (unit * self.size.0, font::width(reason, NOTE_EM));
-                let [before, after] = [x - 12.0, self.size.0 - x - 12.0];
+                let (x, width) = (unit * self.area.width, font::width(reason, NOTE_EM));
+                let [before, after] = [x - 12.0, self.area.width - x - 12.0];
                 let align = if width < after || after > before { Align::Start } else { Align::End };
                 let (from, to) = match align {
                     Align::Start => (x - 8.0, x + 10.0 + width.min(after)),
@@ -209,24 +140,25 @@ impl<'a> Prepared<'a> {
                     Some(end) => *end = to,
                     None => ends.push(to),
                 }
-                self.failed.push(Failure { x, row, align, reason: reason.clone() });
+                self.failed.push(Failure { x, row, align, reason });
             }
         }
         if !ends.is_empty() {
-            self.strip = (ends.len() as f64 * STRIP_ROW + 4.0).min(0.6 * self.size.1);
+            let strip = (ends.len() as f64 * STRIP_ROW + 4.0).min(0.6 * self.area.height);
+            self.inner.top = strip;
+            self.inner.height -= strip;
         }
     }
 
     /// What could not be drawn, in words.
     fn dropped(&self) -> String {
         let (mut infinite, mut nonpositive, mut off) = (0, 0, 0);
-        for layer in &self.plot.layers {
-            let Layer::Series(s) = layer else { continue };
-            for &(x, y) in &s.points {
+        for (series, _) in &self.series {
+            for &(x, y) in &series.points {
                 match self.place((x, y)) {
                     _ if !(x.is_finite() && y.is_finite()) => infinite += 1,
                     None => nonpositive += 1,
-                    Some(p) if s.marked && !self.data_area().grown(0.5).contains(p) => off += 1,
+                    Some(p) if series.marked && !self.inner.grown(0.5).contains(p) => off += 1,
                     Some(_) => {}
                 }
             }
@@ -240,277 +172,44 @@ impl<'a> Prepared<'a> {
     /// Points that a legend or label should not hide.
     fn obstacles(&self) -> Vec<Point> {
         let mut all = Vec::new();
-        for layer in &self.plot.layers {
-            match layer {
-                Layer::Series(s) => {
-                    let joined = s.line.is_some();
-                    for run in runs(&s.points, |p| self.place(p)) {
-                        all.extend_from_slice(&run);
-                        let r = if s.marked { 0.5 * s.size } else { 0.0 };
-                        let around = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)];
-                        all.extend(run.iter().flat_map(|p| around.map(|d| (p.0 + d.0, p.1 + d.1))));
-                        let pairs = run.windows(2).take(if joined { usize::MAX } else { 0 });
-                        for pair in pairs {
-                            if let Some((a, b)) = self.data_area().clip(pair[0], pair[1]) {
-                                sample_segment(&mut all, a, b);
-                            }
-                        }
-                    }
-                    for (a, b) in self.bars(s) {
-                        if let Some((a, b)) = self.data_area().clip(a, b) {
-                            sample_segment(&mut all, a, b);
-                        }
-                    }
+        for (series, _) in &self.series {
+            let mut segments = self.bars(series);
+            for run in runs(&series.points, |p| self.place(p)) {
+                all.extend_from_slice(&run);
+                let r = if series.marked { 0.5 * series.size } else { 0.0 };
+                let around = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)];
+                all.extend(run.iter().flat_map(|p| around.map(|d| (p.0 + d.0, p.1 + d.1))));
+                if series.line.is_some() {
+                    segments.extend(run.windows(2).map(|pair| (pair[0], pair[1])));
                 }
-                Layer::Text { at, text, align } => {
-                    if let Some(p) = self.place(*at) {
-                        sample_rect(&mut all, text_rect(p, text, RULE_EM, *align));
-                    }
-                }
-                _ => {}
+            }
+            for (a, b) in segments.into_iter().filter_map(|(a, b)| self.inner.clip(a, b)) {
+                sample_segment(&mut all, a, b);
             }
         }
         all
     }
 
-    /// Finds room for the labels of the rules, and makes lines and labels obstacles too.
-    fn place_rules(&mut self, obstacles: &mut Vec<Point>) {
-        let origin = Rect { left: 0.0, top: 0.0, width: self.size.0, height: self.size.1 };
-        for layer in &self.plot.layers {
-            let Layer::Rule { orientation, at, label, .. } = layer else {
-                self.rules.push(None);
-                continue;
-            };
-            let Some((a, b)) = self.across(*orientation, *at, origin) else {
-                self.rules.push(None);
-                continue;
-            };
-            let spots = rule_spots(*orientation, (a, b), font::width(label, RULE_EM));
-            let area = self.data_area();
-            let inside =
-                |r: &Rect| area.contains((r.left, r.top)) && area.contains((r.right(), r.bottom()));
-            let hidden = |r: &Rect| {
-                obstacles.iter().filter(|&&p| r.grown(1.0).contains(p)).count()
-                    + if inside(r) { 0 } else { 100_000 }
-            };
-            let best = spots.into_iter().min_by_key(|(r, _)| hidden(r));
-            sample_segment(obstacles, a, b);
-            if let Some((rect, _)) = best.filter(|_| !label.is_empty()) {
-                sample_rect(obstacles, rect);
-            }
-            self.rules.push(best);
-        }
-    }
-
-    /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
-    fn place_marks(&mut self, obstacles: &mut Vec<Point>) {
-        let labelled: Vec<(&Series, Look)> = (self.plot.layers.iter().zip(&self.looks))
-            .filter_map(|(layer, look)| match layer {
-                Layer::Series(series) => Some((series, (*look)?)),
-                _ => None,
-            })
-            .collect();
-        let markers: Vec<Point> = (labelled.iter().filter(|(series, _)| series.marked))
-            .flat_map(|(series, _)| series.points.iter().filter_map(|p| self.place(*p)))
-            .collect();
-        let last = |series: &Series| series.labels.len().saturating_sub(1);
-        let points = labelled.iter().flat_map(|(series, look)| {
-            let all = series.points.iter().zip(&series.labels).enumerate();
-            all.map(move |(k, (p, text))| ((k != last(series)), k != 0, *p, text, look.colour))
-        });
-        let mut points: Vec<_> = points.collect();
-        points.sort_by_key(|(is_not_last, is_not_first, ..)| *is_not_last && *is_not_first);
-        let mut found: Vec<(Point, Mark)> = Vec::new();
-        for (_, _, point, text, colour) in points {
-            let Some(at) = self.place(point) else { continue };
-            let is_same = |(other, mark): &(Point, Mark)| {
-                mark.text == *text && (other.0 - at.0).hypot(other.1 - at.1) < 6.0
-            };
-            if found.iter().any(is_same) {
-                continue;
-            }
-            let hidden = |room: &Rect| {
-                let area = self.data_area();
-                let inside = area.contains((room.left, room.top))
-                    && area.contains((room.right(), room.bottom()));
-                let hides = markers.iter().any(|p| room.grown(3.5).contains(*p));
-                let lines = obstacles.iter().filter(|&&p| room.contains(p)).count();
-                (inside && !hides && lines <= MARK_HIDES).then_some(lines)
-            };
-            let rooms = mark_rooms(at, font::width(text, MARK_EM)).into_iter();
-            let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
-            if let Some((_, room)) = free.min_by_key(|(lines, _)| *lines) {
-                sample_rect(obstacles, room);
-                found.push((at, Mark { text: text.clone(), room, colour }));
-            }
-        }
-        self.marks = found.into_iter().map(|(_, mark)| mark).collect();
-    }
-
-    /// The ends of a line across the plot.
-    fn across(&self, orientation: Orientation, at: f64, area: Rect) -> Option<(Point, Point)> {
-        let inside = |u: &f64| (-1e-9..=1.0 + 1e-9).contains(u);
-        match orientation {
-            Orientation::Horizontal => {
-                let u = self.y.unit(at).filter(inside)?;
-                let y = area.top + self.strip + (1.0 - u) * (self.size.1 - self.strip);
-                Some(((area.left, y), (area.right(), y)))
-            }
-            Orientation::Vertical => {
-                let x = area.left + self.x.unit(at).filter(inside)? * self.size.0;
-                Some(((x, area.top + self.strip), (x, area.bottom())))
-            }
-        }
-    }
-
-    fn rule(
-        &self,
-        canvas: &mut Canvas,
-        area: Rect,
-        ends: Option<(Point, Point)>,
-        (label, colour, dash): (&str, Colour, Dash),
-        spot: Option<(Rect, Align)>,
-    ) {
-        let (Some((a, b)), Some((rect, align))) = (ends, spot) else { return };
-        canvas.dashed(&[a, b], colour, 1.2, dash);
-        let rect = shift_rect(rect, area);
-        let how = Type::new(RULE_EM, align).colour(colour);
-        if a.0 == b.0 {
-            let y = if align == Align::End { rect.top } else { rect.bottom() };
-            canvas.text(label, (rect.left + 0.5 * rect.width, y), how.upright());
-        } else {
-            let x = if align == Align::End { rect.right() } else { rect.left };
-            canvas.text(label, (x, rect.top + 0.5 * rect.height), how);
-        }
-    }
-
-    /// Bands and spans lie below the grid.
-    fn background(&self, canvas: &mut Canvas, area: Rect, layer: &Layer) {
-        match layer {
-            Layer::Band { points, colour, .. } => {
-                for strip in band_runs(points, |p| self.place(p)) {
-                    let clipped = clip_polygon(&strip, self.data_area());
-                    if clipped.len() > 2 {
-                        let moved: Vec<_> =
-                            thin(&clipped).into_iter().map(|p| shift(p, area)).collect();
-                        canvas.polygon(&moved, colour.tint(BAND));
-                    }
-                }
-            }
-            Layer::Span { orientation, from, to, colour, .. } => {
-                let (axis, lo, hi) = match orientation {
-                    Orientation::Horizontal => (&self.y, from.min(*to), from.max(*to)),
-                    Orientation::Vertical => (&self.x, from.min(*to), from.max(*to)),
-                };
-                let u0 = axis.unit(lo).unwrap_or(0.0).clamp(0.0, 1.0);
-                let u1 = axis.unit(hi).unwrap_or(1.0).clamp(0.0, 1.0);
-                let inner = shift_rect(self.data_area(), area);
-                let rect = match orientation {
-                    Orientation::Horizontal => Rect {
-                        top: inner.top + (1.0 - u1) * inner.height,
-                        height: (u1 - u0) * inner.height,
-                        ..inner
-                    },
-                    Orientation::Vertical => Rect {
-                        left: inner.left + u0 * inner.width,
-                        width: (u1 - u0) * inner.width,
-                        ..inner
-                    },
-                };
-                canvas.fill(rect, colour.tint(BAND));
-            }
-            _ => {}
-        }
-    }
-
-    fn series(&self, canvas: &mut Canvas, area: Rect, series: &Series, look: Look) {
-        let inner = shift_rect(self.data_area(), area);
-        for (a, b) in self.bars(series) {
-            self.bar(canvas, inner, (shift(a, area), shift(b, area)), look.colour);
-        }
-        if let Some(dash) = look.line {
-            for run in runs(&series.points, |p| self.place(p).map(|p| shift(p, area))) {
-                for piece in clip_line(&thin(&run), inner) {
-                    canvas.dashed(&piece, look.colour, look.width, dash);
-                }
-            }
-        }
-        if let Some((shape, size)) = look.marker {
-            let places =
-                series.points.iter().filter_map(|&p| self.place(p)).map(|p| shift(p, area));
-            let places: Vec<Point> = places.filter(|p| inner.grown(0.5).contains(*p)).collect();
-            canvas.markers(&places, shape, size, look.colour, look.open);
-        }
-    }
-
-    /// Error bars of a series; an end without a place on a logarithmic axis goes off the low side.
-    fn bars(&self, series: &Series) -> Vec<(Point, Point)> {
-        let mut bars = Vec::new();
-        let (width, height) = (self.size.0, self.size.1 - self.strip);
-        let low = |axis: &Mapping, v: f64| match axis.unit(v) {
-            None if v <= 0.0 => Some(-1.0),
-            place => place,
-        };
-        for (&(x, y), &(lo, hi)) in series.points.iter().zip(&series.y_bars) {
-            if let (Some(p), Some(lo), Some(hi)) =
-                (self.place((x, y)), low(&self.y, lo), self.y.unit(hi))
-            {
-                let at = |u: f64| (p.0, self.strip + (1.0 - u) * height);
-                bars.push((at(lo), at(hi)));
-            }
-        }
-        for (&(x, y), &(lo, hi)) in series.points.iter().zip(&series.x_bars) {
-            if let (Some(p), Some(lo), Some(hi)) =
-                (self.place((x, y)), low(&self.x, lo), self.x.unit(hi))
-            {
-                bars.push(((lo * width, p.1), (hi * width, p.1)));
-            }
-        }
-        bars
-    }
-
-    fn bar(&self, canvas: &mut Canvas, inner: Rect, (a, b): (Point, Point), colour: Colour) {
-        if let Some((p, q)) = inner.clip(a, b) {
-            canvas.line(p, q, colour, 1.0);
-        }
-        let cap = if a.0 == b.0 { (3.5, 0.0) } else { (0.0, 3.5) };
-        for end in [a, b].into_iter().filter(|&p| inner.contains(p)) {
-            let ends = ((end.0 - cap.0, end.1 - cap.1), (end.0 + cap.0, end.1 + cap.1));
-            canvas.line(ends.0, ends.1, colour, 1.0);
-        }
-    }
-
     /// Decides where the slope triangles lie, and makes them obstacles.
     fn place_slopes(&mut self, obstacles: &mut Vec<Point>) {
         for layer in &self.plot.layers {
-            let Layer::Slope { order, anchor, factor } = layer else {
-                self.slopes.push(None);
-                continue;
-            };
-            let corners = match anchor {
-                Some(anchor) => self.triangle(*order, *anchor, *factor),
-                None => [1.0, 0.7, 0.5, 0.35, 0.25]
-                    .iter()
-                    .find_map(|&part| self.free_triangle(*order, factor.powf(part), obstacles)),
-            };
+            let Layer::Slope { order, factor } = layer else { continue };
+            let corners = [1.0, 0.7, 0.5, 0.35, 0.25]
+                .iter()
+                .find_map(|&part| self.free_triangle(*order, factor.powf(part), obstacles));
             if let Some(corners) = corners {
                 sample_rect(obstacles, around(&corners));
+                self.slopes.push((*order, corners));
             }
-            self.slopes.push(corners);
         }
-    }
-
-    fn triangle(&self, order: f64, (x, y): (f64, f64), factor: f64) -> Option<[Point; 3]> {
-        let a = self.place((x, y)).filter(|_| order.is_finite())?;
-        let b = self.place((x * factor, y))?;
-        let c = self.place((x * factor, y * factor.powf(order)))?;
-        Some([a, b, c])
     }
 
     /// The free place closest to the data.
     fn free_triangle(&self, order: f64, factor: f64, data: &[Point]) -> Option<[Point; 3]> {
-        let [a, b, c] = self.triangle(order, (self.x.lo, self.y.lo), factor)?;
-        let area = self.data_area();
+        let (x, y, area) = (self.x.lo, self.y.lo, self.inner);
+        let a = self.place((x, y)).filter(|_| order.is_finite())?;
+        let b = self.place((x * factor, y))?;
+        let c = self.place((x * factor, y * factor.powf(order)))?;
         let steps = |length: f64| (0..(length / 6.0) as i32).map(|i| 6.0 * f64::from(i));
         let moved = |dx: f64, dy: f64| {
             [a, b, c].map(|p| (p.0 - a.0 + area.left + dx, p.1 - a.1 + area.top + dy))
@@ -519,9 +218,7 @@ impl<'a> Prepared<'a> {
         for (dx, dy) in steps(area.width).flat_map(|x| steps(area.height).map(move |y| (x, y))) {
             let corners = moved(dx, dy);
             let rect = around(&corners);
-            if !(area.contains((rect.left, rect.top))
-                && area.contains((rect.right(), rect.bottom())))
-            {
+            if !area.encloses(&rect) {
                 continue;
             }
             let gap = data.iter().map(|&p| rect.distance(p)).fold(f64::INFINITY, f64::min);
@@ -532,28 +229,198 @@ impl<'a> Prepared<'a> {
         best.map(|(_, corners)| corners)
     }
 
-    fn failures(&self, canvas: &mut Canvas, area: Rect) {
+    /// Finds room for the labels of the rules, and makes lines and labels obstacles too.
+    fn place_rules(&mut self, obstacles: &mut Vec<Point>) {
+        for layer in &self.plot.layers {
+            let Layer::Rule { orientation, at, label } = layer else { continue };
+            let Some(ends) = self.across(*orientation, *at) else { continue };
+            let hidden = |r: &Rect| {
+                obstacles.iter().filter(|&&p| r.grown(1.0).contains(p)).count()
+                    + if self.inner.encloses(r) { 0 } else { 100_000 }
+            };
+            let spots = rule_spots(*orientation, ends, font::width(label, RULE_EM)).into_iter();
+            let Some((room, align)) = spots.min_by_key(|(r, _)| hidden(r)) else { continue };
+            sample_segment(obstacles, ends.0, ends.1);
+            if !label.is_empty() {
+                sample_rect(obstacles, room);
+            }
+            self.rules.push(Rule { ends, label, room, align });
+        }
+    }
+
+    /// The ends of a line across the plot.
+    fn across(&self, orientation: Orientation, at: f64) -> Option<(Point, Point)> {
+        let inside = |axis: &Mapping| axis.unit(at).filter(|u| is_inside(*u));
+        let ends = match orientation {
+            Orientation::Horizontal => inside(&self.y).map(|y| [(0.0, y), (1.0, y)])?,
+            Orientation::Vertical => inside(&self.x).map(|x| [(x, 1.0), (x, 0.0)])?,
+        };
+        let [a, b] = ends.map(|end| self.inner.at(end));
+        Some((a, b))
+    }
+
+    /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
+    fn place_marks(&mut self, obstacles: &mut Vec<Point>) {
+        let markers: Vec<Point> = (self.series.iter().filter(|(series, _)| series.marked))
+            .flat_map(|(series, _)| series.points.iter().filter_map(|p| self.place(*p)))
+            .collect();
+        let points = self.series.iter().flat_map(|(series, look)| {
+            let last = series.labels.len().saturating_sub(1);
+            let all = series.points.iter().zip(&series.labels).enumerate();
+            all.map(move |(k, (p, text))| (k != 0 && k != last, *p, text, look.colour))
+        });
+        let mut points: Vec<_> = points.collect();
+        points.sort_by_key(|(is_between, ..)| *is_between);
+        let mut found: Vec<(Point, Mark)> = Vec::new();
+        for (_, point, text, colour) in points {
+            let Some(at) = self.place(point) else { continue };
+            let is_same = |(other, mark): &(Point, Mark)| {
+                mark.text == *text && (other.0 - at.0).hypot(other.1 - at.1) < 6.0
+            };
+            if found.iter().any(is_same) {
+                continue;
+            }
+            let hidden = |room: &Rect| {
+                let hides = markers.iter().any(|p| room.grown(3.5).contains(*p));
+                let lines = obstacles.iter().filter(|&&p| room.contains(p)).count();
+                (self.inner.encloses(room) && !hides && lines <= MARK_HIDES).then_some(lines)
+            };
+            let rooms = mark_rooms(at, font::width(text, MARK_EM)).into_iter();
+            let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
+            if let Some((_, room)) = free.min_by_key(|(lines, _)| *lines) {
+                sample_rect(obstacles, room);
+                found.push((at, Mark { text, room, colour }));
+            }
+        }
+        self.marks = found.into_iter().map(|(_, mark)| mark).collect();
+    }
+
+    /// Error bars of a series; an end without a place on a logarithmic axis goes off the low side.
+    fn bars(&self, series: &Series) -> Vec<(Point, Point)> {
+        let bar = |(&(x, y), &(lo, hi)): (&(f64, f64), &(f64, f64))| {
+            let low = self.x.unit(lo).or((lo <= 0.0).then_some(-1.0))?;
+            let (_, y) = self.place((x, y))?;
+            let at = |unit: f64| (unit * self.inner.width, y);
+            Some((at(low), at(self.x.unit(hi)?)))
+        };
+        series.points.iter().zip(&series.x_bars).filter_map(bar).collect()
+    }
+
+    fn draw_band(&self, canvas: &mut Canvas, points: &[(f64, f64, f64)], colour: Colour) {
+        let ends = |(x, lower, upper)| Some((self.place((x, lower))?, self.place((x, upper))?));
+        for run in runs(points, ends) {
+            let (lower, upper): (Vec<Point>, Vec<Point>) = run.into_iter().unzip();
+            let outline: Vec<Point> = lower.into_iter().chain(upper.into_iter().rev()).collect();
+            let clipped = clip_polygon(&outline, self.inner);
+            if outline.len() > 2 && clipped.len() > 2 {
+                canvas.polygon(&thin(&clipped), colour.tint(BAND));
+            }
+        }
+    }
+
+    fn draw_series(&self, canvas: &mut Canvas, series: &Series, look: Look) {
+        for (a, b) in self.bars(series) {
+            if let Some((p, q)) = self.inner.clip(a, b) {
+                canvas.line(p, q, look.colour, 1.0);
+            }
+            for (x, y) in [a, b].into_iter().filter(|&p| self.inner.contains(p)) {
+                canvas.line((x, y - 3.5), (x, y + 3.5), look.colour, 1.0);
+            }
+        }
+        if let Some(dash) = look.line {
+            for run in runs(&series.points, |p| self.place(p)) {
+                for piece in clip_line(&thin(&run), self.inner) {
+                    canvas.dashed(&piece, look.colour, look.width, dash);
+                }
+            }
+        }
+        if let Some((shape, size)) = look.marker {
+            let places = series.points.iter().filter_map(|&p| self.place(p));
+            let places: Vec<Point> =
+                places.filter(|p| self.inner.grown(0.5).contains(*p)).collect();
+            canvas.markers(&places, shape, size, look.colour, look.open);
+        }
+    }
+
+    fn draw_failures(&self, canvas: &mut Canvas) {
         if self.failed.is_empty() {
             return;
         }
-        let strip = Rect { height: self.strip, ..area };
+        let strip = Rect { height: self.inner.top, ..self.area };
         canvas.fill(strip, Colour::VERMILLION.tint(0.1));
-        let line = area.top + self.strip;
-        canvas.line((area.left, line), (area.right(), line), Colour::GREY, 0.7);
+        canvas.line(self.inner.at((0.0, 1.0)), self.inner.at((1.0, 1.0)), Colour::GREY, 0.7);
         for f in &self.failed {
-            let at = (area.left + f.x, area.top + 2.0 + (f.row as f64 + 0.5) * STRIP_ROW);
+            let at = (f.x, 2.0 + (f.row as f64 + 0.5) * STRIP_ROW);
             canvas.markers(&[at], Shape::Cross, 8.5, Colour::VERMILLION, false);
-            let side = if f.align == Align::Start { 8.0 } else { -8.0 };
-            let room = if f.align == Align::Start { area.width - f.x } else { f.x };
-            let em = fit(&f.reason, NOTE_EM, room - 12.0);
+            let (side, room) = match f.align {
+                Align::Start => (8.0, self.area.width - f.x),
+                _ => (-8.0, f.x),
+            };
+            let em = fit(f.reason, NOTE_EM, room - 12.0);
             let how = Type::new(em, f.align).colour(Colour(150, 60, 0));
-            canvas.text(&f.reason, (at.0 + side, at.1), how);
+            canvas.text(f.reason, (at.0 + side, at.1), how);
         }
     }
 }
 
-/// Opacity of bands and spans.
-const BAND: f64 = 0.22;
+impl Drawn for Prepared<'_> {
+    fn size(&self) -> (f64, f64) {
+        (self.area.width, self.area.height)
+    }
+
+    fn legend(&self) -> &[Entry] {
+        if self.legend == Legend::Hidden { &[] } else { &self.entries }
+    }
+
+    fn hide_legend(&mut self) {
+        self.legend = Legend::Hidden;
+    }
+
+    fn margins(&self) -> Margins {
+        let overhang =
+            self.x_ticks.major.last().map_or(0.0, |(_, l)| font::width(l, TICK_EM) / 2.0);
+        let outside = match self.legend {
+            Legend::Outside => legend::size(&self.entries).0 + 12.0,
+            _ => 0.0,
+        };
+        let around = self.with_texts(|texts| margins(texts, widest_label(&self.y_ticks)));
+        Margins { right: (overhang + 2.0).max(10.0).max(outside), ..around }
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        // Bands lie below the grid.
+        for layer in &self.plot.layers {
+            if let Layer::Band { points, colour, .. } = layer {
+                self.draw_band(canvas, points, *colour);
+            }
+        }
+        axes(canvas, self.inner, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
+        self.with_texts(|texts| labels(canvas, self.area, texts, widest_label(&self.y_ticks)));
+        self.rules.iter().for_each(|rule| draw_rule(canvas, rule));
+        for (series, look) in &self.series {
+            self.draw_series(canvas, series, *look);
+        }
+        for (order, corners) in &self.slopes {
+            draw_slope(canvas, self.area, *order, *corners);
+        }
+        for mark in &self.marks {
+            let at = mark.room.at((0.0, 0.5));
+            canvas.text(mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
+        }
+        self.draw_failures(canvas);
+        canvas.frame(self.area, Colour::BLACK, 1.0);
+        if self.legend != Legend::Hidden {
+            let rect = legend::rect(&self.entries, self.inner, self.legend);
+            let boxed = self.legend != Legend::Outside;
+            legend::draw(canvas, &self.entries, (rect.left, rect.top), boxed);
+        }
+    }
+}
+
+/// Whether a place on an axis lies between its ends.
+fn is_inside(unit: f64) -> bool {
+    (-1e-9..=1.0 + 1e-9).contains(&unit)
+}
 
 /// Every x and every y that an automatic range should show.
 fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
@@ -566,30 +433,15 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
                     xs.push(x);
                     ys.push(y);
                 }
-                ys.extend(s.y_bars.iter().flat_map(|b| [b.0, b.1]));
                 xs.extend(s.x_bars.iter().flat_map(|b| [b.0, b.1]));
             }
-            Layer::Slope { order, anchor: Some((x, y)), factor } => {
-                xs.extend([*x, x * factor]);
-                ys.extend([*y, y * factor.powf(*order)]);
-            }
-            Layer::Rule { orientation, at, .. } => match orientation {
-                Orientation::Horizontal => ys.push(*at),
-                Orientation::Vertical => xs.push(*at),
-            },
+            Layer::Rule { orientation: Orientation::Horizontal, at, .. } => ys.push(*at),
+            Layer::Rule { orientation: Orientation::Vertical, at, .. } => xs.push(*at),
             Layer::Band { points, .. } => {
                 xs.extend(points.iter().map(|p| p.0));
                 ys.extend(points.iter().flat_map(|p| [p.1, p.2]));
             }
-            Layer::Span { orientation, from, to, .. } => match orientation {
-                Orientation::Horizontal => ys.extend([*from, *to]),
-                Orientation::Vertical => xs.extend([*from, *to]),
-            },
-            Layer::Text { at, .. } => {
-                xs.push(at.0);
-                ys.push(at.1);
-            }
-            Layer::Slope { anchor: None, .. } => {}
+            Layer::Slope { .. } => {}
             Layer::Failed(runs) => xs.extend(runs.iter().map(|r| r.0)),
         }
     }
@@ -610,39 +462,34 @@ fn x_ticks(plot: &Plot, mapping: &Mapping, width: f64) -> Ticks {
     found.unwrap_or_else(|| plot.x.place_ticks(mapping, 2))
 }
 
-fn looks(layers: &[Layer]) -> Vec<Option<Look>> {
-    let (mut colours, mut shapes) = (0, 0);
-    let mut look = |s: &Series| {
-        let colour = s.colour.unwrap_or_else(|| {
-            colours += 1;
-            Colour::cycle(colours - 1)
-        });
-        let shape = s.marked.then(|| {
-            s.shape.unwrap_or_else(|| {
-                shapes += 1;
-                Shape::cycle(shapes - 1)
-            })
-        });
-        let marker = shape.map(|shape| (shape, s.size));
+/// The series with their colours and shapes, the next of the palette where they name none.
+fn with_looks(layers: &[Layer]) -> Vec<(&Series, Look)> {
+    let series = layers.iter().filter_map(|layer| match layer {
+        Layer::Series(series) => Some(series),
+        _ => None,
+    });
+    let (mut colours, mut shapes) = ((0..).map(Colour::cycle), (0..).map(Shape::cycle));
+    let look = |s: &Series| {
+        let colour = s.colour.or_else(|| colours.next()).unwrap_or(Colour::BLACK);
+        let mut shape = || s.shape.or_else(|| shapes.next()).map(|shape| (shape, s.size));
+        let marker = if s.marked { shape() } else { None };
         Look { colour, line: s.line, width: s.width, marker, open: s.open }
     };
-    layers.iter().map(|l| if let Layer::Series(s) = l { Some(look(s)) } else { None }).collect()
+    let looks: Vec<Look> = series.clone().map(look).collect();
+    series.zip(looks).collect()
 }
 
-fn entries(layers: &[Layer], looks: &[Option<Look>]) -> Vec<Entry> {
-    let entry = |(layer, look): (&Layer, &Option<Look>)| {
-        let (name, sample) = match layer {
-            // A run without a point would have a symbol in the legend and none in the plot.
-            Layer::Series(s) if s.points.is_empty() => return None,
-            Layer::Series(s) => (&s.name, Sample::Series((*look)?)),
-            Layer::Band { name, colour, .. } | Layer::Span { name, colour, .. } => {
-                (name, Sample::Patch(colour.tint(BAND)))
-            }
-            _ => return None,
-        };
-        (!name.is_empty()).then(|| Entry { name: name.clone(), sample })
-    };
-    layers.iter().zip(looks).filter_map(entry).collect()
+/// What the legend names: series, then bands. A series without a point would have a symbol there and none
+/// in the plot.
+fn entries(plot: &Plot, series: &[(&Series, Look)]) -> Vec<Entry> {
+    let drawn = series.iter().filter(|(series, _)| !series.points.is_empty());
+    let lines = drawn.map(|(series, look)| (&series.name, Sample::Series(*look)));
+    let bands = plot.layers.iter().filter_map(|layer| match layer {
+        Layer::Band { name, colour, .. } => Some((name, Sample::Patch(colour.tint(BAND)))),
+        _ => None,
+    });
+    let named = lines.chain(bands).filter(|(name, _)| !name.is_empty());
+    named.map(|(name, sample)| Entry { name: name.clone(), sample }).collect()
 }
 
 /// The room that a slope triangle takes with its numbers.
@@ -655,8 +502,8 @@ fn around(corners: &[Point; 3]) -> Rect {
 }
 
 /// A triangle with its rise beside and a 1 along its run.
-fn slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) {
-    let [a, b, c] = corners.map(|p| shift(p, area));
+fn draw_slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) {
+    let [a, b, c] = corners;
     for (p, q) in [(a, b), (b, c), (c, a)] {
         if let Some((p, q)) = area.clip(p, q) {
             canvas.line(p, q, Colour::GREY, 1.0);
@@ -688,30 +535,36 @@ fn mark_rooms((x, y): Point, width: f64) -> [Rect; 8] {
     .map(|(left, top)| Rect { left, top, width, height: MARK_EM })
 }
 
+fn draw_rule(canvas: &mut Canvas, rule: &Rule) {
+    let (a, b) = rule.ends;
+    canvas.dashed(&[a, b], Colour::GREY, 1.2, Dash::Dashed);
+    let how = Type::new(RULE_EM, rule.align).colour(Colour::GREY);
+    let end = if rule.align == Align::End { 1.0 } else { 0.0 };
+    match a.0 == b.0 {
+        true => canvas.text(rule.label, rule.room.at((0.5, end)), how.upright()),
+        false => canvas.text(rule.label, rule.room.at((end, 0.5)), how),
+    }
+}
+
 /// Places for the label of a rule: both ends, both sides.
 fn rule_spots(orientation: Orientation, (a, b): (Point, Point), width: f64) -> Vec<(Rect, Align)> {
-    let (gap, height) = (3.5, RULE_EM);
-    let corner = |left, top, width, height| Rect { left, top, width, height };
+    let (gap, inset, height) = (3.5, 8.0, RULE_EM);
+    let spots = |ends: [f64; 2], sides: [f64; 2]| {
+        let end = move |(end, align)| sides.map(|side| (side, end, align));
+        [(ends[0], Align::End), (ends[1], Align::Start)].into_iter().flat_map(end)
+    };
     match orientation {
         Orientation::Horizontal => {
-            let (left, right) = (a.0 + 8.0, b.0 - 8.0 - width);
-            let (above, below) = (a.1 - gap - height, a.1 + gap);
-            vec![
-                (corner(right, above, width, height), Align::End),
-                (corner(left, above, width, height), Align::Start),
-                (corner(right, below, width, height), Align::End),
-                (corner(left, below, width, height), Align::Start),
-            ]
+            let ends = [b.0 - inset - width, a.0 + inset];
+            spots(ends, [a.1 - gap - height, a.1 + gap])
+                .map(|(top, left, align)| (Rect { left, top, width, height }, align))
+                .collect()
         }
         Orientation::Vertical => {
-            let (top, bottom) = (a.1 + 8.0, b.1 - 8.0 - width);
-            let (before, after) = (a.0 - gap - height, a.0 + gap);
-            vec![
-                (corner(after, top, height, width), Align::End),
-                (corner(before, top, height, width), Align::End),
-                (corner(after, bottom, height, width), Align::Start),
-                (corner(before, bottom, height, width), Align::Start),
-            ]
+            let ends = [a.1 + inset, b.1 - inset - width];
+            spots(ends, [a.0 + gap, a.0 - gap - height])
+                .map(|(left, top, align)| (Rect { left, top, width: height, height: width }, align))
+                .collect()
         }
     }
 }

@@ -1,12 +1,15 @@
 //! From a figure to an SVG text or a PNG file.
 
-use super::canvas::{Canvas, Raster, Rect, Type};
+use super::bar::Bar;
+use super::canvas::{Align, Canvas, Rect, Type};
 use super::colour::Colour;
-use super::figure::{Align, Figure, Panel};
-use super::frame::{Margins, fit};
+use super::drawn::Drawn;
+use super::figure::{Figure, Panel};
+use super::frame::fit;
 use super::legend::{self, Entry};
 use super::maps::{Categories, Particles};
-use super::plot;
+use super::plot::Prepared;
+use super::raster::Raster;
 use super::svg::{self, Svg};
 use base::files;
 use plotters::prelude::BitMapBackend;
@@ -20,78 +23,29 @@ const TITLE_EM: f64 = 14.0;
 const TITLE_HEIGHT: f64 = 26.0;
 const EDGE: f64 = 5.0;
 
-/// A panel with everything decided but its place.
-enum Prepared<'a> {
-    Plot(plot::Prepared<'a>),
-    Particles(Particles<'a>),
-    Categories(Categories<'a>),
-}
-
-impl<'a> Prepared<'a> {
-    fn new(panel: &'a Panel, size: (f64, f64)) -> Self {
-        match panel {
-            Panel::Plot(plot) => Self::Plot(plot::Prepared::new(plot, size)),
-            Panel::Particles(map) => Self::Particles(Particles::new(map, size)),
-            Panel::Categories(map) => Self::Categories(Categories::new(map, size)),
-        }
-    }
-
-    fn size(&self) -> (f64, f64) {
-        match self {
-            Self::Plot(p) => p.size(),
-            Self::Particles(p) => p.size(),
-            Self::Categories(p) => p.size(),
-        }
-    }
-
-    fn legend(&self) -> &[Entry] {
-        match self {
-            Self::Plot(p) => p.legend(),
-            Self::Particles(_) => &[],
-            Self::Categories(p) => p.legend(),
-        }
-    }
-
-    fn hide_legend(&mut self) {
-        match self {
-            Self::Plot(p) => p.hide_legend(),
-            Self::Particles(_) => {}
-            Self::Categories(p) => p.hide_legend(),
-        }
-    }
-
-    fn margins(&self) -> Margins {
-        match self {
-            Self::Plot(p) => p.margins(),
-            Self::Particles(p) => p.margins(),
-            Self::Categories(p) => p.margins(),
-        }
-    }
-
-    fn draw(&self, canvas: &mut Canvas, area: Rect) {
-        match self {
-            Self::Plot(p) => p.draw(canvas, area),
-            Self::Particles(p) => p.draw(canvas, area),
-            Self::Categories(p) => p.draw(canvas, area),
-        }
+fn prepared(panel: &Panel, size: (f64, f64)) -> Box<dyn Drawn + '_> {
+    match panel {
+        Panel::Plot(plot) => Box::new(Prepared::new(plot, size)),
+        Panel::Particles(map) => Box::new(Particles::new(map, size)),
+        Panel::Categories(map) => Box::new(Categories::new(map, size)),
     }
 }
 
 /// Panels with their places, and the size of the whole.
 struct Layout<'a> {
-    panels: Vec<(Prepared<'a>, Rect)>,
+    panels: Vec<(Box<dyn Drawn + 'a>, Rect)>,
     /// The legend below all panels; empty where each has its own.
     legend: Vec<Entry>,
-    /// What the colour bar right of all panels stands beside, if they have one for all.
-    bar: Option<Rect>,
+    /// The colour bar of all panels, if they have one for all, and what it stands beside.
+    bar: Option<(Bar, Rect)>,
     size: (f64, f64),
 }
 
 /// The one legend of several panels, in which a name has one colour and a look one name. Empty if theirs do
 /// not agree, or if several of them have nothing in common.
-fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
+fn shared_legend(panels: &[Box<dyn Drawn + '_>]) -> Vec<Entry> {
     let legends: Vec<&[Entry]> =
-        panels.iter().map(Prepared::legend).filter(|legend| !legend.is_empty()).collect();
+        panels.iter().map(|panel| panel.legend()).filter(|legend| !legend.is_empty()).collect();
     let mut all: Vec<Entry> = Vec::new();
     for entry in legends.iter().copied().flatten() {
         match all.iter().find(|other| other.name == entry.name) {
@@ -106,32 +60,27 @@ fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
     if all.len() < total || is_for_all { all } else { Vec::new() }
 }
 
-/// Hides the colour bars of maps that all have the same one; its width.
-fn share_bar(panels: &mut [Prepared]) -> Option<f64> {
-    let maps: Option<Vec<&mut Particles>> = panels
-        .iter_mut()
-        .map(|panel| if let Prepared::Particles(map) = panel { Some(map) } else { None })
-        .collect();
-    let mut maps = maps.filter(|maps| maps.len() > 1)?;
-    if !maps.iter().all(|map| map.shares_bar_with(maps[0])) {
-        return None;
-    }
-    maps.iter_mut().for_each(|map| map.hide_bar());
-    Some(maps[0].bar_width())
+/// The colour bar of several maps that all have the same one, which they then leave to the figure.
+fn shared_bar(panels: &mut [Box<dyn Drawn + '_>]) -> Option<Bar> {
+    let bars: Option<Vec<&mut Bar>> = panels.iter_mut().map(|panel| panel.bar()).collect();
+    let bars = bars.filter(|bars| bars.len() > 1 && bars.iter().all(|bar| bar.is_as(bars[0])))?;
+    let bar = bars[0].clone();
+    bars.into_iter().for_each(|bar| bar.is_shared = true);
+    Some(bar)
 }
 
 /// Aligns the axes of all panels in a row and in a column.
 fn layout(figure: &Figure) -> Layout<'_> {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let room = (figure.panel_size.0.max(80.0), figure.panel_size.1.max(60.0));
-    let mut panels: Vec<_> = figure.panels.iter().map(|p| Prepared::new(p, room)).collect();
+    let mut panels: Vec<_> = figure.panels.iter().map(|p| prepared(p, room)).collect();
     let legend = shared_legend(&panels);
     if !legend.is_empty() {
-        panels.iter_mut().for_each(Prepared::hide_legend);
+        panels.iter_mut().for_each(|panel| panel.hide_legend());
     }
-    let bar_width = share_bar(&mut panels);
-    let margins: Vec<_> = panels.iter().map(Prepared::margins).collect();
-    let sizes: Vec<_> = panels.iter().map(Prepared::size).collect();
+    let bar = shared_bar(&mut panels);
+    let margins: Vec<_> = panels.iter().map(|panel| panel.margins()).collect();
+    let sizes: Vec<_> = panels.iter().map(|panel| panel.size()).collect();
     let rows = panels.len().div_ceil(columns);
     let most = |of: &dyn Fn(usize) -> f64, pick: &dyn Fn(usize) -> bool| {
         (0..panels.len()).filter(|&i| pick(i)).map(of).fold(0.0, f64::max)
@@ -164,12 +113,12 @@ fn layout(figure: &Figure) -> Layout<'_> {
             height: sizes[i].1,
         })
         .collect();
-    let bar = bar_width.and_then(|_| {
+    let width = (right + bar.as_ref().map_or(0.0, Bar::width)).max(120.0).ceil();
+    let bar = bar.and_then(|bar| {
         let (first, last) = (rects.first()?, rects.last()?);
         let height = last.bottom() - first.top;
-        Some(Rect { left: 0.0, top: first.top, width: right - EDGE - 10.0, height })
+        Some((bar, Rect { left: 0.0, top: first.top, width: right - EDGE - 10.0, height }))
     });
-    let width = (right + bar_width.unwrap_or(0.0)).max(120.0).ceil();
     let height = (bottom + legend::height_within(&legend, width)).max(60.0).ceil();
     Layout { panels: panels.into_iter().zip(rects).collect(), legend, bar, size: (width, height) }
 }
@@ -192,23 +141,22 @@ fn draw(canvas: &mut Canvas, figure: &Figure, layout: &Layout) {
     let em = fit(&figure.title, TITLE_EM, width - 4.0 * EDGE);
     canvas.text(&figure.title, (2.0 * EDGE, EDGE + 12.0), Type::new(em, Align::Start));
     for (panel, area) in &layout.panels {
-        panel.draw(canvas, *area);
+        panel.draw(&mut canvas.from(*area));
     }
     let below = height - legend::height_within(&layout.legend, width) - EDGE;
     legend::draw_within(canvas, &layout.legend, (EDGE, below), width);
-    if let (Some(beside), Some((Prepared::Particles(map), _))) = (layout.bar, layout.panels.first())
-    {
-        map.bar(canvas, beside);
+    if let Some((bar, beside)) = &layout.bar {
+        bar.draw(canvas, *beside);
     }
 }
 
 /// The figure as an SVG element of its natural size that shrinks with its container.
 pub fn svg(figure: &Figure) -> String {
     let layout = layout(figure);
-    let mut canvas = Canvas::Vector(Svg::default());
-    draw(&mut canvas, figure, &layout);
+    let mut sheet = Svg::default();
+    draw(&mut Canvas::new(&mut sheet), figure, &layout);
     let name = if figure.title.is_empty() { &figure.id } else { &figure.title };
-    svg::opening(name, layout.size) + &canvas.finish().unwrap_or_default() + "</svg>\n"
+    svg::opening(name, layout.size) + &sheet.finish() + "</svg>\n"
 }
 
 /// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
@@ -220,9 +168,9 @@ pub(super) fn pixels(figure: &Figure, density: u32) -> Result<(Vec<u8>, u32, u32
     let (fine_width, fine_height) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
     let mut fine = vec![255; (fine_width * fine_height * 3) as usize];
     let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
-    let mut canvas = Canvas::Raster(Raster::new(backend, f64::from(scale)));
-    draw(&mut canvas, figure, &layout);
-    canvas.finish()?;
+    let mut sheet = Raster::new(backend, f64::from(scale));
+    draw(&mut Canvas::new(&mut sheet), figure, &layout);
+    sheet.finish()?;
     Ok((downsample(&fine, width as usize, height as usize), width, height))
 }
 
@@ -291,15 +239,12 @@ mod tests {
         let triples: Vec<_> = pairs.iter().map(|p| (p.0, p.1, p.0)).collect();
         let any = values.first().copied().unwrap_or(f64::NAN);
         Plot::new("Title", x, y)
-            .layer(Series::line_markers("a", pairs.clone()).y_bars(pairs.clone()))
-            .layer(Series::markers("b", pairs.clone()).shape(Shape::Plus).x_bars(pairs.clone()))
+            .layer(Series::line_markers("a", pairs.clone()))
+            .layer(Series::markers("b", pairs.clone()).shape(Shape::Cross).x_bars(pairs.clone()))
             .layer(Layer::band("c", triples, Colour::SKY))
-            .layer(Layer::span("d", any, f64::INFINITY, Colour::GREEN))
-            .layer(Layer::slope_at(any, (any, any)))
             .layer(Layer::slope(any))
             .layer(Layer::horizontal(any, "e"))
             .layer(Layer::vertical(any, "f"))
-            .layer(Layer::text((any, any), "g"))
             .layer(Layer::Failed(values.iter().map(|&v| (v, "NaN".into())).collect()))
     }
 

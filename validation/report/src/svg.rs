@@ -1,13 +1,11 @@
 //! SVG text in few bytes: whole numbers, relative coordinates, and one element for successive shapes of one
 //! style.
 
+use super::canvas::{Point, Sheet};
 use super::colour::Colour;
-use super::figure::{Align, Dash};
-use super::font::{self, Type};
-use super::inline;
-
-/// A point in CSS pixels, y downwards.
-pub(super) type Point = (f64, f64);
+use super::figure::Dash;
+use super::font::{self, Align, Type};
+use base::text::escaped;
 
 /// Units of the drawing per CSS pixel: coordinates are quarters of a pixel.
 const FINE: f64 = 4.0;
@@ -36,33 +34,6 @@ impl Svg {
             self.text.push_str(&opening);
             (self.open, self.at) = ((opening, closing), (0, 0));
         }
-    }
-
-    /// An area.
-    pub fn area(&mut self, corners: &[Point], colour: Colour) {
-        self.shape(&format!("fill=\"{}\"", hex(colour)), corners, true);
-    }
-
-    /// A line, solid or in a pattern of dashes and gaps.
-    pub fn line(&mut self, points: &[Point], (colour, width): (Colour, f64), dash: Dash) {
-        let pattern: Vec<String> = dash.pattern().iter().map(|length| units(*length)).collect();
-        let dashes = match dash {
-            Dash::Solid => String::new(),
-            _ => format!(" stroke-dasharray=\"{}\"", pattern.join(" ")),
-        };
-        self.shape(&format!("{}{dashes}", stroke(colour, width)), points, false);
-    }
-
-    /// The closed outline of a polygon, over a filling if there is one.
-    pub fn outline(&mut self, corners: &[Point], colour: Colour, width: f64, fill: Option<Colour>) {
-        let fill = fill.map_or(String::new(), |fill| format!(" fill=\"{}\"", hex(fill)));
-        self.shape(&format!("{}{fill}", stroke(colour, width)), corners, true);
-    }
-
-    /// A disc: the round end of a wide line of no length.
-    pub fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
-        let style = format!("{} stroke-linecap=\"round\"", stroke(colour, 2.0 * radius));
-        self.shape(&style, &[centre], false);
     }
 
     fn shape(&mut self, style: &str, points: &[Point], is_closed: bool) {
@@ -110,9 +81,34 @@ impl Svg {
         }
         self.text.push_str(&value.to_string());
     }
+}
 
-    /// A text whose base line begins, is centred or ends at a point.
-    pub fn text(&mut self, text: &str, (x, y): Point, how: Type) {
+impl Sheet for Svg {
+    fn area(&mut self, corners: &[Point], colour: Colour) {
+        self.shape(&format!("fill=\"{}\"", hex(colour)), corners, true);
+    }
+
+    fn outline(&mut self, corners: &[Point], colour: Colour, width: f64, fill: Option<Colour>) {
+        let fill = fill.map_or(String::new(), |fill| format!(" fill=\"{}\"", hex(fill)));
+        self.shape(&format!("{}{fill}", stroke(colour, width)), corners, true);
+    }
+
+    fn line(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash) {
+        let pattern: Vec<String> = dash.pattern().iter().map(|length| units(*length)).collect();
+        let dashes = match dash {
+            Dash::Solid => String::new(),
+            _ => format!(" stroke-dasharray=\"{}\"", pattern.join(" ")),
+        };
+        self.shape(&format!("{}{dashes}", stroke(colour, width)), points, false);
+    }
+
+    /// The round end of a wide line of no length.
+    fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
+        let style = format!("{} stroke-linecap=\"round\"", stroke(colour, 2.0 * radius));
+        self.shape(&style, &[centre], false);
+    }
+
+    fn text(&mut self, text: &str, (x, y): Point, how: Type) {
         let anchor = match how.align {
             Align::Start => "",
             Align::Middle => " text-anchor=\"middle\"",
@@ -125,7 +121,7 @@ impl Svg {
             false => format!("x=\"{x}\" y=\"{y}\""),
             true => format!("transform=\"translate({x} {y})rotate(-90)\""),
         };
-        self.text.push_str(&format!("<text {place}>{}</text>\n", inline::escape(text)));
+        self.text.push_str(&format!("<text {place}>{}</text>\n", escaped(text)));
     }
 }
 
@@ -135,7 +131,7 @@ pub(super) fn opening(name: &str, (width, height): (f64, f64)) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" width=\"{width}\" \
          height=\"{height}\" viewBox=\"0 0 {} {}\" font-family=\"{}\" fill=\"none\" \
          stroke-linejoin=\"round\">\n",
-        inline::escape(name),
+        escaped(name),
         units(width),
         units(height),
         font::FAMILY
@@ -168,9 +164,8 @@ mod tests {
     #[test]
     fn shapes_of_one_style_are_one_element() {
         let mut svg = Svg::default();
-        let black = (Colour::BLACK, 1.0);
-        svg.line(&[(0.0, 1.0), (2.0, 1.0), (3.0, 0.5)], black, Dash::Solid);
-        svg.line(&[(1.0, 1.0), (1.0, 2.0)], black, Dash::Solid);
+        svg.line(&[(0.0, 1.0), (2.0, 1.0), (3.0, 0.5)], Colour::BLACK, 1.0, Dash::Solid);
+        svg.line(&[(1.0, 1.0), (1.0, 2.0)], Colour::BLACK, 1.0, Dash::Solid);
         svg.area(&[(1.0, 1.0), (2.0, 1.0), (2.0, 2.0)], Colour::BLUE);
         svg.area(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], Colour::BLUE);
         svg.disc((5.0, 5.0), 2.0, Colour::BLUE);

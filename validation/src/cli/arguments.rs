@@ -341,18 +341,14 @@ pub struct Export {
     pub markdown: Option<PathBuf>,
 }
 
+/// What is judged, and how the verdicts are told.
 #[derive(Debug, Args)]
-pub struct Verify {
+pub struct Judged {
     /// Names of the cases; by default all cases, and the studies that belong to no case
     pub cases: Vec<String>,
-    /// How much to run
+    /// The tier whose plan is judged
     #[arg(long, value_enum, default_value = "quick")]
     pub tier: Tier,
-    /// Folder for the records; a run whose record is there already is not made again
-    #[arg(long, value_name = "DIR", default_value = "reports/records")]
-    pub store: PathBuf,
-    #[command(flatten)]
-    pub reuse: Reuse,
     #[command(flatten)]
     pub export: Export,
     /// Print every gate, before the line that each case has
@@ -361,6 +357,17 @@ pub struct Verify {
     /// Print the verdicts as JSON on standard output
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Verify {
+    #[command(flatten)]
+    pub of: Judged,
+    /// Folder for the records; a run whose record is there already is not made again
+    #[arg(long, value_name = "DIR", default_value = "reports/records")]
+    pub store: PathBuf,
+    #[command(flatten)]
+    pub reuse: Reuse,
     /// Number of runs made in parallel, 1 to 1024; the default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
@@ -368,25 +375,14 @@ pub struct Verify {
 
 #[derive(Debug, Args)]
 pub struct Judge {
-    /// Names of the cases; by default all cases, and the studies that belong to no case
-    pub cases: Vec<String>,
-    /// The tier whose plan is judged
-    #[arg(long, value_enum, default_value = "quick")]
-    pub tier: Tier,
+    #[command(flatten)]
+    pub of: Judged,
     /// Folder with the records
     #[arg(long, value_name = "DIR")]
     pub store: PathBuf,
     /// Also judge records made by a build of other sources
     #[arg(long)]
     pub any_build: bool,
-    #[command(flatten)]
-    pub export: Export,
-    /// Print every gate, before the line that each case has
-    #[arg(long, conflicts_with = "json")]
-    pub all: bool,
-    /// Print the verdicts as JSON on standard output
-    #[arg(long)]
-    pub json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -1,8 +1,7 @@
 //! The file of a checkpoint in the folder of a run. Its first line names the format and has the digest of all
 //! that follows; the second line is what was asked for, as JSON; then come the simulations, as bytes.
 
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use base::{
     files::{self, FileError, OutputFolder},
@@ -10,7 +9,8 @@ use base::{
     spec::RunSpec,
 };
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
+
+use super::Failure;
 
 /// Name of the file.
 pub const CHECKPOINT: &str = "checkpoint";
@@ -18,55 +18,6 @@ pub const CHECKPOINT: &str = "checkpoint";
 const MAGIC: &str = "touchstone checkpoint";
 /// Version of the format.
 const FORMAT: u32 = 1;
-
-/// Why a run does not go on.
-#[derive(Debug, Error)]
-pub enum Refusal {
-    /// No file, or one that cannot be read.
-    #[error("the folder {folder:?} has no checkpoint that can be read: {reason}")]
-    Missing {
-        /// The folder.
-        folder: PathBuf,
-        /// What the system says.
-        reason: io::Error,
-    },
-    /// Another file, or one of another version of this program.
-    #[error("{path:?} is not a checkpoint of format {FORMAT}: its first line is {line:?}")]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// The beginning of its first line.
-        line: String,
-    },
-    /// Not all of it is there, or not as it was written.
-    #[error(
-        "the checkpoint {path:?} is damaged or truncated: its content does not have the digest stated"
-    )]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-    },
-    /// What was asked for cannot be read.
-    #[error("what was asked for cannot be read from the checkpoint {path:?}: {reason}")]
-    Asked {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: serde_json::Error,
-    },
-    /// Made by other sources, with which the rest of the run would have other bits.
-    #[error(
-        "the checkpoint {path:?} was made by another build, of the sources {theirs}; this one is of {ours}"
-    )]
-    Build {
-        /// The file.
-        path: PathBuf,
-        /// Digest of its sources.
-        theirs: String,
-        /// Digest of these.
-        ours: String,
-    },
-}
 
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,39 +65,51 @@ fn bytes(asked: &Asked, simulations: &[Vec<u8>]) -> Vec<u8> {
 ///
 /// # Errors
 /// If there is none, or it is damaged or of another build.
-pub fn read(folder: &Path, sources: fn(&str) -> String) -> Result<(Asked, Vec<Vec<u8>>), Refusal> {
+pub fn read(folder: &Path, sources: fn(&str) -> String) -> Result<(Asked, Vec<Vec<u8>>), Failure> {
     let path = folder.join(CHECKPOINT);
-    let missing = |reason| Refusal::Missing { folder: folder.into(), reason };
-    parse(&files::read(&path).map_err(missing)?, path, sources)
+    let bytes = files::read(&path).map_err(|reason| {
+        let words = "has no checkpoint that can be read";
+        Failure::usage(format!("the folder {folder:?} {words}: {reason}"))
+    })?;
+    parse(&bytes, &path, sources).map_err(Failure::usage)
 }
 
+/// What the bytes of a file say, or in words why a run does not go on from it: another file, or one of
+/// another version or build of this program, with which the rest of the run would have other bits; or not all
+/// of it is there, or not as it was written.
 fn parse(
     bytes: &[u8],
-    path: PathBuf,
+    path: &Path,
     sources: fn(&str) -> String,
-) -> Result<(Asked, Vec<Vec<u8>>), Refusal> {
+) -> Result<(Asked, Vec<Vec<u8>>), String> {
     let (first, rest) = split_line(bytes);
-    let line = String::from_utf8_lossy(first).into_owned();
+    let line = String::from_utf8_lossy(first);
     let Some(digest) = line.strip_prefix(&format!("{MAGIC} {FORMAT} ")) else {
-        return Err(Refusal::Format { path, line: line.chars().take(40).collect() });
+        let line: String = line.chars().take(40).collect();
+        return Err(format!(
+            "{path:?} is not a checkpoint of format {FORMAT}: its first line is {line:?}"
+        ));
+    };
+    let damaged = || {
+        let words = "its content does not have the digest stated";
+        format!("the checkpoint {path:?} is damaged or truncated: {words}")
     };
     if digest != sha256(rest) {
-        return Err(Refusal::Damaged { path });
+        return Err(damaged());
     }
     let (head, mut rest) = split_line(rest);
-    let Head { asked, lengths } = match serde_json::from_slice(head) {
-        Ok(head) => head,
-        Err(reason) => return Err(Refusal::Asked { path, reason }),
-    };
+    let Head { asked, lengths } = serde_json::from_slice(head).map_err(|reason| {
+        format!("what was asked for cannot be read from the checkpoint {path:?}: {reason}")
+    })?;
     let ours = sources(&asked.spec.case);
     if asked.sources != ours {
-        return Err(Refusal::Build { path, theirs: asked.sources, ours });
+        let theirs = asked.sources;
+        let words = format!("was made by another build, of the sources {theirs}");
+        return Err(format!("the checkpoint {path:?} {words}; this one is of {ours}"));
     }
     let mut simulations = Vec::new();
     for length in lengths {
-        let Some((simulation, others)) = rest.split_at_checked(length) else {
-            return Err(Refusal::Damaged { path });
-        };
+        let (simulation, others) = rest.split_at_checked(length).ok_or_else(damaged)?;
         simulations.push(simulation.to_vec());
         rest = others;
     }
@@ -170,8 +133,8 @@ mod tests {
         Asked { spec, sources: "abc".into(), every: 60, vtk: Some(4), allow_long: false }
     }
 
-    fn parsed(bytes: &[u8]) -> Result<(Asked, Vec<Vec<u8>>), Refusal> {
-        parse(bytes, "f".into(), |_| "abc".into())
+    fn parsed(bytes: &[u8]) -> Result<(Asked, Vec<Vec<u8>>), String> {
+        parse(bytes, "f".as_ref(), |_| "abc".into())
     }
 
     proptest! {
@@ -194,11 +157,11 @@ mod tests {
     #[test]
     fn a_checkpoint_of_another_build_or_format_is_refused_by_name() {
         let file = bytes(&asked(), &[]);
-        let refused = parse(&file, "f".into(), |_| "xyz".into()).unwrap_err().to_string();
+        let refused = parse(&file, "f".as_ref(), |_| "xyz".into()).unwrap_err();
         assert!(refused.contains("another build, of the sources abc; this one is of xyz"));
-        let refused = parsed(b"touchstone checkpoint 2 abc\n").unwrap_err().to_string();
+        let refused = parsed(b"touchstone checkpoint 2 abc\n").unwrap_err();
         assert!(refused.contains("not a checkpoint of format 1"), "{refused}");
-        let refused = parsed(&file[..file.len() - 1]).unwrap_err().to_string();
+        let refused = parsed(&file[..file.len() - 1]).unwrap_err();
         assert!(refused.contains("damaged or truncated"), "{refused}");
     }
 }

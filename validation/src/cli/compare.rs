@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use anyhow::Context as _;
 use base::{
     functions::ln,
     gate::{Bound, Verdict},
@@ -35,8 +34,7 @@ impl Side {
             Some(text) => {
                 let file = path.join(VERDICTS);
                 let all: Verdicts = serde_json::from_str(&text)
-                    .with_context(|| format!("{} holds no verdicts", file.display()))
-                    .map_err(Failure::usage)?;
+                    .map_err(|_| Failure::usage(format!("{} holds no verdicts", file.display())))?;
                 let judged = all.runs.into_iter().flat_map(|run| run.judged);
                 let judged = judged.chain(all.studies.into_iter().flat_map(|study| study.judged));
                 Some(judged.map(|judged| (judged.gate.id.clone(), judged)).collect())
@@ -51,7 +49,7 @@ impl Side {
         };
         if verdicts.is_none() && records.as_ref().is_none_or(Vec::is_empty) {
             let words = format!("{} is neither a report nor a store", path.display());
-            return Err(Failure::usage(anyhow::anyhow!(words)));
+            return Err(Failure::usage(words));
         }
         let name = |r: Record| (format!("{} {} {}", r.case, r.variant, r.key()), r);
         let records = records.map(|records| records.into_iter().map(name).collect());

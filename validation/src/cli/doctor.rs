@@ -40,7 +40,7 @@ pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
         }
     }
     if !is_sound {
-        return Err(Failure::bug(anyhow::anyhow!("a check of doctor failed, see above")));
+        return Err(Failure::bug("a check of doctor failed, see above"));
     }
     if arguments.bench {
         bench(world)?;

@@ -124,7 +124,7 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
     let case = cases::find_in(world.cases, &arguments.case)?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
     let text = files::read_text(&arguments.method, MOST_BYTES).map_err(|reason| {
-        Failure::usage(anyhow::anyhow!("cannot read {}: {reason}", arguments.method.display()))
+        Failure::usage(format!("cannot read {}: {reason}", arguments.method.display()))
     })?;
     let sealed = Sealed { seed: arguments.seed, method: sha256(text.as_bytes()) };
     let set = challenge::draw(case, variant, &sealed)?;
@@ -156,7 +156,7 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
         return Ok(Exit::Pass);
     }
     let Some(store) = &arguments.store else {
-        return Err(Failure::usage(anyhow::anyhow!("--store DIR names the folder of its record")));
+        return Err(Failure::usage(format!("--store DIR names the folder of its record")));
     };
     let path = Store::open(store)?.write(&record)?;
     let run = suite::submitted(case, record);
@@ -177,12 +177,12 @@ fn problem(
         Some(_) if is_given => {
             let words = "the folder has a problem.json, which states variant and settings; leave out \
                          --variant and --set";
-            return Err(Failure::usage(anyhow::anyhow!(words)));
+            return Err(Failure::usage(words));
         }
         Some(asked) if asked.spec.case != case.name() => {
             let words =
                 format!("problem.json is of the case {}, not of {}", asked.spec.case, case.name());
-            return Err(Failure::usage(anyhow::anyhow!(words)));
+            return Err(Failure::usage(words));
         }
         Some(asked) => case::resolved(case, asked.spec.clone())?,
         None => {
@@ -195,7 +195,7 @@ fn problem(
         if case::spec(case, &spec.variant, &drawn)?.settings != spec.settings {
             let words =
                 "problem.json is not the one that its seed and method give: settings differ";
-            return Err(Failure::usage(anyhow::anyhow!(words)));
+            return Err(Failure::usage(words));
         }
     }
     Ok(Problem::of(case, spec)?)
@@ -220,7 +220,7 @@ fn measured(
 /// All flaws as the reason why nothing is judged.
 fn refused(flaws: &[Flaw]) -> Failure {
     let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
-    Failure::usage(anyhow::anyhow!(
+    Failure::usage(format!(
         "the submission is refused, and nothing is judged:\n{}",
         lines.join("\n")
     ))

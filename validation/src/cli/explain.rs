@@ -40,7 +40,7 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Outcome {
                 "{} holds no verdicts; touchstone verify or touchstone report makes them",
                 arguments.reports.display()
             );
-            return Err(Failure::usage(anyhow::anyhow!(words)));
+            return Err(Failure::usage(words));
         };
         let begins = |judged: &&Judged| judged.gate.id.starts_with(asked);
         let of_name: Vec<&Judged> = verdicts.judged().filter(begins).collect();
@@ -217,7 +217,7 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
         [] => "there are none in the plans".to_string(),
         near => format!("the nearest of {} names: {}", ids.len(), near.join(", ")),
     };
-    Failure::usage(anyhow::anyhow!(
+    Failure::usage(format!(
         "no gate is called {asked:?}, and no name begins with it; {hint} (gates of studies are known \
          only after touchstone verify or report)"
     ))

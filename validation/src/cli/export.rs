@@ -4,6 +4,7 @@ use ::report;
 use base::{
     files::write_atomically,
     gate::{Judgement, Verdict},
+    text::escaped,
 };
 use harness::suite::Suite;
 
@@ -12,7 +13,7 @@ use super::{Failure, arguments};
 /// Refuses one file for both, of which only the later one would be left.
 pub fn check(export: &arguments::Export) -> Result<(), Failure> {
     match (&export.junit, &export.markdown) {
-        (Some(junit), Some(markdown)) if junit == markdown => Err(Failure::usage(anyhow::anyhow!(
+        (Some(junit), Some(markdown)) if junit == markdown => Err(Failure::usage(format!(
             "--junit and --markdown name the same file, {}; name two",
             junit.display()
         ))),
@@ -71,17 +72,6 @@ fn junit(suite: &Suite) -> String {
         text += "  </testsuite>\n";
     }
     text + "</testsuites>\n"
-}
-
-fn escaped(text: &str) -> String {
-    let escape = |char: char| match char {
-        '&' => "&amp;".into(),
-        '<' => "&lt;".into(),
-        '>' => "&gt;".into(),
-        '"' => "&quot;".into(),
-        char => char.to_string(),
-    };
-    text.chars().map(escape).collect()
 }
 
 /// Counts, then a table of every gate that did not simply pass.

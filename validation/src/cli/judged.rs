@@ -66,9 +66,7 @@ pub fn read(folder: &Path) -> Result<Option<String>, Failure> {
         Err(reason) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&reason.kind()) => {
             Ok(None)
         }
-        Err(reason) => {
-            Err(Failure::usage(anyhow::anyhow!("cannot read {}: {reason}", path.display())))
-        }
+        Err(reason) => Err(Failure::usage(format!("cannot read {}: {reason}", path.display()))),
     }
 }
 

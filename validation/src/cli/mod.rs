@@ -15,8 +15,6 @@ mod arguments;
 mod checkpoint;
 mod compare;
 mod doctor;
-#[cfg(test)]
-mod documents;
 mod estimate;
 mod exchange;
 mod explain;
@@ -77,23 +75,23 @@ pub enum Exit {
 #[derive(Debug)]
 pub struct Failure {
     exit: Exit,
-    reason: anyhow::Error,
+    reason: String,
 }
 
 impl Failure {
     /// A request that cannot be met.
-    fn usage(reason: impl Into<anyhow::Error>) -> Self {
-        Failure { exit: Exit::Usage, reason: reason.into() }
+    fn usage(reason: impl std::fmt::Display) -> Self {
+        Failure { exit: Exit::Usage, reason: reason.to_string() }
     }
 
     /// Something that must not happen.
-    fn bug(reason: impl Into<anyhow::Error>) -> Self {
-        Failure { exit: Exit::Bug, reason: reason.into() }
+    fn bug(reason: impl std::fmt::Display) -> Self {
+        Failure { exit: Exit::Bug, reason: reason.to_string() }
     }
 
     /// Stopped by the user.
     fn interrupted(what: impl std::fmt::Display) -> Self {
-        Failure { exit: Exit::Interrupted, reason: anyhow::anyhow!("interrupted: {what}") }
+        Failure { exit: Exit::Interrupted, reason: format!("interrupted: {what}") }
     }
 }
 
@@ -111,10 +109,7 @@ impl From<FileError> for Failure {
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        match error {
-            StoreError::File(error) => error.into(),
-            error => Failure::usage(error),
-        }
+        Failure::usage(error)
     }
 }
 
@@ -205,7 +200,7 @@ impl World {
         match words.is_empty() {
             true => Ok(()),
             false => {
-                let reason = anyhow::anyhow!("nothing is judged: {}", words.join("\n"));
+                let reason = format!("nothing is judged: {}", words.join("\n"));
                 Err(Failure { exit: Exit::GateFailed, reason })
             }
         }

@@ -45,7 +45,7 @@ fn write(text: &str) -> io::Result<()> {
 }
 
 fn refused(error: &io::Error) -> Failure {
-    Failure::usage(anyhow::anyhow!("cannot write to standard output: {error}"))
+    Failure::usage(format!("cannot write to standard output: {error}"))
 }
 
 /// The hook of a panic.

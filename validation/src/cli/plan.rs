@@ -16,9 +16,9 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Outcome {
         cases.iter().flat_map(of_case).map(|planned| planned.spec).collect()
     } else {
         let [case] = cases[..] else {
-            let words =
-                "--set and --variant ask for a sweep over the settings of one case; name one case";
-            return Err(Failure::usage(anyhow::anyhow!(words)));
+            return Err(Failure::usage(
+                "--set and --variant ask for a sweep over the settings of one case; name one case",
+            ));
         };
         sweep(case, &arguments.variant, &arguments.set, world)?
     };
@@ -46,7 +46,7 @@ fn sweep(
             "the sweep has {} runs; allowed are at most {MOST_RUNS:.0}; give fewer values",
             ::report::sig(count, 3)
         );
-        return Err(Failure::usage(anyhow::anyhow!(words)));
+        return Err(Failure::usage(words));
     }
     let mut combinations: Vec<Vec<String>> = vec![Vec::new()];
     for assignment in set {

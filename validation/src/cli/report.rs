@@ -48,14 +48,14 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         output::print(&summary(&suite))?;
         let reasons: Vec<String> =
             failures.iter().map(|failure| failure.reason.to_string()).collect();
-        return Err(Failure::usage(anyhow::anyhow!(reasons.join("\n"))));
+        return Err(Failure::usage(reasons.join("\n")));
     }
     let took = report::seconds(start.elapsed().as_secs_f64());
     output::print(&format!("{}\n{}\n", suite.counts().headline(), path.display()))?;
     output::say(&format!("the page shows {} in {took}", verify::runs(&suite)));
     match sound {
         Ok(_) => Ok(verify::exit(&suite)),
-        Err(reason) => Err(Failure::bug(anyhow::anyhow!(
+        Err(reason) => Err(Failure::bug(format!(
             "the page was written, but a browser may fail to open it: {reason}"
         ))),
     }

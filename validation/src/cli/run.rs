@@ -48,7 +48,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         return specs::run(file, arguments, world);
     }
     if let Some(path) = &arguments.resume {
-        let (asked, earlier) = checkpoint::read(path, world.sources).map_err(Failure::usage)?;
+        let (asked, earlier) = checkpoint::read(path, world.sources)?;
         let case = cases::find_in(world.cases, &asked.spec.case)?;
         world.check_references(&[case])?;
         let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
@@ -69,9 +69,9 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     spec.allow_unstable = arguments.allow_unstable;
     spec.measure = arguments.metrics.into();
     if arguments.checkpoint_every.is_some() && arguments.out.is_none() {
-        let words =
-            "--checkpoint-every needs --out DIR, the folder that the checkpoints are written into";
-        return Err(Failure::usage(anyhow::anyhow!(words)));
+        return Err(Failure::usage(
+            "--checkpoint-every needs --out DIR, the folder that the checkpoints are written into",
+        ));
     }
     let folder = Folder::of(arguments, case.name(), variant)?;
     let &arguments::Run { vtk, allow_long, checkpoint_every: every, .. } = arguments;
@@ -206,7 +206,7 @@ fn set(arguments: &arguments::Run) -> Result<Vec<String>, Failure> {
         if let Some(other) = set.iter().find(is_rows) {
             let words =
                 format!("--rows {rows} and --set {other} set the same setting; give one of them");
-            return Err(Failure::usage(anyhow::anyhow!(words)));
+            return Err(Failure::usage(words));
         }
         set.push(format!("rows={rows}"));
     }
@@ -292,14 +292,14 @@ impl Folder {
             (None, None) => return Ok(None),
         };
         if let Some(other) = case_in(&path).filter(|other| other != case && !arguments.overwrite) {
-            return Err(Failure::usage(anyhow::anyhow!(
+            return Err(Failure::usage(format!(
                 "the folder {path:?} holds a record of the case {other}, and files of {case} would mix with \
                  it; name another folder by --out, or give --overwrite"
             )));
         }
         let (is_new, has_checkpoint) = (!path.exists(), path.join(CHECKPOINT).exists());
         if has_checkpoint && !arguments.overwrite {
-            return Err(Failure::usage(anyhow::anyhow!(
+            return Err(Failure::usage(format!(
                 "the folder {path:?} holds the checkpoint of a run that has not ended; \
                  touchstone run --resume {} goes on with it, and --overwrite gives it up",
                 path.display()

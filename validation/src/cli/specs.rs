@@ -18,12 +18,12 @@ use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
 
 pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     let Some(path) = &arguments.store else {
-        return Err(Failure::usage(anyhow::anyhow!("--specs needs --store DIR")));
+        return Err(Failure::usage("--specs needs --store DIR"));
     };
     let (planned, refused) = planned(file, arguments, world)?;
     tell(&refused);
     if planned.is_empty() {
-        return Err(Failure::usage(anyhow::anyhow!("{} describes no run", file.display())));
+        return Err(Failure::usage(format!("{} describes no run", file.display())));
     }
     let lines = planned.len() + refused.len();
     let job = |planned: Planned| -> Result<Job, Failure> {
@@ -86,9 +86,8 @@ fn planned(
     arguments: &arguments::Run,
     world: &World,
 ) -> Result<(Vec<Planned>, Vec<String>), Failure> {
-    let text = read(file).map_err(|reason| {
-        Failure::usage(anyhow::anyhow!("cannot read {}: {reason}", file.display()))
-    })?;
+    let text = read(file)
+        .map_err(|reason| Failure::usage(format!("cannot read {}: {reason}", file.display())))?;
     let is_empty = |(_, line): &(usize, &str)| line.trim().is_empty();
     let mut lines: Vec<(usize, &str)> =
         text.lines().enumerate().filter(|line| !is_empty(line)).collect();
@@ -96,7 +95,7 @@ fn planned(
         let count = lines.len();
         lines = lines.get(index).copied().into_iter().collect();
         if lines.is_empty() {
-            return Err(Failure::usage(anyhow::anyhow!(
+            return Err(Failure::usage(format!(
                 "there is no run {index}; the file has {}, counted from 0",
                 counted(count, "run", "runs")
             )));

@@ -33,7 +33,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         let limits = case.declaration(arguments.tier.into()).limits;
         if limits.is_none() && !arguments.cases.is_empty() {
             let words = format!("{} declares no largest stable time step", case.name());
-            return Err(Failure::usage(anyhow::anyhow!(words)));
+            return Err(Failure::usage(words));
         }
         let of_case = limits.into_iter().flat_map(|limits| limits.of);
         declared.extend(of_case.map(|limit| Declared { case, limit }));
@@ -69,7 +69,7 @@ fn theory(cases: &[&'static dyn Case], as_json: bool) -> Outcome {
     }
     if rows.is_empty() {
         let words = format!("{} has no rule for its time step", cases[0].name());
-        return Err(Failure::usage(anyhow::anyhow!(words)));
+        return Err(Failure::usage(words));
     }
     if as_json {
         let all = rows.iter().map(row_json).collect();

@@ -1,5 +1,7 @@
 //! Tests of commands on a case made for the purpose, whose runs end as their variant says.
 
+mod documents;
+
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 

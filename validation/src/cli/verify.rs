@@ -19,45 +19,39 @@ use super::{
 };
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
-    let cases = world.choose(&arguments.cases)?;
-    export::check(&arguments.export)?;
-    let start = Instant::now();
-    let store = Store::open(&arguments.store)?;
-    let (tier, reuse) = (arguments.tier.into(), arguments.reuse);
-    let suite = run(&cases, tier, &store, reuse, arguments.threads, world)?;
-    let &arguments::Verify { json, all, .. } = arguments;
-    show(&suite, (json, all), &arguments.export, start)
+    let arguments::Verify { of, store, reuse, threads } = arguments;
+    show(of, world, |cases| {
+        run(cases, of.tier.into(), &Store::open(store)?, *reuse, *threads, world)
+    })
 }
 
 pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
-    let cases = world.choose(&arguments.cases)?;
-    export::check(&arguments.export)?;
-    let start = Instant::now();
-    let suite =
-        of_store(&cases, arguments.tier.into(), &arguments.store, arguments.any_build, world)?;
-    let &arguments::Judge { json, all, .. } = arguments;
-    show(&suite, (json, all), &arguments.export, start)
+    let arguments::Judge { of, store, any_build } = arguments;
+    show(of, world, |cases| of_store(cases, of.tier.into(), store, *any_build, world))
 }
 
 /// The results on standard output; how they came about on standard error.
 fn show(
-    suite: &Suite,
-    (json, all): (bool, bool),
-    export: &arguments::Export,
-    start: Instant,
+    of: &arguments::Judged,
+    world: &World,
+    judged: impl FnOnce(&[&'static dyn Case]) -> Result<Suite, Failure>,
 ) -> Outcome {
-    let exported = export::write(suite, export);
-    let text = match (json, all) {
-        (true, _) => serde_json::to_string_pretty(&Verdicts::of(suite))? + "\n",
-        (false, true) => judged::table(suite.judged()) + "\n" + &summary(suite),
-        (false, false) => summary(suite),
+    let cases = world.choose(&of.cases)?;
+    export::check(&of.export)?;
+    let start = Instant::now();
+    let suite = judged(&cases)?;
+    let exported = export::write(&suite, &of.export);
+    let printed = if of.json {
+        output::print_whole(&(serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n"))
+    } else {
+        let all = if of.all { judged::table(suite.judged()) + "\n" } else { String::new() };
+        output::print(&(all + &summary(&suite)))
     };
-    let printed = if json { output::print_whole(&text) } else { output::print(&text) };
     let took = report::seconds(start.elapsed().as_secs_f64());
-    output::say(&format!("{} in {took}", runs(suite)));
+    output::say(&format!("{} in {took}", runs(&suite)));
     exported?;
     printed?;
-    Ok(exit(suite))
+    Ok(exit(&suite))
 }
 
 /// `206 runs, 12 of them from the store`.
@@ -119,7 +113,7 @@ pub fn of_store(
 ) -> Result<Suite, Failure> {
     world.check_references(cases)?;
     if !path.is_dir() {
-        return Err(Failure::usage(anyhow::anyhow!("the store {} does not exist", path.display())));
+        return Err(Failure::usage(format!("the store {} does not exist", path.display())));
     }
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);

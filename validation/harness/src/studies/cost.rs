@@ -166,7 +166,7 @@ fn figure(
     let pairs = |p: &Point| p.pairs;
     let counted = panel("Error against work", "pair interactions [-]", points, pairs);
     let with_slope = |plot: Plot| match slope {
-        Some(order) => plot.layer(Layer::Slope { order, anchor: None, factor: 5.0 }),
+        Some(order) => plot.layer(Layer::Slope { order, factor: 5.0 }),
         None => plot,
     };
     let panels = [orders, with_slope(clock), with_slope(counted)];

@@ -11,8 +11,8 @@ use harness::{
 };
 use validation::cases;
 
-use super::arguments::{Arguments, Command};
-use super::list::default_variant;
+use super::super::arguments::{Arguments, Command};
+use super::super::list::default_variant;
 
 /// What stands for `touchstone` before it is installed.
 const FROM_SOURCES: &str = "cargo run --release -- ";
@@ -101,7 +101,7 @@ fn check(line: &str) -> Result<(), String> {
             let named = list.case.filter(|name| !is_placeholder(name));
             named.map_or(Ok(()), |name| find(&name).map(|_| ()))
         }
-        Command::Verify(verify) => all(&verify.cases),
+        Command::Verify(verify) => all(&verify.of.cases),
         Command::Stability(stability) => all(&stability.cases),
         Command::Explain(explain) => explain.gate.map_or(Ok(()), |name| check_gate(&name)),
         _ => Ok(()),

@@ -1,0 +1,96 @@
+//! Colour bars: which value has which colour.
+
+use super::axis::{Axis, Mapping};
+use super::canvas::{Align, Canvas, Rect, Type};
+use super::colour::{Colour, ColourMap};
+use super::frame::{TICK_EM, fit, widest_label};
+use super::ticks::{Ticks, with_exponent};
+
+const GAP: f64 = 12.0;
+const WIDTH: f64 = 13.0;
+/// Colours of a bar and of the dots: each is one more element.
+pub(super) const STEPS: usize = 32;
+
+/// A colour bar with its scale decided.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Bar {
+    map: ColourMap,
+    label: String,
+    values: Mapping,
+    ticks: Ticks,
+    /// Whether the ends were given, not taken from the data.
+    is_fixed: bool,
+    /// Whether the figure draws it for all panels.
+    pub is_shared: bool,
+}
+
+impl Bar {
+    /// The bar of a map so high, for given ends or for those of the data, symmetric where the map is.
+    pub fn new(
+        map: ColourMap,
+        label: &str,
+        given: Option<(f64, f64)>,
+        data: impl Iterator<Item = f64>,
+        height: f64,
+    ) -> Self {
+        let (lo, hi) = given.unwrap_or_else(|| {
+            let finite = data.filter(|v| v.abs() < 1e150);
+            let ends = finite
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
+            let most = ends.0.abs().max(ends.1.abs());
+            if map == ColourMap::Diverging { (-most, most) } else { ends }
+        });
+        let axis = Axis::linear("");
+        let axis = if lo < hi { axis.range(lo, hi) } else { axis };
+        let values = axis.mapping([lo, hi].into_iter());
+        let ticks = axis.place_ticks(&values, (height / 36.0) as usize);
+        let is_fixed = given.is_some();
+        Self { map, label: label.into(), values, ticks, is_fixed, is_shared: false }
+    }
+
+    /// Whether one bar may stand for this and another, because both have the same given ends.
+    pub fn is_as(&self, other: &Self) -> bool {
+        let said = |bar: &Self| (bar.map, bar.values, bar.label.clone());
+        self.is_fixed && other.is_fixed && said(self) == said(other)
+    }
+
+    /// Which of the colours a value has.
+    pub fn step(&self, value: f64) -> Option<usize> {
+        Some(((self.values.unit(value)? * STEPS as f64) as usize).min(STEPS - 1))
+    }
+
+    pub fn colour(&self, step: usize) -> Colour {
+        self.map.at((step as f64 + 0.5) / STEPS as f64)
+    }
+
+    /// Room for the bar.
+    pub fn width(&self) -> f64 {
+        let bar = GAP + WIDTH + 8.0 + widest_label(&self.ticks);
+        bar + if self.label.is_empty() { 6.0 } else { 26.0 }
+    }
+
+    /// Draws the bar right of an area.
+    pub fn draw(&self, canvas: &mut Canvas, area: Rect) {
+        let bar = Rect { left: area.right() + GAP, width: WIDTH, ..area };
+        for step in 0..STEPS {
+            // Each step reaches to the top, so that no seam shows between two.
+            let from = bar.at((0.5, step as f64 / STEPS as f64));
+            canvas.line(from, bar.at((0.5, 1.0)), self.colour(step), WIDTH);
+        }
+        canvas.frame(bar, Colour::BLACK, 1.0);
+        let ticks = self.ticks.major.iter();
+        let ticks: Vec<_> = ticks
+            .filter_map(|(v, label)| Some((bar.at((1.0, self.values.unit(*v)?)), label)))
+            .collect();
+        for ((x, y), _) in &ticks {
+            canvas.line((*x, *y), (x + 4.0, *y), Colour::BLACK, 1.0);
+        }
+        for ((x, y), label) in &ticks {
+            canvas.text(label, (x + 7.0, *y), Type::new(TICK_EM, Align::Start));
+        }
+        let label = with_exponent(&self.label, self.ticks.exponent);
+        let em = fit(&label, 12.0, area.height + 20.0);
+        let x = bar.right() + 20.0 + widest_label(&self.ticks);
+        canvas.text(&label, (x, bar.at((0.0, 0.5)).1), Type::new(em, Align::Middle).upright());
+    }
+}

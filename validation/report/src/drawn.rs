@@ -1,0 +1,25 @@
+//! What the figure must know of its panels.
+
+use super::bar::Bar;
+use super::canvas::Canvas;
+use super::frame::Margins;
+use super::legend::Entry;
+
+/// A panel with everything decided but its place.
+pub(super) trait Drawn {
+    /// Width and height of what its axes enclose.
+    fn size(&self) -> (f64, f64);
+    fn margins(&self) -> Margins;
+    /// Draws the panel; the upper left corner of its axes is the canvas's.
+    fn draw(&self, canvas: &mut Canvas);
+    /// The entries of its legend, if that is drawn.
+    fn legend(&self) -> &[Entry] {
+        &[]
+    }
+    /// Leaves the legend to the figure.
+    fn hide_legend(&mut self) {}
+    /// Its colour bar, if it has one.
+    fn bar(&mut self) -> Option<&mut Bar> {
+        None
+    }
+}
