@@ -1,5 +1,5 @@
-//! Submissions of other codes: our own results come back with the values of the run itself, and what is damaged
-//! is refused with file, line and column.
+//! Submissions of other codes: our own results come back with the values of the run itself, and what is
+//! damaged is refused with file, line and column.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,7 @@ fn our_own_results_are_measured_as_the_run_was() {
         "taylor_green --set n=16",
         "dam_break --variant seed --set n=8 --set end=1",
         "elliptic_drop --set n=10",
-        "rubber_rings --variant lagrangian --set spacing=0.5",
+        "taylor_couette --variant extrapolating-wall",
     ];
     for line in cases {
         let folder = tempfile::tempdir().unwrap();
@@ -83,131 +83,126 @@ fn our_own_results_are_measured_as_the_run_was() {
             );
             compared += 1;
         }
-        assert!(compared >= 5, "{line}: only {compared} metrics were compared");
+        assert!(compared >= 3, "{line}: only {compared} metrics were compared");
         let of = found.submission.as_ref().expect("the record says who made the run");
         assert_eq!((&*of.code, &*of.scheme), ("touchstone", &*own.variant), "{line}");
         assert_eq!(found.cost.steps, own.cost.steps, "steps of {line} as system.json states them");
     }
 }
 
-/// What is wrong, and the file, line and column that the message names.
+type Damage = fn(&Path);
+
+fn edit(folder: &Path, file: &str, from: &str, to: &str) {
+    let text = read(&folder.join(file));
+    assert!(text.contains(from), "{file} has no {from}");
+    fs::write(folder.join(file), text.replacen(from, to, 1)).unwrap();
+}
+/// Changes the value of a column in a line, counted from 1.
+fn set(folder: &Path, line: usize, column: usize, value: &str) {
+    let path = folder.join("results.csv");
+    let mut lines: Vec<String> = read(&path).lines().map(String::from).collect();
+    let mut cells: Vec<&str> = lines[line - 1].split(',').collect();
+    cells[column] = value;
+    lines[line - 1] = cells.join(",");
+    fs::write(path, lines.join("\n") + "\n").unwrap();
+}
+fn drop_lines(folder: &Path, from: usize, to: usize) {
+    let path = folder.join("results.csv");
+    let text = read(&path);
+    let kept = text.lines().enumerate().filter(|(k, _)| !(from..to).contains(&(k + 1)));
+    fs::write(&path, kept.map(|(_, line)| format!("{line}\n")).collect::<String>()).unwrap();
+}
+
+/// What is done to a whole submission, and what the message names.
+const DAMAGES: [(&str, Damage, &[&str]); 24] = [
+    (
+        "no method",
+        |f| fs::remove_file(f.join("method.json")).unwrap(),
+        &["method.json", "expected code"],
+    ),
+    (
+        "no machine",
+        |f| fs::remove_file(f.join("system.json")).unwrap(),
+        &["system.json", "expected machine"],
+    ),
+    ("no results", |f| fs::remove_file(f.join("results.csv")).unwrap(), &["expected results.csv"]),
+    (
+        "another division",
+        |f| edit(f, "method.json", "\"closed\"", "\"half\""),
+        &["method.json, line", "closed"],
+    ),
+    (
+        "no version",
+        |f| edit(f, "method.json", "\"version\"", "\"versio\""),
+        &["method.json, line", "version"],
+    ),
+    (
+        "an empty code",
+        |f| edit(f, "method.json", "\"touchstone\"", "\"\""),
+        &["method.json, column code"],
+    ),
+    (
+        "negative threads",
+        |f| edit(f, "system.json", "\"threads\": 1", "\"threads\": -1"),
+        &["system.json, column threads", "above 0"],
+    ),
+    (
+        "seconds in words",
+        |f| edit(f, "system.json", "\"threads\": 1", "\"threads\": \"some\""),
+        &["system.json, line", "unknown"],
+    ),
+    (
+        "another unit",
+        |f| edit(f, "results.csv", "x[m]", "x[mm]"),
+        &["results.csv, line 1, column x", "mm; expected m"],
+    ),
+    (
+        "a column is missing",
+        |f| edit(f, "results.csv", "v[m/s]", "w[m/s]"),
+        &["results.csv, line 1, column v", "missing"],
+    ),
+    (
+        "a column twice",
+        |f| edit(f, "results.csv", "y[m]", "x[m]"),
+        &["results.csv, line 1, column x", "twice"],
+    ),
+    ("not a number", |f| set(f, 3, 4, "fast"), &["results.csv, line 3, column u", "\"fast\""]),
+    ("not finite", |f| set(f, 5, 5, "NaN"), &["results.csv, line 5, column v", "finite"]),
+    ("infinite", |f| set(f, 5, 2, "inf"), &["results.csv, line 5, column x", "finite"]),
+    (
+        "an id that is no whole number",
+        |f| set(f, 4, 1, "1.5"),
+        &["results.csv, line 4, column id", "whole"],
+    ),
+    ("a negative id", |f| set(f, 4, 1, "-3"), &["results.csv, line 4, column id"]),
+    ("a particle twice", |f| set(f, 3, 1, "0"), &["results.csv", "column id", "twice"]),
+    (
+        "a particle of another problem",
+        |f| set(f, 3, 1, "100000"),
+        &["results.csv, line 3, column id", "none of the problem"],
+    ),
+    ("a negative density", |f| set(f, 6, 6, "-1"), &["results.csv, line 6, column density"]),
+    ("a particle less", |f| drop_lines(f, 4, 5), &["results.csv, line 2, column id", "1 of"]),
+    ("not sorted", |f| set(f, 3, 0, "0.001"), &["results.csv, line 3, column t", "sorted"]),
+    ("no times", |f| drop_lines(f, 10, 1_000_000), &["results.csv, column t", "no particles at t"]),
+    (
+        "a line is cut",
+        |f| {
+            let t = read(&f.join("results.csv"));
+            fs::write(f.join("results.csv"), &t[..t.len() - 40]).unwrap()
+        },
+        &["results.csv, line"],
+    ),
+    (
+        "another case",
+        |f| edit(f, "problem.json", "\"case\": \"couette\"", "\"case\": \"poiseuille\""),
+        &["problem.json is of the case poiseuille"],
+    ),
+];
+
 #[test]
 fn a_damaged_submission_is_refused_with_file_line_and_column() {
-    type Damage = fn(&Path);
-    fn edit(folder: &Path, file: &str, from: &str, to: &str) {
-        let text = read(&folder.join(file));
-        assert!(text.contains(from), "{file} has no {from}");
-        fs::write(folder.join(file), text.replacen(from, to, 1)).unwrap();
-    }
-    /// Changes the value of a column in a line, counted from 1.
-    fn set(folder: &Path, line: usize, column: usize, value: &str) {
-        let path = folder.join("results.csv");
-        let mut lines: Vec<String> = read(&path).lines().map(String::from).collect();
-        let mut cells: Vec<&str> = lines[line - 1].split(',').collect();
-        cells[column] = value;
-        lines[line - 1] = cells.join(",");
-        fs::write(path, lines.join("\n") + "\n").unwrap();
-    }
-    fn drop_lines(folder: &Path, from: usize, to: usize) {
-        let path = folder.join("results.csv");
-        let text = read(&path);
-        let kept = text.lines().enumerate().filter(|(k, _)| !(from..to).contains(&(k + 1)));
-        fs::write(&path, kept.map(|(_, line)| format!("{line}\n")).collect::<String>()).unwrap();
-    }
-    let damages: [(&str, Damage, &[&str]); 24] = [
-        (
-            "no method",
-            |f| fs::remove_file(f.join("method.json")).unwrap(),
-            &["method.json", "expected code"],
-        ),
-        (
-            "no machine",
-            |f| fs::remove_file(f.join("system.json")).unwrap(),
-            &["system.json", "expected machine"],
-        ),
-        (
-            "no results",
-            |f| fs::remove_file(f.join("results.csv")).unwrap(),
-            &["expected results.csv"],
-        ),
-        (
-            "another division",
-            |f| edit(f, "method.json", "\"closed\"", "\"half\""),
-            &["method.json, line", "closed"],
-        ),
-        (
-            "no version",
-            |f| edit(f, "method.json", "\"version\"", "\"versio\""),
-            &["method.json, line", "version"],
-        ),
-        (
-            "an empty code",
-            |f| edit(f, "method.json", "\"touchstone\"", "\"\""),
-            &["method.json, column code"],
-        ),
-        (
-            "negative threads",
-            |f| edit(f, "system.json", "\"threads\": 1", "\"threads\": -1"),
-            &["system.json, column threads", "above 0"],
-        ),
-        (
-            "seconds in words",
-            |f| edit(f, "system.json", "\"threads\": 1", "\"threads\": \"some\""),
-            &["system.json, line", "unknown"],
-        ),
-        (
-            "another unit",
-            |f| edit(f, "results.csv", "x[m]", "x[mm]"),
-            &["results.csv, line 1, column x", "mm; expected m"],
-        ),
-        (
-            "a column is missing",
-            |f| edit(f, "results.csv", "v[m/s]", "w[m/s]"),
-            &["results.csv, line 1, column v", "missing"],
-        ),
-        (
-            "a column twice",
-            |f| edit(f, "results.csv", "y[m]", "x[m]"),
-            &["results.csv, line 1, column x", "twice"],
-        ),
-        ("not a number", |f| set(f, 3, 4, "fast"), &["results.csv, line 3, column u", "\"fast\""]),
-        ("not finite", |f| set(f, 5, 5, "NaN"), &["results.csv, line 5, column v", "finite"]),
-        ("infinite", |f| set(f, 5, 2, "inf"), &["results.csv, line 5, column x", "finite"]),
-        (
-            "an id that is no whole number",
-            |f| set(f, 4, 1, "1.5"),
-            &["results.csv, line 4, column id", "whole"],
-        ),
-        ("a negative id", |f| set(f, 4, 1, "-3"), &["results.csv, line 4, column id"]),
-        ("a particle twice", |f| set(f, 3, 1, "0"), &["results.csv", "column id", "twice"]),
-        (
-            "a particle of another problem",
-            |f| set(f, 3, 1, "100000"),
-            &["results.csv, line 3, column id", "none of the problem"],
-        ),
-        ("a negative density", |f| set(f, 6, 6, "-1"), &["results.csv, line 6, column density"]),
-        ("a particle less", |f| drop_lines(f, 4, 5), &["results.csv, line 2, column id", "1 of"]),
-        ("not sorted", |f| set(f, 3, 0, "0.001"), &["results.csv, line 3, column t", "sorted"]),
-        (
-            "no times",
-            |f| drop_lines(f, 10, 1_000_000),
-            &["results.csv, column t", "no particles at t"],
-        ),
-        (
-            "a line is cut",
-            |f| {
-                let t = read(&f.join("results.csv"));
-                fs::write(f.join("results.csv"), &t[..t.len() - 40]).unwrap()
-            },
-            &["results.csv, line"],
-        ),
-        (
-            "another case",
-            |f| edit(f, "problem.json", "\"case\": \"couette\"", "\"case\": \"poiseuille\""),
-            &["problem.json is of the case poiseuille"],
-        ),
-    ];
-    for (what, damage, expected) in damages {
+    for (what, damage, expected) in DAMAGES {
         let (folder, copy) = copy();
         damage(&copy);
         for line in ["submit couette copy --store store", "submit couette copy --check"] {

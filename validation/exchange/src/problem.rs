@@ -16,6 +16,8 @@ pub const SCHEMA: u32 = 1;
 
 /// Name of the document in the folder of a problem.
 pub const PROBLEM: &str = "problem.json";
+/// Name of the table of its particles.
+pub const PARTICLES: &str = "particles.csv";
 
 /// A problem and the run of ours that it is taken from.
 pub struct Problem {
@@ -40,6 +42,16 @@ pub struct Sealed {
     /// SHA-256 of the document of the method as it was then
     pub method: String,
 }
+
+/// The files of a submission.
+const HAND_IN: &str = "A folder with these files:\n\n\
+    - `method.json`: `{\"code\": \"...\", \"version\": \"...\", \"scheme\": \"...\", \"division\": \
+    \"closed\", \"settings\": {...}, \"changed\": \"what differs from the problem\"}`. The division is \
+    `closed` if particles, spacing and support of the kernel are those of the problem, else `open`.\n\
+    - `system.json`: `{\"machine\": \"...\", \"threads\": 1, \"seconds\": 1.5, \"steps\": 1000, \
+    \"interactions\": \"unknown\"}`. Each may be \"unknown\"; the seconds are wall time of the time loop.\n\
+    - `results.csv` with the columns `t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]`, sorted by t, every \
+    moving particle at each of the times below. Other formats: LAMMPS dump, `.npz`, `.vtu`, `.vtp`.\n";
 
 /// What a reader needs of the document: the run that is asked for.
 #[derive(Debug, Clone, Deserialize)]
@@ -128,10 +140,10 @@ impl Problem {
             },
             "walls": {
                 "planes": mirrors.iter().map(plane).collect::<Vec<_>>(),
-                "of_particles": "particles whose role is 1 or 2, at rest or with their velocity along the wall",
+                "of_particles": "particles of role 1 or 2, at rest or with their velocity along the wall",
             },
             "particles": {
-                "file": super::write::PARTICLES,
+                "file": PARTICLES,
                 "count": self.outline.particles.column("id").len(),
                 "spacing": with_unit(m.dx, "m"),
                 "roles": { "0": "moves", "1": "behind a wall", "2": "on a wall" },
@@ -207,23 +219,16 @@ impl Problem {
             .collect();
         let times: Vec<String> = times.iter().map(f64::to_string).collect();
         format!(
-            "# {case}, variant {variant}\n\n{about}\n\nAll numbers are in SI units, in two dimensions, masses \
-             per unit depth. `{PROBLEM}` has every number with its unit.\n\n## Equations\n\n{equations}\n\
-             ## Material and forces\n\n| quantity | value | unit |\n|---|---|---|\n{material}\
-             | acceleration g | {gx}, {gy} | m/s^2 |\n| spacing of particles | {dx} | m |\n\
-             | end | {end} | s |\n\n## Particles\n\n`{particles}` has one line a particle. Role 0 moves; role 1 \
-             is behind a wall and role 2 on it, and neither moves except along the wall with its velocity. Axes \
-             with a period repeat.\n\n## What to hand in\n\nA folder with these files:\n\n- `method.json`: \
-             `{{\"code\": \"...\", \"version\": \"...\", \"scheme\": \"...\", \"division\": \"closed\" or \
-             \"open\", \"settings\": {{...}}, \"changed\": \"what differs from the problem\"}}`. The division is \
-             closed if particles, spacing and support of the kernel are those of the problem.\n- `system.json`: \
-             `{{\"machine\": \"...\", \"threads\": 1, \"seconds\": 1.5, \"steps\": 1000, \"interactions\": \
-             \"unknown\"}}`. Each may be \"unknown\"; the seconds are wall time of the time loop.\n- `results.csv` \
-             with the columns `t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]`, sorted by t, every moving \
-             particle at each of the times below. Other formats: LAMMPS dump, `.npz`, `.vtu`, `.vtp`.\n- \
-             `{PROBLEM}`, as it is here.\n\n`touchstone submit {case} DIR --store STORE` measures and judges \
-             it.\n\nTimes [s]: {times}\n\n## How it is judged\n\n| gate | metric | bound |\n|---|---|---|\n\
-             {gates}",
+            "# {case}, variant {variant}\n\n{about}\n\nAll numbers are in SI units, in two dimensions, \
+             masses per unit depth. `{PROBLEM}` has every number with its unit.\n\n## Equations\n\n\
+             {equations}\n## Material and forces\n\n| quantity | value | unit |\n|---|---|---|\n\
+             {material}| acceleration g | {gx}, {gy} | m/s^2 |\n| spacing of particles | {dx} | m |\n\
+             | end | {end} | s |\n\n## Particles\n\n`{PARTICLES}` has one line a particle. Role 0 moves; \
+             role 1 is behind a wall and role 2 on it, and neither moves except along the wall with its \
+             velocity. Axes with a period repeat.\n\n## What to hand in\n\n{HAND_IN}\
+             - `{PROBLEM}`, as it is here.\n\n`touchstone submit {case} DIR --store STORE` measures and \
+             judges it.\n\nTimes [s]: {times}\n\n## How it is judged\n\n| gate | metric | bound |\n\
+             |---|---|---|\n{gates}",
             case = self.spec.case,
             variant = self.spec.variant,
             about = self.about,
@@ -231,7 +236,6 @@ impl Problem {
             gy = m.acceleration.y,
             dx = m.dx,
             end = times.last().map_or("", String::as_str),
-            particles = super::write::PARTICLES,
             times = times.join(", "),
         )
     }

@@ -1,5 +1,5 @@
-//! A folder of results of another code: what it says of its method and its machine, and its particles, measured
-//! by the code that measures our own runs.
+//! A folder of results of another code: what it says of its method and its machine, and its particles,
+//! measured by the code that measures our own runs.
 
 use std::path::Path;
 
@@ -191,7 +191,7 @@ impl Entry {
     /// Everything that does not fit the problem.
     pub fn check(&self, problem: &Problem) -> Vec<Flaw> {
         let mut flaws = Vec::new();
-        let Results { frames, own, places } = &self.results;
+        let Results { frames, places, .. } = &self.results;
         let file = places.first().map_or("results", |(file, _)| file.as_str());
         let playback = Playback { frames: frames.clone(), own: Vec::new() };
         for time in playback.missing(&problem.outline.times) {
@@ -199,27 +199,9 @@ impl Entry {
                 format!("there are no particles at t = {time} s, at which the problem is measured");
             flaws.push(Flaw::of(file, what).in_column("t"));
         }
-        let expected: Vec<u32> = match self.method.division {
+        let expected = match self.method.division {
             Division::Closed => problem.moving(),
-            Division::Open => {
-                let mut ids: Vec<u32> =
-                    frames.first().into_iter().flat_map(|f| &f.particles).map(|p| p.id).collect();
-                ids.sort_unstable();
-                if ids.iter().enumerate().any(|(k, id)| *id as usize != k) {
-                    let what = "ids of the first frame are not 0, 1, 2 and so on, each once";
-                    flaws.push(Flaw::of(file, what).at(places[0].1).in_column("id"));
-                }
-                if own.iter().any(|(mass, _)| mass.is_none()) {
-                    let what = "it is missing; in the open division each particle states its mass";
-                    flaws.push(Flaw::of(file, what).at(places[0].1).in_column("mass"));
-                }
-                if frames.first().is_some_and(|frame| frame.time != 0.0) {
-                    let what =
-                        "the first frame is not at t = 0, at which an open submission starts";
-                    flaws.push(Flaw::of(file, what).at(places[0].1).in_column("t"));
-                }
-                ids
-            }
+            Division::Open => self.own_ids(&mut flaws),
         };
         let all = problem.outline.particles.column("id").len();
         for (frame, (file, line)) in frames.iter().zip(places) {
@@ -261,6 +243,26 @@ impl Entry {
             flaws.push(Flaw::of(METHOD, what));
         }
         flaws
+    }
+
+    /// The numbers of the particles of a code that chose them itself, and what is wrong with its start.
+    fn own_ids(&self, flaws: &mut Vec<Flaw>) -> Vec<u32> {
+        let Results { frames, own, places } = &self.results;
+        let (file, line) = &places[0];
+        let mut flaw = |column, what| flaws.push(Flaw::of(file, what).at(*line).in_column(column));
+        let mut ids: Vec<u32> =
+            frames.first().into_iter().flat_map(|f| &f.particles).map(|p| p.id).collect();
+        ids.sort_unstable();
+        if ids.iter().enumerate().any(|(k, id)| *id as usize != k) {
+            flaw("id", "ids of the first frame are not 0, 1, 2 and so on, each once");
+        }
+        if own.iter().any(|(mass, _)| mass.is_none()) {
+            flaw("mass", "it is missing; in the open division each particle states its mass");
+        }
+        if frames.first().is_some_and(|frame| frame.time != 0.0) {
+            flaw("t", "the first frame is not at t = 0, at which an open submission starts");
+        }
+        ids
     }
 
     /// Who made the run.

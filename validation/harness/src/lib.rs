@@ -22,6 +22,7 @@ pub mod extremes;
 pub mod frames;
 pub mod limits;
 pub mod make;
+pub mod medium;
 pub mod method;
 pub mod notes;
 pub mod outline;

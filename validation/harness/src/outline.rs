@@ -4,12 +4,9 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use base::record::Profile;
-use solver::{Domain, Numbers, Particle, PlaneWall, Role, Stepper};
+use solver::{Domain, Numbers, PlaneWall, Role, Stepper};
 
-use crate::{
-    frames,
-    method::{Medium, Parts},
-};
+use crate::{frames, medium::Medium};
 
 /// What a scene and its drive are made of.
 #[derive(Clone, Debug)]
@@ -22,8 +19,6 @@ pub struct Outline {
     pub mirrors: Vec<PlaneWall>,
     /// The body of each particle; empty if there is one.
     pub bodies: Vec<u32>,
-    /// Density \[kg/m³\] and speed \[m/s\] beyond which a run of ours counts as diverged.
-    pub limits: solver::Limits,
     /// All particles at the start, in the order of the scene: the columns of [`frames::columns`] and `mass`.
     pub particles: Profile,
     /// The times at which it is measured \[s\].
@@ -45,27 +40,19 @@ struct Inside {
 }
 
 impl Sink {
-    /// Puts what a scene is made of, with its particles.
-    pub fn scene<X: Numbers>(&self, parts: &Parts<X>) {
-        let Parts { medium, domain, mirrors, bodies, limits, particles, .. } = parts;
-        let outline = Outline {
-            medium: *medium,
-            domain: *domain,
-            // Walls of particles need no planes.
-            mirrors: if particles.iter().all(|p| p.role == Role::Fluid) {
-                mirrors.clone()
-            } else {
-                Vec::new()
-            },
-            bodies: bodies.clone(),
-            limits: *limits,
-            particles: columns(particles, &|_| 0.0),
+    /// Puts what a scene is made of; its particles come with its drive. Of a run of several simulations the
+    /// first one counts.
+    pub fn scene(&self, medium: Medium, domain: Domain, mirrors: &[PlaneWall], bodies: &[u32]) {
+        self.inside().outline.get_or_insert_with(|| Outline {
+            medium,
+            domain,
+            mirrors: mirrors.into(),
+            bodies: bodies.into(),
+            particles: Profile::default(),
             times: Vec::new(),
             dt: 0.0,
             method: Default::default(),
-        };
-        // Of a run of several simulations the first one counts.
-        self.inside().outline.get_or_insert(outline);
+        });
     }
 
     /// Adds what the drive of the scene is made of.
@@ -79,8 +66,14 @@ impl Sink {
         let mut inside = self.inside();
         let first = inside.outline.as_mut().filter(|outline| outline.times.is_empty());
         if let Some(outline) = first {
-            outline.particles = columns(&simulation.particles(), pressure);
+            let particles = simulation.particles();
+            let mass = particles.iter().map(|p| p.mass).collect();
+            outline.particles = frames::columns(&particles, pressure).with("mass", "kg/m", mass);
             (outline.times, outline.dt) = (times.to_vec(), dt);
+            // Walls of particles need no planes.
+            if particles.iter().any(|p| p.role != Role::Fluid) {
+                outline.mirrors.clear();
+            }
         }
     }
 
@@ -99,11 +92,6 @@ impl Sink {
     fn inside(&self) -> MutexGuard<'_, Inside> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> f64) -> Profile {
-    let mass = particles.iter().map(|p| p.mass).collect();
-    frames::columns(particles, pressure).with("mass", "kg/m", mass)
 }
 
 /// The number that stands for a role in files.

@@ -15,6 +15,7 @@ use crate::{
     clock::Reading,
     error::RunError,
     frames::{self, Frames},
+    playback::Playback,
     profile::{self, Profiler},
     size::Size,
 };
@@ -230,6 +231,23 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         Status::Completed
     }
 
+    /// Shows the frames of another code in place of steps; how its run ended.
+    fn play<D>(
+        &mut self,
+        playback: &Playback,
+        simulation: &mut D,
+        times: &[f64],
+        at: &Named<(At<D, S>, Synchronised)>,
+    ) -> Result<Status, RunError>
+    where
+        D: Stepper<X> + ?Sized,
+    {
+        let at = |watch: &mut Self, simulation: &mut D, k: usize| {
+            at.iter().for_each(|(_, (at, _))| at(watch.seen, simulation, k));
+        };
+        playback.play(simulation, times, self, at)
+    }
+
     /// Goes on from a checkpoint; how the simulation ended, if it did.
     fn go_on<D>(&mut self, bytes: &[u8], simulation: &mut D) -> Result<Option<Status>, RunError>
     where
@@ -429,11 +447,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             synchronises: true,
         };
         if let Some(playback) = context.playback {
-            let at = |watch: &mut Watch<'_, X, S>, simulation: &mut D, k: usize| {
-                at.iter().for_each(|(_, (at, _))| at(watch.seen, simulation, k));
-            };
-            let status = playback.play(simulation, times, &mut watch, at)?;
-            return Ok((status, watch.counted(simulation)));
+            return Ok((watch.play(playback, simulation, times, &at)?, watch.counted(simulation)));
         }
         let mut ended = None;
         if let Some(bytes) = context.checkpoints.and_then(Checkpoints::next) {
@@ -441,10 +455,10 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             resumed(watch.seen, simulation);
         }
         if context.profile && ended.is_none() {
-            let after_step = watch.after_step.iter().map(|(name, _)| *name);
-            let names = after_step.chain(at.iter().map(|(name, _)| *name));
+            let names = watch.after_step.iter().map(|(name, _)| *name);
+            let names: Vec<_> = names.chain(at.iter().map(|(name, _)| *name)).collect();
             let earlier = watch.cost.breakdown.take().unwrap_or_default();
-            watch.profiler = Some(Profiler::new(simulation, names, earlier));
+            watch.profiler = Some(Profiler::new(simulation, names.into_iter(), earlier));
         }
         watch.show(simulation, dt);
         let (status, cost) = match ended {
@@ -456,8 +470,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
                 {
                     watch.lose(&error.into());
                 }
-                let cost = watch.counted(simulation);
-                (status, cost)
+                (status, watch.counted(simulation))
             }
         };
         if let Some(checkpoints) = context.checkpoints {

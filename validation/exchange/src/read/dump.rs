@@ -8,6 +8,7 @@ use crate::flaw::Flaw;
 /// Names of LAMMPS that need no `--map`. Its numbers of atoms begin at 1, ours at 0.
 const KNOWN: [(&str, &str); 3] = [("vx", "u"), ("vy", "v"), ("c_rho", "density")];
 
+/// The rows of the snapshots of a file.
 pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<Flaw>> {
     let known = KNOWN.iter().map(|(theirs, ours)| (theirs.to_string(), ours.to_string()));
     let renamed: Renamed = known.chain(renamed.clone()).collect();
@@ -43,41 +44,44 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
                 let heads: Vec<&str> = item.split_whitespace().skip(1).collect();
                 let places = places(file, line as u64 + 1, &heads, &renamed, &["t"])?;
                 let atoms = count.unwrap_or(0.0) as usize;
-                let mut rows = Rows {
-                    file: file.into(),
-                    first_line: line as u64 + 2,
-                    columns: BTreeMap::from([("t", Vec::new())]),
-                };
-                let mut flaws = Vec::new();
-                for k in 0..atoms {
-                    let Some((line, text)) = lines.next().filter(|(_, l)| !l.starts_with("ITEM"))
-                    else {
-                        let what = format!("{k} atoms follow; expected {atoms}");
-                        return Err(flaw(line, what));
-                    };
-                    let values: Vec<&str> = text.split_whitespace().collect();
-                    rows.columns.entry("t").or_default().push(time);
-                    for (name, place) in &places {
-                        let text = values.get(*place).copied().unwrap_or_default();
-                        let value = text.parse().unwrap_or_else(|_| {
-                            let what = format!("it is {text:?}; expected a number");
-                            flaws.push(Flaw::of(file, what).at(line as u64 + 1).in_column(*name));
-                            f64::NAN
-                        });
-                        let first = if *name == "id" { 1.0 } else { 0.0 };
-                        rows.columns.entry(name).or_default().push(value - first);
-                    }
-                    if flaws.len() >= MOST_FLAWS {
-                        break;
-                    }
-                }
-                if !flaws.is_empty() {
-                    return Err(flaws);
-                }
-                all.push(rows);
+                let first_line = line as u64 + 2;
+                all.push(snapshot(file, (time, atoms, first_line), &places, &mut lines)?);
             }
             other => return Err(flaw(line, format!("ITEM: {other} is not known"))),
         }
     }
     Ok(all)
+}
+
+/// The atoms of one snapshot.
+fn snapshot<'a>(
+    file: &str,
+    (time, atoms, first_line): (f64, usize, u64),
+    places: &[(&'static str, usize)],
+    lines: &mut impl Iterator<Item = (usize, &'a str)>,
+) -> Result<Rows, Vec<Flaw>> {
+    let mut columns = BTreeMap::from([("t", Vec::new())]);
+    let mut flaws = Vec::new();
+    for k in 0..atoms {
+        let Some((line, text)) = lines.next().filter(|(_, text)| !text.starts_with("ITEM")) else {
+            let what = format!("{k} atoms follow; expected {atoms}");
+            return Err(vec![Flaw::of(file, what).at(first_line - 1)]);
+        };
+        let values: Vec<&str> = text.split_whitespace().collect();
+        columns.entry("t").or_default().push(time);
+        for (name, place) in places {
+            let text = values.get(*place).copied().unwrap_or_default();
+            let value = text.parse().unwrap_or_else(|_| {
+                let what = format!("it is {text:?}; expected a number");
+                flaws.push(Flaw::of(file, what).at(line as u64 + 1).in_column(*name));
+                f64::NAN
+            });
+            let first = if *name == "id" { 1.0 } else { 0.0 };
+            columns.entry(name).or_default().push(value - first);
+        }
+        if flaws.len() >= MOST_FLAWS {
+            break;
+        }
+    }
+    if flaws.is_empty() { Ok(Rows { file: file.into(), first_line, columns }) } else { Err(flaws) }
 }

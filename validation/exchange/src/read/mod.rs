@@ -1,6 +1,8 @@
 //! Reads particles at times from the formats of other codes. Each reader gives tables with the same columns,
 //! from which [`frames`] makes frames or says what is wrong with them.
 
+#[cfg(any(feature = "npz", feature = "vtk"))]
+mod binary;
 mod dump;
 #[cfg(feature = "npz")]
 mod npz;

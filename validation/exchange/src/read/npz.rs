@@ -2,32 +2,33 @@
 //! be one number for the whole file.
 
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
-use npyz::npz::NpzArchive;
+use zip::ZipArchive;
 
 use super::{COLUMNS, MOST_BYTES, Renamed, Rows, places};
 use crate::flaw::Flaw;
 
+/// Every array in the format of NumPy begins with these bytes.
+const MAGIC: &[u8] = b"\x93NUMPY";
+
 pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
     let flaw = |what: String| vec![Flaw::of(file, what)];
-    let unread = |reason: std::io::Error| flaw(format!("cannot be read: {reason}"));
-    let size = std::fs::metadata(path).map_err(unread)?;
+    let size = std::fs::metadata(path).map_err(|reason| flaw(reason.to_string()))?;
     if !size.is_file() || size.len() > MOST_BYTES {
         return Err(flaw(format!("it is no regular file of at most {MOST_BYTES} bytes")));
     }
-    let mut archive = NpzArchive::open(path).map_err(unread)?;
-    let names: Vec<String> = archive.array_names().map(String::from).collect();
-    let heads: Vec<&str> = names.iter().map(String::as_str).collect();
+    let opened = File::open(path).map_err(|reason| flaw(reason.to_string()))?;
+    let mut archive = ZipArchive::new(opened).map_err(|reason| flaw(reason.to_string()))?;
+    let names: Vec<String> = archive.file_names().map(String::from).collect();
+    let heads: Vec<&str> = names.iter().map(|name| name.trim_end_matches(".npy")).collect();
     let places = places(file, 1, &heads, renamed, &[])?;
     let mut columns: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
     for (name, place) in places {
         let unread = |what: String| vec![Flaw::of(file, what).in_column(name)];
         let array = archive.by_name(&names[place]).map_err(|e| unread(e.to_string()))?;
-        let Some(array) = array else { return Err(unread("it is missing".into())) };
-        if array.len() > MOST_BYTES / 8 {
-            return Err(unread(format!("it has {} numbers; that is too many", array.len())));
-        }
         columns.insert(name, numbers(array).map_err(unread)?);
     }
     let rows = columns.get("x").map_or(0, Vec::len);
@@ -43,26 +44,30 @@ pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Rows, Vec<Flaw
     Ok(Rows { file: file.into(), first_line: 1, columns })
 }
 
-/// The numbers of an array of floats or of whole numbers.
-fn numbers<R: std::io::Read>(array: npyz::NpyFile<R>) -> Result<Vec<f64>, String> {
-    let what = format!("it is an array of {}; expected f8, f4 or i8", array.dtype().descr());
-    let array = match array.try_data::<f64>() {
-        Ok(data) => return data.collect::<Result<_, _>>().map_err(|e| e.to_string()),
-        Err(array) => array,
+/// The numbers of an array of floats or of whole numbers: magic, version, length of the head, head, data.
+fn numbers(array: impl Read) -> Result<Vec<f64>, String> {
+    let mut bytes = Vec::new();
+    array.take(MOST_BYTES).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    let rest = bytes.strip_prefix(MAGIC).ok_or("it is no array of NumPy")?;
+    let (length, rest) = match rest {
+        [1, _, a, b, rest @ ..] => (usize::from(u16::from_le_bytes([*a, *b])), rest),
+        [2 | 3, _, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]) as usize, rest),
+        _ => return Err("its version is not 1, 2 or 3".into()),
     };
-    let array = match array.try_data::<f32>() {
-        Ok(data) => {
-            return data
-                .map(|x| x.map(f64::from))
-                .collect::<Result<_, _>>()
-                .map_err(|e| e.to_string());
-        }
-        Err(array) => array,
-    };
-    match array.try_data::<i64>() {
-        Ok(data) => {
-            data.map(|x| x.map(|x| x as f64)).collect::<Result<_, _>>().map_err(|e| e.to_string())
-        }
-        Err(_) => Err(what),
+    let (head, data) = rest.split_at_checked(length).ok_or("it ends within its head")?;
+    let head = String::from_utf8_lossy(head);
+    let kind = head.split("'descr':").nth(1).and_then(|rest| rest.split('\'').nth(1));
+    let values = super::binary::numbers(kind.unwrap_or("unknown"), data)?;
+    let shape = head.split("'shape': (").nth(1).and_then(|rest| rest.split(')').next());
+    let sizes = shape.unwrap_or_default().split(',').filter(|size| !size.trim().is_empty());
+    let mut count = sizes.map(|size| size.trim().parse::<usize>().ok());
+    let count = count.try_fold(1_usize, |all, size| all.checked_mul(size?));
+    match count {
+        Some(count) if count == values.len() => Ok(values),
+        _ => Err(format!(
+            "it has {} numbers; its head says ({})",
+            values.len(),
+            shape.unwrap_or_default()
+        )),
     }
 }

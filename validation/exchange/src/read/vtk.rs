@@ -80,36 +80,12 @@ fn values(root: Node, node: Node) -> Result<Vec<f64>, String> {
                     return Err(format!("it is compressed by {other}; expected zlib or nothing"));
                 }
             };
-            floats(node.attribute("type").unwrap_or_default(), &bytes)
+            super::binary::numbers(node.attribute("type").unwrap_or_default(), &bytes)
         }
         other => Err(format!(
             "its format is {}; expected ascii or binary (inline base64)",
             other.unwrap_or("not stated")
         )),
-    }
-}
-
-fn floats(kind: &str, bytes: &[u8]) -> Result<Vec<f64>, String> {
-    macro_rules! numbers {
-        ($type:ty) => {{
-            let (numbers, rest) = bytes.as_chunks::<{ size_of::<$type>() }>();
-            let numbers = numbers.iter().map(|bytes| <$type>::from_le_bytes(*bytes) as f64);
-            if rest.is_empty() {
-                Ok(numbers.collect())
-            } else {
-                Err("it ends within a number".into())
-            }
-        }};
-    }
-    match kind {
-        "Float64" => numbers!(f64),
-        "Float32" => numbers!(f32),
-        "Int64" => numbers!(i64),
-        "Int32" => numbers!(i32),
-        "UInt8" => numbers!(u8),
-        other => {
-            Err(format!("its type is {other}; expected Float64, Float32, Int64, Int32 or UInt8"))
-        }
     }
 }
 

@@ -8,10 +8,7 @@ use base::files::{CsvTable, FileError, OutputFolder};
 use serde_json::Error as JsonError;
 use thiserror::Error;
 
-use crate::problem::{PROBLEM, Problem};
-
-/// Name of the table of particles.
-pub const PARTICLES: &str = "particles.csv";
+use crate::problem::{PARTICLES, PROBLEM, Problem};
 
 /// For whom a problem is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -29,7 +29,8 @@ number = lambda quantity: quantity["value"]
 material, ours = problem["material"], problem["our_method"]
 rho0, c0, nu = (number(material[name]) for name in ("density", "sound_speed", "kinematic_viscosity"))
 gx, gy = number(problem["acceleration"])
-h, dx, times = number(ours["support_radius"]) / 3, number(problem["particles"]["spacing"]), number(problem["times"])
+h, times = number(ours["support_radius"]) / 3, number(problem["times"])
+dx = number(problem["particles"]["spacing"])
 with open("particles.csv") as file:
     rows = list(csv.reader(file))
 names = [head.split("[")[0] for head in rows[0]]
@@ -66,8 +67,9 @@ class Run(Application):
     def create_scheme(self):
         walls = ["wall"] if (columns["role"] > 0).any() else []
         if which == "wcsph":
+            alpha = number(material["artificial_viscosity_alpha"])
             return WCSPHScheme(["fluid"], walls, dim=2, rho0=rho0, c0=c0, h0=h, hdx=h / dx, gamma=7.0,
-                               alpha=number(material["artificial_viscosity_alpha"]), beta=0.0, nu=nu, gx=gx, gy=gy)
+                               alpha=alpha, beta=0.0, nu=nu, gx=gx, gy=gy)
         common = dict(dim=2, rho0=rho0, c0=c0, nu=nu, gx=gx, gy=gy)
         if which == "edac":
             return EDACScheme(["fluid"], walls, h=h, pb=rho0 * c0**2, **common)

@@ -4,9 +4,10 @@
 //! The type parameters of a scheme determine its terms and walls; [`FromMedium`] and [`Boundary`] construct
 //! their values from the parameters in a [`Medium`]. Only [`Method::of`] is compiled for each scheme.
 
-mod medium;
 mod mutate;
 mod terms;
+#[cfg(test)]
+mod tests;
 
 use base::mutation::{Constant, Mutation};
 use maths::theory::{
@@ -20,8 +21,8 @@ use solver::{
     Smoothing, Stepper, Tait, Term,
 };
 
+pub use crate::medium::{Knob, Medium};
 use crate::{context::Context, limits::Limits, outline::Sink};
-pub use medium::{Knob, Medium};
 pub use mutate::mutate;
 pub use terms::{Boundary, FirstRow, FromMedium};
 

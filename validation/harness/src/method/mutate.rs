@@ -2,15 +2,15 @@
 
 use base::mutation::Constant;
 use nalgebra::Vector2;
-use solver::{Numbers, Role};
+use solver::Role;
 
 use super::Parts;
 
 /// Multiplies the constant that is wrong by its factor; the time step is not a part of a scene, and neither
 /// is the lifetime of neighbour lists. Before, the parts are told to who wants to know them.
-pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
+pub fn mutate<X>(parts: &mut Parts<X>) {
     if let Some(outline) = &parts.outline {
-        outline.scene(parts);
+        outline.scene(parts.medium, parts.domain, &parts.mirrors, &parts.bodies);
     }
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);

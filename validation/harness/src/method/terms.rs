@@ -9,7 +9,7 @@ use solver::{
     terms::{Axes, Hydrostatic, InTension, Switch},
 };
 
-use super::medium::{Knob, Medium};
+use crate::medium::{Knob, Medium};
 
 /// A term that can be constructed from a medium.
 pub trait FromMedium: Sized {

@@ -157,7 +157,13 @@ fn unchanged(rows: &[Row], runs: &Runs) -> Study {
     let judged = of(rows, &[Group::Still, Group::Stiff, Group::Fast, Group::Turned]).map(|row| {
         let (record, s) = (runs.record(&row.run.spec), &row.settings);
         let done = record.filter(|record| record.status == Status::Completed);
-        let partner = |s| runs.completed(&RUBBER_RINGS.spec_of(row.variant, &s));
+        let partner = |s| {
+            let spec = RUBBER_RINGS.spec_of(row.variant, &s);
+            let is_it = |other: &&Row| {
+                other.variant == row.variant && other.run.spec.settings == spec.settings
+            };
+            rows.iter().find(is_it).and_then(|other| runs.completed(&other.run.spec))
+        };
         let (id, metric, most, because, value) = match row.group {
             Group::Still => {
                 let name = if s.speed > 0.0 { "flight" } else { "rest" };
