@@ -12,7 +12,7 @@ pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteErro
 /// Problems with walls or periods along both axes fill their domain: TVF is PySPH's scheme for these, and its
 /// weakly compressible scheme for free surfaces.
 const SCRIPT: &str = r#"# Runs the problem of this folder with PySPH: python run_pysph.py [wcsph|tvf|edac]
-import csv, json, sys, time
+import csv, json, platform, sys, time
 import numpy as np
 import pysph
 from pysph.base.kernels import QuinticSpline
@@ -109,7 +109,7 @@ with open("results.csv", "w") as file:
         for k in order:
             file.write(f"{t!r},{int(array.touchstone[k])},{array.x[k]!r},{array.y[k]!r},{array.u[k]!r},"
                        f"{array.v[k]!r},{density[k]!r}\n".replace("np.float64(", "").replace(")", ""))
-json.dump({"machine": "unknown", "threads": 1, "seconds": seconds, "steps": int(app.solver.count),
+json.dump({"machine": platform.processor() or platform.machine(), "threads": 1, "seconds": seconds, "steps": int(app.solver.count),
            "interactions": "unknown"}, open("system.json", "w"))
 json.dump({"code": "PySPH", "version": pysph.__version__, "scheme": which, "division": "closed",
            "settings": {"h": h, "dt": app.solver.dt}, "changed": "nothing"}, open("method.json", "w"))
