@@ -1,6 +1,7 @@
 //! What the cross-crate tests share: random numbers, patches of particles, and the rates of one
 //! right-hand side.
 
+pub mod foreign_solver;
 pub mod new_case;
 pub mod new_term;
 pub mod new_wall;

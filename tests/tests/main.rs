@@ -5,6 +5,7 @@ mod cost;
 mod damaged;
 mod documents;
 mod extremes;
+mod foreign_solver;
 mod frozen_lattice;
 mod identities;
 mod integration;

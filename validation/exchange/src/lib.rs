@@ -9,6 +9,7 @@
 
 pub mod challenge;
 pub mod flaw;
+pub mod library;
 pub mod problem;
 pub mod read;
 pub mod submission;

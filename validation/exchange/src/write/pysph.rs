@@ -109,8 +109,8 @@ with open("results.csv", "w") as file:
         for k in order:
             file.write(f"{t!r},{int(array.touchstone[k])},{array.x[k]!r},{array.y[k]!r},{array.u[k]!r},"
                        f"{array.v[k]!r},{density[k]!r}\n".replace("np.float64(", "").replace(")", ""))
-json.dump({"machine": platform.processor() or platform.machine(), "threads": 1, "seconds": seconds, "steps": int(app.solver.count),
-           "interactions": "unknown"}, open("system.json", "w"))
+json.dump({"machine": platform.processor() or platform.machine(), "threads": 1, "seconds": seconds,
+           "steps": int(app.solver.count), "interactions": "unknown"}, open("system.json", "w"))
 json.dump({"code": "PySPH", "version": pysph.__version__, "scheme": which, "division": "closed",
            "settings": {"h": h, "dt": app.solver.dt}, "changed": "nothing"}, open("method.json", "w"))
 "#;

@@ -1,0 +1,55 @@
+//! A solver of another library, called in place of one whose files are read.
+
+use base::{record::Record, reference::sha256, spec::RunSpec};
+use harness::{
+    case::{Case, RunError},
+    playback::{Frame, Placed},
+};
+
+use crate::{
+    flaw::Flaw,
+    problem::Problem,
+    read::Results,
+    submission::{Entry, Method, System},
+};
+
+/// A solver that moves the particles of a problem.
+pub trait Solver {
+    /// What it is.
+    fn method(&self) -> Method;
+    /// Solves the problem, and tells the moving particles at each of its times, ascending; what it took.
+    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System;
+}
+
+/// Why there is no record of a solver.
+#[derive(Debug, thiserror::Error)]
+pub enum Refused {
+    /// The case refuses the run.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// What the solver told does not fit the problem.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Flaws(Vec<Flaw>),
+}
+
+/// The record of a solver for a run of a case. Put into [`harness::make::Made::submissions`] it has a section
+/// of the report.
+///
+/// # Errors
+/// If the case refuses the run, or what the solver told does not fit it.
+pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Record, Refused> {
+    let problem = Problem::of(case, spec.clone())?;
+    let mut results = Results::default();
+    let system = solver.solve(&problem, &mut |time, particles| {
+        results.places.push((format!("frame at t = {time} s"), 0));
+        results.frames.push(Frame { time, particles });
+    });
+    let method = solver.method();
+    let digest = sha256(format!("{method:?}").as_bytes());
+    let entry = Entry { method, digest, system, asked: None, results };
+    let flaws = entry.check(&problem);
+    match flaws.is_empty() {
+        true => Ok(entry.measure(case, spec)?),
+        false => Err(Refused::Flaws(flaws)),
+    }
+}
