@@ -28,12 +28,13 @@ submit() {
 for rows in 10 20; do
     for flow in couette poiseuille; do
         submit lammps - $flow interface-wall rows=$rows
-        for scheme in tvf edac wcsph; do submit pysph $scheme $flow interface-wall rows=$rows; done
+        submit pysph wcsph $flow interface-wall rows=$rows
+        submit pysph edac $flow extrapolating-wall rows=$rows
     done
 done
 for n in 25 50; do
     submit lammps - taylor_green modern "n=$n"
-    for scheme in tvf edac; do submit pysph $scheme taylor_green modern "n=$n"; done
+    submit pysph edac taylor_green modern "n=$n"
 done
 submit lammps - dam_break seed n=20
 submit lammps - dam_break modern n=20

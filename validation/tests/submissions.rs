@@ -283,3 +283,17 @@ fn a_sealed_problem_holds_its_method_and_its_settings() {
         assert!(words.contains(expected), "{file}: expected {expected:?} in {words}");
     }
 }
+
+/// What `references/peers` says of other codes can be read, and holds no particles.
+#[test]
+fn the_records_of_other_codes_are_sound() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../references/peers/records");
+    let mut codes = std::collections::BTreeSet::new();
+    for entry in fs::read_dir(folder).unwrap().flatten() {
+        let record = Record::from_json(&read(&entry.path()));
+        let record = record.unwrap_or_else(|error| panic!("{:?}: {error}", entry.path()));
+        codes.insert(record.submission.expect("the code that made it").code);
+        assert!(!record.profiles.contains_key("particles"), "{:?}", entry.path());
+    }
+    assert_eq!(codes.into_iter().collect::<Vec<_>>(), ["LAMMPS", "PySPH"]);
+}

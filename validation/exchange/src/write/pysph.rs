@@ -9,9 +9,9 @@ pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteErro
     Ok(vec![("run_pysph.py", SCRIPT.to_string())])
 }
 
-/// Problems with walls or periods along both axes fill their domain: TVF is PySPH's scheme for these, and its
-/// weakly compressible scheme for free surfaces.
-const SCRIPT: &str = r#"# Runs the problem of this folder with PySPH: python run_pysph.py [wcsph|tvf|edac]
+/// EDAC, with a transport velocity, is for flows that fill their domain, whose walls extrapolate; the weakly
+/// compressible scheme is for free surfaces, too.
+const SCRIPT: &str = r#"# Runs the problem of this folder with PySPH: python run_pysph.py [edac|wcsph]
 import csv, json, platform, sys, time
 import numpy as np
 import pysph
@@ -20,10 +20,10 @@ from pysph.base.utils import get_particle_array
 from pysph.solver.application import Application
 from pysph.solver.solver import Solver
 from pysph.base.nnps import DomainManager
-from pysph.sph.scheme import WCSPHScheme, TVFScheme
+from pysph.sph.scheme import WCSPHScheme
 from pysph.sph.wc.edac import EDACScheme
 
-which = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else "tvf"
+which = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else "edac"
 problem = json.load(open("problem.json"))
 number = lambda quantity: quantity["value"]
 material, ours = problem["material"], problem["our_method"]
@@ -70,10 +70,8 @@ class Run(Application):
             alpha = number(material["artificial_viscosity_alpha"])
             return WCSPHScheme(["fluid"], walls, dim=2, rho0=rho0, c0=c0, h0=h, hdx=h / dx, gamma=7.0,
                                alpha=alpha, beta=0.0, nu=nu, gx=gx, gy=gy)
-        common = dict(dim=2, rho0=rho0, c0=c0, nu=nu, gx=gx, gy=gy)
-        if which == "edac":
-            return EDACScheme(["fluid"], walls, h=h, pb=rho0 * c0**2, **common)
-        return TVFScheme(["fluid"], walls, h0=h, p0=rho0 * c0**2, pb=rho0 * c0**2, **common)
+        return EDACScheme(["fluid"], walls, dim=2, rho0=rho0, c0=c0, nu=nu, gx=gx, gy=gy, h=h,
+                          pb=rho0 * c0**2)
 
     def configure_scheme(self):
         step = 0.25 * h / (1.1 * c0)
