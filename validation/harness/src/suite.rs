@@ -1,7 +1,7 @@
 //! Planning, making and judging of all runs, which `verify` and `report` share.
 
 use base::{
-    gate::{Bound, Evidence, Gate},
+    gate::{Bound, Evidence, Gate, Purpose},
     record::{Record, Status},
     spec::RunSpec,
 };
@@ -139,11 +139,13 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
     Suite { tier, cases, made }
 }
 
-/// The run of another code, judged by the gates that our plans have for the same settings.
+/// The run of another code, judged by the gates that our plans have for the same settings. What is known to
+/// limit our method, or expected of it, is no excuse for another one: there the bound alone counts.
 pub fn submitted(case: &dyn Case, record: Record) -> JudgedRun {
     let spec = record.spec();
     let gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
-    JudgedRun::new(Planned::new(spec).judged(gates), record)
+    let plain = |gate| Gate { purpose: Purpose::Judge, may_end_early: false, ..gate };
+    JudgedRun::new(Planned::new(spec).judged(gates.into_iter().map(plain).collect()), record)
 }
 
 /// A failing gate if a study asked for a run that the case did not plan.

@@ -41,7 +41,8 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     let study = Study::new(&id, "Runs of other codes")
         .prose(
             "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
-             the same gates. A gate is not applicable if the results do not determine its metric.",
+             the bounds of the same gates; known limitations of our own method are no excuse. A gate is not \
+             applicable if the results do not determine its metric.",
         );
     let of = |division: Division| {
         let is_of = |run: &&JudgedRun| {
@@ -55,15 +56,18 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     ];
     let some = tables.into_iter().map(|(division, caption)| (of(division), caption));
     let some = some.filter(|(runs, _)| !runs.is_empty());
-    Some(some.fold(study, |study, (runs, caption)| study.block(table(declared, caption, runs))))
+    let add = |study: Study, (of, caption): (Vec<&JudgedRun>, &str)| {
+        study.block(table(declared, caption, of, runs))
+    };
+    Some(some.fold(study, add))
 }
 
-fn table(declared: &Declaration, caption: &str, runs: Vec<&JudgedRun>) -> report::Table {
+fn table(declared: &Declaration, caption: &str, of: Vec<&JudgedRun>, runs: &Runs) -> report::Table {
     let words =
         |run: &JudgedRun| run.record.submission.as_ref().map_or(String::new(), |of| of.to_string());
     let error = |run: &JudgedRun| {
-        let card = declared.card.as_ref();
-        let error = card.and_then(|card| run.record.value(card.metric.clone()));
+        let error = declared.accuracy.first().map(|accuracy| &accuracy.error);
+        let error = error.and_then(|error| error.value(&run.record, runs));
         error.map_or(Cell::text("–"), |error| Cell::percent(error, 2))
     };
     let gates = |run: &JudgedRun| {
@@ -83,5 +87,5 @@ fn table(declared: &Declaration, caption: &str, runs: Vec<&JudgedRun>) -> report
         })
         .text("gates", |run| gates(run))
         .text("ended", |run| run.record.status.to_string())
-        .table(caption, runs)
+        .table(caption, of)
 }
