@@ -113,8 +113,29 @@ fn drop_lines(folder: &Path, from: usize, to: usize) {
     fs::write(&path, kept.map(|(_, line)| format!("{line}\n")).collect::<String>()).unwrap();
 }
 
+/// Adds the first frame once more, so much later than the first or the last one.
+fn shifted(folder: &Path, file: &str, by: f64) {
+    let text = read(&folder.join(file));
+    let mut lines: Vec<String> = text.lines().map(String::from).collect();
+    let last = if by < 0.01 { 41 } else { lines.len() };
+    let again = |line: &String| {
+        let (time, rest) = line.split_once(',').unwrap();
+        format!("{},{rest}", time.parse::<f64>().unwrap() + by)
+    };
+    let later: Vec<String> = lines[1..41].iter().map(again).collect();
+    lines.splice(last..last, later);
+    fs::write(folder.join(file), lines.join("\n") + "\n").unwrap();
+}
+/// A dump in place of the table.
+fn dump(folder: &Path, atoms: &str, rows: &str) {
+    fs::remove_file(folder.join("results.csv")).unwrap();
+    let heads = "ITEM: TIME\n0.1\nITEM: NUMBER OF ATOMS\n";
+    let text = format!("{heads}{atoms}\nITEM: ATOMS id x y vx vy c_rho\n{rows}");
+    fs::write(folder.join("a.dump"), text).unwrap();
+}
+
 /// What is done to a whole submission, and what the message names.
-const DAMAGES: [(&str, Damage, &[&str]); 24] = [
+const DAMAGES: [(&str, Damage, &[&str]); 35] = [
     (
         "no method",
         |f| fs::remove_file(f.join("method.json")).unwrap(),
@@ -192,6 +213,63 @@ const DAMAGES: [(&str, Damage, &[&str]); 24] = [
             fs::write(f.join("results.csv"), &t[..t.len() - 40]).unwrap()
         },
         &["results.csv, line"],
+    ),
+    ("no density", |f| set(f, 6, 6, "0"), &["results.csv, line 6, column density", "above 0"]),
+    (
+        "a machine of control characters",
+        |f| edit(f, "system.json", "\"machine\": \"", "\"machine\": \"\\u001b[2J"),
+        &["system.json, column machine", "control"],
+    ),
+    (
+        "a time twice but for round-off",
+        |f| shifted(f, "results.csv", 1e-9),
+        &["results.csv, line 42, column t", "round-off"],
+    ),
+    ("a time after the end", |f| shifted(f, "results.csv", 1.0), &["column t", "after the end"]),
+    (
+        "a crowd",
+        |f| {
+            edit(f, "method.json", "\"closed\"", "\"open\"");
+            let rows: String =
+                (0..1100).map(|k| format!("0,{k},1e-5,1e-5,0,0,1000,1e-6\n")).collect();
+            let heads = "t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3],mass[kg/m]\n";
+            fs::write(f.join("results.csv"), heads.to_string() + &rows).unwrap()
+        },
+        &["results.csv, line 2, column id", "1100 particles are in a square"],
+    ),
+    (
+        "a constant that is wrong on purpose",
+        |f| {
+            let with = "\"spec\": {\n    \"allow_unstable\": true,";
+            edit(f, "problem.json", "\"spec\": {", with)
+        },
+        &["problem.json asks for more"],
+    ),
+    (
+        "a dump of atoms that are not there",
+        |f| dump(f, "1000000000000", "1 0 0 0 0 1000\n"),
+        &["a.dump, line 4", "1000000000000 atoms"],
+    ),
+    (
+        "a dump with a row that has more values",
+        |f| dump(f, "1", "1 7 7 0 0 0 0 1000\n"),
+        &["a.dump, line 6", "8 values; expected 6"],
+    ),
+    ("a dump that was cut", |f| dump(f, "1", "1 0 0 0 0 10"), &["a.dump, line 6", "cut short"]),
+    ("a dump without atoms", |f| dump(f, "0", ""), &["a.dump", "no rows"]),
+    (
+        "a head of 2^61 blocks",
+        |f| {
+            fs::remove_file(f.join("results.csv")).unwrap();
+            let zlib = "compressor=\"vtkZLibDataCompressor\" header_type=\"UInt64\"";
+            let array = "<DataArray Name=\"rho\" type=\"Float64\" format=\"binary\">";
+            let head = "/P///////x8IAAAAAAAAAAgAAAAAAAAA"; // 2^61 - 4, 8, 8
+            let text = format!(
+                "<VTKFile {zlib}><PointData>{array}{head}</DataArray></PointData></VTKFile>"
+            );
+            fs::write(f.join("a.vtu"), text).unwrap()
+        },
+        &["a.vtu, line 1, column rho", "within its head"],
     ),
     (
         "another case",
@@ -296,4 +374,42 @@ fn the_records_of_other_codes_are_sound() {
         assert!(!record.profiles.contains_key("particles"), "{:?}", entry.path());
     }
     assert_eq!(codes.into_iter().collect::<Vec<_>>(), ["LAMMPS", "PySPH"]);
+}
+
+/// Stress is not in the results: what does not need it is measured, and nothing counts as diverged.
+#[test]
+fn a_solid_is_measured_without_its_stress_and_without_what_needs_every_step() {
+    for (line, expected) in [
+        ("rubber_rings --variant leapfrog --set spacing=0.5", "width_min"),
+        ("elastic_bar --variant seed --set n=10", "momentum_error"),
+        ("acoustic_wave", ""),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let made = touchstone(folder.path(), &format!("export {line} --out own --solve"));
+        assert!(made.status.success(), "{line}: {}", said(&made));
+        let case = line.split(' ').next().unwrap();
+        let words = said(&touchstone(folder.path(), &format!("submit {case} own --store store")));
+        let file = fs::read_dir(folder.path().join("store")).unwrap().flatten().next();
+        let record = Record::from_json(&read(&file.expect(&words).path())).unwrap();
+        assert_eq!(record.status, base::record::Status::Completed, "{line}");
+        assert!(expected.is_empty() || record.metrics.contains_key(expected), "{line}: {expected}");
+        let stepwise =
+            ["frequency", "trajectory_error", "travel_error", "contact_begin_error@phase1"];
+        for name in stepwise {
+            assert!(!record.metrics.contains_key(name), "{line}: {name} is judged");
+        }
+    }
+}
+
+/// A copy of a record under another name would count twice; it is told by its name.
+#[test]
+fn a_copied_record_does_not_count() {
+    let (folder, _copy) = copy();
+    let words = said(&touchstone(folder.path(), "submit couette copy --store store"));
+    let store = folder.path().join("store");
+    let file = fs::read_dir(&store).unwrap().flatten().next().expect(&words).path();
+    fs::copy(file, store.join("submitted-couette-seed-0123456789abcdef.json")).unwrap();
+    let words = said(&touchstone(folder.path(), "judge couette --store store"));
+    let told = words.lines().find(|line| line.contains("0123456789abcdef"));
+    assert!(told.is_some_and(|line| line.contains("does not count")), "{words}");
 }

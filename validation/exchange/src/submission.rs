@@ -1,7 +1,7 @@
 //! A folder of results of another code: what it says of its method and its machine, and its particles,
 //! measured by the code that measures our own runs.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use base::{
     files,
@@ -13,7 +13,7 @@ use base::{
 use harness::{
     case::{Case, RunError, Tier},
     context::Context,
-    playback::{Own, Playback},
+    playback::{self, Frame, Own, Playback},
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
@@ -26,6 +26,11 @@ use crate::{
 
 /// Name of the document that describes the method.
 pub const METHOD: &str = "method.json";
+/// More particles than these are not in a square of one support radius: usual are ten.
+const MOST_IN_SUPPORT: usize = 1000;
+/// Flaws of frames that are told.
+const MOST_FLAWS: usize = 20;
+
 /// Name of the document that describes the machine and the cost.
 pub const SYSTEM: &str = "system.json";
 
@@ -147,16 +152,11 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     if let Ok((method, _)) = &method {
         let fields =
             [("code", &method.code), ("version", &method.version), ("scheme", &method.scheme)];
-        for (name, text) in fields {
-            let is_plain = |c: char| !c.is_control();
-            if text.trim().is_empty() || text.len() > 100 || !text.chars().all(is_plain) {
-                let what = format!("it is {text:?}; expected 1 to 100 characters");
-                flaws.push(Flaw::of(METHOD, what).in_column(name));
-            }
-        }
+        flaws.extend(fields.into_iter().filter_map(|(name, text)| unnamed(METHOD, name, text)));
     }
     if let Ok((system, _)) = &system {
-        let System { threads, seconds, steps, interactions, .. } = system;
+        let System { machine, threads, seconds, steps, interactions } = system;
+        flaws.extend(unnamed(SYSTEM, "machine", machine));
         for (name, known, most) in [
             ("threads", threads, 1e6),
             ("seconds", seconds, 1e12),
@@ -179,6 +179,32 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     }
 }
 
+/// What is wrong with a frame of which so many particles are in one support that pairs exceed the memory.
+fn crowded(frame: &Frame, support: f64) -> Option<String> {
+    let mut cells: BTreeMap<[i64; 2], usize> = BTreeMap::new();
+    for placed in &frame.particles {
+        let cell = placed.position / support;
+        *cells.entry([cell.x.floor() as i64, cell.y.floor() as i64]).or_default() += 1;
+    }
+    let most = cells.into_values().max().filter(|most| *most > MOST_IN_SUPPORT)?;
+    let time = frame.time;
+    Some(format!(
+        "{most} particles are in a square of one support radius, {support} m, at t = {time} s; expected at \
+         most {MOST_IN_SUPPORT}, or a problem with a finer spacing"
+    ))
+}
+
+/// What is wrong with a text that reports and records show in one line.
+fn unnamed(file: &str, field: &str, text: &str) -> Option<Flaw> {
+    let is_name = !text.trim().is_empty() && text.chars().count() <= 100;
+    if is_name && !text.chars().any(char::is_control) {
+        return None;
+    }
+    let shown: String = text.chars().take(100).collect();
+    let what = format!("it is {shown:?}; expected 1 to 100 characters, none of them of control");
+    Some(Flaw::of(file, what).in_column(field))
+}
+
 fn asked(folder: &Path) -> Result<Option<Asked>, Flaw> {
     let text = match files::read_text(&folder.join(PROBLEM), MOST_BYTES) {
         Err(reason) if reason.kind() == std::io::ErrorKind::NotFound => return Ok(None),
@@ -193,8 +219,12 @@ impl Entry {
         let mut flaws = Vec::new();
         let Results { frames, places, .. } = &self.results;
         let file = places.first().map_or("results", |(file, _)| file.as_str());
-        let playback = Playback { frames: frames.clone(), own: Vec::new() };
-        for time in playback.missing(&problem.outline.times) {
+        if let Some((frame, why)) = playback::misplaced(frames, &problem.outline.times) {
+            let (file, line) = &places[frame];
+            let what = format!("t = {} s: {why}", frames[frame].time);
+            flaws.push(Flaw::of(file, what).at(*line).in_column("t"));
+        }
+        for time in playback::missing(frames, &problem.outline.times) {
             let what =
                 format!("there are no particles at t = {time} s, at which the problem is measured");
             flaws.push(Flaw::of(file, what).in_column("t"));
@@ -204,7 +234,15 @@ impl Entry {
             Division::Open => self.own_ids(&mut flaws),
         };
         let all = problem.outline.particles.column("id").len();
+        let support = problem.outline.method.1 * problem.outline.medium.h;
         for (frame, (file, line)) in frames.iter().zip(places) {
+            if flaws.len() >= MOST_FLAWS {
+                flaws.push(Flaw::of(
+                    file,
+                    "more flaws like these; nothing after them was looked at",
+                ));
+                break;
+            }
             let flaw = |what: String| Flaw::of(file, what).in_column("id");
             let mut ids: Vec<(u32, usize)> =
                 frame.particles.iter().enumerate().map(|(k, p)| (p.id, k)).collect();
@@ -215,6 +253,7 @@ impl Entry {
                 flaws.push(flaw(what).at(line + twice[1].1 as u64));
             }
             let has = |id: &u32| ids.binary_search_by_key(id, |(id, _)| *id).is_ok();
+            flaws.extend(crowded(frame, support).map(|what| flaw(what).at(*line)));
             let lacking = expected.iter().filter(|id| !has(id)).count();
             let beyond = match self.method.division {
                 Division::Closed => ids.iter().find(|(id, _)| *id as usize >= all),
@@ -322,8 +361,13 @@ impl Entry {
             record.absent.insert(name, reason);
         }
         for metric in case.declaration(Tier::Quick).stepwise {
-            if record.metrics.remove(&String::from(*metric)).is_some() {
-                record.leave_out(*metric, "it is measured after every step");
+            let name = String::from(*metric);
+            // Also those of a time or a phase, such as `impulse@phase1`.
+            let is_of = |of: &str| of.split('@').next() == Some(name.as_str());
+            let all: Vec<String> = record.metrics.keys().filter(|of| is_of(of)).cloned().collect();
+            for of in all {
+                record.metrics.remove(&of);
+                record.absent.insert(of, "it is measured after every step".into());
             }
         }
         for reason in record.absent.values_mut().filter(|reason| *reason == NOT_ASKED) {

@@ -1,9 +1,11 @@
 //! Frames of a run that another code made, played back: particles are put where a frame has them, all that
 //! pair sweeps read is derived from them, and the case measures them as it measures its own.
 
+use std::collections::BTreeSet;
+
 use base::record::Status;
 use nalgebra::Vector2;
-use solver::{Numbers, Observer, Outcome, Particle, Role, Stepper};
+use solver::{Checkpoint, Numbers, Observer, Outcome, Particle, Role, Stepper};
 
 use crate::error::RunError;
 
@@ -67,13 +69,6 @@ impl Playback {
         self.own.iter().map(particle).collect()
     }
 
-    /// The times that have no frame \[s\], of a run that ends with the last of them.
-    pub fn missing(&self, times: &[f64]) -> Vec<f64> {
-        let end = times.last().copied().unwrap_or_default();
-        let has = |time: &&f64| self.frames.iter().any(|frame| is_at(frame, **time, end));
-        times.iter().filter(|time| !has(time)).copied().collect()
-    }
-
     /// Shows every frame to the observer, and calls `at` with the number of each of the times.
     ///
     /// # Errors
@@ -86,7 +81,7 @@ impl Playback {
         mut at: impl FnMut(&mut O, &mut D, usize),
     ) -> Result<Status, RunError> {
         let end = times.last().copied().unwrap_or_default();
-        if let Some(time) = self.missing(times).first() {
+        if let Some(time) = missing(&self.frames, times).first() {
             return Err(RunError::Playback(format!("there is no frame at t = {time} s")));
         }
         let mut reached = 0;
@@ -107,6 +102,29 @@ impl Playback {
         }
         Ok(Status::Completed)
     }
+}
+
+/// The times that have no frame \[s\], of a run that ends with the last of them.
+pub fn missing(frames: &[Frame], times: &[f64]) -> Vec<f64> {
+    let end = times.last().copied().unwrap_or_default();
+    let has = |time: &&f64| frames.iter().any(|frame| is_at(frame, **time, end));
+    times.iter().filter(|time| !has(time)).copied().collect()
+}
+
+/// The first frame that is before the start, after the end, or at the time of the one before it, and why.
+pub fn misplaced(frames: &[Frame], times: &[f64]) -> Option<(usize, &'static str)> {
+    let end = times.last().copied().unwrap_or_default();
+    let why = |k: usize| match &frames[k] {
+        frame if frame.time < 0.0 => Some("it is before the start; expected times from 0 on"),
+        frame if frame.time > end && !is_at(frame, end, end) => {
+            Some("it is after the end; expected no later times than those of the problem")
+        }
+        frame if k > 0 && is_at(frame, frames[k - 1].time, 2.0 * end) => Some(
+            "it is the time of the frame before it but for round-off; expected one frame a time",
+        ),
+        _ => None,
+    };
+    (0..frames.len()).find_map(|k| Some(k).zip(why(k)))
 }
 
 fn is_at(frame: &Frame, time: f64, end: f64) -> bool {
@@ -145,7 +163,7 @@ fn put<X: Numbers, D: Stepper<X> + ?Sized>(
         state.built_at = reference;
         simulation.restore(&state).map_err(|reason| refused(reason.into()))?;
     }
-    match simulation.advance(time, 1.0, &mut ()) {
+    match advanced(frame, time, state, simulation) {
         Outcome::Diverged(divergence) => Ok(Some(Status::Diverged {
             step: 0,
             time,
@@ -154,5 +172,38 @@ fn put<X: Numbers, D: Stepper<X> + ?Sized>(
             value_text: format!("{:.6e}", divergence.fault.value),
         })),
         Outcome::Reached | Outcome::Stopped => Ok(None),
+    }
+}
+
+/// Derives all that pair sweeps read. What another code integrates beside position, velocity and density is
+/// not a number unless the positions determine it: the rest is derived without it.
+fn advanced<X: Numbers, D: Stepper<X> + ?Sized>(
+    frame: &Frame,
+    time: f64,
+    mut state: Checkpoint<X>,
+    simulation: &mut D,
+) -> Outcome {
+    let outcome = simulation.advance(time, 1.0, &mut ());
+    match &outcome {
+        Outcome::Diverged(divergence) if divergence.fault.field == "extra" => {}
+        _ => return outcome,
+    }
+    without_extra(frame, 0.0, &mut state);
+    if simulation.restore(&state).is_err() {
+        return outcome;
+    }
+    let outcome = simulation.advance(time, 1.0, &mut ());
+    let mut derived = simulation.checkpoint();
+    without_extra(frame, f64::NAN, &mut derived);
+    // A state that was just taken is put back.
+    let _ = simulation.restore(&derived);
+    outcome
+}
+
+/// Puts a number in place of what the particles of a frame integrate beside position, velocity and density.
+fn without_extra<X: Numbers>(frame: &Frame, number: f64, state: &mut Checkpoint<X>) {
+    let of_frame: BTreeSet<u32> = frame.particles.iter().map(|placed| placed.id).collect();
+    for (_, particle) in state.particles.iter_mut().filter(|(id, _)| of_frame.contains(id)) {
+        particle.extra = X::default().advanced(number, X::default());
     }
 }

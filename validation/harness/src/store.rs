@@ -96,7 +96,18 @@ impl Store {
         let mut names: Vec<String> =
             entries.filter_map(|e| e.file_name().into_string().ok()).filter(is_of_case).collect();
         names.sort();
-        names.into_iter().map(|name| read(self.path().join(name))).collect()
+        let of_its_name = |name: String| {
+            let record = read(self.path().join(&name))?;
+            let expected = Self::name(&record.spec());
+            if expected == name {
+                return Ok(record);
+            }
+            // A copy would count twice.
+            let what = format!("its content belongs to {expected}");
+            let reason = io::Error::new(io::ErrorKind::InvalidData, what);
+            Err(StoreError::Unreadable { path: self.path().join(name), reason })
+        };
+        names.into_iter().map(of_its_name).collect()
     }
 
     /// The record of a run, if there is one, and whether sources of this digest made it. An interrupted

@@ -84,6 +84,17 @@ base::metrics! {
     ENERGY_CHANGE = "energy_change" ["-"] "kinetic and strain energy, end over start less 1";
 }
 
+/// What is read from the motion between two steps.
+const STEPWISE: &[MetricKey] = &[
+    TRAVEL_ERROR,
+    TRAVEL_LATTICE_ERROR,
+    STRESS_ERROR,
+    STRESS_RATIO,
+    CONTACT_TIME_ERROR,
+    CONTACT_TIME_RATIO,
+    EXCHANGE,
+];
+
 /// Where the pulse starts, and between which places its centre is timed \[L\].
 const START: f64 = 0.25;
 const STATIONS: [f64; 2] = [0.3, 0.7];
@@ -477,7 +488,7 @@ fn declaration(tier: Tier) -> Declaration {
         ladders: ["seed", "bare"].map(ladder).into(),
         ..Accuracy::new("elastic-bar", error, "error of the time of travel [-]")
     };
-    Declaration { accuracy: vec![accuracy], ..Declaration::default() }
+    Declaration { accuracy: vec![accuracy], stepwise: STEPWISE, ..Declaration::default() }
 }
 
 #[cfg(test)]

@@ -57,7 +57,7 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
             little stress that begins to rotate, whose stress has to rotate with it.",
     variants,
     is_stable: composed::completed,
-    declaration: |_| Declaration::default(),
+    declaration: |_| Declaration { stepwise: &[FREQUENCY_ERROR], ..Declaration::default() },
     plan: |tier| table(tier).plan(),
     studies: composed::no_studies,
 };

@@ -388,7 +388,9 @@ fn declaration(tier: Tier) -> Declaration {
         about: "A free disk, rim at 0.05 c0, makes a tenth of a revolution.".into(),
         ..Budgets::of(&accuracy, vec![Budget { variant: "bare", changes }])
     };
-    Declaration { accuracy: vec![accuracy], budgets: Some(budgets), ..Declaration::default() }
+    let stepwise = &[INTERIOR_STRAIN, RIM_STRAIN, ANGULAR_MOMENTUM_TENTH, LARGEST_STRESS];
+    let budgets = Some(budgets);
+    Declaration { accuracy: vec![accuracy], budgets, stepwise, ..Declaration::default() }
 }
 
 #[cfg(test)]

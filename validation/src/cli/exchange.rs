@@ -184,7 +184,16 @@ fn problem(
                 format!("problem.json is of the case {}, not of {}", asked.spec.case, case.name());
             return Err(Failure::usage(words));
         }
-        Some(asked) => case::resolved(case, asked.spec.clone())?,
+        Some(asked) => {
+            let RunSpec { case: name, variant, settings, measure, .. } = asked.spec.clone();
+            let plain = RunSpec { measure, ..RunSpec::new(&name, &variant, settings) };
+            if plain != asked.spec {
+                let words = "problem.json asks for more than a run of a variant with settings; expected \
+                             the document as it was exported";
+                return Err(Failure::usage(words));
+            }
+            case::resolved(case, plain)?
+        }
         None => {
             let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
             case::spec(case, variant, &arguments.set)?

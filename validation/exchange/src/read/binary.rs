@@ -1,5 +1,13 @@
 //! Numbers as bytes, least first.
 
+/// An array of three components of a particle has no more than these.
+pub const MOST_NUMBERS: usize = 3 * super::MOST_ROWS;
+
+/// What is said of a longer one.
+pub fn too_long() -> String {
+    format!("it has more than {MOST_NUMBERS} numbers; expected fewer particles or times")
+}
+
 /// Numbers of a kind by the name of NumPy or of ParaView.
 ///
 /// # Errors
@@ -8,6 +16,7 @@ pub fn numbers(kind: &str, bytes: &[u8]) -> Result<Vec<f64>, String> {
     fn all<const N: usize>(bytes: &[u8], number: fn([u8; N]) -> f64) -> Result<Vec<f64>, String> {
         let (numbers, rest) = bytes.as_chunks::<N>();
         match rest.is_empty() {
+            _ if numbers.len() > MOST_NUMBERS => Err(too_long()),
             true => Ok(numbers.iter().map(|bytes| number(*bytes)).collect()),
             false => Err("it ends within a number".into()),
         }

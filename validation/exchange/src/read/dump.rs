@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{MOST_FLAWS, Renamed, Rows, places};
+use super::{MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
 use crate::flaw::Flaw;
 
 /// Names of LAMMPS that need no `--map`. Its numbers of atoms begin at 1, ours at 0.
@@ -12,7 +12,11 @@ const KNOWN: [(&str, &str); 3] = [("vx", "u"), ("vy", "v"), ("c_rho", "density")
 pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<Flaw>> {
     let known = KNOWN.iter().map(|(theirs, ours)| (theirs.to_string(), ours.to_string()));
     let renamed: Renamed = known.chain(renamed.clone()).collect();
-    let mut lines = text.lines().enumerate();
+    if !text.is_empty() && !text.ends_with('\n') {
+        let what = "the last line does not end; the file was cut short";
+        return Err(vec![Flaw::of(file, what).at(text.lines().count() as u64)]);
+    }
+    let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let (mut all, mut time, mut count) = (Vec::new(), None, None);
     let flaw = |line: usize, what: String| vec![Flaw::of(file, what).at(line as u64 + 1)];
     while let Some((line, head)) = lines.next() {
@@ -32,7 +36,15 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
         match item.split(' ').next().unwrap_or_default() {
             "TIME" => time = Some(next("the time")?),
             "TIMESTEP" => drop(next("the time step")?),
-            "NUMBER" => count = Some(next("the number of atoms")?),
+            "NUMBER" => {
+                let atoms = next("the number of atoms")?;
+                if !(0.0..=MOST_ROWS as f64).contains(&atoms) || atoms.fract() != 0.0 {
+                    let what =
+                        format!("it is {atoms} atoms; expected a whole number up to {MOST_ROWS}");
+                    return Err(flaw(line + 1, what));
+                }
+                count = Some(atoms as usize);
+            }
             "UNITS" => drop(lines.next()),
             "BOX" => drop((lines.next(), lines.next(), lines.next())),
             "ATOMS" => {
@@ -43,21 +55,34 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
                 };
                 let heads: Vec<&str> = item.split_whitespace().skip(1).collect();
                 let places = places(file, line as u64 + 1, &heads, &renamed, &["t"])?;
-                let atoms = count.unwrap_or(0.0) as usize;
-                let first_line = line as u64 + 2;
-                all.push(snapshot(file, (time, atoms, first_line), &places, &mut lines)?);
+                let Some(atoms) = count.take() else {
+                    return Err(flaw(
+                        line,
+                        "there is no ITEM: NUMBER OF ATOMS before the atoms".into(),
+                    ));
+                };
+                let (first_line, width) = (line as u64 + 2, heads.len());
+                all.push(snapshot(file, (time, atoms, first_line), (&places, width), &mut lines)?);
+                if all.iter().map(Rows::len).sum::<usize>() > MOST_ROWS {
+                    return Err(vec![too_many(file)]);
+                }
             }
             other => return Err(flaw(line, format!("ITEM: {other} is not known"))),
         }
     }
-    Ok(all)
+    match all.is_empty() {
+        true => {
+            Err(vec![Flaw::of(file, "it has no snapshot; expected ITEM: ATOMS after ITEM: TIME")])
+        }
+        false => Ok(all),
+    }
 }
 
 /// The atoms of one snapshot.
 fn snapshot<'a>(
     file: &str,
     (time, atoms, first_line): (f64, usize, u64),
-    places: &[(&'static str, usize)],
+    (places, width): (&[(&'static str, usize)], usize),
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Rows, Vec<Flaw>> {
     let mut columns = BTreeMap::from([("t", Vec::new())]);
@@ -68,6 +93,10 @@ fn snapshot<'a>(
             return Err(vec![Flaw::of(file, what).at(first_line - 1)]);
         };
         let values: Vec<&str> = text.split_whitespace().collect();
+        if values.len() != width {
+            let what = format!("it has {} values; expected {width}", values.len());
+            flaws.push(Flaw::of(file, what).at(line as u64 + 1));
+        }
         columns.entry("t").or_default().push(time);
         for (name, place) in places {
             let text = values.get(*place).copied().unwrap_or_default();

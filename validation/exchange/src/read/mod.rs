@@ -14,13 +14,18 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use base::files;
-use harness::playback::{Frame, Placed};
+use harness::{
+    outline::role,
+    playback::{Frame, Placed},
+};
 use nalgebra::Vector2;
 
 use crate::flaw::Flaw;
 
 /// More than this is no result of a run of a laptop \[bytes\].
-pub const MOST_BYTES: u64 = 1 << 32;
+pub const MOST_BYTES: u64 = 1 << 28;
+/// More rows than these would not fit into the memory of a laptop.
+const MOST_ROWS: usize = 3_000_000;
 
 /// Flaws that are told of one file.
 const MOST_FLAWS: usize = 20;
@@ -100,8 +105,19 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Results, Vec<Flaw>> {
             Ok(rows) => all.extend(rows),
             Err(of_file) => flaws.extend(of_file),
         }
+        if flaws.len() >= MOST_FLAWS || all.iter().map(Rows::len).sum::<usize>() > MOST_ROWS {
+            flaws.extend(all.last().filter(|_| flaws.is_empty()).map(|of| too_many(&of.file)));
+            return Err(flaws);
+        }
     }
     if flaws.is_empty() { frames(&all) } else { Err(flaws) }
+}
+
+fn too_many(file: &str) -> Flaw {
+    Flaw::of(
+        file,
+        format!("there are more than {MOST_ROWS} rows; expected fewer particles or times"),
+    )
 }
 
 fn ending(name: &str) -> &str {
@@ -160,6 +176,9 @@ fn places(
     let (mut found, mut flaws) = (Vec::<(&'static str, usize)>::new(), Vec::new());
     for (place, head) in heads.iter().enumerate() {
         let (Some(name), unit) = ours(head, renamed) else { continue };
+        if given.contains(&name) {
+            continue; // the file states it elsewhere
+        }
         let expected = COLUMNS.iter().find(|(ours, ..)| *ours == name).map_or("-", |c| c.1);
         if let Some(unit) = unit.filter(|unit| *unit != expected) {
             let what = format!("its unit is {unit}; expected {expected}");
@@ -204,12 +223,18 @@ impl Rows {
                 false => Err(flaw(name, format!("it is {value}; expected a finite number"))),
             }
         };
-        let optional = |name: &'static str| match self.value(name, k) {
-            Some(value) if value.is_finite() && value >= 0.0 => Ok(Some(value)),
+        let positive = |name: &'static str| match self.value(name, k) {
+            Some(value) if value.is_finite() && value > 0.0 => Ok(Some(value)),
             Some(value) => {
-                Err(flaw(name, format!("it is {value}; expected a finite number, not below 0")))
+                Err(flaw(name, format!("it is {value}; expected a finite number above 0")))
             }
             None => Ok(None),
+        };
+        let role = match self.value("role", k) {
+            Some(value) if role(value).is_none() => {
+                Err(flaw("role", format!("it is {value}; expected 0, 1 or 2")))
+            }
+            role => Ok(role),
         };
         let id = finite("id")?;
         if id < 0.0 || id.fract() != 0.0 || id > f64::from(u32::MAX) {
@@ -219,9 +244,9 @@ impl Rows {
             id: id as u32,
             position: Vector2::new(finite("x")?, finite("y")?),
             velocity: Vector2::new(finite("u")?, finite("v")?),
-            density: optional("density")?,
+            density: positive("density")?,
         };
-        Ok(Row { time: finite("t")?, placed, mass: optional("mass")?, role: optional("role")? })
+        Ok(Row { time: finite("t")?, placed, mass: positive("mass")?, role: role? })
     }
 }
 

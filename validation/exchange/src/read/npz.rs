@@ -8,7 +8,7 @@ use std::path::Path;
 
 use zip::ZipArchive;
 
-use super::{COLUMNS, MOST_BYTES, Renamed, Rows, places};
+use super::{COLUMNS, MOST_BYTES, MOST_ROWS, Renamed, Rows, places};
 use crate::flaw::Flaw;
 
 /// Every array in the format of NumPy begins with these bytes.
@@ -47,7 +47,13 @@ pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Rows, Vec<Flaw
 /// The numbers of an array of floats or of whole numbers: magic, version, length of the head, head, data.
 fn numbers(array: impl Read) -> Result<Vec<f64>, String> {
     let mut bytes = Vec::new();
-    array.take(MOST_BYTES).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    let most = 8 * MOST_ROWS as u64 + (1 << 16); // numbers and head
+    array.take(most + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    if bytes.len() as u64 > most {
+        return Err(format!(
+            "it has more than {MOST_ROWS} numbers; expected fewer particles or times"
+        ));
+    }
     let rest = bytes.strip_prefix(MAGIC).ok_or("it is no array of NumPy")?;
     let (length, rest) = match rest {
         [1, _, a, b, rest @ ..] => (usize::from(u16::from_le_bytes([*a, *b])), rest),
@@ -56,6 +62,9 @@ fn numbers(array: impl Read) -> Result<Vec<f64>, String> {
     };
     let (head, data) = rest.split_at_checked(length).ok_or("it ends within its head")?;
     let head = String::from_utf8_lossy(head);
+    if head.contains("'fortran_order': True") {
+        return Err("it is in the order of Fortran; expected that of C".into());
+    }
     let kind = head.split("'descr':").nth(1).and_then(|rest| rest.split('\'').nth(1));
     let values = super::binary::numbers(kind.unwrap_or("unknown"), data)?;
     let shape = head.split("'shape': (").nth(1).and_then(|rest| rest.split(')').next());

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{MOST_FLAWS, Renamed, Rows, places};
+use super::{MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
 use crate::flaw::Flaw;
 
 pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
@@ -28,6 +28,9 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>
                 f64::NAN
             });
             columns.entry(name).or_default().push(value);
+        }
+        if columns.get("x").map_or(0, Vec::len) > MOST_ROWS {
+            return Err(vec![too_many(file)]);
         }
         if flaws.len() >= MOST_FLAWS {
             break;

@@ -4,10 +4,17 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 
-use roxmltree::{Document, Node};
+use roxmltree::{Document, Node, ParsingOptions};
 
-use super::{Renamed, Rows, places};
+use super::{
+    COLUMNS, Renamed, Rows,
+    binary::{MOST_NUMBERS, too_long},
+    places,
+};
 use crate::flaw::Flaw;
+
+/// More than these are no elements and texts of a frame.
+const MOST_NODES: u32 = 1 << 16;
 
 /// Names that need no `--map`.
 const KNOWN: [(&str, &str); 4] =
@@ -16,7 +23,8 @@ const KNOWN: [(&str, &str); 4] =
 pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
     let known = KNOWN.iter().map(|(theirs, ours)| (theirs.to_string(), ours.to_string()));
     let renamed: Renamed = known.chain(renamed.clone()).collect();
-    let document = Document::parse(text)
+    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let document = Document::parse_with_options(text, options)
         .map_err(|error| vec![Flaw::of(file, error.to_string()).at(error.pos().row.into())])?;
     let root = document.root_element();
     let line = |node: Node| u64::from(document.text_pos_at(node.range().start).row);
@@ -29,6 +37,9 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>
         let name = node.attribute("Name").unwrap_or("Points");
         let flaw = |what: String| vec![Flaw::of(file, what).at(line(node)).in_column(name)];
         let values = values(root, node).map_err(flaw)?;
+        if arrays.values().map(Vec::len).sum::<usize>() > COLUMNS.len() * MOST_NUMBERS {
+            return Err(flaw("the arrays before it have too many numbers".into()));
+        }
         let components: usize =
             node.attribute("NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
         if components < 2 {
@@ -69,7 +80,9 @@ fn values(root: Node, node: Node) -> Result<Vec<f64>, String> {
         Some("ascii") => {
             let number =
                 |word: &str| word.parse().map_err(|_| format!("it has {word:?}; expected numbers"));
-            text.split_whitespace().map(number).collect()
+            let numbers = text.split_whitespace().take(MOST_NUMBERS + 1).map(number);
+            let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
+            if numbers.len() > MOST_NUMBERS { Err(too_long()) } else { Ok(numbers) }
         }
         Some("binary") => {
             let wide = root.attribute("header_type") == Some("UInt64");
@@ -111,22 +124,26 @@ fn plain(text: &str, width: usize) -> Result<Vec<u8>, String> {
 /// Blocks that zlib compressed; before them their number, the size of each, that of the last one, and the
 /// compressed sizes, encoded apart.
 fn compressed(text: &str, width: usize) -> Result<Vec<u8>, String> {
-    let letters = |bytes: usize| bytes.div_ceil(3) * 4;
-    let start = base64(text.get(..letters(3 * width)).ok_or("it ends within its head")?)?;
+    let cut = "it ends within its head";
+    let letters = |bytes: usize| bytes.div_ceil(3).checked_mul(4);
+    let before = |bytes: usize| letters(bytes).and_then(|end| text.get(..end)).ok_or(cut);
+    let start = base64(before(3 * width)?)?;
     let [blocks, size, last] = [0, 1, 2].map(|k| number(&start, k, width));
     let (blocks, size, last) = (blocks?, size?, last?);
-    let head = letters(blocks.checked_add(3).and_then(|n| n.checked_mul(width)).ok_or("its head")?);
-    let sizes = base64(text.get(..head).ok_or("it ends within its head")?)?;
-    let data = base64(text.get(head..).unwrap_or_default())?;
+    let head = before(blocks.checked_add(3).and_then(|n| n.checked_mul(width)).ok_or(cut)?)?;
+    let (sizes, data) = (base64(head)?, base64(&text[head.len()..])?);
     let (mut all, mut at) = (Vec::new(), 0_usize);
     for k in 0..blocks {
         let length = number(&sizes, 3 + k, width)?;
         let end = at.checked_add(length).ok_or("a block is too long")?;
         let block = data.get(at..end).ok_or("it ends within a block")?;
         let expected = if k + 1 == blocks && last > 0 { last } else { size };
+        let before = all.len();
+        if expected > 8 * MOST_NUMBERS - before {
+            return Err(too_long());
+        }
         // One byte more than was announced is enough to see that the head is wrong.
         let mut reader = flate2::read::ZlibDecoder::new(block).take(expected as u64 + 1);
-        let before = all.len();
         reader.read_to_end(&mut all).map_err(|error| error.to_string())?;
         if all.len() - before != expected {
             return Err(format!(

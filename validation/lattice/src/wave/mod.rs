@@ -101,7 +101,7 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
         })
     },
     is_stable: composed::completed,
-    declaration: |_| Declaration::default(),
+    declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
     studies: composed::no_studies,
 };
@@ -123,7 +123,7 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
         })
     },
     is_stable: composed::completed,
-    declaration: |_| Declaration::default(),
+    declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
     studies: composed::no_studies,
 };
@@ -162,6 +162,18 @@ const MOMENTUM_ERROR: MetricKey = MetricKey::new(
     "-",
     "|change of sum m v after the first step|/(sum m times the velocity amplitude)",
 );
+
+/// All are fits to every step, or differences between steps.
+const STEPWISE: &[MetricKey] = &[
+    FREQUENCY_ERROR,
+    DECAY_ERROR,
+    TRAJECTORY_ERROR,
+    MOMENTUM_ERROR,
+    run::FREQUENCY,
+    run::DECAY,
+    run::SOUND_FACTOR,
+    run::VISCOUS_FACTOR,
+];
 
 /// The scheme of a wave: no more than the equations.
 type Scheme<K, I> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, I>;

@@ -268,13 +268,14 @@ pub(super) fn run(
     Ok(record)
 }
 
-const FREQUENCY: MetricKey =
+pub(super) const FREQUENCY: MetricKey =
     MetricKey::new("frequency", "1/s", "(omega^2 - gamma^2/4)^(1/2) of continuous time");
-const DECAY: MetricKey = MetricKey::new("decay", "1/s", "gamma/2 of continuous time");
+pub(super) const DECAY: MetricKey = MetricKey::new("decay", "1/s", "gamma/2 of continuous time");
 const SHEAR_DECAY: MetricKey = MetricKey::new("decay", "1/s", "gamma of continuous time");
-const SOUND_FACTOR: MetricKey =
+pub(super) const SOUND_FACTOR: MetricKey =
     MetricKey::new("sound_factor", "-", "omega/(c0 k), 1 in the continuum");
-const VISCOUS_FACTOR: MetricKey = MetricKey::new("viscous_factor", "-", "gamma/(nu k^2)");
+pub(super) const VISCOUS_FACTOR: MetricKey =
+    MetricKey::new("viscous_factor", "-", "gamma/(nu k^2)");
 
 /// Frequency and damping against the symbols, and every amplitude against exact steps.
 fn compare(

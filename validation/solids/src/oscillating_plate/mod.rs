@@ -91,6 +91,18 @@ base::metrics! {
          many layers has in the method by theory, less 1";
 }
 
+/// What is read from the path of the tip through all steps.
+const STEPWISE: &[base::record::MetricKey] = &[
+    PERIOD,
+    PERIOD_EXCESS,
+    AMPLITUDE_RATIO,
+    BENDING_EXCESS,
+    PERIOD_ERROR,
+    AMPLITUDE_ERROR,
+    PATH_RMS,
+    BENDING_PERIOD_ERROR,
+];
+
 /// The total Lagrangian variant, and the paper's terms with the leapfrog.
 const LAGRANGIAN: &str = "lagrangian";
 const PLAIN: &str = "plain";

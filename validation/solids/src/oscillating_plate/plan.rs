@@ -203,7 +203,7 @@ fn locked(row: &Row<PlateSettings, For>) -> Vec<Gate> {
 pub fn declaration(tier: Tier) -> Declaration {
     let (table, limits) = (table(tier), Some(step_limits()));
     if tier == Tier::Quick {
-        return Declaration { limits, ..Declaration::default() };
+        return Declaration { limits, stepwise: STEPWISE, ..Declaration::default() };
     }
     let error = ErrorOf::Metric(PERIOD_ERROR.into());
     let level = |s: &PlateSettings| (1.0 / s.n as f64, format!("{} layers", s.n));
@@ -218,7 +218,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         ladders: ["seed", "bare", PLAIN, LAGRANGIAN].map(ladder).into(),
         ..Accuracy::new("oscillating-plate", error, "difference of the period from finite elements [-]")
     };
-    Declaration { accuracy: vec![accuracy], limits, ..Declaration::default() }
+    Declaration { accuracy: vec![accuracy], limits, stepwise: STEPWISE, ..Declaration::default() }
 }
 
 /// The largest stable step of the total Lagrangian plate.

@@ -22,6 +22,23 @@ use harness::{
 };
 use report::{Axis, Colour, exact, sig};
 
+/// What is read from the phases of contact, which begin and end between two steps; extremes of every step; and
+/// energies that lack the stress.
+const STEPWISE: &[MetricKey] = &[
+    RESTITUTION,
+    RESTITUTION_ERROR,
+    IMPULSE,
+    IMPULSE_ERROR,
+    T_IMPULSE_1,
+    T_IMPULSE_50,
+    T_IMPULSE_99,
+    CONTACT_BEGIN_ERROR,
+    CONTACT_END_ERROR,
+    STRETCH_MOST,
+    T_STRETCH_MOST,
+    ENERGY_GAINED,
+];
+
 /// Everything that the harness draws and judges.
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
@@ -34,6 +51,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         maps: maps(tier),
         sensitivity: Some(sensitivity(tier)),
         costly: &budget::METRICS,
+        stepwise: STEPWISE,
         ..Declaration::default()
     }
 }
