@@ -156,7 +156,7 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
         return Ok(Exit::Pass);
     }
     let Some(store) = &arguments.store else {
-        return Err(Failure::usage(format!("--store DIR names the folder of its record")));
+        return Err(Failure::usage("--store DIR names the folder of its record"));
     };
     let path = Store::open(store)?.write(&record)?;
     let run = suite::submitted(case, record);

@@ -22,8 +22,8 @@ use harness::{
 };
 use report::{Axis, Colour, exact, sig};
 
-/// What is read from the phases of contact, which begin and end between two steps; extremes of every step; and
-/// energies that lack the stress.
+/// What is read from the phases of contact, which begin and end between two steps; extremes of every step;
+/// and energies that lack the stress.
 const STEPWISE: &[MetricKey] = &[
     RESTITUTION,
     RESTITUTION_ERROR,
@@ -52,7 +52,6 @@ pub fn declaration(tier: Tier) -> Declaration {
         sensitivity: Some(sensitivity(tier)),
         costly: &budget::METRICS,
         stepwise: STEPWISE,
-        ..Declaration::default()
     }
 }
 
