@@ -413,3 +413,15 @@ fn a_copied_record_does_not_count() {
     let told = words.lines().find(|line| line.contains("0123456789abcdef"));
     assert!(told.is_some_and(|line| line.contains("does not count")), "{words}");
 }
+
+/// What other programs put before and at the ends of lines is no flaw.
+#[test]
+fn byte_order_marks_and_line_ends_of_windows_are_read() {
+    let (folder, copy) = copy();
+    for name in ["method.json", "system.json", "problem.json", "results.csv"] {
+        let text = read(&copy.join(name)).replace('\n', "\r\n");
+        fs::write(copy.join(name), format!("\u{feff}{text}")).unwrap();
+    }
+    let output = touchstone(folder.path(), "submit couette copy --check");
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+}

@@ -120,7 +120,7 @@ fn document<T: DeserializeOwned>(
 ) -> Result<(T, String), Flaw> {
     let text = files::read_text(&folder.join(name), MOST_BYTES)
         .map_err(|reason| Flaw::of(name, format!("cannot be read: {reason}; expected {what}")))?;
-    let read = serde_json::from_str(&text).map_err(|error| {
+    let read = serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
         let flaw = Flaw::of(name, format!("{error}; expected {what}"));
         flaw.at(error.line() as u64)
     })?;
@@ -210,7 +210,9 @@ fn asked(folder: &Path) -> Result<Option<Asked>, Flaw> {
         Err(reason) if reason.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         read => read.map_err(|reason| Flaw::of(PROBLEM, format!("cannot be read: {reason}")))?,
     };
-    Asked::from_json(&text).map(Some).map_err(|what| Flaw::of(PROBLEM, what))
+    Asked::from_json(text.trim_start_matches('\u{feff}'))
+        .map(Some)
+        .map_err(|what| Flaw::of(PROBLEM, what))
 }
 
 impl Entry {
