@@ -34,7 +34,7 @@ const MOST_FLAWS: usize = 20;
 /// Name of the document that describes the machine and the cost.
 pub const SYSTEM: &str = "system.json";
 
-/// More than this is no document [bytes].
+/// More than this is no document \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;
 
 /// A method as its document describes it.

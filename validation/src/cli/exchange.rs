@@ -37,7 +37,7 @@ impl From<WriteError> for Failure {
     }
 }
 
-/// More than this is no description of a method [bytes].
+/// More than this is no description of a method \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;
 
 /// Name of our own results.
