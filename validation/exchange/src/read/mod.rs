@@ -1,5 +1,5 @@
 //! Reads particles at times from the formats of other codes. Each reader gives tables with the same columns,
-//! from which [`frames`] makes frames or says what is wrong with them.
+//! from which frames are made; a flaw says what is wrong, and where.
 
 #[cfg(any(feature = "npz", feature = "vtk"))]
 mod binary;

@@ -9,7 +9,7 @@
 //!
 //! Time error is not subtracted but divided out: the amplitudes of one step follow from those of the
 //! last by a matrix that is known in closed form for each integrator, and the inverse of that form
-//! turns the measured matrix into ω and γ of continuous time. See [`fit`].
+//! turns the measured matrix into ω and γ of continuous time. See `fit`.
 
 mod fit;
 mod run;
