@@ -4,8 +4,10 @@
 //! case ──▶ problem: problem.json, README.md, particles ──▶ another code ──▶ results ──▶ measured and judged
 //! ```
 //!
-//! [`mod@write`] puts a problem into a folder; [`mod@read`] reads particles at times from the formats of other
-//! codes; [`submission`] reads a folder of results and measures it by the code that measures our own runs.
+//! [`mod@write`] puts a problem into a folder; [`mod@read`] reads particles at times from the formats of
+//! other codes; [`submission`] reads a folder of results and measures it by the code that measures our own
+//! runs.
+
 pub mod challenge;
 pub mod flaw;
 pub mod library;
