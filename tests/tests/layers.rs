@@ -160,6 +160,23 @@ fn modules(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
     edges
 }
 
+/// The files of a folder of a crate, and which of them each imports by `super::`.
+fn siblings(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
+    let name = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let own = files(folder).into_iter().filter(|path| path.parent() == Some(folder));
+    let edges = own.filter_map(|path| {
+        let text = code(&fs::read_to_string(&path).expect("a source"));
+        Some((name(&path)?, imported(&text, "super::")))
+    });
+    let mut edges: BTreeMap<String, BTreeSet<String>> =
+        edges.filter(|(name, _)| name != "mod").collect();
+    let all: BTreeSet<String> = edges.keys().cloned().collect();
+    for (name, known) in &mut edges {
+        known.retain(|other| other != name && all.contains(other));
+    }
+    edges
+}
+
 /// Modules that know themselves by way of others.
 fn circles(edges: &BTreeMap<String, BTreeSet<String>>) -> Vec<String> {
     let reaches = |from: &String| {
@@ -182,6 +199,13 @@ fn modules_of_a_crate_form_no_circle() {
     for (name, folder, _) in LAYERS.iter().filter(|(name, ..)| *name != "tests") {
         let of_crate = circles(&modules(&root().join(folder).join("src")));
         found.extend(of_crate.into_iter().map(|module| format!("{name}: {module}")));
+        let source = root().join(folder).join("src");
+        let folders: BTreeSet<PathBuf> =
+            files(&source).iter().filter_map(|path| path.parent()).map(PathBuf::from).collect();
+        for inside in folders.iter().filter(|inside| **inside != source) {
+            let of_folder = circles(&siblings(inside)).into_iter();
+            found.extend(of_folder.map(|file| format!("{}: {file}", inside.display())));
+        }
     }
     assert_eq!(found, Vec::<String>::new());
 }

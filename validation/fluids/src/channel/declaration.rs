@@ -4,7 +4,8 @@
 use super::{
     Channel, ChannelSettings, Flow, limits, maps,
     measure::{L2, profile_at},
-    plan::{self, ChannelTable, For, PEERS_RE, ladder},
+    plan::{self, PEERS_RE, ladder},
+    runs::{ChannelTable, For},
     sensitivity,
 };
 use base::{

@@ -20,7 +20,7 @@ use report::{Colour, percent, sig};
 use super::{
     ChannelSettings,
     measure::L2_WORST,
-    plan::{ChannelTable, For},
+    runs::{ChannelTable, For},
 };
 
 /// Reynolds numbers of H4 and H5, the last one in the full tier.

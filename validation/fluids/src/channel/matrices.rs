@@ -53,7 +53,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        channel::{Channel, TIMES, plan},
+        channel::{Channel, TIMES, plan, runs::For},
         couette::COUETTE as CASE,
     };
 
@@ -149,7 +149,7 @@ mod tests {
         let channel = Channel { flow: Flow::Couette, case: &CASE };
         let table = plan::table(channel, Tier::Full);
         let mut seen = 0;
-        for row in table.of(plan::For::Smoothing) {
+        for row in table.of(For::Smoothing) {
             let spec: &RunSpec = &row.run.spec;
             let dt = CASE.rules(spec).expect("a run").dt();
             let ratio = row.settings.h_over_dx;

@@ -8,6 +8,7 @@ mod matrices;
 mod measure;
 mod plan;
 mod run;
+mod runs;
 mod sensitivity;
 mod settings;
 mod setup;

@@ -5,7 +5,7 @@ use super::{
     ChannelSettings, Flow,
     matrices::IN_COLUMNS,
     measure::L2,
-    plan::{ChannelTable, For},
+    runs::{ChannelTable, For},
 };
 use base::{
     gate::{Bound, Cause, Evidence, Gate},

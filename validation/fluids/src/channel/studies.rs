@@ -5,7 +5,8 @@
 use super::{
     Channel, ChannelSettings, Flow, maps,
     measure::{L2_WORST, P_RMS, V_RMS},
-    plan::{self, ChannelTable, For},
+    plan,
+    runs::{ChannelTable, For},
     stiff, waves,
 };
 use base::record::Record;

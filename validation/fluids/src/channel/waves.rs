@@ -3,7 +3,7 @@
 
 use super::{
     measure::{MODE, MODE_AMPLITUDE, MODE_TIME},
-    plan::{ChannelTable, For},
+    runs::{ChannelTable, For},
 };
 use base::functions::{cos, hypot, powf, sin};
 use base::gate::{Bound, Evidence, Gate};

@@ -10,6 +10,7 @@ use super::{
 };
 use base::functions::hypot;
 use base::record::{MetricKey, Profile, Record};
+use maths::metrics::norms::rms;
 
 /// Points across a section.
 pub const POINTS: usize = 200;
@@ -222,12 +223,6 @@ fn wall(setup: &Setup, field: &Field, x: f64) -> [f64; 3] {
 /// Mean velocity along x over the fluid's area \[m/s\].
 pub fn mean_velocity(s: &dyn Stepper<()>, area: f64) -> f64 {
     s.fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
-}
-
-/// Root mean square.
-pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(s, n), x| (s + x * x, n + 1.0));
-    (sum / count).sqrt()
 }
 
 /// Puts a metric, or the reason why there is none.

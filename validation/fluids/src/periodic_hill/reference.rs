@@ -4,12 +4,12 @@ use std::sync::OnceLock;
 
 use nalgebra::Vector2;
 
-use super::{HillSettings, measure::rms};
+use super::HillSettings;
 use base::{
     record::MetricKey,
     reference::{Reference as Package, ReferenceError},
 };
-use maths::geometry::Hill;
+use maths::{geometry::Hill, metrics::norms::rms};
 
 /// Reynolds numbers that have a reference.
 pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];

@@ -4,13 +4,14 @@ use super::{
     BEST, CASE, NAME,
     measure::{
         DRAG_BALANCE, DRAGS, FORCE, FORCE_ERROR, L2_U, REATTACHMENT, SECTION_FLUX, SEPARATION,
-        UNSTEADY, rms,
+        UNSTEADY,
     },
     plan::{Row, name, shown, table},
     reference::{REYNOLDS, floor, reference},
 };
 use base::gate::{Bound, Evidence, Gate};
 use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
+use maths::metrics::norms::rms;
 use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Series};
 
 /// All of them.

@@ -53,7 +53,7 @@ impl Scale {
     /// # Errors
     /// [`NormError::Scale`] when they are all 0, none, or not finite.
     pub fn rms(exact: &[f64]) -> Result<Self, NormError> {
-        Self::new(root_mean_square(exact.iter().copied(), exact.len()))
+        Self::new(rms(exact.iter().copied()))
     }
 
     /// The scale \[unit of the values\].
@@ -69,7 +69,7 @@ impl Scale {
 pub fn l2(measured: &[f64], exact: &[f64], scale: Scale) -> Result<f64, NormError> {
     check(measured, exact)?;
     let differences = measured.iter().zip(exact).map(|(u, e)| (u - e) / scale.0);
-    Ok(root_mean_square(differences, measured.len()))
+    Ok(rms(differences))
 }
 
 /// Relative L∞ error, max |uᵢ - eᵢ| / scale.
@@ -82,8 +82,10 @@ pub fn linf(measured: &[f64], exact: &[f64], scale: Scale) -> Result<f64, NormEr
     Ok(differences.fold(0.0, f64::max))
 }
 
-fn root_mean_square(values: impl Iterator<Item = f64>, n: usize) -> f64 {
-    (values.map(|x| x * x).sum::<f64>() / n as f64).sqrt()
+/// Root mean square (Σ x²/n)^(1/2), in the unit of the values; NaN of none.
+pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), x| (sum + x * x, count + 1.0));
+    (sum / count).sqrt()
 }
 
 fn check(measured: &[f64], exact: &[f64]) -> Result<(), NormError> {

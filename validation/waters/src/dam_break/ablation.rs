@@ -2,9 +2,9 @@
 //! Lobovsky et al. at a coarse spacing, and what that says of the paper's claims.
 
 use super::{
-    DAM_BREAK, DamSettings, lobovsky,
+    DAM_BREAK,
     metrics::{DENSITY_LEAST, DENSITY_MOST, FRONT, IMPULSE, LEVELS, NOISE, OUTSIDE_END},
-    plan::{self, Group},
+    plan::{self, ALPHA, Group, Set, XSPH, change},
 };
 use crate::water::ledger::{WORK_STRESS, WORK_VISCOSITY, WORK_WALLS};
 use base::{
@@ -18,41 +18,6 @@ use harness::{
     study::Study,
 };
 use report::{Cell, Table, percent, sig};
-
-/// Sets one setting.
-type Set = fn(&mut DamSettings, f64);
-
-const ALPHA: Set = |s, value| s.alpha = value;
-const XSPH: Set = |s, value| s.xsph = value;
-
-/// Variants, and the values of a setting that is changed alone; first as they are, with different walls.
-pub const CHANGES: [(&[&str], &[f64], Set); 6] = [
-    (
-        &[
-            "seed",
-            "ghosts",
-            "ghosts-slip",
-            "ghosts-split",
-            "modern",
-            "modern-interface",
-            "modern-sticking",
-        ],
-        &[0.0],
-        |_, _| (),
-    ),
-    (&["seed"], &[0.0, 0.01, 0.05, 0.2], ALPHA),
-    (&["seed"], &[0.0, 0.25, 0.9], XSPH),
-    (&["seed"], &[0.0], |s, value| s.xi = value),
-    (&["modern"], &[0.0, 0.1], ALPHA),
-    (&["modern"], &[0.0], |s, value| s.diffusion = value),
-];
-
-/// Makes the settings those of a row: a coarse column, until the impact is over and before the wave breaks.
-pub fn change(s: &mut DamSettings, value: f64, set: Set) {
-    lobovsky(s);
-    (s.n, s.end) = (20, 5.0);
-    set(s, value);
-}
 
 /// The study.
 pub fn study(tier: Tier, runs: &Runs) -> Study {

@@ -2,7 +2,7 @@
 //! extremes, with the gates of each and what is known to lie outside of them.
 
 use super::{
-    DAM_BREAK, DamSettings, NAME, ablation, lobovsky,
+    DAM_BREAK, DamSettings, NAME, lobovsky,
     metrics::{
         self, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, Z,
     },
@@ -43,6 +43,44 @@ pub type Row = table::Row<DamSettings, Group>;
 const SINGLE: &str = "a column one particle wide";
 const CROWDED: &str = "water that starts on the surface of the walls";
 
+/// Sets one setting.
+pub type Set = fn(&mut DamSettings, f64);
+
+/// α of the artificial viscosity.
+pub const ALPHA: Set = |s, value| s.alpha = value;
+/// ε of XSPH.
+pub const XSPH: Set = |s, value| s.xsph = value;
+
+/// The ablation: variants, and the values of a setting that is changed alone; first as they are, with
+/// different walls.
+const CHANGES: [(&[&str], &[f64], Set); 6] = [
+    (
+        &[
+            "seed",
+            "ghosts",
+            "ghosts-slip",
+            "ghosts-split",
+            "modern",
+            "modern-interface",
+            "modern-sticking",
+        ],
+        &[0.0],
+        |_, _| (),
+    ),
+    (&["seed"], &[0.0, 0.01, 0.05, 0.2], ALPHA),
+    (&["seed"], &[0.0, 0.25, 0.9], XSPH),
+    (&["seed"], &[0.0], |s, value| s.xi = value),
+    (&["modern"], &[0.0, 0.1], ALPHA),
+    (&["modern"], &[0.0], |s, value| s.diffusion = value),
+];
+
+/// Makes the settings those of a row: a coarse column, until the impact is over and before the wave breaks.
+pub fn change(s: &mut DamSettings, value: f64, set: Set) {
+    lobovsky(s);
+    (s.n, s.end) = (20, 5.0);
+    set(s, value);
+}
+
 /// All runs of a tier. Spacings are along the width of the column of Martin & Moyce, and along the height of
 /// that of Lobovsky et al.; successive ones of a ladder differ by √2 or nearly so, and each fills the column.
 pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
@@ -66,8 +104,8 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
         (s.width, s.height, s.tank, s.n) = (0.1, 0.2, 0.13, 10);
     });
     table.one(Extreme(CROWDED), "modern", |s| (s.n, s.offset) = (10, 0.5));
-    for (variants, values, set) in ablation::CHANGES {
-        table.over(Ablation, variants, [&[], values], |s, value| ablation::change(s, value, set));
+    for (variants, values, set) in CHANGES {
+        table.over(Ablation, variants, [&[], values], |s, value| change(s, value, set));
     }
     let finest = match tier {
         Tier::Quick => [(Free, 40), (Tank, 30)],
