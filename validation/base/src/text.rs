@@ -20,6 +20,29 @@ pub fn base64(bytes: &[u8]) -> String {
     text
 }
 
+/// Reads base64, with or without padding and with blanks between letters; `None` if it has other letters.
+pub fn from_base64(text: &str) -> Option<Vec<u8>> {
+    let value = |letter: u8| match letter {
+        b'A'..=b'Z' => Some(letter - b'A'),
+        b'a'..=b'z' => Some(letter - b'a' + 26),
+        b'0'..=b'9' => Some(letter - b'0' + 52),
+        b'+' => Some(62),
+        b'/' => Some(63),
+        _ => None,
+    };
+    let letters = text.trim_end_matches('=').bytes().filter(|byte| !byte.is_ascii_whitespace());
+    let (mut bytes, mut bits, mut held) = (Vec::with_capacity(text.len() / 4 * 3), 0_u32, 0);
+    for letter in letters {
+        bits = bits << 6 | u32::from(value(letter)?);
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            bytes.push((bits >> held) as u8);
+        }
+    }
+    Some(bytes)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -29,6 +52,9 @@ mod tests {
         let encoded = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
         for (count, text) in encoded.into_iter().enumerate() {
             assert_eq!(base64(&b"foobar"[..count]), text);
+            assert_eq!(from_base64(text).as_deref(), Some(&b"foobar"[..count]));
         }
+        assert_eq!(from_base64("Zm9v\n YmFy").as_deref(), Some(&b"foobar"[..]));
+        assert_eq!(from_base64("Zm9*"), None);
     }
 }

@@ -198,6 +198,7 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::*;
+    use crate::text::from_base64;
 
     /// Reads the tags of a document and checks that every one is closed in order.
     fn tags(xml: &str) -> Vec<String> {
@@ -214,25 +215,11 @@ mod tests {
         all
     }
 
-    fn decode(text: &str) -> Vec<u8> {
-        let alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        let (mut bits, mut held, mut bytes) = (0_u32, 0, Vec::new());
-        for letter in text.trim_end_matches('=').chars() {
-            bits = bits << 6 | alphabet.find(letter).unwrap() as u32;
-            held += 6;
-            if held >= 8 {
-                held -= 8;
-                bytes.push((bits >> held) as u8);
-            }
-        }
-        bytes
-    }
-
     /// The bytes of a named array, after checking that its header agrees with its length.
     fn array(xml: &str, name: &str) -> Vec<u8> {
         let tag = format!("Name=\"{name}\"");
         let content = xml.split(&tag).nth(1).unwrap().split(['<', '>']).nth(1).unwrap();
-        let bytes = decode(content);
+        let bytes = from_base64(content).unwrap();
         let (header, data) = bytes.split_first_chunk::<8>().unwrap();
         assert_eq!(u64::from_le_bytes(*header), data.len() as u64);
         data.to_vec()

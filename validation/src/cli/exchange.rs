@@ -7,6 +7,7 @@ use ::exchange::{
     challenge,
     flaw::Flaw,
     problem::{Problem, Sealed},
+    read::{COLUMNS, RESULTS},
     submission::{self, Entry, METHOD, SYSTEM},
     write::{self, Format, WriteError},
 };
@@ -40,9 +41,6 @@ impl From<WriteError> for Failure {
 /// More than this is no description of a method \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;
 
-/// Name of our own results.
-const RESULTS: &str = "results.csv";
-
 pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Outcome {
     let case = cases::find_in(world.cases, &arguments.case)?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
@@ -72,8 +70,12 @@ fn solve(
     folder: &OutputFolder,
     world: &World,
 ) -> Result<Vec<String>, Failure> {
-    let columns = ["id", "x", "y", "u", "v", "density"];
-    let heads = ["t[s]", "id[-]", "x[m]", "y[m]", "u[m/s]", "v[m/s]", "density[kg/m^3]"];
+    // Mass and role are for codes that choose their own particles.
+    let written = COLUMNS.iter().filter(|(name, ..)| !["mass", "role"].contains(name));
+    let heads: Vec<String> =
+        written.clone().map(|(name, unit, _)| format!("{name}[{unit}]")).collect();
+    let columns: Vec<&str> = written.map(|(name, ..)| *name).skip(1).collect();
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let table = Mutex::new((CsvTable::new(&heads)?, Ok(()), f64::NAN));
     let tell = |time: f64, particles: Profile| {
         let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
@@ -81,8 +83,8 @@ fn solve(
             return; // stated twice
         }
         for k in 0..particles.column("id").len() {
-            let row = columns.map(|name| particles.column(name)[k]);
-            let written = table.0.numbers(&[&[time], &row[..]].concat());
+            let row = columns.iter().map(|name| particles.column(name)[k]);
+            let written = table.0.numbers(&std::iter::once(time).chain(row).collect::<Vec<_>>());
             table.1 = std::mem::replace(&mut table.1, Ok(())).and(written);
         }
     };

@@ -43,6 +43,9 @@ pub const COLUMNS: [(&str, &str, bool); 9] = [
     ("role", "-", true),
 ];
 
+/// Name of the table of results.
+pub const RESULTS: &str = "results.csv";
+
 /// New names of columns: ours by theirs.
 pub type Renamed = BTreeMap<String, String>;
 
@@ -125,7 +128,7 @@ fn ending(name: &str) -> &str {
 }
 
 fn is_of_results(name: &str) -> bool {
-    name == "results.csv" || ["dump", "npz", "vtu", "vtp"].contains(&ending(name))
+    name == RESULTS || ["dump", "npz", "vtu", "vtp"].contains(&ending(name))
 }
 
 /// The last number in a name, so that frame 10 comes after frame 9.

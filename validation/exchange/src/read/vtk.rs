@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::io::Read;
 
+use base::text::from_base64;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::{
@@ -156,26 +157,7 @@ fn compressed(text: &str, width: usize) -> Result<Vec<u8>, String> {
     Ok(all)
 }
 
-/// Base64 with padding (RFC 4648, section 4).
+/// The bytes of a text.
 fn base64(text: &str) -> Result<Vec<u8>, String> {
-    let value = |letter: u8| match letter {
-        b'A'..=b'Z' => Some(letter - b'A'),
-        b'a'..=b'z' => Some(letter - b'a' + 26),
-        b'0'..=b'9' => Some(letter - b'0' + 52),
-        b'+' => Some(62),
-        b'/' => Some(63),
-        _ => None,
-    };
-    let letters = text.trim_end_matches('=').bytes().filter(|byte| !byte.is_ascii_whitespace());
-    let (mut bytes, mut bits, mut held) = (Vec::with_capacity(text.len() / 4 * 3), 0_u32, 0);
-    for letter in letters {
-        let value = value(letter).ok_or("it is no base64")?;
-        bits = bits << 6 | u32::from(value);
-        held += 6;
-        if held >= 8 {
-            held -= 8;
-            bytes.push((bits >> held) as u8);
-        }
-    }
-    Ok(bytes)
+    from_base64(text).ok_or_else(|| "it is no base64".into())
 }

@@ -17,9 +17,8 @@ pub fn peers(accuracy: &Accuracy, runs: &Runs) -> Vec<Peer> {
         let levels = accuracy.ladders.iter().chain(&accuracy.more).flat_map(|of| &of.levels);
         let is_same = |level: &&Level| level.run.spec.settings == record.settings;
         let level = levels.into_iter().find(is_same)?;
-        let sealed = if of.seed.is_some() { ", sealed" } else { "" };
         Some(Peer {
-            name: format!("{} {}, {} ({}{sealed})", of.code, of.version, of.scheme, of.division),
+            name: format!("{of} ({})", of.division),
             label: level.label.clone(),
             seconds: Some(record.cost.cpu_s).filter(|seconds| seconds.is_finite())?,
             spacing: level.spacing,
