@@ -425,3 +425,25 @@ fn byte_order_marks_and_line_ends_of_windows_are_read() {
     let output = touchstone(folder.path(), "submit couette copy --check");
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
 }
+
+/// The law of the paper was stated of variants with a stored energy, and with a factor of two dimensions.
+#[test]
+fn a_problem_states_the_law_of_its_own_method() {
+    let folder = tempfile::tempdir().unwrap();
+    for (case, variant, law) in [
+        ("rubber_rings", "seed", "2 μ (ε̇ - tr(ε̇) I/3) + S·Ωᵀ + Ω·S"),
+        ("rubber_rings", "lagrangian", "w = K (J - 1 - ln J) + μ |dev ln V|²"),
+        ("cantilever", "lagrangian-neo-hookean", "w = K (J - 1)²/2 + μ (J^(-2/3) tr b - 3)/2"),
+        ("couette", "seed", "dv/dt = -(1/ρ) ∇p + ν ∇²v + g"),
+    ] {
+        let line = format!("export {case} --variant {variant} --out {variant}-{case}");
+        let made = touchstone(folder.path(), &line);
+        assert!(made.status.success(), "{line}: {}", said(&made));
+        for file in ["problem.json", "README.md"] {
+            let text = read(&folder.path().join(format!("{variant}-{case}/{file}")));
+            assert!(text.contains(law), "{file} of {case}, {variant}, lacks {law}");
+            let is_of_rate = law.contains('Ω');
+            assert_eq!(text.contains("Jaumann rate"), is_of_rate, "{file} of {case}, {variant}");
+        }
+    }
+}

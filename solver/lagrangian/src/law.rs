@@ -70,6 +70,8 @@ impl Strain {
 pub trait Law: Copy + Send + Sync + 'static {
     /// Its name in settings and reports.
     const NAME: &'static str;
+    /// Its stored energy as an equation.
+    const ENERGY: &'static str;
     /// Its energies of compression and of shear \[J/m³\], whose sum is w.
     fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2];
     /// τ = (∂w/∂F) Fᵀ \[Pa\]. NaN where a law has none, because the material is turned inside out.
@@ -96,6 +98,7 @@ impl Hencky {
 
 impl Law for Hencky {
     const NAME: &'static str = "hencky";
+    const ENERGY: &'static str = "w = K (J - 1 - ln J) + μ |dev ln V|², V = (F Fᵀ)^½ (Hencky)";
 
     #[inline(always)]
     fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
@@ -128,6 +131,7 @@ impl NeoHookean {
 
 impl Law for NeoHookean {
     const NAME: &'static str = "neo_hookean";
+    const ENERGY: &'static str = "w = K (J - 1)²/2 + μ (J^(-2/3) tr b - 3)/2, b = F Fᵀ (neo-Hooke)";
 
     #[inline(always)]
     fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
@@ -168,6 +172,8 @@ impl SaintVenantKirchhoff {
 
 impl Law for SaintVenantKirchhoff {
     const NAME: &'static str = "saint_venant";
+    const ENERGY: &'static str =
+        "w = λ (tr E)²/2 + μ E:E, E = (FᵀF - 1)/2, λ = K - 2μ/3 (St. Venant and Kirchhoff)";
 
     #[inline(always)]
     fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {

@@ -116,7 +116,6 @@ impl Problem {
     /// The document.
     pub fn to_json(&self) -> Value {
         let Outline { medium: m, domain, mirrors, times, dt, method, .. } = &self.outline;
-        let ([kernel, integrator, walls], support) = method;
         let plane = |wall: &solver::PlaneWall| {
             json!({
                 "point": with_unit(wall.point.as_slice(), "m"),
@@ -153,11 +152,11 @@ impl Problem {
             "end": with_unit(times.last(), "s"),
             "judged_by": self.gates.iter().map(gate).collect::<Vec<_>>(),
             "our_method": {
-                "kernel": kernel,
+                "kernel": method.kernel,
                 "smoothing_length": with_unit(m.h, "m"),
-                "support_radius": with_unit(support * m.h, "m"),
-                "integrator": integrator,
-                "walls": walls,
+                "support_radius": with_unit(method.support * m.h, "m"),
+                "integrator": method.integrator,
+                "walls": method.walls,
                 "time_step": with_unit(dt, "s"),
             },
         });
@@ -178,16 +177,15 @@ impl Problem {
     /// The equations in words.
     pub fn equations(&self) -> [(&'static str, &'static str); 3] {
         let continuity = ("continuity", "dρ/dt = -ρ ∇·v");
+        if let Some(energy) = self.outline.method.law {
+            let momentum = "ρ0 dv/dt = ∇·P + ρ0 g, P = ∂w/∂F, in the configuration without stress";
+            return [continuity, ("momentum", momentum), ("stored energy, plane strain", energy)];
+        }
         if self.is_solid() {
-            return [
-                continuity,
-                ("momentum", "dv/dt = (1/ρ) ∇·σ + g, σ = -p I + S"),
-                (
-                    "material",
-                    "p = c0² (ρ - ρ0); dS/dt = 2 μ (ε̇ - tr(ε̇) I/2) + S·Ωᵀ + Ω·S (Jaumann rate), plane \
-                     strain",
-                ),
-            ];
+            let material =
+                "p = c0² (ρ - ρ0); dS/dt = 2 μ (ε̇ - tr(ε̇) I/3) + S·Ωᵀ + Ω·S (Jaumann rate)";
+            let momentum = ("momentum", "dv/dt = (1/ρ) ∇·σ + g, σ = -p I + S");
+            return [continuity, momentum, ("material, plane strain", material)];
         }
         [
             continuity,

@@ -236,7 +236,7 @@ impl Entry {
             Division::Open => self.own_ids(&mut flaws),
         };
         let all = problem.outline.particles.column("id").len();
-        let support = problem.outline.method.1 * problem.outline.medium.h;
+        let support = problem.outline.method.support * problem.outline.medium.h;
         for (frame, (file, line)) in frames.iter().zip(places) {
             if flaws.len() >= MOST_FLAWS {
                 flaws.push(Flaw::of(
@@ -315,7 +315,7 @@ impl Entry {
     }
 
     /// The frames, with the particles of the code itself in the open division.
-    fn playback(&self) -> Playback {
+    fn playback(&self) -> Playback<'_> {
         let Results { frames, own, .. } = &self.results;
         let own = match (self.method.division, frames.first()) {
             (Division::Open, Some(first)) => {
@@ -332,7 +332,7 @@ impl Entry {
             }
             _ => Vec::new(),
         };
-        Playback { frames: frames.clone(), own }
+        Playback { frames, own }
     }
 
     /// Measures the particles as those of a run of this spec. What they do not determine is absent.

@@ -71,7 +71,7 @@ pub struct Context<'a> {
     /// Where the problem of the run is put: then no step is made.
     pub outline: Option<Sink>,
     /// Frames of another code, which are measured in place of steps.
-    pub playback: Option<&'a Playback>,
+    pub playback: Option<&'a Playback<'a>>,
     /// Told of the particles at each time at which the run is measured, when every quantity is at that time.
     pub at_times: Option<&'a (dyn Fn(f64, Profile) + Sync)>,
     /// Where checkpoints go, and what the run goes on from; the last one is made at an interrupt.

@@ -25,8 +25,23 @@ pub struct Outline {
     pub times: Vec<f64>,
     /// Time step that our method takes \[s\].
     pub dt: f64,
-    /// Kernel, integrator and walls of the method by name, and the support radius of the kernel \[h\].
-    pub method: ([&'static str; 3], f64),
+    /// What our own method is.
+    pub method: MethodWords,
+}
+
+/// A method by the names of its parts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MethodWords {
+    /// Name of the kernel.
+    pub kernel: &'static str,
+    /// Support radius of the kernel \[h\].
+    pub support: f64,
+    /// Name of the integrator.
+    pub integrator: &'static str,
+    /// Name of the walls.
+    pub walls: &'static str,
+    /// The stored energy as an equation, of a method whose forces derive from one.
+    pub law: Option<&'static str>,
 }
 
 /// Where the outline of a run is put; clones share it.
@@ -36,7 +51,7 @@ pub struct Sink(Arc<Mutex<Inside>>);
 #[derive(Debug, Default)]
 struct Inside {
     outline: Option<Outline>,
-    method: ([&'static str; 3], f64),
+    method: MethodWords,
 }
 
 impl Sink {
@@ -51,7 +66,7 @@ impl Sink {
             particles: Profile::default(),
             times: Vec::new(),
             dt: 0.0,
-            method: Default::default(),
+            method: MethodWords::default(),
         });
     }
 
@@ -84,9 +99,9 @@ impl Sink {
         inside.outline.take().map(|outline| Outline { method, ..outline })
     }
 
-    /// Adds the names of kernel, integrator and walls, and the support radius of the kernel \[h\].
-    pub fn method(&self, names: [&'static str; 3], support: f64) {
-        self.inside().method = (names, support);
+    /// Adds what the method is.
+    pub fn method(&self, method: MethodWords) {
+        self.inside().method = method;
     }
 
     fn inside(&self) -> MutexGuard<'_, Inside> {

@@ -44,9 +44,9 @@ pub struct Own {
 
 /// Frames, ascending in time.
 #[derive(Clone, Debug, Default)]
-pub struct Playback {
+pub struct Playback<'a> {
     /// The frames.
-    pub frames: Vec<Frame>,
+    pub frames: &'a [Frame],
     /// The particles in place of those of the problem; none of a code that took these over.
     pub own: Vec<Own>,
 }
@@ -54,7 +54,7 @@ pub struct Playback {
 /// A frame counts for a time that differs from its own by at most this share of the end of the run.
 const SAME_TIME: f64 = 1e-6;
 
-impl Playback {
+impl Playback<'_> {
     /// The particles of a scene: its own ones unless the other code chose others.
     pub fn particles<X: Numbers>(&self, of_scene: Vec<Particle<X>>) -> Vec<Particle<X>> {
         if self.own.is_empty() {
@@ -81,11 +81,11 @@ impl Playback {
         mut at: impl FnMut(&mut O, &mut D, usize),
     ) -> Result<Status, RunError> {
         let end = times.last().copied().unwrap_or_default();
-        if let Some(time) = missing(&self.frames, times).first() {
+        if let Some(time) = missing(self.frames, times).first() {
             return Err(RunError::Playback(format!("there is no frame at t = {time} s")));
         }
         let mut reached = 0;
-        for frame in &self.frames {
+        for frame in self.frames {
             let next = |reached: usize| {
                 times.get(reached).copied().filter(|time| is_at(frame, *time, end))
             };

@@ -234,7 +234,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
     /// Shows the frames of another code in place of steps; how its run ended.
     fn play<D>(
         &mut self,
-        playback: &Playback,
+        playback: &Playback<'_>,
         simulation: &mut D,
         times: &[f64],
         at: &Named<(At<D, S>, Synchronised)>,

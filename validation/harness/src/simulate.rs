@@ -12,6 +12,7 @@ use crate::{
     context::Context,
     error::RunError,
     method::{Medium, Method, Parts},
+    outline::MethodWords,
     rules::Rules,
     runner::{Drive, check_size},
     size::Size,
@@ -34,7 +35,8 @@ pub fn begin<X, D: ?Sized>(
     context: &Context,
 ) -> Record {
     if let Some(outline) = &context.outline {
-        outline.method([method.kernel, method.integrator, method.walls], method.support);
+        let &Method { kernel, support, integrator, walls, law, .. } = method;
+        outline.method(MethodWords { kernel, support, integrator, walls, law });
     }
     let json = serde_json::to_value(settings).unwrap_or_default();
     let mut record = Record::new(case, variant, json, context.threads.max(1));

@@ -93,9 +93,9 @@ fn data(outline: &Outline) -> String {
 }
 
 fn script(problem: &Problem) -> String {
-    let Outline { medium: m, times, method: (_, support), .. } = &problem.outline;
+    let Outline { medium: m, times, method, .. } = &problem.outline;
     let borders = [0, 1].map(|axis| ends(&problem.outline, axis).1);
-    let cut = support * m.h;
+    let cut = method.support * m.h;
     let (rho, c0) = (m.eos.density, m.eos.sound_speed);
     let pair = match m.nu > 0.0 {
         true => format!(

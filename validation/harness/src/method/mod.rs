@@ -129,6 +129,8 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     pub walls: &'static str,
     /// Where the first row of boundary particles lies.
     pub first_row: FirstRow,
+    /// The stored energy as an equation, of a method whose forces derive from one.
+    pub law: Option<&'static str>,
     /// Support radius \[h\].
     pub support: f64,
     /// The theory of its time step.
@@ -155,6 +157,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             integrator: S::Integrator::NAME,
             walls: S::Walls::NAME,
             first_row: S::Walls::FIRST_ROW,
+            law: None,
             support: S::Kernel::SUPPORT,
             theory: S::Integrator::THEORY,
             limit: None,

@@ -137,7 +137,7 @@ fn variants() -> Vec<Composition<RingSettings>> {
             LAGRANGIAN,
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
              Hencky, contact between the rings, velocity Verlet; nothing dissipates",
-            total::named(|parts| {
+            total::named::<Hencky, _>(|parts| {
                 Ok(match total::solid::<Hencky>(parts)? {
                     Built::One(solid) => Box::new(solid),
                     Built::Several(solid) => Box::new(solid),

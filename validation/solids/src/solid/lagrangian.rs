@@ -40,24 +40,25 @@ type Named = Compose<WendlandC2, (), (), Ghosts, Leapfrog, Symmetric>;
 /// The method with the stored energy `L`. Particles of the scene that are held are left out: the planes of
 /// its parts hold the body instead.
 pub fn method<L: Law>() -> Method<Symmetric> {
-    named(build::<L>)
+    named::<L, _>(build::<L>)
 }
 
 /// The same of one body that has weight: the acceleration of its medium.
 pub fn heavy<L: Law>() -> Method<Symmetric> {
-    named(|mut parts| {
+    named::<L, _>(|mut parts| {
         mutate(&mut parts);
         let weight = Weight(parts.medium.acceleration);
         Ok(Box::new(scene(parts, weight).build::<WendlandC2, L>()?))
     })
 }
 
-/// The method whose simulations this builds, likewise.
-pub fn named<D: ?Sized>(
+/// The method with the stored energy `L` whose simulations this builds, likewise.
+pub fn named<L: Law, D: ?Sized>(
     build: fn(Parts<Symmetric>) -> Result<Box<D>, SceneError>,
 ) -> Method<Symmetric, D> {
     let mut method = Method::with::<Named>(build);
     (method.integrator, method.walls) = ("velocity Verlet", "planes that hold");
+    method.law = Some(L::ENERGY);
     method.limit = Some(step_limit);
     method.uses.clear();
     method
