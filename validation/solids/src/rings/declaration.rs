@@ -4,7 +4,7 @@
 use super::{
     COMPONENTWISE, LAGRANGIAN, RUBBER_RINGS, RingSettings, budget,
     metrics::*,
-    plan::{Group, SPEED, table},
+    plan::{Group, Row, SPEED, table},
     reference::Reference,
 };
 use base::{
@@ -190,9 +190,17 @@ fn step_limit(variant: &'static str) -> StepLimit {
 /// Whole, torn or in pieces: over speed and spacing, and over the settings of what stabilises.
 fn maps(tier: Tier) -> Vec<Map> {
     let table = table(tier);
-    let speeds = [0.03, SPEED, 0.12, 0.2, 0.3];
+    let whole = &[Group::Paper, Group::Speed][..];
+    let is_shown = |row: &&Row| whole.contains(&row.group) || row.group == Group::Unstressed;
+    let has = |is: &dyn Fn(&RingSettings) -> bool| {
+        table.rows.iter().filter(is_shown).any(|row| is(&row.settings))
+    };
+    let mut speeds = vec![0.03, SPEED, 0.12, 0.2, 0.3];
+    speeds.retain(|speed| has(&|s| s.speed == *speed));
+    let mut spacings = vec![0.05, 0.1, 0.2];
+    spacings.retain(|spacing| has(&|s| s.spacing == *spacing));
     let panel = |(title, variant, groups): (&str, &str, &[Group])| {
-        MapPanel::over(title, &speeds, &[0.05, 0.1, 0.2], |speed, spacing| {
+        MapPanel::over(title, &speeds, &spacings, |speed, spacing| {
             let rows = table.rows.iter().filter(|row| {
                 let here = (row.settings.speed, row.settings.spacing) == (speed, spacing);
                 here && row.variant == variant && groups.contains(&row.group)
@@ -200,7 +208,6 @@ fn maps(tier: Tier) -> Vec<Map> {
             rows.map(|row| row.run.spec.clone()).collect()
         })
     };
-    let whole = &[Group::Paper, Group::Speed][..];
     let panels = [
         ("seed", "seed", whole),
         ("seed, ξ = 0", "seed", &[Group::Unstressed]),
@@ -273,7 +280,10 @@ fn outcome(records: &[&Record]) -> (usize, String) {
         Fate::Whole if record.value(RESTITUTION).is_none() => "in touch".into(),
         Fate::Whole => format!("e = {}", number(RESTITUTION)),
         Fate::Torn => format!("at {}", number(TORN_AT)),
-        Fate::InPieces => format!("{} pieces", number(PIECES_MOST)),
+        Fate::InPieces => {
+            let pieces = record.value(PIECES_MOST).map_or("–".into(), |n| n.to_string());
+            format!("{pieces} pieces")
+        }
         Fate::Diverged => fate.name().into(),
     };
     (fate as usize, text)
