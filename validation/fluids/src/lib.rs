@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod channel;
 pub mod couette;
+mod peers;
 pub mod periodic_hill;
 pub mod poiseuille;
 pub mod taylor_couette;

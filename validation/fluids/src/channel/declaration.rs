@@ -8,10 +8,11 @@ use super::{
     runs::{ChannelTable, For},
     sensitivity,
 };
+use crate::peers;
 use base::{
     gate::{Bound, Evidence},
     record::Record,
-    reference::{Reference, ReferenceError},
+    reference::Table,
 };
 use harness::{
     case::{Case, Rules, Tier},
@@ -120,26 +121,14 @@ fn peers(flow: Flow, re: f64) -> Vec<Peer> {
         Flow::Couette => ("error_0.1125s", "; error at νt/L² = 0.1125"),
         Flow::Poiseuille => ("error_1s", ""),
     };
-    let read = || -> Result<Vec<Peer>, ReferenceError> {
-        let table = Reference::load("peers_channel")?.table("errors")?.clone();
-        let (codes, schemes, cases) =
-            (table.texts("code")?, table.texts("scheme")?, table.texts("case")?);
-        let (reynolds, rows) = (table.optional("reynolds")?, table.optional("rows")?);
-        let (seconds, errors) = (table.optional("seconds")?, table.optional(column)?);
-        let peer = |k: usize| {
-            Some(Peer {
-                name: format!("{}, {}", codes[k], schemes[k]),
-                label: format!("{} rows", rows[k]?),
-                seconds: seconds[k]?,
-                spacing: 1.0 / rows[k]?,
-                error: errors[k]? / 100.0,
-                timed: format!("wall time, one thread of a similar machine, 2025–26{at}"),
-            })
-        };
-        let is_like = |k: &usize| cases[*k] == flow.name() && reynolds[*k] == Some(re);
-        Ok((0..codes.len()).filter(is_like).filter_map(peer).collect())
+    let is_like = |table: &Table| {
+        let (cases, reynolds) = (table.texts("case")?, table.optional("reynolds")?);
+        let both = cases.iter().zip(&reynolds);
+        Ok(both.map(|(case, of)| *case == flow.name() && *of == Some(re)).collect())
     };
-    read().unwrap_or_default()
+    let timed = format!("wall time, one thread of a similar machine, 2025–26{at}");
+    let label = |rows: f64| format!("{rows} rows");
+    peers::peers("peers_channel", ["rows", column], label, &timed, is_like).unwrap_or_default()
 }
 
 /// Times that fit into a figure.

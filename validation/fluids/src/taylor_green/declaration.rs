@@ -6,10 +6,11 @@ use super::{
     plan::{DISTURBED, For, LADDER, Row, Table, most_error, table, usual},
     run::L2,
 };
+use crate::peers;
 use base::{
     gate::{Bound, Evidence},
     record::Record,
-    reference::{Reference, ReferenceError},
+    reference::{self, ReferenceError},
 };
 use harness::{
     case::Tier,
@@ -55,23 +56,10 @@ pub fn declaration(tier: Tier) -> Declaration {
 
 /// Codes whose time was measured.
 fn peers() -> Result<Vec<Peer>, ReferenceError> {
-    let package = Reference::load("peers_taylor_green")?;
-    let table = package.table("errors")?;
-    let (codes, schemes) = (table.texts("code")?, table.texts("scheme")?);
-    let (sides, errors) = (table.numbers("side")?, table.numbers("error")?);
-    let seconds = table.optional("seconds")?;
-    let peer = |k: usize| {
-        let side = sides[k];
-        Some(Peer {
-            name: format!("{}, {}", codes[k], schemes[k]),
-            label: format!("{side} x {side}"),
-            seconds: seconds[k]?,
-            spacing: 1.0 / side,
-            error: errors[k] / 100.0,
-            timed: "time loop, one thread of a 2-core x86-64 machine, 2025-26".into(),
-        })
-    };
-    Ok((0..codes.len()).filter_map(peer).collect())
+    let timed = "time loop, one thread of a 2-core x86-64 machine, 2025-26";
+    let label = |side: f64| format!("{side} x {side}");
+    let all = |table: &reference::Table| Ok(vec![true; table.len()]);
+    peers::peers("peers_taylor_green", ["side", "error"], label, timed, all)
 }
 
 /// One thing changed at a time, over the best variant at 50 x 50 from the disturbed lattice.
