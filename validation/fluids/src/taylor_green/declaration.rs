@@ -94,8 +94,8 @@ fn budgets(table: &Table, accuracy: &Accuracy) -> Option<Budgets> {
 fn histories(table: &Table) -> Curves {
     let caption = "Taylor-Green vortices at Re 100 from the disturbed lattice: relative L2 error of the \
                    velocity over time, of stabilised variants with the same number of particles and of \
-                   `plain` with at least as many. Black marks the bound of the best variant, which applies at \
-                   t = 2 L/U.";
+                   `plain` with at least as many. Black marks the bound of the best variant, which applies \
+                   at t = 2 L/U.";
     let has_all = |n: &usize| LADDER.iter().all(|of| usual(table, of, *n).is_some());
     let side = (1..=50).rev().find(has_all).unwrap_or(50);
     let plain = (side..=50).find_map(|n| usual(table, "plain", n));
