@@ -135,7 +135,7 @@ fn dump(folder: &Path, atoms: &str, rows: &str) {
 }
 
 /// What is done to a whole submission, and what the message names.
-const DAMAGES: [(&str, Damage, &[&str]); 35] = [
+const DAMAGES: [(&str, Damage, &[&str]); 37] = [
     (
         "no method",
         |f| fs::remove_file(f.join("method.json")).unwrap(),
@@ -224,6 +224,19 @@ const DAMAGES: [(&str, Damage, &[&str]); 35] = [
         "a time twice but for round-off",
         |f| shifted(f, "results.csv", 1e-9),
         &["results.csv, line 42, column t", "round-off"],
+    ),
+    (
+        "a time before the start",
+        |f| set(f, 2, 0, "-1"),
+        &["results.csv, line 2, column t", "start"],
+    ),
+    (
+        "a role that does not exist",
+        |f| {
+            let text = read(&f.join("results.csv")).replace('\n', ",7\n");
+            fs::write(f.join("results.csv"), text.replacen(",7", ",role", 1)).unwrap()
+        },
+        &["results.csv, line 2, column role", "it is 7; expected 0, 1 or 2"],
     ),
     ("a time after the end", |f| shifted(f, "results.csv", 1.0), &["column t", "after the end"]),
     (

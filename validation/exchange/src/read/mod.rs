@@ -4,6 +4,8 @@
 #[cfg(any(feature = "npz", feature = "vtk"))]
 mod binary;
 mod dump;
+#[cfg(feature = "hdf5")]
+mod hdf5;
 #[cfg(feature = "npz")]
 mod npz;
 mod table;
@@ -77,7 +79,10 @@ pub struct Results {
     pub places: Vec<(String, u64)>,
 }
 
-/// Reads all results of a folder: `results.csv`, or `*.dump`, `*.npz`, `*.vtu`, `*.vtp` in the order of
+/// Endings of files with results, beside the table.
+const ENDINGS: [&str; 6] = ["dump", "npz", "vtu", "vtp", "h5", "hdf5"];
+
+/// Reads all results of a folder: `results.csv`, or files with one of the other endings in the order of
 /// their names.
 ///
 /// # Errors
@@ -93,7 +98,8 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Results, Vec<Flaw>> {
     }
     names.sort_by_key(|name| (number_in(name), name.clone()));
     if names.is_empty() {
-        let what = "there are no results; expected results.csv, *.dump, *.npz, *.vtu or *.vtp";
+        let what =
+            format!("there are no results; expected {RESULTS} or *.{}", ENDINGS.join(", *."));
         return Err(vec![Flaw::of(folder.display().to_string(), what)]);
     }
     let mut kinds: Vec<&str> = names.iter().map(|name| ending(name)).collect();
@@ -128,7 +134,7 @@ fn ending(name: &str) -> &str {
 }
 
 fn is_of_results(name: &str) -> bool {
-    name == RESULTS || ["dump", "npz", "vtu", "vtp"].contains(&ending(name))
+    name == RESULTS || ENDINGS.contains(&ending(name))
 }
 
 /// The last number in a name, so that frame 10 comes after frame 9.
@@ -148,6 +154,8 @@ fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<F
         "vtu" | "vtp" => Ok(vec![vtk::rows(name, &text()?, renamed)?]),
         #[cfg(feature = "npz")]
         "npz" => Ok(vec![npz::rows(name, &path, renamed)?]),
+        #[cfg(feature = "hdf5")]
+        "h5" | "hdf5" => hdf5::rows(name, &path, renamed),
         other => {
             let what = format!("this build does not read .{other}; its feature was left out");
             Err(vec![Flaw::of(name, what)])
@@ -203,6 +211,44 @@ fn places(
         }
     }
     if flaws.is_empty() { Ok(found) } else { Err(flaws) }
+}
+
+/// Rows of a file that holds one array a column, read where it has this place among the heads. `t` may be one
+/// number for all.
+#[cfg(any(feature = "hdf5", feature = "npz", feature = "vtk"))]
+fn of_arrays(
+    file: &str,
+    heads: &[&str],
+    renamed: &Renamed,
+    mut array: impl FnMut(usize) -> Result<Vec<f64>, String>,
+) -> Result<Rows, Vec<Flaw>> {
+    let flaw = |name: &str, what: String| vec![Flaw::of(file, what).in_column(name)];
+    let mut columns = BTreeMap::new();
+    for (name, place) in places(file, 1, heads, renamed, &[])? {
+        columns.insert(name, array(place).map_err(|what| flaw(name, what))?);
+    }
+    let rows = columns.get("x").map_or(0, Vec::len);
+    if let Some(times) = columns.get_mut("t").filter(|times| times.len() == 1) {
+        *times = vec![times[0]; rows];
+    }
+    match columns.iter().find(|(_, column)| column.len() != rows) {
+        Some((name, column)) => {
+            let what = format!("it has {} numbers; expected {rows}, as many as x", column.len());
+            Err(flaw(name, what))
+        }
+        None => Ok(Rows { file: file.into(), first_line: 1, columns }),
+    }
+}
+
+/// A regular file that is not too long.
+#[cfg(any(feature = "hdf5", feature = "npz"))]
+fn open(file: &str, path: &Path) -> Result<std::fs::File, Vec<Flaw>> {
+    let flaw = |what: String| vec![Flaw::of(file, what)];
+    let size = std::fs::metadata(path).map_err(|reason| flaw(reason.to_string()))?;
+    if !size.is_file() || size.len() > MOST_BYTES {
+        return Err(flaw(format!("it is no regular file of at most {MOST_BYTES} bytes")));
+    }
+    std::fs::File::open(path).map_err(|reason| flaw(reason.to_string()))
 }
 
 impl Rows {

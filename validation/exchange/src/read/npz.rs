@@ -1,47 +1,25 @@
 //! Arrays of NumPy, one a column: `np.savez(file, t=t, id=id, x=x, y=y, u=u, v=v, density=density)`. `t` may
 //! be one number for the whole file.
 
-use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use zip::ZipArchive;
 
-use super::{COLUMNS, MOST_BYTES, MOST_ROWS, Renamed, Rows, places};
+use super::{MOST_ROWS, Renamed, Rows, of_arrays, open};
 use crate::flaw::Flaw;
 
 /// Every array in the format of NumPy begins with these bytes.
 const MAGIC: &[u8] = b"\x93NUMPY";
 
 pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
-    let flaw = |what: String| vec![Flaw::of(file, what)];
-    let size = std::fs::metadata(path).map_err(|reason| flaw(reason.to_string()))?;
-    if !size.is_file() || size.len() > MOST_BYTES {
-        return Err(flaw(format!("it is no regular file of at most {MOST_BYTES} bytes")));
-    }
-    let opened = File::open(path).map_err(|reason| flaw(reason.to_string()))?;
-    let mut archive = ZipArchive::new(opened).map_err(|reason| flaw(reason.to_string()))?;
+    let archive = ZipArchive::new(open(file, path)?);
+    let mut archive = archive.map_err(|reason| vec![Flaw::of(file, reason.to_string())])?;
     let names: Vec<String> = archive.file_names().map(String::from).collect();
     let heads: Vec<&str> = names.iter().map(|name| name.trim_end_matches(".npy")).collect();
-    let places = places(file, 1, &heads, renamed, &[])?;
-    let mut columns: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
-    for (name, place) in places {
-        let unread = |what: String| vec![Flaw::of(file, what).in_column(name)];
-        let array = archive.by_name(&names[place]).map_err(|e| unread(e.to_string()))?;
-        columns.insert(name, numbers(array).map_err(unread)?);
-    }
-    let rows = columns.get("x").map_or(0, Vec::len);
-    if let Some(times) = columns.get_mut("t").filter(|times| times.len() == 1) {
-        *times = vec![times[0]; rows];
-    }
-    for (name, ..) in COLUMNS {
-        if let Some(other) = columns.get(name).map(Vec::len).filter(|other| *other != rows) {
-            let what = format!("it has {other} numbers; expected {rows}, as many as x");
-            return Err(vec![Flaw::of(file, what).in_column(name)]);
-        }
-    }
-    Ok(Rows { file: file.into(), first_line: 1, columns })
+    of_arrays(file, &heads, renamed, |place| {
+        numbers(archive.by_name(&names[place]).map_err(|error| error.to_string())?)
+    })
 }
 
 /// The numbers of an array of floats or of whole numbers: magic, version, length of the head, head, data.

@@ -10,7 +10,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::{
     COLUMNS, Renamed, Rows,
     binary::{MOST_NUMBERS, too_long},
-    places,
+    of_arrays,
 };
 use crate::flaw::Flaw;
 
@@ -59,19 +59,7 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>
         arrays.insert("id".into(), (0..count).map(|k| k as f64).collect());
     }
     let heads: Vec<&str> = arrays.keys().map(String::as_str).collect();
-    let mut columns = BTreeMap::new();
-    for (name, place) in places(file, 1, &heads, &renamed, &[])? {
-        let mut values = arrays[heads[place]].clone();
-        if name == "t" && values.len() == 1 {
-            values = vec![values[0]; count];
-        }
-        if values.len() != count {
-            let what = format!("it has {} numbers; expected {count}", values.len());
-            return Err(vec![Flaw::of(file, what).in_column(name)]);
-        }
-        columns.insert(name, values);
-    }
-    Ok(Rows { file: file.into(), first_line: 1, columns })
+    of_arrays(file, &heads, &renamed, |place| Ok(arrays[heads[place]].clone()))
 }
 
 /// The numbers of an array.

@@ -1,0 +1,70 @@
+//! HDF5: one dataset a column, at the root of the file, or in one group a frame at the root. `t` may be one
+//! number. Links to other files are not followed.
+
+use std::path::Path;
+
+use hdf5_reader::{Dataset, Datatype, H5Type, Hdf5File, OpenOptions, error::Error, group::Group};
+
+use super::{MOST_ROWS, Renamed, Rows, number_in, of_arrays, open, too_many};
+use crate::flaw::Flaw;
+
+/// A number has at most so many bytes.
+const WIDEST: usize = 8;
+
+/// The rows of the frames of a file.
+pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Vec<Rows>, Vec<Flaw>> {
+    drop(open(file, path)?);
+    let flaw = |error: Error| vec![Flaw::of(file, error.to_string())];
+    let options = OpenOptions::default()
+        .with_max_read_bytes(WIDEST * MOST_ROWS)
+        .with_max_chunk_bytes(WIDEST * MOST_ROWS);
+    let root = Hdf5File::open_with_options(path, options).and_then(|file| file.root_group());
+    let root = root.map_err(flaw)?;
+    let (mut groups, datasets) = root.members().map_err(flaw)?;
+    if !datasets.is_empty() {
+        return Ok(vec![frame(file, &root, renamed)?]);
+    }
+    groups.sort_by_key(|group| (number_in(group.name()), group.name().to_string()));
+    if groups.is_empty() {
+        return Err(vec![Flaw::of(
+            file,
+            "it has neither datasets nor groups; expected a column each",
+        )]);
+    }
+    let mut all = Vec::new();
+    for group in groups {
+        all.push(frame(file, &group, renamed)?);
+        if all.iter().map(Rows::len).sum::<usize>() > MOST_ROWS {
+            return Err(vec![too_many(file)]);
+        }
+    }
+    Ok(all)
+}
+
+fn frame(file: &str, group: &Group, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
+    let datasets = group.datasets().map_err(|error| vec![Flaw::of(file, error.to_string())])?;
+    let heads: Vec<&str> = datasets.iter().map(Dataset::name).collect();
+    of_arrays(file, &heads, renamed, |place| numbers(&datasets[place]))
+}
+
+/// The numbers of a dataset with one dimension, or of one number.
+fn numbers(of: &Dataset) -> Result<Vec<f64>, String> {
+    if of.ndim() > 1 {
+        return Err(format!("it has {} dimensions; expected one", of.ndim()));
+    }
+    fn all<T: H5Type>(of: &Dataset, number: fn(T) -> f64) -> Result<Vec<f64>, String> {
+        let numbers = of.read_array::<T>().map_err(|error| error.to_string())?;
+        Ok(numbers.into_iter().map(number).collect())
+    }
+    match of.dtype() {
+        Datatype::FloatingPoint { size: 8, .. } => all(of, |number: f64| number),
+        Datatype::FloatingPoint { size: 4, .. } => all(of, |number: f32| number.into()),
+        Datatype::FixedPoint { size: 8, signed: true, .. } => all(of, |number: i64| number as f64),
+        Datatype::FixedPoint { size: 4, signed: true, .. } => all(of, |number: i32| number.into()),
+        Datatype::FixedPoint { size: 8, .. } => all(of, |number: u64| number as f64),
+        Datatype::FixedPoint { size: 4, .. } => all(of, |number: u32| number.into()),
+        other => {
+            Err(format!("its type is {other:?}; expected floats or whole numbers of 8 or 4 bytes"))
+        }
+    }
+}
