@@ -1,16 +1,17 @@
 //! The deep tier: what the full tier declares, with ladders that go two levels further, maps of 20 starts a
-//! cell, and tables of what gates detect over every judged level of the ladders. It is made for clusters: its
-//! runs are independent of each other, and some of them take more than a run may unless that is asked for.
+//! cell, and tables of what gates detect over every judged run. It is made for clusters: its runs are
+//! independent of each other, and some may take more than a run may unless that is asked for.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use base::functions::powf;
-use base::spec::{Keep, RunSpec};
+use base::spec::{Keep, RunKey, RunSpec, Task};
 use serde_json::Value;
 
 use crate::{
-    case::{self, Case, Planned},
-    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level, Map, Sensitivity},
+    case::{self, Case, Planned, Tier},
+    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level, Map},
+    plan,
 };
 
 /// Levels by which a ladder of the deep tier is longer.
@@ -20,9 +21,7 @@ pub const STARTS: usize = 20;
 
 /// The declaration of the deep tier from that of the full one.
 pub fn deepened(mut declared: Declaration, case: &dyn Case) -> Declaration {
-    if let Some(sensitivity) = &mut declared.sensitivity {
-        watch_ladders(sensitivity, &declared.accuracy);
-    }
+    watch_all(&mut declared, case);
     declared.accuracy.iter_mut().for_each(|accuracy| refine(accuracy, case));
     declared.maps.iter_mut().for_each(|map| start_often(map, case));
     declared
@@ -100,15 +99,15 @@ fn start_often(map: &mut Map, case: &dyn Case) {
     }
 }
 
-/// Errors of constants are searched on every judged level of the ladders whose variant is searched anyway.
-fn watch_ladders(sensitivity: &mut Sensitivity, accuracy: &[Accuracy]) {
-    let variants: BTreeSet<String> =
-        sensitivity.runs.iter().map(|run| run.variant.clone()).collect();
-    let levels = accuracy.iter().flat_map(|of| &of.ladders).flat_map(|ladder| &ladder.levels);
-    for Planned { spec, gates, .. } in levels.map(|level| &level.run) {
-        let is_known = sensitivity.runs.iter().any(|run| run.key() == spec.key());
-        if variants.contains(&spec.variant) && !gates.is_empty() && !is_known {
-            sensitivity.runs.push(spec.clone());
+/// Errors of constants are searched in every judged run of the case, not in the few of the full tier.
+fn watch_all(declared: &mut Declaration, case: &dyn Case) {
+    let all = [case.plan(Tier::Full), declared.runs()].concat();
+    let Some(sensitivity) = &mut declared.sensitivity else { return };
+    let mut known: BTreeSet<RunKey> = sensitivity.runs.iter().map(RunSpec::key).collect();
+    for Planned { spec, gates, .. } in plan::merged(all) {
+        let is_healthy = spec.task == Task::Simulate && spec.mutation.is_none();
+        if is_healthy && !gates.is_empty() && known.insert(spec.key()) {
+            sensitivity.runs.push(spec);
         }
     }
 }

@@ -12,7 +12,7 @@ pub enum Tier {
     Quick,
     /// About twenty minutes.
     Full,
-    /// Some hundred hours, for clusters. Cases declare two tiers; the harness extends the full one, see
+    /// About a day on one core, for clusters. Cases declare two tiers; the harness extends the full one, see
     /// [`crate::deep`].
     Deep,
 }

@@ -213,7 +213,7 @@ pub enum Tier {
     Quick,
     /// About twenty minutes
     Full,
-    /// Some hundred hours, for clusters: ladders two levels finer, maps of 20 starts a cell
+    /// About a day on one core, for clusters: finer ladders, more starts, all that gates detect
     Deep,
 }
 
