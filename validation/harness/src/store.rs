@@ -313,6 +313,29 @@ mod tests {
         assert!(serves(&spec) && !serves(&spec.clone().measure_all()));
     }
 
+    /// A run that goes on is told from one whose process was killed, and from one that failed.
+    #[test]
+    fn what_has_no_record_says_why() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let spec = record(Status::Completed).spec();
+        assert_eq!(store.pending(&spec), Pending::Missing);
+        let begun = store.begin(&spec);
+        assert_eq!(store.pending(&spec), Pending::Running);
+        assert!(Store::all(store.path()).unwrap().is_empty(), "it is no record");
+        let file = File::options().write(true).open(folder.path().join(&begun.name)).unwrap();
+        file.set_modified(SystemTime::now() - 2 * DEAD_AFTER).unwrap();
+        assert_eq!(store.pending(&spec), Pending::Stopped);
+        *begun.last.lock().unwrap() -= SIGN_EVERY;
+        begun.beat();
+        assert_eq!(store.pending(&spec), Pending::Running, "it gave a sign of life");
+        begun.end(Some("the disk is full"));
+        assert_eq!(store.pending(&spec), Pending::Failed("the disk is full".into()));
+        store.begin(&spec).end(None);
+        assert_eq!(store.pending(&spec), Pending::Missing);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
     #[test]
     fn a_store_that_is_only_read_is_not_written_to() {
         let folder = tempfile::tempdir().unwrap();
