@@ -132,7 +132,7 @@ fn slurm() {
     let node = Node(folder.path().to_path_buf());
     if !node.go("start") {
         return println!(
-            "skipped: slurmctld, slurmd and munged cannot be started, which needs root"
+            "skipped: slurmctld, slurmd and munged cannot be started; this needs root"
         );
     }
     let start = Instant::now();
@@ -146,7 +146,7 @@ fn slurm() {
     });
 }
 
-/// What was done before is kept, what was under way is told, and made by the same command: to the same record.
+/// What was done before is kept, what was under way is told, and the same command makes it: the same record.
 #[test]
 fn a_worker_that_is_killed_costs_its_run_alone() {
     let folder = tempfile::tempdir().unwrap();

@@ -50,7 +50,6 @@ fn finer(ladder: &Ladder, from: &RunSpec, steps: i32, case: &dyn Case) -> Option
     let [.., coarse, fine] = ladder.levels.as_slice() else { return None };
     let number = |level: &Level, name: &String| level.run.spec.settings.get(name)?.as_f64();
     let (mut spec, mut spacing) = (RunSpec { keep: Keep::default(), ..from.clone() }, fine.spacing);
-    let mut label = fine.label.clone();
     for (name, value) in from.settings.as_object()? {
         let Some((a, b)) = number(coarse, name).zip(number(fine, name)).filter(|(a, b)| a != b)
         else {
@@ -62,12 +61,22 @@ fn finer(ladder: &Ladder, from: &RunSpec, steps: i32, case: &dyn Case) -> Option
             true => fine.spacing * b / next.as_f64()?,
             false => fine.spacing * powf(fine.spacing / coarse.spacing, f64::from(steps)),
         };
-        label = label.replace(&b.to_string(), &next.to_string());
         spec = spec.with_setting(name, next);
     }
     let is_finer = spacing < fine.spacing;
     let spec = case::resolved(case, spec).ok().filter(|_| is_finer)?;
-    Some(Level { run: Planned { gates: Vec::new(), ..Planned::new(spec) }, spacing, label })
+    let label = relabelled(&fine.label, fine.spacing / spacing);
+    Some(Level { run: Planned::new(spec), spacing, label })
+}
+
+/// The resolution in words with its number, such as 80 in `80 rows` or `80 x 80`, so many times larger.
+fn relabelled(label: &str, times: f64) -> String {
+    let is_other = |c: char| !c.is_ascii_digit();
+    let number = label.split(is_other).find(|digits| !digits.is_empty()).unwrap_or_default();
+    match number.parse::<f64>() {
+        Ok(value) => label.replace(number, &(value * times).round().to_string()),
+        Err(_) => format!("{label}, {times:.2} times finer"),
+    }
 }
 
 /// Adds starts to the cells of a map: values of the one setting in which the starts of a cell differ, spread
