@@ -7,6 +7,7 @@ use base::spec::RunSpec;
 use harness::{
     case::{self, Case, Planned, RunError, Tier},
     declare::{Budget, Change},
+    deep::{FINER, STARTS},
     make::Made,
     plan,
     runs::Runs,
@@ -29,7 +30,8 @@ fn no_planned_run_sets_what_its_variant_lacks() {
 /// The key of a run is that of its resolved spec; a plan that wrote one otherwise would miss its record.
 #[test]
 fn every_planned_run_is_written_as_it_is_read() {
-    for (case, tier) in CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)]) {
+    let tiers = [Tier::Quick, Tier::Full, Tier::Deep];
+    for (case, tier) in CASES.iter().flat_map(|case| tiers.map(|tier| (case, tier))) {
         for Planned { spec, .. } in plan::of_case(*case, tier) {
             let read = RunSpec::from_canonical(&spec.canonical()).expect("a line of a plan");
             let resolved = case::resolved(*case, read).expect("a run that is possible");
@@ -42,13 +44,60 @@ fn every_planned_run_is_written_as_it_is_read() {
 /// made: what is planned is looked up all the same.
 #[test]
 fn studies_ask_for_no_more_than_is_planned() {
-    for tier in [Tier::Quick, Tier::Full] {
+    for tier in [Tier::Quick, Tier::Full, Tier::Deep] {
         let suite = suite::judge(suite::plans(CASES, tier), tier, Made::default());
         for case in suite.cases {
             let asked = case.runs.unplanned();
             assert!(asked.is_empty(), "{}: {}", case.case.name(), asked.join("\n"));
         }
     }
+}
+
+/// The deep tier has every run of the full one with its gates, and what the harness adds: each ladder goes on
+/// by two levels of finer spacing, cells with several starts have 20, and every resolution at which another
+/// code was timed is one of ours.
+#[test]
+fn the_deep_tier_has_the_full_one_and_two_levels_20_starts_and_the_resolutions_of_peers() {
+    let (mut ladders, mut cells, mut peers) = (0, 0, 0);
+    for case in CASES {
+        let [full, deep] = [Tier::Full, Tier::Deep].map(|tier| plan::of_case(*case, tier));
+        for run in full {
+            let same = deep.iter().find(|of| of.spec.key() == run.spec.key());
+            assert!(same.is_some_and(|same| same.gates == run.gates), "{:?}", run.spec);
+        }
+        let [full, deep] = [Tier::Full, Tier::Deep].map(|tier| case.declaration(tier));
+        for (full, deep) in full.accuracy.iter().zip(&deep.accuracy) {
+            for (full, deep) in full.ladders.iter().zip(&deep.ladders) {
+                let more = if full.levels.len() < 2 { 0 } else { FINER as usize };
+                let name = format!("{} {}", case.name(), deep.variant);
+                assert_eq!(deep.levels.len(), full.levels.len() + more, "{name}");
+                assert!(deep.levels.is_sorted_by(|a, b| a.spacing > b.spacing), "{name}");
+                let labels = deep.levels.iter().map(|level| &level.label).collect::<BTreeSet<_>>();
+                assert_eq!(labels.len(), deep.levels.len(), "{name}: {labels:?}");
+                ladders += more / 2;
+            }
+            let levels = deep.ladders.iter().flat_map(|ladder| &ladder.levels);
+            let spacings: Vec<f64> = levels.map(|level| level.spacing).collect();
+            for peer in &deep.peers {
+                let is_here = |spacing: &f64| (spacing / peer.spacing - 1.0).abs() < 1e-9;
+                assert!(spacings.iter().any(is_here), "{}: {peer:?}", case.name());
+                peers += 1;
+            }
+        }
+        for (full, deep) in full.maps.iter().zip(&deep.maps) {
+            let [full, deep] = [full, deep].map(|map| {
+                let panels = map.panels.iter().flat_map(|panel| &panel.cells).flatten();
+                panels.collect::<Vec<_>>()
+            });
+            let is_chaotic = full.iter().any(|cell| cell.len() > 1);
+            for cell in deep.into_iter().filter(|cell| is_chaotic && !cell.is_empty()) {
+                let keys: BTreeSet<_> = cell.iter().map(RunSpec::key).collect();
+                assert_eq!(keys.len(), STARTS, "{}", case.name());
+                cells += 1;
+            }
+        }
+    }
+    assert!(ladders > 25 && cells > 30 && peers > 15, "{ladders} {cells} {peers}");
 }
 
 /// A budget changes one thing at a time: a run differs in one setting, or in as many as its name lists with

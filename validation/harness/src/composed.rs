@@ -15,6 +15,7 @@ use crate::{
     case::{self, Case, Planned, Rules, RunError, Tier, Variant},
     context::Context,
     declare::Declaration,
+    deep::deepened,
     method::{Knob, Method},
     rules::state_steps,
     runs::Runs,
@@ -279,14 +280,15 @@ impl<T: Settings + 'static> Case for Composed<T> {
     }
 
     fn declaration(&self, tier: Tier) -> Declaration {
-        (self.declaration)(tier)
+        let declared = (self.declaration)(tier.declared());
+        if tier == Tier::Deep { deepened(declared, self) } else { declared }
     }
 
     fn plan(&self, tier: Tier) -> Vec<Planned> {
-        (self.plan)(tier)
+        (self.plan)(tier.declared())
     }
 
     fn studies(&self, tier: Tier, runs: &Runs) -> Vec<Study> {
-        (self.studies)(tier, runs)
+        (self.studies)(tier.declared(), runs)
     }
 }

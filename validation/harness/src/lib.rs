@@ -16,6 +16,7 @@ pub mod composed;
 pub mod context;
 pub mod convergence;
 pub mod declare;
+pub mod deep;
 pub mod detect;
 pub mod error;
 pub mod extremes;

@@ -19,7 +19,7 @@ use crate::{
     context::{self, Context},
     detect,
     planned::{Planned, Tier},
-    store::{Found, Store, StoreError},
+    store::{Begun, Found, Store, StoreError},
 };
 
 /// A planned run and the case that it is of.
@@ -117,11 +117,13 @@ pub struct Made {
 }
 
 /// Why a run has no record.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum Failed {
     /// A file that could not be written or read.
+    #[error(transparent)]
     Error(RunError),
     /// A panic, of which the hook of panics has told.
+    #[error("it ended by the bug of which was told")]
     Bug,
 }
 
@@ -132,7 +134,7 @@ const REPETITIONS: usize = 3;
 fn timed_again_below(tier: Tier) -> f64 {
     match tier {
         Tier::Quick => 0.1,
-        Tier::Full => 0.5,
+        Tier::Full | Tier::Deep => 0.5,
     }
 }
 
@@ -379,25 +381,30 @@ impl Batch<'_> {
     fn run(&self, job: &Job, profile: bool) -> Option<Record> {
         let (interrupt, spec, start) = (self.making.interrupt, &job.planned.spec, Instant::now());
         let (case, expected) = (job.case.name(), expected(job, self.making));
+        let begun = self.making.store.map(|store| store.begin(spec));
+        let is_one = spec.task == Task::Simulate;
         let show = |progress: context::Progress| {
+            begun.iter().for_each(Begun::beat);
+            if !is_one {
+                return; // of a bisection nobody knows how many simulations are left
+            }
             let (part, took) = (progress.time / progress.end, took(job, self.making, start));
             self.tell(|tally| tally.reach(spec.key(), case, part, expected, took));
         };
-        // Of a bisection nobody knows how many simulations are left.
-        let progress: Option<&(dyn Fn(context::Progress) + Sync)> =
-            if spec.task == Task::Simulate { Some(&show) } else { None };
-        let allow_long = self.making.allow_long;
+        let (progress, allow_long) = (Some(&show as _), self.making.allow_long);
         let context =
             Context { threads: 1, allow_long, profile, interrupt, progress, ..Context::default() };
         let made = catch_unwind(AssertUnwindSafe(|| run(job.case, spec, &context)));
         let failed = match made {
             Ok(Ok(mut record)) => {
+                begun.into_iter().for_each(|begun| begun.end(None));
                 record.manifest.sources = (self.making.sources)(case);
                 return Some(record);
             }
             Ok(Err(error)) => Failed::Error(error),
             Err(_) => Failed::Bug,
         };
+        begun.into_iter().for_each(|begun| begun.end(Some(&failed.to_string())));
         self.made().failed.insert(spec.key(), failed);
         None
     }

@@ -12,6 +12,16 @@ pub enum Tier {
     Quick,
     /// About twenty minutes.
     Full,
+    /// About a day on one core, for clusters. Cases declare two tiers; the harness extends the full one, see
+    /// [`crate::deep`].
+    Deep,
+}
+
+impl Tier {
+    /// The tier that cases declare for this one.
+    pub fn declared(self) -> Tier {
+        if self == Tier::Quick { Tier::Quick } else { Tier::Full }
+    }
 }
 
 /// A run of the plan and how it is judged.

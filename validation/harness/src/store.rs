@@ -1,9 +1,11 @@
 //! A folder of records by key: `CASE-VARIANT-KEY.json`, each written completely or not at all. Runs are
 //! independent of each other, so several processes on several machines may fill a store in any order.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant, SystemTime};
 
 use base::{
     files::{self, FileError, OutputFolder},
@@ -49,6 +51,59 @@ pub const MOST_BYTES: u64 = 1 << 30;
 
 /// Begins the name of the record of a run that another code made.
 const SUBMITTED: &str = "submitted-";
+
+/// Begins the name of the file that says that a run is under way, or why it failed. Its age is the time
+/// since the last sign of life: what a process that was killed left is told from a run that goes on.
+const BEGUN: &str = ".begun-";
+/// Wall time between signs of life, and without one after which a run does not go on any more.
+const SIGN_EVERY: Duration = Duration::from_secs(20);
+const DEAD_AFTER: Duration = Duration::from_secs(120);
+/// More than this is no reason for a failure \[bytes\].
+const MOST_REASON: u64 = 1 << 16;
+
+/// Why a store has no record of a run.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Pending {
+    /// Nobody has begun it since a record was last there.
+    Missing,
+    /// It was begun, and there was a sign of life within two minutes.
+    Running,
+    /// It was begun and ended without a word, as by a kill or a machine that failed.
+    Stopped,
+    /// It ended without a record, for this reason.
+    Failed(String),
+}
+
+/// A run that is under way, as its store tells others. That this cannot be written costs no run.
+pub struct Begun<'a> {
+    folder: &'a OutputFolder,
+    name: String,
+    last: Mutex<Instant>,
+}
+
+impl Begun<'_> {
+    fn sign(&self) {
+        let file = File::create(self.folder.path().join(&self.name));
+        let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
+    }
+
+    /// A sign of life, if the last one was long ago.
+    pub fn beat(&self) {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.elapsed() >= SIGN_EVERY {
+            *last = Instant::now();
+            self.sign();
+        }
+    }
+
+    /// It has ended, without a record if there is a reason for that.
+    pub fn end(self, failed: Option<&str>) {
+        let _ = match failed {
+            Some(why) => self.folder.write(&self.name, why.as_bytes()).map(drop).ok(),
+            None => fs::remove_file(self.folder.path().join(&self.name)).ok(),
+        };
+    }
+}
 
 /// What a store contains for a run.
 #[derive(Debug)]
@@ -145,6 +200,27 @@ impl Store {
         Ok(self.folder.write(&name, text.as_bytes())?)
     }
 
+    /// Says that a run is under way.
+    pub fn begin(&self, spec: &RunSpec) -> Begun<'_> {
+        let name = format!("{BEGUN}{}", Self::name(spec));
+        let begun = Begun { folder: &self.folder, name, last: Mutex::new(Instant::now()) };
+        begun.sign();
+        begun
+    }
+
+    /// Why there is no record of a run.
+    pub fn pending(&self, spec: &RunSpec) -> Pending {
+        let path = self.path().join(format!("{BEGUN}{}", Self::name(spec)));
+        let Ok(text) = files::read_text(&path, MOST_REASON) else { return Pending::Missing };
+        let modified = fs::metadata(&path).and_then(|file| file.modified());
+        let age = modified.map(|time| time.elapsed().unwrap_or_default()); // another clock may be ahead
+        match age {
+            _ if !text.is_empty() => Pending::Failed(text),
+            Ok(age) if age < DEAD_AFTER => Pending::Running,
+            _ => Pending::Stopped,
+        }
+    }
+
     /// Every record of the folder, sorted by file name. What a process that was killed had not finished is
     /// none: its name begins with a dot.
     ///
@@ -235,6 +311,29 @@ mod tests {
         assert!(serves(&spec) && serves(&spec.clone().measure_all()));
         store.write(&headline).unwrap();
         assert!(serves(&spec) && !serves(&spec.clone().measure_all()));
+    }
+
+    /// A run that goes on is told from one whose process was killed, and from one that failed.
+    #[test]
+    fn what_has_no_record_says_why() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        let spec = record(Status::Completed).spec();
+        assert_eq!(store.pending(&spec), Pending::Missing);
+        let begun = store.begin(&spec);
+        assert_eq!(store.pending(&spec), Pending::Running);
+        assert!(Store::all(store.path()).unwrap().is_empty(), "it is no record");
+        let file = File::options().write(true).open(folder.path().join(&begun.name)).unwrap();
+        file.set_modified(SystemTime::now() - 2 * DEAD_AFTER).unwrap();
+        assert_eq!(store.pending(&spec), Pending::Stopped);
+        *begun.last.lock().unwrap() -= SIGN_EVERY;
+        begun.beat();
+        assert_eq!(store.pending(&spec), Pending::Running, "it gave a sign of life");
+        begun.end(Some("the disk is full"));
+        assert_eq!(store.pending(&spec), Pending::Failed("the disk is full".into()));
+        store.begin(&spec).end(None);
+        assert_eq!(store.pending(&spec), Pending::Missing);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]

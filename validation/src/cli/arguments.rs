@@ -1,5 +1,6 @@
 //! The arguments of each command.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use base::gate::Verdict;
@@ -188,9 +189,21 @@ pub struct Run {
     /// With --specs, make only the run with this key
     #[arg(long, value_name = "KEY", requires = "specs", conflicts_with = "index")]
     pub only: Option<String>,
-    /// With --specs, make only the run of line N, counted from 0, as an array job does
-    #[arg(long, value_name = "N", requires = "specs")]
-    pub index: Option<usize>,
+    /// With --specs, make only the run of line N, counted from 0, or those of the lines N to M - 1, as a
+    /// task of an array job does; M may lie beyond the last line
+    #[arg(long, value_name = "N or N..M", requires = "specs", value_parser = lines)]
+    pub index: Option<Range<usize>>,
+}
+
+/// `N`, which is that line alone, or `N..M`.
+fn lines(text: &str) -> Result<Range<usize>, String> {
+    let number = |text: &str| text.parse::<usize>().ok();
+    let range = match text.split_once("..") {
+        Some((first, end)) => number(first).zip(number(end)),
+        None => number(text).and_then(|first| Some((first, first.checked_add(1)?))),
+    };
+    let range = range.filter(|(first, end)| first < end).map(|(first, end)| first..end);
+    range.ok_or_else(|| "expected N or N..M with N < M, whole numbers, as in 3 or 20..40".into())
 }
 
 /// How much to run.
@@ -200,6 +213,8 @@ pub enum Tier {
     Quick,
     /// About twenty minutes
     Full,
+    /// About a day on one core, for clusters: finer ladders, more starts, all that gates detect
+    Deep,
 }
 
 impl From<Tier> for case::Tier {
@@ -207,6 +222,7 @@ impl From<Tier> for case::Tier {
         match tier {
             Tier::Quick => case::Tier::Quick,
             Tier::Full => case::Tier::Full,
+            Tier::Deep => case::Tier::Deep,
         }
     }
 }
@@ -225,6 +241,10 @@ pub struct Plan {
     /// Variants of the sweep, separated by commas; by default that of `touchstone run`
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub variant: Vec<String>,
+    /// Also write a table of the time and memory that each run is estimated to take, one row a line of the
+    /// plan, and tell their sum; the deep tier tells the sum in any case
+    #[arg(long, value_name = "FILE")]
+    pub estimates: Option<PathBuf>,
 }
 
 /// For whom a problem is written.
@@ -397,6 +417,10 @@ pub struct Report {
     /// made and their records stored in the folder `records` inside that of --out
     #[arg(long, value_name = "DIR", conflicts_with = "fresh")]
     pub store: Option<PathBuf>,
+    /// With --store, judge only what is there, and list every run without a record: missing, running,
+    /// stopped or failed
+    #[arg(long, requires = "store")]
+    pub partial: bool,
     #[command(flatten)]
     pub reuse: Reuse,
     #[command(flatten)]

@@ -1,13 +1,16 @@
 //! What the runs of a plan take, estimated before the first of them: what plans say is a guess.
+//! `plan --estimates` writes the table, and the sum is told.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, PoisonError};
 
+use ::report::{counted, seconds, sig};
+use base::files::{Cell, CsvTable, FileError};
 use base::spec::{RunSpec, Task};
 use harness::{
     context::Context,
     make::{Job, Making},
-    size::Size,
+    size::{self, Size},
 };
 use rayon::prelude::*;
 
@@ -19,10 +22,70 @@ const SIMULATIONS: f64 = 3.0;
 pub fn estimate(jobs: &mut [Job], making: &Making) {
     jobs.par_iter_mut().filter(|_| !making.is_interrupted()).for_each(|job| {
         if let Some(size) = size(job, making.allow_long) {
-            let is_one = job.planned.spec.task == Task::Simulate;
-            job.planned.seconds = if is_one { 1.0 } else { SIMULATIONS } * size.seconds();
+            job.planned.seconds = time(&job.planned.spec, &size);
         }
     });
+}
+
+/// Processor time of a run, one simulation or several of this size \[s\].
+fn time(spec: &RunSpec, size: &Size) -> f64 {
+    if spec.task == Task::Simulate { size.seconds() } else { SIMULATIONS * size.seconds() }
+}
+
+/// What each of the runs of a plan takes, in its order; nothing of a run that is refused.
+pub struct Estimates(Vec<Option<Size>>);
+
+impl Estimates {
+    /// Those of these runs, long ones included.
+    pub fn of(jobs: &[Job], making: &Making) -> Self {
+        let of = |job: &Job| if making.is_interrupted() { None } else { size(job, true) };
+        Self(jobs.par_iter().map(of).collect())
+    }
+
+    fn of_jobs<'a>(&'a self, jobs: &'a [Job]) -> impl Iterator<Item = (&'a RunSpec, &'a Size)> {
+        let of = jobs.iter().map(|job| &job.planned.spec).zip(&self.0);
+        of.filter_map(|(spec, size)| Some((spec, size.as_ref()?)))
+    }
+
+    /// A row a line of the plan, with its number for `run --index`.
+    pub fn table(&self, jobs: &[Job]) -> Result<Vec<u8>, FileError> {
+        let head = ["index[-]", "key[-]", "case[-]", "variant[-]", "time[s]", "memory[MB]"];
+        let mut table = CsvTable::new(&head)?;
+        for (index, (job, size)) in jobs.iter().zip(&self.0).enumerate() {
+            let spec = &job.planned.spec;
+            let number = |of: &dyn Fn(&Size) -> f64| {
+                Cell::from(size.as_ref().map(of).filter(|number| number.is_finite()))
+            };
+            table.cells(&[
+                Cell::Text(index.to_string()),
+                Cell::Text(spec.key().to_string()),
+                Cell::from(spec.case.as_str()),
+                Cell::from(spec.variant.as_str()),
+                number(&|size| time(spec, size)),
+                number(&|size| 1e-6 * size.bytes()),
+            ])?;
+        }
+        Ok(table.into_bytes())
+    }
+
+    /// Their sum, the longest and the largest of them, and how many are refused.
+    pub fn sum(&self, jobs: &[Job]) -> String {
+        let times: Vec<f64> = self.of_jobs(jobs).map(|(spec, size)| time(spec, size)).collect();
+        let (sum, longest) = times.iter().fold((0.0, 0.0_f64), |(a, b), t| (a + t, b.max(*t)));
+        let largest = self.of_jobs(jobs).map(|(_, size)| size.bytes()).fold(0.0, f64::max);
+        let long = self.of_jobs(jobs).filter(|(_, size)| size.is_too_much()).count();
+        format!(
+            "estimate: {}, {} refused; about {} on one core, the longest {}; memory of the largest {} MB; \
+             {long} of more than {} or {} GB a simulation need --allow-long",
+            counted(jobs.len(), "run", "runs"),
+            self.0.iter().filter(|size| size.is_none()).count(),
+            seconds(sum),
+            seconds(longest),
+            sig(1e-6 * largest, 2),
+            seconds(size::MOST_SECONDS),
+            sig(1e-9 * size::MOST_BYTES, 2),
+        )
+    }
 }
 
 /// The size of the simulation of a job, which ends as soon as it has told it.

@@ -73,7 +73,7 @@ pub fn read(folder: &Path) -> Result<Option<String>, Failure> {
 /// Everything that a suite decided: `verify --json` and `verdicts.json` of a report.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Verdicts {
-    /// `quick` or `full`
+    /// `quick`, `full` or `deep`
     pub tier: String,
     /// commit of the program
     pub commit: String,
@@ -223,6 +223,7 @@ pub fn tier_name(tier: Tier) -> &'static str {
     match tier {
         Tier::Quick => "quick",
         Tier::Full => "full",
+        Tier::Deep => "deep",
     }
 }
 

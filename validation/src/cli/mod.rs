@@ -25,6 +25,7 @@ mod list;
 mod man;
 mod outcome;
 mod output;
+mod partial;
 mod plan;
 mod profile;
 mod progress;
@@ -228,10 +229,7 @@ fn tell_trouble(made: &Made) {
     tell(&made.unsound.values().map(again).collect::<Vec<_>>());
     let lost = |error: &StoreError| format!("a record could not be stored: {error}");
     tell(&made.not_kept.values().map(lost).collect::<Vec<_>>());
-    let failed = |(key, failed): (&RunKey, &Failed)| match failed {
-        Failed::Error(error) => format!("run {key} has no record: {error}"),
-        Failed::Bug => format!("run {key} has no record: it ended by the bug of which was told"),
-    };
+    let failed = |(key, failed): (&RunKey, &Failed)| format!("run {key} has no record: {failed}");
     tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
     let unread = |error: &StoreError| format!("{error}; the submission does not count");
     tell(&made.unread.iter().map(unread).collect::<Vec<_>>());

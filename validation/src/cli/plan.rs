@@ -1,12 +1,16 @@
 //! `plan`: runs as JSON lines.
 
-use base::spec::RunSpec;
+use base::{files, spec::RunSpec};
 use harness::{
-    case::{self, Case},
+    case::{self, Case, Planned, Tier},
+    make::Job,
     plan,
 };
+use validation::cases;
 
-use super::{Exit, Failure, Outcome, World, arguments, list::default_variant, output};
+use super::{
+    Exit, Failure, Outcome, World, arguments, estimate::Estimates, list::default_variant, output,
+};
 
 pub fn plan(arguments: &arguments::Plan, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
@@ -23,8 +27,32 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Outcome {
         sweep(case, &arguments.variant, &arguments.set, world)?
     };
     let lines: Vec<String> = specs.iter().map(|spec: &RunSpec| spec.canonical() + "\n").collect();
+    if arguments.estimates.is_some() || arguments.tier == arguments::Tier::Deep {
+        estimate(specs, arguments, world)?;
+    }
     output::print(&lines.concat())?;
     Ok(Exit::Pass)
+}
+
+/// Tells what the runs take together, and writes what each of them takes.
+fn estimate(
+    specs: Vec<RunSpec>,
+    arguments: &arguments::Plan,
+    world: &World,
+) -> Result<(), Failure> {
+    let job = |spec: RunSpec| {
+        Ok(Job { case: cases::find_in(world.cases, &spec.case)?, planned: Planned::new(spec) })
+    };
+    let jobs = specs.into_iter().map(job).collect::<Result<Vec<Job>, Failure>>()?;
+    let estimates = Estimates::of(&jobs, &world.making(Tier::Quick));
+    if world.is_interrupted() {
+        return Err(Failure::interrupted("no plan is printed"));
+    }
+    if let Some(path) = &arguments.estimates {
+        files::write_atomically(path, &estimates.table(&jobs)?)?;
+    }
+    output::say(&estimates.sum(&jobs));
+    Ok(())
 }
 
 /// More runs than this are no sweep but a mistake.

@@ -10,7 +10,7 @@ use validation::page;
 use super::{
     Failure, Outcome, World, arguments, export,
     judged::{VERDICTS, Verdicts},
-    output,
+    output, partial,
     summary::summary,
     verify,
 };
@@ -19,8 +19,14 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
     export::check(&arguments.export)?;
     let folder = OutputFolder::create(&arguments.out)?;
-    let tier = arguments.tier.into();
+    let (tier, mut listed) = (arguments.tier.into(), String::new());
     let suite = match &arguments.store {
+        Some(store) if arguments.partial => {
+            let any_build = arguments.reuse.any_build;
+            let (suite, list) = partial::of_store(world.cases, tier, store, any_build, world)?;
+            listed = list;
+            suite
+        }
         Some(store) => {
             verify::of_store(world.cases, tier, store, arguments.reuse.any_build, world)?
         }
@@ -51,7 +57,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         return Err(Failure::usage(reasons.join("\n")));
     }
     let took = report::seconds(start.elapsed().as_secs_f64());
-    output::print(&format!("{}\n{}\n", suite.counts().headline(), path.display()))?;
+    output::print(&format!("{listed}{}\n{}\n", suite.counts().headline(), path.display()))?;
     output::say(&format!("the page shows {} in {took}", verify::runs(&suite)));
     match sound {
         Ok(_) => Ok(verify::exit(&suite)),

@@ -91,12 +91,13 @@ fn planned(
     let is_empty = |(_, line): &(usize, &str)| line.trim().is_empty();
     let mut lines: Vec<(usize, &str)> =
         text.lines().enumerate().filter(|line| !is_empty(line)).collect();
-    if let Some(index) = arguments.index {
+    if let Some(index) = &arguments.index {
         let count = lines.len();
-        lines = lines.get(index).copied().into_iter().collect();
+        lines = lines.into_iter().take(index.end).skip(index.start).collect();
         if lines.is_empty() {
             return Err(Failure::usage(format!(
-                "there is no run {index}; the file has {}, counted from 0",
+                "there is no run {}; the file has {}, counted from 0",
+                index.start,
                 counted(count, "run", "runs")
             )));
         }

@@ -322,8 +322,14 @@ fn records_are_reused_judged_rendered_and_compared() {
     // The gates of `wrong` are gone in the other direction.
     assert_eq!(good("touchstone compare OUT/c OUT/a"), Exit::GateFailed);
     assert_eq!(good("touchstone compare OUT/c/records OUT/a/records"), Exit::GateFailed);
-    // A store that lacks a run fails its gates rather than passing over them.
+    // A store that lacks a run fails its gates rather than passing over them, unless that is asked for.
     assert_eq!(on(&SOUND, "touchstone judge --store OUT/a/records"), Exit::GateFailed);
+    assert_eq!(on(&SOUND, "touchstone report --store OUT/a/records --out OUT/d"), Exit::GateFailed);
+    let partial = "touchstone report --store OUT/a/records --out OUT/d --partial";
+    assert_eq!(on(&SOUND, partial), Exit::Pass);
+    assert!(read("d/index.html").contains("Of the runs of this case are without a record"));
+    assert_eq!(good(partial), Exit::Pass);
+    assert!(!read("d/index.html").contains("without a record"));
 }
 
 #[test]
@@ -338,11 +344,17 @@ fn a_plan_is_run_line_by_line() {
     };
     let count = || std::fs::read_dir(folder.path().join("store")).expect("a store").count();
     assert_eq!(go("--index 2"), Exit::Usage);
+    assert_eq!(go("--index 2..4"), Exit::Usage);
     assert_eq!(go("--index 1"), Exit::Diverged);
     assert_eq!(count(), 1);
     assert_eq!(go(&format!("--only {}", spec("right").key())), Exit::Pass);
     assert_eq!(go("--only 0123456789abcdef"), Exit::Usage);
     assert_eq!((go(""), count()), (Exit::Diverged, 2));
+    assert_eq!((go("--index 0..1"), go("--index 0..9")), (Exit::Pass, Exit::Diverged));
+    for wrong in ["1..1", "3..2", "..2", "1..", "-1", "1...2", "18446744073709551615", "a"] {
+        let line = format!("touchstone run --specs f --store s --index={wrong}");
+        assert!(Arguments::try_parse_from(line.split(' ')).is_err(), "{wrong}");
+    }
 }
 
 /// How `run --specs` of these lines ends, and how many records there are then.

@@ -1,5 +1,6 @@
 //! `verify` and `judge`: plans of cases, judged.
 
+use std::path::Path;
 use std::time::Instant;
 
 use ::report;
@@ -7,7 +8,7 @@ use harness::{
     case::{Case, Tier},
     make::{self, Making, Stored},
     store::Store,
-    suite::{self, Suite},
+    suite::{self, Plans, Suite},
 };
 
 use super::{
@@ -107,22 +108,11 @@ pub fn run(
 pub fn of_store(
     cases: &[&'static dyn Case],
     tier: Tier,
-    path: &std::path::Path,
+    path: &Path,
     any_build: bool,
     world: &World,
 ) -> Result<Suite, Failure> {
-    world.check_references(cases)?;
-    if !path.is_dir() {
-        return Err(Failure::usage(format!("the store {} does not exist", path.display())));
-    }
-    let store = Store::to_read(path);
-    let plans = suite::plans(cases, tier);
-    let Stored { made, missing, other } = world.stored(&plans, &store, any_build);
-    if made.interrupted {
-        let words = "nothing is judged; the same command reads the store from its beginning";
-        return Err(Failure::interrupted(words));
-    }
-    tell_trouble(&made);
+    let (plans, Stored { made, missing, other }) = stored(cases, tier, path, any_build, world)?;
     if !missing.is_empty() {
         let (all, missing) = (made.reused + missing.len(), missing.len() - other);
         output::say(&format!(
@@ -132,4 +122,26 @@ pub fn of_store(
         ));
     }
     Ok(suite::judge(plans, tier, made))
+}
+
+/// The plans of a tier, and what a store has of them.
+pub fn stored(
+    cases: &[&'static dyn Case],
+    tier: Tier,
+    path: &Path,
+    any_build: bool,
+    world: &World,
+) -> Result<(Plans, Stored), Failure> {
+    world.check_references(cases)?;
+    if !path.is_dir() {
+        return Err(Failure::usage(format!("the store {} does not exist", path.display())));
+    }
+    let plans = suite::plans(cases, tier);
+    let stored = world.stored(&plans, &Store::to_read(path), any_build);
+    if stored.made.interrupted {
+        let words = "nothing is judged; the same command reads the store from its beginning";
+        return Err(Failure::interrupted(words));
+    }
+    tell_trouble(&stored.made);
+    Ok((plans, stored))
 }

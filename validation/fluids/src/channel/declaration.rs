@@ -180,8 +180,8 @@ fn lines(channel: Channel, variant: &str) -> Vec<CurveOf> {
 fn budgets(channel: Channel, accuracy: &Accuracy, tier: Tier) -> Budgets {
     let variants: &[&str] = match (tier, channel.flow) {
         (Tier::Quick, _) => &["seed"],
-        (Tier::Full, Flow::Couette) => &["seed", "plain"],
-        (Tier::Full, Flow::Poiseuille) => &["seed", "plain", "curved"],
+        (_, Flow::Couette) => &["seed", "plain"],
+        (_, Flow::Poiseuille) => &["seed", "plain", "curved"],
     };
     let of = |variant: &&'static str| Budget { variant, changes: changes(channel, variant, tier) };
     let about = "Runs have 20 rows and Re 0.5.".into();

@@ -33,10 +33,10 @@ pub fn is_stable(record: &Record) -> bool {
 /// Couette flow does not have.
 pub fn limits(channel: Channel, tier: Tier) -> StepLimits {
     let variants: Vec<&str> = match (channel.flow, tier) {
-        (Flow::Couette, Tier::Full) => BEFORE.iter().map(|(variant, _)| *variant).collect(),
         (Flow::Couette, Tier::Quick) => vec!["seed", "interface-wall", "plain", "modern"],
-        (Flow::Poiseuille, Tier::Full) => vec!["seed", "curved"],
+        (Flow::Couette, _) => BEFORE.iter().map(|(variant, _)| *variant).collect(),
         (Flow::Poiseuille, Tier::Quick) => vec!["seed"],
+        (Flow::Poiseuille, _) => vec!["seed", "curved"],
     };
     let about = format!(
         "The default step of each variant, and how many times longer it could be, for 20 rows between walls \

@@ -195,7 +195,7 @@ pub fn is_stable(record: &Record) -> bool {
 fn limits(tier: Tier) -> StepLimits {
     let (n, variants): (usize, &[&'static str]) = match tier {
         Tier::Quick => (5, &[BEST]),
-        Tier::Full => (10, &["modern", BEST, "consistent"]),
+        _ => (10, &["modern", BEST, "consistent"]),
     };
     let about = "The longest time step with which the flow at Re 50 goes on for 3 H/U_b from the reference \
                  without diverging or doubling its kinetic energy, by bisection, over the limit of linear \

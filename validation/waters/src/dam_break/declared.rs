@@ -121,7 +121,7 @@ const CHANGES: [(&str, &str, Set, Option<&str>); 9] = [
 fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
     let (n, variants): (usize, &[&str]) = match tier {
         Tier::Quick => (10, &["modern"]),
-        Tier::Full => (20, &["modern", "seed"]),
+        _ => (20, &["modern", "seed"]),
     };
     let of = |variant: &&'static str| {
         let has =

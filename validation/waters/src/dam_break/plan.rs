@@ -109,7 +109,7 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     }
     let finest = match tier {
         Tier::Quick => [(Free, 40), (Tank, 30)],
-        Tier::Full => [(Free, 80), (Tank, 120)],
+        _ => [(Free, 80), (Tank, 120)],
     };
     for Row { group, variant, settings, run } in &mut table.rows {
         if finest.contains(&(*group, settings.n)) {

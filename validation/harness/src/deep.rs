@@ -1,0 +1,122 @@
+//! The deep tier: what the full tier declares, with ladders that go two levels further, maps of 20 starts a
+//! cell, and tables of what gates detect over every judged run. It is made for clusters: its runs are
+//! independent of each other, and some may take more than a run may unless that is asked for.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use base::functions::powf;
+use base::spec::{Keep, RunKey, RunSpec, Task};
+use serde_json::Value;
+
+use crate::{
+    case::{self, Case, Planned, Tier},
+    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level, Map},
+    plan,
+};
+
+/// Levels by which a ladder of the deep tier is longer.
+pub const FINER: i32 = 2;
+/// Starts of a cell of a map that has several.
+pub const STARTS: usize = 20;
+
+/// The declaration of the deep tier from that of the full one.
+pub fn deepened(mut declared: Declaration, case: &dyn Case) -> Declaration {
+    watch_all(&mut declared, case);
+    declared.accuracy.iter_mut().for_each(|accuracy| refine(accuracy, case));
+    declared.maps.iter_mut().for_each(|map| start_often(map, case));
+    declared
+}
+
+/// Ladders, and the finest run that their errors are the distances from, go on by their last ratio.
+fn refine(accuracy: &mut Accuracy, case: &dyn Case) {
+    if let ErrorOf::Distance { finest, .. } = &mut accuracy.error {
+        let of_variant = accuracy.ladders.iter().find(|ladder| ladder.variant == finest.variant);
+        let longer = of_variant.and_then(|ladder| finer(ladder, finest, FINER, case));
+        *finest = longer.map_or_else(|| finest.clone(), |level| level.run.spec);
+    }
+    for ladder in &mut accuracy.ladders {
+        let Some(last) = ladder.levels.last().map(|level| level.run.spec.clone()) else { continue };
+        let next = |k| finer(ladder, &last, k, case);
+        let more: Vec<Level> = (1..=FINER).filter_map(next).collect();
+        ladder.levels.extend(more);
+    }
+    accuracy.about += " In the deep tier each ladder goes two levels further by the ratio of its last two, \
+                       and so does the finest run, if errors are distances from one.";
+}
+
+/// A run `steps` levels finer: each number in which the last two levels of the ladder differ goes on by their
+/// ratio, whole numbers rounded. None if the case has no such run.
+fn finer(ladder: &Ladder, from: &RunSpec, steps: i32, case: &dyn Case) -> Option<Level> {
+    let [.., coarse, fine] = ladder.levels.as_slice() else { return None };
+    let number = |level: &Level, name: &String| level.run.spec.settings.get(name)?.as_f64();
+    let (mut spec, mut spacing) = (RunSpec { keep: Keep::default(), ..from.clone() }, fine.spacing);
+    for (name, value) in from.settings.as_object()? {
+        let Some((a, b)) = number(coarse, name).zip(number(fine, name)).filter(|(a, b)| a != b)
+        else {
+            continue;
+        };
+        let exact = value.as_f64()? * powf(b / a, f64::from(steps));
+        let next = if value.is_u64() { Value::from(exact.round() as u64) } else { exact.into() };
+        spacing = match value.is_u64() {
+            true => fine.spacing * b / next.as_f64()?,
+            false => fine.spacing * powf(fine.spacing / coarse.spacing, f64::from(steps)),
+        };
+        spec = spec.with_setting(name, next);
+    }
+    let is_finer = spacing < fine.spacing;
+    let spec = case::resolved(case, spec).ok().filter(|_| is_finer)?;
+    let label = relabelled(&fine.label, fine.spacing / spacing);
+    Some(Level { run: Planned::new(spec), spacing, label })
+}
+
+/// The resolution in words with its number, such as 80 in `80 rows` or `80 x 80`, so many times larger.
+fn relabelled(label: &str, times: f64) -> String {
+    let is_other = |c: char| !c.is_ascii_digit();
+    let number = label.split(is_other).find(|digits| !digits.is_empty()).unwrap_or_default();
+    match number.parse::<f64>() {
+        Ok(value) => label.replace(number, &(value * times).round().to_string()),
+        Err(_) => format!("{label}, {times:.2} times finer"),
+    }
+}
+
+/// Adds starts to the cells of a map: values of the one setting in which the starts of a cell differ, spread
+/// by equal ratios between the least and the largest of the map.
+fn start_often(map: &mut Map, case: &dyn Case) {
+    let cells = || map.panels.iter().flat_map(|panel| &panel.cells).flatten();
+    let mut values: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for (one, other) in cells().flat_map(|cell| cell.iter().zip(cell.iter().skip(1))) {
+        for (name, value) in one.settings.as_object().into_iter().flatten() {
+            let pair = [Some(value), other.settings.get(name)].map(|v| v.and_then(Value::as_f64));
+            if let [Some(a), Some(b)] = pair
+                && a != b
+            {
+                values.entry(name.clone()).or_default().extend([a, b]);
+            }
+        }
+    }
+    let mut values = values.into_iter();
+    let (Some((name, of)), None) = (values.next(), values.next()) else { return };
+    let (least, most) = of.iter().fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
+    let panels = map.panels.iter_mut().flat_map(|panel| &mut panel.cells);
+    for cell in panels.flatten().filter(|cell| !cell.is_empty() && least > 0.0) {
+        let more = STARTS.saturating_sub(cell.len());
+        // A quarter off the middle of each part, so that none falls on a start that is there.
+        let at = |k| powf(most / least, (k as f64 + 0.25) / more as f64) * least;
+        let start = |k| case::resolved(case, cell[0].clone().with_setting(&name, at(k))).ok();
+        let all: Vec<RunSpec> = (0..more).filter_map(start).collect();
+        cell.extend(all);
+    }
+}
+
+/// Errors of constants are searched in every judged run of the case, not in the few of the full tier.
+fn watch_all(declared: &mut Declaration, case: &dyn Case) {
+    let all = [case.plan(Tier::Full), declared.runs()].concat();
+    let Some(sensitivity) = &mut declared.sensitivity else { return };
+    let mut known: BTreeSet<RunKey> = sensitivity.runs.iter().map(RunSpec::key).collect();
+    for Planned { spec, gates, .. } in plan::merged(all) {
+        let is_healthy = spec.task == Task::Simulate && spec.mutation.is_none();
+        if is_healthy && !gates.is_empty() && known.insert(spec.key()) {
+            sensitivity.runs.push(spec);
+        }
+    }
+}

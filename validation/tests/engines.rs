@@ -1,0 +1,180 @@
+//! Plans made by existing engines, with the files of `validation/contrib`: the records are those of a local
+//! run. An engine that is not installed is skipped, which the output says.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use base::record::{Cost, Record};
+use harness::store::Store;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_touchstone");
+
+fn contrib(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("contrib").join(name)
+}
+
+/// A command in a folder that knows the program by the variable that the files of the engines read.
+fn command(program: &str, folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(program);
+    command.current_dir(folder).args(arguments).env("TOUCHSTONE", PROGRAM);
+    command
+}
+
+fn succeeds(mut command: Command) -> bool {
+    command.output().is_ok_and(|output| output.status.success())
+}
+
+#[track_caller]
+fn run(mut command: Command) {
+    let output = command.output().unwrap();
+    let words = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{command:?}: {words}");
+}
+
+/// A sweep of short runs, among them one that diverges, in a file of JSON lines.
+fn plan(folder: &Path, end: &str) -> PathBuf {
+    let plan = |rest: &[&str]| {
+        let arguments = [&["plan", "couette", "--set=rows=8,10"], rest].concat();
+        let output = command(PROGRAM, folder, &arguments).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let sound = plan(&["--variant=seed,plain", &format!("--set=end={end}")]);
+    let far_beyond = plan(&["--variant=plain", "--set=dt=0.05", "--set=end=20"]);
+    let diverges =
+        far_beyond.lines().next().unwrap().replacen('{', r#"{"allow_unstable":true,"#, 1);
+    let lines = format!("{sound}{diverges}\n");
+    fs::write(folder.join("plan.jsonl"), lines).unwrap();
+    folder.join("plan.jsonl")
+}
+
+/// The records of a store, without what time and memory they took.
+fn records(store: &Path) -> Vec<Record> {
+    let without_times = |record: Record| {
+        let (wall_s, cpu_s, observing_s, solver_bytes) = (0.0, 0.0, 0.0, 0);
+        let cost = Cost { wall_s, cpu_s, observing_s, solver_bytes, ..record.cost };
+        Record { cost, ..record }
+    };
+    Store::all(store).unwrap().into_iter().map(without_times).collect()
+}
+
+/// Makes the plan here and by an engine, twice, as when it is submitted again.
+#[track_caller]
+fn gives_the_records_of_a_local_run(folder: &Path, engine: impl Fn(&str, &str) -> Command) {
+    let specs = plan(folder, "0.02");
+    let specs = specs.to_str().unwrap();
+    let here = command(PROGRAM, folder, &["run", "--specs", specs, "--store", "here"]).output();
+    assert_eq!(here.unwrap().status.code(), Some(3), "one diverges");
+    run(engine(specs, "there"));
+    run(engine(specs, "there"));
+    let [here, there] = ["here", "there"].map(|store| records(&folder.join(store)));
+    assert_eq!(here.len(), 5);
+    assert!(here == there, "records differ");
+}
+
+#[test]
+fn hyperqueue() {
+    let folder = tempfile::tempdir().unwrap();
+    if !succeeds(command("python3", folder.path(), &["-c", "import hyperqueue"])) {
+        return println!("skipped: python3 has no package hyperqueue");
+    }
+    let script = contrib("hyperqueue_tasks.py");
+    gives_the_records_of_a_local_run(folder.path(), |specs, store| {
+        command("python3", folder.path(), &[script.to_str().unwrap(), specs, store, "2"])
+    });
+}
+
+#[test]
+fn snakemake() {
+    let folder = tempfile::tempdir().unwrap();
+    if !succeeds(command("snakemake", folder.path(), &["--version"])) {
+        return println!("skipped: there is no snakemake");
+    }
+    let file = contrib("Snakefile");
+    gives_the_records_of_a_local_run(folder.path(), |specs, store| {
+        let config = [format!("specs={specs}"), format!("store={store}")];
+        let rest = ["--cores", "2", "--config", &config[0], &config[1]];
+        command("snakemake", folder.path(), &[&["-s", file.to_str().unwrap()], &rest[..]].concat())
+    });
+}
+
+/// A Slurm of this machine that stops at the end.
+struct Node(PathBuf);
+
+impl Node {
+    fn go(&self, action: &str) -> bool {
+        let (script, port) = (contrib("slurm_node.sh"), 20_000 + std::process::id() % 20_000);
+        let mut script =
+            command("sh", &self.0, &[script.to_str().unwrap(), action, self.0.to_str().unwrap()]);
+        // Daemons keep the pipes of who started them.
+        script.env("SLURM_PORT", port.to_string()).stdout(Stdio::null()).stderr(Stdio::null());
+        script.status().is_ok_and(|status| status.success())
+    }
+
+    fn command(&self, program: &str, arguments: &[&str]) -> Command {
+        let mut command = command(program, &self.0, arguments);
+        command.env("SLURM_CONF", self.0.join("slurm.conf"));
+        command
+    }
+}
+
+impl Drop for Node {
+    fn drop(&mut self) {
+        self.go("stop");
+    }
+}
+
+#[test]
+fn slurm() {
+    let folder = tempfile::tempdir().unwrap();
+    let node = Node(folder.path().to_path_buf());
+    if !node.go("start") {
+        return println!(
+            "skipped: slurmctld, slurmd and munged cannot be started; this needs root"
+        );
+    }
+    let start = Instant::now();
+    while !succeeds(node.command("srun", &["--immediate=2", "true"])) {
+        assert!(start.elapsed() < Duration::from_secs(60), "the node does not come up");
+        sleep(Duration::from_millis(200));
+    }
+    let script = contrib("slurm.sh");
+    gives_the_records_of_a_local_run(folder.path(), |specs, store| {
+        node.command("sh", &[script.to_str().unwrap(), specs, store, "2", "--wait"])
+    });
+}
+
+/// What was done before is kept, what was under way is told, and the same command makes it: the same record.
+#[test]
+fn a_worker_that_is_killed_costs_its_run_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let specs = plan(folder.path(), "20");
+    let run = |store: &str, index: &str| {
+        let rest = ["--store", store, "--threads", "1", "--index", index];
+        command(
+            PROGRAM,
+            folder.path(),
+            &[&["run", "--specs", specs.to_str().unwrap()], &rest[..]].concat(),
+        )
+    };
+    let store = folder.path().join("store");
+    let begun = || {
+        let names = fs::read_dir(&store).into_iter().flatten().flatten();
+        names.filter(|entry| entry.file_name().to_string_lossy().starts_with(".begun-")).count()
+    };
+    assert_eq!(run("store", "4").output().unwrap().status.code(), Some(3));
+    let mut worker = run("store", "2").stderr(Stdio::null()).spawn().unwrap();
+    let start = Instant::now();
+    while begun() == 0 && start.elapsed() < Duration::from_secs(20) {
+        sleep(Duration::from_millis(1));
+    }
+    worker.kill().unwrap(); // SIGKILL
+    worker.wait().unwrap();
+    assert_eq!((begun(), records(&store).len()), (1, 1), "it was killed in mid-run");
+    assert!(run("store", "2").output().unwrap().status.success());
+    assert_eq!((begun(), records(&store).len()), (0, 2));
+    assert!(run("whole", "2").output().unwrap().status.success());
+    assert!(records(&store).contains(&records(&folder.path().join("whole"))[0]));
+}
