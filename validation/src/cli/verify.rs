@@ -10,6 +10,8 @@ use harness::{
     suite::{self, Suite},
 };
 
+use validation::peers;
+
 use super::{
     Exit, Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
@@ -88,7 +90,7 @@ pub fn run(
     let jobs = make::jobs(plans.clone());
     let arguments::Reuse { any_build: reuse_other, fresh } = reuse;
     let making = Making { store: Some(store), reuse_other, fresh, ..world.making(tier) };
-    let made = world.make(&jobs, making, threads)?;
+    let mut made = world.make(&jobs, making, threads)?;
     if made.interrupted {
         let (kept, all) = (made.records.len() - made.not_kept.len(), jobs.len());
         return Err(Failure::interrupted(match fresh {
@@ -100,6 +102,7 @@ pub fn run(
             ),
         }));
     }
+    peers::add(&mut made, &plans);
     Ok(suite::judge(plans, tier, made))
 }
 
@@ -117,7 +120,7 @@ pub fn of_store(
     }
     let store = Store::to_read(path);
     let plans = suite::plans(cases, tier);
-    let Stored { made, missing, other } = world.stored(&plans, &store, any_build);
+    let Stored { mut made, missing, other } = world.stored(&plans, &store, any_build);
     if made.interrupted {
         let words = "nothing is judged; the same command reads the store from its beginning";
         return Err(Failure::interrupted(words));
@@ -131,5 +134,6 @@ pub fn of_store(
             judged::tier_name(tier)
         ));
     }
+    peers::add(&mut made, &plans);
     Ok(suite::judge(plans, tier, made))
 }
