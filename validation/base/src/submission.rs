@@ -4,6 +4,11 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+/// The code of a submission that this program wrote itself, as `export --solve` does.
+pub const OURS: &str = "touchstone";
+/// Key of the numerics of a record: the day of the session in which it was made with others, in turn.
+pub const SESSION: &str = "session";
+
 /// A run of another code.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -8,5 +8,6 @@
 pub mod cases;
 mod limitations;
 pub mod page;
+pub mod peers;
 pub mod stiffness;
 mod time;

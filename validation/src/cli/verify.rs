@@ -11,6 +11,8 @@ use harness::{
     suite::{self, Plans, Suite},
 };
 
+use validation::peers;
+
 use super::{
     Exit, Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
@@ -89,7 +91,7 @@ pub fn run(
     let jobs = make::jobs(plans.clone());
     let arguments::Reuse { any_build: reuse_other, fresh } = reuse;
     let making = Making { store: Some(store), reuse_other, fresh, ..world.making(tier) };
-    let made = world.make(&jobs, making, threads)?;
+    let mut made = world.make(&jobs, making, threads)?;
     if made.interrupted {
         let (kept, all) = (made.records.len() - made.not_kept.len(), jobs.len());
         return Err(Failure::interrupted(match fresh {
@@ -101,6 +103,7 @@ pub fn run(
             ),
         }));
     }
+    peers::add(&mut made, &plans);
     Ok(suite::judge(plans, tier, made))
 }
 
@@ -137,11 +140,12 @@ pub fn stored(
         return Err(Failure::usage(format!("the store {} does not exist", path.display())));
     }
     let plans = suite::plans(cases, tier);
-    let stored = world.stored(&plans, &Store::to_read(path), any_build);
+    let mut stored = world.stored(&plans, &Store::to_read(path), any_build);
     if stored.made.interrupted {
         let words = "nothing is judged; the same command reads the store from its beginning";
         return Err(Failure::interrupted(words));
     }
     tell_trouble(&stored.made);
+    peers::add(&mut stored.made, &plans);
     Ok((plans, stored))
 }

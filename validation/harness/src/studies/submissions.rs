@@ -1,34 +1,132 @@
-//! Runs that other codes made of a case: how they were judged, and as points beside our own ladders.
+//! Runs that other codes made of a case: how they were judged, and their errors over run time beside ours.
 
-use base::submission::Division;
-use report::Cell;
+use base::submission::{Division, OURS, SESSION, Submission};
+use report::{Axis, Cell, Colour, Figure, Legend, Plot, Series, percent, seconds};
+use serde_json::Value;
 
 use crate::{
     columns::Columns,
-    declare::{Accuracy, Declaration, Level, Peer},
+    declare::{Accuracy, Declaration, Level},
     runs::{JudgedRun, Runs},
     study::Study,
 };
 
-/// The submissions as other codes of an accuracy study: those whose problem is a level of a ladder.
-pub fn peers(accuracy: &Accuracy, runs: &Runs) -> Vec<Peer> {
-    let of = |run: &JudgedRun| {
+/// A submission with an error.
+struct Mark<'a> {
+    of: &'a Submission,
+    /// Code and scheme; of ours the variant.
+    name: String,
+    resolution: String,
+    /// When it was made together with others.
+    session: Option<&'a str>,
+    error: f64,
+    /// NaN if unknown \[s\].
+    seconds: f64,
+}
+
+/// The submissions that have an error of this study.
+fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
+    let of = |run: &'a JudgedRun| {
         let (record, of) = (&run.record, run.record.submission.as_ref()?);
-        let levels = accuracy.ladders.iter().chain(&accuracy.more).flat_map(|of| &of.levels);
-        let is_same = |level: &&Level| level.run.spec.settings == record.settings;
-        let level = levels.into_iter().find(is_same)?;
-        Some(Peer {
-            name: format!("{of} ({})", of.division),
-            label: level.label.clone(),
-            seconds: Some(record.cost.cpu_s).filter(|seconds| seconds.is_finite())?,
-            spacing: level.spacing,
+        let name = match of.code.as_str() {
+            OURS => format!("ours, {}", record.variant),
+            code => format!("{code}, {}", of.scheme),
+        };
+        Some(Mark {
+            of,
+            name,
+            resolution: resolution(accuracy, &record.settings),
+            session: record.numerics.get(SESSION).and_then(|day| day.as_str()),
             error: accuracy.error.value(record, runs)?,
-            timed: "processor time as submitted".into(),
+            seconds: record.cost.cpu_s,
         })
     };
-    let mut peers: Vec<Peer> = runs.submissions().iter().filter_map(of).collect();
-    peers.sort_by(|a, b| a.name.cmp(&b.name).then(b.spacing.total_cmp(&a.spacing)));
-    peers
+    let mut marks: Vec<Mark> = runs.submissions().iter().filter_map(of).collect();
+    marks.sort_by(|a, b| a.name.cmp(&b.name).then(a.seconds.total_cmp(&b.seconds)));
+    marks
+}
+
+/// The resolution in words: that of a level with the same value of the setting in which levels differ.
+fn resolution(accuracy: &Accuracy, settings: &Value) -> String {
+    let of = |level: &Level, key: &str| level.run.spec.settings[key].clone();
+    let ladders = || accuracy.ladders.iter().flat_map(|ladder| ladder.levels.windows(2));
+    let differs = |key: &&String| ladders().any(|two| of(&two[0], key) != of(&two[1], key));
+    let key = settings.as_object().and_then(|all| all.keys().find(differs));
+    let Some(key) = key else { return String::new() };
+    let level = ladders().flatten().find(|level| of(level, key) == settings[key]);
+    level.map_or_else(|| format!("{key} = {}", settings[key]), |level| level.label.clone())
+}
+
+/// Where another code is better than ours in the same session: in error at equal resolution, or in time at no
+/// more error, whatever the resolution.
+fn better(marks: &[Mark]) -> Option<String> {
+    let (ours, others): (Vec<&Mark>, Vec<&Mark>) = marks.iter().partition(|m| m.of.code == OURS);
+    if ours.is_empty() || others.is_empty() {
+        return None;
+    }
+    let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+    let mut found = Vec::new();
+    for peer in others {
+        let with = || ours.iter().filter(|own| own.session == peer.session);
+        let equal = with().filter(|own| own.resolution == peer.resolution);
+        let error = least(&mut equal.map(|own| own.error));
+        let who = format!("{} ({}, {})", peer.name, peer.resolution, peer.of.division);
+        if error.is_finite() && peer.error < error {
+            let [its, best] = [peer.error, error].map(|error| percent(error, 2));
+            found.push(format!("{who} has an error of {its}, the best of ours {best}"));
+        }
+        let as_good = with().filter(|own| own.error <= peer.error);
+        let time = least(&mut as_good.map(|own| own.seconds));
+        if time.is_finite() && peer.seconds < time {
+            let [its, best] = [peer.seconds, time].map(seconds);
+            found.push(format!("{who} takes {its}, the fastest of ours with no more error {best}"));
+        }
+    }
+    Some(match found.is_empty() {
+        true => "No other code below is more accurate than ours at equal resolution, or faster with no more \
+                 error."
+            .into(),
+        false => format!("Better than ours: {}.", found.join("; ")),
+    })
+}
+
+/// Error against run time, a panel a division.
+fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
+    let caption = "Runs of other codes, and ours of the same session in black: error over the time of the loop \
+                   on one core. Labels are resolutions."
+        .to_string();
+    let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
+    let panel = |division: Division| {
+        let is_of = |mark: &&Mark| mark.of.division == division || mark.of.code == OURS;
+        let shown: Vec<&Mark> = marks.iter().filter(is_of).collect();
+        let (x, y) = (Axis::log("run time on one core [s]"), Axis::log(&accuracy.label));
+        let plot = Plot::new(format!("{division} division"), x, y).legend(Legend::Outside);
+        let series = |(k, all): (usize, &[&Mark])| {
+            let points = all.iter().map(|mark| (mark.seconds, mark.error)).collect();
+            let labels = all.iter().map(|mark| mark.resolution.clone());
+            let series = Series::line_markers(&all[0].name, points).cycle(k).labels(labels);
+            if all[0].of.code == OURS { series.colour(Colour::BLACK) } else { series }
+        };
+        let layers = shown.chunk_by(|a, b| a.name == b.name).enumerate().map(series);
+        layers.fold(plot, Plot::layer)
+    };
+    let has = |division: &Division| {
+        marks.iter().any(|mark| mark.of.code != OURS && mark.of.division == *division)
+    };
+    let panels: Vec<Plot> =
+        [Division::Closed, Division::Open].into_iter().filter(has).map(panel).collect();
+    panels.into_iter().fold(figure.columns(1), Figure::panel)
+}
+
+/// Where and when the runs that the program contains were made.
+fn provenance(runs: &Runs) -> Option<String> {
+    let day = |run: &JudgedRun| run.record.numerics.get(SESSION)?.as_str().map(String::from);
+    let day = runs.submissions().iter().find_map(day)?;
+    Some(format!(
+        "Records that the program contains (`references/peers`) were made on {day} on another machine, ours in \
+         turn with those of other codes, each on one thread while other programs were at work. Their seconds \
+         compare with each other, not with those of other sections."
+    ))
 }
 
 /// All submissions of a case, if there are any: the closed division, then the open one.
@@ -37,12 +135,20 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
         return None;
     }
     let id = format!("{}-submissions", case.replace('_', "-"));
-    let study = Study::new(&id, "Runs of other codes")
-        .prose(
+    let accuracy = declared.accuracy.iter();
+    let found = accuracy.map(|of| (of, marks(of, runs))).find(|(_, marks)| !marks.is_empty());
+    let first = found.as_ref().and_then(|(_, marks)| better(marks));
+    let words = first.into_iter().chain(provenance(runs));
+    let study = words.fold(Study::new(&id, "Runs of other codes"), Study::prose);
+    let study = study.prose(
             "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
              the bounds of the same gates; known limitations of our own method are no excuse. A gate is not \
              applicable if the results do not determine its metric.",
         );
+    let study = match &found {
+        Some((accuracy, marks)) => study.block(figure(&format!("{id}-cost"), accuracy, marks)),
+        None => study,
+    };
     let of = |division: Division| {
         let is_of = |run: &&JudgedRun| {
             run.record.submission.as_ref().is_some_and(|of| of.division == division)
@@ -65,8 +171,8 @@ fn table(declared: &Declaration, caption: &str, of: Vec<&JudgedRun>, runs: &Runs
     let words =
         |run: &JudgedRun| run.record.submission.as_ref().map_or(String::new(), |of| of.to_string());
     let error = |run: &JudgedRun| {
-        let error = declared.accuracy.first().map(|accuracy| &accuracy.error);
-        let error = error.and_then(|error| error.value(&run.record, runs));
+        let mut of = declared.accuracy.iter();
+        let error = of.find_map(|of| of.error.value(&run.record, runs));
         error.map_or(Cell::text("–"), |error| Cell::percent(error, 2))
     };
     let gates = |run: &JudgedRun| {
