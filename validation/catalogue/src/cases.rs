@@ -4,7 +4,7 @@ pub use harness::case::find_in;
 use harness::case::{Case, RunError};
 
 use fluids::{couette, periodic_hill, poiseuille, taylor_couette, taylor_green};
-use lattice::{extremes, resting_box, wave};
+use lattice::{extremes, operators, resting_box, wave};
 use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
 use waters::{dam_break, elliptic_drop, hydrostatic};
 
@@ -27,6 +27,7 @@ pub const CASES: &[&dyn Case] = &[
     &wave::SHEAR_WAVE,
     &elastic_wave::ELASTIC_WAVE,
     &resting_box::RESTING_BOX,
+    &operators::OPERATORS,
     &extremes::EXTREMES,
 ];
 
