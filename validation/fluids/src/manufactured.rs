@@ -1,5 +1,5 @@
-//! A manufactured flow between two walls, whose force makes it an exact steady solution: what each combination
-//! of terms, walls and integrator makes of it has an order of accuracy. L = U = ρ = 1.
+//! A manufactured flow between two walls, whose force makes it an exact steady solution, so that each
+//! combination of terms, walls and integrator has an order of accuracy. L = U = ρ = 1.
 
 use nalgebra::Vector2;
 use solver::{
@@ -138,9 +138,10 @@ static CASE: Composed<ManufacturedSettings> = Composed {
         papers: Some(SEED[0]),
     },
     about: "Between walls at y = 0 and y = L, periodic along x with period L, a force that depends on the \
-            place makes u = U (sin(2 pi y/L) cos(2 pi x/L)/2, sin(pi y/L)^2 sin(2 pi x/L)) the exact steady \
-            flow, from rest, whatever the viscosity and the sound speed. At Re 0.5 particles move by less than \
-            0.06 L until it is steady, so that their lattice is strained and not mixed; at Re 10 it is mixed.",
+            place makes u = U (sin(2 pi y/L) cos(2 pi x/L)/2, sin(pi y/L)^2 sin(2 pi x/L)) the exact \
+            steady flow, from rest, whatever the viscosity and the sound speed. At Re 0.5 particles move by \
+            less than 0.06 L until it is steady, so that their lattice is strained and not mixed; at Re 10 \
+            it is mixed.",
     variants,
     is_stable: composed::completed,
     declaration: |_| Declaration::default(),
@@ -172,7 +173,7 @@ fn rules(m: &Method, s: &ManufacturedSettings) -> Result<harness::case::Rules, R
     Ok(flow(s, m, &Context::of_rules())?.rules)
 }
 
-/// Fluid at rest with the exact pressure, and rows of particles on and behind the walls if these are particles.
+/// Fluid at rest with the exact pressure, and rows of particles on and behind walls of particles.
 fn particles(m: &Method, flow: &UnitFlow) -> Vec<Particle> {
     let Medium { dx, eos, nu, .. } = flow.medium;
     let count = (1.0 / dx).round() as usize;
@@ -267,7 +268,7 @@ fn plan(tier: Tier) -> Vec<Planned> {
 
 /// Why the paper's terms have a floor.
 static LATTICE: Cause = Cause::new(
-    "The factor of a sum on a lattice depends on h/dx alone, so its error stays when both are refined together.",
+    "The factor of a sum on a lattice depends on h/dx alone, so its error stays when both are refined.",
     "More neighbours as h falls, or sums that are exact for linear fields.",
 );
 
@@ -302,8 +303,9 @@ fn gate(of: For, variant: &str) -> Gate {
     let gate = Gate::new(id, "order", Bound::Within(low, high), Evidence::Theory, because);
     let (reason, least, cause) = match of {
         For::Mixed if !CONSISTENT.contains(&variant) => (
-            "Noise of the viscous sum of particles that are out of order has the order -1 in h at fixed h/dx, \
-             and that of the others 0 or -1 (case `operators`), which the rest of the error hides in part.",
+            "The viscous sum of particles that are out of order has a noise of order -1 in h at fixed h/dx, \
+             and other sums one of order 0 or -1 (case `operators`), which the rest of the error hides in \
+             part.",
             -1.25,
             &MIXED,
         ),
@@ -328,15 +330,16 @@ fn levels(of: For, variant: &str, table: &Table, runs: &Runs) -> Vec<Level> {
     .collect()
 }
 
+const CAPTION: &str = "Relative L2 error of the velocity of a manufactured steady flow between walls, over \
+    the spacing, by variant: at Re 0.5 (left), where the lattice is strained and not mixed, and at Re 10.";
+
 fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
     let study = Study::new("manufactured-orders", "Orders of whole methods by a manufactured flow");
-    let figure = KINDS.into_iter().fold(
-        Figure::new("manufactured-orders", "Relative L2 error of the velocity of a manufactured steady flow between \
-            walls, over the spacing, by variant. The same flow at Re 0.5 (left), in which the lattice is strained \
-            and not mixed, and at Re 10 (right)."),
-        |figure, of| figure.panel(panel(of, &table, runs)),
-    );
+    let figure =
+        KINDS.into_iter().fold(Figure::new("manufactured-orders", CAPTION), |figure, of| {
+            figure.panel(panel(of, &table, runs))
+        });
     let study = study.block(figure.columns(2).panel_size(330.0, 280.0));
     let study = KINDS.into_iter().fold(study, |study, of| study.block(orders(of, &table, runs)));
     let all = KINDS.into_iter().flat_map(|of| ladders().map(move |variant| (of, variant)));
@@ -402,4 +405,62 @@ fn orders(of: For, table: &Table, runs: &Runs) -> report::Table {
         .num(["expected", "-"], move |variant| Cell::text(expected(variant)))
         .of(["error of the pressure, finest", "-"], finest, |error| Cell::percent(error, 2))
         .table(caption, ladders())
+}
+
+#[cfg(test)]
+mod tests {
+    use base::mutation::{Constant, Mutation};
+    use base::spec::RunSpec;
+    use harness::runs::Judged;
+    use maths::theory::channel::{Alignment, Channel, WallRule};
+    use solver::QuinticSpline;
+
+    use super::*;
+
+    /// The force would follow a viscosity that is wrong, and its solution with it.
+    #[test]
+    fn a_wrong_viscosity_or_force_is_no_part_of_the_solution() {
+        let error = |of: Option<Constant>| {
+            let mutation = of.map(|of| Mutation { of, factor: 1.1 });
+            let spec = RunSpec { mutation, ..CASE.spec("consistent", |s| s.n = 12) };
+            CASE.run(&spec, &Context::default()).expect("a run").value(L2).expect("measured")
+        };
+        let none = error(None);
+        for of in [Constant::Viscosity, Constant::BodyForce] {
+            assert!((error(Some(of)) - none).abs() > 0.03, "{of}: {} {none}", error(Some(of)));
+        }
+    }
+
+    /// The length of which the bounds of orders with interface walls make use.
+    #[test]
+    fn fluid_slips_along_interface_particles_by_a_twenty_fifth_of_a_spacing() {
+        let channel = Channel {
+            rows: 40,
+            width: 40.0,
+            nu: 1.0,
+            wall_velocity: [0.0, 40.0],
+            force: 0.0,
+            wall_rule: WallRule::InterfaceWall,
+            alignment: Alignment::Aligned,
+        };
+        let rows = channel.reduce::<QuinticSpline>(1.0, 1e-6).expect("rows");
+        let u = rows.steady().expect("a steady state");
+        let slope = u[20] - u[19];
+        assert!((20.0 / slope - 20.0 - 0.039).abs() < 1e-3, "{slope}");
+    }
+
+    /// Errors of a power law pass with its order and fail with another one.
+    #[test]
+    fn orders_outside_of_their_bounds_fail() {
+        for (variant, order, passes) in [
+            ("consistent", 2.0, true),
+            ("consistent", 1.4, false),
+            ("consistent-interface", 1.0, false),
+        ] {
+            let verdict = Judged::new(gate(For::Mixed, variant), Some(order)).judgement.verdict;
+            assert_eq!(verdict.is_failure(), !passes, "{variant} {order}");
+        }
+        let seed = |order| Judged::new(gate(For::Strained, "seed"), Some(order)).judgement.verdict;
+        assert!(seed(-0.1).is_failure() && !seed(1.3).is_failure() && !seed(2.0).is_failure());
+    }
 }

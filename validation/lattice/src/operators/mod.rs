@@ -33,7 +33,7 @@ base::settings! {
         /// particles along each side
         n: usize ["-"] in 8..=400 = 48,
         /// smoothing length over spacing
-        h_over_dx: f64 ["-"] in 0.5..=5.0 = 1.0,
+        h_over_dx: f64 ["-"] in 0.5..=8.0 = 1.0,
         /// largest displacement from the lattice along each axis; uniform
         disorder: f64 ["dx"] in 0.0..=0.5 = 0.2,
         /// seed of the displacements

@@ -41,9 +41,9 @@ const DENSITY: f64 = 0.5;
 /// η² of (6) \[h²\]: a guard against 0/0 and no more.
 const ETA2: f64 = 1e-6;
 
-/// The time step \[s\].
+/// The time step \[s\]; c₀ = 1.
 pub(super) fn step(m: &Medium) -> f64 {
-    STEP * m.h / m.eos.sound_speed
+    STEP * m.h
 }
 
 fn medium(method: &Method, s: &OperatorSettings) -> Medium {
@@ -109,7 +109,7 @@ impl Operator {
 }
 
 impl Subject {
-    /// The gain on a lattice: the symbol of the sum over that of the continuum, for a wave along the diagonal.
+    /// The gain on a lattice: the symbol of the sum over that of the continuum, for a diagonal wave.
     fn symbol(&self, method: &Method, s: &OperatorSettings, weight: &dyn Fn(f64) -> f64) -> f64 {
         let (ratio, dx) = (s.h_over_dx, 1.0 / s.n as f64);
         let phase = K * dx;

@@ -22,9 +22,9 @@ use super::{
 
 /// Why an operator does not converge.
 static DISORDERED: Cause = Cause::new(
-    "Sums over disordered neighbours do not cancel the lower orders of a field, which leaves a noise that \
-     does not fall with h at fixed h/dx.",
-    "Sums that are exact for linear fields (gradients) or parabolas (Laplacians), or more neighbours as h falls.",
+    "Sums over disordered neighbours do not cancel the lower orders of a field, and their noise does not \
+     fall with h.",
+    "Sums that are exact for linear fields (gradients) or parabolas (Laplacians), or more neighbours.",
 );
 
 /// What is refined: its runs, the metric, and the spacing by which an order is taken.
@@ -99,12 +99,12 @@ impl Refined {
             For::Lattice => (
                 within(0.2),
                 "The gain of a wave is that of smoothing, 1 - (kh)^2 times half the second moment of the \
-                 kernel: second order, and 0.12 less for a wave of kh = 0.55 (Quinlan, Basa & Lastiwka 2006).",
+                 kernel: second order (Quinlan, Basa & Lastiwka 2006).",
             ),
             For::Neighbours => (
                 within(0.4),
-                "Independent displacements of (h/dx)^2 neighbours leave the square root of their number: noise \
-                 falls as (dx/h)^2. At h/dx of a few the lattice itself adds to it.",
+                "Independent displacements of (h/dx)^2 neighbours leave the root of their number: noise falls \
+                 as (dx/h)^2. Where neighbours are few, the lattice itself adds to it.",
             ),
             For::Disorder => (within(0.15), "Noise is linear in small displacements."),
             _ if expected > 0.0 => (
@@ -123,9 +123,9 @@ impl Refined {
         match self.of {
             For::Resolution if expected <= 0.0 => {
                 let reason = format!(
-                    "The order of noise is {expected} by theory, the power of h that is left of the lowest \
-                     order of the field that the sum does not cancel, over the derivative that is sought; the \
-                     limitation is this number with 0.25 either way, for the rms of few independent samples."
+                    "The order of noise is {expected} by theory: the lowest order of the field that the sum \
+                     does not cancel, less that of the derivative that is sought. The limitation is this \
+                     number with 0.25 either way, for the rms of few independent samples."
                 );
                 gate.with_limitation(within(0.25), reason).because_of(&DISORDERED)
             }
@@ -177,9 +177,9 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 
 /// Errors of one kernel, a panel for each of what is refined.
 fn figure(laddered: &[&Subject], table: &Table, runs: &Runs) -> Figure {
-    let caption = "Operators of the quintic spline on a wave in a periodic square of side L: bias of the gain \
-                   on a lattice (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = \
-                   L/24) and over the displacement.";
+    let caption = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a lattice \
+                   (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = L/24) and \
+                   over the displacement.";
     let quintic = || laddered.iter().filter(|of| of.kernel == QUINTIC).enumerate();
     let panel = |(k, refined): (usize, &Refined)| {
         let label = if refined.metric == BIAS { "bias [-]" } else { "noise [-]" };
