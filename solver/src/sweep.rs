@@ -171,6 +171,7 @@ where
                 terms.pair(&pair, [own_derived, derived], &mut sum);
             }
             terms.finish(&own.common, shown, T::Sum::total::<V>(sum), rate);
+            terms.place(own.position, rate);
         }
     }
 }

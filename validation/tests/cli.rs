@@ -300,7 +300,7 @@ fn a_record_states_the_step_that_was_used_and_the_one_that_was_planned() {
 }
 
 /// A short run of each case.
-const SHORT: [&str; 18] = [
+const SHORT: [&str; 20] = [
     "couette --variant seed --set rows=8 --set end=0.1",
     "poiseuille --set rows=8 --set end=0.1",
     "taylor_green --set n=20 --set end=0.1",
@@ -319,6 +319,8 @@ const SHORT: [&str; 18] = [
     "elastic_wave",
     "extremes --set steps=40",
     "resting_box",
+    "operators --set n=16 --set steps=12",
+    "manufactured --set n=12",
 ];
 
 /// Of each case there are as many frames as asked for, at equal intervals and with all fields, and a profile

@@ -57,6 +57,9 @@ fn our_own_results_are_measured_as_the_run_was() {
         "dam_break --variant seed --set n=8 --set end=1",
         "elliptic_drop --set n=10",
         "taylor_couette --variant extrapolating-wall",
+        "operators --variant quintic-density --set n=16",
+        "operators --variant cubic-laplacian --set n=16",
+        "operators --variant wendland-divergence-corrected --set n=16 --set disorder=0",
     ];
     for line in cases {
         let folder = tempfile::tempdir().unwrap();

@@ -49,6 +49,10 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
     fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: T::Sum, rate: &mut Rate<X>) {
         self.0.finish(own, derived.0, sum, rate);
     }
+    #[inline(always)]
+    fn place(&self, position: Vector2<f64>, rate: &mut Rate<X>) {
+        self.0.place(position, rate);
+    }
 }
 
 #[cfg(test)]

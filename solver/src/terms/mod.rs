@@ -125,6 +125,9 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     );
     /// Adds the rates that follow from the sum to `rate`.
     fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>);
+    /// Adds the rates that depend on where a particle is \[m\], such as those of a force field.
+    #[inline(always)]
+    fn place(&self, _position: Vector2<f64>, _rate: &mut Rate<X>) {}
 }
 
 /// Implements [`Term`] for a tuple: each member in turn, in the order of the equation.
@@ -168,6 +171,10 @@ macro_rules! tuple_of_terms {
             #[inline(always)]
             fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
                 $(self.$index.finish(own, derived.$index, sum.$index, rate);)*
+            }
+            #[inline(always)]
+            fn place(&self, position: Vector2<f64>, rate: &mut Rate<X>) {
+                $(self.$index.place(position, rate);)*
             }
         }
     };

@@ -3,8 +3,8 @@
 pub use harness::case::find_in;
 use harness::case::{Case, RunError};
 
-use fluids::{couette, periodic_hill, poiseuille, taylor_couette, taylor_green};
-use lattice::{extremes, resting_box, wave};
+use fluids::{couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green};
+use lattice::{extremes, operators, resting_box, wave};
 use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
 use waters::{dam_break, elliptic_drop, hydrostatic};
 
@@ -17,6 +17,7 @@ pub const CASES: &[&dyn Case] = &[
     &rings::RUBBER_RINGS,
     taylor_green::TAYLOR_GREEN,
     taylor_couette::TAYLOR_COUETTE,
+    manufactured::MANUFACTURED,
     &elliptic_drop::ELLIPTIC_DROP,
     &hydrostatic::HYDROSTATIC,
     &elastic_bar::ELASTIC_BAR,
@@ -27,6 +28,7 @@ pub const CASES: &[&dyn Case] = &[
     &wave::SHEAR_WAVE,
     &elastic_wave::ELASTIC_WAVE,
     &resting_box::RESTING_BOX,
+    &operators::OPERATORS,
     &extremes::EXTREMES,
 ];
 

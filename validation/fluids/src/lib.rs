@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod channel;
 pub mod couette;
+pub mod manufactured;
 mod peers;
 pub mod periodic_hill;
 pub mod poiseuille;
@@ -19,4 +20,5 @@ pub const CASES: &[&dyn Case] = &[
     periodic_hill::PERIODIC_HILL,
     taylor_green::TAYLOR_GREEN,
     taylor_couette::TAYLOR_COUETTE,
+    manufactured::MANUFACTURED,
 ];

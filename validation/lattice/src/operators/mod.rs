@@ -1,0 +1,221 @@
+//! Operators alone: density, gradient, Laplacian and divergence, one a variant, of a field whose exact values
+//! are known, on a lattice and on disordered particles. Where a flow shows only that something is wrong, this
+//! names the operator.
+//!
+//! A few steps of 1e-6 h/c₀ are made, and an operator is the rate at which velocity or density changes over
+//! them, so that any code can hand it in as the particles at the end. The field is a wave, so that what an
+//! operator makes of it has two parts: its projection on the exact values, of which the gain is a number that
+//! theory knows on a lattice, and the rest, which is noise of disorder.
+
+mod plan;
+mod run;
+mod study;
+#[cfg(test)]
+mod tests;
+
+use std::rc::Rc;
+
+use harness::{
+    composed::{self, Best, Composed, Composition},
+    context::Context,
+    declare::Declaration,
+    method::{FromMedium, Medium, Method},
+};
+use solver::{
+    Compose, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
+    CubicSpline, Kernel, Leapfrog, Open, Pressure, QuinticSpline, Rate, Smoothing, Tait, Term,
+    Viscosity, WendlandC2, lane::Lane, particles::Common, terms::Pair,
+};
+
+base::settings! {
+    /// Settings of an operator on particles in a periodic square, whose side, density and sound speed are 1.
+    pub struct OperatorSettings {
+        /// particles along each side
+        n: usize ["-"] in 8..=400 = 48,
+        /// smoothing length over spacing
+        h_over_dx: f64 ["-"] in 0.5..=8.0 = 1.0,
+        /// largest displacement from the lattice along each axis; uniform
+        disorder: f64 ["dx"] in 0.0..=0.5 = 0.2,
+        /// seed of the displacements
+        seed: usize ["-"] in 0..=1000000 = 1,
+        /// steps of 1e-6 h/c0 over which rates are taken
+        steps: usize ["-"] in 1..=1000 = 2,
+    }
+}
+
+/// What is measured of a variant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Operator {
+    /// Σ m W.
+    Density,
+    /// −∇p/ρ.
+    Gradient,
+    /// ν ∇²u.
+    Laplacian,
+    /// ∇·u.
+    Divergence,
+}
+
+/// A variant: an operator of a kernel.
+struct Subject {
+    name: &'static str,
+    kernel: &'static str,
+    operator: Operator,
+    /// Is it exact for linear fields on any particles?
+    is_corrected: bool,
+    adjust: fn(&mut OperatorSettings),
+    method: fn() -> Method,
+}
+
+impl Subject {
+    /// The power of h of the noise at fixed h/dx. In Σ V G(r) of a smooth G, displacements δ of the
+    /// neighbours leave Σ V ∇G·δ, whose rms is |δ| dx (∫|∇G|²)^½. With the part of the field that G does not
+    /// cancel, of order q in kr, and the derivative of order d that is sought, this is ε (dx/h)² (kh)^(q−d).
+    fn order(&self) -> f64 {
+        match (self.operator, self.is_corrected) {
+            (Operator::Density, _) => 0.0,        // q = 0, d = 0
+            (Operator::Gradient, false) => -1.0,  // q = 0, for p is added and not subtracted; d = 1
+            (Operator::Divergence, false) => 0.0, // q = 1, d = 1
+            (Operator::Laplacian, false) => -1.0, // q = 1, d = 2
+            (Operator::Laplacian, true) => 0.0,   // q = 2, d = 2
+            (_, true) => 1.0,                     // q = 2, d = 1
+        }
+    }
+
+    fn about(&self) -> &'static str {
+        match (self.operator, self.is_corrected) {
+            (Operator::Density, _) => "is the density the sum of the masses, m W?",
+            (Operator::Gradient, false) => {
+                "is the pressure force (5) the gradient of the pressure?"
+            }
+            (Operator::Gradient, true) => "is it with a gradient that is exact for linear fields?",
+            (Operator::Laplacian, false) => {
+                "is the viscous force (6) the Laplacian of the velocity?"
+            }
+            (Operator::Laplacian, true) => "is it if linear fields are subtracted?",
+            (Operator::Divergence, false) => "is (3) the divergence of the velocity?",
+            (Operator::Divergence, true) => {
+                "is it with a gradient that is exact for linear fields?"
+            }
+        }
+    }
+}
+
+/// ρ ← Σ m W within a step: no scheme of this program has it, but those of other codes do.
+#[derive(Clone, Copy, Debug)]
+struct Summation<K> {
+    kernel: Smoothing<K>,
+    /// 1/dt \[1/s\].
+    rate: f64,
+}
+
+impl<K: Kernel> FromMedium for Summation<K> {
+    fn new(m: &Medium) -> Self {
+        Self { kernel: Smoothing::new(m.h), rate: 1.0 / run::step(m) }
+    }
+}
+
+impl<X, K: Kernel> Term<X> for Summation<K> {
+    type Derived = ();
+    type Sum = f64;
+
+    #[inline(always)]
+    fn pair<V: Lane, W: Kernel>(&self, pair: &Pair<V, W>, _: [(); 2], sum: &mut V) {
+        *sum += pair.other.mass * pair.w();
+    }
+
+    #[inline(always)]
+    fn finish(&self, own: &Common<f64>, _: (), sum: f64, rate: &mut Rate<X>) {
+        rate.density += (sum + own.mass * self.kernel.w(0.0) - own.density) * self.rate;
+    }
+}
+
+type Summing<K> = Compose<K, (), Summation<K>, Open, Leapfrog>;
+type Plain<K> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
+type Corrected<K> = Compose<
+    K,
+    (ConsistentPressure<Tait>, ConsistentViscosity),
+    ConsistentContinuity,
+    Open,
+    Leapfrog,
+>;
+
+/// The operators of a kernel: its name, its type, and h/dx.
+macro_rules! subjects {
+    ($kernel:literal, $Kernel:ty, $ratio:literal) => {{
+        const fn of(
+            name: &'static str,
+            operator: Operator,
+            is_corrected: bool,
+            method: fn() -> Method,
+        ) -> Subject {
+            let kernel = $kernel;
+            let adjust = |s: &mut OperatorSettings| s.h_over_dx = $ratio;
+            Subject { name, kernel, operator, is_corrected, adjust, method }
+        }
+        let [sum, plain, corrected]: [fn() -> Method; 3] = [
+            Method::of::<Summing<$Kernel>>,
+            Method::of::<Plain<$Kernel>>,
+            Method::of::<Corrected<$Kernel>>,
+        ];
+        [
+            of(concat!($kernel, "-density"), Operator::Density, false, sum),
+            of(concat!($kernel, "-gradient"), Operator::Gradient, false, plain),
+            of(concat!($kernel, "-gradient-corrected"), Operator::Gradient, true, corrected),
+            of(concat!($kernel, "-laplacian"), Operator::Laplacian, false, plain),
+            of(concat!($kernel, "-laplacian-corrected"), Operator::Laplacian, true, corrected),
+            of(concat!($kernel, "-divergence"), Operator::Divergence, false, plain),
+            of(concat!($kernel, "-divergence-corrected"), Operator::Divergence, true, corrected),
+        ]
+    }};
+}
+
+/// The kernel of `modern` variants, whose ladders are in the quick tier too.
+const QUINTIC: &str = "quintic";
+
+/// All variants. h/dx is what variants of the cases of this program have with the kernel.
+static SUBJECTS: [[Subject; 7]; 3] = [
+    subjects!("quintic", QuinticSpline, 1.0),
+    subjects!("cubic", CubicSpline, 1.3),
+    subjects!("wendland", WendlandC2, 2.0),
+];
+
+fn subjects() -> impl Iterator<Item = &'static Subject> {
+    SUBJECTS.iter().flatten()
+}
+
+fn variants() -> Vec<Composition<OperatorSettings>> {
+    let variant = |of: &'static Subject| {
+        let method = Rc::new((of.method)());
+        let ruled = Rc::clone(&method);
+        Composition::new(
+            (of.name, of.about()),
+            of.adjust,
+            move |_, s, context| run::run(of, &method, s, context),
+            move |s| run::rules(&ruled, s, &Context::of_rules()),
+            Vec::new(),
+        )
+    };
+    subjects().map(variant).collect()
+}
+
+/// Operators on particles.
+pub static OPERATORS: Composed<OperatorSettings> = Composed {
+    name: "operators",
+    problem: "One operator of a known field on disordered particles",
+    best: Best {
+        variant: "quintic-gradient-corrected",
+        because: "with the divergence it is the operator that converges on disordered particles",
+        papers: None,
+    },
+    about: "A known field on particles at rest on a lattice, displaced at random. Over a few steps of \
+            1e-6 h/c0 the density becomes the sum of the masses (variants `density`), the pressure \
+            accelerates (`gradient`), viscosity accelerates (`laplacian`), or the flow compresses \
+            (`divergence`). The rate of that, the particles at the end less those of the start over the \
+            time, is the operator, which is compared with its exact value.",
+    variants,
+    is_stable: composed::completed,
+    declaration: |_| Declaration::default(),
+    plan: plan::plan,
+    studies: study::studies,
+};

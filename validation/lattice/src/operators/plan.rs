@@ -1,0 +1,93 @@
+//! The runs of the case and the gates of each.
+
+use base::{
+    gate::{Bound, Evidence, Gate},
+    mutation::{Constant, Mutation},
+};
+use harness::{
+    case::{Planned, Tier},
+    table,
+};
+
+use super::{OPERATORS, Operator, OperatorSettings, QUINTIC, Subject, run::SYMBOL_ERROR, subjects};
+
+/// What a run is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum For {
+    /// A lattice, finer with h: the error of smoothing.
+    Lattice,
+    /// Disordered particles, finer with h.
+    Resolution,
+    /// More neighbours of the same h.
+    Neighbours,
+    /// More disorder.
+    Disorder,
+    /// A lattice with a viscosity that is wrong on purpose.
+    Broken,
+}
+
+/// The runs of a tier.
+pub(super) type Table = table::Table<OperatorSettings, For>;
+
+/// Particles along each side, and disorder, of ladders in which something else changes.
+const SIDE: usize = 48;
+const DISORDER: f64 = 0.2;
+
+/// The runs of a tier: all kernels on a lattice, and ladders of one kernel in the quick tier.
+pub(super) fn table(tier: Tier) -> Table {
+    let mut table = Table::new(&OPERATORS, tier);
+    for of in subjects() {
+        let has_ladders = tier == Tier::Full || of.kernel == QUINTIC;
+        let sides: &[usize] = if has_ladders { &[24, 48, 96] } else { &[24] };
+        // With 1.5 times the usual h the lattice itself adds less than 1e-3 to the gain.
+        table.over(For::Lattice, &[of.name], [sides; 2], |s, n| {
+            (s.n, s.disorder, s.h_over_dx) = (n, 0.0, 1.5 * s.h_over_dx);
+        });
+        if has_ladders {
+            table.over(For::Resolution, &[of.name], [sides; 2], |s, n| {
+                (s.n, s.disorder) = (n, DISORDER);
+            });
+            table.over(For::Neighbours, &[of.name], [&[1.0, 1.5, 2.0, 3.0]; 2], |s, more| {
+                (s.n, s.disorder) = ((24.0 * more) as usize, DISORDER);
+                s.h_over_dx *= more;
+            });
+            table.over(For::Disorder, &[of.name], [&[0.05, 0.1, DISORDER]; 2], |s, disorder| {
+                (s.n, s.disorder) = (SIDE, disorder);
+            });
+        }
+        if of.kernel == QUINTIC {
+            let row = table.one(For::Broken, of.name, |s| (s.n, s.disorder) = (24, 0.0));
+            let wrong = Mutation { of: Constant::Viscosity, factor: 1.03 };
+            row.run.spec = row.run.spec.clone().mutated(wrong);
+        }
+    }
+    table
+}
+
+/// The judged runs of a tier.
+pub(super) fn plan(tier: Tier) -> Vec<Planned> {
+    let mut table = table(tier);
+    table.judge(|row| {
+        let gate = |run: String, because: &str| {
+            OPERATORS.gate(run, SYMBOL_ERROR, Bound::Below(1e-5), Evidence::Theory, because)
+        };
+        let exact = "On a lattice a wave stays a wave, and its factor, the symbol of the sum, is known \
+                     exactly. Steps of 1e-6 h/c0 change it by less than 1e-5 of itself.";
+        match row.group {
+            For::Lattice => vec![gate(format!("{}.{}", row.variant, row.settings.n), exact)],
+            For::Broken => {
+                let wrong = "Control: the viscosity is 3 % too large, which must fail the gates of the \
+                             Laplacian and no other one.";
+                let gate = gate(format!("viscosity_wrong.{}", row.variant), wrong);
+                let is_guilty = find(row.variant).is_some_and(|of| of.operator == Operator::Laplacian);
+                vec![if is_guilty { gate.expected_to_fail() } else { gate }]
+            }
+            _ => Vec::<Gate>::new(),
+        }
+    });
+    table.plan()
+}
+
+fn find(variant: &str) -> Option<&'static Subject> {
+    subjects().find(|of| of.name == variant)
+}

@@ -1,0 +1,202 @@
+//! The orders of the operators, in h, in the number of neighbours and in disorder.
+
+use base::{
+    gate::{Bound, Cause, Evidence, Gate},
+    record::{MetricKey, Record},
+};
+use harness::{
+    case::Tier,
+    columns::Columns,
+    convergence::{Convergence, Level, convergence},
+    runs::Runs,
+    study::Study,
+};
+use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, sig};
+
+use super::{
+    OPERATORS, OperatorSettings, QUINTIC, Subject,
+    plan::{For, Table, table},
+    run::{BIAS, NOISE},
+    subjects,
+};
+
+/// Why an operator does not converge.
+static DISORDERED: Cause = Cause::new(
+    "Sums over disordered neighbours do not cancel the lower orders of a field, and their noise does not \
+     fall with h.",
+    "Sums that are exact for linear fields (gradients) or parabolas (Laplacians), or more neighbours.",
+);
+
+/// What is refined: its runs, the metric, and the spacing by which an order is taken.
+struct Refined {
+    of: For,
+    name: &'static str,
+    title: &'static str,
+    axis: &'static str,
+    metric: MetricKey,
+    spacing: fn(&OperatorSettings) -> f64,
+}
+
+const REFINED: [Refined; 4] = [
+    Refined {
+        of: For::Lattice,
+        name: "bias",
+        title: "Lattice: gain",
+        axis: "h/L [-]",
+        metric: BIAS,
+        spacing: |s| s.h_over_dx / s.n as f64,
+    },
+    Refined {
+        of: For::Resolution,
+        name: "noise_h",
+        title: "Disorder: smaller h",
+        axis: "h/L [-]",
+        metric: NOISE,
+        spacing: |s| s.h_over_dx / s.n as f64,
+    },
+    Refined {
+        of: For::Neighbours,
+        name: "noise_neighbours",
+        title: "Disorder: more neighbours",
+        axis: "dx/h [-]",
+        metric: NOISE,
+        spacing: |s| 1.0 / s.h_over_dx,
+    },
+    Refined {
+        of: For::Disorder,
+        name: "noise_disorder",
+        title: "Less disorder",
+        axis: "displacement/dx [-]",
+        metric: NOISE,
+        spacing: |s| s.disorder,
+    },
+];
+
+impl Refined {
+    fn levels(&self, of: &Subject, table: &Table, runs: &Runs) -> Vec<Level> {
+        let rows = table.of(self.of).filter(|row| row.variant == of.name);
+        let value = |record: Option<&Record>| record.and_then(|record| record.value(self.metric));
+        rows.map(|row| Level {
+            spacing: (self.spacing)(&row.settings),
+            value: value(runs.completed(&row.run.spec)).unwrap_or(f64::NAN),
+        })
+        .collect()
+    }
+
+    /// The order that theory expects.
+    fn expected(&self, of: &Subject) -> f64 {
+        match self.of {
+            For::Resolution => of.order(),
+            For::Disorder => 1.0,
+            _ => 2.0,
+        }
+    }
+
+    fn gate(&self, of: &Subject) -> Gate {
+        let expected = self.expected(of);
+        let within = |by: f64| Bound::Within(expected - by, expected + by);
+        let (bound, because) = match self.of {
+            For::Lattice => (
+                within(0.2),
+                "The gain of a wave is that of smoothing, 1 - (kh)^2 times half the second moment of the \
+                 kernel: second order (Quinlan, Basa & Lastiwka 2006).",
+            ),
+            For::Neighbours => (
+                within(0.4),
+                "Independent displacements of (h/dx)^2 neighbours leave the root of their number: noise falls \
+                 as (dx/h)^2. Where neighbours are few, the lattice itself adds to it.",
+            ),
+            For::Disorder => (within(0.15), "Noise is linear in small displacements."),
+            _ if expected > 0.0 => (
+                within(0.25),
+                "The sum is exact for linear fields, so that noise is that of the second derivatives: first \
+                 order (Quinlan, Basa & Lastiwka 2006).",
+            ),
+            _ => (
+                Bound::Above(0.75),
+                "An operator converges if its error on disordered particles falls with h at fixed h/dx, at \
+                 first order as exactness for linear fields (of a gradient) gives it.",
+            ),
+        };
+        let id = format!("{}.{}.{}", OPERATORS.name, of.name, self.name);
+        let gate = Gate::new(id, "order", bound, Evidence::Theory, because);
+        match self.of {
+            For::Resolution if expected <= 0.0 => {
+                let reason = format!(
+                    "The order of noise is {expected} by theory: the lowest order of the field that the sum \
+                     does not cancel, less that of the derivative that is sought. The limitation is this \
+                     number with 0.25 either way, for the rms of few independent samples."
+                );
+                gate.with_limitation(within(0.25), reason).because_of(&DISORDERED)
+            }
+            _ => gate,
+        }
+    }
+}
+
+/// What the report shows of the case.
+pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
+    let table = table(tier);
+    let laddered: Vec<&Subject> =
+        subjects().filter(|of| tier == Tier::Full || of.kernel == QUINTIC).collect();
+    let mut study = Study::new("operators-orders", "Orders of single operators");
+    study = study.prose(
+        "What an operator makes of a wave is a gain times the exact value, and noise. On a lattice there is \
+         no noise, and the gain is known to 1e-5 by theory, so that these gates name the operator that is \
+         wrong: with a viscosity of 103 % the gates of the Laplacian fail, and no other one.",
+    );
+    study = study.block(figure(&laddered, &table, runs));
+    let caption = "Orders of the parts of the error, with their standard error; in brackets what theory \
+                   expects. The bias is that of the gain on a lattice; noise is that of lattices that are \
+                   displaced by up to 0.2 dx, relative to the rms of the exact values. Below an order of 1 in \
+                   h an operator does not converge at a fixed number of neighbours.";
+    let mut columns = Columns::default().code("variant", |of: &&Subject| of.name);
+    for refined in &REFINED {
+        let (table, head) = (&table, format!("{}: order", refined.title));
+        let order = move |of: &&Subject| {
+            let found = convergence(&refined.levels(of, table, runs));
+            let text =
+                |c: &Convergence| format!("{} ± {}", sig(c.order, 3), sig(c.standard_error, 2));
+            let found = found.as_ref().map_or("–".into(), text);
+            Cell::text(format!("{found} ({})", refined.expected(of)))
+        };
+        columns = columns.num([&head, "-"], order);
+    }
+    let noise =
+        |of: &&Subject| REFINED[1].levels(of, &table, runs).last().map_or(f64::NAN, |l| l.value);
+    columns = columns.of(["noise, finest", "-"], noise, |value| Cell::percent(value, 2));
+    study = study.block(columns.table(caption, &laddered));
+    for of in &laddered {
+        for refined in &REFINED {
+            let found = convergence(&refined.levels(of, &table, runs));
+            study = study.judge(refined.gate(of), found.map_or(f64::NAN, |found| found.order));
+        }
+    }
+    vec![study]
+}
+
+/// Errors of one kernel, a panel for each of what is refined.
+fn figure(laddered: &[&Subject], table: &Table, runs: &Runs) -> Figure {
+    let caption = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a lattice \
+                   (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = L/24) and \
+                   over the displacement.";
+    let quintic = || laddered.iter().filter(|of| of.kernel == QUINTIC).enumerate();
+    let panel = |(k, refined): (usize, &Refined)| {
+        let label = if refined.metric == BIAS { "bias [-]" } else { "noise [-]" };
+        let plot = Plot::new(refined.title, Axis::log(refined.axis), Axis::log(label));
+        let plot = plot.legend(if k == 1 { Legend::Outside } else { Legend::Hidden });
+        let plot = quintic().fold(plot, |plot, (k, of)| {
+            let levels = refined.levels(of, table, runs).into_iter();
+            let name = of.name.trim_start_matches("quintic-");
+            let line = levels.map(|level| (level.spacing, level.value)).collect();
+            plot.layer(Series::line_markers(name, line).cycle(k))
+        });
+        plot.layer(Layer::slope(if refined.of == For::Resolution {
+            1.0
+        } else {
+            refined.expected(laddered[0])
+        }))
+    };
+    let figure = Figure::new("operators-orders", caption).columns(2).panel_size(330.0, 250.0);
+    REFINED.iter().enumerate().map(panel).fold(figure, Figure::panel)
+}
