@@ -39,7 +39,10 @@ fn every_variant_tells_all_observers_the_same() {
                             let bad = if d.iter().all(|d| d.is_round_off()) { "ok" } else { "BAD" };
                             print!("    {bad} {relation}");
                             for d in d {
-                                print!(" [{:.1e} of {:.1e} {} {}]", d.value, d.floor, d.quantity, d.particle);
+                                print!(
+                                    " [{:.1e} of {:.1e} {} {}]",
+                                    d.value, d.floor, d.quantity, d.particle
+                                );
                             }
                             println!();
                         }

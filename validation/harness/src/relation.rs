@@ -70,9 +70,10 @@ impl Relation {
         found.ok_or_else(|| format!("{name:?} is no relation; these are {}", known()))
     }
 
-    /// Does it round no number, and keep the order of all sums of a solver that sums by place?
-    pub fn is_bitwise(self) -> bool {
-        matches!(self, Self::Same | Self::BinaryUnits | Self::Renumbered)
+    /// Does it round no number of our solver? This sums over particles in the order of their places, but over
+    /// those of walls in the order of their numbers.
+    pub fn is_bitwise(self, has_walls: bool) -> bool {
+        self == Self::BinaryUnits || self == Self::Renumbered && !has_walls
     }
 }
 
@@ -114,7 +115,7 @@ impl Default for View {
 }
 
 impl View {
-    /// How a scene looks by a relation. `has_walls` says that some of its particles do not move.
+    /// How a scene looks by a relation. `moves` says which of its particles do.
     ///
     /// # Errors
     /// Why the relation is no symmetry of it.
@@ -123,8 +124,9 @@ impl View {
         medium: &Medium,
         domain: &Domain,
         mirrors: &[PlaneWall],
-        has_walls: bool,
+        moves: &[bool],
     ) -> Result<Self, NoSymmetry> {
+        let has_walls = moves.contains(&false);
         let same = Self { relation, ..Self::default() };
         Ok(match relation {
             Relation::Same | Relation::Renumbered => same,
@@ -284,18 +286,21 @@ impl View {
         ([place, velocity], density.map(|density| density / self.density()))
     }
 
-    /// Items by the number that their particles had, in the order of the numbers that they get.
-    pub fn order<T: Clone>(&self, items: &[T]) -> Vec<T> {
-        self.numbers(items.len()).into_iter().map(|k| items[k].clone()).collect()
+    /// Items by the number that their particles had, in the order of the numbers that they get; none stay
+    /// none. `moves` says which particles do.
+    pub fn order<T: Clone>(&self, items: &[T], moves: &[bool]) -> Vec<T> {
+        self.numbers(moves).into_iter().filter_map(|k| items.get(k).cloned()).collect()
     }
 
-    /// The number that each of so many particles had, by the number that it gets.
-    pub fn numbers(&self, count: usize) -> Vec<usize> {
-        let mut numbers: Vec<usize> = (0..count).collect();
+    /// The number that each particle had, by the number that it gets: that of one which moves if it does, so
+    /// that it does not depend on the others.
+    pub fn numbers(&self, moves: &[bool]) -> Vec<usize> {
+        let mut numbers: Vec<usize> = (0..moves.len()).collect();
         let mut random = Random::new(8);
-        if self.relation == Relation::Renumbered {
-            for k in (1..count).rev() {
-                numbers.swap(k, ((k + 1) as f64 * random.uniform()) as usize);
+        for kind in [true, false] {
+            let places: Vec<usize> = (0..moves.len()).filter(|k| moves[*k] == kind).collect();
+            for k in (1..places.len()).rev().filter(|_| self.relation == Relation::Renumbered) {
+                numbers.swap(places[k], places[((k + 1) as f64 * random.uniform()) as usize]);
             }
         }
         numbers

@@ -5,12 +5,11 @@ use std::sync::{Mutex, PoisonError};
 
 use base::{record::Profile, spec::RunSpec};
 use nalgebra::Vector2;
-use solver::Role;
 
 use crate::{
     case::{Case, RunError},
     context::Context,
-    outline::{Outline, Sink, role},
+    outline::{Outline, Sink},
     playback::{Frame, Placed},
     relation::Relation,
 };
@@ -47,25 +46,23 @@ pub struct Seen<'a> {
 
 /// What an observer has that compares with the first one in the units h, c0 and ρ0 at the k-th of the times
 /// of its problem, by the number that the first one gives a particle.
-fn told(seen: &Seen, k: usize) -> Vec<(usize, Placed)> {
+fn told(seen: &Seen, k: usize) -> Vec<Placed> {
     let Outline { view, times, particles, .. } = seen.outline;
-    let numbers = view.numbers(particles.column("id").len());
+    let moves: Vec<bool> = particles.column("role").iter().map(|role| *role == 0.0).collect();
+    let numbers = view.numbers(&moves);
     let apart = |frame: &&Frame| (frame.time - times[k]).abs();
     let nearest = seen.frames.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
     let back = |placed: &Placed| {
         let time = times[k] / view.time(1.0);
         let (of, density) = view.back(time, [placed.position, placed.velocity], placed.density);
         let (position, velocity) = (of[0], of[1]);
-        let id = numbers.get(placed.id as usize).copied().unwrap_or_default();
-        (id, Placed { id: id as u32, position, velocity, density })
+        let id = numbers.get(placed.id as usize).copied().unwrap_or_default() as u32;
+        Placed { id, position, velocity, density }
     };
-    let moves = |placed: &&Placed| {
-        let of = particles.column("role").get(placed.id as usize);
-        of.copied().and_then(role) == Some(Role::Fluid)
-    };
+    let moving = |placed: &&Placed| moves.get(placed.id as usize) == Some(&true);
     let mut all: Vec<_> =
-        nearest.into_iter().flat_map(|frame| &frame.particles).filter(moves).map(back).collect();
-    all.sort_by_key(|(id, _)| *id);
+        nearest.into_iter().flat_map(|frame| &frame.particles).filter(moving).map(back).collect();
+    all.sort_by_key(|placed| placed.id);
     all
 }
 
@@ -109,11 +106,11 @@ pub fn differences(base: &Seen, other: &Seen, steps: f64) -> Vec<Difference> {
         let mut most = Difference { time: times[k], value: 0.0, floor, quantity, particle };
         let (ours, theirs) = (told(base, k), told(other, k));
         // A run that diverged has no particles; other ones would be compared with the wrong ones.
-        let same = |k: usize| ours[k].0 == theirs[k].0;
+        let same = |k: usize| ours[k].id == theirs[k].id;
         if ours.is_empty() || ours.len() != theirs.len() || !(0..ours.len()).all(same) {
             most.value = f64::NAN;
         }
-        for ((id, a), (_, b)) in ours.iter().zip(&theirs) {
+        for (a, b) in ours.iter().zip(&theirs) {
             let density = a.density.zip(b.density).map_or(0.0, |(a, b)| (a - b).abs());
             for (quantity, value) in [
                 ("place", near(a.position - b.position)),
@@ -121,7 +118,7 @@ pub fn differences(base: &Seen, other: &Seen, steps: f64) -> Vec<Difference> {
                 ("density", density / medium.density),
             ] {
                 if larger(most.value, value).to_bits() != most.value.to_bits() {
-                    (most.value, most.quantity, most.particle) = (value, quantity, *id as u32);
+                    (most.value, most.quantity, most.particle) = (value, quantity, a.id);
                 }
             }
         }
@@ -143,7 +140,8 @@ fn seen(
         frames.push(Frame { time, particles: placed(&particles) });
     };
     let outline = Some(sink.clone());
-    let context = Context { outline, at_times: Some(&tell), allow_long: true, ..Context::default() };
+    let context =
+        Context { outline, at_times: Some(&tell), allow_long: true, ..Context::default() };
     match case.run(spec, &context) {
         Err(RunError::Outlined) | Ok(_) => {}
         Err(error) => return Err(error),
@@ -165,8 +163,11 @@ fn placed(particles: &Profile) -> Vec<Placed> {
     (0..id.len()).map(placed).collect()
 }
 
+/// What of a state is below this when squared \[-\] is lost, in one unit and not in another.
+const UNDERFLOW: f64 = 1e-150;
+
 /// What each of some relations comes to for our own run of a spec; `Err` where it does not hold, with the
-/// reason. Relations that round nothing have a floor of 0.
+/// reason. Those that round nothing must give the same bits, but for what underflows.
 ///
 /// # Errors
 /// If the run is refused, or is none of a scene.
@@ -178,11 +179,12 @@ pub fn battery(
     let (base, frames) = seen(case, spec, Relation::Same)?;
     let ours = Seen { outline: &base, frames: &frames };
     let steps = base.times.last().map_or(0.0, |end| (end / base.dt).round());
+    let has_walls = base.particles.column("role").iter().any(|role| *role > 0.0);
     let of = |relation: Relation| {
         let (outline, frames) = seen(case, spec, relation)?;
         let mut all = differences(&ours, &Seen { outline: &outline, frames: &frames }, steps);
-        if relation.is_bitwise() {
-            all.iter_mut().for_each(|difference| difference.floor = 0.0);
+        if relation.is_bitwise(has_walls) {
+            all.iter_mut().for_each(|difference| difference.floor = UNDERFLOW);
         }
         Ok(all)
     };

@@ -93,11 +93,11 @@ impl<X: Numbers> Parts<X> {
     }
 
     /// The same scene as another observer sees it.
-    fn see(&mut self, view: &View) {
+    fn see(&mut self, view: &View, moves: &[bool]) {
         self.medium = view.medium(&self.medium);
         self.domain = view.domain(self.domain);
-        self.particles = view.order(&self.particles);
-        self.bodies = view.order(&self.bodies);
+        self.particles = view.order(&self.particles, moves);
+        self.bodies = view.order(&self.bodies, moves);
         self.particles.iter_mut().for_each(|particle| *particle = view.particle(particle));
         self.mirrors.iter_mut().for_each(|wall| *wall = view.wall(wall));
         self.skin = self.skin.map(|skin| view.length(skin));

@@ -11,10 +11,10 @@ use super::Parts;
 /// that another observer sees if it is one who asks.
 pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     if let Some(outline) = &parts.outline {
-        let has_walls = parts.particles.iter().any(|p| p.role != Role::Fluid);
+        let moves: Vec<bool> = parts.particles.iter().map(|p| p.role == Role::Fluid).collect();
         let around = (&parts.mirrors[..], &parts.bodies[..]);
-        let view = outline.scene(&parts.medium, parts.domain, around, has_walls);
-        parts.see(&view);
+        let view = outline.scene(&parts.medium, parts.domain, around, &moves);
+        parts.see(&view, &moves);
     }
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);
