@@ -117,7 +117,10 @@ impl Sink {
     /// If the relation is no symmetry of the scene.
     pub fn early(&self, dt: f64) -> Result<Option<(f64, Vec<f64>)>, RunError> {
         let (Some(relation), inside) = (self.relation, self.inside()) else { return Ok(None) };
-        let Some(Outline { view, medium, .. }) = &inside.outline else { return Ok(None) };
+        let Some(Outline { view, medium, .. }) = &inside.outline else {
+            let reason = "the case does not tell what its scene is made of";
+            return Err(RunError::NoSymmetry { relation, reason });
+        };
         let shifts = inside.method.shifts && medium.shift > 0.0 && self.steps;
         let reason = match relation {
             Relation::Boosted if shifts => {

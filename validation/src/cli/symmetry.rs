@@ -1,6 +1,6 @@
 //! `symmetry` and `relate`: what observers of one problem have, of our own runs and of another code's.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use ::exchange::{problem::Problem, submission::Entry};
@@ -54,12 +54,12 @@ pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {
         };
         specs.par_iter().map(run).collect()
     })?;
-    let (mut rows, mut failed, mut reasons) = (Vec::new(), Vec::new(), BTreeMap::new());
+    let (mut rows, mut failed, mut reasons) = (Vec::new(), Vec::new(), BTreeSet::new());
     for ((case, spec), found) in specs.iter().zip(all) {
         let name = [case.name().to_string(), spec.variant.clone()];
         let found = match found {
-            Err(RunError::Playback(reason)) => {
-                reasons.insert(reason, ());
+            Err(RunError::NoSymmetry { reason, .. }) => {
+                reasons.insert(format!("{}: {reason}", case.name()));
                 continue;
             }
             found => found?,
@@ -75,7 +75,7 @@ pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {
                 }
                 Err(RunError::NoSymmetry { relation, reason }) => {
                     row.push("–".into());
-                    reasons.insert(format!("{relation}: {reason}"), ());
+                    reasons.insert(format!("{relation}: {reason}"));
                 }
                 Err(error) => return Err(error.into()),
             }
@@ -87,7 +87,7 @@ pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {
     let mut text = output::table(&heads, &rows);
     text +=
         "\nLargest differences of place [h], velocity [c0] and density [rho0]. –: does not hold,\n";
-    text.extend(reasons.keys().map(|reason| format!("  {reason}\n")));
+    text.extend(reasons.iter().map(|reason| format!("  {reason}\n")));
     if !failed.is_empty() {
         let heads = [&["case", "variant", "relation"][..], &HEADS].concat();
         text += &format!("\nNot the same:\n\n{}", output::table(&heads, &failed));
