@@ -19,6 +19,7 @@ mod restart;
 mod shifting;
 mod snapshots;
 mod solid;
+mod symmetry;
 mod threads;
 mod tidy;
 mod walls;

@@ -7,6 +7,7 @@ use harness::{
     method::Medium,
     outline::{Outline, Sink},
     plan,
+    relation::Relation,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -31,6 +32,8 @@ pub struct Problem {
     pub gates: Vec<Gate>,
     /// Of a sealed problem, what it was drawn from.
     pub sealed: Option<Sealed>,
+    /// Of a problem for a comparison of observers, how this one differs.
+    pub relation: Option<Relation>,
 }
 
 /// What a sealed problem was drawn from.
@@ -62,6 +65,9 @@ pub struct Asked {
     /// what it was drawn from
     #[serde(default)]
     pub sealed: Option<Sealed>,
+    /// name of the relation by which it is seen
+    #[serde(default)]
+    pub relation: Option<String>,
 }
 
 impl Asked {
@@ -89,7 +95,19 @@ impl Problem {
     /// # Errors
     /// If the run is refused, or is none of a scene.
     pub fn of(case: &dyn Case, spec: RunSpec) -> Result<Self, RunError> {
-        let sink = Sink::default();
+        Self::seen(case, spec, None)
+    }
+
+    /// The problem of a run as another observer sees it, at a few early times, if there is a relation.
+    ///
+    /// # Errors
+    /// As [`Problem::of`], or if the relation does not hold for the problem.
+    pub fn seen(
+        case: &dyn Case,
+        spec: RunSpec,
+        relation: Option<Relation>,
+    ) -> Result<Self, RunError> {
+        let sink = Sink::of(relation, false);
         let context =
             Context { outline: Some(sink.clone()), allow_long: true, ..Context::default() };
         match case.run(&spec, &context) {
@@ -98,8 +116,8 @@ impl Problem {
         }
         let none = || RunError::Playback(format!("case {} has no scene to export", case.name()));
         let outline = sink.take().filter(|of| !of.times.is_empty()).ok_or_else(none)?;
-        let gates = plan::gates_of(case, &spec);
-        Ok(Self { spec, about: case.about(), outline, gates, sealed: None })
+        let gates = if relation.is_none() { plan::gates_of(case, &spec) } else { Vec::new() };
+        Ok(Self { spec, about: case.about(), outline, gates, sealed: None, relation })
     }
 
     /// The particles that the other code moves: their numbers in the problem.
@@ -163,6 +181,9 @@ impl Problem {
         if let Some(sealed) = &self.sealed {
             document["sealed"] = json!(sealed);
         }
+        if let Some(relation) = self.relation {
+            document["relation"] = json!(relation.name());
+        }
         document
     }
 
@@ -216,18 +237,29 @@ impl Problem {
             .map(|gate| format!("| `{}` | `{}` | {} |\n", gate.id, gate.metric, gate.bound))
             .collect();
         let times: Vec<String> = times.iter().map(f64::to_string).collect();
+        let case = &self.spec.case;
+        let (seen, then) = match self.relation {
+            None => (
+                String::new(),
+                format!("`touchstone submit {case} DIR --store STORE` measures and judges it."),
+            ),
+            Some(relation) => (
+                format!(" This is the problem of an observer to whom all is {relation}."),
+                format!(
+                    "`touchstone relate {case} SAME DIR` compares it with that of relation same."
+                ),
+            ),
+        };
         format!(
             "# {case}, variant {variant}\n\n{about}\n\nAll numbers are in SI units, in two dimensions, \
-             masses per unit depth. `{PROBLEM}` has every number with its unit.\n\n## Equations\n\n\
+             masses per unit depth. `{PROBLEM}` has every number with its unit.{seen}\n\n## Equations\n\n\
              {equations}\n## Material and forces\n\n| quantity | value | unit |\n|---|---|---|\n\
              {material}| acceleration g | {gx}, {gy} | m/s^2 |\n| spacing of particles | {dx} | m |\n\
              | end | {end} | s |\n\n## Particles\n\n`{PARTICLES}` has one line a particle. Role 0 moves; \
              role 1 is behind a wall and role 2 on it, and neither moves except along the wall with its \
              velocity. Axes with a period repeat.\n\n## What to hand in\n\n{HAND_IN}\
-             - `{PROBLEM}`, as it is here.\n\n`touchstone submit {case} DIR --store STORE` measures and \
-             judges it.\n\nTimes [s]: {times}\n\n## How it is judged\n\n| gate | metric | bound |\n\
+             - `{PROBLEM}`, as it is here.\n\n{then}\n\nTimes [s]: {times}\n\n## How it is judged\n\n| gate | metric | bound |\n\
              |---|---|---|\n{gates}",
-            case = self.spec.case,
             variant = self.spec.variant,
             about = self.about,
             gx = m.acceleration.x,

@@ -90,7 +90,8 @@ pub enum Unknown {
 }
 
 impl Known {
-    fn number(self) -> Option<f64> {
+    /// The number, if it is known.
+    pub fn number(self) -> Option<f64> {
         match self {
             Known::Number(number) => Some(number),
             Known::Unknown(_) => None,

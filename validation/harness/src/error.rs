@@ -10,6 +10,7 @@ use thiserror::Error;
 use crate::{
     checkpoint::CheckpointError,
     frames::FrameError,
+    relation::{NoSymmetry, Relation},
     size::{MOST_BYTES, MOST_SECONDS, Size},
 };
 
@@ -107,6 +108,14 @@ pub enum RunError {
     /// The problem of the run was asked for, and no step.
     #[error("no step was made: the problem of the run was asked for")]
     Outlined,
+    /// A relation that is no symmetry of the scene.
+    #[error("relation {relation} does not hold here: {reason}")]
+    NoSymmetry {
+        /// The relation.
+        relation: Relation,
+        /// The reason.
+        reason: NoSymmetry,
+    },
     /// Frames of another code that do not fit the run.
     #[error("{0}")]
     Playback(String),

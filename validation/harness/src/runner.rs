@@ -418,6 +418,12 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         let factor =
             context.mutation.map_or(1.0, |mutation| mutation.factor_of(Constant::TimeStep));
         let (dt, least) = (dt * factor, least as f64 / factor);
+        let early = context.outline.as_ref().map_or(Ok(None), |outline| outline.early(dt))?;
+        let (dt, times, least, after_step, at) = match &early {
+            // Another observer: nothing of the case would know what it sees.
+            Some((dt, times)) => (*dt, &times[..], 1.0, Vec::new(), Vec::new()),
+            None => (dt, times, least, after_step, at),
+        };
         let end = times.last().copied().unwrap_or_default();
         let fewest = least.max(1.0) * times.len() as f64;
         let steps = ((end - simulation.time()) / dt).max(fewest);
@@ -428,7 +434,9 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         }
         if let Some(outline) = &context.outline {
             outline.drive(simulation, times, dt, pressure);
-            return Err(RunError::Outlined);
+            if !outline.steps() {
+                return Err(RunError::Outlined);
+            }
         }
         let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
         let mut watch = Watch {
@@ -473,6 +481,9 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
                 (status, watch.counted(simulation))
             }
         };
+        if early.is_some() {
+            return Err(RunError::Outlined);
+        }
         if let Some(checkpoints) = context.checkpoints {
             checkpoints.keep(watch.save(simulation, cost.clone(), Some(status.clone()))?);
         }

@@ -11,7 +11,7 @@ use solver::{EquationOfState as _, Numbers, Particle, Role, Stepper};
 use crate::{
     context::Context,
     error::RunError,
-    method::{Medium, Method, Parts},
+    method::{Knob, Medium, Method, Parts},
     outline::MethodWords,
     rules::Rules,
     runner::{Drive, check_size},
@@ -36,7 +36,8 @@ pub fn begin<X, D: ?Sized>(
 ) -> Record {
     if let Some(outline) = &context.outline {
         let &Method { kernel, support, integrator, walls, law, .. } = method;
-        outline.method(MethodWords { kernel, support, integrator, walls, law });
+        let shifts = method.uses.contains(&Knob::Shift);
+        outline.method(MethodWords { kernel, support, integrator, walls, law, shifts });
     }
     let json = serde_json::to_value(settings).unwrap_or_default();
     let mut record = Record::new(case, variant, json, context.threads.max(1));

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use base::gate::Verdict;
 use base::spec::Measure;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use harness::case;
+use harness::{case, relation::Relation};
 use serde::{Deserialize, Serialize};
 
 /// Measures how wrong a particle method (SPH) is, what smaller errors cost, and when it breaks.
@@ -45,6 +45,10 @@ pub enum Command {
     Challenge(Challenge),
     /// Measure and judge particles that another code wrote, and keep their record in a store
     Submit(Submit),
+    /// Compare a few steps of our own runs as observers have them who are turned, mirrored, moving and so on
+    Symmetry(Symmetry),
+    /// Compare what another code wrote for two observers of one problem
+    Relate(Relate),
     /// Show the differences between two reports or stores
     Compare(Compare),
     /// Find the largest stable time steps by bisection and compare them with theory
@@ -279,6 +283,35 @@ pub struct WriteProblem {
     /// Also make the run and write its results as a submission of this program
     #[arg(long)]
     pub solve: bool,
+    /// Write the problem as another observer sees it, at a few early times, for `relate`: same, turned,
+    /// mirrored, boosted, binary-units, other-units, renumbered, shifted
+    #[arg(long, value_name = "NAME", value_parser = Relation::named)]
+    pub relation: Option<Relation>,
+}
+
+#[derive(Debug, Args)]
+pub struct Symmetry {
+    /// Names of the cases; by default all
+    pub cases: Vec<String>,
+    /// Name of the variant; by default all
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Change a setting (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct Relate {
+    /// Name of the case
+    pub case: String,
+    /// Results for the problem that `export --relation same` wrote
+    pub same: PathBuf,
+    /// Results for the problem that `export` wrote with another relation
+    pub other: PathBuf,
+    /// Names of columns in the results, as in `--map x=pos_x,y=pos_y`
+    #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
+    pub map: Vec<(String, String)>,
 }
 
 #[derive(Debug, Args)]

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use ::exchange::{
     challenge,
     flaw::Flaw,
-    problem::{Problem, Sealed},
+    problem::{Asked, Problem, Sealed},
     read::{COLUMNS, RESULTS},
     submission::{self, Entry, METHOD, SYSTEM},
     write::{self, Format, WriteError},
@@ -19,8 +19,9 @@ use base::{
     submission::OURS,
 };
 use harness::{
-    case::{self, Case},
+    case::{self, Case, RunError},
     context::Context,
+    outline::Sink,
     runs::JudgedRun,
     store::Store,
     suite,
@@ -45,7 +46,8 @@ const MOST_BYTES: u64 = 1 << 24;
 pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Outcome {
     let case = cases::find_in(world.cases, &arguments.case)?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
-    let problem = Problem::of(case, case::spec(case, variant, &arguments.set)?)?;
+    let spec = case::spec(case, variant, &arguments.set)?;
+    let problem = Problem::seen(case, spec, arguments.relation)?;
     let folder = OutputFolder::create(&arguments.out)?;
     let mut names = write::write(&problem, format(arguments.format), &folder)?;
     if arguments.solve {
@@ -93,10 +95,17 @@ fn solve(
         at_times: Some(&tell),
         allow_long: true,
         interrupt: Some(world.interrupt),
+        outline: problem.relation.map(|relation| Sink::of(Some(relation), true)),
         ..Context::default()
     };
-    let record = case.run(&problem.spec, &context)?;
-    if let Status::Interrupted { .. } = record.status {
+    let record = match case.run(&problem.spec, &context) {
+        // Nothing was measured of what another observer sees.
+        Err(RunError::Outlined) => {
+            Record::new(case.name(), &problem.spec.variant, problem.spec.settings.clone(), 1)
+        }
+        made => made?,
+    };
+    if world.is_interrupted() || matches!(record.status, Status::Interrupted { .. }) {
         return Err(Failure::interrupted("the problem is written, its results are not"));
     }
     let (table, written, _) = table.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -110,12 +119,13 @@ fn solve(
         "changed": "nothing",
     });
     let cost = &record.cost;
+    let known = |number: f64| if number > 0.0 { json!(number) } else { json!("unknown") };
     let system = json!({
         "machine": record.manifest.cpu,
         "threads": cost.threads,
-        "seconds": cost.cpu_s / cost.threads.max(1) as f64,
-        "steps": cost.steps,
-        "interactions": cost.pair_interactions,
+        "seconds": known(cost.cpu_s / cost.threads.max(1) as f64),
+        "steps": known(cost.steps as f64),
+        "interactions": known(cost.pair_interactions as f64),
     });
     folder.write(RESULTS, &table.into_bytes())?;
     folder.write(METHOD, (serde_json::to_string_pretty(&method)? + "\n").as_bytes())?;
@@ -145,9 +155,7 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
 pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let case = cases::find_in(world.cases, &arguments.case)?;
     world.check_references(&[case])?;
-    let renamed =
-        arguments.map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
-    let entry = submission::read(&arguments.folder, &renamed).map_err(|flaws| refused(&flaws))?;
+    let entry = read(&arguments.folder, &arguments.map)?;
     let problem = problem(case, &entry, arguments)?;
     let flaws = entry.check(&problem);
     if !flaws.is_empty() {
@@ -169,6 +177,29 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     Ok(if fails { Exit::GateFailed } else { Exit::Pass })
 }
 
+/// The folder of a submission, with columns of other names.
+pub fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
+    let renamed = map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
+    submission::read(folder, &renamed).map_err(|flaws| refused(&flaws))
+}
+
+/// The run that a document asks for.
+pub fn asked(case: &dyn Case, asked: &Asked) -> Result<RunSpec, Failure> {
+    if asked.spec.case != case.name() {
+        let words =
+            format!("problem.json is of the case {}, not of {}", asked.spec.case, case.name());
+        return Err(Failure::usage(words));
+    }
+    let RunSpec { case: name, variant, settings, measure, .. } = asked.spec.clone();
+    let plain = RunSpec { measure, ..RunSpec::new(&name, &variant, settings) };
+    if plain != asked.spec {
+        let words = "problem.json asks for more than a run of a variant with settings; expected \
+                     the document as it was exported";
+        return Err(Failure::usage(words));
+    }
+    Ok(case::resolved(case, plain)?)
+}
+
 /// The problem that the folder says it solves, or that the arguments describe.
 fn problem(
     case: &dyn Case,
@@ -182,21 +213,16 @@ fn problem(
                          --variant and --set";
             return Err(Failure::usage(words));
         }
-        Some(asked) if asked.spec.case != case.name() => {
-            let words =
-                format!("problem.json is of the case {}, not of {}", asked.spec.case, case.name());
-            return Err(Failure::usage(words));
-        }
-        Some(asked) => {
-            let RunSpec { case: name, variant, settings, measure, .. } = asked.spec.clone();
-            let plain = RunSpec { measure, ..RunSpec::new(&name, &variant, settings) };
-            if plain != asked.spec {
-                let words = "problem.json asks for more than a run of a variant with settings; expected \
-                             the document as it was exported";
+        Some(of) => match &of.relation {
+            Some(relation) => {
+                let words = format!(
+                    "problem.json is of relation {relation}, of which a few steps are asked for; \
+                     `touchstone relate` compares it"
+                );
                 return Err(Failure::usage(words));
             }
-            case::resolved(case, plain)?
-        }
+            None => asked(case, of)?,
+        },
         None => {
             let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
             case::spec(case, variant, &arguments.set)?
@@ -230,7 +256,7 @@ fn measured(
 }
 
 /// All flaws as the reason why nothing is judged.
-fn refused(flaws: &[Flaw]) -> Failure {
+pub fn refused(flaws: &[Flaw]) -> Failure {
     let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
     Failure::usage(format!(
         "the submission is refused, and nothing is judged:\n{}",

@@ -34,6 +34,7 @@ mod run;
 mod specs;
 mod stability;
 mod summary;
+mod symmetry;
 #[cfg(test)]
 mod tests;
 mod verify;
@@ -331,6 +332,8 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
         Command::Export(arguments) => exchange::export(arguments, world),
         Command::Challenge(arguments) => exchange::challenge(arguments, world),
         Command::Submit(arguments) => exchange::submit(arguments, world),
+        Command::Symmetry(arguments) => symmetry::symmetry(arguments, world),
+        Command::Relate(arguments) => symmetry::relate(arguments, world),
         Command::Compare(arguments) => compare::compare(arguments, world),
         Command::Stability(arguments) => stability::stability(arguments, world),
         Command::Explain(arguments) => explain::explain(arguments, world),

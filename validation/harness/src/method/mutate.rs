@@ -2,15 +2,19 @@
 
 use base::mutation::Constant;
 use nalgebra::Vector2;
-use solver::Role;
+use solver::{Numbers, Role};
 
 use super::Parts;
 
 /// Multiplies the constant that is wrong by its factor; the time step is not a part of a scene, and neither
-/// is the lifetime of neighbour lists. Before, the parts are told to who wants to know them.
-pub fn mutate<X>(parts: &mut Parts<X>) {
+/// is the lifetime of neighbour lists. Before, the parts are told to who wants to know them, and are those
+/// that another observer sees if it is one who asks.
+pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     if let Some(outline) = &parts.outline {
-        outline.scene(parts.medium, parts.domain, &parts.mirrors, &parts.bodies);
+        let moves: Vec<bool> = parts.particles.iter().map(|p| p.role == Role::Fluid).collect();
+        let around = (&parts.mirrors[..], &parts.bodies[..]);
+        let view = outline.scene(&parts.medium, parts.domain, around, &moves);
+        parts.see(&view, &moves);
     }
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);

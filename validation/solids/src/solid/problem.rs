@@ -18,6 +18,7 @@ use harness::{
     composed::{Composition, Program, Variants},
     context::Context,
     method::{Boundary, Medium, Method, Parts},
+    outline::Sink,
     rules::PLANNED_DT,
     runner::{self, Drive},
     simulate,
@@ -198,7 +199,9 @@ fn run<P: Problem>(
     let parts = Parts::new(medium, settings.domain(), particles.clone(), context);
     let mut simulation = (method.build)(Parts { mirrors, bodies, ..parts })?;
     if simulation.potential().is_some() {
-        lagrangian::displace(&mut *simulation, |place| settings.displacement(place));
+        let by = |place| settings.displacement(place);
+        let view = context.outline.as_ref().map(Sink::view).unwrap_or_default();
+        lagrangian::displace(&mut *simulation, |place| view.displacement(by, place));
     }
     let energy = Energy::known(&*simulation);
     let mut watch = settings.watch(&particles, energy);

@@ -1,0 +1,213 @@
+//! Every variant of every case tells all observers the same, and an error that breaks one symmetry is found
+//! by the relation that is about it.
+
+use base::{record::Record, spec::RunSpec};
+use harness::{
+    case::{self, Case, Rules, RunError},
+    composed::*,
+    context::Context,
+    declare::Declaration,
+    method::{FromMedium, Medium, Method, Parts, scene},
+    relation::Relation::{self, *},
+    simulate::{begin, simulate},
+    symmetry::{self, Difference},
+};
+use nalgebra::Vector2;
+use rayon::prelude::*;
+use solver::{
+    Compose, Continuity, Domain, Kernel, Leapfrog, Open, Pressure, QuinticSpline, Rate, Scene,
+    Tait, Term, Viscosity, lane::Lane, particles::Common, terms::Pair,
+};
+use touchstone_tests::{new_case::Decay, patch};
+use validation::cases;
+
+/// The relations of which a run tells observers different things, and those which do not hold for it.
+fn found(case: &dyn Case, spec: &RunSpec) -> Result<[Vec<Relation>; 2], RunError> {
+    let [mut broken, mut none] = [Vec::new(), Vec::new()];
+    for (relation, differences) in symmetry::battery(case, spec, &Relation::ALL[1..])? {
+        match differences {
+            Err(RunError::NoSymmetry { .. }) => none.push(relation),
+            Err(error) => return Err(error),
+            Ok(all) if all.iter().all(Difference::is_round_off) => {}
+            Ok(_) => broken.push(relation),
+        }
+    }
+    Ok([broken, none])
+}
+
+/// Settings with few particles, in disorder or in contact from the start on.
+const SMALL: [(&str, &[&str]); 9] = [
+    ("acoustic_wave", &["jitter=0.2"]),
+    ("couette", &["jitter=0.2"]),
+    ("dam_break", &["n=10"]),
+    ("hydrostatic", &["jitter=0.2"]),
+    ("poiseuille", &["jitter=0.2"]),
+    ("rubber_rings", &["centre=4.05", "spacing=0.25"]),
+    ("shear_wave", &["jitter=0.2"]),
+    ("spinning_disk", &["n=8"]),
+    ("taylor_green", &["n=16", "perturb=0.2"]),
+];
+
+/// Also those that do not hold for a scene are the expected ones, and not too many.
+#[test]
+fn every_variant_tells_all_observers_the_same() {
+    let all = cases::CASES.iter().flat_map(|case| {
+        let set = SMALL.iter().find(|(name, _)| *name == case.name()).map_or(&[][..], |of| of.1);
+        let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+        let spec = move |variant: case::Variant| {
+            (*case, case::spec(*case, variant.name, &set).expect("settings"))
+        };
+        case.variants().into_iter().map(spec)
+    });
+    let all: Vec<(&dyn Case, RunSpec)> = all.collect();
+    let found: Vec<_> = all.par_iter().map(|(case, spec)| found(*case, spec)).collect();
+    let (mut untold, mut holds) = (Vec::new(), 0);
+    for ((case, spec), found) in all.iter().zip(found) {
+        let name = format!("{} {}", case.name(), spec.variant);
+        let [broken, none] = match found {
+            Err(RunError::NoSymmetry { relation: Same, .. }) => {
+                untold.push(case.name());
+                continue;
+            }
+            found => found.unwrap_or_else(|error| panic!("{name}: {error}")),
+        };
+        // Artificial stress component by component, as the paper writes it, depends on the axes, and takes
+        // shear of one sign alone.
+        let is_known = name == "rubber_rings componentwise";
+        let known = if is_known { vec![Turned, Mirrored] } else { Vec::new() };
+        assert_eq!(broken, known, "{name}");
+        assert!(none.iter().all(|none| [Turned, Boosted].contains(none)), "{name}: {none:?}");
+        holds += Relation::ALL.len() - 1 - none.len();
+    }
+    untold.dedup();
+    assert_eq!(untold, ["resting_box", "extremes"], "experiments that build scenes of their own");
+    assert!(holds > 450, "only {holds} relations hold");
+}
+
+/// A force that is wrong by a millionth of the pressure.
+#[derive(Clone, Copy)]
+struct Wrong<const KIND: char> {
+    size: f64,
+}
+
+/// Stronger along x.
+const ANISOTROPIC: char = 'x';
+/// Turns to the left.
+const CHIRAL: char = 'l';
+/// Has a length of its own.
+const ABSOLUTE: char = 'm';
+
+impl<const KIND: char> FromMedium for Wrong<KIND> {
+    fn new(m: &Medium) -> Self {
+        let area = if KIND == ABSOLUTE { m.h * m.h } else { 1.0 };
+        Self { size: 1e-6 * m.sound_speed * m.sound_speed * area }
+    }
+}
+
+impl<X, const KIND: char> Term<X> for Wrong<KIND> {
+    type Derived = ();
+    type Sum = Vector2<f64>;
+
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
+        let (x, y, none) = (pair.r.x, pair.r.y, V::all(0.0));
+        let force = match KIND {
+            ANISOTROPIC => Vector2::new(x, none),
+            CHIRAL => Vector2::new(none - y, x),
+            _ => Vector2::new(x, y) / (pair.r2 + V::all(0.01)),
+        };
+        *sum += force * (pair.other.volume * pair.f);
+    }
+
+    fn finish(&self, _: &Common<f64>, _: (), sum: Vector2<f64>, rate: &mut Rate<X>) {
+        rate.velocity += sum * self.size;
+    }
+}
+
+type Flow<F> = Compose<QuinticSpline, F, Continuity, Open, Leapfrog>;
+type Sound = Flow<(Pressure<Tait>, Viscosity)>;
+type Flawed<const KIND: char> = Flow<(Pressure<Tait>, Viscosity, Wrong<KIND>)>;
+
+/// A solver that reads this of its scene in place of what is there.
+macro_rules! misread {
+    ($change:expr) => {
+        Method::with::<Sound>(|parts| {
+            let mut scene = scene::<Sound>(parts);
+            let change: fn(&mut Scene<Sound>) = $change;
+            change(&mut scene);
+            Ok(Box::new(scene.build()?))
+        })
+    };
+}
+
+fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record, RunError> {
+    let eos = Tait { background: 0.3, ..Tait::new(1.0, 1.0) };
+    let medium = Medium { nu: 0.01, eta2_over_h2: 1e-6, ..m.medium(eos, [1.0 / 12.0, 0.1]) };
+    let domain = if variant == "border" { Domain::torus(1.0, 1.0) } else { Domain::open() };
+    let parts = Parts::new(medium, domain, patch(12, 0.15, 11), context);
+    let mut record = begin((FLAWED.name, variant), s, m, &[], context);
+    simulate(m, parts, [1.0 / 32.0, 1.0], context, &mut record)?;
+    Ok(record)
+}
+
+/// Disordered particles in an open domain, moved by solvers with one error each.
+const FLAWED: Composed<Decay> = Composed {
+    name: "flawed",
+    problem: "a patch of fluid",
+    best: Best { variant: "sound", because: "the others are wrong", papers: None },
+    about: "A patch of fluid in disorder.",
+    variants: || {
+        Variants::of(&Program { run, rules: |_, _| Ok(Rules::REFUSED) })
+            .with("sound", "", Method::of::<Sound>(), |_| {})
+            .with("anisotropic", "", Method::of::<Flawed<ANISOTROPIC>>(), |_| {})
+            .with("chiral", "", Method::of::<Flawed<CHIRAL>>(), |_| {})
+            .with("absolute", "", Method::of::<Flawed<ABSOLUTE>>(), |_| {})
+            .with(
+                "drag",
+                "",
+                misread!(|s| s.particles.iter_mut().for_each(|p| p.velocity *= 0.999_999)),
+                |_| {},
+            )
+            .with("first", "", misread!(|s| s.particles[0].density *= 1.000_001), |_| {})
+            .with(
+                "origin",
+                "",
+                misread!(|s| {
+                    let h = s.h;
+                    s.particles
+                        .iter_mut()
+                        .for_each(|p| p.density *= 1.0 + 1e-7 * p.position.norm() / h)
+                }),
+                |_| {},
+            )
+            .with(
+                "border",
+                "",
+                misread!(|s| s.domain.period = s.domain.period.map(|p| p.map(|p| 1.000_001 * p))),
+                |_| {},
+            )
+            .all
+    },
+    is_stable: completed,
+    declaration: |_| Declaration::default(),
+    plan: no_plan,
+    studies: no_studies,
+};
+
+#[test]
+fn each_relation_finds_the_error_that_it_is_about_and_no_other() {
+    for (variant, expected) in [
+        ("sound", &[][..]),
+        ("anisotropic", &[Turned]),
+        ("chiral", &[Mirrored]),
+        ("drag", &[Boosted]),
+        ("absolute", &[BinaryUnits, OtherUnits]),
+        ("first", &[Renumbered]),
+        ("origin", &[Shifted]),
+        // Particles that move all together cross the border too.
+        ("border", &[Boosted, Shifted]),
+    ] {
+        let [broken, none] = found(&FLAWED, &FLAWED.spec(variant, |_| {})).unwrap();
+        assert_eq!(broken, expected, "{variant}");
+        assert_eq!(none.is_empty(), variant != "border", "{variant}: {none:?}");
+    }
+}
