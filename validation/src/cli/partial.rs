@@ -23,7 +23,7 @@ const SHOWN: usize = 50;
 type Lacking = (Job, Pending);
 
 /// The suite of what a store has of a tier, and a line for each run that it lacks. Runs without a record are
-/// not judged, and neither are studies that would have needed one.
+/// not judged, and neither are the studies of a case that lacks one.
 pub fn of_store(
     cases: &[&'static dyn Case],
     tier: Tier,
@@ -92,14 +92,10 @@ fn list(mut lacking: Vec<&Lacking>) -> String {
     }
 }
 
-/// Names the missing runs of a case on its page, and leaves undecided what its studies could not say.
+/// Names the missing runs of a case on its page, and leaves the gates of its studies open.
 fn leave_open(results: &mut CaseResults, lacking: &[&Lacking]) {
-    let mut open = 0;
-    for study in &mut results.studies {
-        let all = study.judged.len();
-        study.judged.retain(|judged| judged.judgement.value.is_some_and(f64::is_finite));
-        open += all - study.judged.len();
-    }
+    // A study of half of its runs has a number too, which says nothing.
+    let open: usize = results.studies.iter_mut().map(|study| study.judged.drain(..).count()).sum();
     let table = Columns::<&Lacking>::default()
         .text("state", |(_, why)| word(why))
         .code("run", |(job, _)| job.planned.spec.key())
@@ -108,7 +104,7 @@ fn leave_open(results: &mut CaseResults, lacking: &[&Lacking]) {
     let shown = &lacking[..lacking.len().min(SHOWN)];
     let words = format!(
         "This report is of a store that is not complete. Of the runs of this case are without a record: \
-         {}. They are not judged. Open are {open} gates of studies, which would have needed them.",
+         {}. They are not judged. The {open} gates of its studies are open until every run has a record.",
         counts(lacking)
     );
     let name = results.case.name().replace('_', "-");
