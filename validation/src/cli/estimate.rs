@@ -42,46 +42,31 @@ impl Estimates {
         Self(jobs.par_iter().map(of).collect())
     }
 
-    fn of_jobs<'a>(&'a self, jobs: &'a [Job]) -> impl Iterator<Item = (&'a RunSpec, &'a Size)> {
-        let of = jobs.iter().map(|job| &job.planned.spec).zip(&self.0);
-        of.filter_map(|(spec, size)| Some((spec, size.as_ref()?)))
-    }
-
     /// A row a line of the plan, with its number for `run --index`.
     pub fn table(&self, jobs: &[Job]) -> Result<Vec<u8>, FileError> {
-        let head = ["index[-]", "key[-]", "case[-]", "variant[-]", "time[s]", "memory[MB]"];
-        let mut table = CsvTable::new(&head)?;
+        let mut table = CsvTable::new(&["index[-]", "time[s]", "memory[MB]"])?;
         for (index, (job, size)) in jobs.iter().zip(&self.0).enumerate() {
-            let spec = &job.planned.spec;
-            let number = |of: &dyn Fn(&Size) -> f64| {
-                Cell::from(size.as_ref().map(of).filter(|number| number.is_finite()))
-            };
-            table.cells(&[
-                Cell::Text(index.to_string()),
-                Cell::Text(spec.key().to_string()),
-                Cell::from(spec.case.as_str()),
-                Cell::from(spec.variant.as_str()),
-                number(&|size| time(spec, size)),
-                number(&|size| 1e-6 * size.bytes()),
-            ])?;
+            let numbers = size.map(|size| [time(&job.planned.spec, &size), 1e-6 * size.bytes()]);
+            let cell = |k: usize| Cell::from(numbers.map(|of| of[k]).filter(|of| of.is_finite()));
+            table.cells(&[Cell::Text(index.to_string()), cell(0), cell(1)])?;
         }
         Ok(table.into_bytes())
     }
 
     /// Their sum, the longest and the largest of them, and how many are refused.
     pub fn sum(&self, jobs: &[Job]) -> String {
-        let times: Vec<f64> = self.of_jobs(jobs).map(|(spec, size)| time(spec, size)).collect();
-        let (sum, longest) = times.iter().fold((0.0, 0.0_f64), |(a, b), t| (a + t, b.max(*t)));
-        let largest = self.of_jobs(jobs).map(|(_, size)| size.bytes()).fold(0.0, f64::max);
-        let long = self.of_jobs(jobs).filter(|(_, size)| size.is_too_much()).count();
+        let sizes =
+            || jobs.iter().zip(&self.0).filter_map(|(job, size)| Some((job, size.as_ref()?)));
+        let times: Vec<f64> = sizes().map(|(job, size)| time(&job.planned.spec, size)).collect();
         format!(
             "estimate: {}, {} refused; about {} on one core, the longest {}; memory of the largest {} MB; \
-             {long} of more than {} or {} GB a simulation need --allow-long",
+             {} of more than {} or {} GB a simulation need --allow-long",
             counted(jobs.len(), "run", "runs"),
-            self.0.iter().filter(|size| size.is_none()).count(),
-            seconds(sum),
-            seconds(longest),
-            sig(1e-6 * largest, 2),
+            jobs.len() - times.len(),
+            seconds(times.iter().sum()),
+            seconds(times.iter().copied().fold(0.0, f64::max)),
+            sig(1e-6 * sizes().map(|(_, size)| size.bytes()).fold(0.0, f64::max), 2),
+            sizes().filter(|(_, size)| size.is_too_much()).count(),
             seconds(size::MOST_SECONDS),
             sig(1e-9 * size::MOST_BYTES, 2),
         )

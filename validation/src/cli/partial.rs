@@ -7,23 +7,20 @@ use ::report::counted;
 use base::spec::RunKey;
 use harness::{
     case::{self, Case, Tier},
-    columns::Columns,
     make::{Job, Stored},
     store::{Pending, Store},
     study::Study,
-    suite::{self, CaseResults, Suite},
+    suite::{self, Suite},
 };
 
 use super::{Failure, World, verify};
-
-/// Runs of a case without a record that its page names; all of them are in the list.
-const SHOWN: usize = 50;
 
 /// A run without a record, and why it has none.
 type Lacking = (Job, Pending);
 
 /// The suite of what a store has of a tier, and a line for each run that it lacks. Runs without a record are
-/// not judged, and neither are studies that would have needed one.
+/// not judged, and neither are the studies of a case that lacks one: of half its runs a study has a number
+/// too, which says nothing.
 pub fn of_store(
     cases: &[&'static dyn Case],
     tier: Tier,
@@ -33,43 +30,50 @@ pub fn of_store(
 ) -> Result<(Suite, String), Failure> {
     let (mut plans, Stored { made, missing, .. }) =
         verify::stored(cases, tier, path, any_build, world)?;
-    let store = Store::to_read(path);
     let why = |job: &Job| match made.unsound.get(&job.planned.spec.key()) {
         Some(error) => Pending::Failed(error.to_string()),
-        None => store.pending(&job.planned.spec),
+        None => Store::to_read(path).pending(&job.planned.spec),
     };
-    let lacking: BTreeMap<RunKey, Lacking> =
-        missing.into_iter().map(|job| (job.planned.spec.key(), (job.clone(), why(&job)))).collect();
-    for planned in plans.iter_mut().flat_map(|(_, plan)| plan) {
-        if lacking.contains_key(&planned.spec.key()) {
-            planned.gates.clear();
-        }
-    }
+    let lack = |job: Job| (job.planned.spec.key(), (job.clone(), why(&job)));
+    let lacking: BTreeMap<RunKey, Lacking> = missing.into_iter().map(lack).collect();
+    let planned = plans.iter_mut().flat_map(|(_, plan)| plan);
+    let without = planned.filter(|planned| lacking.contains_key(&planned.spec.key()));
+    without.for_each(|planned| planned.gates.clear());
     let mut suite = suite::judge(plans, tier, made);
     for results in &mut suite.cases {
-        let of_case = |(job, _): &&Lacking| job.case.name() == results.case.name();
-        let of_case: Vec<&Lacking> = lacking.values().filter(of_case).collect();
-        if !of_case.is_empty() {
-            leave_open(results, &of_case);
+        let name = results.case.name();
+        let of_case = lacking.values().filter(|(job, _)| job.case.name() == name);
+        let of_case: Vec<&Lacking> = of_case.collect();
+        if of_case.is_empty() {
+            continue;
         }
+        let open: usize =
+            results.studies.iter_mut().map(|study| study.judged.drain(..).len()).sum();
+        let words = format!(
+            "This report is of a store that is not complete. Of the runs of this case are without a record: \
+             {}. They are not judged. The {open} gates of its studies are open until every run has a record.",
+            counts(&of_case)
+        );
+        let id = format!("{}-lacking", name.replace('_', "-"));
+        results.studies.insert(0, Study::new(&id, "Runs without a record").prose(words));
     }
     Ok((suite, list(lacking.values().collect())))
 }
 
-/// What became of a run, in a word.
-fn word(why: &Pending) -> &'static str {
+/// What became of a run, in a word, and the reason for a failure.
+fn told(why: &Pending) -> (&'static str, &str) {
     match why {
-        Pending::Missing => "missing",
-        Pending::Running => "running",
-        Pending::Stopped => "stopped",
-        Pending::Failed(_) => "failed",
+        Pending::Missing => ("missing", ""),
+        Pending::Running => ("running", ""),
+        Pending::Stopped => ("stopped", ""),
+        Pending::Failed(reason) => ("failed", reason),
     }
 }
 
 /// Runs by what became of them, as `3 missing, 1 running`.
 fn counts(lacking: &[&Lacking]) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    lacking.iter().for_each(|(_, why)| *counts.entry(word(why)).or_default() += 1);
+    lacking.iter().for_each(|(_, why)| *counts.entry(told(why).0).or_default() += 1);
     counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
@@ -77,42 +81,12 @@ fn counts(lacking: &[&Lacking]) -> String {
 fn list(mut lacking: Vec<&Lacking>) -> String {
     lacking.sort_by(|(_, a), (_, b)| a.cmp(b));
     let line = |(job, why): &&Lacking| {
-        let (spec, set) = (&job.planned.spec, case::changed(job.case, &job.planned.spec));
-        let reason = if let Pending::Failed(reason) = why { reason.as_str() } else { "" };
-        let words = [word(why), &spec.key().to_string(), &spec.case, &spec.variant];
-        format!("{} {} {reason}", words.join(" "), set.join(" ")).trim().to_string() + "\n"
+        let (spec, set) = (&job.planned.spec, case::changed(job.case, &job.planned.spec).join(" "));
+        let (word, reason) = told(why);
+        let words = format!("{word} {} {} {} {set} {reason}", spec.key(), spec.case, spec.variant);
+        words.trim_end().to_string() + "\n"
     };
     let lines: String = lacking.iter().map(line).collect();
-    match lacking.len() {
-        0 => "every run has a record\n".into(),
-        all => {
-            let all = counted(all, "run without a record", "runs without a record");
-            format!("{lines}{all}: {}\n", counts(&lacking))
-        }
-    }
-}
-
-/// Names the missing runs of a case on its page, and leaves undecided what its studies could not say.
-fn leave_open(results: &mut CaseResults, lacking: &[&Lacking]) {
-    let mut open = 0;
-    for study in &mut results.studies {
-        let all = study.judged.len();
-        study.judged.retain(|judged| judged.judgement.value.is_some_and(f64::is_finite));
-        open += all - study.judged.len();
-    }
-    let table = Columns::<&Lacking>::default()
-        .text("state", |(_, why)| word(why))
-        .code("run", |(job, _)| job.planned.spec.key())
-        .text("variant", |(job, _)| &job.planned.spec.variant)
-        .text("settings", |(job, _)| case::changed(job.case, &job.planned.spec).join(" "));
-    let shown = &lacking[..lacking.len().min(SHOWN)];
-    let words = format!(
-        "This report is of a store that is not complete. Of the runs of this case are without a record: \
-         {}. They are not judged. Open are {open} gates of studies, which would have needed them.",
-        counts(lacking)
-    );
-    let name = results.case.name().replace('_', "-");
-    let study = Study::new(&format!("{name}-lacking"), "Runs without a record").prose(words);
-    let caption = format!("The first {SHOWN} of them at most.");
-    results.studies.insert(0, study.block(table.table(caption, shown)));
+    let all = counted(lacking.len(), "run without a record", "runs without a record");
+    if lacking.is_empty() { all + "\n" } else { format!("{lines}{all}: {}\n", counts(&lacking)) }
 }
