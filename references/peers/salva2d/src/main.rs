@@ -77,6 +77,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             writeln!(results, "{time:?},{id},{:?},{:?},{:?},{:?}", x.x, x.y, v.x, v.y)?;
         }
     }
+    hand_in(results, [longest, support, alpha, seconds], steps)
+}
+
+/// Writes the three files of a submission.
+fn hand_in(
+    results: String,
+    [longest, support, alpha, seconds]: [f64; 4],
+    steps: u64,
+) -> Result<(), Box<dyn Error>> {
     let method = json!({
         "code": "salva2d", "version": "0.11.0", "scheme": "DFSPH", "division": "closed",
         "settings": { "step": longest, "support": support, "alpha": alpha },
