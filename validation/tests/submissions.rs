@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 
 use base::record::Record;
 use base::spec::RunSpec;
+use base::submission::OURS;
 
 const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
 
@@ -382,6 +383,12 @@ fn a_sealed_problem_holds_its_method_and_its_settings() {
 #[test]
 fn the_records_of_other_codes_are_sound() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../references/peers/records");
+    let files = fs::read_dir(&folder).unwrap().count();
+    assert_eq!(
+        validation::peers::records().count(),
+        files,
+        "the program contains all that is there"
+    );
     let mut codes = std::collections::BTreeSet::new();
     for entry in fs::read_dir(folder).unwrap().flatten() {
         let record = Record::from_json(&read(&entry.path()));
@@ -389,7 +396,8 @@ fn the_records_of_other_codes_are_sound() {
         codes.insert(record.submission.expect("the code that made it").code);
         assert!(!record.profiles.contains_key("particles"), "{:?}", entry.path());
     }
-    assert_eq!(codes.into_iter().collect::<Vec<_>>(), ["LAMMPS", "PySPH"]);
+    let expected = ["JAX-SPH", "LAMMPS", "PySPH", "pySPlisHSPlasH", "salva2d", OURS];
+    assert_eq!(codes.into_iter().collect::<Vec<_>>(), expected);
 }
 
 /// Stress is not in the results: what does not need it is measured, and nothing counts as diverged.

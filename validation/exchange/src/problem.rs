@@ -52,7 +52,7 @@ const HAND_IN: &str = "A folder with these files:\n\n\
     \"closed\", \"settings\": {...}, \"changed\": \"what differs from the problem\"}`. The division is \
     `closed` if particles, spacing and support of the kernel are those of the problem, else `open`.\n\
     - `system.json`: `{\"machine\": \"...\", \"threads\": 1, \"seconds\": 1.5, \"steps\": 1000, \
-    \"interactions\": \"unknown\"}`. Each may be \"unknown\"; the seconds are wall time of the time loop.\n\
+    \"interactions\": \"unknown\"}`. Each may be \"unknown\"; seconds are those of the time loop.\n\
     - `results.csv` with the columns `t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]`, sorted by t, every \
     moving particle at each of the times below. Other formats: LAMMPS dump, `.npz`, `.vtu`, `.vtp`.\n";
 

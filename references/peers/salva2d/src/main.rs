@@ -1,7 +1,7 @@
 //! Runs the exported problem of the folder in which it is started with salva2d: a fluid without viscosity that
 //! falls between walls of particles at rest.
 
-use std::{error::Error, fmt::Write as _, fs, time::Instant};
+use std::{error::Error, fmt::Write as _, fs};
 
 use nalgebra::Vector2;
 use salva2d::{
@@ -13,6 +13,12 @@ use serde_json::{Value, json};
 
 /// Courant number of the fastest fall: the code's own coefficient, which it does not use yet.
 const COURANT: f64 = 0.4;
+
+/// Of this process, which has one thread; NaN where the system does not tell.
+fn processor_seconds() -> f64 {
+    let text = fs::read_to_string("/proc/self/schedstat").unwrap_or_default();
+    text.split(' ').next().and_then(|ns| ns.parse().ok()).map_or(f64::NAN, |ns: f64| ns * 1e-9)
+}
 
 fn number(value: &Value) -> f64 {
     value["value"].as_f64().unwrap_or(f64::NAN)
@@ -49,8 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let longest = COURANT * dx / fastest;
 
     let (radius, factor) = (0.5 * dx, support / dx);
-    let mut world =
-        LiquidWorld::new(<DFSPHSolver>::new(), radius as f32, factor as f32, 1.0);
+    let mut world = LiquidWorld::new(<DFSPHSolver>::new(), radius as f32, factor as f32, 1.0);
     let places = fluid.iter().map(|row| place(row)).collect();
     let mut water = Fluid::new(places, radius as f32, rho as f32, InteractionGroups::default());
     // Its artificial viscosity takes the radius of the support, which is two smoothing lengths, for h.
@@ -65,18 +70,27 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut now, mut steps, mut seconds) = (0.0, 0_u64, 0.0);
     let down = Vector2::new(gravity[0] as f32, gravity[1] as f32);
     for time in numbers(&problem["times"]) {
-        let begin = Instant::now();
+        let begin = processor_seconds();
         let count = ((time - now) / longest * (1.0 - 1e-9)).ceil() as u64;
         for _ in 0..count {
             world.step(((time - now) / count as f64) as f32, &down);
         }
-        seconds += begin.elapsed().as_secs_f64();
+        seconds += processor_seconds() - begin;
         (now, steps) = (time, steps + count);
         let water = world.fluids().get(water).ok_or("the fluid is lost")?;
         for ((id, x), v) in ids.iter().zip(&water.positions).zip(&water.velocities) {
             writeln!(results, "{time:?},{id},{:?},{:?},{:?},{:?}", x.x, x.y, v.x, v.y)?;
         }
     }
+    hand_in(results, [longest, support, alpha, seconds], steps)
+}
+
+/// Writes the three files of a submission.
+fn hand_in(
+    results: String,
+    [longest, support, alpha, seconds]: [f64; 4],
+    steps: u64,
+) -> Result<(), Box<dyn Error>> {
     let method = json!({
         "code": "salva2d", "version": "0.11.0", "scheme": "DFSPH", "division": "closed",
         "settings": { "step": longest, "support": support, "alpha": alpha },

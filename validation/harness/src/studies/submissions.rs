@@ -194,3 +194,42 @@ fn table(declared: &Declaration, caption: &str, of: Vec<&JudgedRun>, runs: &Runs
         .text("ended", |run| run.record.status.to_string())
         .table(caption, of)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(code: &str) -> Submission {
+        let [version, scheme, method] = ["1", "scheme", ""].map(String::from);
+        let (code, division) = (code.to_string(), Division::Closed);
+        Submission { code, version, scheme, division, method, seed: None }
+    }
+
+    fn mark<'a>(of: &'a Submission, session: &'a str, rows: u32, error: f64, s: f64) -> Mark<'a> {
+        let (name, resolution, session) = (of.code.clone(), format!("{rows} rows"), Some(session));
+        Mark { of, name, resolution, session, error, seconds: s }
+    }
+
+    /// At equal resolution errors compare, at no more error times, and nothing across sessions.
+    #[test]
+    fn what_is_better_than_ours_in_the_same_session_is_said() {
+        let (ours, peer) = (of(OURS), of("other"));
+        let said = |marks: &[Mark]| better(marks).expect("there are both");
+        let own = [mark(&ours, "a", 10, 0.02, 1.0), mark(&ours, "a", 20, 0.005, 4.0)];
+        let with = |error, seconds, session| {
+            let [coarse, fine] = [(10, 0.02, 1.0), (20, 0.005, 4.0)]
+                .map(|(rows, error, s)| mark(&ours, "a", rows, error, s));
+            said(&[coarse, fine, mark(&peer, session, 10, error, seconds)])
+        };
+        assert!(with(0.03, 2.0, "a").starts_with("No other code"));
+        let text = with(0.01, 5.0, "a");
+        assert!(text.contains("the best of ours 2.0") && !text.contains("takes"), "{text}");
+        let text = with(0.03, 0.5, "a");
+        assert!(
+            text.contains("with no more error 1.0") && !text.contains("has an error"),
+            "{text}"
+        );
+        assert!(with(0.01, 0.5, "b").starts_with("No other code"), "another session");
+        assert!(better(&own).is_none(), "ours alone");
+    }
+}
