@@ -98,8 +98,8 @@ impl Refined {
             ),
             For::Neighbours => (
                 within(0.4),
-                "Independent displacements of (h/dx)^2 neighbours leave the root of their number: noise falls \
-                 as (dx/h)^2. Where neighbours are few, the lattice itself adds to it.",
+                "Independent displacements of (h/dx)^2 neighbours leave the root of their number: noise \
+                 falls as (dx/h)^2. Where neighbours are few, the lattice itself adds to it.",
             ),
             For::Disorder => (within(0.15), "Noise is linear in small displacements."),
             _ if expected > 0.0 => (
@@ -142,7 +142,7 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
             };
             let kind = if of.is_corrected { "corrected" } else { "plain" };
             let expected = match refined.expected(of) as i32 {
-                -1 => "-1",
+                -1 => "−1",
                 0 => "0",
                 1 => "1",
                 _ => "2",
@@ -158,11 +158,11 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
          is no noise, and the gain is known to 1e-5 by theory, so that these gates name the operator that \
          is wrong: with a viscosity of 103 % the gates of the Laplacian fail, and no other one.",
     );
-    let figure = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a lattice \
-                  (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = L/24) and \
-                  over the displacement.";
-    let caption = "Orders of the parts of the error. The bias is that of the gain on a lattice; noise is that \
-                   of lattices that are displaced by up to 0.2 dx, relative to the rms of the exact values. \
+    let figure = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a \
+                  lattice (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = \
+                  L/24) and over the displacement.";
+    let caption = "Orders of the parts of the error. The bias is that of the gain on a lattice; noise is \
+                   that of lattices that are displaced by up to 0.2 dx, over the rms of the exact values. \
                    With an order below 1 in h an operator does not converge at a fixed number of neighbours.";
     let is_drawn = |line: &Line| line.name.starts_with(QUINTIC);
     vec![orders::study(study, [figure, caption], &all, is_drawn)]
