@@ -14,19 +14,18 @@ use base::{
 };
 use harness::{
     case::{Case, Planned, RunError, Tier},
-    columns::Columns,
     composed::{self, Best, Composed, Composition, Program, Variants},
     context::Context,
-    convergence::{Convergence, Level, convergence},
+    convergence::Level,
     declare::Declaration,
     method::{FirstRow, FromMedium, Medium, Method},
+    orders::{self, Line, Refinement},
     runs::Runs,
     simulate,
     study::Study,
     table,
 };
 use maths::{exact::Manufactured, metrics::norms::rms};
-use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, sig};
 
 use crate::{
     channel::{Modern, Seed, Stabilised},
@@ -240,8 +239,6 @@ enum For {
 
 type Table = table::Table<ManufacturedSettings, For>;
 
-const KINDS: [For; 2] = [For::Strained, For::Mixed];
-
 /// All variants by walls and method.
 fn ladders() -> impl Iterator<Item = &'static str> {
     [SEED, MODERN, CONSISTENT].into_iter().flatten()
@@ -320,91 +317,32 @@ fn gate(of: For, variant: &str) -> Gate {
     gate.with_limitation(Bound::Within(least, low), reason).because_of(cause)
 }
 
-fn levels(of: For, variant: &str, table: &Table, runs: &Runs) -> Vec<Level> {
-    let rows = table.of(of).filter(|row| row.variant == variant);
-    let error = |record: &Record| record.value(L2);
-    rows.map(|row| Level {
-        spacing: 1.0 / row.settings.n as f64,
-        value: runs.completed(&row.run.spec).and_then(error).unwrap_or(f64::NAN),
-    })
-    .collect()
-}
-
-const CAPTION: &str = "Relative L2 error of the velocity of a manufactured steady flow between walls, over \
-    the spacing, by variant: at Re 0.5 (left), where the lattice is strained and not mixed, and at Re 10.";
-
+/// What the report shows of the case.
 fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
+    let refinement = |(of, title): (For, &'static str)| {
+        let line = |name: &'static str| {
+            let error = |record: &Record| record.value(L2);
+            let level = |row: &table::Row<ManufacturedSettings, For>| Level {
+                spacing: 1.0 / row.settings.n as f64,
+                value: runs.completed(&row.run.spec).and_then(error).unwrap_or(f64::NAN),
+            };
+            let levels = table.of(of).filter(|row| row.variant == name).map(level).collect();
+            let [kind, expected] = match has_ghosts(name) {
+                true => ["ghosts", "2"],
+                false => ["interface and wall", "2, as dx → 0 1"],
+            };
+            Line { name, kind, levels, expected, gate: gate(of, name) }
+        };
+        let (axes, slopes) = (["dx/L [-]", "error of the velocity [-]"], &[1.0, 2.0]);
+        Refinement { title, axes, slopes, lines: ladders().map(line).collect() }
+    };
+    let all = [(For::Strained, "Re 0.5: strained"), (For::Mixed, "Re 10: mixed")].map(refinement);
+    let figure = "Relative L2 error of the velocity of a manufactured steady flow between walls over the \
+                  spacing: at Re 0.5 (left), where the lattice is strained and not mixed, and at Re 10.";
+    let caption = "Errors of the velocity, and their order by method and walls.";
     let study = Study::new("manufactured-orders", "Orders of whole methods by a manufactured flow");
-    let figure =
-        KINDS.into_iter().fold(Figure::new("manufactured-orders", CAPTION), |figure, of| {
-            figure.panel(panel(of, &table, runs))
-        });
-    let study = study.block(figure.columns(2).panel_size(330.0, 280.0));
-    let study = KINDS.into_iter().fold(study, |study, of| study.block(orders(of, &table, runs)));
-    let all = KINDS.into_iter().flat_map(|of| ladders().map(move |variant| (of, variant)));
-    let judged = all.fold(study, |study, (of, variant)| {
-        let found = convergence(&levels(of, variant, &table, runs));
-        study.judge(gate(of, variant), found.map_or(f64::NAN, |found| found.order))
-    });
-    vec![judged]
-}
-
-fn panel(of: For, table: &Table, runs: &Runs) -> Plot {
-    let [title, legend] = match of {
-        For::Strained => ["Re 0.5: strained", ""],
-        For::Mixed => ["Re 10: mixed", "shown"],
-    };
-    let plot = Plot::new(title, Axis::log("dx/L [-]"), Axis::log("error of the velocity [-]"));
-    let legend = if legend.is_empty() { Legend::Hidden } else { Legend::Outside };
-    let lines = ladders().enumerate().fold(plot.legend(legend), |plot, (k, variant)| {
-        let levels = levels(of, variant, table, runs).into_iter();
-        let line = levels.map(|level| (level.spacing, level.value)).collect();
-        plot.layer(Series::line_markers(variant, line).cycle(k))
-    });
-    [1.0, 2.0].into_iter().fold(lines, |plot, order| plot.layer(Layer::slope(order)))
-}
-
-/// Errors by resolution, and their order.
-fn orders(of: For, table: &Table, runs: &Runs) -> report::Table {
-    let caption = match of {
-        For::Strained => {
-            "Errors of the velocity at Re 0.5, when the flow is steady, and their order."
-        }
-        For::Mixed => "The same at Re 10, where the flow mixes the particles.",
-    };
-    let of_ladder = |variant: &&str| levels(of, variant, table, runs);
-    let order = |variant: &&str, show: fn(&Convergence) -> String| {
-        Cell::text(convergence(&of_ladder(variant)).as_ref().map_or("–".into(), show))
-    };
-    let walls = |variant: &&str| match has_ghosts(variant) {
-        true => "ghosts",
-        false => "interface and wall",
-    };
-    let expected = |variant: &&str| if has_ghosts(variant) { "2" } else { "2, as dx → 0 1" };
-    let finest = move |variant: &&str| {
-        let row = table.of(of).filter(|row| row.variant == *variant).last();
-        let record = row.and_then(|row| runs.completed(&row.run.spec));
-        record.and_then(|record| record.value(PRESSURE_L2)).unwrap_or(f64::NAN)
-    };
-    let mut columns = Columns::default()
-        .code("method", |variant: &&str| variant.trim_end_matches("-interface").to_string())
-        .text("walls", walls);
-    for (k, level) in levels(of, SEED[0], table, runs).into_iter().enumerate() {
-        let head = format!("n = {:.0}", 1.0 / level.spacing);
-        let error = move |variant: &&str| levels(of, variant, table, runs)[k].value;
-        columns = columns.of([&head, "-"], error, |error| Cell::percent(error, 3));
-    }
-    let interval = |c: &Convergence| {
-        let [low, high] = c.interval.map(|end| sig(end, 2));
-        format!("{low} … {high}")
-    };
-    columns
-        .num(["order", "-"], move |variant| order(variant, |c| sig(c.order, 3)))
-        .num(["95 % interval", "-"], move |variant| order(variant, interval))
-        .num(["expected", "-"], move |variant| Cell::text(expected(variant)))
-        .of(["error of the pressure, finest", "-"], finest, |error| Cell::percent(error, 2))
-        .table(caption, ladders())
+    vec![orders::study(study, [figure, caption], &all, |_| true)]
 }
 
 #[cfg(test)]
@@ -421,13 +359,13 @@ mod tests {
     #[test]
     fn a_wrong_viscosity_or_force_is_no_part_of_the_solution() {
         let error = |of: Option<Constant>| {
-            let mutation = of.map(|of| Mutation { of, factor: 1.1 });
+            let mutation = of.map(|of| Mutation { of, factor: 1.3 });
             let spec = RunSpec { mutation, ..CASE.spec("consistent", |s| s.n = 12) };
             CASE.run(&spec, &Context::default()).expect("a run").value(L2).expect("measured")
         };
-        let none = error(None);
+        assert!(error(None) < 0.06, "{}", error(None));
         for of in [Constant::Viscosity, Constant::BodyForce] {
-            assert!((error(Some(of)) - none).abs() > 0.03, "{of}: {} {none}", error(Some(of)));
+            assert!(error(Some(of)) > 0.1, "{of}: {}", error(Some(of)));
         }
     }
 

@@ -26,6 +26,7 @@ pub mod make;
 pub mod medium;
 pub mod method;
 pub mod notes;
+pub mod orders;
 pub mod outline;
 pub mod pictures;
 pub mod plan;

@@ -6,16 +6,16 @@ use base::{
 };
 use harness::{
     case::Tier,
-    columns::Columns,
-    convergence::{Convergence, Level, convergence},
+    convergence::Level,
+    orders::{self, Line, Refinement},
     runs::Runs,
     study::Study,
+    table::Row,
 };
-use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, sig};
 
 use super::{
     OPERATORS, OperatorSettings, QUINTIC, Subject,
-    plan::{For, Table, table},
+    plan::{For, table},
     run::{BIAS, NOISE},
     subjects,
 };
@@ -34,6 +34,7 @@ struct Refined {
     title: &'static str,
     axis: &'static str,
     metric: MetricKey,
+    slopes: &'static [f64],
     spacing: fn(&OperatorSettings) -> f64,
 }
 
@@ -44,6 +45,7 @@ const REFINED: [Refined; 4] = [
         title: "Lattice: gain",
         axis: "h/L [-]",
         metric: BIAS,
+        slopes: &[2.0],
         spacing: |s| s.h_over_dx / s.n as f64,
     },
     Refined {
@@ -52,6 +54,7 @@ const REFINED: [Refined; 4] = [
         title: "Disorder: smaller h",
         axis: "h/L [-]",
         metric: NOISE,
+        slopes: &[1.0],
         spacing: |s| s.h_over_dx / s.n as f64,
     },
     Refined {
@@ -60,6 +63,7 @@ const REFINED: [Refined; 4] = [
         title: "Disorder: more neighbours",
         axis: "dx/h [-]",
         metric: NOISE,
+        slopes: &[2.0],
         spacing: |s| 1.0 / s.h_over_dx,
     },
     Refined {
@@ -68,21 +72,12 @@ const REFINED: [Refined; 4] = [
         title: "Less disorder",
         axis: "displacement/dx [-]",
         metric: NOISE,
+        slopes: &[1.0],
         spacing: |s| s.disorder,
     },
 ];
 
 impl Refined {
-    fn levels(&self, of: &Subject, table: &Table, runs: &Runs) -> Vec<Level> {
-        let rows = table.of(self.of).filter(|row| row.variant == of.name);
-        let value = |record: Option<&Record>| record.and_then(|record| record.value(self.metric));
-        rows.map(|row| Level {
-            spacing: (self.spacing)(&row.settings),
-            value: value(runs.completed(&row.run.spec)).unwrap_or(f64::NAN),
-        })
-        .collect()
-    }
-
     /// The order that theory expects.
     fn expected(&self, of: &Subject) -> f64 {
         match self.of {
@@ -103,8 +98,8 @@ impl Refined {
             ),
             For::Neighbours => (
                 within(0.4),
-                "Independent displacements of (h/dx)^2 neighbours leave the root of their number: noise falls \
-                 as (dx/h)^2. Where neighbours are few, the lattice itself adds to it.",
+                "Independent displacements of (h/dx)^2 neighbours leave the root of their number: noise \
+                 falls as (dx/h)^2. Where neighbours are few, the lattice itself adds to it.",
             ),
             For::Disorder => (within(0.15), "Noise is linear in small displacements."),
             _ if expected > 0.0 => (
@@ -137,66 +132,38 @@ impl Refined {
 /// What the report shows of the case.
 pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
-    let laddered: Vec<&Subject> =
-        subjects().filter(|of| tier == Tier::Full || of.kernel == QUINTIC).collect();
-    let mut study = Study::new("operators-orders", "Orders of single operators");
-    study = study.prose(
-        "What an operator makes of a wave is a gain times the exact value, and noise. On a lattice there is \
-         no noise, and the gain is known to 1e-5 by theory, so that these gates name the operator that is \
-         wrong: with a viscosity of 103 % the gates of the Laplacian fail, and no other one.",
-    );
-    study = study.block(figure(&laddered, &table, runs));
-    let caption = "Orders of the parts of the error, with their standard error; in brackets what theory \
-                   expects. The bias is that of the gain on a lattice; noise is that of lattices that are \
-                   displaced by up to 0.2 dx, relative to the rms of the exact values. Below an order of 1 in \
-                   h an operator does not converge at a fixed number of neighbours.";
-    let mut columns = Columns::default().code("variant", |of: &&Subject| of.name);
-    for refined in &REFINED {
-        let (table, head) = (&table, format!("{}: order", refined.title));
-        let order = move |of: &&Subject| {
-            let found = convergence(&refined.levels(of, table, runs));
-            let text =
-                |c: &Convergence| format!("{} ± {}", sig(c.order, 3), sig(c.standard_error, 2));
-            let found = found.as_ref().map_or("–".into(), text);
-            Cell::text(format!("{found} ({})", refined.expected(of)))
-        };
-        columns = columns.num([&head, "-"], order);
-    }
-    let noise =
-        |of: &&Subject| REFINED[1].levels(of, &table, runs).last().map_or(f64::NAN, |l| l.value);
-    columns = columns.of(["noise, finest", "-"], noise, |value| Cell::percent(value, 2));
-    study = study.block(columns.table(caption, &laddered));
-    for of in &laddered {
-        for refined in &REFINED {
-            let found = convergence(&refined.levels(of, &table, runs));
-            study = study.judge(refined.gate(of), found.map_or(f64::NAN, |found| found.order));
-        }
-    }
-    vec![study]
-}
-
-/// Errors of one kernel, a panel for each of what is refined.
-fn figure(laddered: &[&Subject], table: &Table, runs: &Runs) -> Figure {
-    let caption = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a lattice \
-                   (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = L/24) and \
-                   over the displacement.";
-    let quintic = || laddered.iter().filter(|of| of.kernel == QUINTIC).enumerate();
-    let panel = |(k, refined): (usize, &Refined)| {
-        let label = if refined.metric == BIAS { "bias [-]" } else { "noise [-]" };
-        let plot = Plot::new(refined.title, Axis::log(refined.axis), Axis::log(label));
-        let plot = plot.legend(if k == 1 { Legend::Outside } else { Legend::Hidden });
-        let plot = quintic().fold(plot, |plot, (k, of)| {
-            let levels = refined.levels(of, table, runs).into_iter();
-            let name = of.name.trim_start_matches("quintic-");
-            let line = levels.map(|level| (level.spacing, level.value)).collect();
-            plot.layer(Series::line_markers(name, line).cycle(k))
+    let all = REFINED.map(|refined| {
+        let lines = subjects().filter(|of| tier == Tier::Full || of.kernel == QUINTIC).map(|of| {
+            let rows = table.of(refined.of).filter(|row| row.variant == of.name);
+            let value = |record: &Record| record.value(refined.metric);
+            let level = |row: &Row<OperatorSettings, For>| Level {
+                spacing: (refined.spacing)(&row.settings),
+                value: runs.completed(&row.run.spec).and_then(value).unwrap_or(f64::NAN),
+            };
+            let kind = if of.is_corrected { "corrected" } else { "plain" };
+            let expected = match refined.expected(of) as i32 {
+                -1 => "−1",
+                0 => "0",
+                1 => "1",
+                _ => "2",
+            };
+            let (levels, gate) = (rows.map(level).collect(), refined.gate(of));
+            Line { name: of.name, kind, levels, expected, gate }
         });
-        plot.layer(Layer::slope(if refined.of == For::Resolution {
-            1.0
-        } else {
-            refined.expected(laddered[0])
-        }))
-    };
-    let figure = Figure::new("operators-orders", caption).columns(2).panel_size(330.0, 250.0);
-    REFINED.iter().enumerate().map(panel).fold(figure, Figure::panel)
+        let axes = [refined.axis, if refined.metric == BIAS { "bias [-]" } else { "noise [-]" }];
+        Refinement { title: refined.title, axes, slopes: refined.slopes, lines: lines.collect() }
+    });
+    let study = Study::new("operators-orders", "Orders of single operators").prose(
+        "What an operator makes of a wave is a gain times the exact value, and noise. On a lattice there \
+         is no noise, and the gain is known to 1e-5 by theory, so that these gates name the operator that \
+         is wrong: with a viscosity of 103 % the gates of the Laplacian fail, and no other one.",
+    );
+    let figure = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a \
+                  lattice (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = \
+                  L/24) and over the displacement.";
+    let caption = "Orders of the parts of the error. The bias is that of the gain on a lattice; noise is \
+                   that of lattices that are displaced by up to 0.2 dx, over the rms of the exact values. \
+                   With an order below 1 in h an operator does not converge at a fixed number of neighbours.";
+    let is_drawn = |line: &Line| line.name.starts_with(QUINTIC);
+    vec![orders::study(study, [figure, caption], &all, is_drawn)]
 }
