@@ -26,7 +26,7 @@ use harness::{
     store::Store,
     suite, symmetry,
 };
-use serde_json::json;
+use serde_json::{Value, json};
 use validation::cases;
 
 use super::{
@@ -120,12 +120,13 @@ fn solve(
         "changed": "nothing",
     });
     let cost = &record.cost;
+    let counted = |of: Value| if of.as_f64() > Some(0.0) { of } else { json!("unknown") };
     let system = json!({
         "machine": record.manifest.cpu,
         "threads": cost.threads,
-        "seconds": if problem.relation.is_none() { json!(cost.wall_s) } else { json!("unknown") },
-        "steps": if problem.relation.is_none() { json!(cost.steps) } else { json!("unknown") },
-        "interactions": cost.pair_interactions,
+        "seconds": counted(json!(cost.wall_s)),
+        "steps": counted(json!(cost.steps)),
+        "interactions": counted(json!(cost.pair_interactions)),
     });
     folder.write(RESULTS, &table.into_bytes())?;
     folder.write(METHOD, (serde_json::to_string_pretty(&method)? + "\n").as_bytes())?;
