@@ -236,7 +236,7 @@ fn documents() -> Vec<(&'static str, Value)> {
     let method = json!({ "code": "a", "version": "1", "scheme": "b", "division": "closed", "settings": {},
         "changed": "nothing" });
     fs::write(at.join("method.json"), method.to_string()).unwrap();
-    of("export dam_break --out fluid");
+    of("export dam_break --relation turned --out fluid");
     of("export elastic_bar --out solid");
     of("challenge couette --seed 1 --method method.json --out sealed");
     let problem =

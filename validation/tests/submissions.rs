@@ -471,3 +471,47 @@ fn a_problem_states_the_law_of_its_own_method() {
         }
     }
 }
+
+/// Two observers of one problem, as files: our own solver tells both the same; where one number differs by a
+/// billionth, the particle is named; what is no pair of observers is refused.
+#[test]
+fn observers_are_compared_and_only_if_they_are_of_one_problem() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |line: &str| touchstone(folder.path(), line);
+    for (by, out) in [("same", "same"), ("turned", "other")] {
+        let small = "export elliptic_drop --set n=8 --solve";
+        let made = of(&format!("{small} --relation {by} --out {out}"));
+        assert!(made.status.success(), "{}", said(&made));
+    }
+    let related = of("relate elliptic_drop same other");
+    let told = String::from_utf8_lossy(&related.stdout);
+    assert!(related.status.success() && told.contains("round-off  "), "{told}");
+    let other = folder.path().join("other");
+    let results = read(&other.join("results.csv"));
+    let last = results.lines().count();
+    let row: Vec<&str> = results.lines().last().unwrap().split(',').collect();
+    set(&other, last, 2, &(row[2].parse::<f64>().unwrap() + 1e-9).to_string());
+    let related = of("relate elliptic_drop same other");
+    let told = String::from_utf8_lossy(&related.stdout);
+    assert!(related.status.code() == Some(1) && told.contains("not the same"), "{told}");
+    assert!(
+        told.contains(&format!("place of particle {} at", row[1].trim_end_matches(".0"))),
+        "{told}"
+    );
+    let refused = |line: &str, words: &str| {
+        let output = of(line);
+        assert!(output.status.code() == Some(2) && said(&output).contains(words), "{output:?}");
+    };
+    refused("relate elliptic_drop other same", "the first of relation same");
+    refused("relate elliptic_drop same missing", "cannot be read");
+    refused("submit elliptic_drop other --check", "`touchstone relate`");
+    refused("export couette --relation turned --out x", "cannot be turned out of its axes");
+    refused("export couette --relation upside-down --out x", "is none of same, turned");
+    drop_lines(&other, last, last + 1);
+    refused("relate elliptic_drop same other", "1 of");
+    edit(&other, "problem.json", "\"turned\"", "\"tilted\"");
+    refused("relate elliptic_drop same other", "\"tilted\" is none of");
+    edit(&other, "problem.json", "\"relation\": \"tilted\"", "\"later\": 1");
+    refused("relate elliptic_drop same other", "`export --relation` wrote");
+    assert!(!folder.path().join("x").exists(), "a problem that is refused leaves no folder");
+}

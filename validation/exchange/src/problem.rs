@@ -32,7 +32,7 @@ pub struct Problem {
     pub gates: Vec<Gate>,
     /// Of a sealed problem, what it was drawn from.
     pub sealed: Option<Sealed>,
-    /// Of a problem for a comparison of observers, how this one differs.
+    /// If observers are to be compared, how the one differs who sees it so.
     pub relation: Option<Relation>,
 }
 
@@ -98,10 +98,10 @@ impl Problem {
         Self::seen(case, spec, None)
     }
 
-    /// The problem of a run as another observer sees it, at a few early times, if there is a relation.
+    /// The problem at a few early times as another observer sees it, if there is a relation.
     ///
     /// # Errors
-    /// As [`Problem::of`], or if the relation does not hold for the problem.
+    /// As [`Problem::of`], or if the relation is no symmetry of the problem.
     pub fn seen(
         case: &dyn Case,
         spec: RunSpec,
@@ -110,12 +110,7 @@ impl Problem {
         let sink = Sink::of(relation, false);
         let context =
             Context { outline: Some(sink.clone()), allow_long: true, ..Context::default() };
-        match case.run(&spec, &context) {
-            Err(RunError::Outlined) | Ok(_) => {}
-            Err(error) => return Err(error),
-        }
-        let none = || RunError::Playback(format!("case {} has no scene to export", case.name()));
-        let outline = sink.take().filter(|of| !of.times.is_empty()).ok_or_else(none)?;
+        let outline = sink.of_run(case.run(&spec, &context), case.name())?;
         let gates = if relation.is_none() { plan::gates_of(case, &spec) } else { Vec::new() };
         Ok(Self { spec, about: case.about(), outline, gates, sealed: None, relation })
     }
@@ -238,21 +233,15 @@ impl Problem {
             .collect();
         let times: Vec<String> = times.iter().map(f64::to_string).collect();
         let case = &self.spec.case;
-        let (seen, then) = match self.relation {
-            None => (
-                String::new(),
-                format!("`touchstone submit {case} DIR --store STORE` measures and judges it."),
-            ),
-            Some(relation) => (
-                format!(" This is the problem of an observer to whom all is {relation}."),
-                format!(
-                    "`touchstone relate {case} SAME DIR` compares it with that of relation same."
-                ),
+        let then = match self.relation.map(Relation::name) {
+            None => format!("`touchstone submit {case} DIR --store STORE` measures and judges it."),
+            Some(by) => format!(
+                "All is seen by an observer ({by}), and `touchstone relate {case} SAME DIR` compares it."
             ),
         };
         format!(
             "# {case}, variant {variant}\n\n{about}\n\nAll numbers are in SI units, in two dimensions, \
-             masses per unit depth. `{PROBLEM}` has every number with its unit.{seen}\n\n## Equations\n\n\
+             masses per unit depth. `{PROBLEM}` has every number with its unit.\n\n## Equations\n\n\
              {equations}\n## Material and forces\n\n| quantity | value | unit |\n|---|---|---|\n\
              {material}| acceleration g | {gx}, {gy} | m/s^2 |\n| spacing of particles | {dx} | m |\n\
              | end | {end} | s |\n\n## Particles\n\n`{PARTICLES}` has one line a particle. Role 0 moves; \

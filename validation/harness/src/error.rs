@@ -109,7 +109,7 @@ pub enum RunError {
     #[error("no step was made: the problem of the run was asked for")]
     Outlined,
     /// A relation that is no symmetry of the scene.
-    #[error("relation {relation} does not hold here: {reason}")]
+    #[error("relation {} does not hold here: {reason}", .relation.name())]
     NoSymmetry {
         /// The relation.
         relation: Relation,

@@ -1,10 +1,10 @@
 //! The problem of a run as data, for other codes: what its scene and its drive are made of before the first
-//! step. A run whose context asks for it is built and not stepped, or makes a few steps as another observer
-//! sees them.
+//! step. A run whose context asks for it is built and not stepped, or makes a few steps that another observer
+//! sees.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use base::record::Profile;
+use base::record::{Profile, Record};
 use solver::{Domain, Numbers, PlaneWall, Role, Stepper};
 
 use crate::{
@@ -33,7 +33,7 @@ pub struct Outline {
     pub dt: f64,
     /// What our own method is.
     pub method: MethodWords,
-    /// How it is seen.
+    /// How all of it is seen.
     pub view: View,
 }
 
@@ -54,17 +54,18 @@ pub struct MethodWords {
     pub shifts: bool,
 }
 
-/// Steps of ours after which a relation is compared: early, before the motion amplifies round-off. Strong
+/// Steps of ours after which observers are compared: early, before the motion amplifies round-off. Strong
 /// shifting in vortices does by 1.8 a step from the twelfth on, and after 28 steps by more than any floor.
 const COMPARED: [usize; 3] = [4, 8, 16];
 
 /// Where the outline of a run is put; clones share it.
 #[derive(Clone, Debug, Default)]
 pub struct Sink {
-    relation: Option<Relation>,
-    /// Is the run stepped?
-    steps: bool,
     inside: Arc<Mutex<Inside>>,
+    /// By what an observer differs, if observers are compared.
+    pub relation: Option<Relation>,
+    /// Is the run stepped, though its outline is asked for?
+    pub steps: bool,
 }
 
 #[derive(Debug, Default)]
@@ -75,64 +76,10 @@ struct Inside {
 }
 
 impl Sink {
-    /// The problem as seen by a relation, at a few early times; a run that is `stepped` reaches these, and
+    /// The problem that an observer sees, at a few early times; a run that is `stepped` reaches these and
     /// measures nothing.
     pub fn of(relation: Option<Relation>, stepped: bool) -> Self {
         Self { relation, steps: stepped, inside: Arc::default() }
-    }
-
-    /// Puts what a scene is made of, and tells how it is seen; its particles come with its drive. Of a run of
-    /// several simulations the first one counts.
-    pub fn scene(
-        &self,
-        medium: &Medium,
-        domain: Domain,
-        (mirrors, bodies): (&[PlaneWall], &[u32]),
-        moves: &[bool],
-    ) -> View {
-        let mut inside = self.inside();
-        let of = |relation| View::of(relation, medium, &domain, mirrors, moves);
-        let view = of(self.relation.unwrap_or(Relation::Same)).unwrap_or_else(|reason| {
-            inside.refused = Some(reason);
-            View::default()
-        });
-        inside.outline.get_or_insert_with(|| Outline {
-            medium: view.medium(medium),
-            domain: view.domain(domain),
-            mirrors: mirrors.iter().map(|wall| view.wall(wall)).collect(),
-            bodies: view.order(bodies, moves),
-            particles: Profile::default(),
-            times: Vec::new(),
-            dt: 0.0,
-            method: MethodWords::default(),
-            view,
-        });
-        view
-    }
-
-    /// What a run under a relation is driven by, as the observer sees it: its step \[s\], and times at which
-    /// it is compared \[s\].
-    ///
-    /// # Errors
-    /// If the relation is no symmetry of the scene.
-    pub fn early(&self, dt: f64) -> Result<Option<(f64, Vec<f64>)>, RunError> {
-        let (Some(relation), inside) = (self.relation, self.inside()) else { return Ok(None) };
-        let Some(Outline { view, medium, .. }) = &inside.outline else {
-            let reason = "the case does not tell what its scene is made of";
-            return Err(RunError::NoSymmetry { relation, reason });
-        };
-        let shifts = inside.method.shifts && medium.shift > 0.0 && self.steps;
-        let reason = match relation {
-            Relation::Boosted if shifts => {
-                Some("its shifting takes the largest speed of the scene")
-            }
-            _ => inside.refused,
-        };
-        if let Some(reason) = reason {
-            return Err(RunError::NoSymmetry { relation, reason });
-        }
-        let dt = view.time(dt);
-        Ok(Some((dt, COMPARED.map(|steps| steps as f64 * dt).to_vec())))
     }
 
     /// How the scene is seen.
@@ -140,9 +87,52 @@ impl Sink {
         self.inside().outline.as_ref().map_or_else(View::default, |outline| outline.view)
     }
 
-    /// Is the run stepped, though its outline is asked for?
-    pub fn steps(&self) -> bool {
-        self.steps
+    /// Step \[s\] and times \[s\] of a run whose observers are compared.
+    ///
+    /// # Errors
+    /// Why they cannot be.
+    pub fn early(&self, dt: f64) -> Result<Option<(f64, Vec<f64>)>, RunError> {
+        let (Some(relation), inside) = (self.relation, self.inside()) else { return Ok(None) };
+        let reason = match &inside.outline {
+            None => Some("the case does not tell what its scene is made of"),
+            Some(of)
+                if relation == Relation::Boosted
+                    && (self.steps && inside.method.shifts && of.medium.shift > 0.0) =>
+            {
+                Some("its shifting takes the largest speed of the scene")
+            }
+            Some(_) => inside.refused,
+        };
+        let dt = dt * inside.outline.as_ref().map_or(1.0, |of| of.view.time(1.0));
+        match reason {
+            Some(reason) => Err(RunError::NoSymmetry { relation, reason }),
+            None => Ok(Some((dt, COMPARED.map(|steps| steps as f64 * dt).to_vec()))),
+        }
+    }
+
+    /// Puts what a scene is made of; its particles come with its drive. Of a run of several simulations the
+    /// first one counts.
+    pub fn scene(
+        &self,
+        medium: Medium,
+        domain: Domain,
+        mirrors: &[PlaneWall],
+        bodies: &[u32],
+        view: Result<View, NoSymmetry>,
+    ) {
+        let mut inside = self.inside();
+        inside.refused = view.err();
+        inside.outline.get_or_insert_with(|| Outline {
+            medium,
+            domain,
+            mirrors: mirrors.into(),
+            bodies: bodies.into(),
+            particles: Profile::default(),
+            times: Vec::new(),
+            dt: 0.0,
+            method: MethodWords::default(),
+            view: view.unwrap_or_default(),
+        });
     }
 
     /// Adds what the drive of the scene is made of.
@@ -169,11 +159,20 @@ impl Sink {
         }
     }
 
-    /// The outline, if the run got so far.
-    pub fn take(&self) -> Option<Outline> {
+    /// The outline of a run of a case that ended so.
+    ///
+    /// # Errors
+    /// If the run was refused, or is none of a scene.
+    pub fn of_run(&self, ended: Result<Record, RunError>, case: &str) -> Result<Outline, RunError> {
+        match ended {
+            Err(RunError::Outlined) | Ok(_) => {}
+            Err(error) => return Err(error),
+        }
         let mut inside = self.inside();
         let method = inside.method;
-        inside.outline.take().map(|outline| Outline { method, ..outline })
+        let outline = inside.outline.take().filter(|of| !of.times.is_empty());
+        let none = || RunError::Playback(format!("case {case} has no scene to export"));
+        outline.map(|outline| Outline { method, ..outline }).ok_or_else(none)
     }
 
     /// Adds what the method is.

@@ -1,18 +1,17 @@
 //! Exact symmetries of the equations: the same problem as another observer sees it, and back.
 
 use std::any::Any;
-use std::fmt;
 
 use base::{
     functions::{cos, sin},
     random::Random,
 };
 use nalgebra::{Matrix2, Vector2};
-use solver::{Domain, Limits, Numbers, Particle, PlaneWall, Symmetric, Tait};
+use solver::{Domain, Numbers, Particle, PlaneWall, Symmetric};
 
 use crate::medium::Medium;
 
-/// How another observer differs. Every solver of the equations must tell both the same.
+/// How another observer differs. A solver of the equations must tell both the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
     /// In nothing.
@@ -23,7 +22,7 @@ pub enum Relation {
     Mirrored,
     /// Moves with a constant velocity of half the sound speed (Galilei).
     Boosted,
-    /// Measures in 1/8 m, 1/32 s and 4 kg/m: no number is rounded.
+    /// Measures in 1/8 m, 1/32 s and 4 kg/m, which rounds no number.
     BinaryUnits,
     /// Measures in feet, minutes and pounds per foot.
     OtherUnits,
@@ -33,31 +32,24 @@ pub enum Relation {
     Shifted,
 }
 
+use Relation::*;
+
 impl Relation {
-    /// All of them, and before them the observer that they are compared with.
-    pub const ALL: [Self; 8] = [
-        Self::Same,
-        Self::Turned,
-        Self::Mirrored,
-        Self::Boosted,
-        Self::BinaryUnits,
-        Self::OtherUnits,
-        Self::Renumbered,
-        Self::Shifted,
+    /// All of them with their names in commands and documents; all but the first are compared with the first.
+    pub const ALL: [(Self, &'static str); 8] = [
+        (Same, "same"),
+        (Turned, "turned"),
+        (Mirrored, "mirrored"),
+        (Boosted, "boosted"),
+        (BinaryUnits, "binary-units"),
+        (OtherUnits, "other-units"),
+        (Renumbered, "renumbered"),
+        (Shifted, "shifted"),
     ];
 
     /// The name in commands and documents.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Same => "same",
-            Self::Turned => "turned",
-            Self::Mirrored => "mirrored",
-            Self::Boosted => "boosted",
-            Self::BinaryUnits => "binary-units",
-            Self::OtherUnits => "other-units",
-            Self::Renumbered => "renumbered",
-            Self::Shifted => "shifted",
-        }
+        Self::ALL[self as usize].1
     }
 
     /// The relation of that name.
@@ -65,26 +57,27 @@ impl Relation {
     /// # Errors
     /// All names.
     pub fn named(name: &str) -> Result<Self, String> {
-        let known = || Self::ALL.map(Self::name).join(", ");
-        let found = Self::ALL.into_iter().find(|relation| relation.name() == name);
-        found.ok_or_else(|| format!("{name:?} is no relation; these are {}", known()))
+        let known = || Self::ALL.map(|(_, name)| name).join(", ");
+        let found = Self::ALL.into_iter().find(|(_, of)| *of == name);
+        found.map(|(of, _)| of).ok_or_else(|| format!("{name:?} is none of {}", known()))
     }
 
     /// Does it round no number of our solver? This sums over particles in the order of their places, but over
     /// those of walls in the order of their numbers.
     pub fn is_bitwise(self, has_walls: bool) -> bool {
-        self == Self::BinaryUnits || self == Self::Renumbered && !has_walls
-    }
-}
-
-impl fmt::Display for Relation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        self == BinaryUnits || self == Renumbered && !has_walls
     }
 }
 
 /// Why a relation does not hold for a scene.
 pub type NoSymmetry = &'static str;
+
+/// Exponents of length, time and mass per length.
+type Unit = [i32; 3];
+const LENGTH: Unit = [1, 0, 0];
+const SPEED: Unit = [1, -1, 0];
+const DENSITY: Unit = [-2, 0, 1];
+const PRESSURE: Unit = [0, -2, 1];
 
 /// What an observer sees: x' = (Q x + s + U t)/\[L\], v' = (Q v + U) \[T\]/\[L\], in units \[L\] m, \[T\] s
 /// and \[M\] kg/m.
@@ -95,22 +88,14 @@ pub struct View {
     shift: Vector2<f64>,
     boost: Vector2<f64>,
     /// 1/\[L\], 1/\[T\], 1/\[M\].
-    length: f64,
-    time: f64,
-    mass: f64,
+    units: [f64; 3],
 }
-
-/// 1 ft \[m\].
-const FOOT: f64 = 0.3048;
-/// 1 lb \[kg\].
-const POUND: f64 = 0.453_592_37;
 
 impl Default for View {
     /// The same as ours.
     fn default() -> Self {
         let (turn, shift, boost) = (Matrix2::identity(), Vector2::zeros(), Vector2::zeros());
-        let relation = Relation::Same;
-        Self { relation, turn, shift, boost, length: 1.0, time: 1.0, mass: 1.0 }
+        Self { relation: Same, turn, shift, boost, units: [1.0; 3] }
     }
 }
 
@@ -126,170 +111,135 @@ impl View {
         mirrors: &[PlaneWall],
         moves: &[bool],
     ) -> Result<Self, NoSymmetry> {
-        let has_walls = moves.contains(&false);
         let same = Self { relation, ..Self::default() };
+        let along = |axis: usize, lengths: f64| {
+            domain.period[axis].map_or(lengths * medium.h, |period| 0.37 * period)
+        };
+        let (c, s) = (cos(37_f64.to_radians()), sin(37_f64.to_radians()));
         Ok(match relation {
-            Relation::Same | Relation::Renumbered => same,
-            Relation::Turned if domain.period != [None, None] => {
+            Same | Renumbered => same,
+            Turned if domain.period != [None, None] => {
                 return Err("a periodic box cannot be turned out of its axes");
             }
-            Relation::Turned => {
-                let (c, s) = (cos(37_f64.to_radians()), sin(37_f64.to_radians()));
-                View { turn: Matrix2::new(c, -s, s, c), ..same }
-            }
-            Relation::Mirrored => View { turn: Matrix2::new(-1.0, 0.0, 0.0, 1.0), ..same },
-            Relation::Boosted => {
-                let boost = direction(medium, mirrors, has_walls)? * (0.5 * medium.sound_speed);
+            Turned => View { turn: Matrix2::new(c, -s, s, c), ..same },
+            Mirrored => View { turn: Matrix2::new(-1.0, 0.0, 0.0, 1.0), ..same },
+            Boosted => {
+                let boost = direction(medium, mirrors, moves)? * (0.5 * medium.sound_speed);
                 View { boost, ..same }
             }
-            Relation::BinaryUnits => View { length: 8.0, time: 32.0, mass: 0.25, ..same },
-            Relation::OtherUnits => {
-                View { length: 1.0 / FOOT, time: 1.0 / 60.0, mass: FOOT / POUND, ..same }
-            }
-            Relation::Shifted => {
-                let along = |axis: usize, lengths: f64| {
-                    domain.period[axis].map_or(lengths * medium.h, |period| 0.37 * period)
-                };
-                View { shift: Vector2::new(along(0, 17.3), along(1, -11.9)), ..same }
-            }
+            BinaryUnits => View { units: [8.0, 32.0, 0.25], ..same },
+            // 1 ft = 0.3048 m, 1 lb = 0.45359237 kg.
+            OtherUnits => View { units: [1.0 / 0.3048, 1.0 / 60.0, 0.3048 / 0.453_592_37], ..same },
+            Shifted => View { shift: Vector2::new(along(0, 17.3), along(1, -11.9)), ..same },
         })
     }
 
-    /// The relation.
-    pub fn relation(&self) -> Relation {
-        self.relation
-    }
-
-    fn speed(&self) -> f64 {
-        self.length / self.time
-    }
-
-    fn density(&self) -> f64 {
-        self.mass / (self.length * self.length)
-    }
-
-    fn pressure(&self) -> f64 {
-        self.density() * self.speed() * self.speed()
+    fn scale(&self, unit: Unit) -> f64 {
+        (0..3).map(|k| self.units[k].powi(unit[k])).product()
     }
 
     /// A time \[s\].
     pub fn time(&self, time: f64) -> f64 {
-        time * self.time
+        time * self.units[1]
+    }
+
+    /// A length \[m\].
+    pub fn length(&self, length: f64) -> f64 {
+        length * self.units[0]
+    }
+
+    /// A density \[kg/m³\].
+    pub fn density(&self, density: f64) -> f64 {
+        density * self.scale(DENSITY)
+    }
+
+    /// The most of a speed \[m/s\].
+    pub fn speed(&self, speed: f64) -> f64 {
+        (speed + self.boost.norm()) * self.scale(SPEED)
     }
 
     fn place(&self, place: Vector2<f64>) -> Vector2<f64> {
-        (self.turn * place + self.shift) * self.length
+        (self.turn * place + self.shift) * self.scale(LENGTH)
     }
 
     fn velocity(&self, velocity: Vector2<f64>) -> Vector2<f64> {
-        (self.turn * velocity + self.boost) * self.speed()
+        (self.turn * velocity + self.boost) * self.scale(SPEED)
     }
 
-    /// A displacement as the observer sees it, as a function of the place that the observer sees.
+    /// A displacement as a function of the place, both as the observer sees them.
     pub fn displacement(
         &self,
         by: impl Fn(Vector2<f64>) -> Vector2<f64>,
         place: Vector2<f64>,
     ) -> Vector2<f64> {
-        self.turn * by(self.turn.transpose() * (place / self.length - self.shift)) * self.length
-    }
-
-    /// The material and its forces.
-    pub fn medium(&self, m: &Medium) -> Medium {
-        let acceleration = self.turn * (self.speed() / self.time);
-        let eos = Tait {
-            density: m.eos.density * self.density(),
-            sound_speed: m.eos.sound_speed * self.speed(),
-            background: m.eos.background * self.pressure(),
-            ..m.eos
-        };
-        Medium {
-            eos,
-            density: m.density * self.density(),
-            sound_speed: m.sound_speed * self.speed(),
-            dx: m.dx * self.length,
-            h: m.h * self.length,
-            w_at_spacing: m.w_at_spacing / (self.length * self.length),
-            nu: m.nu * self.length * self.speed(),
-            shear_modulus: m.shear_modulus * self.pressure(),
-            acceleration: acceleration * m.acceleration,
-            wall_acceleration: acceleration * m.wall_acceleration,
-            ..*m
-        }
+        let length = self.scale(LENGTH);
+        self.turn * by(self.turn.transpose() * (place / length - self.shift)) * length
     }
 
     /// The pressure \[Pa\] of a density \[kg/m³\], both as the observer sees them.
     pub fn pressure_of(&self, pressure: impl Fn(f64) -> f64, density: f64) -> f64 {
-        pressure(density / self.density()) * self.pressure()
+        pressure(density / self.scale(DENSITY)) * self.scale(PRESSURE)
+    }
+
+    /// The material and its forces.
+    pub fn medium(&self, mut m: Medium) -> Medium {
+        for (number, unit) in [
+            (&mut m.eos.density, DENSITY),
+            (&mut m.eos.sound_speed, SPEED),
+            (&mut m.eos.background, PRESSURE),
+            (&mut m.density, DENSITY),
+            (&mut m.sound_speed, SPEED),
+            (&mut m.dx, LENGTH),
+            (&mut m.h, LENGTH),
+            (&mut m.w_at_spacing, [-2, 0, 0]),
+            (&mut m.nu, [2, -1, 0]),
+            (&mut m.shear_modulus, PRESSURE),
+        ] {
+            *number *= self.scale(unit);
+        }
+        for acceleration in [&mut m.acceleration, &mut m.wall_acceleration] {
+            *acceleration = self.turn * *acceleration * self.scale([1, -2, 0]);
+        }
+        m
     }
 
     /// The periodic box, which is not shifted.
-    pub fn domain(&self, domain: Domain) -> Domain {
-        let low = |axis: usize| match (self.relation, axis, domain.period[0]) {
-            (Relation::Mirrored, 0, Some(period)) => -(domain.low.x + period),
-            _ => domain.low[axis],
-        };
-        let period = domain.period.map(|period| period.map(|period| period * self.length));
-        Domain { low: Vector2::new(low(0), low(1)) * self.length, period }
+    pub fn domain(&self, mut domain: Domain) -> Domain {
+        if let (Mirrored, Some(period)) = (self.relation, domain.period[0]) {
+            domain.low.x = -(domain.low.x + period);
+        }
+        let period = domain.period.map(|period| period.map(|period| self.length(period)));
+        Domain { low: domain.low * self.scale(LENGTH), period }
     }
 
     /// A wall.
     pub fn wall(&self, wall: &PlaneWall) -> PlaneWall {
-        let curvature = self.speed() / (self.length * self.length);
         PlaneWall {
             point: self.place(wall.point),
             normal: self.turn * wall.normal,
             velocity: self.velocity(wall.velocity),
-            curvature: self.turn * wall.curvature * curvature,
+            curvature: self.turn * wall.curvature * self.scale([-1, -1, 0]),
         }
-    }
-
-    /// Bounds of a run, which are no narrower.
-    pub fn limits(&self, limits: Limits) -> Limits {
-        let speed = (limits.speed + self.boost.norm()) * self.speed();
-        Limits { density: limits.density.map(|density| density * self.density()), speed }
-    }
-
-    /// A length \[m\].
-    pub fn length(&self, length: f64) -> f64 {
-        length * self.length
     }
 
     /// A particle at the start.
     pub fn particle<X: Numbers>(&self, p: &Particle<X>) -> Particle<X> {
-        let mut extra = X::default().advanced(self.pressure(), p.extra);
+        let mut extra = X::default().advanced(self.scale(PRESSURE), p.extra);
         if let Some(stress) = (&mut extra as &mut dyn Any).downcast_mut::<Symmetric>() {
             let Symmetric { xx, yy, xy } = *stress;
             let turned = self.turn * Matrix2::new(xx, xy, xy, yy) * self.turn.transpose();
             *stress = Symmetric { xx: turned.m11, yy: turned.m22, xy: turned.m12 };
         }
-        Particle {
-            position: self.place(p.position),
-            velocity: self.velocity(p.velocity),
-            density: p.density * self.density(),
-            mass: p.mass * self.mass,
-            extra,
-            ..*p
-        }
+        let (position, velocity) = (self.place(p.position), self.velocity(p.velocity));
+        let (density, mass) = (self.density(p.density), p.mass * self.units[2]);
+        Particle { position, velocity, density, mass, extra, ..*p }
     }
 
-    /// Place, velocity and density at a time \[s\] of what the observer sees.
-    pub fn back(
-        &self,
-        time: f64,
-        [place, velocity]: [Vector2<f64>; 2],
-        density: Option<f64>,
-    ) -> ([Vector2<f64>; 2], Option<f64>) {
-        let back = self.turn.transpose();
-        let place = back * (place / self.length - self.shift - self.boost * time);
-        let velocity = back * (velocity / self.speed() - self.boost);
-        ([place, velocity], density.map(|density| density / self.density()))
-    }
-
-    /// Items by the number that their particles had, in the order of the numbers that they get; none stay
-    /// none. `moves` says which particles do.
-    pub fn order<T: Clone>(&self, items: &[T], moves: &[bool]) -> Vec<T> {
-        self.numbers(moves).into_iter().filter_map(|k| items.get(k).cloned()).collect()
+    /// Place and velocity at a time \[s\] of what the observer sees.
+    pub fn back(&self, time: f64, [place, velocity]: [Vector2<f64>; 2]) -> [Vector2<f64>; 2] {
+        let place = place / self.scale(LENGTH) - self.shift - self.boost * time;
+        let velocity = velocity / self.scale(SPEED) - self.boost;
+        [place, velocity].map(|vector| self.turn.transpose() * vector)
     }
 
     /// The number that each particle had, by the number that it gets: that of one which moves if it does, so
@@ -297,9 +247,9 @@ impl View {
     pub fn numbers(&self, moves: &[bool]) -> Vec<usize> {
         let mut numbers: Vec<usize> = (0..moves.len()).collect();
         let mut random = Random::new(8);
-        for kind in [true, false] {
+        for kind in [true, false].into_iter().filter(|_| self.relation == Renumbered) {
             let places: Vec<usize> = (0..moves.len()).filter(|k| moves[*k] == kind).collect();
-            for k in (1..places.len()).rev().filter(|_| self.relation == Relation::Renumbered) {
+            for k in (1..places.len()).rev() {
                 numbers.swap(places[k], places[((k + 1) as f64 * random.uniform()) as usize]);
             }
         }
@@ -311,21 +261,16 @@ impl View {
 fn direction(
     medium: &Medium,
     mirrors: &[PlaneWall],
-    has_walls: bool,
+    moves: &[bool],
 ) -> Result<Vector2<f64>, NoSymmetry> {
-    let Some(first) = mirrors.first() else {
-        return match has_walls {
-            true => Err("its walls are particles, which stay where they are"),
-            false => Ok(Vector2::new(cos(0.7), sin(0.7))),
-        };
-    };
-    if medium.shear_modulus > 0.0 {
-        return Err("its planes hold a solid where it is");
-    }
-    let parallel = |wall: &PlaneWall| wall.normal.perp(&first.normal).abs() < 1e-12;
-    match mirrors.iter().all(parallel) {
-        true if !has_walls => Ok(Vector2::new(-first.normal.y, first.normal.x)),
-        true => Err("its walls are particles, which stay where they are"),
-        false => Err("its walls meet, so that no direction is along all of them"),
+    let normal = mirrors.first().map_or(Vector2::new(-sin(0.7), cos(0.7)), |wall| wall.normal);
+    let is_along = |wall: &PlaneWall| wall.normal.perp(&normal).abs() < 1e-12;
+    match mirrors.is_empty() {
+        _ if moves.contains(&false) => Err("its walls are particles, which stay where they are"),
+        false if medium.shear_modulus > 0.0 => Err("its planes hold a solid where it is"),
+        false if !mirrors.iter().all(is_along) => {
+            Err("its walls meet, so that none moves along all")
+        }
+        _ => Ok(Vector2::new(normal.y, -normal.x)),
     }
 }

@@ -434,7 +434,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         }
         if let Some(outline) = &context.outline {
             outline.drive(simulation, times, dt, pressure);
-            if !outline.steps() {
+            if !outline.steps {
                 return Err(RunError::Outlined);
             }
         }

@@ -14,12 +14,12 @@ use crate::{
     relation::Relation,
 };
 
-/// The largest difference between the particles of two observers at a time.
+/// The largest difference between the particles of two observers, against what round-off explains.
 #[derive(Clone, Debug)]
 pub struct Difference {
     /// The time as the first of them has it \[s\].
     pub time: f64,
-    /// The difference, of a place \[h\], a velocity \[c0\] or a density \[ρ0\]; NaN if one is not a number.
+    /// The difference, of a place \[h\], a velocity \[c0\] or a density \[ρ0\]; NaN if particles are missing.
     pub value: f64,
     /// What round-off explains.
     pub floor: f64,
@@ -34,159 +34,134 @@ impl Difference {
     pub fn is_round_off(&self) -> bool {
         self.value <= self.floor
     }
+
+    /// The larger one against its floor, if one of them is not a number that one.
+    fn or(self, other: Self) -> Self {
+        let over = |of: &Self| of.value / of.floor;
+        if over(&self) >= over(&other) || self.value.is_nan() { self } else { other }
+    }
 }
 
-/// What one of the observers has.
-pub struct Seen<'a> {
-    /// The problem as it sees it.
-    pub outline: &'a Outline,
-    /// The particles at the times of the problem, or at more.
-    pub frames: &'a [Frame],
+/// The problem as an observer sees it, and the particles at its times, or at more.
+pub type Seen<'a> = (&'a Outline, &'a [Frame]);
+
+fn moves(outline: &Outline) -> Vec<bool> {
+    outline.particles.column("role").iter().map(|role| *role == 0.0).collect()
 }
 
-/// What an observer has that compares with the first one in the units h, c0 and ρ0 at the k-th of the times
-/// of its problem, by the number that the first one gives a particle.
-fn told(seen: &Seen, k: usize) -> Vec<Placed> {
-    let Outline { view, times, particles, .. } = seen.outline;
-    let moves: Vec<bool> = particles.column("role").iter().map(|role| *role == 0.0).collect();
-    let numbers = view.numbers(&moves);
-    let apart = |frame: &&Frame| (frame.time - times[k]).abs();
-    let nearest = seen.frames.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+/// Moving particles at the k-th of the times of the problem as the first observer would have them, by their
+/// numbers there.
+fn told((outline, frames): Seen, k: usize) -> Vec<Placed> {
+    let (view, moves) = (&outline.view, moves(outline));
+    let (numbers, time) = (view.numbers(&moves), outline.times[k]);
+    let apart = |frame: &&Frame| (frame.time - time).abs();
+    let nearest = frames.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
     let back = |placed: &Placed| {
-        let time = times[k] / view.time(1.0);
-        let (of, density) = view.back(time, [placed.position, placed.velocity], placed.density);
-        let (position, velocity) = (of[0], of[1]);
-        let id = numbers.get(placed.id as usize).copied().unwrap_or_default() as u32;
-        Placed { id, position, velocity, density }
+        let of = [placed.position, placed.velocity];
+        let [position, velocity] = view.back(time / view.time(1.0), of);
+        let density = placed.density.map(|density| density / view.density(1.0));
+        Placed { id: numbers[placed.id as usize] as u32, position, velocity, density }
     };
-    let moving = |placed: &&Placed| moves.get(placed.id as usize) == Some(&true);
-    let mut all: Vec<_> =
-        nearest.into_iter().flat_map(|frame| &frame.particles).filter(moving).map(back).collect();
+    let all = nearest.into_iter().flat_map(|frame| &frame.particles);
+    let moving = all.filter(|placed| moves.get(placed.id as usize) == Some(&true));
+    let mut all: Vec<_> = moving.map(back).collect();
     all.sort_by_key(|placed| placed.id);
     all
 }
 
-/// The largest number, which is NaN if one of them is.
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
-}
-
-/// What round-off explains after so many steps. A step rounds place, velocity and density, in the units h, c0
-/// and ρ0 by ε times their size; no longer than h/c0, it makes of an error of a force no larger error of the
-/// velocity. Velocities keep what steps add, so that places differ by the square of the number of steps at
-/// most, as long as the motion itself does not amplify it.
-fn floor(base: &Outline, other: &Outline, steps: f64) -> f64 {
-    let largest = |outline: &Outline| {
-        let size = |name: &str, unit: f64| {
-            let all = outline.particles.column(name).iter();
-            all.fold(1.0, |largest: f64, value| largest.max((value / unit).abs()))
-        };
-        let (h, c0) = (outline.medium.h, outline.medium.sound_speed);
-        size("x", h).max(size("y", h)).max(size("u", c0)).max(size("v", c0))
-    };
-    f64::EPSILON * steps * steps * largest(base).max(largest(other))
+/// What round-off explains a step after the other: a step rounds place, velocity and density, in the units h,
+/// c0 and ρ0 by ε times their size; no longer than h/c0, it makes of an error of a force no larger error of the
+/// velocity. Velocities keep what steps add, so that after n steps places differ by n² times that at most, as
+/// long as the motion itself does not amplify it.
+fn rounding(outline: &Outline) -> f64 {
+    let (h, c0) = (outline.medium.h, outline.medium.sound_speed);
+    let all = [("x", h), ("y", h), ("u", c0), ("v", c0)].into_iter();
+    let sizes = all.flat_map(|(name, unit)| {
+        outline.particles.column(name).iter().map(move |value| (value / unit).abs())
+    });
+    f64::EPSILON * sizes.fold(1.0, f64::max)
 }
 
 /// Compares what two observers of one problem have, of which the first sees it as it is. `steps` are those to
 /// the last time.
-pub fn differences(base: &Seen, other: &Seen, steps: f64) -> Vec<Difference> {
-    let Outline { medium, times, domain, .. } = base.outline;
-    let end = times.last().copied().unwrap_or_default();
+pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
+    let Outline { medium, times, domain, .. } = base.0;
     let near = |mut apart: Vector2<f64>| {
         for axis in 0..2 {
-            if let Some(period) = domain.period[axis] {
-                apart[axis] -= (apart[axis] / period).round() * period;
-            }
+            let period = domain.period[axis].unwrap_or(f64::INFINITY);
+            apart[axis] -=
+                if period.is_finite() { (apart[axis] / period).round() * period } else { 0.0 };
         }
         apart.amax() / medium.h
     };
-    let at = |k: usize| {
-        let floor = floor(base.outline, other.outline, steps * times[k] / end);
-        let (quantity, particle) = ("place", 0);
-        let mut most = Difference { time: times[k], value: 0.0, floor, quantity, particle };
+    let size = rounding(base.0).max(rounding(other.0));
+    let (quantity, particle) = ("place", 0);
+    let mut worst = Difference { time: 0.0, value: 0.0, floor: size, quantity, particle };
+    for (k, &time) in times.iter().enumerate() {
+        let floor = size * (steps * time / times[times.len() - 1]).powi(2);
         let (ours, theirs) = (told(base, k), told(other, k));
-        // A run that diverged has no particles; other ones would be compared with the wrong ones.
-        let same = |k: usize| ours[k].id == theirs[k].id;
-        if ours.is_empty() || ours.len() != theirs.len() || !(0..ours.len()).all(same) {
-            most.value = f64::NAN;
+        let ids = |all: &[Placed]| all.iter().map(|placed| placed.id).collect::<Vec<_>>();
+        if ours.is_empty() || ids(&ours) != ids(&theirs) {
+            // One of them diverged.
+            worst = Difference { time, value: f64::NAN, floor, ..worst }.or(worst);
         }
         for (a, b) in ours.iter().zip(&theirs) {
             let density = a.density.zip(b.density).map_or(0.0, |(a, b)| (a - b).abs());
+            let velocity = (a.velocity - b.velocity).amax() / medium.sound_speed;
             for (quantity, value) in [
                 ("place", near(a.position - b.position)),
-                ("velocity", (a.velocity - b.velocity).amax() / medium.sound_speed),
+                ("velocity", velocity),
                 ("density", density / medium.density),
             ] {
-                if larger(most.value, value).to_bits() != most.value.to_bits() {
-                    (most.value, most.quantity, most.particle) = (value, quantity, a.id);
-                }
+                worst = worst.or(Difference { time, value, floor, quantity, particle: a.id });
             }
         }
-        most
-    };
-    (0..times.len()).map(at).collect()
+    }
+    worst
 }
 
 /// The problem and the particles of our own run of a spec as an observer sees them; no particles if it
 /// diverged.
-fn seen(
-    case: &dyn Case,
-    spec: &RunSpec,
-    relation: Relation,
-) -> Result<(Outline, Vec<Frame>), RunError> {
-    let (sink, frames) = (Sink::of(Some(relation), true), Mutex::new(Vec::new()));
+fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<Frame>), RunError> {
+    let (sink, frames) = (Sink::of(Some(by), true), Mutex::new(Vec::new()));
     let tell = |time: f64, particles: Profile| {
-        let mut frames = frames.lock().unwrap_or_else(PoisonError::into_inner);
-        frames.push(Frame { time, particles: placed(&particles) });
+        let of = |name, k: usize| particles.column(name)[k];
+        let placed = |k| Placed {
+            id: k as u32,
+            position: Vector2::new(of("x", k), of("y", k)),
+            velocity: Vector2::new(of("u", k), of("v", k)),
+            density: Some(of("density", k)),
+        };
+        let particles = (0..particles.column("id").len()).map(placed).collect();
+        frames.lock().unwrap_or_else(PoisonError::into_inner).push(Frame { time, particles });
     };
     let outline = Some(sink.clone());
     let context =
         Context { outline, at_times: Some(&tell), allow_long: true, ..Context::default() };
-    match case.run(spec, &context) {
-        Err(RunError::Outlined) | Ok(_) => {}
-        Err(error) => return Err(error),
-    }
-    let none = || RunError::Playback(format!("case {} has no scene to compare", case.name()));
-    let outline = sink.take().filter(|of| !of.times.is_empty()).ok_or_else(none)?;
+    let outline = sink.of_run(case.run(spec, &context), case.name())?;
     Ok((outline, frames.into_inner().unwrap_or_else(PoisonError::into_inner)))
-}
-
-fn placed(particles: &Profile) -> Vec<Placed> {
-    let [id, x, y, u, v, density] =
-        ["id", "x", "y", "u", "v", "density"].map(|name| particles.column(name));
-    let placed = |k: usize| Placed {
-        id: id[k] as u32,
-        position: Vector2::new(x[k], y[k]),
-        velocity: Vector2::new(u[k], v[k]),
-        density: Some(density[k]),
-    };
-    (0..id.len()).map(placed).collect()
 }
 
 /// What of a state is below this when squared \[-\] is lost, in one unit and not in another.
 const UNDERFLOW: f64 = 1e-150;
 
-/// What each of some relations comes to for our own run of a spec; `Err` where it does not hold, with the
-/// reason. Those that round nothing must give the same bits, but for what underflows.
+/// What a relation comes to: the largest difference, or why it does not hold.
+pub type Found = (Relation, Result<Difference, RunError>);
+
+/// What each relation comes to for our own run of a spec. Those that round nothing must give the same bits, but
+/// for what underflows.
 ///
 /// # Errors
 /// If the run is refused, or is none of a scene.
-pub fn battery(
-    case: &dyn Case,
-    spec: &RunSpec,
-    relations: &[Relation],
-) -> Result<Vec<(Relation, Result<Vec<Difference>, RunError>)>, RunError> {
+pub fn battery(case: &dyn Case, spec: &RunSpec) -> Result<Vec<Found>, RunError> {
     let (base, frames) = seen(case, spec, Relation::Same)?;
-    let ours = Seen { outline: &base, frames: &frames };
     let steps = base.times.last().map_or(0.0, |end| (end / base.dt).round());
-    let has_walls = base.particles.column("role").iter().any(|role| *role > 0.0);
+    let has_walls = moves(&base).contains(&false);
     let of = |relation: Relation| {
-        let (outline, frames) = seen(case, spec, relation)?;
-        let mut all = differences(&ours, &Seen { outline: &outline, frames: &frames }, steps);
-        if relation.is_bitwise(has_walls) {
-            all.iter_mut().for_each(|difference| difference.floor = UNDERFLOW);
-        }
-        Ok(all)
+        let (outline, theirs) = seen(case, spec, relation)?;
+        let found = difference((&base, &frames), (&outline, &theirs), steps);
+        let is_bitwise = relation.is_bitwise(has_walls);
+        Ok(Difference { floor: if is_bitwise { UNDERFLOW } else { found.floor }, ..found })
     };
-    Ok(relations.iter().map(|relation| (*relation, of(*relation))).collect())
+    Ok(Relation::ALL[1..].iter().map(|(relation, _)| (*relation, of(*relation))).collect())
 }

@@ -45,7 +45,7 @@ pub enum Command {
     Challenge(Challenge),
     /// Measure and judge particles that another code wrote, and keep their record in a store
     Submit(Submit),
-    /// Compare a few steps of our own runs as observers have them who are turned, mirrored, moving and so on
+    /// Compare what observers who are turned, mirrored, in motion and so on have of our own runs
     Symmetry(Symmetry),
     /// Compare what another code wrote for two observers of one problem
     Relate(Relate),
@@ -283,8 +283,8 @@ pub struct WriteProblem {
     /// Also make the run and write its results as a submission of this program
     #[arg(long)]
     pub solve: bool,
-    /// Write the problem as another observer sees it, at a few early times, for `relate`: same, turned,
-    /// mirrored, boosted, binary-units, other-units, renumbered, shifted
+    /// Write what another observer sees at a few early times, for `relate`: same, turned, mirrored, boosted,
+    /// binary-units, other-units, renumbered, shifted
     #[arg(long, value_name = "NAME", value_parser = Relation::named)]
     pub relation: Option<Relation>,
 }
@@ -293,9 +293,6 @@ pub struct WriteProblem {
 pub struct Symmetry {
     /// Names of the cases; by default all
     pub cases: Vec<String>,
-    /// Name of the variant; by default all
-    #[arg(long, value_name = "NAME")]
-    pub variant: Option<String>,
     /// Change a setting (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,

@@ -22,11 +22,12 @@ use harness::{
     case::{self, Case, RunError},
     context::Context,
     outline::Sink,
+    relation::Relation,
     runs::JudgedRun,
     store::Store,
-    suite,
+    suite, symmetry,
 };
-use serde_json::json;
+use serde_json::{Value, json};
 use validation::cases;
 
 use super::{
@@ -95,13 +96,14 @@ fn solve(
         at_times: Some(&tell),
         allow_long: true,
         interrupt: Some(world.interrupt),
-        outline: problem.relation.map(|relation| Sink::of(Some(relation), true)),
+        outline: problem.relation.map(|by| Sink::of(Some(by), true)),
         ..Context::default()
     };
     let record = match case.run(&problem.spec, &context) {
-        // Nothing was measured of what another observer sees.
+        // Nothing was measured of what an observer sees, and nothing was counted.
         Err(RunError::Outlined) => {
-            Record::new(case.name(), &problem.spec.variant, problem.spec.settings.clone(), 1)
+            let RunSpec { case, variant, settings, .. } = problem.spec.clone();
+            Record::new(&case, &variant, settings, 1)
         }
         made => made?,
     };
@@ -119,13 +121,13 @@ fn solve(
         "changed": "nothing",
     });
     let cost = &record.cost;
-    let known = |number: f64| if number > 0.0 { json!(number) } else { json!("unknown") };
+    let counted = |of: Value| if of.as_f64() > Some(0.0) { of } else { json!("unknown") };
     let system = json!({
         "machine": record.manifest.cpu,
         "threads": cost.threads,
-        "seconds": known(cost.cpu_s / cost.threads.max(1) as f64),
-        "steps": known(cost.steps as f64),
-        "interactions": known(cost.pair_interactions as f64),
+        "seconds": counted(json!(cost.cpu_s / cost.threads.max(1) as f64)),
+        "steps": counted(json!(cost.steps)),
+        "interactions": counted(json!(cost.pair_interactions)),
     });
     folder.write(RESULTS, &table.into_bytes())?;
     folder.write(METHOD, (serde_json::to_string_pretty(&method)? + "\n").as_bytes())?;
@@ -157,10 +159,7 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     world.check_references(&[case])?;
     let entry = read(&arguments.folder, &arguments.map)?;
     let problem = problem(case, &entry, arguments)?;
-    let flaws = entry.check(&problem);
-    if !flaws.is_empty() {
-        return Err(refused(&flaws));
-    }
+    check(&entry, &problem)?;
     let record = measured(case, &entry, &problem.spec, &arguments.folder, world)?;
     if arguments.check {
         output::say("complete: every fact that a submission needs is there; nothing was recorded");
@@ -177,27 +176,67 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     Ok(if fails { Exit::GateFailed } else { Exit::Pass })
 }
 
-/// The folder of a submission, with columns of other names.
-pub fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
+/// The submission in a folder, with columns of other names.
+fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
     let renamed = map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
     submission::read(folder, &renamed).map_err(|flaws| refused(&flaws))
 }
 
+/// Refuses a submission that does not fit its problem.
+fn check(entry: &Entry, problem: &Problem) -> Result<(), Failure> {
+    let flaws = entry.check(problem);
+    if flaws.is_empty() { Ok(()) } else { Err(refused(&flaws)) }
+}
+
 /// The run that a document asks for.
-pub fn asked(case: &dyn Case, asked: &Asked) -> Result<RunSpec, Failure> {
-    if asked.spec.case != case.name() {
-        let words =
-            format!("problem.json is of the case {}, not of {}", asked.spec.case, case.name());
-        return Err(Failure::usage(words));
-    }
+fn spec_of(case: &dyn Case, asked: &Asked) -> Result<RunSpec, Failure> {
     let RunSpec { case: name, variant, settings, measure, .. } = asked.spec.clone();
     let plain = RunSpec { measure, ..RunSpec::new(&name, &variant, settings) };
-    if plain != asked.spec {
-        let words = "problem.json asks for more than a run of a variant with settings; expected \
-                     the document as it was exported";
-        return Err(Failure::usage(words));
+    let words = match () {
+        () if name != case.name() => {
+            format!("problem.json is of the case {name}, not of {}", case.name())
+        }
+        () if plain != asked.spec => {
+            "problem.json asks for more than a run of a variant with settings; \
+                                      expected the document as it was exported"
+                .into()
+        }
+        () => return Ok(case::resolved(case, plain)?),
+    };
+    Err(Failure::usage(words))
+}
+
+pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
+    let case = cases::find_in(world.cases, &arguments.case)?;
+    let observed = |folder: &Path| -> Result<_, Failure> {
+        let entry = read(folder, &arguments.map)?;
+        let usage = |what: &str| Failure::usage(format!("{}: {what}", folder.display()));
+        let none = || usage("expected a problem.json that `export --relation` wrote");
+        let asked = entry.asked.as_ref().ok_or_else(none)?;
+        let by = Relation::named(asked.relation.as_ref().ok_or_else(none)?);
+        let by = by.map_err(|what| usage(&format!("relation: {what}")))?;
+        let problem = Problem::seen(case, spec_of(case, asked)?, Some(by))?;
+        check(&entry, &problem)?;
+        Ok((entry, problem, by))
+    };
+    let ((ours, same, first), (theirs, other, by)) =
+        (observed(&arguments.same)?, observed(&arguments.other)?);
+    if first != Relation::Same || same.spec.key() != other.spec.key() {
+        return Err(Failure::usage(format!(
+            "expected two problems of the same variant and settings, the first of relation same; the first \
+             is {}, relation {}; the second {}, relation {}",
+            same.spec.variant,
+            first.name(),
+            other.spec.variant,
+            by.name()
+        )));
     }
-    Ok(case::resolved(case, plain)?)
+    let end = same.outline.times.last().copied().unwrap_or_default();
+    let steps = ours.system.steps.number().unwrap_or(end / same.outline.dt);
+    let (ours, theirs) = (&*ours.results.frames, &*theirs.results.frames);
+    let found = symmetry::difference((&same.outline, ours), (&other.outline, theirs), steps);
+    super::symmetry::show(vec![super::symmetry::row(case, &same.spec, by, &found)])?;
+    Ok(if found.is_round_off() { Exit::Pass } else { Exit::GateFailed })
 }
 
 /// The problem that the folder says it solves, or that the arguments describe.
@@ -213,16 +252,12 @@ fn problem(
                          --variant and --set";
             return Err(Failure::usage(words));
         }
-        Some(of) => match &of.relation {
-            Some(relation) => {
-                let words = format!(
-                    "problem.json is of relation {relation}, of which a few steps are asked for; \
-                     `touchstone relate` compares it"
-                );
-                return Err(Failure::usage(words));
-            }
-            None => asked(case, of)?,
-        },
+        Some(asked) if asked.relation.is_some() => {
+            let words = "problem.json asks for a few steps that an observer sees; `touchstone relate` \
+                         compares them";
+            return Err(Failure::usage(words));
+        }
+        Some(asked) => spec_of(case, asked)?,
         None => {
             let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
             case::spec(case, variant, &arguments.set)?
@@ -256,7 +291,7 @@ fn measured(
 }
 
 /// All flaws as the reason why nothing is judged.
-pub fn refused(flaws: &[Flaw]) -> Failure {
+fn refused(flaws: &[Flaw]) -> Failure {
     let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
     Failure::usage(format!(
         "the submission is refused, and nothing is judged:\n{}",

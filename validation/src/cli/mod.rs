@@ -333,7 +333,7 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
         Command::Challenge(arguments) => exchange::challenge(arguments, world),
         Command::Submit(arguments) => exchange::submit(arguments, world),
         Command::Symmetry(arguments) => symmetry::symmetry(arguments, world),
-        Command::Relate(arguments) => symmetry::relate(arguments, world),
+        Command::Relate(arguments) => exchange::relate(arguments, world),
         Command::Compare(arguments) => compare::compare(arguments, world),
         Command::Stability(arguments) => stability::stability(arguments, world),
         Command::Explain(arguments) => explain::explain(arguments, world),

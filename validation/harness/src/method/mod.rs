@@ -22,7 +22,7 @@ use solver::{
 };
 
 pub use crate::medium::{Knob, Medium};
-use crate::{context::Context, limits::Limits, outline::Sink, relation::View};
+use crate::{context::Context, limits::Limits, outline::Sink};
 pub use mutate::mutate;
 pub use terms::{Boundary, FirstRow, FromMedium};
 
@@ -90,18 +90,6 @@ impl<X: Numbers> Parts<X> {
             mutation,
             outline,
         }
-    }
-
-    /// The same scene as another observer sees it.
-    fn see(&mut self, view: &View, moves: &[bool]) {
-        self.medium = view.medium(&self.medium);
-        self.domain = view.domain(self.domain);
-        self.particles = view.order(&self.particles, moves);
-        self.bodies = view.order(&self.bodies, moves);
-        self.particles.iter_mut().for_each(|particle| *particle = view.particle(particle));
-        self.mirrors.iter_mut().for_each(|wall| *wall = view.wall(wall));
-        self.skin = self.skin.map(|skin| view.length(skin));
-        self.limits = view.limits(self.limits);
     }
 }
 

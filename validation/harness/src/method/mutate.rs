@@ -5,16 +5,15 @@ use nalgebra::Vector2;
 use solver::{Numbers, Role};
 
 use super::Parts;
+use crate::relation::{NoSymmetry, Relation, View};
 
 /// Multiplies the constant that is wrong by its factor; the time step is not a part of a scene, and neither
-/// is the lifetime of neighbour lists. Before, the parts are told to who wants to know them, and are those
-/// that another observer sees if it is one who asks.
+/// is the lifetime of neighbour lists. Before, the parts are told to who wants to know them, as that observer
+/// sees them.
 pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
-    if let Some(outline) = &parts.outline {
-        let moves: Vec<bool> = parts.particles.iter().map(|p| p.role == Role::Fluid).collect();
-        let around = (&parts.mirrors[..], &parts.bodies[..]);
-        let view = outline.scene(&parts.medium, parts.domain, around, &moves);
-        parts.see(&view, &moves);
+    if let Some(outline) = parts.outline.clone() {
+        let view = outline.relation.map_or(Ok(View::default()), |relation| see(parts, relation));
+        outline.scene(parts.medium, parts.domain, &parts.mirrors, &parts.bodies, view);
     }
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);
@@ -48,6 +47,22 @@ pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
         mirror.velocity *= of(Constant::WallSpeed);
         mirror.point.component_mul_assign(&stretch);
     }
+}
+
+/// Makes the parts those that another observer sees.
+fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetry> {
+    let moves: Vec<bool> = parts.particles.iter().map(|p| p.role == Role::Fluid).collect();
+    let Parts { medium, domain, particles, mirrors, bodies, skin, limits, .. } = parts;
+    let view = View::of(by, medium, domain, mirrors, &moves)?;
+    let numbers = view.numbers(&moves);
+    (*medium, *domain) = (view.medium(*medium), view.domain(*domain));
+    *particles = numbers.iter().map(|k| view.particle(&particles[*k])).collect();
+    *bodies = numbers.iter().filter_map(|k| bodies.get(*k).copied()).collect();
+    *mirrors = mirrors.iter().map(|wall| view.wall(wall)).collect();
+    *skin = skin.map(|skin| view.length(skin));
+    limits.density = limits.density.map(|density| view.density(density));
+    limits.speed = view.speed(limits.speed);
+    Ok(view)
 }
 
 #[cfg(test)]
