@@ -1,5 +1,5 @@
-//! Runs the exported problem of the folder in which it is started with salva2d: a fluid without viscosity that
-//! falls between walls of particles at rest.
+//! Runs the exported problem of the folder in which it is started with salva2d: a fluid without viscosity
+//! that falls between walls of particles at rest.
 
 use std::{error::Error, fmt::Write as _, fs};
 
@@ -94,7 +94,7 @@ fn hand_in(
     let method = json!({
         "code": "salva2d", "version": "0.11.0", "scheme": "DFSPH", "division": "closed",
         "settings": { "step": longest, "support": support, "alpha": alpha },
-        "changed": "incompressible, so without density; volumes of 0.8 dx²; cubic spline of the same support; f32",
+        "changed": "incompressible, no density; volumes of 0.8 dx²; cubic spline of the same support; f32",
     });
     let name = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = name.lines().find(|line| line.starts_with("model name"));

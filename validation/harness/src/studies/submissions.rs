@@ -14,7 +14,7 @@ use crate::{
 /// A submission with an error.
 struct Mark<'a> {
     of: &'a Submission,
-    /// Code and scheme; of ours the variant.
+    /// Code, scheme and the variant of its problem; of ours the variant.
     name: String,
     resolution: String,
     /// When it was made together with others.
@@ -30,7 +30,7 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
         let (record, of) = (&run.record, run.record.submission.as_ref()?);
         let name = match of.code.as_str() {
             OURS => format!("ours, {}", record.variant),
-            code => format!("{code}, {}", of.scheme),
+            code => format!("{code}, {} ({})", of.scheme, record.variant),
         };
         Some(Mark {
             of,
@@ -57,8 +57,8 @@ fn resolution(accuracy: &Accuracy, settings: &Value) -> String {
     level.map_or_else(|| format!("{key} = {}", settings[key]), |level| level.label.clone())
 }
 
-/// Where another code is better than ours in the same session: in error at equal resolution, or in time at no
-/// more error, whatever the resolution.
+/// Where another code is better than ours in the same session: in error at equal resolution, or in time at
+/// no more error, whatever the resolution.
 fn better(marks: &[Mark]) -> Option<String> {
     let (ours, others): (Vec<&Mark>, Vec<&Mark>) = marks.iter().partition(|m| m.of.code == OURS);
     if ours.is_empty() || others.is_empty() {
@@ -92,8 +92,9 @@ fn better(marks: &[Mark]) -> Option<String> {
 
 /// Error against run time, a panel a division.
 fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
-    let caption = "Runs of other codes, and ours of the same session in black: error over the time of the loop \
-                   on one core. Labels are resolutions."
+    let caption = "Runs of other codes (in parentheses the variant whose problem they ran), and ours of \
+                   the same session in black: error over the time of the loop on one core. Labels are \
+                   resolutions."
         .to_string();
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
