@@ -74,8 +74,7 @@ fn data(outline: &Outline) -> String {
          {y_low} {y_high} ylo yhi\n{} {dx} zlo zhi\n\nMasses\n\n",
         -dx
     );
-    // One mass a type: problems have particles of one mass.
-    let mass = column("mass").first().copied().unwrap_or_default();
+    let (mass, _) = mass(outline);
     for kind in 1..=3 {
         let _ = writeln!(text, "{kind} {mass}");
     }
@@ -92,6 +91,13 @@ fn data(outline: &Outline) -> String {
     text
 }
 
+/// The mass of the first particle \[kg/m\], which stands for all, and by how much of it others differ.
+fn mass(outline: &Outline) -> (f64, f64) {
+    let masses = outline.particles.column("mass");
+    let first = masses.first().copied().unwrap_or_default();
+    (first, masses.iter().fold(0.0, |most, mass| (mass / first - 1.0).abs().max(most)))
+}
+
 fn script(problem: &Problem) -> String {
     let Outline { medium: m, times, method, .. } = &problem.outline;
     let borders = [0, 1].map(|axis| ends(&problem.outline, axis).1);
@@ -104,14 +110,21 @@ fn script(problem: &Problem) -> String {
         ),
         false => format!("pair_style sph/taitwater\npair_coeff * * {rho} {c0} {} {cut}", m.alpha),
     };
-    let mass = problem.outline.particles.column("mass").first().copied().unwrap_or_default();
+    let (mass, off) = mass(&problem.outline);
     let force = m.acceleration * mass;
     let force = match force.norm() > 0.0 {
         true => format!("fix force fluid addforce {} {} 0\n", force.x, force.y),
         false => String::new(),
     };
+    let note = match off > 1e-12 {
+        true => format!(
+            "# LAMMPS has one mass a type of atom: here that of the first particle, {mass} kg/m, from which\n\
+             # those of others in particles.csv differ by up to {off:.1e} of it\n"
+        ),
+        false => String::new(),
+    };
     let mut text = format!(
-        "# {} of touchstone, variant {}\n\
+        "# {} of touchstone, variant {}\n{note}\
          units si\ndimension 2\natom_style sph\natom_modify map array\nboundary {} {} p\nnewton on\n\
          comm_modify vel yes\nread_data data.lmp\n\
          group fluid type 1\ngroup wall type 2 3\n{pair}\n\
