@@ -247,7 +247,8 @@ impl Problem {
              | end | {end} | s |\n\n## Particles\n\n`{PARTICLES}` has one line a particle. Role 0 moves; \
              role 1 is behind a wall and role 2 on it, and neither moves except along the wall with its \
              velocity. Axes with a period repeat.\n\n## What to hand in\n\n{HAND_IN}\
-             - `{PROBLEM}`, as it is here.\n\n{then}\n\nTimes [s]: {times}\n\n## How it is judged\n\n| gate | metric | bound |\n\
+             - `{PROBLEM}`, as it is here.\n\n{then}\n\n\
+             Times [s]: {times}\n\n## How it is judged\n\n| gate | metric | bound |\n\
              |---|---|---|\n{gates}",
             variant = self.spec.variant,
             about = self.about,

@@ -15,6 +15,7 @@ use crate::{
     clock::Reading,
     error::RunError,
     frames::{self, Frames},
+    outline::Sink,
     playback::Playback,
     profile::{self, Profiler},
     size::Size,
@@ -332,6 +333,32 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
     }
 }
 
+/// Puts the outline of a run, and makes the few steps that another observer sees if there is one. Nothing of
+/// the case looks at them: it does not know what the observer sees.
+fn outlined<X: Numbers>(
+    outline: &Sink,
+    simulation: &mut (impl Stepper<X> + ?Sized),
+    (dt, times): (f64, &[f64]),
+    pressure: &dyn Fn(f64) -> f64,
+    context: &Context,
+) -> RunError {
+    let early = match outline.early(dt) {
+        Ok(early) => early,
+        Err(error) => return error,
+    };
+    let (dt, times) = early.as_ref().map_or((dt, times), |(dt, times)| (*dt, &times[..]));
+    outline.drive(simulation, times, dt, pressure);
+    for until in times.iter().filter(|_| outline.steps && !context.is_interrupted()) {
+        if simulation.advance(*until, dt, &mut ()) != Outcome::Reached {
+            break; // it diverged
+        }
+        if let Some(tell) = context.at_times {
+            tell(*until, frames::columns(&simulation.particles(), pressure));
+        }
+    }
+    RunError::Outlined
+}
+
 /// A simulation with what is observed of it on its way through the times of interest.
 ///
 /// The functions of a case cannot change what they capture: all that changes is in `S`, which checkpoints
@@ -418,12 +445,6 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         let factor =
             context.mutation.map_or(1.0, |mutation| mutation.factor_of(Constant::TimeStep));
         let (dt, least) = (dt * factor, least as f64 / factor);
-        let early = context.outline.as_ref().map_or(Ok(None), |outline| outline.early(dt))?;
-        let (dt, times, least, after_step, at) = match &early {
-            // Another observer: nothing of the case would know what it sees.
-            Some((dt, times)) => (*dt, &times[..], 1.0, Vec::new(), Vec::new()),
-            None => (dt, times, least, after_step, at),
-        };
         let end = times.last().copied().unwrap_or_default();
         let fewest = least.max(1.0) * times.len() as f64;
         let steps = ((end - simulation.time()) / dt).max(fewest);
@@ -433,10 +454,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             tell(&size);
         }
         if let Some(outline) = &context.outline {
-            outline.drive(simulation, times, dt, pressure);
-            if !outline.steps {
-                return Err(RunError::Outlined);
-            }
+            return Err(outlined(outline, simulation, (dt, times), pressure, context));
         }
         let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
         let mut watch = Watch {
@@ -481,9 +499,6 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
                 (status, watch.counted(simulation))
             }
         };
-        if early.is_some() {
-            return Err(RunError::Outlined);
-        }
         if let Some(checkpoints) = context.checkpoints {
             checkpoints.keep(watch.save(simulation, cost.clone(), Some(status.clone()))?);
         }

@@ -70,7 +70,7 @@ fn told((outline, frames): Seen, k: usize) -> Vec<Placed> {
 }
 
 /// What round-off explains a step after the other: a step rounds place, velocity and density, in the units h,
-/// c0 and ρ0 by ε times their size; no longer than h/c0, it makes of an error of a force no larger error of the
+/// c0 and ρ0 by ε times their size; no longer than h/c0, it makes of an error of a force no larger error of a
 /// velocity. Velocities keep what steps add, so that after n steps places differ by n² times that at most, as
 /// long as the motion itself does not amplify it.
 fn rounding(outline: &Outline) -> f64 {
@@ -148,8 +148,8 @@ const UNDERFLOW: f64 = 1e-150;
 /// What a relation comes to: the largest difference, or why it does not hold.
 pub type Found = (Relation, Result<Difference, RunError>);
 
-/// What each relation comes to for our own run of a spec. Those that round nothing must give the same bits, but
-/// for what underflows.
+/// What each relation comes to for our own run of a spec. Those that round nothing must give the same
+/// bits, but for what underflows.
 ///
 /// # Errors
 /// If the run is refused, or is none of a scene.
