@@ -124,8 +124,8 @@ fn provenance(runs: &Runs) -> Option<String> {
     let day = |run: &JudgedRun| run.record.numerics.get(SESSION)?.as_str().map(String::from);
     let day = runs.submissions().iter().find_map(day)?;
     Some(format!(
-        "Records that the program contains (`references/peers`) were made on {day} on another machine, ours in \
-         turn with those of other codes, each on one thread while other programs were at work. Their seconds \
+        "Records that the program contains (`references/peers`) were made on {day} on another machine, in \
+         turn with ours, each on one thread while other programs were at work. Their seconds \
          compare with each other, not with those of other sections."
     ))
 }
