@@ -41,9 +41,9 @@ const DENSITY: f64 = 0.5;
 /// η² of (6) \[h²\]: a guard against 0/0 and no more.
 const ETA2: f64 = 1e-6;
 
-/// The time step \[s\]; c₀ = 1.
+/// The time step \[s\].
 pub(super) fn step(m: &Medium) -> f64 {
-    STEP * m.h
+    STEP * m.h / m.eos.sound_speed
 }
 
 fn medium(method: &Method, s: &OperatorSettings) -> Medium {
