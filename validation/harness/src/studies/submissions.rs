@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::{
     columns::Columns,
-    declare::{Accuracy, Declaration, Level},
+    declare::{Accuracy, Declaration, ErrorOf, Level},
     runs::{JudgedRun, Runs},
     study::Study,
 };
@@ -130,6 +130,16 @@ fn provenance(runs: &Runs) -> Option<String> {
     ))
 }
 
+/// That errors are distances from a run of ours, if they are.
+fn partial(accuracy: &Accuracy) -> Option<String> {
+    let ErrorOf::Distance { finest, .. } = &accuracy.error else { return None };
+    Some(format!(
+        "Errors are distances from our own finest run, of variant {}, which favours this variant: there is no \
+         solution of which all codes would be equally independent.",
+        finest.variant
+    ))
+}
+
 /// All submissions of a case, if there are any: the closed division, then the open one.
 pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     if runs.submissions().is_empty() {
@@ -139,7 +149,8 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     let accuracy = declared.accuracy.iter();
     let found = accuracy.map(|of| (of, marks(of, runs))).find(|(_, marks)| !marks.is_empty());
     let first = found.as_ref().and_then(|(_, marks)| better(marks));
-    let words = first.into_iter().chain(provenance(runs));
+    let words = first.into_iter().chain(found.as_ref().and_then(|(of, _)| partial(of)));
+    let words = words.chain(provenance(runs));
     let study = words.fold(Study::new(&id, "Runs of other codes"), Study::prose);
     let study = study.prose(
             "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
@@ -157,7 +168,10 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
         runs.submissions().iter().filter(is_of).collect::<Vec<_>>()
     };
     let tables = [
-        (Division::Closed, "Closed division: our particles, spacing and support of the kernel."),
+        (
+            Division::Closed,
+            "Closed division: our particles, spacing and support of the kernel. The best first.",
+        ),
         (Division::Open, "Open division: other particles or another resolution, at a stated cost."),
     ];
     let some = tables.into_iter().map(|(division, caption)| (of(division), caption));
@@ -168,14 +182,20 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     Some(some.fold(study, add))
 }
 
-fn table(declared: &Declaration, caption: &str, of: Vec<&JudgedRun>, runs: &Runs) -> report::Table {
+fn table(
+    declared: &Declaration,
+    caption: &str,
+    mut of: Vec<&JudgedRun>,
+    runs: &Runs,
+) -> report::Table {
     let words =
         |run: &JudgedRun| run.record.submission.as_ref().map_or(String::new(), |of| of.to_string());
     let error = |run: &JudgedRun| {
         let mut of = declared.accuracy.iter();
-        let error = of.find_map(|of| of.error.value(&run.record, runs));
-        error.map_or(Cell::text("–"), |error| Cell::percent(error, 2))
+        of.find_map(|of| of.error.value(&run.record, runs))
     };
+    let place = |run: &&JudgedRun| error(run).unwrap_or(f64::INFINITY);
+    of.sort_by(|a, b| place(a).total_cmp(&place(b)));
     let gates = |run: &JudgedRun| {
         let (apply, others) = run.applicable();
         let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure()).count();
@@ -186,7 +206,10 @@ fn table(declared: &Declaration, caption: &str, of: Vec<&JudgedRun>, runs: &Runs
         .text("code", |run| words(run))
         .code("variant of the problem", |run| &run.record.variant)
         .num(["particles", "1"], |run| Cell::count(run.record.cost.particles as u64))
-        .num(["error", "-"], |run| error(run))
+        .num(["error", "-"], |run| match error(run) {
+            Some(error) => Cell::percent(error, 2),
+            None => Cell::text("–"),
+        })
         .num(["processor time", "s"], |run| match run.record.cost.cpu_s {
             seconds if seconds.is_finite() => Cell::seconds(seconds),
             _ => Cell::text("unknown"),
