@@ -134,8 +134,8 @@ fn provenance(runs: &Runs) -> Option<String> {
 fn partial(accuracy: &Accuracy) -> Option<String> {
     let ErrorOf::Distance { finest, .. } = &accuracy.error else { return None };
     Some(format!(
-        "Errors are distances from our own finest run, of variant {}, which favours this variant: there is no \
-         solution of which all codes would be equally independent.",
+        "Errors are distances from our own finest run, of variant {}, which favours this variant: there is \
+         no solution of which all codes would be equally independent.",
         finest.variant
     ))
 }
