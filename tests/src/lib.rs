@@ -5,6 +5,7 @@ pub mod foreign_solver;
 pub mod new_case;
 pub mod new_term;
 pub mod new_wall;
+pub mod row_matrix;
 
 use std::{fs, path::Path};
 

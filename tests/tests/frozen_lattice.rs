@@ -1,5 +1,5 @@
 //! Channel flow on a lattice that does not move, against the same sums reduced to one unknown a row
-//! (`maths::theory::channel`): independent code for the same equations, so no error of the
+//! (`row_matrix` of this crate): independent code for the same equations, so no error of the
 //! method stands between them, and a weight or a wall that is off in the sixth digit is seen. Stepped
 //! alike they agree to 1e-13 of the speed of the plate, and without the error of dt to 1e-8.
 //!
@@ -16,16 +16,14 @@ use harness::{
     method::{self, Boundary, Method, Standard},
     simulate::{INTEGRATOR, KERNEL, WALLS},
 };
-use maths::theory::{
-    channel::{Alignment, Channel, RowModel, WallRule},
-    time_step::Integrator,
-};
+use maths::theory::time_step::Integrator;
 use nalgebra::DVector;
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, Integrator as _,
     InterfaceWall, Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline,
     Simulation, Stepper, Tait, WendlandC2, super_steps::stages, walls::Walls,
 };
+use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
 
 /// A channel flow in the kernel K, the walls W and the integrator I, and no stabiliser.
 type Channels<K, W, I> = Compose<K, Fluid<BodyForce>, Continuity, W, I>;

@@ -1,5 +1,6 @@
 //! Properties that cross the crates, as one program: a scheme that several of them use is compiled once.
 
+mod channel_bounds;
 mod consistent;
 mod cost;
 mod damaged;
@@ -16,6 +17,7 @@ mod new_case;
 mod pairs;
 mod plans;
 mod restart;
+mod row_matrix;
 mod shifting;
 mod snapshots;
 mod solid;

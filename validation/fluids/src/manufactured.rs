@@ -347,8 +347,6 @@ mod tests {
     use base::mutation::{Constant, Mutation};
     use base::spec::RunSpec;
     use harness::runs::Judged;
-    use maths::theory::channel::{Alignment, Channel, WallRule};
-    use solver::QuinticSpline;
 
     use super::*;
 
@@ -364,24 +362,6 @@ mod tests {
         for of in [Constant::Viscosity, Constant::BodyForce] {
             assert!(error(Some(of)) > 0.1, "{of}: {}", error(Some(of)));
         }
-    }
-
-    /// The length of which the bounds of orders with interface walls make use.
-    #[test]
-    fn fluid_slips_along_interface_particles_by_a_twenty_fifth_of_a_spacing() {
-        let channel = Channel {
-            rows: 40,
-            width: 40.0,
-            nu: 1.0,
-            wall_velocity: [0.0, 40.0],
-            force: 0.0,
-            wall_rule: WallRule::InterfaceWall,
-            alignment: Alignment::Aligned,
-        };
-        let rows = channel.reduce::<QuinticSpline>(1.0, 1e-6).expect("rows");
-        let u = rows.steady().expect("a steady state");
-        let slope = u[20] - u[19];
-        assert!((20.0 / slope - 20.0 - 0.039).abs() < 1e-3, "{slope}");
     }
 
     /// Errors of a power law pass with its order and fail with another one.

@@ -4,7 +4,7 @@
 mod declaration;
 mod limits;
 mod maps;
-mod matrices;
+pub mod matrices;
 mod measure;
 mod plan;
 mod run;

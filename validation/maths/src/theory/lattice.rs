@@ -30,15 +30,9 @@ struct Site {
 pub struct SquareLattice {
     /// h/dx.
     h: f64,
-    /// η²/dx².
-    eta2: f64,
     /// By which gradients are multiplied: 1, or 1/G₁.
     correction: f64,
     sites: Vec<Site>,
-    /// Support radius \[h\].
-    support: f64,
-    /// F of the kernel from h and r².
-    f: fn(f64, f64) -> f64,
 }
 
 impl SquareLattice {
@@ -58,8 +52,7 @@ impl SquareLattice {
                 }
             }
         }
-        let f = |h, r2| Smoothing::<K>::new(h).f(r2);
-        Self { h, eta2, correction: 1.0, sites, support: K::SUPPORT, f }
+        Self { h, correction: 1.0, sites }
     }
 
     /// The same with gradients, and their conjugate forces, that are corrected by the inverse of the moments,
@@ -86,43 +79,6 @@ impl SquareLattice {
     /// G₁ = Σ V F x²; 1 of corrected gradients.
     pub fn gradient_factor(&self) -> f64 {
         self.sum(|s| s.vf * s.r.x * s.r.x) * self.correction
-    }
-
-    /// L₁ = Σ V F y² r²/(r²+η²), equal to G₁ at η = 0.
-    pub fn laplacian_factor(&self) -> f64 {
-        self.sum(|s| s.vf * s.r.y * s.r.y * s.guard)
-    }
-
-    /// L₁ for ∂²u/∂y² once shear has slid the rows past each other: every row at distance y keeps
-    /// its spacing but takes every offset s in \[0, dx) equally often,
-    ///
-    /// Σ_y y² ⟨Σ_x V F r²/(r²+η²)⟩ₛ. Only rows y ≠ 0 count, so correlations between offsets of
-    /// different rows do not matter.
-    pub fn sheared_laplacian_factor(&self) -> f64 {
-        let Self { h, eta2, f, .. } = *self;
-        self.rows(|y| y * y * self.row_mean(y, |r2| f(h, r2) * r2 / (r2 + eta2)))
-    }
-
-    /// Σ over the rows y ≠ 0 in reach; both signs are alike.
-    fn rows(&self, term: impl Fn(f64) -> f64) -> f64 {
-        let reach = (self.support * self.h).ceil() as i32;
-        (1..=reach).map(|y| 2.0 * term(f64::from(y))).sum()
-    }
-
-    /// ⟨Σ_x f(r²)⟩ over the offsets s of row `y`. The sum is periodic in s
-    /// and as smooth as the kernel, so the mean over equal steps converges quickly.
-    fn row_mean(&self, y: f64, f: impl Fn(f64) -> f64) -> f64 {
-        const OFFSETS: i32 = 512;
-        let reach = (self.support * self.h).ceil() as i32 + 1;
-        let mut sum = 0.0;
-        for k in 0..OFFSETS {
-            let offset = f64::from(k) / f64::from(OFFSETS);
-            for x in -reach..=reach {
-                let x = f64::from(x) + offset;
-                sum += f(x * x + y * y);
-            }
-        }
-        sum / f64::from(OFFSETS)
     }
 
     /// g(k) h at phase θ = k dx \[rad\].
@@ -181,48 +137,6 @@ mod tests {
     use approx::assert_relative_eq;
     use solver::kernel::{CubicSpline, QuinticSpline, WendlandC2};
 
-    /// h/dx, neighbours, G₁-1, L₁-1 at η² = 0.01 h², L₁-1 of sheared rows at η² = 0.01 h² and 0,
-    /// as printed; "" where the design notes have none.
-    type Row = (f64, usize, [&'static str; 4]);
-
-    fn check<K: Kernel>(rows: &[Row]) {
-        for (ratio, neighbours, printed) in rows {
-            let bare = SquareLattice::of::<K>(*ratio, 0.0);
-            let guarded = SquareLattice::of::<K>(*ratio, 0.01);
-            let computed = [
-                bare.gradient_factor() - 1.0,
-                guarded.laplacian_factor() - 1.0,
-                guarded.sheared_laplacian_factor() - 1.0,
-                bare.sheared_laplacian_factor() - 1.0,
-            ];
-            assert_eq!(bare.neighbours(), *neighbours, "{} {ratio}", K::NAME);
-            assert_rounds_to(&format!("{} {ratio}", K::NAME), printed, &computed);
-        }
-    }
-
-    /// Table 1.0 of the design notes, to its printed digits. Wendland C4 is not a kernel here.
-    #[test]
-    fn lattice_factors_match_the_design_table() {
-        check::<CubicSpline>(&[
-            (1.0, 8, ["+1.3e-2", "+4.7e-3", "-1.2e-2", "-3.9e-3"]),
-            (1.1, 12, ["-3.4e-3", "-1.3e-2", "-1.5e-2", "-5.9e-3"]),
-            (1.2, 20, ["-9.2e-3", "-1.9e-2", "-4.1e-3", "+5.9e-3"]),
-            (1.25, 20, ["+1.0e-3", "-9.4e-3", "+1.7e-3", "+1.2e-2"]),
-            (1.3, 20, ["+1.05e-2", "-1.6e-4", "+5.7e-3", "+1.6e-2"]),
-            (1.5, 24, ["+6.7e-3", "-4.8e-3", "-7.0e-3", "+4.4e-3"]),
-            (2.0, 44, ["-9.0e-4", "-1.3e-2", "-1.3e-2", "-5.2e-4"]),
-        ]);
-        check::<QuinticSpline>(&[
-            (0.9, 20, ["-1.4e-4", "-6.3e-3", "-6.6e-3", "-5.4e-4"]),
-            (1.0, 24, ["+8.0e-4", "-6.0e-3", "-6.8e-3", "-9.0e-5"]),
-            (1.3, 44, ["+6.1e-4", "-7.3e-3", "-7.2e-3", "+6.9e-4"]),
-        ]);
-        check::<WendlandC2>(&[
-            (1.5, 24, ["-2.6e-3", "-1.5e-2", "-1.6e-2", "-3.4e-3"]),
-            (2.0, 44, ["-8.0e-4", "-1.5e-2", "-1.5e-2", "-7.1e-4"]),
-        ]);
-    }
-
     /// The largest values of the symbols over a set of wave vectors, made dimensionless with h.
     struct Maxima {
         /// |g| h.
@@ -264,27 +178,6 @@ mod tests {
         check::<QuinticSpline>(1.0, ["0.865", "3.81", "3.84", "1.30"]);
         check::<WendlandC2>(1.5, ["1.127", "6.39", "6.52", "2.19"]);
         check::<WendlandC2>(2.0, ["1.136", "6.61", "6.81", "2.09"]);
-    }
-
-    /// Long waves see the factors: g = G₁ k, λ = L₁ k².
-    #[test]
-    fn symbols_tend_to_the_factors() {
-        let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
-        let theta = Vector2::new(1e-4, 0.0);
-        let kh = theta.x * 1.2;
-        assert_relative_eq!(
-            lattice.gradient(theta).x / kh,
-            lattice.gradient_factor(),
-            max_relative = 1e-7
-        );
-        assert_relative_eq!(
-            lattice.laplacian(theta) / (kh * kh),
-            lattice.laplacian_factor(),
-            max_relative = 1e-7
-        );
-        let p = lattice.artificial(theta);
-        let trace = 0.5 * lattice.laplacian(theta) - p.trace();
-        assert!(trace.abs() < 1e-16, "the trace of P is half of the Laplacian");
     }
 
     /// Long waves have no error of the factor, and every wave has its share of it less.

@@ -1,0 +1,139 @@
+//! Bounds of gates that are made from the row-reduced matrix are computed again.
+
+use base::gate::Gate;
+use fluids::{
+    channel::{Flow, TIMES, matrices::*},
+    couette::COUETTE as CASE,
+};
+use harness::case::{Case, Tier};
+use maths::exact::{Couette, Poiseuille};
+use nalgebra::DVector;
+use solver::{Kernel, QuinticSpline, WendlandC2};
+use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
+
+const COUETTE: Couette = Couette { v0: 1.0, l: 1.0, nu: 1.0 };
+const POISEUILLE: Poiseuille = Poiseuille { v: 1.0, l: 1.0, nu: 1.0 };
+const ALIGNMENTS: [Alignment; 2] = [Alignment::Aligned, Alignment::Slid];
+
+fn model<K: Kernel>(
+    (flow, rows, h_over_dx): (Flow, usize, f64),
+    wall_rule: WallRule,
+    alignment: Alignment,
+) -> RowModel {
+    let (wall_velocity, force) = match flow {
+        Flow::Couette => ([0.0, 1.0], 0.0),
+        Flow::Poiseuille => ([0.0; 2], POISEUILLE.force()),
+    };
+    let section = Channel { rows, width: 1.0, nu: 1.0, wall_velocity, force, wall_rule, alignment };
+    section.reduce::<K>(h_over_dx, 1e-6).expect("a wide channel")
+}
+
+/// Error at a νt/L², exact in time.
+fn error_at(flow: Flow, model: &RowModel, tau: f64) -> f64 {
+    let u = model.at(tau).expect("regular");
+    match flow {
+        Flow::Couette => model.relative_error(&u, |y| COUETTE.velocity(y, tau)),
+        Flow::Poiseuille => model.relative_error(&u, |y| POISEUILLE.velocity(y, tau)),
+    }
+}
+
+/// Error of Couette flow at νt/L² = 0.1 with the steps of a leapfrog of at most `dt` \[L²/ν\], equal
+/// between the times at which a run pauses: half a kick first, whole ones, half a kick last.
+fn error_of_leapfrog(model: &RowModel, dt: f64) -> f64 {
+    let (mut u, mut start, mut lag) = (DVector::zeros(model.y.len()), 0.0, 0.0);
+    for until in TIMES.into_iter().filter(|tau| *tau <= 0.1) {
+        let steps = ((until - start) / dt * (1.0 - 1e-12)).ceil();
+        let half = 0.5 * (until - start) / steps;
+        for _ in 0..steps as usize {
+            u += model.rate(&u) * (lag + half);
+            lag = half;
+        }
+        start = until;
+    }
+    u += model.rate(&u) * lag;
+    model.relative_error(&u, |y| COUETTE.velocity(y, 0.1))
+}
+
+fn assert_near(found: f64, printed: f64, tolerance: f64) {
+    assert!((found / printed - 1.0).abs() < tolerance, "{found} is not {printed}");
+}
+
+#[test]
+fn the_errors_of_walls_that_extrapolate_are_those_of_the_matrix() {
+    for (rows, printed) in EXTRAPOLATED {
+        for (flow, printed) in [Flow::Couette, Flow::Poiseuille].into_iter().zip(printed) {
+            let wall = WallRule::Adami;
+            let model = model::<QuinticSpline>((flow, rows, 1.0), wall, Alignment::Aligned);
+            assert_near(error_at(flow, &model, 1.0), printed, 0.02);
+        }
+    }
+}
+
+#[test]
+fn the_errors_of_ghost_walls_are_those_of_the_matrices() {
+    for (flow, rows, printed) in GHOSTS {
+        let error = |alignment| {
+            let of = (flow, rows, 1.0);
+            let model = model::<QuinticSpline>(of, WallRule::Ghosts, alignment);
+            match flow {
+                // Viscous number 0.4 of the default step.
+                Flow::Couette => error_of_leapfrog(&model, 0.4 / (rows * rows) as f64),
+                Flow::Poiseuille => error_at(flow, &model, 1.0),
+            }
+        };
+        let [a, b] = ALIGNMENTS.map(error);
+        assert_near(a.min(b), printed[0], 1e-3);
+        assert_near(a.max(b), printed[1], 1e-3);
+    }
+    let of = (Flow::Couette, 20, 1.0);
+    let model = model::<QuinticSpline>(of, WallRule::Ghosts, Alignment::Aligned);
+    let exact = error_at(Flow::Couette, &model, 0.1);
+    assert_near(exact, IN_COLUMNS, 1e-4);
+    assert!(IN_COLUMNS <= exact, "{exact}");
+    // With 40 rows and more the bound of `stiff` is the goal of 0.1 %.
+    let of = (Flow::Couette, 40, 1.0);
+    let model = self::model::<QuinticSpline>(of, WallRule::Ghosts, Alignment::Aligned);
+    assert!(error_at(Flow::Couette, &model, 0.1) < 8e-4);
+}
+
+/// The bounds of all smoothing lengths are made from these errors, with the steps of the runs.
+#[test]
+fn the_errors_of_smoothing_lengths_are_those_of_the_matrices() {
+    let mut seen = 0;
+    let is_asked = |gate: &Gate| gate.id.starts_with("extremes.smoothing.");
+    let plan = CASE.plan(Tier::Full).into_iter();
+    for spec in plan.filter(|run| run.gates.iter().any(is_asked)).map(|run| run.spec) {
+        let dt = CASE.rules(&spec).expect("a run").dt();
+        let ratio = spec.settings["h_over_dx"].as_f64().expect("a number");
+        let (k, model): (usize, fn(_, _, _) -> _) = match &*spec.variant {
+            "plain" => (0, model::<QuinticSpline>),
+            _ => (1, model::<WendlandC2>),
+        };
+        let of = (Flow::Couette, 20, ratio);
+        let error = |alignment| error_of_leapfrog(&model(of, WallRule::Ghosts, alignment), dt);
+        let [a, b] = ALIGNMENTS.map(error);
+        let (_, printed) = SMOOTHED.into_iter().find(|(of, _)| *of == ratio).expect("one");
+        assert_near(a.max(b), printed[k], 1e-4);
+        assert!(printed[k] <= a.max(b), "a bound that is rounded up is looser");
+        seen += 1;
+    }
+    assert_eq!(seen, 2 * SMOOTHED.len());
+}
+
+/// The length of which the bounds of orders with interface walls make use.
+#[test]
+fn fluid_slips_along_interface_particles_by_a_twenty_fifth_of_a_spacing() {
+    let channel = Channel {
+        rows: 40,
+        width: 40.0,
+        nu: 1.0,
+        wall_velocity: [0.0, 40.0],
+        force: 0.0,
+        wall_rule: WallRule::InterfaceWall,
+        alignment: Alignment::Aligned,
+    };
+    let rows = channel.reduce::<QuinticSpline>(1.0, 1e-6).expect("rows");
+    let u = rows.steady().expect("a steady state");
+    let slope = u[20] - u[19];
+    assert!((20.0 / slope - 20.0 - 0.039).abs() < 1e-3, "{slope}");
+}
