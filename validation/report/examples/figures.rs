@@ -76,8 +76,7 @@ fn band_and_bars() -> Figure {
         Plot::new("Decay", Axis::linear("time t [s]"), Axis::linear("E/E₀ [1]").range(0.0, 1.1))
             .layer(Layer::band("spread of five runs", band, Colour::SKY))
             .layer(Series::line("exact", sampled(80, 0.0, 4.0, mean)).colour(Colour::BLACK))
-            .layer(experiment.shape(Shape::Square).x_bars(x_bars))
-            .layer(Layer::vertical(1.25, "wave returns"));
+            .layer(experiment.shape(Shape::Square).x_bars(x_bars));
     let shapes =
         [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Down, Shape::Cross];
     let mut all = Plot::new("Every shape and dash", Axis::linear("x [1]"), Axis::linear("y [1]"))
@@ -110,8 +109,7 @@ fn stability() -> Figure {
         Axis::log("relative L₂ error [1]").range(1e-3, 1e-1),
     )
     .layer(Series::line_markers("predictor–corrector", done.to_vec()))
-    .layer(Layer::Failed(failed.to_vec()))
-    .layer(Layer::vertical(0.37, "theoretical limit"));
+    .layer(Layer::Failed(failed.to_vec()));
     let noise = (0..100_000).map(|i| {
         let t = f64::from(i) * 1e-4;
         (t, 1e5 * ((1.0 - (-t).exp()) + 0.1 * (517.0 * t).sin() * (3.0 * t).cos()))

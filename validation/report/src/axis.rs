@@ -13,15 +13,12 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
     /// Labelled ticks; empty chooses them.
     pub ticks: Vec<f64>,
-    /// What the labelled ticks say; empty for their values.
-    pub names: Vec<String>,
 }
 
 impl Axis {
     /// A linear axis with automatic range.
     pub fn linear(label: impl Into<String>) -> Self {
-        let (ticks, names) = (Vec::new(), Vec::new());
-        Self { label: label.into(), scale: Scale::Linear, range: None, ticks, names }
+        Self { label: label.into(), scale: Scale::Linear, range: None, ticks: Vec::new() }
     }
 
     /// A logarithmic axis with automatic range.
@@ -37,14 +34,6 @@ impl Axis {
     /// The same axis with labelled ticks at these values only.
     pub fn ticks(self, ticks: impl Into<Vec<f64>>) -> Self {
         Self { ticks: ticks.into(), ..self }
-    }
-
-    /// A linear axis with a name at each whole number from 0 on.
-    pub fn of_names(label: impl Into<String>, names: impl IntoIterator<Item = String>) -> Self {
-        let names: Vec<String> = names.into_iter().collect();
-        let ticks = (0..names.len()).map(|k| k as f64).collect();
-        let range = Some((-0.6, names.len() as f64 - 0.4));
-        Self { ticks, names, range, ..Self::linear(label) }
     }
 
     /// The mapping for the given data.
@@ -72,12 +61,7 @@ impl Axis {
     pub(super) fn place_ticks(&self, mapping: &Mapping, count: usize) -> Ticks {
         match self.ticks.as_slice() {
             [] => ticks(self.scale, mapping.lo, mapping.hi, count),
-            values if self.names.is_empty() => fixed(values, mapping.lo, mapping.hi),
-            values => Ticks {
-                major: values.iter().copied().zip(self.names.iter().cloned()).collect(),
-                minor: Vec::new(),
-                exponent: 0,
-            },
+            values => fixed(values, mapping.lo, mapping.hi),
         }
     }
 }

@@ -136,15 +136,6 @@ pub enum Legend {
     Hidden,
 }
 
-/// Direction of a rule.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Orientation {
-    /// At one y, over all x.
-    Horizontal,
-    /// At one x, over all y.
-    Vertical,
-}
-
 /// One thing drawn on a plot.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Layer {
@@ -160,8 +151,6 @@ pub enum Layer {
     },
     /// A dashed grey line across the plot at one value, with a label beside it.
     Rule {
-        /// Horizontal: `at` is a y.
-        orientation: Orientation,
         /// The value.
         at: f64,
         /// May be empty.
@@ -188,12 +177,7 @@ impl Layer {
 
     /// A dashed grey horizontal line.
     pub fn horizontal(at: f64, label: impl Into<String>) -> Self {
-        Self::Rule { orientation: Orientation::Horizontal, at, label: label.into() }
-    }
-
-    /// A dashed grey vertical line.
-    pub fn vertical(at: f64, label: impl Into<String>) -> Self {
-        Self::Rule { orientation: Orientation::Vertical, at, label: label.into() }
+        Self::Rule { at, label: label.into() }
     }
 
     /// A shaded area between two curves, points (x, lower, upper).

@@ -40,7 +40,7 @@ pub use colour::{Colour, ColourMap};
 pub use counts::Counts;
 pub use explorer::{Explorer, GateRow, VERDICTS, verdicts_where};
 pub use figure::{
-    CategoryMap, Dash, Figure, Layer, Legend, Orientation, Panel, ParticleMap, Plot, Series, Shape,
+    CategoryMap, Dash, Figure, Layer, Legend, Panel, ParticleMap, Plot, Series, Shape,
 };
 pub use film::Film;
 pub use number::{counted, exact, percent, sci, seconds, sig};

@@ -4,7 +4,7 @@ use super::axis::Mapping;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::drawn::Drawn;
-use super::figure::{Dash, Layer, Legend, Orientation, Plot, Series, Shape};
+use super::figure::{Dash, Layer, Legend, Plot, Series, Shape};
 use super::font;
 use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
 use super::geometry::{clip_line, clip_polygon, runs, sample_rect, sample_segment, thin};
@@ -232,13 +232,13 @@ impl<'a> Prepared<'a> {
     /// Finds room for the labels of the rules, and makes lines and labels obstacles too.
     fn place_rules(&mut self, obstacles: &mut Vec<Point>) {
         for layer in &self.plot.layers {
-            let Layer::Rule { orientation, at, label } = layer else { continue };
-            let Some(ends) = self.across(*orientation, *at) else { continue };
+            let Layer::Rule { at, label } = layer else { continue };
+            let Some(ends) = self.across(*at) else { continue };
             let hidden = |r: &Rect| {
                 obstacles.iter().filter(|&&p| r.grown(1.0).contains(p)).count()
                     + if self.inner.encloses(r) { 0 } else { 100_000 }
             };
-            let spots = rule_spots(*orientation, ends, font::width(label, RULE_EM)).into_iter();
+            let spots = rule_spots(ends, font::width(label, RULE_EM)).into_iter();
             let Some((room, align)) = spots.min_by_key(|(r, _)| hidden(r)) else { continue };
             sample_segment(obstacles, ends.0, ends.1);
             if !label.is_empty() {
@@ -249,14 +249,9 @@ impl<'a> Prepared<'a> {
     }
 
     /// The ends of a line across the plot.
-    fn across(&self, orientation: Orientation, at: f64) -> Option<(Point, Point)> {
-        let inside = |axis: &Mapping| axis.unit(at).filter(|u| is_inside(*u));
-        let ends = match orientation {
-            Orientation::Horizontal => inside(&self.y).map(|y| [(0.0, y), (1.0, y)])?,
-            Orientation::Vertical => inside(&self.x).map(|x| [(x, 1.0), (x, 0.0)])?,
-        };
-        let [a, b] = ends.map(|end| self.inner.at(end));
-        Some((a, b))
+    fn across(&self, at: f64) -> Option<(Point, Point)> {
+        let y = self.y.unit(at).filter(|y| is_inside(*y))?;
+        Some((self.inner.at((0.0, y)), self.inner.at((1.0, y))))
     }
 
     /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
@@ -435,8 +430,7 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
                 }
                 xs.extend(s.x_bars.iter().flat_map(|b| [b.0, b.1]));
             }
-            Layer::Rule { orientation: Orientation::Horizontal, at, .. } => ys.push(*at),
-            Layer::Rule { orientation: Orientation::Vertical, at, .. } => xs.push(*at),
+            Layer::Rule { at, .. } => ys.push(*at),
             Layer::Band { points, .. } => {
                 xs.extend(points.iter().map(|p| p.0));
                 ys.extend(points.iter().flat_map(|p| [p.1, p.2]));
@@ -540,31 +534,19 @@ fn draw_rule(canvas: &mut Canvas, rule: &Rule) {
     canvas.dashed(&[a, b], Colour::GREY, 1.2, Dash::Dashed);
     let how = Type::new(RULE_EM, rule.align).colour(Colour::GREY);
     let end = if rule.align == Align::End { 1.0 } else { 0.0 };
-    match a.0 == b.0 {
-        true => canvas.text(rule.label, rule.room.at((0.5, end)), how.upright()),
-        false => canvas.text(rule.label, rule.room.at((end, 0.5)), how),
-    }
+    canvas.text(rule.label, rule.room.at((end, 0.5)), how);
 }
 
 /// Places for the label of a rule: both ends, both sides.
-fn rule_spots(orientation: Orientation, (a, b): (Point, Point), width: f64) -> Vec<(Rect, Align)> {
+fn rule_spots((a, b): (Point, Point), width: f64) -> [(Rect, Align); 4] {
     let (gap, inset, height) = (3.5, 8.0, RULE_EM);
-    let spots = |ends: [f64; 2], sides: [f64; 2]| {
-        let end = move |(end, align)| sides.map(|side| (side, end, align));
-        [(ends[0], Align::End), (ends[1], Align::Start)].into_iter().flat_map(end)
-    };
-    match orientation {
-        Orientation::Horizontal => {
-            let ends = [b.0 - inset - width, a.0 + inset];
-            spots(ends, [a.1 - gap - height, a.1 + gap])
-                .map(|(top, left, align)| (Rect { left, top, width, height }, align))
-                .collect()
-        }
-        Orientation::Vertical => {
-            let ends = [a.1 + inset, b.1 - inset - width];
-            spots(ends, [a.0 + gap, a.0 - gap - height])
-                .map(|(left, top, align)| (Rect { left, top, width: height, height: width }, align))
-                .collect()
-        }
-    }
+    let [above, below] = [a.1 - gap - height, a.1 + gap];
+    let [at_end, at_start] = [b.0 - inset - width, a.0 + inset];
+    [
+        (above, at_end, Align::End),
+        (below, at_end, Align::End),
+        (above, at_start, Align::Start),
+        (below, at_start, Align::Start),
+    ]
+    .map(|(top, left, align)| (Rect { left, top, width, height }, align))
 }

@@ -244,7 +244,6 @@ mod tests {
             .layer(Layer::band("c", triples, Colour::SKY))
             .layer(Layer::slope(any))
             .layer(Layer::horizontal(any, "e"))
-            .layer(Layer::vertical(any, "f"))
             .layer(Layer::Failed(values.iter().map(|&v| (v, "NaN".into())).collect()))
     }
 
