@@ -60,16 +60,10 @@ fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes every temporary file of this process and says how many there were.
-///
-/// For the handler of an interruption, just before the process ends: a write that is under way
-/// on another thread then fails instead of leaving a file behind.
-pub fn remove_unfinished() -> usize {
-    remove_all(&mut unfinished())
-}
-
-/// The same; any thread that then begins to write a file waits for the end of the process.
-pub fn remove_unfinished_for_good() {
+/// Removes every temporary file of this process, for the handler of an interruption, just before the process
+/// ends: a write that is under way on another thread then fails instead of leaving a file behind, and any
+/// thread that then begins to write a file waits for the end of the process.
+pub fn remove_unfinished() {
     let mut paths = unfinished();
     remove_all(&mut paths);
     std::mem::forget(paths);
@@ -553,11 +547,11 @@ mod tests {
         let (temporary, mut file) = Temporary::beside(&path).unwrap();
         file.write_all(b"half a ro").unwrap();
         assert_eq!(names(folder.path()).len(), 1);
-        assert_eq!(remove_unfinished(), 1);
+        assert_eq!(remove_all(&mut unfinished()), 1);
         assert!(names(folder.path()).is_empty());
         assert!(temporary.rename(&path).is_err(), "a write under way cannot finish");
         assert!(names(folder.path()).is_empty());
-        assert_eq!(remove_unfinished(), 0);
+        assert_eq!(remove_all(&mut unfinished()), 0);
     }
 
     #[test]

@@ -70,11 +70,6 @@ pub fn modulus(z: Complex<f64>) -> f64 {
     hypot(z.re, z.im)
 }
 
-/// e to the power iφ, φ in radians.
-pub fn cis(angle: f64) -> Complex<f64> {
-    Complex::new(cos(angle), sin(angle))
-}
-
 /// The square root with a real part that is not negative.
 pub fn complex_sqrt(z: Complex<f64>) -> Complex<f64> {
     // Of the two parts, the one whose sum does not cancel; the other from their product, Im z/2.
@@ -161,7 +156,6 @@ mod tests {
             let z = Complex::new(0.008 * f64::from(k) - 2.0, 0.008 * f64::from(77 * k % 500) - 2.0);
             let root = complex_sqrt(z);
             assert!(root.re >= 0.0 && modulus(root * root - z) <= 2e-15 * modulus(z), "{z}");
-            assert_eq!(cis(z.re), Complex::new(cos(z.re), sin(z.re)));
             assert!((rotation(z.re).matrix() - Rotation2::new(z.re).matrix()).amax() < 1e-15);
         }
         let roots = [

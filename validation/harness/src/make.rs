@@ -656,7 +656,7 @@ mod tests {
         let sources = |_: &str| "one".to_string();
         let planned = |k: &str, seconds| {
             let job = job(k);
-            Job { planned: job.planned.taking(seconds), ..job }
+            Job { planned: Planned { seconds, ..job.planned }, ..job }
         };
         let jobs = [planned("1", 1.0), planned("2", 7.0), planned("3", 2.0)];
         let shares = Mutex::new(Vec::new());

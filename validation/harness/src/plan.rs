@@ -78,7 +78,7 @@ mod tests {
         let all = vec![
             run(20).judged(vec![gate("c.a")]),
             run(40),
-            run(20).judged(vec![gate("c.b")]).timed().taking(7.0),
+            Planned { seconds: 7.0, ..run(20).judged(vec![gate("c.b")]).timed() },
             Planned::new(run(40).spec.measure_all()),
         ];
         let merged = merged(all);

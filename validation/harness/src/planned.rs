@@ -46,11 +46,6 @@ impl Planned {
         Self { spec, gates: Vec::new(), timed: false, seconds }
     }
 
-    /// The same run, which takes roughly so long \[s\].
-    pub fn taking(self, seconds: f64) -> Self {
-        Self { seconds, ..self }
-    }
-
     /// The same run, judged.
     pub fn judged(mut self, gates: Vec<Gate>) -> Self {
         self.gates.extend(gates);

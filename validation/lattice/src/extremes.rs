@@ -79,21 +79,16 @@ pub static EXTREMES: Composed<ExtremeSettings> = Composed {
     studies: composed::no_studies,
 };
 
-const HEAT: MetricKey = MetricKey::new("heat", "c0^2", "largest v^2/2 of a particle at the end");
-const CLOCK_ERROR: MetricKey = MetricKey::new(
-    "clock_error",
-    "dx/c0",
-    "largest |t - n dt| at ten times, infinite if the steps are not n",
-);
-const MOMENTUM_ERROR: MetricKey =
-    MetricKey::new("momentum_error", "-", "|change of sum m v|/sum m |v| of the moving particles");
-const FASTEST: MetricKey = MetricKey::new("fastest", "c0", "largest speed at the end");
-const VELOCITY_ERROR: MetricKey =
-    MetricKey::new("l2", "-", "rms(v - v_exact)/rms(v_exact) over the particles at the end");
-const PEAK_ENERGY: MetricKey =
-    MetricKey::new("peak_energy", "-", "largest kinetic energy at 20 times/that of the start");
-const ENERGY_RATIO: MetricKey =
-    MetricKey::new("energy_ratio", "-", "kinetic energy at the end/the exact one");
+base::metrics! {
+    HEAT = "heat" ["c0^2"] "largest v^2/2 of a particle at the end";
+    CLOCK_ERROR = "clock_error" ["dx/c0"]
+        "largest |t - n dt| at ten times, infinite if the steps are not n";
+    MOMENTUM_ERROR = "momentum_error" ["-"] "|change of sum m v|/sum m |v| of the moving particles";
+    FASTEST = "fastest" ["c0"] "largest speed at the end";
+    VELOCITY_ERROR = "l2" ["-"] "rms(v - v_exact)/rms(v_exact) over the particles at the end";
+    PEAK_ENERGY = "peak_energy" ["-"] "largest kinetic energy at 20 times/that of the start";
+    ENERGY_RATIO = "energy_ratio" ["-"] "kinetic energy at the end/the exact one";
+}
 
 /// The modern composition of the channels, in a periodic box.
 type Modern = Compose<

@@ -19,7 +19,7 @@ use base::{
     functions::ln,
     gate::{Bound, Evidence, Gate},
     random::Random,
-    record::{MetricKey, Record, Status},
+    record::{Record, Status},
     spec::Bisect,
 };
 use harness::{
@@ -63,15 +63,13 @@ base::settings! {
     }
 }
 
-const GREW: MetricKey = MetricKey::new(
-    "grew",
-    "-",
-    "1 if the energy exceeded a hundred times that of the start at some step, or in the mean of the last \
-     quarter of the steps 1.5 times that of the second; else 0",
-);
-const ENERGY: MetricKey =
-    MetricKey::new("energy_ratio", "-", "kinetic and acoustic energy at the end/at the start");
-const LASTED: MetricKey = MetricKey::new("lasted", "1", "steps until the divergence");
+base::metrics! {
+    GREW = "grew" ["-"]
+        "1 if the energy exceeded a hundred times that of the start at some step, or in the mean of the \
+         last quarter of the steps 1.5 times that of the second; else 0";
+    ENERGY = "energy_ratio" ["-"] "kinetic and acoustic energy at the end/at the start";
+    LASTED = "lasted" ["1"] "steps until the divergence";
+}
 
 /// A lattice at rest.
 pub static RESTING_BOX: Composed<BoxSettings> = Composed {

@@ -61,7 +61,7 @@ fn interrupt() {
 }
 
 fn end() -> ! {
-    files::remove_unfinished_for_good();
+    files::remove_unfinished();
     process::exit(Exit::Interrupted as i32);
 }
 

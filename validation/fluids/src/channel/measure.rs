@@ -18,40 +18,33 @@ const STATIONS: usize = 41;
 /// than a few spacings.
 const WORST_FROM: f64 = 0.1;
 
-/// Relative error of the velocity; at a νt/L².
-pub const L2: MetricKey = MetricKey::new("l2", "-", "rms(u - u_exact)/rms(u_exact) over particles");
-const LINF: MetricKey = MetricKey::new("linf", "-", "max|u - u_exact|/V over particles");
-const FIELD_L2: MetricKey = MetricKey::new(
-    "field_l2",
-    "-",
-    "rms(<u> - u_exact)/rms(u_exact), SPH field (1) at 41 stations",
-);
+base::metrics! {
+    // Relative error of the velocity; at a νt/L².
+    L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles";
+    LINF = "linf" ["-"] "max|u - u_exact|/V over particles";
+    FIELD_L2 = "field_l2" ["-"] "rms(<u> - u_exact)/rms(u_exact), SPH field (1) at 41 stations";
+}
 const SHEAR: &str = "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall";
 /// Error of the slope at the lower wall; at a νt/L².
 pub const SHEAR_LOWER: MetricKey = MetricKey::new("shear_lower", "-", SHEAR);
 /// Error of the slope at the upper wall; at a νt/L².
 pub const SHEAR_UPPER: MetricKey = MetricKey::new("shear_upper", "-", SHEAR);
-/// The viscosity that the flow shows; at a νt/L².
-pub const NU_EFF: MetricKey =
-    MetricKey::new("nu_eff", "-", "nu_eff/nu of the exact flow nearest in l2");
-/// The largest [`L2`] once the boundary layer of the start is resolved.
-pub const L2_WORST: MetricKey =
-    MetricKey::new("l2_worst", "-", "largest l2 over the times of comparison with nu t/L^2 >= 0.1");
-/// Cross-flow.
-pub const V_RMS: MetricKey =
-    MetricKey::new("v_rms", "-", "rms(v)/V at the end, exactly 0 in the flow");
-/// Pressure.
-pub const P_RMS: MetricKey =
-    MetricKey::new("p_rms", "-", "rms(p - mean)/(rho V^2) at the end, exactly 0 in the flow");
-/// Change of volume.
-pub const VOLUME_DRIFT: MetricKey =
-    MetricKey::new("volume_drift", "-", "sum(m/rho)/sum(m/rho0) - 1 at the end");
-/// Momentum across the channel.
-pub const MOMENTUM_Y: MetricKey =
-    MetricKey::new("momentum_y", "-", "sum(m v)/(sum(m) V) at the end");
-/// Particles beyond a plate.
-pub const OUTSIDE: MetricKey =
-    MetricKey::new("outside", "-", "particles beyond the plates at the end");
+base::metrics! {
+    // The viscosity that the flow shows; at a νt/L².
+    NU_EFF = "nu_eff" ["-"] "nu_eff/nu of the exact flow nearest in l2";
+    // The largest [`L2`] once the boundary layer of the start is resolved.
+    L2_WORST = "l2_worst" ["-"] "largest l2 over the times of comparison with nu t/L^2 >= 0.1";
+    // Cross-flow.
+    V_RMS = "v_rms" ["-"] "rms(v)/V at the end, exactly 0 in the flow";
+    // Pressure.
+    P_RMS = "p_rms" ["-"] "rms(p - mean)/(rho V^2) at the end, exactly 0 in the flow";
+    // Change of volume.
+    VOLUME_DRIFT = "volume_drift" ["-"] "sum(m/rho)/sum(m/rho0) - 1 at the end";
+    // Momentum across the channel.
+    MOMENTUM_Y = "momentum_y" ["-"] "sum(m v)/(sum(m) V) at the end";
+    // Particles beyond a plate.
+    OUTSIDE = "outside" ["-"] "particles beyond the plates at the end";
+}
 
 /// What is measured of a simulation: nothing here knows its scheme, so that it is compiled once.
 pub struct Sample {

@@ -135,33 +135,22 @@ const BEST: Best = Best {
     papers: None,
 };
 
-/// Error of the frequency of a sound wave.
-const FREQUENCY_ERROR: MetricKey = MetricKey::new(
-    "frequency_error",
-    "-",
-    "|omega - c0 |g(k)||/(c0 |g(k)|), time error divided out",
-);
-/// Error of the decay of a sound wave.
-const DECAY_ERROR: MetricKey =
-    MetricKey::new("decay_error", "-", "|gamma - nu lambda(k)|/(nu lambda(k)), of omega if nu = 0");
-/// Error of the decay of a shear wave.
-const SHEAR_DECAY_ERROR: MetricKey = MetricKey::new(
-    "decay_error",
-    "-",
-    "|gamma - nu lambda(k)|/(nu lambda(k)), time error divided out",
-);
-/// Distance of the amplitudes from exact steps.
-const TRAJECTORY_ERROR: MetricKey = MetricKey::new(
-    "trajectory_error",
-    "-",
-    "max|amplitudes - exact steps|/amplitude over p, v along, v across and all steps",
-);
-/// Change of momentum.
-const MOMENTUM_ERROR: MetricKey = MetricKey::new(
-    "momentum_error",
-    "-",
-    "|change of sum m v after the first step|/(sum m times the velocity amplitude)",
-);
+base::metrics! {
+    // Error of the frequency of a sound wave.
+    FREQUENCY_ERROR = "frequency_error" ["-"]
+        "|omega - c0 |g(k)||/(c0 |g(k)|), time error divided out";
+    // Error of the decay of a sound wave.
+    DECAY_ERROR = "decay_error" ["-"] "|gamma - nu lambda(k)|/(nu lambda(k)), of omega if nu = 0";
+    // Error of the decay of a shear wave.
+    SHEAR_DECAY_ERROR = "decay_error" ["-"]
+        "|gamma - nu lambda(k)|/(nu lambda(k)), time error divided out";
+    // Distance of the amplitudes from exact steps.
+    TRAJECTORY_ERROR = "trajectory_error" ["-"]
+        "max|amplitudes - exact steps|/amplitude over p, v along, v across and all steps";
+    // Change of momentum.
+    MOMENTUM_ERROR = "momentum_error" ["-"]
+        "|change of sum m v after the first step|/(sum m times the velocity amplitude)";
+}
 
 /// All are fits to every step, or differences between steps.
 const STEPWISE: &[MetricKey] = &[

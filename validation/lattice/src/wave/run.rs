@@ -14,7 +14,7 @@ use crate::torus;
 use base::functions::{cos, sin};
 use base::{
     random::Random,
-    record::{self, MetricKey, Profile, Record},
+    record::{self, Profile, Record},
 };
 use harness::{
     case::{Rules, RunError, Step},
@@ -268,14 +268,13 @@ pub(super) fn run(
     Ok(record)
 }
 
-pub(super) const FREQUENCY: MetricKey =
-    MetricKey::new("frequency", "1/s", "(omega^2 - gamma^2/4)^(1/2) of continuous time");
-pub(super) const DECAY: MetricKey = MetricKey::new("decay", "1/s", "gamma/2 of continuous time");
-const SHEAR_DECAY: MetricKey = MetricKey::new("decay", "1/s", "gamma of continuous time");
-pub(super) const SOUND_FACTOR: MetricKey =
-    MetricKey::new("sound_factor", "-", "omega/(c0 k), 1 in the continuum");
-pub(super) const VISCOUS_FACTOR: MetricKey =
-    MetricKey::new("viscous_factor", "-", "gamma/(nu k^2)");
+base::metrics! {
+    FREQUENCY = "frequency" ["1/s"] "(omega^2 - gamma^2/4)^(1/2) of continuous time";
+    DECAY = "decay" ["1/s"] "gamma/2 of continuous time";
+    SHEAR_DECAY = "decay" ["1/s"] "gamma of continuous time";
+    SOUND_FACTOR = "sound_factor" ["-"] "omega/(c0 k), 1 in the continuum";
+    VISCOUS_FACTOR = "viscous_factor" ["-"] "gamma/(nu k^2)";
+}
 
 /// Frequency and damping against the symbols, and every amplitude against exact steps.
 fn compare(

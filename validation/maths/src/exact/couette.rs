@@ -6,7 +6,7 @@
 //! an image sum, u/V₀ = Σ_{m≥0} erfc((2m+1-η)/(2√τ)) - erfc((2m+1+η)/(2√τ))
 //! (after Carslaw & Jaeger, Conduction of Heat in Solids).
 
-use super::{IMAGES_BELOW, Wall, terms_for};
+use super::{IMAGES_BELOW, terms_for};
 use base::functions::{erfc, exp, exp_m1, sin};
 use std::f64::consts::PI;
 
@@ -82,38 +82,6 @@ impl Couette {
         }
         self.v0 * sum
     }
-
-    /// Kinematic wall shear stress ν ∂u/∂y \[m²/s²\] at t > 0 \[s\]; times ρ it is the stress
-    /// \[Pa\]. It is infinite at the upper wall for t → 0, and NaN for t ≤ 0.
-    ///
-    /// ∂u/∂y L/V₀ = 1 + 2 Σ_{n≥1} sₙ exp(-n²π²τ), sₙ = (-1)ⁿ below and 1 above, which Poisson's
-    /// summation turns into (πτ)^(-1/2) Σ_{m∈ℤ} exp(-(m+s)²/τ), s = 1/2 below and 0 above.
-    pub fn wall_shear(&self, wall: Wall, t: f64) -> f64 {
-        let tau = self.tau(t);
-        let scale = self.nu * self.v0 / self.l;
-        if tau <= 0.0 {
-            return f64::NAN;
-        }
-        if tau < IMAGES_BELOW {
-            let gauss = |x: f64| exp(-x * x / tau);
-            let sum = match wall {
-                Wall::Lower => 2.0 * (gauss(2.5) + gauss(1.5) + gauss(0.5)),
-                Wall::Upper => 2.0 * (gauss(3.0) + gauss(2.0) + gauss(1.0)) + 1.0,
-            };
-            return scale * sum / (PI * tau).sqrt();
-        }
-        let mut sum = 0.0;
-        for n in (1..=self.terms(t) + 1).rev() {
-            let sign = if wall == Wall::Lower { alternating(n) } else { 1.0 };
-            sum += sign * exp(-((n * n) as f64) * PI * PI * tau);
-        }
-        scale * (1.0 + 2.0 * sum)
-    }
-
-    /// Kinematic wall shear stress for t → ∞, νV₀/L \[m²/s²\], the same at both walls.
-    pub fn steady_shear(&self) -> f64 {
-        self.nu * self.v0 / self.l
-    }
 }
 
 /// (-1)ⁿ.
@@ -168,10 +136,6 @@ mod tests {
             let y = k as f64 * 0.1 * SEED.l;
             assert_abs_diff_eq!(SEED.velocity(y, 4.0), SEED.v0 * y / SEED.l, epsilon = 1e-18);
         }
-        for wall in [Wall::Lower, Wall::Upper] {
-            let shear = SEED.wall_shear(wall, 4.0);
-            assert_abs_diff_eq!(shear, SEED.steady_shear(), epsilon = 1e-14 * shear);
-        }
     }
 
     #[test]
@@ -205,22 +169,6 @@ mod tests {
             let decay = PI * PI * t;
             let bound = 2.0 / (m * PI) * exp(-m * m * decay) / (1.0 - exp(-2.0 * m * decay));
             assert!(error(n).abs() <= bound + 2e-15, "{n}: {} > {bound}", error(n));
-        }
-    }
-
-    /// One-sided fourth-order difference of the velocity at both walls, on both forms.
-    #[test]
-    fn shear_is_the_slope_at_the_wall() {
-        for t in [0.02, 0.0999, 0.1, 0.2, 1.0] {
-            for (wall, y0, d) in [(Wall::Lower, 0.0, 1e-3), (Wall::Upper, SEED.l, -1e-3)] {
-                let d = d * SEED.l;
-                let u = |k: f64| SEED.velocity(y0 + k * d, t);
-                let slope = (-25.0 * u(0.0) + 48.0 * u(1.0) - 36.0 * u(2.0) + 16.0 * u(3.0)
-                    - 3.0 * u(4.0))
-                    / (12.0 * d);
-                let shear = SEED.wall_shear(wall, t);
-                assert_abs_diff_eq!(shear, SEED.nu * slope, epsilon = 3e-7 * SEED.steady_shear());
-            }
         }
     }
 }

@@ -25,15 +25,6 @@ pub const TAIL: f64 = 1e-14;
 /// terms for [`TAIL`].
 const IMAGES_BELOW: f64 = 0.1;
 
-/// One of the two walls of a channel 0 ≤ y ≤ L.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wall {
-    /// y = 0.
-    Lower,
-    /// y = L.
-    Upper,
-}
-
 /// The smallest number of terms n ≥ 1 with `tail(n)` < [`TAIL`], where `tail` bounds what the first
 /// n terms leave out and falls with n. Doubling, then bisection: n can be 10⁶ at small times.
 fn terms_for(tail: impl Fn(f64) -> f64) -> usize {

@@ -6,7 +6,7 @@
 //! and, as an image sum, u/V = 8τ (1 - 4 Σ_{n≥0} (-1)ⁿ [i²erfc((n+η)/(2√τ)) +
 //! i²erfc((n+1-η)/(2√τ))]) (after Carslaw & Jaeger).
 
-use super::{IMAGES_BELOW, Wall, terms_for};
+use super::{IMAGES_BELOW, terms_for};
 use base::functions::{erfc, exp, exp_m1, sin};
 use std::f64::consts::PI;
 
@@ -87,49 +87,10 @@ impl Poiseuille {
         }
         8.0 * self.v * tau * (1.0 - 4.0 * sum)
     }
-
-    /// Kinematic wall shear stress ν ∂u/∂y \[m²/s²\]; times ρ it is the stress \[Pa\]. Positive at
-    /// the lower wall, the opposite at the upper one, 0 for t ≤ 0.
-    ///
-    /// ∂u/∂y L/V = 4 - Σ 32/(π²m²) exp(-m²π²τ), m = 2n+1, and, by the images, 16√τ [ierfc(0) +
-    /// 2 Σ_{n≥1} (-1)ⁿ ierfc(n/(2√τ))].
-    pub fn wall_shear(&self, wall: Wall, t: f64) -> f64 {
-        let tau = self.tau(t);
-        let slope = if tau <= 0.0 {
-            0.0
-        } else if tau < IMAGES_BELOW {
-            let width = 2.0 * tau.sqrt();
-            let image = |n: f64| ierfc(n / width);
-            let rest = image(5.0) - image(4.0) + image(3.0) - image(2.0) + image(1.0);
-            16.0 * tau.sqrt() * (image(0.0) - 2.0 * rest)
-        } else {
-            let mut sum = 0.0;
-            for n in (0..self.terms(t) + 1).rev() {
-                let m = PI * (2 * n + 1) as f64;
-                sum += 32.0 / (m * m) * exp(-m * m * tau);
-            }
-            4.0 - sum
-        };
-        let lower = self.nu * self.v / self.l * slope;
-        if wall == Wall::Lower { lower } else { -lower }
-    }
-
-    /// Kinematic wall shear stress at the lower wall for t → ∞, 4νV/L = FL/2 \[m²/s²\].
-    pub fn steady_shear(&self) -> f64 {
-        4.0 * self.nu * self.v / self.l
-    }
 }
 
 /// Beyond this erfc(x) < 5e-324.
 const ERFC_VANISHES: f64 = 27.3;
-
-/// ierfc(x) = ∫ₓ^∞ erfc = exp(-x²)/√π - x erfc(x) (Abramowitz & Stegun 7.2.1).
-fn ierfc(x: f64) -> f64 {
-    if x > ERFC_VANISHES {
-        return 0.0; // also keeps x² finite
-    }
-    exp(-x * x) / PI.sqrt() - x * erfc(x)
-}
 
 /// i²erfc(x) = ∫ₓ^∞ ierfc = ((1 + 2x²) erfc(x) - 2x exp(-x²)/√π)/4 (Abramowitz & Stegun 7.2.5).
 fn i2erfc(x: f64) -> f64 {
@@ -184,9 +145,6 @@ mod tests {
             let y = k as f64 * 0.1 * SEED.l;
             assert_abs_diff_eq!(SEED.velocity(y, 4.0), SEED.steady(y), epsilon = 1e-18);
         }
-        let shear = SEED.wall_shear(Wall::Lower, 4.0);
-        assert_abs_diff_eq!(shear, SEED.steady_shear(), epsilon = 1e-14 * shear);
-        assert_abs_diff_eq!(shear, 0.5 * SEED.force() * SEED.l, epsilon = 1e-14 * shear);
     }
 
     /// Away from the walls the fluid first falls freely, u = Ft, to the last bit of the images.
@@ -215,27 +173,5 @@ mod tests {
         assert!(terms.windows(2).all(|w| w[0] > w[1]), "{terms:?}");
         let coarse = SEED.velocity_by_series(0.5e-3, 1e-3, 2) - SEED.velocity(0.5e-3, 1e-3);
         assert!(coarse.abs() > 1e-3 * SEED.v, "two terms must show");
-    }
-
-    /// d/dt of the momentum ∫u dy is FL minus the drag of both walls.
-    #[test]
-    fn drag_balances_force_and_momentum() {
-        let momentum = |t: f64| {
-            let (n, mut sum) = (2000, 0.0);
-            for k in 0..=n {
-                let weight = if k == 0 || k == n { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
-                sum += weight * SEED.velocity(k as f64 / n as f64 * SEED.l, t);
-            }
-            sum * SEED.l / (3.0 * n as f64)
-        };
-        for t in [0.02, 0.09, 0.11, 0.5] {
-            let dt = 0.002 * t;
-            let rate = (8.0 * (momentum(t + dt) - momentum(t - dt))
-                - (momentum(t + 2.0 * dt) - momentum(t - 2.0 * dt)))
-                / (12.0 * dt);
-            let drag = SEED.wall_shear(Wall::Lower, t) - SEED.wall_shear(Wall::Upper, t);
-            let force = SEED.force() * SEED.l;
-            assert_abs_diff_eq!(rate, force - drag, epsilon = 1e-7 * force);
-        }
     }
 }

@@ -47,11 +47,6 @@ impl Topology {
         Self { pieces: pieces.len(), holes }
     }
 
-    /// Is it one piece with one hole or more? A hole that narrows in the middle becomes two.
-    pub fn is_whole_ring(self) -> bool {
-        self.pieces == 1 && self.holes >= 1
-    }
-
     /// The area \[m²\] below which a hole in a ring of these radii \[m\] does not count as the ring's: that
     /// of a disc half as wide as the wall is thick, or a quarter of that of the hole at rest, if that is
     /// less.
