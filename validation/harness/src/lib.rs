@@ -19,7 +19,6 @@ pub mod declare;
 pub mod deep;
 pub mod detect;
 pub mod error;
-pub mod extremes;
 pub mod frames;
 pub mod limits;
 pub mod make;

@@ -354,7 +354,7 @@ mod tests {
     }
 
     /// The metric of a record.
-    fn value(record: &Record, metric: MetricKey) -> f64 {
+    fn value(record: &Record, metric: base::record::MetricKey) -> f64 {
         record.value(metric).expect("a metric")
     }
 
