@@ -247,17 +247,11 @@ impl Mode {
     /// The symmetric matrix whose largest eigenvalue limits the leapfrog.
     fn stiffness(&self) -> Matrix3<f64> {
         let Self { omega, longitudinal, coupling, transverse, density, .. } = *self;
-        Matrix3::new(
-            density,
-            omega,
-            0.0, //
-            omega,
-            longitudinal,
-            coupling, //
-            0.0,
-            coupling,
-            transverse,
-        )
+        rows_of([
+            [density, omega, 0.0],
+            [omega, longitudinal, coupling],
+            [0.0, coupling, transverse],
+        ])
     }
 
     /// One step of the leapfrog: v with the old v and p, then p with the new v.
@@ -273,28 +267,13 @@ impl Mode {
             }
             _ => (dt, [longitudinal, transverse].map(|damping| 1.0 - damping * dt)),
         };
-        let kick = Matrix3::new(
-            1.0,
-            0.0,
-            0.0, //
-            omega * kick,
-            left[0],
-            -coupling * kick, //
-            0.0,
-            -coupling * kick,
-            left[1],
-        );
-        let drift = Matrix3::new(
-            1.0 - density * dt,
-            -omega * dt,
-            0.0, //
-            0.0,
-            1.0,
-            0.0, //
-            0.0,
-            0.0,
-            1.0,
-        );
+        let kick = rows_of([
+            [1.0, 0.0, 0.0],
+            [omega * kick, left[0], -coupling * kick],
+            [0.0, -coupling * kick, left[1]],
+        ]);
+        let drift =
+            rows_of([[1.0 - density * dt, -omega * dt, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         drift * kick
     }
 
@@ -303,17 +282,11 @@ impl Mode {
     fn eigenvalues(&self) -> [Complex<f64>; 3] {
         let Self { omega, longitudinal, coupling, transverse, density, .. } = *self;
         if coupling.abs() > 1e-12 * (longitudinal + transverse) {
-            let spectrum = Matrix3::new(
-                -density,
-                -omega,
-                0.0, //
-                omega,
-                -longitudinal,
-                -coupling, //
-                0.0,
-                -coupling,
-                -transverse,
-            )
+            let spectrum = rows_of([
+                [-density, -omega, 0.0],
+                [omega, -longitudinal, -coupling],
+                [0.0, -coupling, -transverse],
+            ])
             .complex_eigenvalues();
             return [spectrum[0], spectrum[1], spectrum[2]];
         }
@@ -329,6 +302,11 @@ impl Mode {
         let slow = if fast == 0.0 { 0.0 } else { product / fast };
         [Complex::new(fast, 0.0), Complex::new(slow, 0.0), shear]
     }
+}
+
+/// The matrix with these rows.
+fn rows_of(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
+    Matrix3::from(rows).transpose()
 }
 
 /// The root τ of -2c + 2c²τ - cτ² + τ³/4 in (0, 3) for 0 < c ≤ 1: the limit |s| dt of the midpoint
