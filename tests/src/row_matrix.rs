@@ -337,10 +337,10 @@ pub fn laplacian_factor<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) -> f64 {
     factor_of_rows::<K>((h_over_dx, eta2_over_h2), 1)
 }
 
-/// L₁ for ∂²u/∂y² once shear has slid the rows past each other: every row at distance y keeps its spacing but
-/// takes every offset s in \[0, dx) equally often, Σ_y y² ⟨Σ_x V F r²/(r²+η²)⟩ₛ. Only rows y ≠ 0 count, so
-/// correlations between offsets of different rows do not matter. The sum is periodic in s and as smooth as the
-/// kernel, so the mean over equal steps converges quickly.
+/// L₁ for ∂²u/∂y² once shear has slid the rows past each other: every row at distance y keeps its spacing
+/// but takes every offset s in \[0, dx) equally often, Σ_y y² ⟨Σ_x V F r²/(r²+η²)⟩ₛ. Only rows y ≠ 0 count,
+/// so correlations between offsets of different rows do not matter. The sum is periodic in s and as smooth as
+/// the kernel, so the mean over equal steps converges quickly.
 pub fn sheared_laplacian_factor<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) -> f64 {
     factor_of_rows::<K>((h_over_dx, eta2_over_h2), 512)
 }
