@@ -91,4 +91,10 @@ for spacing in 0.25 0.2; do
     ours rubber_rings lagrangian spacing=$spacing
     machdyn rubber_rings lagrangian spacing=$spacing
 done
+( # The path of the end needs 400 frames.
+    export FRAMES=400
+    machdyn cantilever lagrangian n=5
+    export COURANT=0.2
+    for n in 5 10; do machdyn cantilever lagrangian "n=$n end=0.75"; done
+)
 date -u +%F > "$store/../made.txt"
