@@ -44,6 +44,7 @@ problem() {
 ours() { problem "$1" "$2" "$3" csv ours; }
 lammps() { problem "$1" "$2" "$3" lammps lammps "$python" run_lammps.py; }
 rheo() { problem "$1" "$2" "$3" csv rheo "$python" "$here/lammps_rheo/run.py"; }
+machdyn() { problem "$1" "$2" "$3" csv machdyn "$python" "$here/lammps_machdyn/run.py"; }
 pysph() { problem "$1" "$2" "$3" pysph "pysph-$4" "$python" run_pysph.py "$4"; }
 jax_sph() {
     if [ -n "${JAX_SPH:-}" ]; then problem "$1" "$2" "$3" csv "jax-$4" "$jax" "$here/jax_sph/run.py" "$4"; fi
@@ -86,6 +87,14 @@ done
 for spacing in 0.25 0.2; do
     ours rubber_rings seed spacing=$spacing
     problem rubber_rings seed spacing=$spacing csv pysph-solid "$python" "$here/pysph_solid/run.py"
+    machdyn rubber_rings seed spacing=$spacing
     ours rubber_rings lagrangian spacing=$spacing
+    machdyn rubber_rings lagrangian spacing=$spacing
 done
+( # The path of the end needs 400 frames.
+    export FRAMES=400
+    machdyn cantilever lagrangian n=5
+    export COURANT=0.2
+    for n in 5 10; do machdyn cantilever lagrangian "n=$n end=0.75"; done
+)
 date -u +%F > "$store/../made.txt"

@@ -142,7 +142,8 @@ fn script(problem: &Problem) -> String {
     let mut start = 0.0;
     for (k, time) in times.iter().enumerate() {
         let steps = ((time - start) / longest).ceil().max(1.0);
-        let _ = writeln!(text, "timestep {}\nrun {steps}", (time - start) / steps);
+        // `run 0` sets the velocity estimates before periodic copies take them.
+        let _ = writeln!(text, "timestep {}\nrun 0\nrun {steps}", (time - start) / steps);
         let _ = writeln!(
             text,
             "write_dump all custom frame_{k:04}.dump id type x y vx vy c_rho modify sort id time yes \

@@ -106,7 +106,13 @@ impl Headline {
 
     /// The cost in words.
     pub fn cost(&self) -> String {
-        format!("{} on one core, {} pairs", seconds(self.seconds), sci(self.pairs, 2))
+        let known = |number: f64, words: String| match number > 0.0 {
+            true => words,
+            false => "unknown".into(),
+        };
+        let time = known(self.seconds, seconds(self.seconds));
+        let pairs = known(self.pairs, sci(self.pairs, 2));
+        format!("{time} on one core, {pairs} pairs")
     }
 }
 

@@ -54,7 +54,14 @@ fn resolution(accuracy: &Accuracy, settings: &Value) -> String {
     let key = settings.as_object().and_then(|all| all.keys().find(differs));
     let Some(key) = key else { return String::new() };
     let level = ladders().flatten().find(|level| of(level, key) == settings[key]);
-    level.map_or_else(|| format!("{key} = {}", settings[key]), |level| level.label.clone())
+    // Of a value without a level: the words of one with this value in place of its own.
+    let value = |settings: &Value| settings[key].to_string();
+    let other = ladders().flatten().find_map(|level| {
+        let (label, own) = (&level.label, value(&level.run.spec.settings));
+        label.contains(&own).then(|| label.replace(&own, &value(settings)))
+    });
+    let words = || other.unwrap_or_else(|| format!("{key} = {}", settings[key]));
+    level.map_or_else(words, |level| level.label.clone())
 }
 
 /// Where another code is better than ours in the same session: in error at equal resolution, or in time at

@@ -10,6 +10,8 @@ use base::record::{Profile, Record};
 const SAMPLES: f64 = 1600.0;
 /// Samples between those of the energy.
 const ENERGY_EVERY: usize = 10;
+/// Fewer points of a path, such as that of another code, do not determine what is read from it.
+const LEAST_POINTS: usize = 400;
 
 /// The motion of the end.
 pub struct End {
@@ -89,6 +91,13 @@ impl Watch for End {
         let path = Path(std::mem::take(&mut self.path));
         let columns = [("t", "s"), ("x", "m"), ("y", "m")];
         record.profiles.insert("end".into(), Profile::of_rows(&columns, &path.0));
+        if path.0.len() < LEAST_POINTS {
+            let why = format!("the path of the end has less than {LEAST_POINTS} points");
+            let all = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
+            let others = [PATH_RMS, STIFFNESS, BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR];
+            all.chain(others).for_each(|metric| record.leave_out(metric, why.clone()));
+            return;
+        }
         let found = path::measure(&path);
         for (metric, value) in &found {
             record.put(*metric, *value);
