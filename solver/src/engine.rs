@@ -247,6 +247,8 @@ impl<P: Physics> Engine<P> {
         parallel::for_each(blocks, data.parallel, &|(b, (columns, extent))| {
             let particles = b * BLOCK..b * BLOCK + columns.len();
             let (state, fixed) = (&state[particles.clone()], &data.fixed[particles.clone()]);
+            // A copy, which no write can change: what does not depend on the particle leaves the loop.
+            let terms = &terms.clone();
             for ((column, evolved), fixed) in columns.iter_mut().zip(state).zip(fixed) {
                 *column = derive(terms, fixed, evolved);
             }

@@ -2,6 +2,8 @@
 
 use lanes::Lane;
 
+use crate::numbers::{In, Numbers};
+
 /// Pressure from density.
 pub trait EquationOfState: Copy + Send + Sync + 'static {
     /// p(ρ) \[Pa\].
@@ -10,6 +12,12 @@ pub trait EquationOfState: Copy + Send + Sync + 'static {
     fn density(&self, pressure: f64) -> f64;
     /// c(ρ) = √(dp/dρ) \[m/s\].
     fn sound_speed<V: Lane>(&self, density: V) -> V;
+    /// What a particle derives for its sound speed: that, or nothing where all have the same.
+    type Sound: Numbers;
+    /// Derives it from the density \[kg/m³\].
+    fn sound(&self, density: f64) -> Self::Sound;
+    /// c \[m/s\] from what was derived.
+    fn speed_of<V: Lane>(&self, sound: In<Self::Sound, V>) -> V;
 }
 
 /// (7) p = ⁰p + K \[(ρ/⁰ρ)^γ − 1\] with (8) K = ⁰c² ⁰ρ / γ.
@@ -42,7 +50,8 @@ impl Tait {
     #[inline(always)]
     pub fn enthalpy<V: Lane>(&self, density: V) -> V {
         let scale = self.sound_speed * self.sound_speed / f64::from(self.gamma - 1);
-        V::all(scale) * (power(density / V::all(self.density), self.gamma - 1) - V::all(1.0))
+        let ratio = density * V::all(1.0 / self.density);
+        V::all(scale) * (power(ratio, self.gamma - 1) - V::all(1.0))
     }
 }
 
@@ -63,8 +72,18 @@ impl EquationOfState for Tait {
     /// c² = dp/dρ = ⁰c² (ρ/⁰ρ)^(γ−1).
     #[inline(always)]
     fn sound_speed<V: Lane>(&self, density: V) -> V {
-        let ratio = density / V::all(self.density);
-        V::all(self.sound_speed) * power(ratio, self.gamma - 1).sqrt()
+        let (ratio, n) = (density * V::all(1.0 / self.density), self.gamma - 1);
+        let root = if n % 2 == 0 { power(ratio, n / 2) } else { power(ratio, n).sqrt() };
+        V::all(self.sound_speed) * root
+    }
+
+    type Sound = f64;
+    fn sound(&self, density: f64) -> f64 {
+        self.sound_speed(density)
+    }
+    #[inline(always)]
+    fn speed_of<V: Lane>(&self, sound: V) -> V {
+        sound
     }
 }
 
@@ -91,12 +110,27 @@ impl EquationOfState for Linear {
     fn sound_speed<V: Lane>(&self, _: V) -> V {
         V::all(self.sound_speed)
     }
+
+    type Sound = ();
+    fn sound(&self, _: f64) {}
+    #[inline(always)]
+    fn speed_of<V: Lane>(&self, (): ()) -> V {
+        V::all(self.sound_speed)
+    }
 }
 
 /// xⁿ by squaring, n ≥ 0. Not `powi`: its order of multiplication, and so its bits, change with what
 /// the compiler knows about n where it is inlined.
 #[inline(always)]
 fn power<V: Lane>(x: V, n: i32) -> V {
+    let (x2, x4) = (x * x, (x * x) * (x * x));
+    // Those of water without a loop: a pair sweep takes them for each pair.
+    match n {
+        3 => return x * x2,
+        6 => return x2 * x4,
+        7 => return x * x2 * x4,
+        _ => {}
+    }
     let (mut product, mut square, mut n) = (V::all(1.0), x, n);
     while n > 0 {
         if n & 1 == 1 {

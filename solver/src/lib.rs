@@ -49,6 +49,7 @@ pub use eos::{EquationOfState, Linear, Tait};
 pub use integrator::{Euler, ForwardKick, Integrator, Leapfrog, PredictorCorrector, Scheme};
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
 pub use lanes as lane;
+pub use neighbours::GROUP;
 pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{
     Checkpoint, Fault, Limits, ParticleData, Phase, PhaseWatch, Progress, Work,

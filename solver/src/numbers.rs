@@ -1,4 +1,4 @@
-//! [`Numbers`]: a fixed set of numbers that a term needs per particle, and its counterpart for four lanes.
+//! [`Numbers`]: a fixed set of numbers that a term needs per particle, and its counterpart in lanes.
 //!
 //! The derived data that neighbours read, the sums over neighbours, and the extra fields that a term
 //! integrates are all such sets: `()`, one number, a vector, a symmetric tensor, or tuples of these.
@@ -13,12 +13,12 @@ pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 
     /// The same set with a lane in place of each number.
     type In<V: Lane>: Copy;
 
-    /// One set a neighbour, side by side.
+    /// One set a lane, side by side.
     fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Self::In<V>;
-    /// The same set for every neighbour.
+    /// The same set in every lane.
     fn spread<V: Lane>(self) -> Self::In<V>;
-    /// The sum over the neighbours, in a fixed order.
-    fn total<V: Lane>(lanes: Self::In<V>) -> Self;
+    /// The set of one lane.
+    fn lane<V: Lane>(lanes: Self::In<V>, k: usize) -> Self;
     /// self + dt rate.
     fn advanced(self, dt: f64, rate: Self) -> Self;
     /// Whether every number is finite.
@@ -37,8 +37,8 @@ impl Numbers for f64 {
         V::all(self)
     }
     #[inline(always)]
-    fn total<V: Lane>(lanes: V) -> Self {
-        lanes.total()
+    fn lane<V: Lane>(lanes: V, k: usize) -> Self {
+        lanes.lane(k)
     }
     #[inline(always)]
     fn advanced(self, dt: f64, rate: Self) -> Self {
@@ -68,8 +68,8 @@ macro_rules! fields_of_numbers {
                 $Struct::new($(V::all(self.$field)),+)
             }
             #[inline(always)]
-            fn total<V: Lane>(lanes: $Struct<V>) -> Self {
-                $Struct::new($(lanes.$field.total()),+)
+            fn lane<V: Lane>(lanes: $Struct<V>, k: usize) -> Self {
+                $Struct::new($(lanes.$field.lane(k)),+)
             }
             #[inline(always)]
             fn advanced(self, dt: f64, rate: Self) -> Self {
@@ -152,8 +152,8 @@ macro_rules! tuple_of_numbers {
                 ($(self.$index.spread(),)*)
             }
             #[inline(always)]
-            fn total<V: Lane>(lanes: Self::In<V>) -> Self {
-                ($($member::total::<V>(lanes.$index),)*)
+            fn lane<V: Lane>(lanes: Self::In<V>, k: usize) -> Self {
+                ($($member::lane::<V>(lanes.$index, k),)*)
             }
             #[inline(always)]
             fn advanced(self, dt: f64, rate: Self) -> Self {

@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 
 use crate::{
-    neighbours::{BLOCK, Lists, Neighbours},
+    neighbours::{BLOCK, GROUP, Lists, Neighbours},
     numbers::Numbers,
     particles::{Evolved, Fixed, Particle, Role},
     walls::Map,
@@ -230,11 +230,14 @@ impl<X: Numbers> ParticleData<X> {
         self.fixed[range.clone()].iter().map(|f| f.mass).zip(&self.state[range])
     }
 
-    /// The neighbour lists of the fluid particles as these are stored: places in
-    /// [`crate::Stepper::plain_columns`], padded by places after its end.
-    pub fn lists(&self) -> impl Iterator<Item = &[u32]> {
+    /// For each fluid particle as it is stored what may be its neighbours, itself not: places in
+    /// [`crate::Stepper::plain_columns`].
+    pub fn lists(&self) -> impl Iterator<Item = impl Iterator<Item = usize>> {
         let Lists { of, blocks, .. } = &self.neighbours.lists;
-        of.clone().map(|k| blocks[k / BLOCK].list(k % BLOCK).as_flattened())
+        of.clone().map(|k| {
+            let list = blocks[k / BLOCK].list(k % BLOCK / GROUP).iter();
+            list.map(|&column| column as usize).filter(move |&column| column != k)
+        })
     }
 
     /// All particles in the order of the scene.

@@ -1,7 +1,7 @@
 //! Particle data in three kinds: fixed, evolved, and derived (the column that a pair sweep reads).
 //!
 //! The integrator accesses [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
-//! laid out for the pair sweep: for a fluid it is one cache line.
+//! laid out for the pair sweep.
 
 use lanes::Lane;
 use nalgebra::Vector2;
@@ -127,7 +127,7 @@ impl<X: Numbers> Evolved<X> {
     }
 }
 
-/// What every term may ask of a particle, `V` per neighbour or `f64` for one.
+/// What every term may ask of a particle, `V` for one a lane or `f64` for one alone.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)] // mass and density side by side
 pub struct Common<V> {
@@ -140,7 +140,7 @@ pub struct Common<V> {
 }
 
 impl Common<f64> {
-    /// The same particle for every neighbour.
+    /// The same particle in every lane.
     #[inline(always)]
     pub fn spread<V: Lane>(self) -> Common<V> {
         Common {
@@ -151,9 +151,10 @@ impl Common<f64> {
     }
 }
 
-/// A particle as pair sweeps read it; `S` is what the terms derive for its neighbours.
+/// A particle as pair sweeps read it; `S` is what the terms derive for its neighbours. Columns are packed:
+/// what terms derive takes the room that it needs.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
+#[repr(C)]
 pub struct Column<S = ()> {
     /// Position \[m\].
     pub position: Vector2<f64>,
@@ -165,10 +166,10 @@ pub struct Column<S = ()> {
     pub derived: S,
 }
 
-const _: () = assert!(size_of::<Column<f64>>() == 64, "a fluid column is one cache line");
+const _: () = assert!(size_of::<Column<f64>>() == 64, "a fluid shows 64 bytes");
 
 impl<S: Numbers> Column<S> {
-    /// Pads neighbour lists to whole lanes: so far away that every kernel is 0, and without mass or volume.
+    /// Stands in the lanes that a group lacks: so far away that every kernel is 0, without mass or volume.
     pub(crate) fn sentinel() -> Self {
         let common = Common { mass: 0.0, density: 1.0, volume: 0.0 };
         let far = Vector2::new(1e100, 1e100);

@@ -93,7 +93,10 @@ impl<S: Scheme> Scene<S> {
         let Self { h, domain, particles, walls, skin, skin_share, limits, .. } = &self;
         let (mirrors, support) = (walls.mirrors(), kernel.support());
         check(particles, [*h, *skin, S::Kernel::SUPPORT], domain, mirrors)?;
-        let neighbours = Neighbours::new([support, *skin], *domain, mirrors);
+        let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
+        let area: f64 = fluid.clone().map(|p| p.mass / p.density).sum();
+        let spacing = (area / fluid.count() as f64).sqrt();
+        let neighbours = Neighbours::new([support, *skin, spacing], *domain, mirrors);
         let mut data = data(particles, neighbours, *limits, skin_share * skin);
         data.parallel = particles.len() >= self.parallel_from;
         let mut state = std::mem::take(&mut data.state);

@@ -1,6 +1,7 @@
-//! The pair sweep, which takes most of the time of a run: each particle sums over its neighbour list in a
-//! fixed order, and its rates are passed to the integrator. Each particle only gathers: there are no locks
-//! and no atomics, and results are bitwise equal for any number of threads.
+//! The pair sweep, which takes most of the time of a run: each particle, in a lane of its own, sums over the
+//! neighbour list of its group in the order of this list, and its rates are passed to the integrator. A
+//! neighbour outside of its support adds an exact zero. Only its own data are written: there are no locks and
+//! no atomics, and results are bitwise equal for any number of threads and of lanes.
 //!
 //! A sweep writes the rates of a few particles into a buffer, from which the integrator then updates them.
 //! So the loop over pairs depends only on the kernel, the terms and the columns (derived data), and is
@@ -12,7 +13,7 @@ use nalgebra::Vector2;
 
 use crate::{
     kernel::{Kernel, Smoothing},
-    neighbours::{BLOCK, Block, Lists},
+    neighbours::{BLOCK, Block, GROUP, Lists},
     numbers::Numbers,
     parallel,
     particles::{Column, Common, Evolved, Rate},
@@ -21,6 +22,17 @@ use crate::{
 
 /// Particles whose rates are buffered: few enough to stay in the nearest cache.
 const BUFFER: usize = 64;
+
+/// What takes lane k out of its own reach: the square of a distance beyond every support in that lane \[m²\].
+const APART: [[f64; GROUP]; GROUP] = {
+    let mut apart = [[0.0; GROUP]; GROUP];
+    let mut k = 0;
+    while k < GROUP {
+        apart[k][k] = 1e200;
+        k += 1;
+    }
+    apart
+};
 
 /// What becomes of some particles: the number of the first, the particles, and their rates.
 pub(crate) type BlockUpdate<'a, X> = dyn Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync + 'a;
@@ -120,9 +132,9 @@ where
     }
 }
 
-/// Some particles of a block. In a profile it is `with_many_registers` or `with_registers_for_four` with
-/// this type (the search for neighbours is the same with its own); the portable form is inlined into its
-/// caller.
+/// Some particles of a block. In a profile it is `with_registers_for_eight` or `with_registers_for_four`
+/// with this type (the search for neighbours is the same with its own); the portable form is inlined into
+/// its caller.
 struct Particles<'a, W, X> {
     sweep: &'a W,
     block: &'a Block,
@@ -141,37 +153,48 @@ where
 {
     #[inline(always)]
     fn run<V: Lane>(self) {
+        const { assert!(BUFFER.is_multiple_of(GROUP) && GROUP.is_multiple_of(V::LANES)) };
         let &Sweep { kernel, terms, columns, ref select, .. } = self.sweep;
         let support2 = kernel.support() * kernel.support() * (1.0 + 1e-12);
-        for (k, rate) in self.rates.iter_mut().enumerate() {
-            let own = &columns[self.first + k];
-            let position = own.position.spread::<V>();
-            let velocity = own.velocity.spread::<V>();
-            let common = own.common.spread::<V>();
-            let shown = select(&own.derived);
-            let own_derived = shown.spread::<V>();
+        let (end, sentinel) = (self.first + self.rates.len(), columns.len() - 1);
+        for (group, rates) in self.rates.chunks_mut(V::LANES).enumerate() {
+            let start = group * V::LANES;
+            let first = self.first + start;
+            let own = |lane: usize| match first + lane {
+                column if column < end => &columns[column],
+                _ => &columns[sentinel],
+            };
+            let position = gather_vector::<V>(|lane| own(lane).position);
+            let velocity = gather_vector::<V>(|lane| own(lane).velocity);
+            let common = Common {
+                mass: V::gather(|lane| own(lane).common.mass),
+                density: V::gather(|lane| own(lane).common.density),
+                volume: V::gather(|lane| own(lane).common.volume),
+            };
+            let derived = T::Derived::gather::<V>(|lane| select(&own(lane).derived));
             let mut sum = T::Sum::default().spread::<V>();
-            for chunk in self.block.list(self.list + k) {
-                // Not `map`: its code is not inlined, see the profiles in `Cargo.toml`.
-                let at = |k: usize| &columns[chunk[k] as usize];
-                let others = [at(0), at(1), at(2), at(3)];
-                let r = position - gather_vector::<V>(|k| others[k].position);
-                let r2 = r.x * r.x + r.y * r.y;
+            for &column in self.block.list((self.list + start) / GROUP) {
+                let other = &columns[column as usize];
+                let r = position - other.position.spread::<V>();
+                let mut r2 = r.x * r.x + r.y * r.y;
+                // Members stand first in a list, so that this is predicted.
+                if let Some(apart) = APART.get((column as usize).wrapping_sub(first)) {
+                    r2 += V::gather(|lane| apart[lane]);
+                }
                 if r2.bits_below(support2) == 0 {
                     continue;
                 }
-                let [mass, density] =
-                    V::gather_pair(|k| [others[k].common.mass, others[k].common.density]);
-                let other =
-                    Common { mass, density, volume: V::gather(|k| others[k].common.volume) };
-                let v = velocity - gather_vector::<V>(|k| others[k].velocity);
-                let derived = T::Derived::gather::<V>(|k| select(&others[k].derived));
-                let f = kernel.f(r2);
-                let pair = Pair { r, r2, v, f, own: common, other, kernel };
-                terms.pair(&pair, [own_derived, derived], &mut sum);
+                let v = velocity - other.velocity.spread::<V>();
+                let (f, others) = (kernel.f(r2), other.common.spread::<V>());
+                let pair = Pair { r, r2, v, f, own: common, other: others, kernel };
+                terms.pair(&pair, [derived, select(&other.derived).spread::<V>()], &mut sum);
             }
-            terms.finish(&own.common, shown, T::Sum::total::<V>(sum), rate);
-            terms.place(own.position, rate);
+            for (lane, rate) in rates.iter_mut().enumerate() {
+                let own = &columns[first + lane];
+                let sum = T::Sum::lane::<V>(sum, lane);
+                terms.finish(&own.common, select(&own.derived), sum, rate);
+                terms.place(own.position, rate);
+            }
         }
     }
 }
@@ -209,7 +232,7 @@ mod tests {
         let terms: Terms = (Pressure::new(Tait::new(1.0, 10.0)), viscosity, Continuity);
         let columns = columns(&terms, 30);
         let count = columns.len() - 1;
-        let mut neighbours = Neighbours::new([3.0 * DX, 0.0], Domain::open(), &[]);
+        let mut neighbours = Neighbours::new([3.0 * DX, 0.0, DX], Domain::open(), &[]);
         neighbours.place(&mut columns[..count].iter().map(|column| column.position));
         neighbours.build([count, 0], false, false);
         let kernel = Smoothing::<QuinticSpline>::new(DX);

@@ -3,7 +3,7 @@
 
 use std::marker::PhantomData;
 
-use lanes::{LANES, Lane, OnLanes, gather_vector, on_widest};
+use lanes::{LANES, Lane, OnLanes, gather_vector, on_four};
 use nalgebra::{Matrix2, Vector2};
 use solver::{Evolved, Potential, Symmetric, parallel};
 
@@ -57,7 +57,7 @@ impl<L: Law> Body<L> {
         let (mut tensors, body) = (std::mem::take(&mut self.tensors), &*self);
         let blocks = state.chunks_mut(BLOCK).zip(tensors[..count].chunks_mut(BLOCK)).enumerate();
         parallel::for_each(blocks, self.parallel, &|(b, (evolved, tensors))| {
-            on_widest(Stresses { body, first: b * BLOCK, evolved, tensors });
+            on_four(Stresses { body, first: b * BLOCK, evolved, tensors });
         });
         for (k, image) in self.reference.images.iter().enumerate() {
             tensors[count + k] = image.tensor(&tensors[image.source]);
@@ -66,7 +66,7 @@ impl<L: Law> Body<L> {
         let body = &*self;
         let blocks = accelerations.chunks_mut(BLOCK).enumerate();
         parallel::for_each(blocks, self.parallel, &|(b, accelerations)| {
-            on_widest(Forces { body, first: b * BLOCK, accelerations });
+            on_four(Forces { body, first: b * BLOCK, accelerations });
         });
     }
 

@@ -80,13 +80,11 @@ impl Reference {
             particle.push(particle[source]);
         }
         for (i, list) in data.lists().enumerate() {
-            let is_near = |j: &&u32| {
-                let j = **j as usize;
-                let column = particle.get(j);
-                column.is_some_and(|of| bodies.get(*of) == bodies.get(i))
+            let is_near = |&j: &usize| {
+                bodies.get(particle[j]) == bodies.get(i)
                     && kernel.f((this.places[j] - this.places[i]).norm_squared()) > 0.0
             };
-            let near: Vec<usize> = list.iter().filter(is_near).map(|j| *j as usize).collect();
+            let near: Vec<usize> = list.filter(is_near).collect();
             this.add(kernel, i, &near, &particle)?;
         }
         Ok(this)

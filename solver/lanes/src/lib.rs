@@ -1,10 +1,10 @@
-//! Lanes: the number type of the pair loop and of the search for pairs of an SPH solver, one neighbour
-//! (`f64`) or four at once (`WideF64x4`, and a type of this crate where the processor has registers for
-//! four).
+//! Lanes: the number type of the pair loop and of the search for pairs of an SPH solver, of one pair (`f64`),
+//! of four at once (`WideF64x4`, and a type of this crate where the processor has registers for four) or of
+//! eight (a type of this crate where it has registers for eight).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
-//! pair sweep runs it on four neighbours by [`on_widest`]. No form contracts `a * b + c`, and the lanes are
-//! added in a fixed order, so the bits do not depend on the machine.
+//! pair sweep runs it on as many pairs at once as the processor can by [`on_widest`]. No form contracts
+//! `a * b + c`, and no sum depends on the number of lanes, so the bits do not depend on the machine.
 
 use std::ops::Neg;
 
@@ -14,10 +14,13 @@ use nalgebra::{
 use simba::simd::WideF64x4;
 use wide::f64x4;
 
-/// Neighbours handled at once.
+/// Lanes of [`on_four`].
 pub const LANES: usize = 4;
 
-/// A real number per neighbour.
+/// The most lanes of [`on_widest`], a multiple of the lanes of any form.
+pub const MOST: usize = 8;
+
+/// A real number per lane.
 pub trait Lane:
     Copy
     + Scalar
@@ -29,11 +32,13 @@ pub trait Lane:
     + ClosedMulAssign
     + ClosedDivAssign
 {
-    /// The same number for every neighbour.
+    /// How many lanes there are.
+    const LANES: usize;
+    /// The same number in every lane.
     fn all(x: f64) -> Self;
-    /// Reads one number a neighbour.
+    /// Reads one number a lane.
     fn gather(read: impl Fn(usize) -> f64) -> Self;
-    /// Reads two numbers a neighbour that stand side by side.
+    /// Reads two numbers a lane that stand side by side.
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2];
     /// The square root.
     fn sqrt(self) -> Self;
@@ -41,20 +46,22 @@ pub trait Lane:
     fn abs(self) -> Self;
     /// The larger of two numbers that are not NaN.
     fn at_least(self, floor: Self) -> Self;
-    /// The sum over the neighbours, always in the same order.
+    /// The sum over the lanes, always in the same order.
     fn total(self) -> f64;
+    /// The k-th number.
+    fn lane(self, k: usize) -> f64;
     /// Bit k says whether the k-th number is below the bound. For the search of neighbours; no term needs it.
     fn bits_below(self, bound: f64) -> usize;
 
-    /// Writes those of four `columns` whose bit is set, except `own`, in order to the front of `places`, of
-    /// which it may overwrite the first four. Returns how many. For the search of neighbours, too.
+    /// Writes those of `columns`, one a lane, whose bit is set in order to the front of `places`, of which it
+    /// may overwrite as many as there are lanes. Returns how many. For the search of neighbours, too.
     #[inline(always)]
-    fn pack(columns: &[u32; LANES], bits: usize, own: u32, places: &mut [u32]) -> usize {
+    fn pack(columns: &[u32], bits: usize, places: &mut [u32]) -> usize {
         let mut count = 0;
         for (k, &column) in columns.iter().enumerate() {
             // Always written, kept if it is to be: no branch to mispredict.
             places[count] = column;
-            count += bits >> k & usize::from(column != own);
+            count += bits >> k & 1;
         }
         count
     }
@@ -72,28 +79,37 @@ pub trait OnLanes {
     fn run<V: Lane>(self);
 }
 
-/// Runs the loop on the widest lanes that the processor has. The forms for wide registers are compiled in
-/// release builds, whose speed matters. All other builds compile the portable form alone: one instead of
-/// three. Never inlined, so that a program has a symbol a loop, which tests count.
+/// Runs the loop on the widest lanes that the processor has. Never inlined, so that a program has a symbol a
+/// loop, which tests count.
 #[inline(never)]
 pub fn on_widest(work: impl OnLanes) {
-    #[cfg(not(debug_assertions))]
     let Some(work) = on_registers(work) else { return };
     work.run::<WideF64x4>();
 }
 
-/// Runs the loop on registers for four numbers, in any build; gives it back where the processor has none.
+/// The same on four lanes, whatever the processor has, for loops that add lanes up.
+#[inline(never)]
+pub fn on_four(work: impl OnLanes) {
+    #[cfg(target_arch = "x86_64")]
+    let Some(work) = registers::run_four(work) else { return };
+    work.run::<WideF64x4>();
+}
+
+/// Runs the loop on registers for eight numbers or four, in any build; gives it back where the processor has
+/// none.
 pub fn on_registers<W: OnLanes>(work: W) -> Option<W> {
     #[cfg(target_arch = "x86_64")]
-    return ymm::run(work);
+    return registers::run(work);
     #[cfg(not(target_arch = "x86_64"))]
     Some(work)
 }
 
 /// Implements [`Lane`], inlined always: what each operation is for the type.
 macro_rules! lane {
-    (for $Type:ty: $(fn $name:ident($($takes:tt)*) -> $Gives:ty = $is:expr;)+) => {
-        impl $crate::Lane for $Type {$(
+    (for $Type:ty, $lanes:literal: $(fn $name:ident($($takes:tt)*) -> $Gives:ty = $is:expr;)+) => {
+        impl $crate::Lane for $Type {
+            const LANES: usize = $lanes;
+            $(
             #[inline(always)]
             fn $name($($takes)*) -> $Gives {
                 $is
@@ -102,10 +118,10 @@ macro_rules! lane {
     };
 }
 #[cfg(target_arch = "x86_64")]
-mod ymm; // after the macro that it uses
+mod registers; // after the macro that it uses
 
 lane! {
-    for f64:
+    for f64, 1:
     fn all(x: f64) -> Self = x;
     fn gather(read: impl Fn(usize) -> f64) -> Self = read(0);
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] = read(0);
@@ -113,11 +129,12 @@ lane! {
     fn abs(self) -> Self = f64::abs(self);
     fn at_least(self, floor: Self) -> Self = self.max(floor);
     fn total(self) -> f64 = self;
+    fn lane(self, _: usize) -> f64 = self;
     fn bits_below(self, bound: f64) -> usize = usize::from(self < bound);
 }
 
 lane! {
-    for WideF64x4:
+    for WideF64x4, 4:
     fn all(x: f64) -> Self = Self(f64x4::splat(x));
     fn gather(read: impl Fn(usize) -> f64) -> Self = Self(f64x4::from([read(0), read(1), read(2), read(3)]));
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
@@ -126,10 +143,11 @@ lane! {
     fn abs(self) -> Self = Self(self.0.abs());
     fn at_least(self, floor: Self) -> Self = Self(self.0.fast_max(floor.0));
     fn total(self) -> f64 = { let [a, b, c, d] = self.0.to_array(); (a + c) + (b + d) };
+    fn lane(self, k: usize) -> f64 = self.0.to_array()[k];
     fn bits_below(self, bound: f64) -> usize = self.0.simd_lt(f64x4::splat(bound)).to_bitmask() as usize;
 }
 
-/// A vector per neighbour.
+/// A vector per lane.
 #[inline(always)]
 pub fn gather_vector<V: Lane>(read: impl Fn(usize) -> Vector2<f64>) -> Vector2<V> {
     Vector2::from(V::gather_pair(|k| read(k).into()))

@@ -1,6 +1,6 @@
 use std::marker::PhantomData;
 
-use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Term, Vector2};
+use super::{Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// Which pairs artificial viscosity acts on.
 pub trait Switch: Copy + Send + Sync + 'static {
@@ -58,18 +58,31 @@ impl<E, S> ArtificialViscosity<E, S> {
 }
 
 impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
-    type Derived = ();
+    type Derived = E::Sound;
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
+    fn derived(&self, own: &Common<f64>, _: &X) -> E::Sound {
+        self.eos.sound(own.density)
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        [own, other]: [In<E::Sound, V>; 2],
+        sum: &mut Vector2<V>,
+    ) {
         let h = V::all(pair.kernel.h());
-        let mu = h * S::admit(pair.v_dot_r()) / (pair.r2 + V::all(self.eta2));
-        let c = self.eos.sound_speed(pair.own.density) + self.eos.sound_speed(pair.other.density);
+        let (distance2, density) =
+            (pair.r2 + V::all(self.eta2), pair.own.density + pair.other.density);
+        // One division for both quotients.
+        let inverse = V::all(1.0) / (distance2 * density);
+        let mu = h * S::admit(pair.v_dot_r()) * (density * inverse);
+        let c = self.eos.speed_of(own) + self.eos.speed_of(other);
         // |μ|, not μ: for a pair that recedes under `Always`, +β μ² would push it on.
         let quadratic = V::all(-2.0 * self.beta) * mu.abs();
-        let pi =
-            mu * (quadratic - V::all(self.alpha) * c) / (pair.own.density + pair.other.density);
+        let pi = mu * (quadratic - V::all(self.alpha) * c) * (distance2 * inverse);
         *sum += pair.r * (pair.other.mass * pair.f * pi);
     }
 

@@ -1,15 +1,26 @@
-use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
+use super::{Common, In, Kernel, Lane, Numbers, Pair, Rate, Term, Vector2};
 use crate::eos::Tait;
 
 /// The state that [`DensityDiffusion`] leaves alone: `()`, a uniform density, or [`Hydrostatic`].
 pub trait Rest: Copy + Send + Sync + 'static {
+    /// Derived numbers of a particle.
+    type Derived: Numbers;
+    /// From the density of a particle \[kg/m³\].
+    fn derived(&self, density: f64) -> Self::Derived;
     /// ρⱼ − ρᵢ beyond the difference at rest \[kg/m³\]; odd in the pair.
-    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>) -> V;
+    fn excess<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        derived: [In<Self::Derived, V>; 2],
+    ) -> V;
 }
 
 impl Rest for () {
+    type Derived = ();
     #[inline(always)]
-    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>) -> V {
+    fn derived(&self, _: f64) {}
+    #[inline(always)]
+    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2]) -> V {
         pair.other.density - pair.own.density
     }
 }
@@ -29,12 +40,17 @@ pub struct Hydrostatic {
 }
 
 impl Rest for Hydrostatic {
+    /// w(ρ) \[J/kg\].
+    type Derived = f64;
     #[inline(always)]
-    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>) -> V {
+    fn derived(&self, density: f64) -> f64 {
+        self.eos.enthalpy(density)
+    }
+    #[inline(always)]
+    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, [own, other]: [V; 2]) -> V {
         let Self { eos, gravity } = self;
         let fall = V::all(gravity.x) * pair.r.x + V::all(gravity.y) * pair.r.y;
-        let enthalpy = eos.enthalpy(pair.other.density) - eos.enthalpy(pair.own.density);
-        V::all(eos.density / (eos.sound_speed * eos.sound_speed)) * (enthalpy + fall)
+        V::all(eos.density / (eos.sound_speed * eos.sound_speed)) * (other - own + fall)
     }
 }
 
@@ -58,12 +74,22 @@ impl DensityDiffusion {
 }
 
 impl<X, R: Rest> Term<X> for DensityDiffusion<R> {
-    type Derived = ();
+    type Derived = R::Derived;
     type Sum = f64;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut V) {
-        *sum += pair.other.volume * pair.f * self.rest.excess(pair);
+    fn derived(&self, own: &Common<f64>, _: &X) -> R::Derived {
+        self.rest.derived(own.density)
+    }
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(
+        &self,
+        pair: &Pair<V, K>,
+        derived: [In<R::Derived, V>; 2],
+        sum: &mut V,
+    ) {
+        *sum += pair.other.volume * pair.f * self.rest.excess(pair, derived);
     }
 
     #[inline(always)]

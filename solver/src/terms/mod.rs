@@ -1,6 +1,6 @@
 //! Terms: the pair sums of the equations, one file each.
 //!
-//! A term is written once, generic over the lane: the type for one neighbour or for four at a time. A
+//! A term is written once, generic over the lane: the type for one pair or for several at a time. A
 //! physics contains tuples of terms. The empty tuple `()` costs nothing, and a term that is not in a tuple
 //! is not in the program. The pair sweep in `sweep.rs` uses terms only through the trait [`Term`].
 
@@ -56,7 +56,7 @@ use crate::{
     particles::{Common, Rate},
 };
 
-/// A particle i and its neighbours j, one neighbour per lane.
+/// Particles i, one a lane, and a neighbour j of each, which in a pair sweep is the same for all.
 pub struct Pair<'k, V, K> {
     /// rᵢⱼ = rᵢ − rⱼ \[m\].
     pub r: Vector2<V>,
@@ -66,7 +66,7 @@ pub struct Pair<'k, V, K> {
     pub v: Vector2<V>,
     /// F(|rᵢⱼ|), so that ∇ᵢWᵢⱼ = −F rᵢⱼ \[1/m⁴\].
     pub f: V,
-    /// The particle i.
+    /// The particles i.
     pub own: Common<V>,
     /// The neighbours j.
     pub other: Common<V>,
@@ -116,7 +116,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Tells the derived data of a particle the inverse of its [`moments`], once a state.
     #[inline(always)]
     fn normalise(_derived: &mut Self::Derived, _inverse: Symmetric) {}
-    /// Adds the contributions of the neighbours of `pair`, given the derived data of both, to the sum.
+    /// Adds the contributions of the neighbours j of `pair` to the sums, given the derived data of i and j.
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
@@ -196,12 +196,7 @@ mod tests {
     use lanes::{OnLanes, on_registers};
     use simba::simd::WideF64x4;
 
-    /// The k-th of four finite numbers.
-    fn lane<V: Lane>(lanes: V, k: usize) -> f64 {
-        (lanes * V::gather(|j| if j == k { 1.0 } else { 0.0 })).total()
-    }
-
-    /// Four neighbours, number k of field f; the last one is at the same place as the particle.
+    /// Up to eight neighbours, number k of field f; one is at the same place as the particle.
     fn number(field: usize, k: usize) -> f64 {
         let x = ((7 * field + 3 * k + 1) as f64 * 0.618_033_988_749_895).fract();
         match field {
@@ -236,7 +231,7 @@ mod tests {
         sum
     }
 
-    /// Each lane of four neighbours at once has the bits of that neighbour alone.
+    /// Each lane of several neighbours at once has the bits of that neighbour alone.
     fn check<V: Lane, K: Kernel, T: Term<()>, const N: usize>(
         term: T,
         read_wide: impl Fn(In<T::Sum, V>) -> [V; N],
@@ -245,20 +240,20 @@ mod tests {
         let kernel = Smoothing::<K>::new(0.35);
         let at = |k: usize, mass: f64, density: f64| {
             let common = Common { mass, density, volume: mass / density };
-            assert!(k < 4);
+            assert!(k < V::LANES);
             term.derived(&common, &())
         };
         let wide = pair(&kernel, |field| V::gather(|k| number(field, k)));
-        let four = read_wide(sum(&term, &wide, |c| {
-            T::Derived::gather::<V>(|k| at(k, lane(c.mass, k), lane(c.density, k)))
+        let together = read_wide(sum(&term, &wide, |c| {
+            T::Derived::gather::<V>(|k| at(k, c.mass.lane(k), c.density.lane(k)))
         }));
         let mut nonzero = 0;
-        for k in 0..4 {
+        for k in 0..V::LANES {
             let one = pair(&kernel, |field| number(field, k));
             let alone =
                 read(sum(&term, &one, |c| T::Derived::gather::<f64>(|_| at(k, c.mass, c.density))));
-            for (four, alone) in four.iter().zip(alone) {
-                let lane = lane(*four, k);
+            for (together, alone) in together.iter().zip(alone) {
+                let lane = together.lane(k);
                 let term = std::any::type_name::<T>();
                 assert!(lane == alone && alone.is_finite(), "{term}: {lane:e} {alone:e}");
                 nonzero += u32::from(alone != 0.0);
@@ -306,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn four_lanes_have_the_bits_of_four_scalars() {
+    fn lanes_have_the_bits_of_scalars() {
         check_every_kernel::<WideF64x4>();
         on_registers(EveryKernel);
     }

@@ -15,15 +15,14 @@ pub struct Breakdown {
     pub steps: u64,
     /// builds of neighbour lists
     pub list_builds: u64,
-    /// neighbours in the list of a fluid particle, padding not counted, mean over samples
+    /// neighbours visited for a fluid particle: its list is that of its group of particles that stand
+    /// together; mean over samples
     #[serde(with = "crate::number")]
     pub neighbours: f64,
-    /// share of these that is inside the support of the kernel; the others are within the skin
+    /// share of these that is inside the support of the kernel; the others are within the skin or
+    /// neighbours of the group's other particles
     #[serde(with = "crate::number")]
     pub inside: f64,
-    /// share of the lanes of these lists that pads the last chunk of each
-    #[serde(with = "crate::number")]
-    pub padding: f64,
     /// bytes that a time step moves: each pair sweep over the fluid reads its lists and the columns of
     /// particles and images once and updates the state, and the refresh before it reads the state and
     /// writes the columns. Building lists is not counted; what caches hold is

@@ -39,7 +39,6 @@ pub fn section(suite: &Suite) -> Section {
         .num(["rest", ""], share(&[REST]))
         .num(["observing", "ns"], move |(record, b)| each(record, b.totals()[1]))
         .num(["inside the support", ""], |(_, b)| Cell::percent(b.inside, 3))
-        .num(["padding", ""], |(_, b)| Cell::percent(b.padding, 2))
         .num(["moved", "kB/step"], |(_, b)| Cell::num(1e-3 * b.bytes_a_step, 3))
         .table(
             "Where the time goes, in the largest run of the best variant of each main case that was timed \

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::time::Instant;
 
 use base::breakdown::{Breakdown, Part};
-use solver::{Evolved, Numbers, Phase, Stepper};
+use solver::{Evolved, GROUP, Numbers, Phase, Stepper};
 
 /// The pair sweep over the forces.
 pub const FORCES: &str = "force sweep";
@@ -77,7 +77,6 @@ struct Lists {
     particles: f64,
     neighbours: f64,
     inside: f64,
-    lanes: f64,
     column_bytes: f64,
     state_bytes: f64,
 }
@@ -131,22 +130,21 @@ impl Profiler {
     /// Looks at the lists of a simulation that was brought to a time, if the last look is long ago.
     pub fn sample<X: Numbers>(&mut self, simulation: &(impl Stepper<X> + ?Sized)) {
         let steps = simulation.work().steps;
-        if self.lists.count > 0.0 && steps < self.sampled + SAMPLE_EVERY {
+        // Before the first step nothing is derived yet that could be looked at.
+        if steps == 0 || self.lists.count > 0.0 && steps < self.sampled + SAMPLE_EVERY {
             return;
         }
         self.sampled = steps;
         let (columns, lists) = (simulation.plain_columns(), &mut self.lists);
         for (own, list) in columns.iter().zip(simulation.lists()) {
-            let others = list.iter().filter_map(|place| columns.get(*place as usize));
             let (mut neighbours, mut inside) = (0, 0);
-            for other in others {
+            for other in list.map(|place| &columns[place]) {
                 neighbours += 1;
                 let r2 = (own.position - other.position).norm_squared();
                 inside += u32::from(simulation.weight(r2) > 0.0);
             }
             lists.neighbours += f64::from(neighbours);
             lists.inside += f64::from(inside);
-            lists.lanes += list.len() as f64;
         }
         let particles = simulation.fluid_count() + simulation.walls().len();
         lists.count += 1.0;
@@ -174,12 +172,12 @@ impl Profiler {
         let sweeps =
             all.stepping.iter().filter(|part| [FORCES, DRIFT, BOTH].contains(&&*part.name));
         let sweeps = sweeps.map(|part| part.times).sum::<u64>() as f64;
-        let Lists { count, particles, neighbours, inside, lanes, column_bytes, state_bytes } =
-            self.lists;
+        let Lists { count, particles, neighbours, inside, column_bytes, state_bytes } = self.lists;
         all.neighbours = neighbours / particles;
         all.inside = inside / neighbours;
-        all.padding = (lanes - neighbours) / lanes;
-        let bytes = size_of::<u32>() as f64 * lanes + 2.0 * column_bytes + 3.0 * state_bytes;
+        // Each of a group is in the list that the group shares.
+        let list_bytes = size_of::<u32>() as f64 * (neighbours + particles) / GROUP as f64;
+        let bytes = list_bytes + 2.0 * column_bytes + 3.0 * state_bytes;
         all.bytes_a_step = sweeps / all.steps as f64 * bytes / count;
         all
     }

@@ -883,10 +883,11 @@ mod tests {
     fn a_profile_counts_what_sweeps_go_through() {
         let (_, work, cost, column_bytes) = profiled(true);
         let all = cost.breakdown.unwrap();
-        // A lattice with h/dx = 1.3: 20 neighbours in the support of 2.6 dx, and 8 more within the skin.
-        assert_eq!((all.neighbours, all.inside, all.padding), (28.0, 20.0 / 28.0, 0.0));
+        // A lattice with h/dx = 1.3: 20 neighbours in the support of 2.6 dx; 60 particles within the support
+        // or the skin of any of four by two.
+        assert_eq!((all.neighbours, all.inside), (59.0, 20.0 / 59.0));
         assert_eq!((all.steps, all.list_builds + 1), (400, work.list_builds));
-        let (lists, states) = (144 * 28 * 4, 144 * 40);
+        let (lists, states) = (144 / 8 * 60 * 4, 144 * 40);
         let a_sweep = (lists + 2 * column_bytes + 3 * states) as f64;
         assert!((all.bytes_a_step / (802.0 / 400.0 * a_sweep) - 1.0).abs() < 1e-12, "{all:?}");
     }

@@ -30,11 +30,7 @@ pub fn tables(cost: &Cost, breakdown: &Breakdown) -> String {
     let counts = [
         ("processor time of the stepping, all threads", seconds(cost.cpu_s)),
         ("neighbours visited, of a fluid particle in a pair sweep", sig(breakdown.neighbours, 3)),
-        (
-            "share of them inside the support, the rest being in the skin",
-            percent(breakdown.inside, 3),
-        ),
-        ("share of lanes that pad the lists", percent(breakdown.padding, 3)),
+        ("share of them inside the support", percent(breakdown.inside, 3)),
         ("builds of neighbour lists", breakdown.list_builds.to_string()),
         ("time steps a build", sig(steps / breakdown.list_builds as f64, 3)),
         ("data moved in a step, caches included [kB]", sig(1e-3 * moved, 3)),
@@ -67,7 +63,6 @@ mod tests {
             list_builds: 5,
             neighbours: 24.0,
             inside: 0.85,
-            padding: 0.06,
             bytes_a_step: 4e6,
         };
         let cost = Cost { particles: 1000, threads: 1, ..Cost::default() };
@@ -81,7 +76,7 @@ mod tests {
             "force sweep 500 ms 50.0 % 5000 100",
             "observing 200 ms 20.0 % 2000",
             "frames 200 ms 20.0 % 2000 100",
-            "share of them inside the support, the rest being in the skin 85.0 %",
+            "share of them inside the support 85.0 %",
             "time steps a build 20.0",
             "data moved in a second of stepping [GB] 0.500",
         ] {

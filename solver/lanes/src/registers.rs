@@ -1,0 +1,320 @@
+//! Eight numbers in one register of a processor that has AVX-512, and four of one that has AVX2: the only
+//! unsafe code of the crate.
+//!
+//! The default build may use only the registers that every x86-64 processor has, which hold two numbers.
+//! Nearly all present processors have wider ones, which the program detects at run time: the pair sweep and
+//! the construction of neighbour lists are compiled a second and a third time, for registers of four numbers
+//! and of eight. `touchstone doctor --bench` measures the speed.
+
+#![allow(unsafe_code)]
+
+use std::arch::x86_64::*;
+use std::mem::transmute;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use crate::{LANES, MOST, OnLanes};
+
+/// Whether the processor has AVX2, and AVX-512 too. The standard library keeps the processor's answer.
+fn has() -> [bool; 2] {
+    let eight = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
+    [is_x86_feature_detected!("avx2"), eight]
+}
+
+/// Runs a loop compiled for the widest such registers; gives it back where there are none.
+pub(crate) fn run<W: OnLanes>(work: W) -> Option<W> {
+    match has() {
+        // SAFETY: each where the features that it enables are there.
+        [true, true] => unsafe { with_registers_for_eight(work) },
+        [true, false] => unsafe { with_registers_for_four(work) },
+        [false, _] => return Some(work),
+    }
+    None
+}
+
+/// The same with four lanes, 32 registers for them if there are as many.
+pub(crate) fn run_four<W: OnLanes>(work: W) -> Option<W> {
+    match has() {
+        // SAFETY: each where the features that it enables are there.
+        [true, true] => unsafe { with_many_registers_for_four(work) },
+        [true, false] => unsafe { with_registers_for_four(work) },
+        [false, _] => return Some(work),
+    }
+    None
+}
+
+#[target_feature(enable = "avx2")]
+fn with_registers_for_four(work: impl OnLanes) {
+    work.run::<Ymm>();
+}
+
+#[target_feature(enable = "avx2,avx512f,avx512vl")]
+fn with_many_registers_for_four(work: impl OnLanes) {
+    work.run::<Ymm>();
+}
+
+#[target_feature(enable = "avx2,avx512f,avx512vl")]
+fn with_registers_for_eight(work: impl OnLanes) {
+    work.run::<Zmm>();
+}
+
+/// Four numbers in one register.
+///
+/// # Safety
+///
+/// Private: no value of this type is made, and nothing of it called, but under the functions above, where the
+/// processor has AVX2. That is what every `unsafe` of this file relies on.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+struct Ymm(__m256d);
+
+/// Eight numbers in one register.
+///
+/// # Safety
+///
+/// As for [`Ymm`], where the processor has AVX-512 (F and VL).
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+struct Zmm(__m512d);
+
+/// The operators, each one instruction, and a change of sign, of 0 too, as for f64.
+macro_rules! operators {
+    ($Register:ident, $lanes:literal, $negate:expr;
+     $($Op:ident $op:ident $OpAssign:ident $op_assign:ident $instruction:ident;)+) => {
+        impl $Register {
+            /// The numbers.
+            #[inline(always)]
+            fn to_array(self) -> [f64; $lanes] {
+                // SAFETY: both are as many f64 in the same order.
+                unsafe { transmute(self.0) }
+            }
+        }
+
+        impl Neg for $Register {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                // SAFETY: see `Ymm`.
+                Self(unsafe { $negate(self.0) })
+            }
+        }
+
+        impl PartialEq for $Register {
+            fn eq(&self, other: &Self) -> bool {
+                self.to_array() == other.to_array()
+            }
+        }
+
+        $(impl $Op for $Register {
+            type Output = Self;
+            #[inline(always)]
+            fn $op(self, other: Self) -> Self {
+                // SAFETY: see `Ymm`.
+                Self(unsafe { $instruction(self.0, other.0) })
+            }
+        }
+
+        impl $OpAssign for $Register {
+            #[inline(always)]
+            fn $op_assign(&mut self, other: Self) {
+                *self = $Op::$op(*self, other);
+            }
+        })+
+    };
+}
+
+/// Each with its sign changed.
+#[inline(always)]
+unsafe fn negated_four(x: __m256d) -> __m256d {
+    // SAFETY: see `Ymm`.
+    unsafe { _mm256_xor_pd(x, _mm256_set1_pd(-0.0)) }
+}
+
+/// Each with its sign changed.
+#[inline(always)]
+unsafe fn negated_eight(x: __m512d) -> __m512d {
+    // SAFETY: see `Zmm`; both are eight times 64 bits.
+    unsafe {
+        _mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(x), _mm512_set1_epi64(i64::MIN)))
+    }
+}
+
+operators! {
+    Ymm, 4, negated_four;
+    Add add AddAssign add_assign _mm256_add_pd;
+    Sub sub SubAssign sub_assign _mm256_sub_pd;
+    Mul mul MulAssign mul_assign _mm256_mul_pd;
+    Div div DivAssign div_assign _mm256_div_pd;
+}
+
+operators! {
+    Zmm, 8, negated_eight;
+    Add add AddAssign add_assign _mm512_add_pd;
+    Sub sub SubAssign sub_assign _mm512_sub_pd;
+    Mul mul MulAssign mul_assign _mm512_mul_pd;
+    Div div DivAssign div_assign _mm512_div_pd;
+}
+
+// SAFETY: see `Ymm`; what is transmuted is four `u32` in the same order. Roots are correctly rounded, as for
+// f64; lanes are added as (a + c) + (b + d).
+lane! {
+    for Ymm, 4:
+    fn all(x: f64) -> Self = Self(unsafe { _mm256_set1_pd(x) });
+    fn gather(read: impl Fn(usize) -> f64) -> Self =
+        Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) });
+    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] = {
+        // Neighbours 0 and 2, and 1 and 3, each with its two numbers as they stand in memory.
+        let ([a, b], [c, d]) = (read(0), read(2));
+        let ([e, f], [g, h]) = (read(1), read(3));
+        let (even, odd) = unsafe { (_mm256_setr_pd(a, b, c, d), _mm256_setr_pd(e, f, g, h)) };
+        unsafe { [Self(_mm256_unpacklo_pd(even, odd)), Self(_mm256_unpackhi_pd(even, odd))] }
+    };
+    fn sqrt(self) -> Self = Self(unsafe { _mm256_sqrt_pd(self.0) });
+    fn abs(self) -> Self = Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) });
+    fn at_least(self, floor: Self) -> Self = Self(unsafe { _mm256_max_pd(self.0, floor.0) });
+    fn total(self) -> f64 = unsafe {
+        let pairs = _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+        _mm_cvtsd_f64(_mm_add_pd(pairs, _mm_unpackhi_pd(pairs, pairs)))
+    };
+    fn bits_below(self, bound: f64) -> usize = unsafe {
+        _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, _mm256_set1_pd(bound))) as usize
+    };
+    fn lane(self, k: usize) -> f64 = self.to_array()[k];
+    fn pack(columns: &[u32], bits: usize, places: &mut [u32]) -> usize = {
+        let columns: &[u32; LANES] = columns.try_into().expect("four columns");
+        let places: &mut [u32; LANES] = places.first_chunk_mut().expect("four places");
+        unsafe {
+            let columns = transmute::<[u32; LANES], __m128i>(*columns);
+            let kept = PACKED[bits & 15];
+            let from = _mm_srlv_epi32(_mm_set1_epi32(kept), _mm_setr_epi32(0, 4, 8, 12));
+            let packed = _mm_permutevar_ps(_mm_castsi128_ps(columns), from);
+            *places = transmute::<__m128, [u32; LANES]>(packed);
+            (kept >> 16) as usize
+        }
+    };
+}
+
+// SAFETY: see `Zmm`; what is transmuted is eight `u32` in the same order. Lanes are added as
+// ((a + e) + (c + g)) + ((b + f) + (d + h)).
+lane! {
+    for Zmm, 8:
+    fn all(x: f64) -> Self = Self(unsafe { _mm512_set1_pd(x) });
+    fn gather(read: impl Fn(usize) -> f64) -> Self = Self(unsafe {
+        _mm512_setr_pd(read(0), read(1), read(2), read(3), read(4), read(5), read(6), read(7))
+    });
+    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
+        [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])];
+    fn sqrt(self) -> Self = Self(unsafe { _mm512_sqrt_pd(self.0) });
+    fn abs(self) -> Self = Self(unsafe { _mm512_abs_pd(self.0) });
+    fn at_least(self, floor: Self) -> Self = Self(unsafe { _mm512_max_pd(self.0, floor.0) });
+    fn total(self) -> f64 = {
+        let [a, b, c, d, e, f, g, h] = self.to_array();
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
+    };
+    fn lane(self, k: usize) -> f64 = self.to_array()[k];
+    fn bits_below(self, bound: f64) -> usize = unsafe {
+        _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, _mm512_set1_pd(bound)) as usize
+    };
+    fn pack(columns: &[u32], bits: usize, places: &mut [u32]) -> usize = {
+        let columns: &[u32; MOST] = columns.try_into().expect("eight columns");
+        let places: &mut [u32; MOST] = places.first_chunk_mut().expect("eight places");
+        unsafe {
+            let columns = transmute::<[u32; MOST], __m256i>(*columns);
+            let packed = _mm256_maskz_compress_epi32(bits as u8, columns);
+            *places = transmute::<__m256i, [u32; MOST]>(packed);
+        }
+        (bits as u8).count_ones() as usize
+    };
+}
+
+/// For each set of bits how many there are, and in the four digits after that which, the last digit first.
+const PACKED: [i32; 16] = [
+    0x0_0000, 0x1_0000, 0x1_0001, 0x2_0010, 0x1_0002, 0x2_0020, 0x2_0021, 0x3_0210, 0x1_0003,
+    0x2_0030, 0x2_0031, 0x3_0310, 0x2_0032, 0x3_0320, 0x3_0321, 0x4_3210,
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Lane;
+    use simba::simd::WideF64x4;
+
+    /// Numbers with signs, zeros of either sign, and extremes.
+    const A: [f64; 8] = [-0.0, 1.0 / 3.0, -1e-300, 2e200, 0.7, -3.3e7, 0.0, 5e-324];
+    const B: [f64; 8] = [0.0, -7.1, 3e-310, 1e150, -0.0, 1e-3, 2.5, 4e30];
+
+    /// What every operation makes of A and B, as many lanes of type `V` at a time as there are.
+    fn results<V: Lane>() -> Vec<u64> {
+        (0..A.len()).step_by(V::LANES).flat_map(|first| results_from::<V>(first)).collect()
+    }
+
+    /// What every operation makes of the numbers from number `first` on, a lane after the other.
+    fn results_from<V: Lane>(first: usize) -> Vec<u64> {
+        let [a, b] = [A, B].map(|numbers| V::gather(|k| numbers[first + k]));
+        let (mut sum, mut less, mut times, mut over) = (a, a, a, a);
+        sum += b;
+        less -= b;
+        times *= b;
+        over /= b;
+        let pair = V::gather_pair(|k| [A[first + k], B[first + k]]);
+        let all = [
+            [a + b, a - b, a * b, a / b],
+            [sum, less, times, over],
+            [-a, -b, a.abs(), b.abs()],
+            [a.at_least(b), b.at_least(a), a.positive(), b.positive()],
+            [a.abs().sqrt(), b.abs().sqrt(), V::all(0.1), V::all(0.0)],
+            [pair[0], pair[1], a, b],
+        ];
+        let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
+        let below = |k: usize, x: V| {
+            [-1.0, -0.0, 0.0, 1.0, f64::NAN].map(|bound| (x.bits_below(bound) >> k & 1) as u64)
+        };
+        let of_lane = |k: usize| {
+            let numbers = all.iter().flatten().map(move |x| bits(x.lane(k))).collect::<Vec<_>>();
+            [numbers, below(k, a).to_vec(), below(k, b).to_vec()].concat()
+        };
+        (0..V::LANES).flat_map(of_lane).collect()
+    }
+
+    /// Of each choice of as many columns as there are lanes, those that are packed.
+    fn check_packing<V: Lane>() {
+        let columns: Vec<u32> = (0..V::LANES as u32).map(|k| 9 + 2 * k).collect();
+        for bits in 0..1_usize << V::LANES {
+            let mut places = [0; MOST];
+            let count = V::pack(&columns, bits, &mut places);
+            let kept = columns.iter().enumerate().filter(|(k, _)| bits >> k & 1 == 1);
+            assert!(places[..count].iter().eq(kept.map(|(_, column)| column)), "{bits:b}");
+        }
+    }
+
+    /// The results and the sum of A in the lanes that `run` takes.
+    struct Results<'a>(&'a mut (Vec<u64>, f64));
+
+    impl OnLanes for Results<'_> {
+        fn run<V: Lane>(self) {
+            check_packing::<V>();
+            *self.0 = (results::<V>(), V::gather(|k| A[k]).total());
+        }
+    }
+
+    #[test]
+    fn every_operation_has_the_bits_of_the_portable_one() {
+        let of = |run: &dyn Fn(Results)| {
+            let mut results = Default::default();
+            run(Results(&mut results));
+            results
+        };
+        let portable = of(&|results| results.run::<WideF64x4>());
+        assert!(portable.0.iter().any(|bits| *bits == (-0.0f64).to_bits()));
+        let [four, eight] = has();
+        // SAFETY: each where its registers are there.
+        if four {
+            assert_eq!(of(&|results| unsafe { with_registers_for_four(results) }), portable);
+        }
+        if eight {
+            assert_eq!(of(&|results| unsafe { with_many_registers_for_four(results) }), portable);
+            let (results, total) = of(&|results| unsafe { with_registers_for_eight(results) });
+            assert_eq!(results, portable.0);
+            assert_eq!(total, ((A[0] + A[4]) + (A[2] + A[6])) + ((A[1] + A[5]) + (A[3] + A[7])));
+        }
+    }
+}
