@@ -1,16 +1,16 @@
-//! `report --partial`: what a store has so far is judged, and what it lacks is listed.
+//! A report before all its runs are made: what there is so far is judged, and what is lacking is listed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use ::report::counted;
 use base::spec::RunKey;
 use harness::{
     case::{self, Case, Tier},
-    make::{Job, Stored},
+    make::{self, Job, Made, Stored},
     store::{Pending, Store},
     study::Study,
-    suite::{self, Suite},
+    suite::{self, Plans, Suite},
 };
 
 use super::{Failure, World, verify};
@@ -18,24 +18,42 @@ use super::{Failure, World, verify};
 /// A run without a record, and why it has none.
 type Lacking = (Job, Pending);
 
-/// The suite of what a store has of a tier, and a line for each run that it lacks. Runs without a record are
-/// not judged, and neither are the studies of a case that lacks one: of half its runs a study has a number
-/// too, which says nothing.
+/// The suite of what a store has of a tier, a line for each run that it lacks, and a sentence about all.
 pub fn of_store(
     cases: &[&'static dyn Case],
     tier: Tier,
     path: &Path,
     any_build: bool,
     world: &World,
-) -> Result<(Suite, String), Failure> {
-    let (mut plans, Stored { made, missing, .. }) =
+) -> Result<(Suite, String, String), Failure> {
+    let (plans, Stored { made, missing, .. }) =
         verify::stored(cases, tier, path, any_build, world)?;
+    let lacking = lacking(missing, path, &made);
+    let sentence = sentence(&plans, &lacking);
+    Ok((judge(plans, tier, made, &lacking), list(lacking.values().collect()), sentence))
+}
+
+/// The suite of what is made of plans so far, and a sentence about the rest.
+pub fn of_made(plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite, String) {
+    let mut missing = make::jobs(plans.clone());
+    missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
+    let lacking = lacking(missing, path, &made);
+    let sentence = sentence(&plans, &lacking);
+    (judge(plans, tier, made, &lacking), sentence)
+}
+
+fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lacking> {
     let why = |job: &Job| match made.unsound.get(&job.planned.spec.key()) {
         Some(error) => Pending::Failed(error.to_string()),
         None => Store::to_read(path).pending(&job.planned.spec),
     };
     let lack = |job: Job| (job.planned.spec.key(), (job.clone(), why(&job)));
-    let lacking: BTreeMap<RunKey, Lacking> = missing.into_iter().map(lack).collect();
+    missing.into_iter().map(lack).collect()
+}
+
+/// Runs without a record are not judged, and neither are the studies of a case that lacks one: of half its
+/// runs a study has a number too, which says nothing.
+fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, Lacking>) -> Suite {
     let planned = plans.iter_mut().flat_map(|(_, plan)| plan);
     let without = planned.filter(|planned| lacking.contains_key(&planned.spec.key()));
     without.for_each(|planned| planned.gates.clear());
@@ -50,14 +68,32 @@ pub fn of_store(
         let open: usize =
             results.studies.iter_mut().map(|study| study.judged.drain(..).len()).sum();
         let words = format!(
-            "This report is of a store that is not complete. Of the runs of this case are without a record: \
-             {}. They are not judged. The {open} gates of its studies are open until every run has a record.",
+            "This report is not complete. Of the runs of this case are without a record: {}. They are not \
+             judged. The {open} gates of its studies are open until every run has a record.",
             counts(&of_case)
         );
         let id = format!("{}-lacking", name.replace('_', "-"));
         results.studies.insert(0, Study::new(&id, "Runs without a record").prose(words));
     }
-    Ok((suite, list(lacking.values().collect())))
+    suite
+}
+
+/// How many runs and which cases are not complete; empty if all are.
+fn sentence(plans: &Plans, lacking: &BTreeMap<RunKey, Lacking>) -> String {
+    let of: BTreeSet<&str> = lacking.values().map(|(job, _)| job.case.name()).collect();
+    let names: Vec<&str> =
+        plans.iter().map(|(case, _)| case.name()).filter(|name| of.contains(name)).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "{} of {} cases complete; {}: {}; in {}",
+        plans.len() - names.len(),
+        plans.len(),
+        counted(lacking.len(), "run without a record", "runs without a record"),
+        counts(&lacking.values().collect::<Vec<_>>()),
+        names.join(", ")
+    )
 }
 
 /// What became of a run, in a word, and the reason for a failure.
