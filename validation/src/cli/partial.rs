@@ -18,28 +18,31 @@ use super::{Failure, World, verify};
 /// A run without a record, and why it has none.
 type Lacking = (Job, Pending);
 
-/// The suite of what a store has of a tier, a line for each run that it lacks, and a sentence about all.
+/// What is told of runs that are lacking: how many, and of which cases; empty if all are there.
+pub type Told = Option<[String; 2]>;
+
+/// The suite of what a store has of a tier, a line for each run that it lacks, and what is told of all.
 pub fn of_store(
     cases: &[&'static dyn Case],
     tier: Tier,
     path: &Path,
     any_build: bool,
     world: &World,
-) -> Result<(Suite, String, String), Failure> {
+) -> Result<(Suite, String, Told), Failure> {
     let (plans, Stored { made, missing, .. }) =
         verify::stored(cases, tier, path, any_build, world)?;
     let lacking = lacking(missing, path, &made);
-    let sentence = sentence(&plans, &lacking);
-    Ok((judge(plans, tier, made, &lacking), list(lacking.values().collect()), sentence))
+    let told = tell(&plans, &lacking);
+    Ok((judge(plans, tier, made, &lacking), list(lacking.values().collect()), told))
 }
 
-/// The suite of what is made of plans so far, and a sentence about the rest.
-pub fn of_made(plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite, String) {
+/// The suite of what is made of plans so far, and what is told of the rest.
+pub fn of_made(plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite, Told) {
     let mut missing = make::jobs(plans.clone());
     missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
     let lacking = lacking(missing, path, &made);
-    let sentence = sentence(&plans, &lacking);
-    (judge(plans, tier, made, &lacking), sentence)
+    let told = tell(&plans, &lacking);
+    (judge(plans, tier, made, &lacking), told)
 }
 
 fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lacking> {
@@ -78,26 +81,19 @@ fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, La
     suite
 }
 
-/// How many runs and which cases are not complete; empty if all are.
-fn sentence(plans: &Plans, lacking: &BTreeMap<RunKey, Lacking>) -> String {
+fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, Lacking>) -> Told {
     let of: BTreeSet<&str> = lacking.values().map(|(job, _)| job.case.name()).collect();
     let names: Vec<&str> =
         plans.iter().map(|(case, _)| case.name()).filter(|name| of.contains(name)).collect();
-    if names.is_empty() {
-        return String::new();
-    }
-    format!(
-        "{} of {} cases complete; {}: {}; in {}",
-        plans.len() - names.len(),
-        plans.len(),
-        counted(lacking.len(), "run without a record", "runs without a record"),
-        counts(&lacking.values().collect::<Vec<_>>()),
-        names.join(", ")
-    )
+    let (all, complete) = (plans.len(), plans.len() - names.len());
+    let runs = counted(lacking.len(), "run without a record", "runs without a record");
+    let each = counts(&lacking.values().collect::<Vec<_>>());
+    let words = format!("{complete} of {all} cases complete; {runs}: {each}");
+    (!names.is_empty()).then(|| [words, names.join(", ")])
 }
 
 /// What became of a run, in a word, and the reason for a failure.
-fn told(why: &Pending) -> (&'static str, &str) {
+fn word(why: &Pending) -> (&'static str, &str) {
     match why {
         Pending::Missing => ("missing", ""),
         Pending::Running => ("running", ""),
@@ -109,7 +105,7 @@ fn told(why: &Pending) -> (&'static str, &str) {
 /// Runs by what became of them, as `3 missing, 1 running`.
 fn counts(lacking: &[&Lacking]) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    lacking.iter().for_each(|(_, why)| *counts.entry(told(why).0).or_default() += 1);
+    lacking.iter().for_each(|(_, why)| *counts.entry(word(why).0).or_default() += 1);
     counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
@@ -118,7 +114,7 @@ fn list(mut lacking: Vec<&Lacking>) -> String {
     lacking.sort_by(|(_, a), (_, b)| a.cmp(b));
     let line = |(job, why): &&Lacking| {
         let (spec, set) = (&job.planned.spec, case::changed(job.case, &job.planned.spec).join(" "));
-        let (word, reason) = told(why);
+        let (word, reason) = word(why);
         let words = format!("{word} {} {} {} {set} {reason}", spec.key(), spec.case, spec.variant);
         words.trim_end().to_string() + "\n"
     };

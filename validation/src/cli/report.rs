@@ -20,13 +20,13 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
     export::check(&arguments.export)?;
     let folder = OutputFolder::create(&arguments.out)?;
-    let (tier, mut listed, mut lacking) = (arguments.tier.into(), String::new(), String::new());
+    let (tier, mut listed, mut lacking) = (arguments.tier.into(), String::new(), None);
     let suite = match &arguments.store {
         Some(store) if arguments.partial => {
             let any_build = arguments.reuse.any_build;
-            let (suite, list, sentence) =
+            let (suite, list, told) =
                 partial::of_store(world.cases, tier, store, any_build, world)?;
-            (listed, lacking) = (list, sentence);
+            (listed, lacking) = (list, told);
             suite
         }
         Some(store) => {
@@ -47,7 +47,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let written = folder.write(VERDICTS, verdicts.as_bytes()).map_err(Failure::from);
     let path = folder.path().join("index.html");
     let mut page = page::assemble(&suite, &now());
-    page.lead.extend(not_complete(&lacking));
+    page.lead.extend(lacking.map(not_complete));
     let html = page.html();
     let sound = check_page(&html);
     // The page last: once it is there, everything that it speaks of is. It is kept even if it is found to
@@ -75,9 +75,8 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
 }
 
 /// What stands on a page that lacks runs.
-fn not_complete(lacking: &str) -> Option<String> {
-    (!lacking.is_empty())
-        .then(|| format!("**Not complete when this page was written:** {lacking}."))
+fn not_complete([words, names]: [String; 2]) -> String {
+    format!("**Not complete when this page was written:** {words}. Still to come: {names}.")
 }
 
 /// Early pages take at most this part of the time.
@@ -100,8 +99,10 @@ fn early(
     let start = Instant::now();
     peers::add(&mut made, &plans);
     let (suite, lacking) = partial::of_made(plans, tier, store.path(), made);
+    let lacking = lacking?; // all are there: the page that lacks nothing follows
     let mut page = page::assemble(&suite, &now());
-    page.lead.extend(Some(not_complete(&lacking)?)); // the last case: the page that lacks nothing follows
+    let words = format!("{}: {}", folder.path().join("index.html").display(), lacking[0]);
+    page.lead.push(not_complete(lacking));
     page.png_folder.clear();
     let path = folder.path().join("index.html");
     folder
@@ -109,7 +110,7 @@ fn early(
         .ok()?;
     page.write_html(&path, &page.html()).ok()?;
     *last = Some((Instant::now(), start.elapsed()));
-    Some(format!("{}: {lacking}", path.display()))
+    Some(words)
 }
 
 /// The time, such as `2026-11-23 05:41 UTC`.
