@@ -11,9 +11,10 @@ use base::{
     submission::{Division, Submission},
 };
 use harness::{
-    case::{Case, RunError, Tier},
+    case::{Case, RunError},
     context::Context,
     playback::{self, Frame, Own, Playback},
+    suite,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
@@ -363,16 +364,7 @@ impl Entry {
             let reason = "the particles of the submission do not determine it".to_string();
             record.absent.insert(name, reason);
         }
-        for metric in case.declaration(Tier::Quick).stepwise {
-            let name = String::from(*metric);
-            // Also those of a time or a phase, such as `impulse@phase1`.
-            let is_of = |of: &str| of.split('@').next() == Some(name.as_str());
-            let all: Vec<String> = record.metrics.keys().filter(|of| is_of(of)).cloned().collect();
-            for of in all {
-                record.metrics.remove(&of);
-                record.absent.insert(of, "it is measured after every step".into());
-            }
-        }
+        suite::leave_out_ours(case, &mut record);
         for reason in record.absent.values_mut().filter(|reason| *reason == NOT_ASKED) {
             *reason = "it needs the sums of this program's own terms".into();
         }

@@ -39,6 +39,8 @@ pub struct Declaration {
     pub costly: &'static [MetricKey],
     /// The metrics that need the state after every step, which results of other codes do not have.
     pub stepwise: &'static [MetricKey],
+    /// The metrics that compare with the theory of our own methods, which says nothing of other codes.
+    pub of_methods: &'static [MetricKey],
 }
 
 /// What the report says first of a case: its error with the best variant and with the paper's.

@@ -118,7 +118,8 @@ pub fn declaration(tier: Tier) -> Declaration {
     let run = CANTILEVER.spec(LAGRANGIAN, |s| s.n = 5);
     let sensitivity = Sensitivity::new(CANTILEVER.name, tier, [run], constants.map(Watched::new));
     let sensitivity = (tier == Tier::Full).then_some(sensitivity);
-    Declaration { curves, sensitivity, stepwise: STEPWISE, ..Declaration::default() }
+    let (stepwise, of_methods) = (STEPWISE, OF_METHODS);
+    Declaration { curves, sensitivity, stepwise, of_methods, ..Declaration::default() }
 }
 
 /// The path of the end, and the bar when its end is lowest.
