@@ -82,8 +82,8 @@ fn not_complete([words, names]: [String; 2]) -> String {
 /// Early pages take at most this part of the time.
 const SHARE_OF_EARLY: u32 = 20;
 
-/// Writes verdicts and page, without PNG files, of what is made so far, and says so; not as often as cases are
-/// complete if that would take long. That it cannot be written is told of the last page.
+/// Writes verdicts and page, without PNG files, of what is made so far, and says so; not each time that a
+/// case is complete if that would take long. That it cannot be written is told of the last page.
 fn early(
     plans: Plans,
     tier: Tier,

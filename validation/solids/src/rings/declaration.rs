@@ -53,6 +53,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         costly: &budget::METRICS,
         stepwise: STEPWISE,
         of_methods: &[],
+        curve: None,
     }
 }
 
