@@ -634,7 +634,6 @@ fn limitations_are_listed_by_cause_those_of_most_gates_first() {
     let causes = [("One.", "Mend one."), ("Two.", "Mend two.")];
     let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend));
     let all = [limited("a", &one), limited("b", &two), limited("c", &two)];
-    let all: Vec<super::judged::Judged> = all.iter().map(Into::into).collect();
     let status = super::arguments::Status::Limitation;
     let text = super::explain::listed(all.iter().collect(), status);
     let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
