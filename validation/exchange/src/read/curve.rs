@@ -4,7 +4,7 @@
 
 use harness::{
     declare::Curve,
-    playback::{Frame, Placed},
+    playback::{self, Frame, Placed},
 };
 use nalgebra::Vector2;
 
@@ -76,5 +76,20 @@ pub fn frames(
         results.frames.push(Frame { time, particles: moving.iter().map(placed).collect() });
         results.places.push((CURVE.into(), line(start)));
     }
+    if count == 1 {
+        hold(&mut results, &problem.outline.times);
+    }
     if flaws.is_empty() { Ok(results) } else { Err(flaws) }
+}
+
+/// A series is sampled at intervals, and its last row counts until the end if that comes before the next one.
+fn hold(results: &mut Results, times: &[f64]) {
+    let end = times.last().copied().unwrap_or_default();
+    if let [.., before, last] = &results.frames[..]
+        && !playback::missing(&results.frames, &[end]).is_empty()
+        && (0.0..last.time - before.time).contains(&(end - last.time))
+    {
+        results.places.extend(results.places.last().cloned());
+        results.frames.push(Frame { time: end, particles: last.particles.clone() });
+    }
 }
