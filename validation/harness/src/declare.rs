@@ -47,15 +47,17 @@ pub struct Declaration {
     pub curve: Option<Curve>,
 }
 
+/// Settings, the rows at a time and a position at the start, to a position and a velocity.
+type Place = fn(&Value, &[[f64; 2]], Vector2<f64>) -> [Vector2<f64>; 2];
+
 /// A profile or a series from which some of the metrics follow.
 pub struct Curve {
     /// Names and units of its columns after the time.
     pub columns: [(&'static str, &'static str); 2],
     /// Its rows at each time, of a run of these settings; the first column ascends in them.
     pub rows: fn(&Value) -> usize,
-    /// Position and velocity by which a particle stands for the rows at a time: of these settings, with this
-    /// position at the start.
-    pub place: fn(&Value, &[[f64; 2]], Vector2<f64>) -> [Vector2<f64>; 2],
+    /// Position and velocity by which a particle stands for the rows at a time.
+    pub place: Place,
     /// The metrics that follow from it, at whatever time; no other is measured of it.
     pub metrics: Vec<MetricKey>,
     /// How the names of the profiles of a record begin that show it, and their columns.
