@@ -1,9 +1,12 @@
-//! Tells the library which compiler built it and for what. Never fails: what cannot be known is `unknown`.
+//! Tells the library which compiler built it and for what, where what cannot be known is `unknown`, and packs
+//! the references.
 
-use std::env;
 use std::process::Command;
+use std::{env, io, path::Path};
 
-fn main() {
+mod pack;
+
+fn main() -> io::Result<()> {
     set("RUSTC", env::var("RUSTC").ok().and_then(|rustc| output(&rustc, &["--version"])));
     for (name, variable) in [
         ("PROFILE", "PROFILE"),
@@ -13,7 +16,16 @@ fn main() {
     ] {
         set(name, env::var(variable).ok());
     }
-    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=build.rs\ncargo:rerun-if-changed=pack.rs");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../references");
+    let mut paths = Vec::new();
+    for folder in pack::entries(&root)? {
+        if folder.join("datapackage.json").exists() {
+            paths.extend(pack::entries(&folder)?);
+        }
+    }
+    paths.retain(|path| path.extension().is_some_and(|kind| kind == "csv" || kind == "json"));
+    pack::write("references", &paths)
 }
 
 fn set(name: &str, value: Option<String>) {

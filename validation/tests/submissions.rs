@@ -94,6 +94,86 @@ fn our_own_results_are_measured_as_the_run_was() {
     }
 }
 
+/// A submission of the profile or series that `run --out` writes under this name.
+fn of_curve(line: &str, file: &str) -> (tempfile::TempDir, Record) {
+    let (folder, case) = (tempfile::tempdir().unwrap(), line.split(' ').next().unwrap());
+    for command in [&*format!("export {line} --out own"), &format!("run {line} --out run")] {
+        let made = touchstone(folder.path(), command);
+        assert!(made.status.success(), "{command}: {}", said(&made));
+    }
+    let own = folder.path().join("own");
+    fs::copy(folder.path().join("run").join(file), own.join("curve.csv")).unwrap();
+    for file in ["method.json", "system.json"] {
+        fs::copy(whole().join("whole").join(file), own.join(file)).unwrap();
+    }
+    let submitted = touchstone(folder.path(), &format!("submit {case} own --store store"));
+    let file = fs::read_dir(folder.path().join("store")).ok().and_then(|mut all| all.next());
+    let file = file.unwrap_or_else(|| panic!("{line}: {}", said(&submitted))).unwrap();
+    let record = Record::from_json(&read(&file.path())).unwrap();
+    (folder, record)
+}
+
+/// Of a code that hands in no particles nothing was measured. What follows from its curve has the values of
+/// the run that wrote it, and all else is left out by name.
+#[test]
+fn our_own_profile_or_path_is_measured_as_the_run_was() {
+    for (line, file, least, left_out) in [
+        ("couette --variant seed --set rows=8", "profile.csv", 20, "p_rms"),
+        ("poiseuille --variant modern --set rows=8", "profile.csv", 20, "field_l2@0.1"),
+        ("cantilever --variant lagrangian --set n=4", "end.csv", 20, "energy_change"),
+    ] {
+        let (folder, found) = of_curve(line, file);
+        let own = Record::from_json(&read(&folder.path().join("run/record.json"))).unwrap();
+        for (name, metric) in &found.metrics {
+            let (found, own) = (metric.value, own.metrics[name].value);
+            // A least sum of squares is found to the root of round-off only.
+            let most = if name.starts_with("nu_eff") { 1e-8 } else { 1e-12 };
+            let difference = (found - own).abs();
+            assert!(difference <= most * own.abs().max(1.0), "{name} of {line}: {found}, {own}");
+        }
+        assert!(found.metrics.len() >= least, "{line}: {:?}", found.metrics.keys());
+        let lacking = own.metrics.keys().filter(|name| !found.metrics.contains_key(*name));
+        lacking.for_each(|name| assert!(found.absent.contains_key(name), "{line}: {name}"));
+        assert!(found.absent[left_out].contains("particles"), "{line}: {:?}", found.absent);
+        assert_eq!((found.state, found.cost.particles), (None, 0), "{line}");
+    }
+}
+
+/// A damaged curve is refused as particles are.
+#[test]
+fn a_damaged_curve_is_refused_with_file_line_and_column() {
+    let line = "couette --variant seed --set rows=8 --set end=0.1";
+    let (folder, _) = of_curve(line, "profile.csv");
+    let own = folder.path().join("own");
+    let whole = read(&own.join("curve.csv"));
+    let lines: Vec<&str> = whole.lines().collect();
+    let without = |k: usize| [&lines[..k], &lines[k + 1..]].concat().join("\n");
+    let swapped = [&lines[..2], &[lines[3], lines[2]], &lines[4..]].concat().join("\n");
+    let instead = |k: usize, row: &str| whole.replacen(lines[k], row, 1);
+    let time = lines[1].split(',').next().unwrap();
+    let last = lines.len() - 8;
+    for (what, text, says) in [
+        ("unit", whole.replacen("u[m/s]", "u[mm/s]", 1), "line 1, column u: its unit is mm/s"),
+        ("column", whole.replacen("u[m/s]", "w[m/s]", 1), "line 1, column u: it is missing"),
+        ("a row less", without(3), "line 2, column t: 7 rows are at t"),
+        ("not sorted", swapped, "column y: it is"),
+        ("a word", instead(4, &format!("{time},fast,0,0")), "line 5, column y: it is \"fast\""),
+        ("not finite", instead(4, &format!("{time},0.1,NaN,0")), "line 5, column u: it is NaN"),
+        ("no rows", lines[0].into(), "it has no rows"),
+        ("a time less", lines[..last].join("\n"), "no particles at t ="),
+    ] {
+        fs::write(own.join("curve.csv"), text).unwrap();
+        let output = touchstone(folder.path(), "submit couette own --store other");
+        assert_eq!(output.status.code(), Some(2), "{what}: {}", said(&output));
+        let words = said(&output);
+        assert!(words.contains("curve.csv") && words.contains(says), "{what}: {words}");
+        assert!(!folder.path().join("other").exists(), "{what}: nothing is recorded");
+    }
+    fs::write(own.join("curve.csv"), &whole).unwrap();
+    let output = touchstone(folder.path(), "submit dam_break own --variant seed --store other");
+    assert_eq!(output.status.code(), Some(2), "of another case: {}", said(&output));
+}
+
 type Damage = fn(&Path);
 
 fn edit(folder: &Path, file: &str, from: &str, to: &str) {

@@ -8,6 +8,7 @@ pub mod gate;
 pub mod manifest;
 pub mod mutation;
 pub mod number;
+pub mod pack;
 pub mod random;
 pub mod record;
 pub mod reference;

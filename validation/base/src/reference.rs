@@ -14,47 +14,21 @@
 //! # Ok::<(), base::reference::ReferenceError>(())
 //! ```
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::sync::LazyLock;
 
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-/// A package as it was embedded: texts by path.
-struct Embedded {
-    name: &'static str,
-    package: &'static str,
-    files: &'static [(&'static str, &'static str)],
-}
+use crate::pack;
 
-macro_rules! embedded {
-    ($($name:literal: [$($file:literal),+]),+ $(,)?) => {
-        &[$(Embedded {
-            name: $name,
-            package: include_str!(concat!("../../../references/", $name, "/datapackage.json")),
-            files: &[$(
-                ($file, include_str!(concat!("../../../references/", $name, "/", $file)))
-            ),+],
-        }),+]
-    };
-}
-
-/// Every package of `references/` with its tables.
-const EMBEDDED: &[Embedded] = embedded! {
-    "cantilever": ["series.csv", "summary.csv", "checks.csv"],
-    "dam_break_vof":
-        ["series.csv", "levels.csv", "pressure.csv", "summary.csv", "spread.csv", "checks.csv"],
-    "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
-    "dambreak_martin_moyce": ["front.csv", "height.csv"],
-    "oscillating_plate": ["series.csv", "summary.csv", "clamps.csv", "checks.csv"],
-    "peers_channel": ["errors.csv"],
-    "peers_taylor_green": ["errors.csv"],
-    "periodic_hill":
-        ["profiles.csv", "starts.csv", "wall.csv", "line.csv", "summary.csv", "checks.csv"],
-    "periodic_hill_geometry": ["segments.csv"],
-    "published_sph_errors": ["errors.csv"],
-    "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "outlines.csv", "checks.csv"],
-};
+/// The tables and the descriptions of all packages by `FOLDER/FILE`.
+static EMBEDDED: LazyLock<BTreeMap<String, String>> =
+    LazyLock::new(|| pack::read(include_bytes!(concat!(env!("OUT_DIR"), "/references"))));
+/// Name of the file that describes a package.
+const PACKAGE: &str = "/datapackage.json";
 
 /// Why a reference was refused, in words.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -218,7 +192,7 @@ pub struct Table {
 impl Reference {
     /// The names of all references.
     pub fn names() -> Vec<&'static str> {
-        EMBEDDED.iter().map(|embedded| embedded.name).collect()
+        EMBEDDED.keys().filter_map(|path| path.strip_suffix(PACKAGE)).collect()
     }
 
     /// The references that are not as their descriptions state, and what is wrong with them: a table that was
@@ -230,11 +204,15 @@ impl Reference {
 
     /// Checks and reads an embedded reference.
     pub fn load(name: &str) -> Result<Self, ReferenceError> {
-        let Some(embedded) = EMBEDDED.iter().find(|known| known.name == name) else {
+        let Some(package) = EMBEDDED.get(&format!("{name}{PACKAGE}")) else {
             let known = Self::names().join(", ");
             return refused(format!("no reference is called {name:?}; there are {known}"));
         };
-        Self::from_texts(embedded.name, embedded.package, embedded.files)
+        let of_name = |(path, text): (&'static String, &'static String)| {
+            Some((path.strip_prefix(name)?.strip_prefix('/')?, text.as_str()))
+        };
+        let files: Vec<(&str, &str)> = EMBEDDED.iter().filter_map(of_name).collect();
+        Self::from_texts(name, package, &files)
     }
 
     /// Checks and reads a reference from the text of its description and of its tables by path.

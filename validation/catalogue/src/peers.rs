@@ -1,10 +1,11 @@
 //! What other codes made of exported problems, and this one in turn with them: the records of
 //! `references/peers`, which the program contains.
 
-use base::{record::Record, submission::SESSION};
+use base::{pack, record::Record, submission::SESSION};
 use harness::{make::Made, suite::Plans};
 
-const RECORDS: &[&str] = include!(concat!(env!("OUT_DIR"), "/peers.rs"));
+/// Packed by the build script.
+const RECORDS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/peers"));
 /// The day on which they were made, in one session.
 const MADE: &str = include_str!("../../../references/peers/made.txt");
 
@@ -14,7 +15,8 @@ pub fn records() -> impl Iterator<Item = Record> {
         record.numerics.insert(SESSION.into(), MADE.trim().into());
         record
     };
-    RECORDS.iter().filter_map(|text| Record::from_json(text).ok()).map(session)
+    let texts = pack::read(RECORDS).into_values();
+    texts.filter_map(|text| Record::from_json(&text).ok()).map(session)
 }
 
 /// Adds those of the cases of the plans, except where the store has a run of the same code and method.

@@ -46,7 +46,7 @@ pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Re
     });
     let method = solver.method();
     let digest = sha256(format!("{method:?}").as_bytes());
-    let entry = Entry { method, digest, system, asked: None, results };
+    let entry = Entry { method, digest, system, asked: None, results, curve: None };
     let flaws = entry.check(&problem);
     match flaws.is_empty() {
         true => Ok(entry.measure(case, spec)?),

@@ -14,6 +14,7 @@ use harness::{
     case::{Case, RunError, Tier},
     context::Context,
     playback::{self, Frame, Own, Playback},
+    suite,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
@@ -21,7 +22,10 @@ use serde_json::{Map, Value};
 use crate::{
     flaw::Flaw,
     problem::{Asked, PROBLEM, Problem},
-    read::{self, Renamed, Results},
+    read::{
+        self, RESULTS, Renamed, Results,
+        curve::{self, CURVE},
+    },
 };
 
 /// Name of the document that describes the method.
@@ -111,6 +115,8 @@ pub struct Entry {
     pub asked: Option<Asked>,
     /// The particles.
     pub results: Results,
+    /// The table of a profile or series, of a code that hands in no particles, and its columns' names.
+    pub curve: Option<(String, Renamed)>,
 }
 
 /// Reads a document.
@@ -145,7 +151,15 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
         "machine, threads, seconds, steps and interactions, each a number or \"unknown\"",
     );
     let asked = asked(folder);
-    let results = read::read(folder, renamed);
+    let curve = files::read_text(&folder.join(CURVE), read::MOST_BYTES).ok();
+    let curve = curve.map(|text| (text, renamed.clone()));
+    let results = match curve {
+        Some(_) if folder.join(RESULTS).exists() => {
+            Err(vec![Flaw::of(CURVE, format!("there is {RESULTS} too; leave one"))])
+        }
+        Some(_) => Ok(Results::default()), // what it stands for is known with the problem
+        None => read::read(folder, renamed),
+    };
     let method = method.map_err(|flaw| flaws.push(flaw));
     let system = system.map_err(|flaw| flaws.push(flaw));
     let asked = asked.map_err(|flaw| flaws.push(flaw));
@@ -174,7 +188,7 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     match (method, system, asked, results) {
         (Ok((method, text)), Ok((system, _)), Ok(asked), Ok(results)) if flaws.is_empty() => {
             let digest = sha256(text.as_bytes());
-            Ok(Entry { method, digest, system, asked, results })
+            Ok(Entry { method, digest, system, asked, results, curve })
         }
         _ => Err(flaws),
     }
@@ -217,6 +231,44 @@ fn asked(folder: &Path) -> Result<Option<Asked>, Flaw> {
 }
 
 impl Entry {
+    /// Puts the particles of the problem where they stand for a profile or series, if there is one.
+    ///
+    /// # Errors
+    /// If the case measures none, or everything that is wrong with the table.
+    pub fn stand_for(&mut self, case: &dyn Case, problem: &Problem) -> Result<(), Vec<Flaw>> {
+        let Some((text, renamed)) = &self.curve else { return Ok(()) };
+        let Some(curve) = case.declaration(Tier::Quick).curve else {
+            let what = format!("{} is measured of particles alone; expected these", case.name());
+            return Err(vec![Flaw::of(CURVE, what)]);
+        };
+        self.results = curve::frames(&curve, text, renamed, problem)?;
+        Ok(())
+    }
+
+    /// Whose particles are measured: those of the problem stand for a curve.
+    fn particles(&self) -> Division {
+        if self.curve.is_some() { Division::Closed } else { self.method.division }
+    }
+
+    /// Leaves out what follows from particles, of a profile or series.
+    fn only_of_curve(&self, case: &dyn Case, record: &mut Record) {
+        let Some(curve) = case.declaration(Tier::Quick).curve.filter(|_| self.curve.is_some())
+        else {
+            return;
+        };
+        let names: Vec<String> = curve.metrics.iter().map(|metric| String::from(*metric)).collect();
+        let is_of = |name: &str| names.iter().any(|of| name.split('@').next() == Some(of));
+        let others = record.metrics.extract_if(.., |name, _| !is_of(name));
+        let why = "it follows from particles, and the submission is a profile or a series";
+        record.absent.extend(others.map(|(name, _)| (name, why.to_string())));
+        let (begins, columns) = curve.shown;
+        record.profiles.retain(|name, _| name.starts_with(begins));
+        for profile in record.profiles.values_mut() {
+            profile.columns.retain(|column| columns.contains(&&*column.name));
+        }
+        (record.state, record.cost.particles) = (None, 0);
+    }
+
     /// Everything that does not fit the problem.
     pub fn check(&self, problem: &Problem) -> Vec<Flaw> {
         let mut flaws = Vec::new();
@@ -232,7 +284,7 @@ impl Entry {
                 format!("there are no particles at t = {time} s, at which the problem is measured");
             flaws.push(Flaw::of(file, what).in_column("t"));
         }
-        let expected = match self.method.division {
+        let expected = match self.particles() {
             Division::Closed => problem.moving(),
             Division::Open => self.own_ids(&mut flaws),
         };
@@ -258,7 +310,7 @@ impl Entry {
             let has = |id: &u32| ids.binary_search_by_key(id, |(id, _)| *id).is_ok();
             flaws.extend(crowded(frame, support).map(|what| flaw(what).at(*line)));
             let lacking = expected.iter().filter(|id| !has(id)).count();
-            let beyond = match self.method.division {
+            let beyond = match self.particles() {
                 Division::Closed => ids.iter().find(|(id, _)| *id as usize >= all),
                 Division::Open => ids.iter().find(|(id, _)| expected.binary_search(id).is_err()),
             };
@@ -318,7 +370,7 @@ impl Entry {
     /// The frames, with the particles of the code itself in the open division.
     fn playback(&self) -> Playback<'_> {
         let Results { frames, own, .. } = &self.results;
-        let own = match (self.method.division, frames.first()) {
+        let own = match (self.particles(), frames.first()) {
             (Division::Open, Some(first)) => {
                 let start = first.particles.iter().zip(own);
                 let mut own: Vec<Own> = start
@@ -363,21 +415,13 @@ impl Entry {
             let reason = "the particles of the submission do not determine it".to_string();
             record.absent.insert(name, reason);
         }
-        for metric in case.declaration(Tier::Quick).stepwise {
-            let name = String::from(*metric);
-            // Also those of a time or a phase, such as `impulse@phase1`.
-            let is_of = |of: &str| of.split('@').next() == Some(name.as_str());
-            let all: Vec<String> = record.metrics.keys().filter(|of| is_of(of)).cloned().collect();
-            for of in all {
-                record.metrics.remove(&of);
-                record.absent.insert(of, "it is measured after every step".into());
-            }
-        }
+        suite::leave_out_ours(case, &mut record);
         for reason in record.absent.values_mut().filter(|reason| *reason == NOT_ASKED) {
             *reason = "it needs the sums of this program's own terms".into();
         }
         record.numerics.clear();
-        if self.method.division == Division::Open {
+        self.only_of_curve(case, &mut record);
+        if self.particles() == Division::Open {
             record.profiles.clear(); // those that follow rows of the problem's own particles
         }
         record.cost = self.cost(&record);

@@ -9,7 +9,9 @@ use base::{
     record::{MetricKey, MetricName, Record, Status},
     spec::{Bisect, Measure, RunSpec},
 };
+use nalgebra::Vector2;
 use report::{Axis, Colour};
+use serde_json::Value;
 
 use crate::{
     planned::{Planned, Tier},
@@ -39,6 +41,27 @@ pub struct Declaration {
     pub costly: &'static [MetricKey],
     /// The metrics that need the state after every step, which results of other codes do not have.
     pub stepwise: &'static [MetricKey],
+    /// The metrics that compare with the theory of our own methods, which says nothing of other codes.
+    pub of_methods: &'static [MetricKey],
+    /// What can be measured of a profile or a series of another code that hands in no particles.
+    pub curve: Option<Curve>,
+}
+
+/// Settings, the rows at a time and a position at the start, to a position and a velocity.
+type Place = fn(&Value, &[[f64; 2]], Vector2<f64>) -> [Vector2<f64>; 2];
+
+/// A profile or a series from which some of the metrics follow.
+pub struct Curve {
+    /// Names and units of its columns after the time.
+    pub columns: [(&'static str, &'static str); 2],
+    /// Its rows at each time, of a run of these settings; the first column ascends in them.
+    pub rows: fn(&Value) -> usize,
+    /// Position and velocity by which a particle stands for the rows at a time.
+    pub place: Place,
+    /// The metrics that follow from it, at whatever time; no other is measured of it.
+    pub metrics: Vec<MetricKey>,
+    /// How the names of the profiles of a record begin that show it, and their columns.
+    pub shown: (&'static str, &'static [&'static str]),
 }
 
 /// What the report says first of a case: its error with the best variant and with the paper's.

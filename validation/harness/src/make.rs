@@ -1,6 +1,7 @@
 //! Makes the runs of a plan whose records the store lacks: first the runs that are not timed, in parallel and
 //! the longest first; then the timed runs, one at a time while this program does nothing else, in rounds over
-//! all of them, so that a change of the machine's speed affects every variant alike.
+//! all of them, so that a change of the machine's speed affects every variant alike. If somebody waits for
+//! the first complete case, one case is made in this way before all others.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -50,6 +51,9 @@ pub struct Done<'a> {
 /// Told before the first run, a few times a second while runs are made, and after each.
 pub type Progress<'a> = dyn Fn(Done) + Sync + 'a;
 
+/// Told each time that all runs of a case have ended, with what is made so far.
+pub type Finished<'a> = dyn Fn(Made) + Sync + 'a;
+
 /// How runs are made.
 #[derive(Clone, Copy)]
 pub struct Making<'a> {
@@ -67,6 +71,8 @@ pub struct Making<'a> {
     pub allow_long: bool,
     /// Told how far the runs are.
     pub progress: Option<&'a Progress<'a>>,
+    /// Told when a case is complete, the first one early.
+    pub finished: Option<&'a Finished<'a>>,
     /// Set by another thread to stop.
     pub interrupt: Option<&'a AtomicBool>,
 }
@@ -87,6 +93,7 @@ impl<'a> Making<'a> {
             fresh: false,
             allow_long: false,
             progress: None,
+            finished: None,
             interrupt: None,
         }
     }
@@ -203,20 +210,37 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
 /// Makes the runs that the store lacks. A run that is refused or diverges has a record; one that fails
 /// otherwise has none, see [`Made::failed`]. For what the store cannot keep see [`Made::not_kept`].
 pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
-    let (timed, mut rest): (Vec<&Job>, Vec<&Job>) =
-        missing.iter().partition(|job| job.planned.timed);
-    rest.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
-    let mut tally = Tally::default();
-    for job in rest.iter().chain(&timed) {
+    let (mut tally, mut open) = (Tally::default(), BTreeMap::new());
+    for job in &missing {
         tally.plan(job.case.name(), expected(job, making));
+        *open.entry(job.case.name()).or_default() += 1;
     }
-    let batch = Batch { making, tally: Mutex::new(tally), made: Mutex::new(made) };
+    let (tally, made, open) = (Mutex::new(tally), Mutex::new(made), Mutex::new(open));
+    let batch = Batch { making, tally, made, open };
     batch.tell(|_| ());
-    side_by_side(&rest, &batch);
-    alone(&timed, &batch);
+    let first = making.finished.and_then(|_| first(&missing, making.tier));
+    let (early, later) = missing.iter().partition(|job| Some(job.case.name()) == first);
+    for jobs in [early, later] as [Vec<&Job>; 2] {
+        let (timed, mut rest): (Vec<&Job>, Vec<&Job>) =
+            jobs.into_iter().partition(|job| job.planned.timed);
+        rest.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
+        side_by_side(&rest, &batch);
+        alone(&timed, &batch);
+    }
     let mut made = batch.made.into_inner().unwrap_or_else(PoisonError::into_inner);
     made.interrupted = making.is_interrupted();
     made
+}
+
+/// Of the main cases, which have a card, the one whose runs take the least time.
+fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
+    let mut cases: BTreeMap<&'static str, (&'static dyn Case, f64)> = BTreeMap::new();
+    for job in missing {
+        cases.entry(job.case.name()).or_insert((job.case, 0.0)).1 += job.planned.seconds;
+    }
+    cases.retain(|_, (case, _)| case.declaration(tier).card.is_some());
+    let least = cases.into_iter().min_by(|(_, (_, a)), (_, (_, b))| a.total_cmp(b));
+    least.map(|(name, _)| name)
 }
 
 /// The wall time that a run is expected to take of the batch \[s\].
@@ -338,9 +362,29 @@ struct Batch<'a> {
     making: &'a Making<'a>,
     tally: Mutex<Tally>,
     made: Mutex<Made>,
+    /// Runs of each case that have not ended.
+    open: Mutex<BTreeMap<&'static str, usize>>,
 }
 
 impl Batch<'_> {
+    /// A run has ended, with or without a record; tells if it was the last one of its case.
+    fn ended(&self, job: &Job) {
+        let Some(finished) = self.making.finished else { return };
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        let left = open.entry(job.case.name()).or_default();
+        *left = left.saturating_sub(1);
+        let is_last = *left == 0;
+        drop(open);
+        if is_last && !self.making.is_interrupted() {
+            let made = self.made();
+            let Made { reused, of_other_sources, .. } = *made;
+            let (records, submissions) = (made.records.clone(), made.submissions.clone());
+            drop(made);
+            let made = Made { records, submissions, reused, of_other_sources, ..Made::default() };
+            finished(made);
+        }
+    }
+
     /// Tells how far it is after a change.
     fn tell(&self, change: impl FnOnce(&mut Tally)) {
         let Some(progress) = self.making.progress else { return };
@@ -422,6 +466,7 @@ fn side_by_side(jobs: &[&Job], batch: &Batch) {
             if let Some(record) = batch.run(job, false) {
                 batch.done(job, record, start);
             }
+            batch.ended(job);
         }
     };
     // Not a broadcast, which would wait for threads of the pool that are busy with other things.
@@ -442,6 +487,7 @@ fn alone(jobs: &[&Job], batch: &Batch) {
             record.cost.alone_s = vec![record.cost.cpu_s];
             batch.done(job, record, start);
         }
+        batch.ended(job);
     }
     let record = |job: &Job| batch.made().records.get(&job.planned.spec.key()).cloned();
     let is_cheap = |record: &Record| {

@@ -10,6 +10,7 @@ use report::{Card, Counts};
 
 use crate::{
     case::{Case, Planned, Tier},
+    declare::Declaration,
     make::{self, Made, Making},
     plan,
     runs::{Judged, JudgedRun, Runs},
@@ -141,11 +142,31 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
 
 /// The run of another code, judged by the gates that our plans have for the same settings. What is known to
 /// limit our method, or expected of it, is no excuse for another one: there the bound alone counts.
-pub fn submitted(case: &dyn Case, record: Record) -> JudgedRun {
+pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
+    leave_out_ours(case, &mut record);
     let spec = record.spec();
     let gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
     let plain = |gate| Gate { purpose: Purpose::Judge, may_end_early: false, ..gate };
     JudgedRun::new(Planned::new(spec).judged(gates.into_iter().map(plain).collect()), record)
+}
+
+/// Leaves out of a run of another code what only ours have, such as `impulse` and `impulse@phase1`.
+pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
+    let Declaration { stepwise, of_methods, .. } = case.declaration(Tier::Quick);
+    const STEPWISE: &str = "it is measured after every step";
+    let of_method = "it compares with the theory of this program's own method";
+    for (metrics, why) in [(stepwise, STEPWISE), (of_methods, of_method)] {
+        let metrics: Vec<String> = metrics.iter().map(|metric| String::from(*metric)).collect();
+        let is_ours = |name: &str| metrics.iter().any(|m| name.split('@').next() == Some(m));
+        let ours = |name: &String, _: &mut _| is_ours(name);
+        let found: Vec<String> =
+            record.metrics.extract_if(.., ours).map(|(name, _)| name).collect();
+        // An older record names another reason.
+        let named =
+            record.absent.iter_mut().filter(|(name, why)| *why == STEPWISE && is_ours(name));
+        named.for_each(|(_, reason)| *reason = why.into());
+        record.absent.extend(found.into_iter().map(|name| (name, why.into())));
+    }
 }
 
 /// A failing gate if a study asked for a run that the case did not plan.

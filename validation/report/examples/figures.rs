@@ -1,6 +1,6 @@
 //! Draws one figure of each kind and a page that holds them all, from made-up data.
 //!
-//! `cargo run --example figures -- FOLDER`
+//! `cargo run -p touchstone-report --example figures -- FOLDER`
 
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 

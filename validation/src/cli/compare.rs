@@ -12,13 +12,14 @@ use base::{
 use harness::{
     case::{Case, Planned, Tier},
     plan,
+    runs::Judged,
     store::Store,
 };
 use serde_json::{Value, json};
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
-    judged::{self, Judged, VERDICTS, Verdicts},
+    judged::{self, VERDICTS, Verdicts},
     output,
 };
 
@@ -324,7 +325,6 @@ fn of_metrics(
 mod tests {
     use base::gate::{Evidence, Gate};
     use base::record::MetricKey;
-    use harness::runs;
 
     use super::*;
 
@@ -425,7 +425,7 @@ mod tests {
     fn a_gate_that_is_gone_or_fails_is_a_loss() {
         let judged = |value: f64| {
             let gate = Gate::new("c.l2", "l2", Bound::Below(0.5), Evidence::Theory, "staged");
-            let judged = Judged::from(&runs::Judged::new(gate, Some(value)));
+            let judged = Judged::new(gate, Some(value));
             BTreeMap::from([("c.l2".to_string(), judged)])
         };
         let kinds = |old: &BTreeMap<_, _>, new: &BTreeMap<_, _>| -> Vec<Kind> {

@@ -157,8 +157,9 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
 pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let case = cases::find_in(world.cases, &arguments.case)?;
     world.check_references(&[case])?;
-    let entry = read(&arguments.folder, &arguments.map)?;
+    let mut entry = read(&arguments.folder, &arguments.map)?;
     let problem = problem(case, &entry, arguments)?;
+    entry.stand_for(case, &problem).map_err(|flaws| refused(&flaws))?;
     check(&entry, &problem)?;
     let record = measured(case, &entry, &problem.spec, &arguments.folder, world)?;
     if arguments.check {

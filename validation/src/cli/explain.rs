@@ -11,14 +11,14 @@ use base::spec::RunSpec;
 use harness::case::{self, Case, Tier};
 use harness::make::Stored;
 use harness::plan;
-use harness::runs;
+use harness::runs::Judged;
 use harness::store::Store;
 use harness::suite::{self, Of};
 
 use super::{
     Exit, Failure, Outcome, World,
     arguments::{self, Status},
-    judged::{self, Judged, Verdicts, tier_name},
+    judged::{self, Verdicts, tier_name},
     output,
 };
 
@@ -103,13 +103,13 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
 }
 
 /// A judgement, with all that is known of its gate.
-pub fn in_full(case: &dyn Case, of: Of, judged: &runs::Judged) -> String {
+pub fn in_full(case: &dyn Case, of: Of, judged: &Judged) -> String {
     let (on, status) = match of {
         Of::Run(run) => (command(case, &run.planned.spec), Some(run.record.status.clone())),
         Of::Study(study) => (of_study(&study.title, case.name()), None),
     };
     let gate = judged.gate.clone();
-    words(&Known { gate, tiers: Vec::new(), on, last: Some(judged.into()), status })
+    words(&Known { gate, tiers: Vec::new(), on, last: Some(judged.clone()), status })
 }
 
 /// The command that makes a run.

@@ -11,7 +11,7 @@ use base::number::Number;
 use base::record;
 use harness::case::{self, Case, Tier};
 use harness::notes::Notes;
-use harness::runs::{self, JudgedRun};
+use harness::runs::{Judged, JudgedRun};
 use harness::study::Study;
 use harness::suite::Suite;
 use serde::{Deserialize, Serialize};
@@ -20,8 +20,8 @@ use super::arguments::Status;
 use super::{Failure, output};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
-pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
-    let mut judged: Vec<&runs::Judged> = all.into_iter().collect();
+pub fn table<'a>(all: impl IntoIterator<Item = &'a Judged>) -> String {
+    let mut judged: Vec<&Judged> = all.into_iter().collect();
     judged.sort_by_key(|judged| judged.status());
     let mut notes = Notes::default();
     let mut word = |verdict: &'a Verdict| {
@@ -30,7 +30,7 @@ pub fn table<'a>(all: impl IntoIterator<Item = &'a runs::Judged>) -> String {
     };
     let rows: Vec<Vec<String>> = judged
         .into_iter()
-        .map(|runs::Judged { gate, judgement, .. }| {
+        .map(|Judged { gate, judgement, .. }| {
             let number = |number: Option<f64>| number.map(|number| report::sig(number, 4));
             vec![
                 word(&judgement.verdict),
@@ -102,6 +102,7 @@ pub struct RunVerdicts {
     #[serde(with = "base::number")]
     pub wall_s: f64,
     /// the judgements
+    #[serde(with = "entries")]
     pub judged: Vec<Judged>,
 }
 
@@ -115,25 +116,21 @@ pub struct StudyVerdicts {
     /// its title
     pub title: String,
     /// the judgements
+    #[serde(with = "entries")]
     pub judged: Vec<Judged>,
 }
 
-/// A gate and its judgement.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(from = "Entry", into = "Entry")]
-pub struct Judged {
-    /// what was asked
-    pub gate: Gate,
-    /// what came of it
-    pub judgement: Judgement,
-    /// of the metric; none of one that the record lacks
-    pub unit: Option<String>,
-}
+/// Judgements as objects of one level.
+mod entries {
+    use super::{Entry, Judged};
+    use serde::{Deserialize, Deserializer, Serializer};
 
-impl From<&runs::Judged> for Judged {
-    fn from(judged: &runs::Judged) -> Self {
-        let runs::Judged { gate, judgement, unit } = judged.clone();
-        Judged { gate, judgement, unit }
+    pub fn serialize<S: Serializer>(all: &[Judged], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(all.iter().cloned().map(Entry::from))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Judged>, D::Error> {
+        Ok(Vec::<Entry>::deserialize(from)?.into_iter().map(Judged::from).collect())
     }
 }
 
@@ -236,7 +233,6 @@ impl Verdicts {
 
     /// The verdicts of a suite.
     pub fn of(suite: &Suite) -> Self {
-        let judged = |all: &[runs::Judged]| all.iter().map(Judged::from).collect::<Vec<_>>();
         let of_run = |case: &dyn Case, run: &JudgedRun| RunVerdicts {
             case: case.name().into(),
             variant: run.planned.spec.variant.clone(),
@@ -244,13 +240,13 @@ impl Verdicts {
             key: run.record.key().to_string(),
             status: run.record.status.clone(),
             wall_s: run.record.cost.wall_s,
-            judged: judged(&run.judged),
+            judged: run.judged.clone(),
         };
         let of_study = |case: &str, study: &Study| StudyVerdicts {
             case: case.into(),
             id: study.id.clone(),
             title: study.title.clone(),
-            judged: judged(&study.judged),
+            judged: study.judged.clone(),
         };
         let of_cases = suite.cases.iter().flat_map(|results| {
             results.studies.iter().map(|study| of_study(results.case.name(), study))

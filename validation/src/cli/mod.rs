@@ -130,6 +130,9 @@ impl From<serde_json::Error> for Failure {
 /// What a command comes to.
 type Outcome = Result<Exit, Failure>;
 
+/// Shows what is made before all is, and says what it did if it did anything.
+type Early<'a> = dyn Fn(Made) -> Option<String> + Sync + 'a;
+
 /// What commands work on.
 #[derive(Clone, Copy)]
 pub struct World {
@@ -173,14 +176,24 @@ impl World {
     }
 
     /// Makes the runs that a store lacks, on a pool of so many threads, with a bar, and says what of it did
-    /// not go as it should.
-    fn make(&self, jobs: &[Job], making: Making, threads: Option<u16>) -> Result<Made, Failure> {
+    /// not go as it should. Whoever shows what there is early is asked to each time that a case is complete.
+    fn make(
+        &self,
+        jobs: &[Job],
+        making: Making,
+        threads: Option<u16>,
+        early: Option<&Early>,
+    ) -> Result<Made, Failure> {
         let bar = progress::Bar::new();
         let show = |done: Done| bar.show_runs(done);
+        let finished = early.map(|early| {
+            |made: Made| early(made).into_iter().for_each(|words: String| bar.say(&words))
+        });
         let made = on_threads(threads, || {
             let mut stored = make::stored(jobs, &making);
             estimate::estimate(&mut stored.missing, &making);
-            Ok(make::make(stored, &Making { progress: Some(&show), ..making }))
+            let finished = finished.as_ref().map(|finished| finished as _);
+            Ok(make::make(stored, &Making { progress: Some(&show), finished, ..making }))
         });
         bar.clear();
         let made = made?;

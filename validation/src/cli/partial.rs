@@ -1,16 +1,16 @@
-//! `report --partial`: what a store has so far is judged, and what it lacks is listed.
+//! A report before all its runs are made: what there is so far is judged, and what is lacking is listed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use ::report::counted;
 use base::spec::RunKey;
 use harness::{
     case::{self, Case, Tier},
-    make::{Job, Stored},
+    make::{self, Job, Made, Stored},
     store::{Pending, Store},
     study::Study,
-    suite::{self, Suite},
+    suite::{self, Plans, Suite},
 };
 
 use super::{Failure, World, verify};
@@ -18,24 +18,45 @@ use super::{Failure, World, verify};
 /// A run without a record, and why it has none.
 type Lacking = (Job, Pending);
 
-/// The suite of what a store has of a tier, and a line for each run that it lacks. Runs without a record are
-/// not judged, and neither are the studies of a case that lacks one: of half its runs a study has a number
-/// too, which says nothing.
+/// What is told of runs that are lacking: how many, and of which cases; empty if all are there.
+pub type Told = Option<[String; 2]>;
+
+/// The suite of what a store has of a tier, a line for each run that it lacks, and what is told of all.
 pub fn of_store(
     cases: &[&'static dyn Case],
     tier: Tier,
     path: &Path,
     any_build: bool,
     world: &World,
-) -> Result<(Suite, String), Failure> {
-    let (mut plans, Stored { made, missing, .. }) =
+) -> Result<(Suite, String, Told), Failure> {
+    let (plans, Stored { made, missing, .. }) =
         verify::stored(cases, tier, path, any_build, world)?;
+    let lacking = lacking(missing, path, &made);
+    let told = tell(&plans, &lacking);
+    Ok((judge(plans, tier, made, &lacking), list(lacking.values().collect()), told))
+}
+
+/// The suite of what is made of plans so far, and what is told of the rest.
+pub fn of_made(plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite, Told) {
+    let mut missing = make::jobs(plans.clone());
+    missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
+    let lacking = lacking(missing, path, &made);
+    let told = tell(&plans, &lacking);
+    (judge(plans, tier, made, &lacking), told)
+}
+
+fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lacking> {
     let why = |job: &Job| match made.unsound.get(&job.planned.spec.key()) {
         Some(error) => Pending::Failed(error.to_string()),
         None => Store::to_read(path).pending(&job.planned.spec),
     };
     let lack = |job: Job| (job.planned.spec.key(), (job.clone(), why(&job)));
-    let lacking: BTreeMap<RunKey, Lacking> = missing.into_iter().map(lack).collect();
+    missing.into_iter().map(lack).collect()
+}
+
+/// Runs without a record are not judged, and neither are the studies of a case that lacks one: of half its
+/// runs a study has a number too, which says nothing.
+fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, Lacking>) -> Suite {
     let planned = plans.iter_mut().flat_map(|(_, plan)| plan);
     let without = planned.filter(|planned| lacking.contains_key(&planned.spec.key()));
     without.for_each(|planned| planned.gates.clear());
@@ -50,18 +71,29 @@ pub fn of_store(
         let open: usize =
             results.studies.iter_mut().map(|study| study.judged.drain(..).len()).sum();
         let words = format!(
-            "This report is of a store that is not complete. Of the runs of this case are without a record: \
-             {}. They are not judged. The {open} gates of its studies are open until every run has a record.",
+            "This report is not complete. Of the runs of this case are without a record: {}. They are not \
+             judged. The {open} gates of its studies are open until every run has a record.",
             counts(&of_case)
         );
         let id = format!("{}-lacking", name.replace('_', "-"));
         results.studies.insert(0, Study::new(&id, "Runs without a record").prose(words));
     }
-    Ok((suite, list(lacking.values().collect())))
+    suite
+}
+
+fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, Lacking>) -> Told {
+    let of: BTreeSet<&str> = lacking.values().map(|(job, _)| job.case.name()).collect();
+    let names: Vec<&str> =
+        plans.iter().map(|(case, _)| case.name()).filter(|name| of.contains(name)).collect();
+    let (all, complete) = (plans.len(), plans.len() - names.len());
+    let runs = counted(lacking.len(), "run without a record", "runs without a record");
+    let each = counts(&lacking.values().collect::<Vec<_>>());
+    let words = format!("{complete} of {all} cases complete; {runs}: {each}");
+    (!names.is_empty()).then(|| [words, names.join(", ")])
 }
 
 /// What became of a run, in a word, and the reason for a failure.
-fn told(why: &Pending) -> (&'static str, &str) {
+fn word(why: &Pending) -> (&'static str, &str) {
     match why {
         Pending::Missing => ("missing", ""),
         Pending::Running => ("running", ""),
@@ -73,7 +105,7 @@ fn told(why: &Pending) -> (&'static str, &str) {
 /// Runs by what became of them, as `3 missing, 1 running`.
 fn counts(lacking: &[&Lacking]) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    lacking.iter().for_each(|(_, why)| *counts.entry(told(why).0).or_default() += 1);
+    lacking.iter().for_each(|(_, why)| *counts.entry(word(why).0).or_default() += 1);
     counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
@@ -82,7 +114,7 @@ fn list(mut lacking: Vec<&Lacking>) -> String {
     lacking.sort_by(|(_, a), (_, b)| a.cmp(b));
     let line = |(job, why): &&Lacking| {
         let (spec, set) = (&job.planned.spec, case::changed(job.case, &job.planned.spec).join(" "));
-        let (word, reason) = told(why);
+        let (word, reason) = word(why);
         let words = format!("{word} {} {} {} {set} {reason}", spec.key(), spec.case, spec.variant);
         words.trim_end().to_string() + "\n"
     };

@@ -8,6 +8,8 @@ use ::report;
 use harness::{context::Progress, make::Done};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::output;
+
 /// A bar on standard error, or nothing.
 pub struct Bar {
     bar: ProgressBar,
@@ -73,6 +75,11 @@ impl Bar {
         }
         self.bar.set_position((share * PARTS as f64) as u64);
         self.bar.set_message(words);
+    }
+
+    /// Says a line above the bar.
+    pub fn say(&self, text: &str) {
+        self.bar.suspend(|| output::say(text));
     }
 
     /// Wipes the bar away.

@@ -1,11 +1,12 @@
-//! `report`: run what is missing, judge, render.
+//! `report`: run what is missing, judge, render; the page is there as soon as one case is complete.
 
-use std::time::{Instant, SystemTime};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant, SystemTime};
 
 use ::report::{self, check_page};
 use base::files::{FileError, OutputFolder};
-use harness::store::Store;
-use validation::page;
+use harness::{case::Tier, make::Made, store::Store, suite::Plans};
+use validation::{page, peers};
 
 use super::{
     Failure, Outcome, World, arguments, export,
@@ -19,12 +20,13 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
     export::check(&arguments.export)?;
     let folder = OutputFolder::create(&arguments.out)?;
-    let (tier, mut listed) = (arguments.tier.into(), String::new());
+    let (tier, mut listed, mut lacking) = (arguments.tier.into(), String::new(), None);
     let suite = match &arguments.store {
         Some(store) if arguments.partial => {
             let any_build = arguments.reuse.any_build;
-            let (suite, list) = partial::of_store(world.cases, tier, store, any_build, world)?;
-            listed = list;
+            let (suite, list, told) =
+                partial::of_store(world.cases, tier, store, any_build, world)?;
+            (listed, lacking) = (list, told);
             suite
         }
         Some(store) => {
@@ -32,7 +34,11 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         }
         None => {
             let store = Store::open(&folder.path().join("records"))?;
-            verify::run(world.cases, tier, &store, arguments.reuse, arguments.threads, world)?
+            let plans = verify::plans(world.cases, tier, world)?;
+            let last = Mutex::new(None);
+            let early = |made| early(plans.clone(), tier, &store, made, &folder, &last);
+            let (reuse, threads) = (arguments.reuse, arguments.threads);
+            verify::run(plans.clone(), tier, &store, reuse, threads, Some(&early), world)?
         }
     };
     // A file that cannot be written keeps none of the others from being written: the runs took minutes.
@@ -40,7 +46,8 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";
     let written = folder.write(VERDICTS, verdicts.as_bytes()).map_err(Failure::from);
     let path = folder.path().join("index.html");
-    let page = page::assemble(&suite, &now());
+    let mut page = page::assemble(&suite, &now());
+    page.lead.extend(lacking.map(not_complete));
     let html = page.html();
     let sound = check_page(&html);
     // The page last: once it is there, everything that it speaks of is. It is kept even if it is found to
@@ -65,6 +72,45 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             "the page was written, but a browser may fail to open it: {reason}"
         ))),
     }
+}
+
+/// What stands on a page that lacks runs.
+fn not_complete([words, names]: [String; 2]) -> String {
+    format!("**Not complete when this page was written:** {words}. Still to come: {names}.")
+}
+
+/// Early pages take at most this part of the time.
+const SHARE_OF_EARLY: u32 = 20;
+
+/// Writes verdicts and page, without PNG files, of what is made so far, and says so; not each time that a
+/// case is complete if that would take long. That it cannot be written is told of the last page.
+fn early(
+    plans: Plans,
+    tier: Tier,
+    store: &Store,
+    mut made: Made,
+    folder: &OutputFolder,
+    last: &Mutex<Option<(Instant, Duration)>>,
+) -> Option<String> {
+    let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+    if last.is_some_and(|(at, took)| at.elapsed() < SHARE_OF_EARLY * took) {
+        return None;
+    }
+    let start = Instant::now();
+    peers::add(&mut made, &plans);
+    let (suite, lacking) = partial::of_made(plans, tier, store.path(), made);
+    let lacking = lacking?; // all are there: the page that lacks nothing follows
+    let mut page = page::assemble(&suite, &now());
+    let words = format!("{}: {}", folder.path().join("index.html").display(), lacking[0]);
+    page.lead.push(not_complete(lacking));
+    page.png_folder.clear();
+    let path = folder.path().join("index.html");
+    folder
+        .write(VERDICTS, serde_json::to_string_pretty(&Verdicts::of(&suite)).ok()?.as_bytes())
+        .ok()?;
+    page.write_html(&path, &page.html()).ok()?;
+    *last = Some((Instant::now(), start.elapsed()));
+    Some(words)
 }
 
 /// The time, such as `2026-11-23 05:41 UTC`.

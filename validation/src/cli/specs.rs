@@ -35,7 +35,7 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     let allow_long = arguments.allow_long;
     // Nothing is timed here.
     let making = Making { store: Some(&store), allow_long, ..world.making(Tier::Quick) };
-    let made = world.make(&jobs, making, arguments.threads)?;
+    let made = world.make(&jobs, making, arguments.threads, None)?;
     // What the store could not keep is not lost.
     for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
         output::print_whole(&record.to_json()?)?;

@@ -43,7 +43,8 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         planned: Planned::new(limit.spec.clone()),
     };
     let jobs: Vec<Job> = declared.iter().map(job).collect();
-    let mut made = world.make(&jobs, world.making(arguments.tier.into()), arguments.threads)?;
+    let mut made =
+        world.make(&jobs, world.making(arguments.tier.into()), arguments.threads, None)?;
     if made.interrupted {
         return Err(Failure::interrupted("no limit was determined; the same command begins again"));
     }

@@ -3,6 +3,7 @@
 mod documents;
 
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ::report::check_page;
@@ -18,16 +19,19 @@ use clap::Parser;
 use harness::{
     case::{self, Case, Planned, RunError, Tier, Variant},
     context::Context,
-    make::Making,
+    declare::{Card, Declaration},
+    make::{self, Made, Making},
     runs::{Judged, Runs},
+    store::Store,
     study::Study,
     suite::{self, Suite},
 };
 use serde_json::{Value, json};
-use validation::cases;
+use validation::{cases, page};
 
 use super::{
     Exit, World, arguments::Arguments, checkpoint::Asked, conclude, dispatch, judged::Verdicts,
+    partial,
 };
 
 /// A case whose variants are the ways in which a run can end.
@@ -55,7 +59,7 @@ impl Case for Staged {
 
     fn variants(&self) -> Vec<Variant> {
         let variant = |name| Variant { name, about: "as it says" };
-        ["right", "wrong", "diverging", "panicking"].map(variant).to_vec()
+        ["right", "wrong", "diverging", "panicking", "stopping"].map(variant).to_vec()
     }
 
     fn fields(&self) -> &'static [Field] {
@@ -77,6 +81,9 @@ impl Case for Staged {
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
         assert!(spec.variant != "panicking", "staged panic");
+        if spec.variant == "stopping" && !context.only_estimate {
+            STOP.store(STOPS.swap(false, Ordering::Relaxed), Ordering::Relaxed);
+        }
         let mut record = Record::new(self.name, &spec.variant, spec.settings.clone(), 1);
         if context.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             record.status = Status::Interrupted { step: 64, time: 0.1 };
@@ -100,6 +107,21 @@ impl Case for Staged {
         self.planned.iter().map(planned).collect()
     }
 
+    fn declaration(&self, _: Tier) -> Declaration {
+        let run = || case::spec(self, "right", &["re=1".to_string()]).expect("staged settings");
+        let card = || Card {
+            title: "Main",
+            picture: ("none", 0),
+            error: "made up".into(),
+            metric: ERROR.into(),
+            runs: vec![run()],
+            against: "nothing",
+            uncertainty: None,
+            reach: ("re", "", ""),
+        };
+        Declaration { card: (self.name == "main").then(card), ..Declaration::default() }
+    }
+
     fn studies(&self, _: Tier, runs: &Runs) -> Vec<Study> {
         let count = runs.all().len() as f64;
         let id = format!("{}-count", self.name);
@@ -119,9 +141,14 @@ static RIGHT: Staged = Staged { name: "right", planned: &["right"] };
 static WRONG: Staged = Staged { name: "wrong", planned: &["right", "wrong"] };
 static PANICKING: Staged = Staged { name: "panicking", planned: &["right", "panicking"] };
 static DIVERGING: Staged = Staged { name: "diverging", planned: &["diverging"] };
+static MAIN: Staged = Staged { name: "main", planned: &["right"] };
+static STOPPING: Staged = Staged { name: "stopping", planned: &["stopping"] };
 static ALL: [&dyn Case; 4] = [&RIGHT, &WRONG, &PANICKING, &DIVERGING];
 static SOUND: [&dyn Case; 2] = [&RIGHT, &WRONG];
 static NEVER: AtomicBool = AtomicBool::new(false);
+/// A run of `stopping` sets the first if the second is set.
+static STOP: AtomicBool = AtomicBool::new(false);
+static STOPS: AtomicBool = AtomicBool::new(true);
 static ALREADY: AtomicBool = AtomicBool::new(true);
 
 /// Runs a command line on these cases; `OUT` in it is the folder `out`.
@@ -219,6 +246,61 @@ fn a_report_is_whole_and_explain_reads_it() {
         let line = format!("explain {gate} --reports OUT");
         assert_eq!(in_folder(&line), expected, "{gate}");
     }
+}
+
+/// A page without the time at which it was made.
+fn undated(page: &str) -> String {
+    let (before, rest) = page.split_once("Quick tier, ").expect("a tier");
+    format!("{before}{}", rest.split_once(" UTC").expect("a time").1)
+}
+
+/// The page was there after the last run only, more than a minute after the first case was complete. Here the
+/// case that has a card is planned last, and a run of another one stops the program.
+#[test]
+fn the_page_is_there_when_one_case_is_complete_and_ends_as_it_would_have_without() {
+    static CASES: [&dyn Case; 3] = [&STOPPING, &WRONG, &MAIN];
+    let folder = tempfile::tempdir().expect("a folder");
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
+    let line = "report --out OUT --threads 1";
+    assert_eq!(run_on(&CASES, &STOP, line, folder.path()), Exit::Interrupted);
+    let early = read("index.html");
+    check_page(&early).expect("a page that opens");
+    let words = "Not complete when this page was written:</strong> 1 of 3 cases complete; 3 runs without a \
+                 record: 3 missing. Still to come: stopping, wrong.";
+    assert!(early.contains(words), "{early}");
+    let verdicts: Verdicts = serde_json::from_str(&read("verdicts.json")).expect("verdicts");
+    assert_eq!(verdicts.counts.into_iter().collect::<Vec<_>>(), [("pass".to_string(), 2)]);
+    std::fs::remove_dir_all(folder.path().join("records")).expect("removed");
+    STOP.store(false, Ordering::Relaxed);
+    assert_eq!(run_on(&CASES, &STOP, line, folder.path()), Exit::GateFailed);
+    let expected = page::assemble(&judged(&CASES), "of old UTC").html();
+    assert_eq!(undated(&read("index.html")), undated(&expected));
+}
+
+/// A case whose run diverges or fails is complete when all its runs have ended.
+#[test]
+fn a_run_that_fails_keeps_no_case_from_being_shown() {
+    static CASES: [&dyn Case; 3] = [&DIVERGING, &PANICKING, &MAIN];
+    let folder = tempfile::tempdir().expect("a folder");
+    let world = World { cases: &CASES, sources, references: Vec::new, interrupt: &NEVER };
+    let (plans, store) = (suite::plans(&CASES, Tier::Quick), Store::open(folder.path()));
+    let (store, told) = (store.expect("a store"), Mutex::new(Vec::new()));
+    let early = |made: Made| {
+        let (_, words) = partial::of_made(plans.clone(), Tier::Quick, folder.path(), made);
+        told.lock().expect("sound").push(words);
+        None
+    };
+    let making = Making { store: Some(&store), ..world.making(Tier::Quick) };
+    let jobs = make::jobs(plans.clone());
+    let made = world.make(&jobs, making, Some(1), Some(&early)).expect("made");
+    assert_eq!((made.records.len(), made.failed.len()), (3, 1));
+    let expected = [
+        ("1 of 3 cases complete; 3 runs without a record: 3 missing", "diverging, panicking"),
+        ("2 of 3 cases complete; 2 runs without a record: 2 missing", "panicking"),
+        ("2 of 3 cases complete; 1 run without a record: 1 failed", "panicking"),
+    ];
+    let expected = expected.map(|(words, names)| Some([words, names].map(String::from)));
+    assert_eq!(told.into_inner().expect("sound"), expected);
 }
 
 /// The runs took minutes: whoever wants them has them.
@@ -552,7 +634,6 @@ fn limitations_are_listed_by_cause_those_of_most_gates_first() {
     let causes = [("One.", "Mend one."), ("Two.", "Mend two.")];
     let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend));
     let all = [limited("a", &one), limited("b", &two), limited("c", &two)];
-    let all: Vec<super::judged::Judged> = all.iter().map(Into::into).collect();
     let status = super::arguments::Status::Limitation;
     let text = super::explain::listed(all.iter().collect(), status);
     let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));

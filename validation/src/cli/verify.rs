@@ -14,7 +14,7 @@ use harness::{
 use validation::peers;
 
 use super::{
-    Exit, Failure, Outcome, World, arguments, export,
+    Early, Exit, Failure, Outcome, World, arguments, export,
     judged::{self, Verdicts},
     output,
     summary::summary,
@@ -24,7 +24,8 @@ use super::{
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
     let arguments::Verify { of, store, reuse, threads } = arguments;
     show(of, world, |cases| {
-        run(cases, of.tier.into(), &Store::open(store)?, *reuse, *threads, world)
+        let plans = plans(cases, of.tier.into(), world)?;
+        run(plans, of.tier.into(), &Store::open(store)?, *reuse, *threads, None, world)
     })
 }
 
@@ -77,21 +78,26 @@ pub fn exit(suite: &Suite) -> Exit {
     trouble(&suite.made).unwrap_or(verdict)
 }
 
+/// The plans of cases whose references are sound.
+pub fn plans(cases: &[&'static dyn Case], tier: Tier, world: &World) -> Result<Plans, Failure> {
+    world.check_references(cases)?;
+    Ok(suite::plans(cases, tier))
+}
+
 /// Makes what the store lacks, on a pool, with a bar, and refuses to judge what was interrupted.
 pub fn run(
-    cases: &[&'static dyn Case],
+    plans: Plans,
     tier: Tier,
     store: &Store,
     reuse: arguments::Reuse,
     threads: Option<u16>,
+    early: Option<&Early>,
     world: &World,
 ) -> Result<Suite, Failure> {
-    world.check_references(cases)?;
-    let plans = suite::plans(cases, tier);
     let jobs = make::jobs(plans.clone());
     let arguments::Reuse { any_build: reuse_other, fresh } = reuse;
     let making = Making { store: Some(store), reuse_other, fresh, ..world.making(tier) };
-    let mut made = world.make(&jobs, making, threads)?;
+    let mut made = world.make(&jobs, making, threads, early)?;
     if made.interrupted {
         let (kept, all) = (made.records.len() - made.not_kept.len(), jobs.len());
         return Err(Failure::interrupted(match fresh {
@@ -135,11 +141,10 @@ pub fn stored(
     any_build: bool,
     world: &World,
 ) -> Result<(Plans, Stored), Failure> {
-    world.check_references(cases)?;
+    let plans = plans(cases, tier, world)?;
     if !path.is_dir() {
         return Err(Failure::usage(format!("the store {} does not exist", path.display())));
     }
-    let plans = suite::plans(cases, tier);
     let mut stored = world.stored(&plans, &Store::to_read(path), any_build);
     if stored.made.interrupted {
         let words = "nothing is judged; the same command reads the store from its beginning";

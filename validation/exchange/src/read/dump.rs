@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
+use super::{COLUMNS, MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
 use crate::flaw::Flaw;
 
 /// Names of LAMMPS that need no `--map`. Its numbers of atoms begin at 1, ours at 0.
@@ -54,7 +54,7 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
                     return Err(flaw(line, what.into()));
                 };
                 let heads: Vec<&str> = item.split_whitespace().skip(1).collect();
-                let places = places(file, line as u64 + 1, &heads, &renamed, &["t"])?;
+                let places = places(file, line as u64 + 1, &heads, &renamed, &COLUMNS, &["t"])?;
                 let Some(atoms) = count.take() else {
                     return Err(flaw(
                         line,

@@ -3,6 +3,7 @@
 
 #[cfg(any(feature = "npz", feature = "vtk"))]
 mod binary;
+pub mod curve;
 mod dump;
 #[cfg(feature = "hdf5")]
 mod hdf5;
@@ -32,8 +33,11 @@ const MOST_ROWS: usize = 3_000_000;
 /// Flaws that are told of one file.
 const MOST_FLAWS: usize = 20;
 
-/// The columns of results: name, unit, and whether results may lack it.
-pub const COLUMNS: [(&str, &str, bool); 9] = [
+/// A column: name, unit, and whether results may lack it.
+pub type Head = (&'static str, &'static str, bool);
+
+/// The columns of results.
+pub const COLUMNS: [Head; 9] = [
     ("t", "s", false),
     ("id", "-", false),
     ("x", "m", false),
@@ -148,7 +152,7 @@ fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<F
     let unread = |reason: std::io::Error| vec![Flaw::of(name, format!("cannot be read: {reason}"))];
     let text = || files::read_text(&path, MOST_BYTES).map_err(unread);
     match ending(name) {
-        "csv" => Ok(vec![table::rows(name, &text()?, renamed)?]),
+        "csv" => Ok(vec![table::rows(name, &text()?, renamed, &COLUMNS)?]),
         "dump" => dump::rows(name, &text()?, renamed),
         #[cfg(feature = "vtk")]
         "vtu" | "vtp" => Ok(vec![vtk::rows(name, &text()?, renamed)?]),
@@ -164,13 +168,17 @@ fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<F
 }
 
 /// The name of ours that a column has, and the unit that it states.
-fn ours<'a>(head: &'a str, renamed: &'a Renamed) -> (Option<&'static str>, Option<&'a str>) {
+fn ours<'a>(
+    head: &'a str,
+    renamed: &'a Renamed,
+    columns: &[Head],
+) -> (Option<&'static str>, Option<&'a str>) {
     let (name, unit) = match head.trim().split_once('[') {
         Some((name, unit)) => (name.trim(), Some(unit.trim_end().trim_end_matches(']'))),
         None => (head.trim(), None),
     };
     let name = renamed.get(name).map_or(name, String::as_str);
-    (COLUMNS.iter().map(|(ours, ..)| *ours).find(|ours| *ours == name), unit)
+    (columns.iter().map(|(ours, ..)| *ours).find(|ours| *ours == name), unit)
 }
 
 /// Where each column of ours is among these heads.
@@ -182,15 +190,16 @@ fn places(
     line: u64,
     heads: &[&str],
     renamed: &Renamed,
+    columns: &[Head],
     given: &[&str],
 ) -> Result<Vec<(&'static str, usize)>, Vec<Flaw>> {
     let (mut found, mut flaws) = (Vec::<(&'static str, usize)>::new(), Vec::new());
     for (place, head) in heads.iter().enumerate() {
-        let (Some(name), unit) = ours(head, renamed) else { continue };
+        let (Some(name), unit) = ours(head, renamed, columns) else { continue };
         if given.contains(&name) {
             continue; // the file states it elsewhere
         }
-        let expected = COLUMNS.iter().find(|(ours, ..)| *ours == name).map_or("-", |c| c.1);
+        let expected = columns.iter().find(|(ours, ..)| *ours == name).map_or("-", |c| c.1);
         if let Some(unit) = unit.filter(|unit| *unit != expected) {
             let what = format!("its unit is {unit}; expected {expected}");
             flaws.push(Flaw::of(file, what).at(line).in_column(name));
@@ -200,7 +209,7 @@ fn places(
         }
         found.push((name, place));
     }
-    for (name, unit, may_lack) in COLUMNS {
+    for (name, unit, may_lack) in columns.iter().copied() {
         let is_there = given.contains(&name) || found.iter().any(|(known, _)| *known == name);
         if !is_there && !may_lack {
             let what = format!(
@@ -224,7 +233,7 @@ fn of_arrays(
 ) -> Result<Rows, Vec<Flaw>> {
     let flaw = |name: &str, what: String| vec![Flaw::of(file, what).in_column(name)];
     let mut columns = BTreeMap::new();
-    for (name, place) in places(file, 1, heads, renamed, &[])? {
+    for (name, place) in places(file, 1, heads, renamed, &COLUMNS, &[])? {
         columns.insert(name, array(place).map_err(|what| flaw(name, what))?);
     }
     let rows = columns.get("x").map_or(0, Vec::len);

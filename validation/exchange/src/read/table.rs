@@ -2,10 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::{MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
+use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
 use crate::flaw::Flaw;
 
-pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
+pub fn rows(
+    file: &str,
+    text: &str,
+    renamed: &Renamed,
+    columns: &[Head],
+) -> Result<Rows, Vec<Flaw>> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let unread = |error: csv::Error| {
         let line = error.position().map_or(1, csv::Position::line);
@@ -14,7 +19,7 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>
     let heads = reader.headers().map_err(unread)?.clone();
     // Of a byte order mark, which some programs put before a table, nothing is said.
     let heads: Vec<&str> = heads.iter().map(|head| head.trim_start_matches('\u{feff}')).collect();
-    let places = places(file, 1, &heads, renamed, &[])?;
+    let places = places(file, 1, &heads, renamed, columns, &[])?;
     let mut columns: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
     let mut flaws = Vec::new();
     for record in reader.records() {
@@ -29,7 +34,7 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>
             });
             columns.entry(name).or_default().push(value);
         }
-        if columns.get("x").map_or(0, Vec::len) > MOST_ROWS {
+        if columns.values().any(|column| column.len() > MOST_ROWS) {
             return Err(vec![too_many(file)]);
         }
         if flaws.len() >= MOST_FLAWS {

@@ -3,7 +3,7 @@
 
 use super::{
     Channel, ChannelSettings, Flow, limits, maps,
-    measure::{L2, profile_at},
+    measure::{L2, L2_WORST, LINF, NU_EFF, SHEAR_LOWER, SHEAR_UPPER, profile_at},
     plan::{self, PEERS_RE, ladder},
     runs::{ChannelTable, For},
     sensitivity,
@@ -17,11 +17,13 @@ use base::{
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
-        Ladder, OrderGate, Peer,
+        Accuracy, Budget, Budgets, Card, Change, Curve, CurveOf, CurvePanel, Curves, Declaration,
+        ErrorOf, Ladder, OrderGate, Peer,
     },
 };
+use nalgebra::Vector2;
 use report::Axis;
+use serde_json::Value;
 
 /// What a flow declares.
 pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
@@ -41,7 +43,25 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
         limits: Some(limits::limits(channel, tier)),
         maps,
         sensitivity: Some(sensitivity::sensitivity(channel, tier)),
+        curve: Some(profile()),
         ..Declaration::default()
+    }
+}
+
+/// The velocities of rows across the channel: each row of particles stands for one.
+fn profile() -> Curve {
+    let rows = |settings: &Value| settings["rows"].as_u64().unwrap_or_default() as usize;
+    Curve {
+        columns: [("y", "m"), ("u", "m/s")],
+        rows,
+        place: |settings, at, start| {
+            let width = settings["width"].as_f64().unwrap_or(f64::NAN);
+            let row = (start.y / width * at.len() as f64) as usize;
+            let [y, u] = at[row.min(at.len() - 1)];
+            [Vector2::new(start.x, y), Vector2::new(u, 0.0)]
+        },
+        metrics: vec![L2, LINF, SHEAR_LOWER, SHEAR_UPPER, NU_EFF, L2_WORST],
+        shown: ("u@", &["y", "u", "u_exact"]),
     }
 }
 

@@ -11,7 +11,7 @@ use base::{
 };
 use harness::{
     case::Tier,
-    declare::{CurveOf, CurvePanel, Curves, Declaration, Sensitivity, Watched},
+    declare::{Curve, CurveOf, CurvePanel, Curves, Declaration, Sensitivity, Watched},
     table::{Row, Table},
 };
 
@@ -118,7 +118,24 @@ pub fn declaration(tier: Tier) -> Declaration {
     let run = CANTILEVER.spec(LAGRANGIAN, |s| s.n = 5);
     let sensitivity = Sensitivity::new(CANTILEVER.name, tier, [run], constants.map(Watched::new));
     let sensitivity = (tier == Tier::Full).then_some(sensitivity);
-    Declaration { curves, sensitivity, stepwise: STEPWISE, ..Declaration::default() }
+    let (stepwise, of_methods) = (STEPWISE, OF_METHODS);
+    let curve = Some(path_of_end());
+    Declaration { curves, sensitivity, stepwise, of_methods, curve, ..Declaration::default() }
+}
+
+/// The path of the end: a bar of uniform strain, whose end is there, stands for it.
+fn path_of_end() -> Curve {
+    let compared = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
+    Curve {
+        columns: [("x", "m"), ("y", "m")],
+        rows: |_| 1,
+        place: |settings, at, start| {
+            let length = settings["length"].as_f64().unwrap_or(f64::NAN);
+            [start + Vector2::from(at[0]) * (start.x / length), Vector2::zeros()]
+        },
+        metrics: compared.chain([PATH_RMS]).collect(),
+        shown: ("end", &["t", "x", "y"]),
+    }
 }
 
 /// The path of the end, and the bar when its end is lowest.

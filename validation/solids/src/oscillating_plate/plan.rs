@@ -202,8 +202,9 @@ fn locked(row: &Row<PlateSettings, For>) -> Vec<Gate> {
 /// Order in the full tier; the quick tier has one resolution.
 pub fn declaration(tier: Tier) -> Declaration {
     let (table, limits) = (table(tier), Some(step_limits()));
+    let (stepwise, of_methods) = (STEPWISE, OF_METHODS);
     if tier == Tier::Quick {
-        return Declaration { limits, stepwise: STEPWISE, ..Declaration::default() };
+        return Declaration { limits, stepwise, of_methods, ..Declaration::default() };
     }
     let error = ErrorOf::Metric(PERIOD_ERROR.into());
     let level = |s: &PlateSettings| (1.0 / s.n as f64, format!("{} layers", s.n));
@@ -218,7 +219,8 @@ pub fn declaration(tier: Tier) -> Declaration {
         ladders: ["seed", "bare", PLAIN, LAGRANGIAN].map(ladder).into(),
         ..Accuracy::new("oscillating-plate", error, "difference of the period from finite elements [-]")
     };
-    Declaration { accuracy: vec![accuracy], limits, stepwise: STEPWISE, ..Declaration::default() }
+    let accuracy = vec![accuracy];
+    Declaration { accuracy, limits, stepwise, of_methods, ..Declaration::default() }
 }
 
 /// The largest stable step of the total Lagrangian plate.

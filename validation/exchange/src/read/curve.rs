@@ -1,0 +1,95 @@
+//! Results of a code of which there are no particles: a profile or a series, as the case declares it. The
+//! particles of the problem are put where the case says that they stand for it, and measured as always; what
+//! the curve does not determine is left out of the record by name.
+
+use harness::{
+    declare::Curve,
+    playback::{self, Frame, Placed},
+};
+use nalgebra::Vector2;
+
+use super::{MOST_FLAWS, MOST_ROWS, Renamed, Results, table};
+use crate::{flaw::Flaw, problem::Problem};
+
+/// Name of the table.
+pub const CURVE: &str = "curve.csv";
+
+/// The frames that a table stands for.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn frames(
+    curve: &Curve,
+    text: &str,
+    renamed: &Renamed,
+    problem: &Problem,
+) -> Result<Results, Vec<Flaw>> {
+    let [a, b] = curve.columns;
+    let columns = [("t", "s", false), (a.0, a.1, false), (b.0, b.1, false)];
+    let rows = table::rows(CURVE, text, renamed, &columns)?;
+    let [times, first, second] = columns.map(|(name, ..)| rows.columns.get(name));
+    let (times, first, second) = match (times, first, second) {
+        (Some(times), Some(first), Some(second)) => (times, first, second),
+        _ => return Err(vec![Flaw::of(CURVE, "it has no rows; expected one a point and time")]),
+    };
+    let line = |k: usize| rows.first_line + k as u64;
+    let (settings, mut flaws) = (&problem.spec.settings, Vec::new());
+    for (name, column) in [("t", times), (a.0, first), (b.0, second)] {
+        for (k, value) in column.iter().enumerate().filter(|(_, value)| !value.is_finite()) {
+            let what = format!("it is {value}; expected a finite number");
+            flaws.push(Flaw::of(CURVE, what).at(line(k)).in_column(name));
+        }
+    }
+    let particles = &problem.outline.particles;
+    let (x, y, moving) = (particles.column("x"), particles.column("y"), problem.moving());
+    let (mut results, count, mut k) = (Results::default(), (curve.rows)(settings), 0);
+    while k < times.len() && flaws.len() < MOST_FLAWS {
+        let (time, start) = (times[k], k);
+        k += times[k..].iter().take_while(|t| **t == time).count().max(1);
+        let flaw = |what: String, name: &str| Flaw::of(CURVE, what).at(line(start)).in_column(name);
+        if start > 0 && time < times[start - 1] {
+            let what =
+                format!("it is {time}, after {}; expected rows sorted by t", times[start - 1]);
+            flaws.push(flaw(what, "t"));
+        }
+        if k - start != count {
+            let what = format!("{} rows are at t = {time} s; expected {count}", k - start);
+            flaws.push(flaw(what, "t"));
+        }
+        if let Some(two) = first[start..k].windows(2).position(|two| two[0] >= two[1]) {
+            let what = format!("it is {}; expected it to ascend", first[start + two + 1]);
+            flaws.push(flaw(what, a.0).at(line(start + two + 1)));
+        }
+        if (results.frames.len() + 1) * moving.len() > MOST_ROWS {
+            flaws
+                .push(flaw(format!("expected fewer times: at most {}", results.frames.len()), "t"));
+        }
+        if !flaws.is_empty() || time == 0.0 {
+            continue; // the start is that of the problem
+        }
+        let at: Vec<[f64; 2]> = (start..k).map(|k| [first[k], second[k]]).collect();
+        let placed = |id: &u32| {
+            let from = Vector2::new(x[*id as usize], y[*id as usize]);
+            let [position, velocity] = (curve.place)(settings, &at, from);
+            Placed { id: *id, position, velocity, density: None }
+        };
+        results.frames.push(Frame { time, particles: moving.iter().map(placed).collect() });
+        results.places.push((CURVE.into(), line(start)));
+    }
+    if count == 1 {
+        hold(&mut results, &problem.outline.times);
+    }
+    if flaws.is_empty() { Ok(results) } else { Err(flaws) }
+}
+
+/// A series is sampled at intervals, and its last row counts until the end if that comes before the next one.
+fn hold(results: &mut Results, times: &[f64]) {
+    let end = times.last().copied().unwrap_or_default();
+    if let [.., before, last] = &results.frames[..]
+        && !playback::missing(&results.frames, &[end]).is_empty()
+        && (0.0..last.time - before.time).contains(&(end - last.time))
+    {
+        results.places.extend(results.places.last().cloned());
+        results.frames.push(Frame { time: end, particles: last.particles.clone() });
+    }
+}
