@@ -42,6 +42,7 @@ macro_rules! embedded {
 /// Every package of `references/` with its tables.
 const EMBEDDED: &[Embedded] = embedded! {
     "cantilever": ["series.csv", "summary.csv", "checks.csv"],
+    "cavity": ["lines.csv"],
     "dam_break_vof":
         ["series.csv", "levels.csv", "pressure.csv", "summary.csv", "spread.csv", "checks.csv"],
     "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],

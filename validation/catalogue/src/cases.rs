@@ -3,7 +3,7 @@
 pub use harness::case::find_in;
 use harness::case::{Case, RunError};
 
-use fluids::{couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green};
+use fluids::{cavity, couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green};
 use lattice::{extremes, operators, resting_box, wave};
 use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
 use waters::{dam_break, elliptic_drop, hydrostatic};
@@ -18,6 +18,7 @@ pub const CASES: &[&dyn Case] = &[
     taylor_green::TAYLOR_GREEN,
     taylor_couette::TAYLOR_COUETTE,
     manufactured::MANUFACTURED,
+    cavity::CAVITY,
     &elliptic_drop::ELLIPTIC_DROP,
     &hydrostatic::HYDROSTATIC,
     &elastic_bar::ELASTIC_BAR,
@@ -38,8 +39,9 @@ pub fn find(name: &str) -> Result<&'static dyn Case, RunError> {
 }
 
 /// The references that cases are compared with, and these cases.
-const USERS: [(&str, &[&str]); 10] = [
+const USERS: [(&str, &[&str]); 11] = [
     ("cantilever", &["cantilever"]),
+    ("cavity", &["cavity"]),
     ("dam_break_vof", &["dam_break"]),
     ("dambreak_lobovsky", &["dam_break"]),
     ("dambreak_martin_moyce", &["dam_break"]),
