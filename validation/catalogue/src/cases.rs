@@ -6,7 +6,7 @@ use harness::case::{Case, RunError};
 use fluids::{cavity, couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green};
 use lattice::{extremes, operators, resting_box, wave};
 use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
-use waters::{dam_break, elliptic_drop, hydrostatic};
+use waters::{dam_break, elliptic_drop, hydrostatic, still_wedge};
 
 /// Every case, in the order of the report: the five of the paper, then those that support them.
 pub const CASES: &[&dyn Case] = &[
@@ -21,6 +21,7 @@ pub const CASES: &[&dyn Case] = &[
     cavity::CAVITY,
     &elliptic_drop::ELLIPTIC_DROP,
     &hydrostatic::HYDROSTATIC,
+    &still_wedge::STILL_WEDGE,
     &elastic_bar::ELASTIC_BAR,
     &spinning_disk::SPINNING_DISK,
     &oscillating_plate::OSCILLATING_PLATE,
