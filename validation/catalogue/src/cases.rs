@@ -3,7 +3,9 @@
 pub use harness::case::find_in;
 use harness::case::{Case, RunError};
 
-use fluids::{cavity, couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green};
+use fluids::{
+    cavity, couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green,
+};
 use lattice::{extremes, operators, resting_box, wave};
 use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
 use waters::{dam_break, elliptic_drop, hydrostatic, still_wedge};

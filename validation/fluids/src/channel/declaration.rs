@@ -3,7 +3,7 @@
 
 use super::{
     Channel, ChannelSettings, Flow, limits, maps,
-    measure::{L2, profile_at},
+    measure::{L2, L2_WORST, profile_at},
     plan::{self, PEERS_RE, ladder},
     runs::{ChannelTable, For},
     sensitivity,
@@ -17,8 +17,8 @@ use base::{
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
-        Ladder, OrderGate, Peer,
+        Accuracy, Budget, Budgets, Card, Change, Comparison, CurveOf, CurvePanel, Curves,
+        Declaration, ErrorOf, Ladder, OrderGate, Peer,
     },
 };
 use report::Axis;
@@ -27,6 +27,7 @@ use report::Axis;
 pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
     let table = plan::table(channel, tier);
     let at_half = at_half(channel.flow, &table);
+    let comparisons = comparisons(channel, &at_half);
     let (card, budgets) = (card(channel, &at_half), budgets(channel, &at_half, tier));
     let (mut accuracy, mut maps) = (vec![at_half], Vec::new());
     if channel.flow == Flow::Poiseuille {
@@ -37,12 +38,24 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
         card: Some(card),
         curves: vec![curves(channel)],
         accuracy,
+        comparisons,
         budgets: Some(budgets),
         limits: Some(limits::limits(channel, tier)),
         maps,
         sensitivity: Some(sensitivity::sensitivity(channel, tier)),
         ..Declaration::default()
     }
+}
+
+/// The best variant and the paper's over their ladders.
+fn comparisons(Channel { case, .. }: Channel, accuracy: &Accuracy) -> Vec<Comparison> {
+    let exact = (0.0, "exact: the series has the same inputs, and is summed to round-off");
+    let compared = |ladder: &&Ladder| [case.best.variant, "seed"].contains(&ladder.variant);
+    let of = |ladder| {
+        let what = "velocity from νt/L² = 0.1 on, rms";
+        Comparison::new(what, "the exact series", L2_WORST, ladder, exact)
+    };
+    accuracy.ladders.iter().filter(compared).map(of).collect()
 }
 
 /// What the report says first of the flow.
