@@ -262,8 +262,8 @@ impl Reference {
         Ok(Reference { package, tables })
     }
 
-    /// Value and uncertainty of the row of the table `summary` of a reference that has these texts; NaN if there
-    /// is none, so that nothing follows from it.
+    /// Value and uncertainty of the row of the table `summary` of a reference that has these texts; NaN if
+    /// there is none, so that nothing follows from it.
     pub fn summarised(name: &str, of: &[(&str, &str)]) -> [f64; 2] {
         let read = || -> Result<[f64; 2], ReferenceError> {
             let reference = Self::load(name)?;

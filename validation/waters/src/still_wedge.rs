@@ -31,9 +31,9 @@ crate::water_settings! {
 const NAME: &str = "still_wedge";
 base::metrics! {
     P_L2 = "p_l2" ["rho g H"]
-        "rms over particles of the mean of p - p_exact over the last quarter of the run, eight times a period";
+        "rms over particles of the mean of p - p_exact over the last quarter, eight times a period";
     P_BASE = "p_base" ["rho g H"]
-        "mean over the same times of p - p_exact around a corner at the base of the wedge, with the weights of \
+        "mean over the same times of p - p_exact around a corner of the wedge, with the weights of \
          the kernel: the larger in magnitude of both corners";
     P_APEX = "p_apex" ["rho g H"] "the same around the apex";
     KINETIC = "kinetic" ["M g H"]

@@ -41,7 +41,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     }
 }
 
-/// The best variant and the paper's over their ladders: at Re 10 in the quick tier, where the flow is not yet detached.
+/// The best variant and the paper's over their ladders: at Re 10 in the quick tier, where nothing separates.
 fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes (`references/periodic_hill`)";
     let re = if tier == Tier::Quick { 10.0_f64 } else { 50.0 };

@@ -65,7 +65,7 @@ pub fn declaration(tier: Tier) -> Declaration {
 fn comparisons(tier: Tier) -> Vec<Comparison> {
     const METHOD: &str =
         "computed for the same inputs; u_D: meshes and steps (`references/dam_break_vof`)";
-    const MODEL: &str = "u_input: heights wrong by half of the last digit that the authors state, of a = 2.25 \
+    const MODEL: &str = "u_input: heights wrong by half of the last digit that is stated, of a = 2.25 \
                          inches and of H = 300 mm; u_D: spread of digitised curves, of two series, of two \
                          sensors";
     let table = plan::table(tier);
