@@ -14,7 +14,7 @@ use super::water::{Diffusion, Modern, Seed, WaterMethod, method};
 
 crate::water_settings! {
     /// Settings of still water over a wedge; its depth H is 1 m.
-    pub struct WedgeSettings {
+    pub struct Wedge {
         /// spacings along the depth
         n: usize ["-"] in 8..=1000 = 20,
         /// height of the wedge, which is twice as wide
@@ -36,19 +36,18 @@ base::metrics! {
         "mean over the same times of p - p_exact around a corner of the wedge, with the weights of \
          the kernel: the larger in magnitude of both corners";
     P_APEX = "p_apex" ["rho g H"] "the same around the apex";
-    KINETIC = "kinetic" ["M g H"]
-        "largest sum m v^2/2 at the same times";
+    KINETIC = "kinetic" ["M g H"] "largest sum m v^2/2 at the same times";
     OUTSIDE = "outside" ["-"] "particles inside of the wedge or beyond floor or sides at the end";
 }
 
-fn variants() -> Vec<Composition<WedgeSettings>> {
+fn variants() -> Vec<Composition<Wedge>> {
     let seed = "the paper's: interface and wall particles, XSPH, artificial viscosity and stress";
     let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
                   pressure: do they bear water at corners too?";
     let interface =
         "modern with interface and wall particles: are the paper's walls enough for it?";
     type Interface = Modern<(Continuity, Diffusion), InterfaceWall>;
-    fn rule(s: &mut WedgeSettings) {
+    fn rule(s: &mut Wedge) {
         (s.alpha, s.courant) = (0.02, 0.8);
     }
     Variants::of(&Program { run, rules: |m, s| Ok(scene(s, m, &Context::of_rules())?.1) })
@@ -59,7 +58,7 @@ fn variants() -> Vec<Composition<WedgeSettings>> {
 }
 
 /// Still water over a wedge.
-pub static STILL_WEDGE: Composed<WedgeSettings> = Composed {
+pub static STILL_WEDGE: Composed<Wedge> = Composed {
     name: NAME,
     problem: "Water at rest over a wedge in a tank",
     best: Best {
@@ -79,29 +78,23 @@ pub static STILL_WEDGE: Composed<WedgeSettings> = Composed {
 
 /// Half of the width of the tank \[H\].
 const HALF: f64 = 1.0;
-/// Height of the tank \[H\].
-const RIM: f64 = 1.2;
 
 /// Height of the floor \[m\].
-fn floor(s: &WedgeSettings, x: f64) -> f64 {
+fn floor(s: &Wedge, x: f64) -> f64 {
     (s.apex - (x - HALF).abs()).max(0.0)
 }
 
 /// The medium and the rules.
-fn scene(
-    s: &WedgeSettings,
-    method: &WaterMethod,
-    context: &Context,
-) -> Result<(Medium, Rules), RunError> {
+fn scene(s: &Wedge, m: &WaterMethod, context: &Context) -> Result<(Medium, Rules), RunError> {
     let (dx, fall) = (1.0 / s.n as f64, s.gravity.sqrt());
     let end = s.end * 4.0 / (s.c0 * fall);
-    let (medium, rules) = s.medium(method, [dx, s.c0 * fall, s.gravity, 0.0, end]);
+    let (medium, rules) = s.medium(m, [dx, s.c0 * fall, s.gravity, 0.0, end]);
     let particles = 2.0 * HALF / (dx * dx);
-    simulate::check(method, &medium, &rules, particles, "end, courant, c0 or n", context)?;
+    simulate::check(m, &medium, &rules, particles, "end, courant, c0 or n", context)?;
     Ok((medium, rules))
 }
 
-fn exact(s: &WedgeSettings, medium: &Medium) -> exact::Hydrostatic {
+fn exact(s: &Wedge, medium: &Medium) -> exact::Hydrostatic {
     exact::Hydrostatic {
         density: s.rho,
         sound_speed: medium.eos.sound_speed,
@@ -112,10 +105,10 @@ fn exact(s: &WedgeSettings, medium: &Medium) -> exact::Hydrostatic {
 
 /// A row at a depth behind sides, floor and wedge \[m\]: a particle on each vertex, and others between, about
 /// dx apart; places with their spacing.
-fn row(s: &WedgeSettings, depth: f64, dx: f64) -> Vec<(Vector2<f64>, f64)> {
+fn row(s: &Wedge, depth: f64, dx: f64) -> Vec<(Vector2<f64>, f64)> {
     let (left, right) = (HALF - s.apex, HALF + s.apex);
     let wedge = [(left, 0.0), (HALF, s.apex), (right, 0.0)];
-    let tank = [[(0.0, RIM), (0.0, 0.0)], [(2.0 * HALF, 0.0), (2.0 * HALF, RIM)]];
+    let tank = [[(0.0, 1.2), (0.0, 0.0)], [(2.0 * HALF, 0.0), (2.0 * HALF, 1.2)]];
     let wedge = wedge.into_iter().filter(|_| s.apex > 0.0);
     let vertices: Vec<Vector2<f64>> =
         tank[0].into_iter().chain(wedge).chain(tank[1]).map(|(x, y)| Vector2::new(x, y)).collect();
@@ -140,7 +133,7 @@ fn row(s: &WedgeSettings, depth: f64, dx: f64) -> Vec<(Vector2<f64>, f64)> {
 }
 
 /// Water in columns that fill the tank up to y = H, with the exact density of their places, and its walls.
-fn particles(s: &WedgeSettings, method: &WaterMethod, medium: &Medium) -> Vec<Particle> {
+fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Vec<Particle> {
     let (dx, exact) = (medium.dx, exact(s, medium));
     let (first, behind) = (method.first_row.fluid(), method.first_row.depth());
     let at_rest = |place: Vector2<f64>, volume: f64| {
@@ -170,7 +163,7 @@ fn particles(s: &WedgeSettings, method: &WaterMethod, medium: &Medium) -> Vec<Pa
 /// What is measured over the last quarter of the run. The start is not quite at rest, and what sound is left
 /// must not be taken for a pressure: means over periods hide it, and the kinetic energy shows it.
 struct Moments<'a> {
-    settings: &'a WedgeSettings,
+    settings: &'a Wedge,
     medium: &'a Medium,
     samples: f64,
     /// Sums of the errors of the pressure at the corners of the base and at the apex, and of every particle
@@ -189,7 +182,7 @@ harness::observed! {
 const SAMPLES: f64 = 8.0;
 
 /// p − p_exact at the place of a particle \[ρ g H\].
-fn error(s: &WedgeSettings, medium: &Medium, p: &Particle) -> f64 {
+fn error(s: &Wedge, medium: &Medium, p: &Particle) -> f64 {
     let exact = exact(s, medium).pressure(1.0 - p.position.y);
     (medium.eos.pressure(p.density) - exact) / (s.rho * s.gravity)
 }
@@ -229,17 +222,12 @@ impl Moments<'_> {
     }
 }
 
-fn run(
-    method: &WaterMethod,
-    variant: &str,
-    s: &WedgeSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let (medium, rules) = scene(s, method, context)?;
-    let parts = Parts::new(medium, Domain::open(), particles(s, method, &medium), context);
-    let mut simulation = (method.build)(parts)?;
+fn run(m: &WaterMethod, variant: &str, s: &Wedge, context: &Context) -> Result<Record, RunError> {
+    let (medium, rules) = scene(s, m, context)?;
+    let parts = Parts::new(medium, Domain::open(), particles(s, m, &medium), context);
+    let mut simulation = (m.build)(parts)?;
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
+    let mut record = simulate::begin((NAME, variant), s, m, &numbers, context);
     let count = (0.25 * SAMPLES * s.end).ceil().max(1.0);
     let times = (1..=count as usize).map(|k| rules.end * (0.75 + 0.25 * k as f64 / count));
     let times: Vec<f64> = times.collect();
@@ -262,10 +250,8 @@ fn run(
 
 fn measure(moments: &Moments, all: &[Particle], is_kept: bool, record: &mut Record) {
     let (s, water) = (moments.settings, all.iter().filter(|p| p.role == Role::Fluid));
-    let is_outside = |p: &&Particle| {
-        let x = p.position;
-        x.x < 0.0 || x.x > 2.0 * HALF || x.y < floor(s, x.x)
-    };
+    let is_outside =
+        |p: &&Particle| (p.position.x - HALF).abs() > HALF || p.position.y < floor(s, p.position.x);
     record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
     if is_kept {
         let places = water.map(|p| (p.position.x, p.position.y));
@@ -276,7 +262,7 @@ fn measure(moments: &Moments, all: &[Particle], is_kept: bool, record: &mut Reco
     }
 }
 
-fn table(tier: Tier) -> table::Table<WedgeSettings, ()> {
+fn table(tier: Tier) -> table::Table<Wedge, ()> {
     let mut table = table::Table::new(&STILL_WEDGE, tier);
     let depths: [&[usize]; 2] = [&[10, 14, 20], &[10, 14, 20, 28, 40]];
     table.over((), &["seed", "modern", "modern-interface"], depths, |s, n| s.n = n);
@@ -297,7 +283,7 @@ static UNWEIGHED: Cause = Cause::new(
     "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
 );
 
-fn gates(row: &table::Row<WedgeSettings, ()>) -> Vec<Gate> {
+fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
     let (variant, dx) = (row.variant, 1.0 / row.settings.n as f64);
     let run = format!("{variant}.{}", row.settings.n);
     let of =
@@ -327,7 +313,7 @@ fn gates(row: &table::Row<WedgeSettings, ()>) -> Vec<Gate> {
 
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
-    let level = |s: &WedgeSettings| (1.0 / s.n as f64, format!("{} spacings deep", s.n));
+    let level = |s: &Wedge| (1.0 / s.n as f64, format!("{} spacings deep", s.n));
     let ladder = |variant| table.ladder(&[()], variant, level);
     let accuracy = Accuracy {
         about: "Water at rest over a wedge, mean over the last five of 20 acoustic periods.".into(),

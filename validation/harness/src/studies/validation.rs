@@ -103,8 +103,9 @@ impl Found {
 }
 
 /// u_num of the finest of some levels, coarse to fine, and how it was found. Where one order describes all
-/// errors, or the last three approach a limit, it is the grid convergence index of the two finest with that order, as
-/// a standard uncertainty; else half of the range of the last three, or the distance of the only two.
+/// errors, or the last three approach a limit, it is the grid convergence index of the two finest with that
+/// order, as a standard uncertainty; else half of the range of the last three, or the distance of the only
+/// two.
 pub fn numerical(levels: &[Level]) -> (f64, String) {
     let finest = &levels[levels.len().saturating_sub(3)..];
     let range = finest.iter().map(|level| level.value);
