@@ -141,7 +141,7 @@ fn last_number(text: &str) -> Option<(f64, f64)> {
 }
 
 /// The numbers that a comment behind a number in a document stands for: `<!-- snapshot; run; metric -->` a
-/// result, `<!-- gate NAME -->` the ends of a bound, `<!-- u_val snapshot; run|run|run; metric; u_D -->` the
+/// result, `<!-- gate NAME -->` the ends of a bound, `<!-- u_val snapshot; run, run, run; metric; u_D -->` the
 /// uncertainty of a ladder, coarse to fine, whose resolution comes first in the name of a run; `None` of any
 /// other comment.
 fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
@@ -171,7 +171,7 @@ fn uncertainty(comment: &str) -> Option<f64> {
         let value = snapshot[run]["metrics"][metric].as_f64()?;
         Some(Level { spacing: 1.0 / resolution, value })
     };
-    let levels: Vec<Level> = runs.split('|').map(level).collect::<Option<_>>()?;
+    let levels: Vec<Level> = runs.split(", ").map(level).collect::<Option<_>>()?;
     let reference: f64 = reference.parse().ok()?;
     Some((numerical(&levels).0.powi(2) + reference * reference).sqrt())
 }
@@ -310,6 +310,6 @@ fn faults_of_a_document_are_seen() {
     assert_eq!(sources("couette.plain; rows=20; none", &gates), Some(Vec::new()));
     assert_eq!(sources("a remark", &gates), None);
     let of = |runs: &str| uncertainty(&format!("couette.modern; {runs}; l2_worst; 0"));
-    assert!(of("rows=10|rows=14|rows=20").is_some_and(|found| found > 1e-4));
-    assert_eq!(of("rows=10|rows=15|rows=20"), None, "a missing run is a fault");
+    assert!(of("rows=10, rows=14, rows=20").is_some_and(|found| found > 1e-4));
+    assert_eq!(of("rows=10, rows=15, rows=20"), None, "a missing run is a fault");
 }

@@ -278,8 +278,8 @@ fn table(tier: Tier) -> table::Table<Wedge, ()> {
 
 /// Why walls of particles whose density follows (3) do not bear what is above them.
 static UNWEIGHED: Cause = Cause::new(
-    "The density of interface and wall particles follows (3) and knows no weight: where water settles at a \
-     slope or in a corner, the wall presses with what the way there has left.",
+    "The density of interface and wall particles follows (3) and knows no weight, so that a wall that is too \
+     light stays so.",
     "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
 );
 
