@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use base::gate::{Bound, Gate, Purpose};
-use harness::{case::Tier, plan};
+use harness::{case::Tier, convergence::Level, plan, studies::validation::numerical};
 use serde_json::Value;
 use touchstone_tests::snapshot;
 use validation::cases;
@@ -141,11 +141,16 @@ fn last_number(text: &str) -> Option<(f64, f64)> {
 }
 
 /// The numbers that a comment behind a number in a document stands for: `<!-- snapshot; run; metric -->` a
-/// result, `<!-- gate NAME -->` the ends of a bound; `None` of any other comment.
+/// result, `<!-- gate NAME -->` the ends of a bound, `<!-- u_val snapshot; run, run, run; metric; u_D -->` the
+/// uncertainty of a ladder, coarse to fine, whose resolution comes first in the name of a run; `None` of any
+/// other comment.
 fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
     if let Some(name) = comment.strip_prefix("gate ") {
         let gate = gates.iter().find(|gate| gate.id == name);
         return Some(gate.map(ends).unwrap_or_default());
+    }
+    if let Some(ladder) = comment.strip_prefix("u_val ") {
+        return Some(uncertainty(ladder).into_iter().collect());
     }
     let [name, run, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
     // Metrics are in the snapshot of the variant, steps and pair interactions in that of its work.
@@ -153,6 +158,22 @@ fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
     let [results, work] = [results.unwrap_or_default(), work.unwrap_or_default()];
     let value = [&results[run]["metrics"][metric], &work[run][metric]];
     Some(value.into_iter().filter_map(Value::as_f64).collect())
+}
+
+/// u_val of the ladder and the u_D that a comment names.
+fn uncertainty(comment: &str) -> Option<f64> {
+    let [name, runs, metric, reference] = comment.split("; ").collect::<Vec<_>>()[..] else {
+        return None;
+    };
+    let snapshot = snapshot(name)?;
+    let level = |run: &str| {
+        let resolution: f64 = run.split(['=', ' ']).nth(1)?.parse().ok()?;
+        let value = snapshot[run]["metrics"][metric].as_f64()?;
+        Some(Level { spacing: 1.0 / resolution, value })
+    };
+    let levels: Vec<Level> = runs.split(", ").map(level).collect::<Option<_>>()?;
+    let reference: f64 = reference.parse().ok()?;
+    Some((numerical(&levels).0.powi(2) + reference * reference).sqrt())
 }
 
 /// The ends of the bound of a gate and of that of its limitation.
@@ -288,4 +309,7 @@ fn faults_of_a_document_are_seen() {
     assert_eq!(sources("gate none", &gates), Some(Vec::new()), "a missing gate is a fault");
     assert_eq!(sources("couette.plain; rows=20; none", &gates), Some(Vec::new()));
     assert_eq!(sources("a remark", &gates), None);
+    let of = |runs: &str| uncertainty(&format!("couette.modern; {runs}; l2_worst; 0"));
+    assert!(of("rows=10, rows=14, rows=20").is_some_and(|found| found > 1e-4));
+    assert_eq!(of("rows=10, rows=15, rows=20"), None, "a missing run is a fault");
 }

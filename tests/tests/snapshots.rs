@@ -129,6 +129,7 @@ fn kept(case: &str) -> Vec<Kept> {
         "taylor_couette" => vec![(vec!["extrapolating-wall", "interface-wall"], vec!["layers=8"])],
         "taylor_green" => vec![(vec!["consistent"], vec!["n=32 perturb=0"])],
         "periodic_hill" => vec![(vec!["carried"], vec!["n=10 end=30"])],
+        "cavity" => vec![(vec!["carried", "consistent"], vec!["n=12", "n=16"])],
         _ => [kept_solid(case), kept_water(case)].concat(),
     }
 }
@@ -151,8 +152,12 @@ fn kept_water(case: &str) -> Vec<Kept> {
             (vec!["modern"], vec!["compressibility=0.1", "compressibility=1e-4"]),
         ],
         "elliptic_drop" => vec![(vec!["seed", "plain", "modern"], vec!["n=20"])],
+        "still_wedge" => vec![(vec!["modern", "modern-interface"], vec!["n=10", "n=14"])],
         "dam_break" => {
-            vec![(vec!["seed", "modern"], vec!["n=20"]), (vec!["modern"], vec![LOBOVSKY])]
+            vec![
+                (vec!["seed", "modern"], vec!["n=20"]),
+                (vec!["modern"], vec!["n=10", "n=14", LOBOVSKY]),
+            ]
         }
         _ => Vec::new(),
     }
@@ -443,6 +448,21 @@ fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
             vec![("radial_rms", Bound::Below(0.01), around)]
         }
         "taylor_green" => bounds_of_vortices(),
+        "cavity" => {
+            let wall =
+                "a wall that is half of a spacing away from its place, at 12 spacings a side";
+            ["u_rms", "v_rms", "u_ghia", "v_ghia"]
+                .map(|name| (name, Bound::Below(0.5 / 12.0), wall))
+                .into()
+        }
+        "still_wedge" => {
+            let row = "the weight of one row of ten";
+            vec![
+                ("p_l2", Bound::Below(0.1), row),
+                ("p_apex", Bound::Within(-0.1, 0.1), row),
+                ("kinetic", Bound::Below(1e-4), "raises the surface by a tenth of a spacing"),
+            ]
+        }
         "periodic_hill" => bounds_of_hills(),
         "elliptic_drop" | "dam_break" => bounds_of_water(case),
         _ => vec![
@@ -561,6 +581,7 @@ fn the_plate_is_as_it_was() {
 #[test]
 fn water_at_rest_is_as_it_was() {
     check("hydrostatic");
+    check("still_wedge");
 }
 
 #[test]
@@ -586,6 +607,7 @@ fn rings_are_as_they_were() {
 #[test]
 fn curved_walls_are_as_they_were() {
     check("taylor_couette");
+    check("cavity");
 }
 
 #[test]

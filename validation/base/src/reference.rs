@@ -239,6 +239,26 @@ impl Reference {
         Ok(Reference { package, tables })
     }
 
+    /// Value and uncertainty of the row of the table `summary` of a reference that has these texts; NaN if
+    /// there is none, so that nothing follows from it.
+    pub fn summarised(name: &str, of: &[(&str, &str)]) -> [f64; 2] {
+        let read = || -> Result<[f64; 2], ReferenceError> {
+            let reference = Self::load(name)?;
+            let summary = reference.table("summary")?;
+            let mut rows: Vec<usize> = (0..summary.len()).collect();
+            for (column, text) in of {
+                let texts = summary.texts(column)?;
+                rows.retain(|row| texts[*row] == *text);
+            }
+            let [values, uncertainties] =
+                ["value", "uncertainty"].map(|column| summary.optional(column));
+            let (values, uncertainties) = (values?, uncertainties?);
+            let row = rows.first().and_then(|row| Some([values[*row]?, uncertainties[*row]?]));
+            Ok(row.unwrap_or([f64::NAN; 2]))
+        };
+        read().unwrap_or([f64::NAN; 2])
+    }
+
     /// A table by name.
     pub fn table(&self, name: &str) -> Result<&Table, ReferenceError> {
         let no_table = || {

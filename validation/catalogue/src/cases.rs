@@ -3,10 +3,12 @@
 pub use harness::case::find_in;
 use harness::case::{Case, RunError};
 
-use fluids::{couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green};
+use fluids::{
+    cavity, couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green,
+};
 use lattice::{extremes, operators, resting_box, wave};
 use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
-use waters::{dam_break, elliptic_drop, hydrostatic};
+use waters::{dam_break, elliptic_drop, hydrostatic, still_wedge};
 
 /// Every case, in the order of the report: the five of the paper, then those that support them.
 pub const CASES: &[&dyn Case] = &[
@@ -18,8 +20,10 @@ pub const CASES: &[&dyn Case] = &[
     taylor_green::TAYLOR_GREEN,
     taylor_couette::TAYLOR_COUETTE,
     manufactured::MANUFACTURED,
+    cavity::CAVITY,
     &elliptic_drop::ELLIPTIC_DROP,
     &hydrostatic::HYDROSTATIC,
+    &still_wedge::STILL_WEDGE,
     &elastic_bar::ELASTIC_BAR,
     &spinning_disk::SPINNING_DISK,
     &oscillating_plate::OSCILLATING_PLATE,
@@ -38,8 +42,9 @@ pub fn find(name: &str) -> Result<&'static dyn Case, RunError> {
 }
 
 /// The references that cases are compared with, and these cases.
-const USERS: [(&str, &[&str]); 10] = [
+const USERS: [(&str, &[&str]); 11] = [
     ("cantilever", &["cantilever"]),
+    ("cavity", &["cavity"]),
     ("dam_break_vof", &["dam_break"]),
     ("dambreak_lobovsky", &["dam_break"]),
     ("dambreak_martin_moyce", &["dam_break"]),

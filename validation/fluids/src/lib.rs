@@ -1,6 +1,7 @@
 //! Viscous flows.
 
 pub mod bench;
+pub mod cavity;
 pub mod channel;
 pub mod couette;
 pub mod manufactured;
@@ -21,4 +22,5 @@ pub const CASES: &[&dyn Case] = &[
     taylor_green::TAYLOR_GREEN,
     taylor_couette::TAYLOR_COUETTE,
     manufactured::MANUFACTURED,
+    cavity::CAVITY,
 ];

@@ -28,6 +28,8 @@ pub struct Declaration {
     pub curves: Vec<Curves>,
     /// Resolution ladders: order, error against cost, cheapest settings.
     pub accuracy: Vec<Accuracy>,
+    /// Comparisons with references whose uncertainty is stated.
+    pub comparisons: Vec<Comparison>,
     /// Contributions to the error.
     pub budgets: Option<Budgets>,
     /// Largest stable time steps.
@@ -83,6 +85,39 @@ pub struct Card {
     /// The setting that is varied the farthest, such as the Reynolds number, with what stands before and
     /// after its values.
     pub reach: (&'static str, &'static str, &'static str),
+}
+
+/// A comparison with a reference, whose uncertainty is that of ASME V&V 20.
+pub struct Comparison {
+    /// What is compared, with its unit if that is a length or a velocity.
+    pub what: String,
+    /// What it is compared with.
+    pub against: &'static str,
+    /// E = S − D, result less data; of a norm its magnitude.
+    pub metric: MetricName,
+    /// The runs, coarse to fine: E is that of the finest.
+    pub levels: Vec<Level>,
+    /// Pairs of runs: as it is, and with one input changed by its own uncertainty.
+    pub inputs: Vec<[RunSpec; 2]>,
+    /// u_D, in the unit of E.
+    pub reference: f64,
+    /// Where u_input and u_D come from.
+    pub because: &'static str,
+}
+
+impl Comparison {
+    /// A comparison of a ladder whose inputs are those of the reference, so that u_input is 0.
+    pub fn new(
+        what: &str,
+        against: &'static str,
+        metric: impl Into<MetricName>,
+        ladder: &Ladder,
+        (reference, because): (f64, &'static str),
+    ) -> Self {
+        let (what, levels) = (format!("`{}`: {what}", ladder.variant), ladder.levels.clone());
+        let (metric, inputs) = (metric.into(), Vec::new());
+        Self { what, against, metric, levels, inputs, reference, because }
+    }
 }
 
 /// Error against spacing and against cost.
@@ -153,6 +188,7 @@ pub struct Ladder {
 }
 
 /// One resolution of a ladder.
+#[derive(Clone)]
 pub struct Level {
     /// The run and its gates.
     pub run: Planned,
@@ -595,6 +631,10 @@ impl Declaration {
             }
         }
         let mut plain = |spec: &RunSpec| runs.push(Planned::new(spec.clone()));
+        for Comparison { levels, inputs, .. } in &self.comparisons {
+            levels.iter().for_each(|level| plain(&level.run.spec));
+            inputs.iter().flatten().for_each(&mut plain);
+        }
         let budgets = self.budgets.iter().flat_map(|budgets| &budgets.of);
         budgets.flat_map(|budget| &budget.changes).for_each(|change| plain(&change.spec));
         self.limits.iter().flat_map(|limits| &limits.of).for_each(|limit| plain(&limit.spec));

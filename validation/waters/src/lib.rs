@@ -4,13 +4,18 @@ mod causes;
 pub mod dam_break;
 pub mod elliptic_drop;
 pub mod hydrostatic;
+pub mod still_wedge;
 pub mod water;
 
 use harness::case::Case;
 
 /// The cases of the family.
-pub const CASES: &[&dyn Case] =
-    &[&dam_break::DAM_BREAK, &elliptic_drop::ELLIPTIC_DROP, &hydrostatic::HYDROSTATIC];
+pub const CASES: &[&dyn Case] = &[
+    &dam_break::DAM_BREAK,
+    &elliptic_drop::ELLIPTIC_DROP,
+    &hydrostatic::HYDROSTATIC,
+    &still_wedge::STILL_WEDGE,
+];
 
 #[cfg(test)]
 mod tests {

@@ -17,8 +17,8 @@ use base::{
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Card, Change, Curve, CurveOf, CurvePanel, Curves, Declaration,
-        ErrorOf, Ladder, OrderGate, Peer,
+        Accuracy, Budget, Budgets, Card, Change, Comparison, Curve, CurveOf, CurvePanel, Curves,
+        Declaration, ErrorOf, Ladder, OrderGate, Peer,
     },
 };
 use nalgebra::Vector2;
@@ -29,6 +29,7 @@ use serde_json::Value;
 pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
     let table = plan::table(channel, tier);
     let at_half = at_half(channel.flow, &table);
+    let comparisons = comparisons(channel, &at_half);
     let (card, budgets) = (card(channel, &at_half), budgets(channel, &at_half, tier));
     let (mut accuracy, mut maps) = (vec![at_half], Vec::new());
     if channel.flow == Flow::Poiseuille {
@@ -39,6 +40,7 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
         card: Some(card),
         curves: vec![curves(channel)],
         accuracy,
+        comparisons,
         budgets: Some(budgets),
         limits: Some(limits::limits(channel, tier)),
         maps,
@@ -63,6 +65,17 @@ fn profile() -> Curve {
         metrics: vec![L2, LINF, SHEAR_LOWER, SHEAR_UPPER, NU_EFF, L2_WORST],
         shown: ("u@", &["y", "u", "u_exact"]),
     }
+}
+
+/// The best variant and the paper's over their ladders.
+fn comparisons(Channel { case, .. }: Channel, accuracy: &Accuracy) -> Vec<Comparison> {
+    let exact = (0.0, "exact: the series has the same inputs, and is summed to round-off");
+    let compared = |ladder: &&Ladder| [case.best.variant, "seed"].contains(&ladder.variant);
+    let of = |ladder| {
+        let what = "velocity from νt/L² = 0.1 on, rms";
+        Comparison::new(what, "the exact series", L2_WORST, ladder, exact)
+    };
+    accuracy.ladders.iter().filter(compared).map(of).collect()
 }
 
 /// What the report says first of the flow.

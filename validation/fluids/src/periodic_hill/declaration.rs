@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use super::{
     BEST, CASE, HillSettings, NAME,
-    measure::{L2_U, POINTS, STATIONS},
+    measure::{FORCE_ERROR, L2_U, L2_V, POINTS, REATTACHMENT_ERROR, SEPARATION_ERROR, STATIONS},
     plan::{For, Row, STABLE, Table, flow, name, shown, table},
     reference::{REYNOLDS, Reference, floor, reference},
 };
@@ -13,12 +13,13 @@ use base::{
     gate::{Bound, Evidence, Gate},
     mutation::Constant,
     record::{Record, Status},
+    reference::Reference as Data,
 };
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
-        OrderGate, Sensitivity, StepLimit, StepLimits, Watched,
+        Accuracy, Budget, Budgets, Card, Change, Comparison, CurveOf, CurvePanel, Curves,
+        Declaration, ErrorOf, OrderGate, Sensitivity, StepLimit, StepLimits, Watched,
     },
     studies::causes::{ENOUGH_OR_IDLE, NOT_MEASURED, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
 };
@@ -30,6 +31,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier, &table);
     Declaration {
         card: Some(card(tier, &accuracy)),
+        comparisons: comparisons(tier, &accuracy),
         curves: vec![profiles(&table)],
         budgets: Some(budgets(tier, &accuracy)),
         accuracy: vec![accuracy],
@@ -37,6 +39,34 @@ pub fn declaration(tier: Tier) -> Declaration {
         sensitivity: Some(sensitivity(tier, &table)),
         ..Declaration::default()
     }
+}
+
+/// The best variant and the paper's over their ladders: at Re 10 in the quick tier, where nothing separates.
+fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
+    const BECAUSE: &str = "computed for the same inputs; u_D: meshes (`references/periodic_hill`)";
+    let re = if tier == Tier::Quick { 10.0_f64 } else { 50.0 };
+    let of =
+        |name| Data::summarised("periodic_hill", &[("re", &re.to_string()), ("quantity", name)]);
+    let profiles = reference(re).map_or(f64::NAN, |reference| reference.uncertainty);
+    let [force, force_uncertainty] = of("force");
+    let mut all = vec![
+        ("u, rms [U_b]", L2_U, profiles),
+        ("v, rms [U_b]", L2_V, profiles),
+        ("driving force", FORCE_ERROR, force_uncertainty / force),
+    ];
+    if re > 10.0 {
+        all.push(("separation [H]", SEPARATION_ERROR, of("separation")[1]));
+        all.push(("reattachment [H]", REATTACHMENT_ERROR, of("reattachment")[1]));
+    }
+    let ladder =
+        accuracy.ladders.iter().filter(|of| [BEST, "interface-wall"].contains(&of.variant));
+    let comparison = |ladder| {
+        let of = move |(what, metric, uncertainty)| {
+            Comparison::new(what, "finite elements", metric, ladder, (uncertainty, BECAUSE))
+        };
+        all.clone().into_iter().map(of)
+    };
+    ladder.flat_map(comparison).collect()
 }
 
 /// What the report says first of the case.

@@ -9,7 +9,7 @@ use base::{
 };
 use report::{Block, Card, Counts, Figure, Legend, Panel, exact, percent, sci, seconds, sig};
 
-use super::limit;
+use super::{limit, validation};
 use crate::{
     declare::{self, Declaration},
     runs::{Judged, Runs},
@@ -28,6 +28,8 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     }
     let stable = stable(declared, &card.runs, runs);
     facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
+    let compared = validation::line(&declared.comparisons, runs);
+    facts.extend(compared.map(|text| ("Comparisons by V&V 20:".into(), text)));
     facts.extend(reach(card, runs).map(|text| ("Completed for".into(), text)));
     Some(Card {
         id: case.into(),

@@ -12,6 +12,7 @@ mod map;
 mod order;
 mod sensitivity;
 mod submissions;
+pub mod validation;
 
 pub use card::{Headline, card};
 pub use limit::of_theory as limit_of_theory;
@@ -23,6 +24,9 @@ pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     let mut studies: Vec<Study> =
         declared.curves.iter().map(|curves| curves::study(curves, runs)).collect();
     studies.extend(declared.accuracy.iter().map(|accuracy| cost::study(accuracy, runs)));
+    if !declared.comparisons.is_empty() {
+        studies.push(validation::study(case, &declared.comparisons, runs));
+    }
     studies.extend(declared.budgets.iter().map(|budgets| budget::study(budgets, runs)));
     studies.extend(declared.limits.iter().map(|limits| limit::study(case, limits, runs)));
     let sensitivity = declared.sensitivity.iter().filter(|sensitivity| !sensitivity.of.is_empty());

@@ -15,8 +15,8 @@ use base::{
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Card, Change, CurveOf, CurvePanel, Curves, Declaration, ErrorOf,
-        Map, MapPanel, Sensitivity, StepLimit, StepLimits, Watched,
+        Accuracy, Budget, Budgets, Card, Change, Comparison, CurveOf, CurvePanel, Curves,
+        Declaration, ErrorOf, Ladder, Map, MapPanel, Sensitivity, StepLimit, StepLimits, Watched,
     },
     studies::causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
 };
@@ -45,6 +45,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     Declaration {
         card: Some(card(&accuracy[0])),
         curves: vec![histories(tier)],
+        comparisons: comparisons(&accuracy),
         accuracy,
         budgets: Some(budgets()),
         limits: Some(limits(tier)),
@@ -55,6 +56,25 @@ pub fn declaration(tier: Tier) -> Declaration {
         of_methods: &[],
         curve: None,
     }
+}
+
+/// The best variant and the paper's over their ladders, each with the reference of its law.
+fn comparisons(accuracy: &[Accuracy]) -> Vec<Comparison> {
+    const BECAUSE: &str = "computed for the same inputs; u_D: meshes, steps, contact, disorder \
+                           (`references/rubber_rings`)";
+    let of = |(ladder, (what, quantity, metric)): (&Ladder, (&str, MetricKey, MetricKey))| {
+        let reference = Reference::of(ladder.variant, &RingSettings::default());
+        let number = reference.and_then(|reference| reference.number(quantity));
+        let uncertainty = number.map_or(f64::NAN, |[value, uncertainty]| uncertainty / value);
+        Comparison::new(what, "finite elements", metric, ladder, (uncertainty, BECAUSE))
+    };
+    let quantities = [
+        ("restitution", RESTITUTION, RESTITUTION_ERROR),
+        ("least width", WIDTH_MIN, WIDTH_MIN_ERROR),
+    ];
+    let compared = |ladder: &&Ladder| [LAGRANGIAN, "seed"].contains(&ladder.variant);
+    let ladders = accuracy[0].ladders.iter().filter(compared);
+    ladders.flat_map(|ladder| quantities.map(|quantity| (ladder, quantity))).map(of).collect()
 }
 
 /// What the report says first of the case.

@@ -4,23 +4,26 @@
 
 use super::{
     DAM_BREAK, DamSettings, NAME, curves, lobovsky,
-    metrics::{FRONT, MACH},
+    metrics::{
+        FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, MACH,
+    },
     plan::{self, Group, free},
-    reference::{self, FRONT_SPREAD, front, value},
+    reference::{self, FRONT_SPREAD, IMPULSE_SPREAD, front, value},
     run::COSTLY,
 };
 use crate::water::ledger::ENERGY_GAP;
 use base::{
     gate::{Bound, Evidence, Gate},
-    mutation::Constant,
-    record::{Record, Status},
+    mutation::{Constant, Mutation},
+    record::{MetricName, Record, Status},
+    reference::Reference,
     spec::RunSpec,
 };
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Card, Change, Declaration, ErrorOf, OrderGate, Sensitivity,
-        StepLimit, StepLimits, Watched,
+        Accuracy, Budget, Budgets, Card, Change, Comparison, Declaration, ErrorOf, OrderGate,
+        Sensitivity, StepLimit, StepLimits, Watched,
     },
     studies::causes::{NOT_MEASURED, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
 };
@@ -46,6 +49,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     };
     Declaration {
         card: Some(card),
+        comparisons: comparisons(tier),
         curves: curves::curves(tier),
         budgets: Some(budgets(tier, &accuracy)),
         accuracy: vec![accuracy],
@@ -55,6 +59,75 @@ pub fn declaration(tier: Tier) -> Declaration {
         ..Declaration::default()
     }
 }
+
+/// `modern` as a method, against volume of fluid, and its model, against both experiments. The tank has a
+/// ladder in the full tier alone.
+fn comparisons(tier: Tier) -> Vec<Comparison> {
+    const METHOD: &str =
+        "computed for the same inputs; u_D: meshes and steps (`references/dam_break_vof`)";
+    const MODEL: &str = "u_input: heights wrong by half of the last digit that is stated, of a = 2.25 \
+                         inches and of H = 300 mm; u_D: spread of digitised curves, of two series, of two \
+                         sensors";
+    let table = plan::table(tier);
+    let level = |s: &DamSettings| (1.0 / s.n as f64, String::new());
+    let vof = |scene, name: &str| {
+        Reference::summarised("dam_break_vof", &[("scene", scene), ("quantity", name)])
+    };
+    let of_scene = |group, digit: f64, model: &[Compared], method: &[Compared]| {
+        let ladder = table.ladder(&[group], "modern", level);
+        let base = ladder.levels.first().map(|level| level.run.spec.clone());
+        let input = base.map(|run| {
+            let higher = Mutation { of: Constant::Height, factor: 1.0 + digit };
+            [run.clone(), run.mutated(higher)]
+        });
+        let new = |of: &Compared, against, because| {
+            Comparison::new(of.0, against, of.1.clone(), &ladder, (of.2, because))
+        };
+        let of_method = method.iter().map(|of| new(of, "volume of fluid: the method", METHOD));
+        let of_model = model.iter().map(|of| Comparison {
+            inputs: input.clone().into_iter().collect(),
+            ..new(of, "the experiment: the model", MODEL)
+        });
+        of_method.chain(of_model).collect::<Vec<_>>()
+    };
+    // In units of the width a, which is H/2.
+    let front = 2.0 * vof("martin_moyce", "front_at_1")[1];
+    let method = [
+        ("front at T = 2 [a]", FRONT_AWAY.at(2), front),
+        ("residual height, rms [H]", HEIGHT_AWAY.into(), vof("martin_moyce", "height_at_1.65")[1]),
+    ];
+    let model = [
+        ("front after its best shift, rms [a]", FRONT.rms_shifted.into(), FRONT_SPREAD),
+        ("residual height after its best shift, rms [H]", HEIGHT.rms_shifted.into(), 1.0 / 18.0),
+    ];
+    let mut all = of_scene(Group::Ladder, 0.005 / 2.25, &model, &method);
+    if tier == Tier::Full {
+        let relative = |name: &str| {
+            let [value, uncertainty] = vof("lobovsky", name);
+            uncertainty / value
+        };
+        let sensors = ["impulse on P1", "impulse on P2", "impulse on P3", "impulse on P4"];
+        let mut method = vec![
+            ("tank: front at t = 2 [H]", FRONT_AWAY.at(2), vof("lobovsky", "front_at_2")[1]),
+            ("tank: level at H4, rms [H]", LEVEL_AWAY[3].into(), vof("lobovsky", "H4_at_5")[1]),
+        ];
+        let mut model = vec![
+            // Two series arrive 0.038 apart, √2 times the standard uncertainty, at a speed of 1.515.
+            ("tank: front after its best shift, rms [H]", FRONT.rms_shifted.into(), 0.041),
+            ("tank: levels after their best shift, rms [H]", LEVELS.rms_shifted.into(), 0.024),
+        ];
+        for (k, what) in sensors.into_iter().enumerate() {
+            let uncertainty = relative(&format!("impulse_P{}_1", k + 1));
+            method.push((what, IMPULSE_AWAY[k].at(1), uncertainty));
+            model.push((what, IMPULSE[k].at(1), IMPULSE_SPREAD / 2.0_f64.sqrt()));
+        }
+        all.extend(of_scene(Group::Tank, 0.5 / 300.0, &model, &method));
+    }
+    all
+}
+
+/// What is compared, its metric, u_D.
+type Compared = (&'static str, MetricName, f64);
 
 /// rms distance of two fronts \[a\], for 1 ≤ T ≤ 3.3: before, they have hardly moved; later, there is no
 /// experiment.

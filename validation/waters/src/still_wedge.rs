@@ -1,0 +1,349 @@
+//! Still water over a wedge: corners and edges at which walls must bear what is above them. Depth H = 1 m.
+
+use base::{gate::*, mutation::Constant, record::*};
+use harness::{
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
+    runs::Runs, simulate, study::Study, table,
+};
+use maths::{exact, metrics::norms::rms};
+use nalgebra::Vector2;
+use report::{Axis, ColourMap, Figure, ParticleMap};
+use solver::*;
+
+use super::water::{Diffusion, Modern, Seed, WaterMethod, method};
+
+crate::water_settings! {
+    /// Settings of still water over a wedge; its depth H is 1 m.
+    pub struct Wedge {
+        /// spacings along the depth
+        n: usize ["-"] in 8..=1000 = 20,
+        /// height of the wedge, which is twice as wide
+        apex: f64 ["H"] in 0.0..=0.8 = 0.5,
+        /// gravity
+        gravity: f64 ["m/s^2"] in 1e-6..=1e6 = 9.81,
+        /// sound speed
+        c0: f64 ["(g H)^(1/2)"] in 1.0..=1e3 = 10.0,
+        /// end of the run
+        end: f64 ["4 H/c0"] in 1e-3..=1e5 = 20.0,
+    }
+}
+
+const NAME: &str = "still_wedge";
+base::metrics! {
+    P_L2 = "p_l2" ["rho g H"]
+        "rms over particles of the mean of p - p_exact over the last quarter, eight times a period";
+    P_BASE = "p_base" ["rho g H"]
+        "mean over the same times of p - p_exact around a corner of the wedge, with the weights of \
+         the kernel: the larger in magnitude of both corners";
+    P_APEX = "p_apex" ["rho g H"] "the same around the apex";
+    KINETIC = "kinetic" ["M g H"] "largest sum m v^2/2 at the same times";
+    OUTSIDE = "outside" ["-"] "particles inside of the wedge or beyond floor or sides at the end";
+}
+
+fn variants() -> Vec<Composition<Wedge>> {
+    let seed = "the paper's: interface and wall particles, XSPH, artificial viscosity and stress";
+    let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
+                  pressure: do they bear water at corners too?";
+    let interface =
+        "modern with interface and wall particles: are the paper's walls enough for it?";
+    type Interface = Modern<(Continuity, Diffusion), InterfaceWall>;
+    fn rule(s: &mut Wedge) {
+        (s.alpha, s.courant) = (0.02, 0.8);
+    }
+    Variants::of(&Program { run, rules: |m, s| Ok(scene(s, m, &Context::of_rules())?.1) })
+        .with("seed", seed, method::<Seed<InterfaceWall>>(), |s| s.courant = 0.4)
+        .with("modern", modern, method::<Modern>(), rule)
+        .with("modern-interface", interface, method::<Interface>(), rule)
+        .all
+}
+
+/// Still water over a wedge.
+pub static STILL_WEDGE: Composed<Wedge> = Composed {
+    name: NAME,
+    problem: "Water at rest over a wedge in a tank",
+    best: Best {
+        variant: "modern",
+        because: "it has the smallest error of the pressure at both corners",
+        papers: Some("seed"),
+    },
+    about: "Water rests in a tank over a wedge of 45 degrees, whose apex is half way to the surface. Its \
+            columns are stretched to fill the tank, so that their particles are not those of a lattice and \
+            must first find their places. The exact pressure is that of the depth, and nothing moves.",
+    variants,
+    is_stable: completed,
+    declaration,
+    plan: |tier| table(tier).plan(),
+    studies,
+};
+
+/// Half of the width of the tank \[H\].
+const HALF: f64 = 1.0;
+
+/// Height of the floor \[m\].
+fn floor(s: &Wedge, x: f64) -> f64 {
+    (s.apex - (x - HALF).abs()).max(0.0)
+}
+
+/// The medium and the rules.
+fn scene(s: &Wedge, m: &WaterMethod, context: &Context) -> Result<(Medium, Rules), RunError> {
+    let (dx, fall) = (1.0 / s.n as f64, s.gravity.sqrt());
+    let end = s.end * 4.0 / (s.c0 * fall);
+    let (medium, rules) = s.medium(m, [dx, s.c0 * fall, s.gravity, 0.0, end]);
+    let particles = 2.0 * HALF / (dx * dx);
+    simulate::check(m, &medium, &rules, particles, "end, courant, c0 or n", context)?;
+    Ok((medium, rules))
+}
+
+fn exact(s: &Wedge, medium: &Medium) -> exact::Hydrostatic {
+    exact::Hydrostatic {
+        density: s.rho,
+        sound_speed: medium.eos.sound_speed,
+        gamma: f64::from(medium.eos.gamma),
+        gravity: s.gravity,
+    }
+}
+
+/// A row at a depth behind sides, floor and wedge \[m\]: a particle on each vertex, and others between, about
+/// dx apart; places with their spacing.
+fn row(s: &Wedge, depth: f64, dx: f64) -> Vec<(Vector2<f64>, f64)> {
+    let (left, right) = (HALF - s.apex, HALF + s.apex);
+    let wedge = [(left, 0.0), (HALF, s.apex), (right, 0.0)];
+    let tank = [[(0.0, 1.2), (0.0, 0.0)], [(2.0 * HALF, 0.0), (2.0 * HALF, 1.2)]];
+    let wedge = wedge.into_iter().filter(|_| s.apex > 0.0);
+    let vertices: Vec<Vector2<f64>> =
+        tank[0].into_iter().chain(wedge).chain(tank[1]).map(|(x, y)| Vector2::new(x, y)).collect();
+    // The fluid is on the left.
+    let normals: Vec<Vector2<f64>> = vertices
+        .windows(2)
+        .map(|ends| (ends[1] - ends[0]).normalize())
+        .map(|along| Vector2::new(along.y, -along.x))
+        .collect();
+    let moved = |k: usize| {
+        let [a, b] = [k.saturating_sub(1), k.min(normals.len() - 1)].map(|side| normals[side]);
+        vertices[k] + (a + b) * (depth / (1.0 + a.dot(&b)))
+    };
+    let moved: Vec<Vector2<f64>> = (0..vertices.len()).map(moved).collect();
+    let side = |ends: &[Vector2<f64>]| {
+        let (start, along) = (ends[0], ends[1] - ends[0]);
+        let count = (along.norm() / dx).round().max(1.0);
+        (0..count as usize).map(move |k| (start + along * (k as f64 / count), along.norm() / count))
+    };
+    let last = moved.last().map(|end| (*end, dx));
+    moved.windows(2).flat_map(side).chain(last).collect()
+}
+
+/// Water in columns that fill the tank up to y = H, with the exact density of their places, and its walls.
+fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Vec<Particle> {
+    let (dx, exact) = (medium.dx, exact(s, medium));
+    let (first, behind) = (method.first_row.fluid(), method.first_row.depth());
+    let at_rest = |place: Vector2<f64>, volume: f64| {
+        Particle::fluid(place, Vector2::zeros(), exact.density(1.0 - place.y), volume)
+    };
+    let columns = (2.0 * HALF / dx).round() as usize;
+    let mut particles = Vec::new();
+    for i in 0..columns + 1 - (2.0 * first) as usize {
+        let x = (i as f64 + first) * dx;
+        let height = 1.0 - floor(s, x);
+        // On the surface of a wall are half of the cells of interface particles.
+        let count = (height / dx + 0.5 - first).round().max(1.0);
+        let spacing = height / (count + first - 0.5);
+        let y = |k: usize| 1.0 - height + (k as f64 + first) * spacing;
+        particles.extend((0..count as usize).map(|k| at_rest(Vector2::new(x, y(k)), dx * spacing)));
+    }
+    let rows = (method.support * medium.h / dx - behind - 1e-9).floor() as usize;
+    for k in 0..=rows {
+        let depth = (behind + k as f64) * dx;
+        let role = if depth > 0.0 { Role::Wall } else { Role::Interface };
+        let wall = row(s, depth, dx).into_iter();
+        particles.extend(wall.map(|(place, spacing)| at_rest(place, spacing * dx).with_role(role)));
+    }
+    particles
+}
+
+/// What is measured over the last quarter of the run. The start is not quite at rest, and what sound is left
+/// must not be taken for a pressure: means over periods hide it, and the kinetic energy shows it.
+struct Moments<'a> {
+    settings: &'a Wedge,
+    medium: &'a Medium,
+    samples: f64,
+    /// Sums of the errors of the pressure at the corners of the base and at the apex, and of every particle
+    /// \[ρ g H\].
+    corners: [f64; 3],
+    errors: Vec<f64>,
+    /// The largest kinetic energy \[M g H\].
+    kinetic: f64,
+}
+
+harness::observed! {
+    Moments<'_>: changes(samples, corners, errors, kinetic), parts(), stays(settings, medium)
+}
+
+/// Samples a period.
+const SAMPLES: f64 = 8.0;
+
+/// p − p_exact at the place of a particle \[ρ g H\].
+fn error(s: &Wedge, medium: &Medium, p: &Particle) -> f64 {
+    let exact = exact(s, medium).pressure(1.0 - p.position.y);
+    (medium.eos.pressure(p.density) - exact) / (s.rho * s.gravity)
+}
+
+impl Moments<'_> {
+    fn sample(&mut self, simulation: &dyn Stepper<()>) {
+        let (s, medium) = (self.settings, self.medium);
+        let kernel = Smoothing::<WendlandC2>::new(medium.h);
+        let mut water = simulation.particles();
+        water.retain(|p| p.role == Role::Fluid);
+        let around = |x: f64| {
+            let corner = Vector2::new(x, floor(s, x));
+            let weigh = |[sum, weight]: [f64; 2], p: &Particle| {
+                let w = kernel.w((p.position - corner).norm_squared());
+                [sum + w * error(s, medium, p), weight + w]
+            };
+            let [sum, weight] = water.iter().fold([0.0; 2], weigh);
+            sum / weight
+        };
+        let energy = |p: &Particle| 0.5 * p.mass * p.velocity.norm_squared();
+        let mass: f64 = water.iter().map(|p| p.mass).sum();
+        let kinetic = water.iter().map(energy).sum::<f64>() / (mass * s.gravity);
+        self.kinetic = self.kinetic.max(kinetic);
+        let corners = [HALF - s.apex, HALF + s.apex, HALF].map(around);
+        self.corners.iter_mut().zip(corners).for_each(|(sum, error)| *sum += error);
+        self.errors.resize(water.len(), 0.0);
+        self.errors.iter_mut().zip(&water).for_each(|(sum, p)| *sum += error(s, medium, p));
+        self.samples += 1.0;
+    }
+
+    fn measure(&self, record: &mut Record) {
+        let [left, right, apex] = self.corners.map(|sum| sum / self.samples);
+        record.put(P_L2, rms(self.errors.iter().map(|sum| sum / self.samples)));
+        record.put(P_BASE, if left.abs() > right.abs() { left } else { right });
+        record.put(P_APEX, apex);
+        record.put(KINETIC, self.kinetic);
+    }
+}
+
+fn run(m: &WaterMethod, variant: &str, s: &Wedge, context: &Context) -> Result<Record, RunError> {
+    let (medium, rules) = scene(s, m, context)?;
+    let parts = Parts::new(medium, Domain::open(), particles(s, m, &medium), context);
+    let mut simulation = (m.build)(parts)?;
+    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
+    let mut record = simulate::begin((NAME, variant), s, m, &numbers, context);
+    let count = (0.25 * SAMPLES * s.end).ceil().max(1.0);
+    let times = (1..=count as usize).map(|k| rules.end * (0.75 + 0.25 * k as f64 / count));
+    let times: Vec<f64> = times.collect();
+    let (corners, errors) = ([0.0; 3], Vec::new());
+    let (settings, medium) = (s, &medium);
+    let mut moments = Moments { settings, medium, samples: 0.0, corners, errors, kinetic: 0.0 };
+    let pressure = |density| medium.eos.pressure(density);
+    (record.status, record.cost) =
+        Drive::new(&mut *simulation, rules.dt(), &times, &pressure, &mut moments)
+            .at("moments", &|moments, simulation, _| moments.sample(&*simulation))
+            .run(context)?;
+    let all = simulation.particles();
+    record.state = Some(simulate::state(&all));
+    if record.status == Status::Completed {
+        moments.measure(&mut record);
+        measure(&moments, &all, context.keep_particles, &mut record);
+    }
+    Ok(record)
+}
+
+fn measure(moments: &Moments, all: &[Particle], is_kept: bool, record: &mut Record) {
+    let (s, water) = (moments.settings, all.iter().filter(|p| p.role == Role::Fluid));
+    let is_outside =
+        |p: &&Particle| (p.position.x - HALF).abs() > HALF || p.position.y < floor(s, p.position.x);
+    record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
+    if is_kept {
+        let places = water.map(|p| (p.position.x, p.position.y));
+        let (x, y): (Vec<f64>, Vec<f64>) = places.unzip();
+        let errors = moments.errors.iter().map(|sum| sum / moments.samples).collect();
+        let profile = Profile::default().with("x", "H", x).with("y", "H", y);
+        record.profiles.insert("particles".into(), profile.with("error", "rho g H", errors));
+    }
+}
+
+fn table(tier: Tier) -> table::Table<Wedge, ()> {
+    let mut table = table::Table::new(&STILL_WEDGE, tier);
+    let depths: [&[usize]; 2] = [&[10, 14, 20], &[10, 14, 20, 28, 40]];
+    table.over((), &["seed", "modern", "modern-interface"], depths, |s, n| s.n = n);
+    for row in &mut table.rows {
+        row.run.seconds = 0.3 * (row.settings.n as f64 / 20.0).powi(3);
+        if row.settings.n == 20 {
+            row.run.spec = row.run.spec.clone().keep_particles();
+        }
+    }
+    table.judge(gates);
+    table
+}
+
+/// Why walls of particles whose density follows (3) do not bear what is above them.
+static UNWEIGHED: Cause = Cause::new(
+    "The density of interface and wall particles follows (3) and knows no weight, so that a wall that is too \
+     light stays so.",
+    "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
+);
+
+fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
+    let (variant, dx) = (row.variant, 1.0 / row.settings.n as f64);
+    let run = format!("{variant}.{}", row.settings.n);
+    let of =
+        |metric, bound, because| STILL_WEDGE.gate(&run, metric, bound, Evidence::Analytic, because);
+    let known =
+        "A wall is known to be where it is within half of a spacing: half of the weight of a row.";
+    let level =
+        "The level of the water must stay within a quarter of a spacing, whose weight this is.";
+    let still = "The energy that raises the surface by a tenth of a spacing, (0.1 dx/H)^2 M g H.";
+    let base = of(P_BASE, Bound::Within(-0.5 * dx, 0.5 * dx), known);
+    let apex = of(P_APEX, Bound::Within(-0.5 * dx, 0.5 * dx), known);
+    let (all, kinetic) = (of(P_L2, Bound::Below(0.25 * dx), level), (0.1 * dx).powi(2));
+    let kinetic = of(KINETIC, Bound::Below(kinetic), still);
+    let outside = of(OUTSIDE, Bound::Equals(0.0), "No particle passes a wall.");
+    let unweighed = |low| {
+        let why = "The pressure is too low, by a share that does not fall with the spacing: the bound is one \
+                   and a half times the largest of five spacings.";
+        let known = Bound::Within(low, 0.5 * dx);
+        base.clone().with_limitation(known, why).because_of(&UNWEIGHED)
+    };
+    match variant {
+        "modern" => vec![base, apex, all, kinetic, outside],
+        "seed" => vec![unweighed(-0.53), outside],
+        _ => vec![unweighed(-0.078), outside],
+    }
+}
+
+fn declaration(tier: Tier) -> Declaration {
+    let table = table(tier);
+    let level = |s: &Wedge| (1.0 / s.n as f64, format!("{} spacings deep", s.n));
+    let ladder = |variant| table.ladder(&[()], variant, level);
+    let accuracy = Accuracy {
+        about: "Water at rest over a wedge, mean over the last five of 20 acoustic periods.".into(),
+        spacing: "dx/H [-]",
+        slope: Some(1.0),
+        ladders: ["seed", "modern", "modern-interface"].map(ladder).into(),
+        ..Accuracy::new(
+            "still-wedge",
+            ErrorOf::Metric(P_BASE.into()),
+            "error of the pressure at the base of the wedge [ρ g H]",
+        )
+    };
+    let watched = [Constant::BodyForce, Constant::Density].map(|of| Watched::new(of).quick());
+    let run = STILL_WEDGE.spec("modern", |_| {});
+    let sensitivity = Some(Sensitivity::new(NAME, tier, [run], watched));
+    Declaration { accuracy: vec![accuracy], sensitivity, ..Declaration::default() }
+}
+
+fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
+    let caption = "Mean error of the pressure of each particle over the last quarter of the run, with 20 \
+                   spacings along the depth.";
+    let table = table(tier);
+    let panels = table.rows.iter().filter(|row| row.settings.n == 20).filter_map(|row| {
+        let points = pictures::points(runs.record(&row.run.spec)?, "particles", "error");
+        let axes = (Axis::linear("x/H [-]"), Axis::linear("y/H [-]"));
+        let label = "(p − p_exact)/(ρ g H) [-]";
+        let map = ParticleMap::new(row.variant, axes, label, ColourMap::Diverging, points);
+        Some(map.diameter(1.0 / 20.0))
+    });
+    let figure = panels.fold(Figure::new("still-wedge-errors", caption), Figure::panel);
+    let figure = figure.panel_size(360.0, 220.0);
+    vec![Study::new("still-wedge-errors", "Errors of still water over a wedge").block(figure)]
+}
