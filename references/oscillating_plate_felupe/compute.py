@@ -13,11 +13,13 @@ from tables import doubt, number
 
 LAWS, SHARED = ("neo_hookean", "hencky", "saint_venant"), "neo_hookean"  # SHARED tells what the time step changes
 COARSE, FINE, STEP, UNTIL = 8, 16, 5e-4, 0.8
+POISSON = (0.2, 0.3, 0.45)  # of plates whose first period alone is computed
 
 
 def runs():
     listed = [dict(law=law, layers=n, step=STEP) for law in LAWS for n in (COARSE, FINE)]
-    return listed + [dict(law=SHARED, layers=COARSE, step=STEP / 2)]
+    listed.append(dict(law=SHARED, layers=COARSE, step=STEP / 2))
+    return listed + [dict(law=SHARED, layers=n, step=STEP, poisson=nu) for nu in POISSON for n in (COARSE, FINE)]
 
 
 def file(law, layers, step, poisson=plate.POISSON):
@@ -25,7 +27,7 @@ def file(law, layers, step, poisson=plate.POISSON):
 
 
 def simulate(law, layers, step, poisson=plate.POISSON):
-    return plate.swing(law, layers, step, UNTIL, poisson)
+    return plate.swing(law, layers, step, UNTIL if poisson == plate.POISSON else 0.3, poisson)
 
 
 def quantities(run, poisson=plate.POISSON):
@@ -64,7 +66,26 @@ def values(load):
     return rows
 
 
+def period(run):
+    return felupe_motion.crossings(run["t"][1:], run["path"][1:, 1])[1]
+
+
+def others(load):
+    base, half = (period(load(SHARED, COARSE, step)) for step in (STEP, STEP / 2))
+    for nu in POISSON:
+        coarse, fine = (period(load(SHARED, n, STEP, nu)) for n in (COARSE, FINE))
+        u = abs(fine - coarse) + 4 / 3 * abs(half - base)
+        excess = fine / plate.thin_plate_period(nu) - 1
+        yield nu, number(fine, 7), doubt(u), number(coarse, 7), number(excess, 4)
+
+
 FIELDS = {
+    "poisson": [
+        ("poisson", "number", "-", "Poisson's ratio; the speed of the end is 0.01 c0 of this material"),
+        ("period", "number", "s", f"first period, {SHARED}, on {FINE} elements across the thickness"),
+        ("uncertainty", "number", "s", "as in values"),
+        ("coarse", "number", "s", f"on {COARSE}"),
+        ("period_excess", "number", "-", "period over that of a thin plate, less 1")],
     "values": [
         ("law", "string", "-", "constitutive law"),
         ("layers", "integer", "-", "empty: the middle of the end"),
@@ -88,4 +109,4 @@ if __name__ == "__main__":
     def load(*which, **more):
         return dict(np.load(folder / file(*which, **more)))
 
-    tables.write(Path(__file__).parent, FIELDS, {"values": values(load)})
+    tables.write(Path(__file__).parent, FIELDS, {"values": values(load), "poisson": list(others(load))})

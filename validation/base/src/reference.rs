@@ -47,7 +47,7 @@ const EMBEDDED: &[Embedded] = embedded! {
     "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
     "dambreak_martin_moyce": ["front.csv", "height.csv"],
     "oscillating_plate": ["series.csv", "summary.csv", "clamps.csv", "checks.csv"],
-    "oscillating_plate_felupe": ["values.csv"],
+    "oscillating_plate_felupe": ["values.csv", "poisson.csv"],
     "peers_channel": ["errors.csv"],
     "peers_taylor_green": ["errors.csv"],
     "periodic_hill":
