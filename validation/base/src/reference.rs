@@ -42,6 +42,7 @@ macro_rules! embedded {
 /// Every package of `references/` with its tables.
 const EMBEDDED: &[Embedded] = embedded! {
     "cantilever": ["series.csv", "summary.csv", "checks.csv"],
+    "cantilever_felupe": ["values.csv", "checks.csv"],
     "dam_break_vof":
         ["series.csv", "levels.csv", "pressure.csv", "summary.csv", "spread.csv", "checks.csv"],
     "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
@@ -56,6 +57,7 @@ const EMBEDDED: &[Embedded] = embedded! {
     "periodic_hill_ngsolve": ["values.csv", "checks.csv"],
     "published_sph_errors": ["errors.csv"],
     "rubber_rings": ["series.csv", "summary.csv", "phases.csv", "laws.csv", "outlines.csv", "checks.csv"],
+    "rubber_rings_felupe": ["values.csv", "checks.csv"],
 };
 
 /// Why a reference was refused, in words.
@@ -312,8 +314,8 @@ impl Reference {
         }
     }
 
-    /// Compares each row of the table `values` of another code with the row of the table `summary` that has the
-    /// same texts in the columns before `value`.
+    /// Compares each row of the table `values` of another code with the row of the table `summary` that has
+    /// the same texts in the columns before `value`.
     fn distance(&self, other: &Reference) -> Result<Agreement, ReferenceError> {
         let (own, others) = (self.table("summary")?, other.table("values")?);
         let keys = &others.fields[..others.position("value")?];
