@@ -43,6 +43,7 @@ macro_rules! embedded {
 const EMBEDDED: &[Embedded] = embedded! {
     "cantilever": ["series.csv", "summary.csv", "checks.csv"],
     "cantilever_felupe": ["values.csv", "checks.csv"],
+    "dam_break_gerris": ["values.csv"],
     "dam_break_vof":
         ["series.csv", "levels.csv", "pressure.csv", "summary.csv", "spread.csv", "checks.csv"],
     "dambreak_lobovsky": ["front.csv", "levels.csv", "pressure.csv"],
