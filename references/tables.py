@@ -69,7 +69,7 @@ def check(folder):
     """The rules of validation/base/src/reference.rs."""
     package = json.loads((folder / "datapackage.json").read_text())
     assert package["name"] == folder.resolve().name
-    allowed = {"profile", "name", "title", "description", "licenses", "sources", "resources", "method",
+    allowed = {"profile", "name", "title", "description", "grade", "licenses", "sources", "resources", "method",
                "uncertainty", "caveats", "errata"}
     assert set(package) <= allowed, set(package) - allowed
     assert all(package[key].strip() for key in ("title", "description", "method", "uncertainty"))

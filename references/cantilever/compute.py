@@ -24,7 +24,7 @@ def runs():
         for gravity in (bar.LARGE, bar.SMALL):
             base = dict(law=law, gravity=gravity)
             listed += [dict(base, layers=coarse, step=step) for step in (STEP, STEP / 2)]
-        listed += [dict(law=law, gravity=bar.LARGE, layers=fine, step=STEP)]
+            listed += [dict(base, layers=fine, step=STEP)]
     return sorted(listed, key=lambda run: run["layers"] ** 2 / run["step"])
 
 
@@ -50,11 +50,11 @@ def load(folder, law, gravity, layers, step=STEP):
     return dict(np.load(folder / file(law, gravity, layers, step)))
 
 
-def large(folder, law):
+def family(folder, law, gravity):
     """The coarse and the fine mesh, and the coarse one with half the step."""
     coarse, fine = MESHES
     of = (coarse, STEP), (fine, STEP), (coarse, STEP / 2)
-    return [load(folder, law, bar.LARGE, *one) for one in of]
+    return [load(folder, law, gravity, *one) for one in of]
 
 
 def uncertainty(values):
@@ -65,7 +65,7 @@ def uncertainty(values):
 
 def series_rows(folder):
     for law in bar.LAWS:
-        found = large(folder, law)
+        found = family(folder, law, bar.LARGE)
         paths = [run["path"][:: round(SAMPLE / float(run["step"])), 0] for run in found]
         wide = np.apply_along_axis(widest, 0, uncertainty(paths))
         for n, place in enumerate(paths[1]):
@@ -76,20 +76,15 @@ def series_rows(folder):
 
 
 def summary_rows(folder):
-    """Under the small load there is no fine mesh: its share of the uncertainty is that of the large one."""
     for law in bar.LAWS:
-        big = large(folder, law)
-        small = [load(folder, law, bar.SMALL, MESHES[0], step) for step in (STEP, STEP / 2)]
+        loads = {gravity: family(folder, law, gravity) for gravity in (bar.LARGE, bar.SMALL)}
         for station, layers in enumerate(("", *bar.LAYERS)):
-            big_values, small_values = ([summary(run, station) for run in runs] for runs in (big, small))
-            for key in big_values[0]:
-                of = coarse, fine, half = [v[key] for v in big_values]
-                yield [bar.LARGE, law, layers, key, unit(key), number(fine, 7), doubt(uncertainty(of)),
-                       *(number(value, 7) for value in of)]
-                one, halved = (v[key] for v in small_values)
-                doubts = abs(one * (fine / coarse - 1)) + 4 / 3 * abs(halved - one)
-                yield [bar.SMALL, law, layers, key, unit(key), number(one, 7), doubt(doubts),
-                       number(one, 7), "", number(halved, 7)]
+            values = {gravity: [summary(run, station) for run in runs] for gravity, runs in loads.items()}
+            for key in values[bar.LARGE][0]:
+                for gravity, found in values.items():
+                    of = [one[key] for one in found]
+                    yield [gravity, law, layers, key, unit(key), number(of[1], 7), doubt(uncertainty(of)),
+                           *(number(value, 7) for value in of)]
 
 
 def check_rows(folder):

@@ -18,10 +18,10 @@ TABLES = {
          "spacing from the end, mean over the layers; empty: the middle of the end"),
         ("quantity", "string", "-", "the README lists the names"),
         ("unit", "string", "-", "unit of the row"),
-        ("value", "number", "see column unit", "on the fine mesh; under 0.2 m/s^2 on the coarse one"),
+        ("value", "number", "see column unit", "on the fine mesh"),
         ("uncertainty", "number", "see column unit", "of value"),
         ("coarse", "number", "see column unit", "on 4 elements across the thickness"),
-        ("fine", "number", "see column unit", "on 8; empty under 0.2 m/s^2"),
+        ("fine", "number", "see column unit", "on 8"),
         ("half_step", "number", "see column unit", "on 4 with half the time step"),
     ],
     "checks": [

@@ -53,6 +53,8 @@ pub struct Package {
     /// what the numbers are
     #[serde(default)]
     pub description: String,
+    /// what stands behind them
+    pub grade: Grade,
     /// under what terms
     #[serde(default)]
     pub licenses: Vec<License>,
@@ -74,6 +76,33 @@ pub struct Package {
     /// corrections, applied on loading
     #[serde(default)]
     pub errata: Vec<Erratum>,
+}
+
+/// What stands behind the numbers of a reference.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grade {
+    /// a formula or a definition
+    Exact,
+    /// two codes that share no line agree within their stated uncertainties: the package of the second one
+    TwoCodes(String),
+    /// a computation by one code
+    OneCode,
+    /// numbers of others, as printed or as their programs gave them
+    Collected,
+    /// read off figures
+    Digitised,
+}
+
+/// How far the numbers of two codes are apart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agreement {
+    /// numbers that both have
+    pub numbers: usize,
+    /// greatest distance over (u₁² + u₂²)^(1/2), of their stated uncertainties
+    pub worst: f64,
+    /// which number that is
+    pub of: String,
 }
 
 /// Terms of use.
@@ -202,8 +231,14 @@ impl Reference {
         names.filter_map(|name| Some((name, Self::load(name).err()?))).collect()
     }
 
-    /// Checks and reads an embedded reference.
+    /// Checks and reads an embedded reference. One whose second code does not agree is refused.
     pub fn load(name: &str) -> Result<Self, ReferenceError> {
+        let reference = Self::read(name)?;
+        reference.agreement()?;
+        Ok(reference)
+    }
+
+    fn read(name: &str) -> Result<Self, ReferenceError> {
         let Some(package) = EMBEDDED.get(&format!("{name}{PACKAGE}")) else {
             let known = Self::names().join(", ");
             return refused(format!("no reference is called {name:?}; there are {known}"));
@@ -257,6 +292,60 @@ impl Reference {
             Ok(row.unwrap_or([f64::NAN; 2]))
         };
         read().unwrap_or([f64::NAN; 2])
+    }
+
+    /// How far the second code is from the first, if the grade names one.
+    pub fn agreement(&self) -> Result<Option<Agreement>, ReferenceError> {
+        let Grade::TwoCodes(second) = &self.package.grade else { return Ok(None) };
+        let (name, found) = (&self.package.name, self.distance(&Self::read(second)?)?);
+        let Agreement { worst, of, .. } = &found;
+        match *worst <= 1.0 {
+            true => Ok(Some(found)),
+            false => refused(format!(
+                "reference {name} cannot have the grade two_codes: {of} of {second} is {worst:.2} times both \
+                 uncertainties away"
+            )),
+        }
+    }
+
+    /// Compares each row of the table `values` of another code with the row of the table `summary` that has
+    /// the same texts in the columns before `value`.
+    fn distance(&self, other: &Reference) -> Result<Agreement, ReferenceError> {
+        let (own, others) = (self.table("summary")?, other.table("values")?);
+        let keys = &others.fields[..others.position("value")?];
+        let places: Result<Vec<usize>, _> =
+            keys.iter().map(|key| own.position(&key.name)).collect();
+        let (places, numbers) = (places?, |table: &Table| -> Result<Vec<_>, ReferenceError> {
+            Ok(table.numbers("value")?.into_iter().zip(table.numbers("uncertainty")?).collect())
+        });
+        let (found, mut worst) =
+            (numbers(own)?, Agreement { numbers: others.len(), worst: 0.0, of: String::new() });
+        for (row, (value, doubt)) in others.rows.iter().zip(numbers(others)?) {
+            let of = row[..places.len()].join(" ");
+            let is_same =
+                |cells: &Vec<String>| places.iter().zip(row).all(|(&at, cell)| cells[at] == *cell);
+            let Some(same) = own.rows.iter().position(is_same) else {
+                return refused(format!("reference {} has no number {of:?}", self.package.name));
+            };
+            let ratio = (value - found[same].0).abs() / doubt.hypot(found[same].1);
+            if ratio.is_nan() || ratio >= worst.worst {
+                worst = Agreement { worst: ratio, of, ..worst };
+            }
+        }
+        Ok(worst)
+    }
+
+    /// The grade in words; with two codes, how far they are apart.
+    pub fn graded(&self) -> String {
+        match (&self.package.grade, self.agreement()) {
+            (Grade::Exact, _) => "exact".into(),
+            (Grade::TwoCodes(second), Ok(Some(Agreement { numbers, worst, .. }))) => format!(
+                "two codes: {numbers} numbers of `{second}` are at most {worst:.2} of both uncertainties away"
+            ),
+            (Grade::TwoCodes(_) | Grade::OneCode, _) => "one code".into(),
+            (Grade::Collected, _) => "collected".into(),
+            (Grade::Digitised, _) => "digitised".into(),
+        }
     }
 
     /// A table by name.
@@ -474,6 +563,7 @@ mod tests {
     fn package() -> Value {
         json!({
             "name": "sample", "title": "t", "description": "d", "method": "m", "uncertainty": "1 %",
+            "grade": "one_code",
             "licenses": [{"name": "CC0-1.0"}],
             "sources": [{"title": "someone 1999", "doi": "10.1/2"}],
             "resources": [{
@@ -582,6 +672,34 @@ mod tests {
         for wrong in [erratum("-0.8", 1, "u"), erratum("-0.86636", 9, "u"), erratum("b", 1, "v")] {
             assert!(wrong.unwrap_err().to_string().starts_with("the erratum for row"));
         }
+    }
+
+    #[test]
+    fn two_codes_must_agree_within_both_uncertainties() {
+        let mut hill = Reference::load("periodic_hill").unwrap();
+        let agreement = hill.agreement().unwrap().unwrap();
+        assert!(agreement.numbers == 22 && agreement.worst <= 1.0, "{agreement:?}");
+        let cell = |hill: &mut Reference, at: &str, text: &str| {
+            let table = hill.tables.iter_mut().find(|table| table.name == "summary").unwrap();
+            let at = table.position(at).unwrap();
+            std::mem::replace(&mut table.rows[10][at], text.into())
+        };
+        // Separation at Re 50 is 0.52044 with 0.00066, and 0.52053 with 0.00002.
+        let was = cell(&mut hill, "value", "0.5213");
+        let error = hill.agreement().unwrap_err().to_string();
+        assert!(
+            error.contains("two_codes: 50 separation H of periodic_hill_ngsolve is 1.16"),
+            "{error}"
+        );
+        assert_eq!(hill.graded(), "one code");
+        cell(&mut hill, "value", &was);
+        cell(&mut hill, "quantity", "parting");
+        let error = hill.agreement().unwrap_err().to_string();
+        assert!(error.ends_with("has no number \"50 separation H\""), "{error}");
+        hill.package.grade = Grade::TwoCodes("nowhere".into());
+        assert!(hill.agreement().is_err());
+        hill.package.grade = Grade::OneCode;
+        assert_eq!(hill.agreement(), Ok(None));
     }
 
     #[test]

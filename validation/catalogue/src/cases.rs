@@ -1,5 +1,6 @@
 //! The benchmarks, one file each, and their list.
 
+use base::reference::Reference;
 pub use harness::case::find_in;
 use harness::case::{Case, RunError};
 
@@ -61,6 +62,13 @@ pub fn users(reference: &str) -> &'static [&'static str] {
     USERS.iter().find(|(name, _)| *name == reference).map_or(&[], |(_, cases)| cases)
 }
 
+/// What stands behind the references that a case is compared with: name and grade of each.
+pub fn graded(case: &str) -> Vec<(&'static str, String)> {
+    let is_user = |name: &str| users(name).contains(&case) && !name.starts_with("peers");
+    let found = Reference::names().into_iter().filter(|name| is_user(name));
+    found.filter_map(|name| Some((name, Reference::load(name).ok()?.graded()))).collect()
+}
+
 /// The family that a case belongs to, by the name of its crate.
 pub fn family(case: &str) -> Option<&'static str> {
     let families = [
@@ -77,8 +85,6 @@ pub fn family(case: &str) -> Option<&'static str> {
 mod tests {
     use std::fs;
     use std::path::Path;
-
-    use base::reference::Reference;
 
     use super::*;
 

@@ -17,10 +17,11 @@ use harness::{
     suite::{CaseResults, Of, Suite},
 };
 use report::{
-    Block, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS, counted,
+    Block, Card, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS,
+    counted,
 };
 
-use crate::{limitations, stiffness, time};
+use crate::{cases, limitations, stiffness, time};
 
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
@@ -29,7 +30,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
     let mut others = Vec::new();
     for results in &suite.cases {
         match &results.card {
-            Some(card) => cards.push(card.clone()),
+            Some(card) => cards.push(with_grades(card.clone())),
             None => others.push(line(results)),
         }
     }
@@ -61,6 +62,13 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         png_folder: "figures".into(),
         footer: String::new(),
     }
+}
+
+/// A card that says what stands behind the references of its case.
+fn with_grades(mut card: Card) -> Card {
+    let grades = cases::graded(&card.id).into_iter();
+    card.facts.extend(grades.map(|(name, grade)| (format!("Reference `{name}`:"), grade)));
+    card
 }
 
 /// A supporting case: how its gates ended.
@@ -284,6 +292,7 @@ fn references_section() -> Section {
     let table = Columns::<Row>::default()
         .with(Column::text("reference"), name)
         .text("what", what)
+        .text("grade", |(_, found)| found.as_ref().map_or("–".into(), Reference::graded))
         .text("licence", licences)
         .table(
             "Reference data, embedded with its provenance and checked by hash.",

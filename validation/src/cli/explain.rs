@@ -14,6 +14,7 @@ use harness::plan;
 use harness::runs::Judged;
 use harness::store::Store;
 use harness::suite::{self, Of};
+use validation::cases;
 
 use super::{
     Exit, Failure, Outcome, World,
@@ -228,7 +229,7 @@ fn words(known: &Known) -> String {
     let lines = [
         ("checks", format!("metric {}", gate.metric)),
         ("bound", gate.bound.to_string()),
-        ("evidence", evidence(gate.evidence).to_string()),
+        ("evidence", evidence(gate)),
         ("because", gate.because.clone()),
         ("purpose", purpose(&gate.purpose)),
         ("judged on", on.clone()),
@@ -250,14 +251,19 @@ fn last_words(judged: &Judged) -> String {
     format!("{value}: {}", judgement.verdict)
 }
 
-fn evidence(evidence: Evidence) -> &'static str {
-    match evidence {
+fn evidence(gate: &Gate) -> String {
+    let words = match gate.evidence {
         Evidence::Analytic => "analytic: an exact solution of the equations",
         Evidence::Invariant => "invariant: a law that holds whatever the solution",
         Evidence::Theory => "theory of the method",
         Evidence::Reference => "reference: an experiment or an independent computation",
         Evidence::Regression => "regression: what this program computed before",
-    }
+    };
+    let case = gate.id.split('.').next().unwrap_or_default();
+    let grades =
+        if gate.evidence == Evidence::Reference { cases::graded(case) } else { Vec::new() };
+    let grades = grades.into_iter().map(|(name, grade)| format!("; {name}: {grade}"));
+    words.to_string() + &grades.collect::<String>()
 }
 
 fn purpose(purpose: &Purpose) -> String {
