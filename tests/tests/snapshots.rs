@@ -129,7 +129,7 @@ fn kept(case: &str) -> Vec<Kept> {
         "taylor_couette" => vec![(vec!["extrapolating-wall", "interface-wall"], vec!["layers=8"])],
         "taylor_green" => vec![(vec!["consistent"], vec!["n=32 perturb=0"])],
         "periodic_hill" => vec![(vec!["carried"], vec!["n=10 end=30"])],
-        "cavity" => vec![(vec!["carried", "consistent"], vec!["n=12", "n=16"])],
+        "cavity" => vec![(vec!["carried", "consistent"], vec!["n=14", "n=16"])],
         _ => [kept_solid(case), kept_water(case)].concat(),
     }
 }

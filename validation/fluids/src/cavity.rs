@@ -230,7 +230,7 @@ fn table(tier: Tier) -> table::Table<Cavity, f64> {
     let mut table = table::Table::new(&CASE, tier);
     let side = |s: &mut Cavity, n: usize| s.n = n;
     table.over(100.0, &["seed", "modern"], [&[16], &[16]], side);
-    table.over(100.0, &["carried", BEST], [&[12, 16, 22], &[16, 22, 32, 45, 64]], side);
+    table.over(100.0, &["carried", BEST], [&[14, 16, 22], &[16, 22, 32, 45, 64]], side);
     table.over(1000.0, &["carried", BEST], [&[], &[32, 45, 64]], |s, n| {
         (s.re, s.n, s.end) = (1000.0, n, 50.0);
     });
