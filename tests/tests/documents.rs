@@ -141,7 +141,7 @@ fn last_number(text: &str) -> Option<(f64, f64)> {
 }
 
 /// The numbers that a comment behind a number in a document stands for: `<!-- snapshot; run; metric -->` a
-/// result, `<!-- gate NAME -->` the ends of a bound, `<!-- u_val snapshot; run, run, run; metric; u_D -->` the
+/// result, `<!-- gate NAME -->` the ends of a bound, `<!-- u_val snapshot; run, run; metric; u_D -->` the
 /// uncertainty of a ladder, coarse to fine, whose resolution comes first in the name of a run; `None` of any
 /// other comment.
 fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {

@@ -252,8 +252,8 @@ static RAMP: Cause = Cause::new(
 
 /// Why the vortex is too weak.
 static LAYERS: Cause = Cause::new(
-    "The vortex of the cavity is too weak, by an error that falls more slowly than the spacing, and it is not \
-     known why.",
+    "The vortex of the cavity is too weak, by an error that falls more slowly than the spacing, and it is \
+     not known why.",
     "Finer spacing at the walls, and the error of each term in such a layer, measured alone.",
 );
 
