@@ -327,7 +327,9 @@ impl Reference {
             let Some(same) = own.rows.iter().position(is_same) else {
                 return refused(format!("reference {} has no number {of:?}", self.package.name));
             };
-            let ratio = (value - found[same].0).abs() / doubt.hypot(found[same].1);
+            let (value_of, doubt_of) = found[same];
+            let both = (doubt * doubt + doubt_of * doubt_of).sqrt();
+            let ratio = (value - value_of).abs() / both;
             if ratio.is_nan() || ratio >= worst.worst {
                 worst = Agreement { worst: ratio, of, ..worst };
             }
