@@ -300,7 +300,7 @@ fn a_record_states_the_step_that_was_used_and_the_one_that_was_planned() {
 }
 
 /// A short run of each case.
-const SHORT: [&str; 20] = [
+const SHORT: [&str; 22] = [
     "couette --variant seed --set rows=8 --set end=0.1",
     "poiseuille --set rows=8 --set end=0.1",
     "taylor_green --set n=20 --set end=0.1",
@@ -321,6 +321,8 @@ const SHORT: [&str; 20] = [
     "resting_box",
     "operators --set n=16 --set steps=12",
     "manufactured --set n=12",
+    "cavity --set n=8 --set end=0.5",
+    "still_wedge --set n=8 --set end=1",
 ];
 
 /// Of each case there are as many frames as asked for, at equal intervals and with all fields, and a profile
