@@ -627,7 +627,7 @@ fn told(folder: &Path) -> (String, u32) {
 #[test]
 fn a_killed_run_goes_on_to_an_equal_record() {
     let folder = tempfile::tempdir().unwrap();
-    let run = ["run", "dam_break", "--set", "n=40", "--vtk", "4", "--threads", "1", "--out"];
+    let run = ["run", "dam_break", "--set", "n=56", "--vtk", "4", "--threads", "1", "--out"];
     let output = touchstone_in(folder.path(), &[&run[..], &["alone"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 
@@ -879,7 +879,7 @@ fn no_settings_make_a_run_panic() {
         let set = prop::collection::vec(assignment(case), 0..4);
         (Just(case), any::<prop::sample::Index>(), set, any::<bool>())
     });
-    let config = ProptestConfig { cases: 800, ..ProptestConfig::default() };
+    let config = ProptestConfig { cases: 50 * count as u32, ..ProptestConfig::default() };
     // Runs of each case that were built and begun: a test of refusals alone would be none.
     let begun: Vec<AtomicUsize> = (0..count).map(|_| AtomicUsize::new(0)).collect();
     let mut runner = TestRunner::new(config);
