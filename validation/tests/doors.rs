@@ -346,7 +346,7 @@ fn the_last_setting_of_a_sweep_is_the_fastest() {
 #[test]
 fn the_end_of_the_terminal_is_ignored_if_nohup_asks_for_it() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "run couette --variant seed --rows 40 --threads 1";
+    let line = "run couette --variant seed --rows 60 --threads 1";
     for (before, expected) in [("trap '' HUP", Some(0)), ("true", Some(130))] {
         let mut command = by_shell(folder.path(), before, line);
         let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
@@ -391,7 +391,7 @@ fn a_run_with_a_frame_that_cannot_be_written_has_its_record_and_ends_with_2() {
 #[test]
 fn a_checkpoint_that_cannot_be_written_names_the_last_good_one() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "run dam_break --set n=50 --threads 1 --out out --checkpoint-every 1";
+    let line = "run dam_break --set n=80 --threads 1 --out out --checkpoint-every 1";
     let mut command = Command::new(TOUCHSTONE);
     command.current_dir(folder.path()).args(line.split(' ')).stdout(Stdio::null());
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
