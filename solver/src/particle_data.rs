@@ -31,7 +31,7 @@ pub enum Phase {
     Rest,
     /// Deriving columns of particles and images from a state.
     Refresh,
-    /// Putting particles in the order of their cells.
+    /// Putting particles in the order of storage, along strips.
     Sorting,
     /// Making images and neighbour lists.
     Search,
@@ -316,7 +316,7 @@ impl<X: Numbers> ParticleData<X> {
             + self.neighbours.bytes()
     }
 
-    /// Puts fluid particles in the order of their cells, and all inside the period.
+    /// Puts fluid particles in order along strips, and all inside the period.
     pub(crate) fn sort(&mut self, state: &mut [Evolved<X>]) {
         self.enter(Phase::Sorting);
         for evolved in &mut *state {

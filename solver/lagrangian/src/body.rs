@@ -3,7 +3,7 @@
 
 use std::marker::PhantomData;
 
-use lanes::{LANES, Lane, OnLanes, gather_vector, on_four};
+use lanes::{LANES, Lane, OnLanes, gather_vector, on_four, total};
 use nalgebra::{Matrix2, Vector2};
 use solver::{Evolved, Potential, Symmetric, parallel};
 
@@ -166,7 +166,7 @@ impl<L: Law> OnLanes for Stresses<'_, L> {
                 sums[2] += u.y * x.x;
                 sums[3] += u.y * x.y;
             }
-            let [xx, xy, yx, yy] = [0, 1, 2, 3].map(|part| sums[part].total());
+            let [xx, xy, yx, yy] = [0, 1, 2, 3].map(|part| total(sums[part]));
             let inverse = &reference.inverse[k];
             let gradient = Matrix2::new(xx, xy, yx, yy) * inverse;
             let (strain, volume) = (Strain::new(gradient), reference.volumes[k]);
@@ -206,7 +206,7 @@ impl<L: Law> OnLanes for Forces<'_, L> {
                 sum[0] += (own[0] + xx) * x.x + (own[1] + xy) * x.y + u.x;
                 sum[1] += (own[2] + yx) * x.x + (own[3] + yy) * x.y + u.y;
             }
-            *acceleration = Vector2::from(sum.map(|part| part.total())) / reference.masses[k];
+            *acceleration = Vector2::from(sum.map(total)) / reference.masses[k];
         }
     }
 }

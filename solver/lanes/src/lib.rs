@@ -46,8 +46,6 @@ pub trait Lane:
     fn abs(self) -> Self;
     /// The larger of two numbers that are not NaN.
     fn at_least(self, floor: Self) -> Self;
-    /// The sum over the lanes, always in the same order.
-    fn total(self) -> f64;
     /// The k-th number.
     fn lane(self, k: usize) -> f64;
     /// Bit k says whether the k-th number is below the bound. For the search of neighbours; no term needs it.
@@ -128,7 +126,6 @@ lane! {
     fn sqrt(self) -> Self = f64::sqrt(self);
     fn abs(self) -> Self = f64::abs(self);
     fn at_least(self, floor: Self) -> Self = self.max(floor);
-    fn total(self) -> f64 = self;
     fn lane(self, _: usize) -> f64 = self;
     fn bits_below(self, bound: f64) -> usize = usize::from(self < bound);
 }
@@ -142,9 +139,16 @@ lane! {
     fn sqrt(self) -> Self = Self(self.0.sqrt());
     fn abs(self) -> Self = Self(self.0.abs());
     fn at_least(self, floor: Self) -> Self = Self(self.0.fast_max(floor.0));
-    fn total(self) -> f64 = { let [a, b, c, d] = self.0.to_array(); (a + c) + (b + d) };
     fn lane(self, k: usize) -> f64 = self.0.to_array()[k];
     fn bits_below(self, bound: f64) -> usize = self.0.simd_lt(f64x4::splat(bound)).to_bitmask() as usize;
+}
+
+/// The sum of four lanes, always in the same order: of [`on_four`] alone, for no sum may depend on the number
+/// of lanes.
+#[inline(always)]
+pub fn total<V: Lane>(lanes: V) -> f64 {
+    const { assert!(V::LANES == LANES) };
+    (lanes.lane(0) + lanes.lane(2)) + (lanes.lane(1) + lanes.lane(3))
 }
 
 /// A vector per lane.
