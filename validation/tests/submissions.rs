@@ -169,6 +169,11 @@ fn a_damaged_curve_is_refused_with_file_line_and_column() {
         assert!(words.contains("curve.csv") && words.contains(says), "{what}: {words}");
         assert!(!folder.path().join("other").exists(), "{what}: nothing is recorded");
     }
+    fs::remove_file(own.join("curve.csv")).unwrap();
+    fs::create_dir(own.join("curve.csv")).unwrap();
+    let words = said(&touchstone(folder.path(), "submit couette own --store other"));
+    assert!(words.contains("curve.csv: cannot be read"), "a folder: {words}");
+    fs::remove_dir(own.join("curve.csv")).unwrap();
     fs::write(own.join("curve.csv"), &whole).unwrap();
     let output = touchstone(folder.path(), "submit dam_break own --variant seed --store other");
     assert_eq!(output.status.code(), Some(2), "of another case: {}", said(&output));

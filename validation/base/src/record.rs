@@ -233,6 +233,11 @@ pub struct MetricKey {
     formula: &'static str,
 }
 
+/// Whether a metric is one of these, at whatever time or other mark: `impulse@phase1` is an `impulse`.
+pub fn is_of(keys: &[MetricKey], name: &str) -> bool {
+    keys.iter().any(|key| name.split('@').next() == Some(key.name))
+}
+
 impl MetricKey {
     /// A metric with its unit and its formula.
     pub const fn new(name: &'static str, unit: &'static str, formula: &'static str) -> Self {
@@ -482,6 +487,12 @@ impl Record {
     /// States why a metric is absent: this run gives it no meaning.
     pub fn leave_out(&mut self, metric: impl Into<MetricName>, reason: impl Into<String>) {
         self.absent.insert(metric.into().name, reason.into());
+    }
+
+    /// Takes out every metric whose name is to go, and states why it is absent.
+    pub fn take_out(&mut self, is_to_go: impl Fn(&str) -> bool, reason: &str) {
+        let taken = self.metrics.extract_if(.., |name, _| is_to_go(name));
+        self.absent.extend(taken.map(|(name, _)| (name, reason.to_string())));
     }
 
     /// States that metrics are absent because they were not asked for.

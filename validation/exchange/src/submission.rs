@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use base::{
     files,
-    record::{Cost, NOT_ASKED, Record, Status},
+    record::{self, Cost, NOT_ASKED, Record, Status},
     reference::sha256,
     spec::{Measure, RunSpec},
     submission::{Division, Submission},
@@ -151,14 +151,18 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
         "machine, threads, seconds, steps and interactions, each a number or \"unknown\"",
     );
     let asked = asked(folder);
-    let curve = files::read_text(&folder.join(CURVE), read::MOST_BYTES).ok();
-    let curve = curve.map(|text| (text, renamed.clone()));
-    let results = match curve {
+    let path = folder.join(CURVE);
+    let text = path.exists().then(|| files::read_text(&path, read::MOST_BYTES));
+    let (results, curve) = match text {
         Some(_) if folder.join(RESULTS).exists() => {
-            Err(vec![Flaw::of(CURVE, format!("there is {RESULTS} too; leave one"))])
+            (Err(vec![Flaw::of(CURVE, format!("there is {RESULTS} too; leave one"))]), None)
         }
-        Some(_) => Ok(Results::default()), // what it stands for is known with the problem
-        None => read::read(folder, renamed),
+        Some(Err(reason)) => {
+            (Err(vec![Flaw::of(CURVE, format!("cannot be read: {reason}"))]), None)
+        }
+        // What it stands for is known with the problem.
+        Some(Ok(text)) => (Ok(Results::default()), Some((text, renamed.clone()))),
+        None => (read::read(folder, renamed), None),
     };
     let method = method.map_err(|flaw| flaws.push(flaw));
     let system = system.map_err(|flaw| flaws.push(flaw));
@@ -256,11 +260,8 @@ impl Entry {
         else {
             return;
         };
-        let names: Vec<String> = curve.metrics.iter().map(|metric| String::from(*metric)).collect();
-        let is_of = |name: &str| names.iter().any(|of| name.split('@').next() == Some(of));
-        let others = record.metrics.extract_if(.., |name, _| !is_of(name));
         let why = "it follows from particles, and the submission is a profile or a series";
-        record.absent.extend(others.map(|(name, _)| (name, why.to_string())));
+        record.take_out(|name| !record::is_of(&curve.metrics, name), why);
         let (begins, columns) = curve.shown;
         record.profiles.retain(|name, _| name.starts_with(begins));
         for profile in record.profiles.values_mut() {

@@ -20,7 +20,7 @@ pub const WALLS: &str = "wall sweep";
 pub const REFRESH: &str = "refresh of columns and images";
 /// Images and neighbour lists.
 pub const SEARCH: &str = "neighbour search";
-/// Particles in the order of cells.
+/// Particles in their order of storage.
 pub const SORTING: &str = "sorting";
 /// What is left of a step.
 pub const REST: &str = "rest of the integrator";

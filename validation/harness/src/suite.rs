@@ -2,7 +2,7 @@
 
 use base::{
     gate::{Bound, Evidence, Gate, Purpose},
-    record::{Record, Status},
+    record::{self, Record, Status},
     spec::RunSpec,
 };
 use rayon::prelude::*;
@@ -156,16 +156,12 @@ pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
     const STEPWISE: &str = "it is measured after every step";
     let of_method = "it compares with the theory of this program's own method";
     for (metrics, why) in [(stepwise, STEPWISE), (of_methods, of_method)] {
-        let metrics: Vec<String> = metrics.iter().map(|metric| String::from(*metric)).collect();
-        let is_ours = |name: &str| metrics.iter().any(|m| name.split('@').next() == Some(m));
-        let ours = |name: &String, _: &mut _| is_ours(name);
-        let found: Vec<String> =
-            record.metrics.extract_if(.., ours).map(|(name, _)| name).collect();
+        let is_ours = |name: &str| record::is_of(metrics, name);
         // An older record names another reason.
         let named =
             record.absent.iter_mut().filter(|(name, why)| *why == STEPWISE && is_ours(name));
         named.for_each(|(_, reason)| *reason = why.into());
-        record.absent.extend(found.into_iter().map(|name| (name, why.into())));
+        record.take_out(is_ours, why);
     }
 }
 

@@ -54,7 +54,7 @@ mod tests {
             for depth in [-0.02, 0.1, 0.5, 1.0] {
                 let (p, rho) = (column.pressure(depth), column.density(depth));
                 assert_relative_eq!(eos.pressure(rho), p, max_relative = 1e-8);
-                let c: f64 = eos.sound_speed(rho);
+                let c = eos.sound(rho);
                 assert_relative_eq!(c, column.sound_speed(depth), max_relative = 1e-12);
                 let d = 1e-4;
                 let slope = (column.pressure(depth + d) - column.pressure(depth - d)) / (2.0 * d);
