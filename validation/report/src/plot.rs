@@ -198,7 +198,7 @@ impl<'a> Prepared<'a> {
                 .iter()
                 .find_map(|&part| self.free_triangle(*order, factor.powf(part), obstacles));
             if let Some(corners) = corners {
-                sample_rect(obstacles, around(&corners));
+                sample_rect(obstacles, around(&corners, *order));
                 self.slopes.push((*order, corners));
             }
         }
@@ -217,7 +217,7 @@ impl<'a> Prepared<'a> {
         let mut best = None;
         for (dx, dy) in steps(area.width).flat_map(|x| steps(area.height).map(move |y| (x, y))) {
             let corners = moved(dx, dy);
-            let rect = around(&corners);
+            let rect = around(&corners, order);
             if !area.encloses(&rect) {
                 continue;
             }
@@ -486,13 +486,21 @@ fn entries(plot: &Plot, series: &[(&Series, Look)]) -> Vec<Entry> {
     named.map(|(name, sample)| Entry { name: name.clone(), sample }).collect()
 }
 
-/// The room that a slope triangle takes with its numbers.
-fn around(corners: &[Point; 3]) -> Rect {
+/// The number of a slope triangle.
+fn slope_number(order: f64) -> String {
+    minus(format!("{}", (order * 100.0).round() / 100.0))
+}
+
+/// The room that a slope triangle takes with its numbers: its own stands beside the rise, outside.
+fn around(corners: &[Point; 3], order: f64) -> Rect {
     let least = |of: fn(&Point) -> f64| corners.iter().map(of).fold(f64::INFINITY, f64::min);
     let most = |of: fn(&Point) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
     let (left, top) = (least(|p| p.0), least(|p| p.1));
     let (width, height) = (most(|p| p.0) - left, most(|p| p.1) - top);
-    Rect { left: left - 14.0, top: top - 14.0, width: width + 42.0, height: height + 28.0 }
+    let number = 5.0 + font::width(&slope_number(order), RULE_EM) + 3.0;
+    let before = if corners[1].0 > corners[0].0 { 14.0 } else { number };
+    let width = width + 14.0 + number;
+    Rect { left: left - before, top: top - 14.0, width, height: height + 28.0 }
 }
 
 /// A triangle with its rise beside and a 1 along its run.
@@ -505,8 +513,7 @@ fn draw_slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) 
     }
     let how = |align| Type::new(RULE_EM, align).colour(Colour::GREY);
     let (align, side) = if b.0 > a.0 { (Align::Start, 5.0) } else { (Align::End, -5.0) };
-    let number = minus(format!("{}", (order * 100.0).round() / 100.0));
-    canvas.text(&number, (b.0 + side, 0.5 * (b.1 + c.1)), how(align));
+    canvas.text(&slope_number(order), (b.0 + side, 0.5 * (b.1 + c.1)), how(align));
     let below = if c.1 < b.1 { 8.5 } else { -8.5 };
     canvas.text("1", (0.5 * (a.0 + b.0), b.1 + below), how(Align::Middle));
 }
