@@ -5,7 +5,12 @@ use std::time::{Duration, Instant, SystemTime};
 
 use ::report::{self, check_page};
 use base::files::{FileError, OutputFolder};
-use harness::{case::Tier, make::Made, store::Store, suite::Plans};
+use harness::{
+    case::Tier,
+    make::Made,
+    store::Store,
+    suite::{Plans, Suite},
+};
 use validation::{page, peers};
 
 use super::{
@@ -43,8 +48,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     };
     // A file that cannot be written keeps none of the others from being written: the runs took minutes.
     let exported = export::write(&suite, &arguments.export);
-    let verdicts = serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n";
-    let written = folder.write(VERDICTS, verdicts.as_bytes()).map_err(Failure::from);
+    let written = write_verdicts(&folder, &suite);
     let path = folder.path().join("index.html");
     let mut page = page::assemble(&suite, &now());
     page.lead.extend(lacking.map(not_complete));
@@ -56,7 +60,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         .write_html(&path, &html)
         .map_err(|reason| Failure::from(FileError::File { path: path.clone(), reason }));
     let failures: Vec<Failure> =
-        [exported, written.map(drop), page_written].into_iter().filter_map(Result::err).collect();
+        [exported, written, page_written].into_iter().filter_map(Result::err).collect();
     if !failures.is_empty() {
         output::print(&summary(&suite))?;
         let reasons: Vec<String> =
@@ -72,6 +76,12 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             "the page was written, but a browser may fail to open it: {reason}"
         ))),
     }
+}
+
+fn write_verdicts(folder: &OutputFolder, suite: &Suite) -> Result<(), Failure> {
+    let verdicts = serde_json::to_string_pretty(&Verdicts::of(suite))? + "\n";
+    folder.write(VERDICTS, verdicts.as_bytes())?;
+    Ok(())
 }
 
 /// What stands on a page that lacks runs.
@@ -101,13 +111,11 @@ fn early(
     let (suite, lacking) = partial::of_made(plans, tier, store.path(), made);
     let lacking = lacking?; // all are there: the page that lacks nothing follows
     let mut page = page::assemble(&suite, &now());
-    let words = format!("{}: {}", folder.path().join("index.html").display(), lacking[0]);
+    let path = folder.path().join("index.html");
+    let words = format!("{}: {}", path.display(), lacking[0]);
     page.lead.push(not_complete(lacking));
     page.png_folder.clear();
-    let path = folder.path().join("index.html");
-    folder
-        .write(VERDICTS, serde_json::to_string_pretty(&Verdicts::of(&suite)).ok()?.as_bytes())
-        .ok()?;
+    write_verdicts(folder, &suite).ok()?;
     page.write_html(&path, &page.html()).ok()?;
     *last = Some((Instant::now(), start.elapsed()));
     Some(words)
