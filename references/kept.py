@@ -1,8 +1,19 @@
 """Raw results of runs that are kept in a folder: a run whose result is there is not made again."""
 
+import argparse
 import time
+from pathlib import Path
 
 import numpy as np
+
+
+def folder(described):
+    """The folder that `--runs` names on the command line, made if it is missing."""
+    parser = argparse.ArgumentParser(description=described)
+    parser.add_argument("--runs", type=Path, required=True, help="folder that keeps the raw results")
+    runs = parser.parse_args().runs
+    runs.mkdir(parents=True, exist_ok=True)
+    return runs
 
 
 def make(folder, runs, file, simulate, told):

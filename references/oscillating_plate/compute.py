@@ -1,6 +1,5 @@
 """Computes the tables of this folder. `python compute.py --help` says how; README.md says what."""
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -147,12 +146,9 @@ def check_rows(folder):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=Path, required=True, help="folder that keeps the raw results")
-    options = parser.parse_args()
-    options.runs.mkdir(parents=True, exist_ok=True)
-    kept.make(options.runs, runs(), file, plate.run, told)
+    folder = kept.folder(__doc__)
+    kept.make(folder, runs(), file, plate.run, told)
     tables.write(Path(__file__).parent, package.TABLES, {
-        "series": series_rows(options.runs), "summary": summary_rows(options.runs),
-        "clamps": clamp_rows(options.runs), "checks": check_rows(options.runs),
+        "series": series_rows(folder), "summary": summary_rows(folder),
+        "clamps": clamp_rows(folder), "checks": check_rows(folder),
     })

@@ -1,6 +1,5 @@
 """Computes the tables of this folder: `python compute.py --runs RUNS`. README.md says what."""
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -100,10 +99,7 @@ FIELDS = {
 }
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=Path, required=True, help="folder of raw results")
-    folder = parser.parse_args().runs
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = kept.folder(__doc__)
     kept.make(folder, runs(), file, simulate, lambda run, result: f"end {result['path'][-1]}")
 
     def load(*which, **more):

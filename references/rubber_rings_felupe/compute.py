@@ -1,6 +1,5 @@
 """Computes the tables of this folder: `python compute.py --runs RUNS`. README.md says what."""
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -122,10 +121,7 @@ FIELDS = {
 }
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=Path, required=True, help="folder of raw results")
-    folder = parser.parse_args().runs
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = kept.folder(__doc__)
     kept.make(folder, runs(), file, ring.collide, lambda run, result: f"{result['v_c'][-1] / run['speed']:.5f}")
 
     def load(law, speed, layers, **how):
