@@ -194,7 +194,7 @@ impl<'a> Prepared<'a> {
     fn place_slopes(&mut self, obstacles: &mut Vec<Point>) {
         for layer in &self.plot.layers {
             let Layer::Slope { order, factor } = layer else { continue };
-            let corners = [1.0, 0.7, 0.5, 0.35, 0.25]
+            let corners = [1.0, 0.7, 0.5, 0.35, 0.25, 0.18]
                 .iter()
                 .find_map(|&part| self.free_triangle(*order, factor.powf(part), obstacles));
             if let Some(corners) = corners {
