@@ -224,6 +224,47 @@ mod tests {
         (0..side * side).map(column).chain([Column::sentinel()]).collect()
     }
 
+    /// Lists of all columns but the last, the sentinel, as far as the quintic spline reaches.
+    fn listed<S: Numbers>(columns: &[Column<S>]) -> Neighbours {
+        let count = columns.len() - 1;
+        let mut neighbours = Neighbours::new([3.0 * DX, 0.0, DX], Domain::open(), &[]);
+        neighbours.place(&mut columns[..count].iter().map(|column| column.position));
+        neighbours.build([count, 0], false, false);
+        neighbours
+    }
+
+    /// Σ W in the place of the rate of the density: most terms have nothing of a particle with itself.
+    #[derive(Clone)]
+    struct Weights;
+
+    impl Term<()> for Weights {
+        type Derived = ();
+        type Sum = f64;
+        fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut V) {
+            *sum += pair.w();
+        }
+        fn finish(&self, _: &Common<f64>, _: (), sum: f64, rate: &mut Rate<()>) {
+            rate.density = sum;
+        }
+    }
+
+    /// Nor is a particle that a group lacks a neighbour.
+    #[test]
+    fn no_particle_is_a_neighbour_of_itself() {
+        let columns = columns(&Weights, 23);
+        let (neighbours, kernel) = (listed(&columns), Smoothing::<QuinticSpline>::new(DX));
+        let (terms, columns) = (&Weights, &columns[..]);
+        let sweep = Sweep { kernel: &kernel, terms, columns, select: whole(), moving: false };
+        let particles = &columns[..columns.len() - 1];
+        assert_ne!(particles.len() % GROUP, 0, "the last group lacks some");
+        for (k, rate) in rates(&sweep, &neighbours.lists).iter().enumerate() {
+            let r2 = |j: usize| (particles[j].position - particles[k].position).norm_squared();
+            let others = (0..particles.len()).filter(|&j| j != k);
+            let sum: f64 = others.map(|j| kernel.w(r2(j))).sum();
+            assert!((rate.density / sum - 1.0).abs() < 1e-13, "{k}: {} of {sum}", rate.density);
+        }
+    }
+
     /// On one lane, on four, and on the widest registers that the processor has.
     #[test]
     fn rates_have_the_same_bits_on_any_number_of_lanes() {
@@ -232,9 +273,7 @@ mod tests {
         let terms: Terms = (Pressure::new(Tait::new(1.0, 10.0)), viscosity, Continuity);
         let columns = columns(&terms, 30);
         let count = columns.len() - 1;
-        let mut neighbours = Neighbours::new([3.0 * DX, 0.0, DX], Domain::open(), &[]);
-        neighbours.place(&mut columns[..count].iter().map(|column| column.position));
-        neighbours.build([count, 0], false, false);
+        let neighbours = listed(&columns);
         let kernel = Smoothing::<QuinticSpline>::new(DX);
         let (terms, columns) = (&terms, &columns[..]);
         let sweep = Sweep { kernel: &kernel, terms, columns, select: whole(), moving: true };
