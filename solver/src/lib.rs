@@ -19,7 +19,7 @@
 //!
 //! ```text
 //! lane, numbers, kernel, eos, domain <- particles <- terms <- walls <- neighbours
-//!     <- physics, sweep, particle_data <- engine <- integrator <- super_steps, simulation <- scene
+//!     <- physics, sweep, particle_data <- engine <- integrator <- super_steps, single_sweep, simulation <- scene
 //! ```
 //!
 //! The crate does no I/O and contains no reference data. After [`Scene::build`] it returns no error; a
@@ -38,6 +38,7 @@ pub mod particles;
 pub mod physics;
 pub mod scene;
 pub mod simulation;
+mod single_sweep;
 pub mod super_steps;
 mod sweep;
 pub mod terms;
@@ -52,12 +53,13 @@ pub use lanes as lane;
 pub use neighbours::GROUP;
 pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{
-    Checkpoint, Fault, Limits, ParticleData, Phase, PhaseWatch, Progress, Work,
+    Checkpoint, Fault, Limits, ParticleData, Past, Phase, PhaseWatch, Progress, Work,
 };
 pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};
+pub use single_sweep::SingleSweep;
 pub use super_steps::SuperSteps;
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,

@@ -96,6 +96,15 @@ pub struct Progress {
     pub made: u64,
 }
 
+/// What an integrator keeps of earlier steps, of a particle: its density \[kg/m³\] and its extra fields.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Past<X> {
+    /// As the rates of all steps but the present one made them.
+    pub drifted: (f64, X),
+    /// Their rates of the step before \[1/s\].
+    pub rate: (f64, X),
+}
+
 /// Everything that determines the rest of a run, as data: [`crate::Stepper::restore`] continues it with the
 /// same bits as if it had not been interrupted.
 ///
@@ -112,15 +121,21 @@ pub struct Checkpoint<X = ()> {
     pub particles: Vec<(u32, Particle<X>)>,
     /// Where each was when the neighbour lists were built \[m\].
     pub built_at: Vec<Vector2<f64>>,
+    /// What the integrator keeps of earlier steps, of the first particles; empty for most integrators.
+    pub past: Vec<Past<X>>,
 }
 
-impl<X> Checkpoint<X> {
+impl<X: Numbers> Checkpoint<X> {
     /// Checks that it is stored in the way in which a simulation stores it; else says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
-        let Self { progress, lag, particles, built_at } = self;
+        let Self { progress, lag, particles, built_at, past } = self;
         let ids: std::collections::BTreeSet<u32> = particles.iter().map(|(id, _)| *id).collect();
         let sum = built_at.iter().fold(progress.time + lag, |sum, p| sum + p.x + p.y);
+        let moving = particles.iter().filter(|(_, p)| p.role == Role::Fluid).count();
+        let is_past = |past: &Past<X>| past.drifted.is_finite() && past.rate.is_finite();
+        let has_past = past.is_empty() || (moving..=particles.len()).contains(&past.len());
         let all = [
+            (has_past && past.iter().all(is_past), "earlier steps of other particles"),
             (sum.is_finite(), "a time, a lag or a place that is not finite"),
             (built_at.len() == particles.len(), "a number of places that is not that of particles"),
             (particles.iter().all(|(_, p)| p.density > 0.0 && p.mass > 0.0), "no density or mass"),
@@ -178,6 +193,8 @@ pub struct ParticleData<X = ()> {
     pub(crate) parallel: bool,
     pub(crate) progress: Progress,
     pub(crate) order: Vec<u32>,
+    /// In the order of `state`; empty for integrators that keep nothing.
+    pub(crate) past: Vec<Past<X>>,
     /// Memory of the columns that a pair sweep reads \[bytes\].
     pub column_bytes: usize,
     pub(crate) watch: Option<PhaseWatch>,
@@ -215,6 +232,11 @@ impl<X: Numbers> ParticleData<X> {
     /// Number of fluid particles.
     pub fn fluid_count(&self) -> usize {
         self.counts[0]
+    }
+
+    /// Number of particles whose rates a sweep sums, where walls do not extrapolate.
+    pub(crate) fn swept(&self) -> usize {
+        self.counts[0] + self.counts[1]
     }
 
     /// Mass \[kg/m\] and state of the fluid particles as they are stored, without order; for observers
@@ -305,6 +327,7 @@ impl<X: Numbers> ParticleData<X> {
             lag,
             particles: self.stored().collect(),
             built_at: self.neighbours.built_at.to_vec(),
+            past: self.past.clone(),
         }
     }
 
@@ -313,6 +336,7 @@ impl<X: Numbers> ParticleData<X> {
         self.state.capacity() * size_of::<Evolved<X>>()
             + self.fixed.capacity() * size_of::<Fixed>()
             + self.order.capacity() * size_of::<u32>()
+            + self.past.capacity() * size_of::<Past<X>>()
             + self.neighbours.bytes()
     }
 
@@ -325,10 +349,13 @@ impl<X: Numbers> ParticleData<X> {
         let fluid = self.counts[0];
         self.neighbours.place(&mut state[..fluid].iter().map(|e| e.position));
         self.neighbours.order(&mut self.order);
-        let fixed = &mut self.fixed;
-        apply_order(&mut self.order, &mut |i, j| {
+        let Self { fixed, past, order, .. } = self;
+        apply_order(order, &mut |i, j| {
             state.swap(i, j);
             fixed.swap(i, j);
+            if !past.is_empty() {
+                past.swap(i, j);
+            }
         });
     }
 

@@ -199,6 +199,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         self.engine.data.put(&from.particles);
         self.engine.build_lists(&mut from.built_at.iter().copied());
         self.engine.data.progress = from.progress;
+        self.engine.data.past.clone_from(&from.past);
         self.integrator = S::Integrator::with_lag(from.lag);
         Ok(())
     }

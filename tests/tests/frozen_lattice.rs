@@ -21,7 +21,7 @@ use nalgebra::DVector;
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, Integrator as _,
     InterfaceWall, Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline,
-    Simulation, Stepper, Tait, WendlandC2, super_steps::stages, walls::Walls,
+    Simulation, SingleSweep, Stepper, Tait, WendlandC2, super_steps::stages, walls::Walls,
 };
 use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
 
@@ -115,10 +115,10 @@ fn stepped(
             let half = &*u + model.rate(u) * (0.5 * dt);
             *u += model.rate(&half) * dt;
         }
-        Integrator::Leapfrog => *u += model.rate(u) * dt,
+        Integrator::Leapfrog | Integrator::SingleSweep => *u += model.rate(u) * dt,
         Integrator::SuperLeapfrog => super_step(model, u, dt, explicit),
     };
-    let is_staggered = matches!(by, Integrator::Leapfrog | Integrator::SuperLeapfrog);
+    let is_staggered = !matches!(by, Integrator::Euler | Integrator::PredictorCorrector);
     for _ in 0..steps {
         kick(u, if is_staggered { *lag + 0.5 * dt } else { dt });
         *lag = if is_staggered { 0.5 * dt } else { 0.0 };
@@ -187,6 +187,7 @@ fn check_walls<W: Boundary + Walls<()>>(wall_curvature: bool) {
             let s = ChannelSettings { wall_curvature, ..settings(rows, kernel) };
             check_steps::<Channels<K, W, PredictorCorrector>>(&s, flow);
             check_steps::<Channels<K, W, Leapfrog>>(&s, flow);
+            check_steps::<Channels<K, W, SingleSweep>>(&s, flow);
         }
         let s = ChannelSettings { wall_curvature, ..settings(10, kernel) };
         check_steps::<Channels<K, W, Euler>>(&s, Flow::Couette);
@@ -294,6 +295,7 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
     let plain = Method::of::<Channels<QuinticSpline, Ghosts, Leapfrog>>;
     let (by, method) = match record.numerics[INTEGRATOR].as_str() {
         Some("leapfrog") => (Integrator::Leapfrog, plain()),
+        Some("single-sweep") => (Integrator::SingleSweep, plain()),
         Some("super-leapfrog") => (Integrator::SuperLeapfrog, Method::of::<Stiff<BodyForce>>()),
         _ => (Integrator::PredictorCorrector, plain()),
     };

@@ -3,8 +3,8 @@
 use base::functions::log2;
 use solver::{
     Compose, Continuity, Domain, Euler, Flow, Integrator, Leapfrog, Observer, Open, Outcome,
-    Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, Stepper, Tait,
-    Viscosity,
+    Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, SingleSweep, Stepper,
+    Tait, Viscosity,
 };
 use touchstone_tests::{bits, difference, patch};
 
@@ -57,6 +57,11 @@ fn predictor_corrector_has_the_order_it_declares() {
 #[test]
 fn leapfrog_has_the_order_it_declares() {
     check_order::<Leapfrog>();
+}
+
+#[test]
+fn the_single_sweep_has_the_order_it_declares() {
+    check_order::<SingleSweep>();
 }
 
 #[test]

@@ -23,8 +23,8 @@ use serde_json::Value;
 use solver::{
     Checkpoint, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Integrator,
     Leapfrog, NoSlip, Numbers, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure,
-    Role, Scene, Scheme, Shifting, Simulation, Smoothing, Stepper, Tait, Viscosity, lattice,
-    walls::Walls,
+    Role, Scene, Scheme, Shifting, Simulation, SingleSweep, Smoothing, Stepper, Tait, Viscosity,
+    lattice, walls::Walls,
 };
 use touchstone_tests::{bits, patch};
 use validation::cases;
@@ -113,6 +113,12 @@ fn leapfrog_goes_on_with_the_same_bits() {
 }
 
 #[test]
+fn the_single_sweep_goes_on_with_the_same_bits() {
+    check(scene::<SingleSweep>);
+    check(channel::<SingleSweep>);
+}
+
+#[test]
 fn the_predictor_corrector_goes_on_with_the_same_bits() {
     check(scene::<PredictorCorrector>);
     check(channel::<PredictorCorrector>);
@@ -171,6 +177,7 @@ fn check_looks<S: Scheme<Extra = ()>>(scene: impl Fn() -> Scene<S>) {
 fn looking_at_a_run_does_not_change_it() {
     check_looks(scene::<Leapfrog>);
     check_looks(channel::<Leapfrog>);
+    check_looks(scene::<SingleSweep>);
     check_looks(scene::<PredictorCorrector>);
 }
 

@@ -17,7 +17,7 @@ use base::{
     vtk::Collection,
 };
 use nalgebra::Vector2;
-use solver::{Checkpoint, Numbers, Particle, Progress, Role, Stepper, Symmetric, Work};
+use solver::{Checkpoint, Numbers, Particle, Past, Progress, Role, Stepper, Symmetric, Work};
 use thiserror::Error;
 
 /// Why there is no checkpoint, or why a run does not go on from one.
@@ -146,28 +146,66 @@ pub(crate) struct Stage {
 base::bits! { Stage { reached, cost, frames, ended } }
 
 /// Id, role, position, velocity, density and mass of a particle, where it was when the neighbour lists were
-/// built, and its extra fields.
+/// built, and its extra fields, with those of earlier steps.
 type Stored = (u32, u8, [f64; 8], Vec<f64>);
 
 /// Times and steps, and then the particles.
 type State = ([f64; 7], [u64; 5], bool, Vec<Stored>);
 
+/// Appends the numbers of these extra fields.
+fn save_extra<X: Numbers>(extra: &X, to: &mut Vec<f64>) -> Result<(), CheckpointError> {
+    let known: &dyn Any = extra;
+    match known.downcast_ref::<Symmetric>() {
+        Some(s) => to.extend([s.xx, s.yy, s.xy]),
+        None if size_of::<X>() == 0 => {}
+        None => return Err(CheckpointError::Extra),
+    }
+    Ok(())
+}
+
+/// Takes the numbers of extra fields from the front.
+fn restore_extra<X: Numbers>(from: &mut &[f64]) -> Result<X, CheckpointError> {
+    let mut extra = X::default();
+    let known: &mut dyn Any = &mut extra;
+    match known.downcast_mut::<Symmetric>() {
+        Some(s) => {
+            let (&[xx, yy, xy], rest) = from.split_first_chunk().ok_or(CheckpointError::Extra)?;
+            (*s, *from) = (Symmetric { xx, yy, xy }, rest);
+        }
+        None if size_of::<X>() == 0 => {}
+        None => return Err(CheckpointError::Extra),
+    }
+    Ok(extra)
+}
+
+/// What an integrator keeps of earlier steps.
+fn restore_past<X: Numbers>(mut from: &[f64]) -> Result<Past<X>, CheckpointError> {
+    let mut rates = || {
+        let (&density, rest) = from.split_first().ok_or(CheckpointError::Extra)?;
+        from = rest;
+        Ok::<_, CheckpointError>((density, restore_extra(&mut from)?))
+    };
+    let past = Past { drifted: rates()?, rate: rates()? };
+    if from.is_empty() { Ok(past) } else { Err(CheckpointError::Extra) }
+}
+
 /// The state of a simulation.
 fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Vec<u8>) -> Result<(), CheckpointError> {
-    let Checkpoint { progress, lag, particles, built_at } = state;
+    let Checkpoint { progress, lag, particles, built_at, past } = state;
     let &Progress { time, dt, work, last_approach, built_inside_a_step, call, made } = progress;
     let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-    let stored = |((id, p), at): (&(u32, Particle<X>), &Vector2<f64>)| {
+    let stored = |(k, ((id, p), at)): (usize, (&(u32, Particle<X>), &Vector2<f64>))| {
         let (x, v) = (p.position, p.velocity);
-        let extra: &dyn Any = &p.extra;
-        let extra = match extra.downcast_ref::<Symmetric>() {
-            Some(s) => vec![s.xx, s.yy, s.xy],
-            None if size_of::<X>() == 0 => Vec::new(),
-            None => return Err(CheckpointError::Extra),
-        };
-        Ok((*id, p.role as u8, [x.x, x.y, v.x, v.y, p.density, p.mass, at.x, at.y], extra))
+        let mut numbers = Vec::new();
+        save_extra(&p.extra, &mut numbers)?;
+        for (density, extra) in past.get(k).iter().flat_map(|past| [past.drifted, past.rate]) {
+            numbers.push(density);
+            save_extra(&extra, &mut numbers)?;
+        }
+        let at = [x.x, x.y, v.x, v.y, p.density, p.mass, at.x, at.y];
+        Ok::<Stored, CheckpointError>((*id, p.role as u8, at, numbers))
     };
-    let all = particles.iter().zip(built_at).map(stored);
+    let all = particles.iter().zip(built_at).enumerate().map(stored);
     let times = [time, dt, last_approach, *lag, call[0], call[1], call[2]];
     let counts = [steps, pair_interactions, right_hand_sides, list_builds, made];
     let state: State = (times, counts, built_inside_a_step, all.collect::<Result<_, _>>()?);
@@ -181,23 +219,21 @@ fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, Checkpoi
     let [steps, pair_interactions, right_hand_sides, list_builds, made] = counts;
     let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
     let progress = Progress { time, dt, work, last_approach, built_inside_a_step, call, made };
-    let (mut particles, mut built_at) = (Vec::new(), Vec::new());
+    let (mut particles, mut built_at, mut past) = (Vec::new(), Vec::new(), Vec::new());
     for (id, role, [x, y, u, v, density, mass, at_x, at_y], numbers) in stored {
         let roles = [Role::Fluid, Role::Wall, Role::Interface];
         let role = roles.into_iter().find(|known| *known as u8 == role);
         let role = role.ok_or(CheckpointError::State("a particle of an unknown role"))?;
-        let mut extra = X::default();
-        let symmetric: &mut dyn Any = &mut extra;
-        match (symmetric.downcast_mut::<Symmetric>(), &numbers[..]) {
-            (Some(s), &[xx, yy, xy]) => *s = Symmetric { xx, yy, xy },
-            (None, []) if size_of::<X>() == 0 => {}
-            _ => return Err(CheckpointError::Extra),
+        let mut numbers = &numbers[..];
+        let extra = restore_extra(&mut numbers)?;
+        if !numbers.is_empty() {
+            past.push(restore_past(numbers)?);
         }
         let (position, velocity) = (Vector2::new(x, y), Vector2::new(u, v));
         particles.push((id, Particle { role, position, velocity, density, mass, extra }));
         built_at.push(Vector2::new(at_x, at_y));
     }
-    Ok(Checkpoint { progress, lag, particles, built_at })
+    Ok(Checkpoint { progress, lag, particles, built_at, past })
 }
 
 /// A simulation as bytes.

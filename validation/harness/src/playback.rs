@@ -157,6 +157,7 @@ fn put<X: Numbers, D: Stepper<X> + ?Sized>(
     let places = state.particles.iter().map(|(_, particle)| particle.position).collect();
     let reference = std::mem::replace(&mut state.built_at, places);
     state.lag = 0.0;
+    state.past.clear();
     state.progress = solver::Progress { time, ..solver::Progress::default() };
     if simulation.restore(&state).is_err() {
         // A total Lagrangian solid keeps the lists of its reference.

@@ -11,8 +11,8 @@
 use nalgebra::Vector2;
 use solver::{
     ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion, EquationOfState, Flow,
-    Leapfrog, Limits, Observer, Open, PredictorCorrector, Pressure, QuinticSpline, Split, Stepper,
-    SuperSteps, Tait, Viscosity, terms::Always,
+    Leapfrog, Limits, Observer, Open, PredictorCorrector, Pressure, QuinticSpline, SingleSweep,
+    Split, Stepper, SuperSteps, Tait, Viscosity, terms::Always,
 };
 
 use base::{
@@ -110,11 +110,13 @@ const MIDPOINT: &str = "cubic-pc";
 const SUPER: &str = "cubic-super";
 const DAMPED: &str = "cubic-damped";
 const QUINTIC: &str = "quintic-leapfrog";
+const SINGLE: &str = "cubic-single-sweep";
 
 /// The method of a variant.
 fn method(variant: &str) -> Method {
     match variant {
         MIDPOINT => plain::<CubicSpline, PredictorCorrector>(),
+        SINGLE => plain::<CubicSpline, SingleSweep>(),
         SUPER => Method::of::<Super>(),
         DAMPED => Method::of::<Damped>(),
         QUINTIC => plain::<QuinticSpline, Leapfrog>(),
@@ -146,6 +148,12 @@ fn variants() -> Vec<Composition<BoxSettings>> {
             DAMPED,
             "what artificial viscosity and density diffusion take from the step",
             method(DAMPED),
+            |_| (),
+        )
+        .with(
+            SINGLE,
+            "what one pair sweep a step allows, in place of the leapfrog's two",
+            method(SINGLE),
             |_| (),
         )
         .with(QUINTIC, "does theory hold for a kernel of wider support?", method(QUINTIC), |s| {
@@ -311,6 +319,7 @@ fn table(tier: Tier) -> Table<BoxSettings, Group> {
         (CUBIC, [&all[..], all]),
         (MIDPOINT, [&all[..3], &all[..5]]),
         (SUPER, [&all[..4]; 2]),
+        (SINGLE, [&[1.0, INVISCID], all]),
         (QUINTIC, [&[1.0, 10.0, INVISCID]; 2]),
     ] {
         table.over(Group::Limit, &[variant], values, viscous(variant));

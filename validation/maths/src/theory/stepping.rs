@@ -1,6 +1,6 @@
 //! Which theory of the time step belongs to which integrator.
 
-use solver::{Euler, Leapfrog, PredictorCorrector, SuperSteps};
+use solver::{Euler, Leapfrog, PredictorCorrector, SingleSweep, SuperSteps};
 
 use super::time_step::Integrator as Theory;
 
@@ -20,6 +20,10 @@ impl Stepping for Leapfrog {
 
 impl<X> Stepping for Leapfrog<SuperSteps<X>> {
     const THEORY: Theory = Theory::SuperLeapfrog;
+}
+
+impl Stepping for SingleSweep {
+    const THEORY: Theory = Theory::SingleSweep;
 }
 
 impl Stepping for Euler {

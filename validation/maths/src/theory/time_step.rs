@@ -16,7 +16,7 @@ use super::{
     super_steps,
 };
 use base::functions::{ln, modulus};
-use nalgebra::{Complex, Matrix3, Vector2};
+use nalgebra::{Complex, Matrix3, SMatrix, Vector2};
 use solver::super_steps::stages;
 
 /// The fluid that the limits are for. All numbers must be finite and not negative, `h` and `c0`
@@ -45,6 +45,8 @@ pub enum Integrator {
     Leapfrog,
     /// The same with Morris' viscosity by super-time-stepping.
     SuperLeapfrog,
+    /// The leapfrog with one pair sweep a step, whose density is extrapolated.
+    SingleSweep,
     /// Forward Euler; order 1.
     Euler,
 }
@@ -53,7 +55,7 @@ impl Integrator {
     /// Pair sweeps of a step that is so many times as long as [`explicit_limit`].
     pub fn sweeps(self, ratio: f64) -> f64 {
         match self {
-            Self::Euler => 1.0,
+            Self::Euler | Self::SingleSweep => 1.0,
             Self::PredictorCorrector | Self::Leapfrog => 2.0,
             Self::SuperLeapfrog => 1.0 + f64::from(stages(ratio)),
         }
@@ -140,6 +142,9 @@ pub fn growth_per_step(modes: &[Mode], integrator: Integrator, dt: f64) -> f64 {
 /// viscosity.
 const SEARCHED: i32 = 500;
 
+/// Steps in which the limit of the single sweep is searched.
+const SEARCHED_SINGLY: u16 = 20;
+
 impl Mode {
     /// The wave with phase `theta` = k dx \[rad\].
     pub fn new(lattice: &SquareLattice, theta: Vector2<f64>, medium: &Medium) -> Self {
@@ -178,6 +183,7 @@ impl Mode {
     /// - Super-time-stepping: the first dt at which a factor of -1 is reached. Viscosity alone reaches none,
     ///   and with sound it delays it, so that the search begins at the limit of the leapfrog without
     ///   viscosity.
+    /// - The single sweep: the first dt that grows, searched up to twice the limit of the leapfrog.
     /// - The others: the smallest limit over the eigenvalues s = a + ib of the equations, from
     ///   |1 + s dt|² ≤ 1 for Euler and |1 + s dt + (s dt)²/2|² ≤ 1 for the predictor-corrector. The
     ///   latter reads 2a + 2a² dt + a|s|² dt² + |s|⁴ dt³/4 ≤ 0, free of cancellation, and its left
@@ -193,6 +199,9 @@ impl Mode {
         }
         if integrator == Integrator::SuperLeapfrog {
             return self.limit_of_super_steps(longest);
+        }
+        if integrator == Integrator::SingleSweep {
+            return self.limit_of_single_sweep(longest);
         }
         let limit = |s: Complex<f64>| match modulus(s) {
             0.0 => f64::INFINITY,
@@ -225,6 +234,23 @@ impl Mode {
         low
     }
 
+    fn limit_of_single_sweep(&self, longest: f64) -> f64 {
+        let is_stable = |dt: f64| self.growth(Integrator::SingleSweep, dt) < 1e-9;
+        // A viscous wave is stable beyond the limit of the leapfrog, which is infinite for a wave at rest.
+        let far = longest.min(2.0 * self.limit(Integrator::Leapfrog)).min(f64::MAX.sqrt());
+        let mut searched =
+            (1..=SEARCHED_SINGLY).map(|k| far * f64::from(k) / f64::from(SEARCHED_SINGLY));
+        let Some(mut high) = searched.find(|dt| !is_stable(*dt)) else {
+            return longest;
+        };
+        let mut low = high - far / f64::from(SEARCHED_SINGLY);
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if is_stable(middle) { low = middle } else { high = middle }
+        }
+        low
+    }
+
     /// ln of the spectral radius of one step.
     pub fn growth(&self, integrator: Integrator, dt: f64) -> f64 {
         let radius = match integrator {
@@ -232,6 +258,7 @@ impl Mode {
                 let spectrum = self.leapfrog_step(integrator, dt).complex_eigenvalues();
                 spectrum.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
             }
+            Integrator::SingleSweep => return growth_of(self.single_sweep_step(dt)),
             Integrator::Euler => self.largest(|s| Complex::new(1.0, 0.0) + s * dt),
             Integrator::PredictorCorrector => {
                 self.largest(|s| Complex::new(1.0, 0.0) + s * dt + s * s * (0.5 * dt * dt))
@@ -277,6 +304,20 @@ impl Mode {
         drift * kick
     }
 
+    /// One step of the single sweep: of ρ̃, v_l, v_t, the density as rates made it, and its last rate.
+    fn single_sweep_step(&self, dt: f64) -> SMatrix<f64, 5, 5> {
+        let Self { omega, longitudinal, coupling, transverse, density, .. } = *self;
+        let rate = [-density * dt, -omega * dt];
+        SMatrix::<f64, 5, 5>::from([
+            [3.0 * rate[0], 3.0 * rate[1], 0.0, 1.0, -1.0],
+            [omega * dt, 1.0 - longitudinal * dt, -coupling * dt, 0.0, 0.0],
+            [0.0, -coupling * dt, 1.0 - transverse * dt, 0.0, 0.0],
+            [rate[0], rate[1], 0.0, 1.0, 0.0],
+            [rate[0], rate[1], 0.0, 0.0, 0.0],
+        ])
+        .transpose()
+    }
+
     /// Eigenvalues of (p, v_l, v_t)' \[1/s\]: in closed form without coupling, for then zero and
     /// undamped waves keep an exact real part.
     fn eigenvalues(&self) -> [Complex<f64>; 3] {
@@ -302,6 +343,19 @@ impl Mode {
         let slow = if fast == 0.0 { 0.0 } else { product / fast };
         [Complex::new(fast, 0.0), Complex::new(slow, 0.0), shear]
     }
+}
+
+/// ln of the spectral radius, from the 2⁴⁰th power.
+fn growth_of(mut step: SMatrix<f64, 5, 5>) -> f64 {
+    let (mut growth, mut share) = (0.0, 1.0);
+    for _ in 0..40 {
+        let size = step.amax();
+        growth += share * ln(size);
+        step /= size;
+        step *= step;
+        share *= 0.5;
+    }
+    growth
 }
 
 /// The matrix with these rows.
@@ -330,7 +384,7 @@ mod tests {
     use solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
     const WATER: Medium = Medium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
-    use Integrator::{Euler, Leapfrog, PredictorCorrector};
+    use Integrator::{Euler, Leapfrog, PredictorCorrector, SingleSweep};
 
     fn oscillator(omega: f64, gamma: f64) -> Mode {
         let along = Vector2::x();
@@ -477,7 +531,7 @@ mod tests {
             [(0.1, 0.0, 0.0), (0.0, 0.5, 0.0), (0.02, 1.0, 0.1), (1.0, 0.1, 0.1)]
         {
             let modes = modes(&lattice, 12, &Medium { nu, alpha, delta, ..WATER });
-            for integrator in [PredictorCorrector, Leapfrog, Euler] {
+            for integrator in [PredictorCorrector, Leapfrog, SingleSweep, Euler] {
                 for mode in &modes {
                     let limit = mode.limit(integrator);
                     let (below, above) = (0.999 * limit, 1.001 * limit);
@@ -486,6 +540,20 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Of (z - 1)² z² + (ω dt)² (3z² - 3z + 1) the roots at the limit are exp(±iπ/3) and (1 ± i)/2, and for
+    /// small steps |z| = 1 - (ω dt)⁴/2. Viscosity alone has the limit of the leapfrog.
+    #[test]
+    fn a_single_sweep_damps_sound_up_to_its_limit() {
+        let sound = oscillator(1.0, 0.0);
+        assert_relative_eq!(sound.limit(SingleSweep), 0.5_f64.sqrt(), max_relative = 1e-6);
+        let growth = Mode { transverse: 1.0, ..sound }.growth(SingleSweep, 0.1);
+        assert_relative_eq!(growth, -0.5e-4, max_relative = 0.01);
+        assert_relative_eq!(oscillator(0.0, 1.0).limit(SingleSweep), 2.0, max_relative = 1e-6);
+        // Of the leapfrog 1.90, 1.24 and 0.198.
+        let coupled = [0.1, 1.0, 10.0].map(|gamma| oscillator(1.0, gamma).limit(SingleSweep));
+        assert_rounds_to("single sweep", &["0.70", "0.65", "0.216"], &coupled);
     }
 
     #[test]
