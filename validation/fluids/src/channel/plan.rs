@@ -21,9 +21,9 @@ use harness::{
 
 /// Variants whose error is drawn against their cost. In Couette flow, without a body force, `curved` would be
 /// `plain`.
-pub fn ladder(flow: Flow) -> [&'static str; 6] {
+pub fn ladder(flow: Flow) -> [&'static str; 7] {
     let best = if flow == Flow::Couette { "modern" } else { "curved" };
-    ["seed", "interface-wall", "wendland-leapfrog", "plain", best, "stiff"]
+    ["seed", "interface-wall", "wendland-leapfrog", "plain", best, "single-sweep", "stiff"]
 }
 
 /// Reynolds numbers of the modern variant and the νt/L² that each that is run must reach. The last one has no

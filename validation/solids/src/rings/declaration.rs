@@ -151,7 +151,7 @@ fn accuracy(tier: Tier) -> Vec<Accuracy> {
             ),
             spacing: "spacing [L]",
             slope: Some(1.0),
-            ladders: ["seed", "leapfrog", LAGRANGIAN].map(ladder).into(),
+            ladders: ["seed", "leapfrog", "single-sweep", LAGRANGIAN].map(ladder).into(),
             ..Accuracy::new(&id, ErrorOf::Metric(metric.into()), &label)
         }
     };

@@ -22,7 +22,8 @@ use harness::{
     method::{self, Method, Standard},
 };
 use solver::{
-    ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Simulation, Symmetric,
+    ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Simulation, SingleSweep,
+    Symmetric,
 };
 
 use crate::solid::{
@@ -125,6 +126,12 @@ fn variants() -> Vec<Composition<RingSettings>> {
              change anything but the cost?",
             method::<Rubber<PrincipalStress, Leapfrog>>(),
             |s| s.courant = LONG_STEPS,
+        )
+        .with(
+            "single-sweep",
+            "leapfrog with one pair sweep a step in place of two: is its error cheaper?",
+            method::<Rubber<PrincipalStress, SingleSweep>>(),
+            |s| s.courant = LONG_STEPS / 8_f64.sqrt(),
         )
         .with(
             CORRECTED,

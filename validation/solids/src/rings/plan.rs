@@ -61,6 +61,7 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     keep(table.one(Group::Paper, "seed", |s| s.spacing = 0.2));
     table.over(Group::Paper, &["seed"], [&[], &[0.1, 0.05]], dx);
     table.over(Group::Paper, &["leapfrog"], [&[0.2, 0.1]; 2], dx);
+    table.over(Group::Paper, &["single-sweep"], [&[], &[0.2, 0.1]], dx);
     table.over(Group::Paper, &[COMPONENTWISE], [&[0.2]; 2], dx);
     // Rings of 20 layers diverge at 159 L/c0.
     table.over(Group::Paper, &[CORRECTED], [&[0.2], &[0.2, 0.1]], dx);
