@@ -19,7 +19,8 @@
 //!
 //! ```text
 //! lane, numbers, kernel, eos, domain <- particles <- terms <- walls <- neighbours
-//!     <- physics, sweep, particle_data <- engine <- integrator <- super_steps, single_sweep, simulation <- scene
+//!     <- physics, sweep, particle_data <- engine <- integrator
+//!     <- super_steps, single_sweep, simulation <- scene
 //! ```
 //!
 //! The crate does no I/O and contains no reference data. After [`Scene::build`] it returns no error; a

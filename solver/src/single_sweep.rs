@@ -21,8 +21,8 @@ use crate::{
 /// step it is replaced, so that no error of extrapolation accumulates.
 ///
 /// A step costs about 0.7 of that of [`crate::Leapfrog`], which sweeps twice. Viscous forces have the same
-/// limit. Sound has about a third of it: stable up to ω dt = 0.71, where the leapfrog is up to 2; below, it is
-/// damped by (ω dt)⁴/2 a step. Of first order in dt, because Dⁿ has positions half a step later than its
+/// limit. Sound has about a third of it: stable up to ω dt = 1/√2, where the leapfrog is up to 2; below, it
+/// is damped by (ω dt)⁴/2 a step. Of first order in dt, because Dⁿ has positions half a step later than its
 /// velocities.
 #[derive(Debug, Default)]
 pub struct SingleSweep {

@@ -164,7 +164,7 @@ fn of_ladder(flow: Flow, case: &ChannelCase, variant: &str, rows: usize) -> Vec<
                            which eta and the kernel on this lattice change the viscosity.";
             vec![error(L2_WORST.into(), 0.02, because)]
         }
-        (Flow::Couette, "modern", 20) => {
+        (Flow::Couette, "modern" | "single-sweep", 20) => {
             let because = "The bound is the larger error by the row-reduced matrices of the walls, 6.6e-4, \
                            and as much again for shifting and density diffusion, which the matrices leave \
                            out.";

@@ -107,7 +107,7 @@ fn variants() -> Vec<Composition<HillSettings>> {
             strong,
         )
         .with(
-            "single-sweep",
+            SINGLE_SWEEP,
             "carried with one pair sweep a step in place of two: is its error cheaper?",
             method::<Single>(),
             |s| {
@@ -128,6 +128,9 @@ const NAME: &str = "periodic_hill";
 
 /// The variant that is held to the goals.
 const BEST: &str = "carried";
+
+/// It with one pair sweep a step.
+const SINGLE_SWEEP: &str = "single-sweep";
 
 static CASE: Composed<HillSettings> = Composed {
     name: NAME,

@@ -82,6 +82,11 @@ impl Subject {
         }
     }
 
+    /// Is it a derivative whose sum over the kernel nothing corrects?
+    fn is_derivative_as_summed(&self) -> bool {
+        !self.is_corrected && self.operator != Operator::Density
+    }
+
     fn about(&self) -> &'static str {
         match (self.operator, self.is_corrected) {
             (Operator::Density, _) => "is the density the sum of the masses, m W?",
@@ -172,6 +177,8 @@ macro_rules! subjects {
 
 /// The kernel of `modern` variants, whose ladders are in the quick tier too.
 const QUINTIC: &str = "quintic";
+/// That of the paper.
+const CUBIC: &str = "cubic";
 
 /// All variants. h/dx is what variants of the cases of this program have with the kernel.
 static SUBJECTS: [[Subject; 7]; 3] = [

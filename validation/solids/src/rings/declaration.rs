@@ -136,6 +136,10 @@ fn histories(tier: Tier) -> Curves {
 
 fn accuracy(tier: Tier) -> Vec<Accuracy> {
     let table = table(tier);
+    let variants: &[&str] = match tier {
+        Tier::Quick => &["seed", "leapfrog", LAGRANGIAN],
+        _ => &["seed", "leapfrog", "single-sweep", LAGRANGIAN],
+    };
     let of = |what: &str, metric: MetricKey| {
         let id = format!("rubber-rings-{}", what.replace(' ', "-"));
         let label = format!("relative error of the {what} [-]");
@@ -151,7 +155,7 @@ fn accuracy(tier: Tier) -> Vec<Accuracy> {
             ),
             spacing: "spacing [L]",
             slope: Some(1.0),
-            ladders: ["seed", "leapfrog", "single-sweep", LAGRANGIAN].map(ladder).into(),
+            ladders: variants.iter().copied().map(ladder).collect(),
             ..Accuracy::new(&id, ErrorOf::Metric(metric.into()), &label)
         }
     };

@@ -71,10 +71,10 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     let full = [(0.2, 0.03), (0.1, 0.03), (0.2, 0.12), (0.1, 0.12), (0.2, 0.2)];
     table.over(Group::Speed, &["seed"], [&quick, &full], at);
     table.over(Group::Speed, &[COMPONENTWISE, CORRECTED], [&[], &[(0.2, 0.12)]], at);
-    // At 0.3 c0 a crease of rings of 20 layers passes the bound of the density (docs/limits.md).
+    // Beyond 0.28 c0 a crease of rings of 10 layers passes the bound of the density (docs/limits.md).
     let quick = [(0.2, 0.03), (0.2, 0.3)];
     let full =
-        [(0.2, 0.03), (0.1, 0.03), (0.05, 0.03), (0.1, 0.12), (0.1, 0.2), (0.2, 0.3), (0.1, 0.3)];
+        [(0.2, 0.03), (0.1, 0.03), (0.05, 0.03), (0.1, 0.12), (0.1, 0.2), (0.2, 0.3), (0.1, 0.25)];
     table.over(Group::Speed, &[LAGRANGIAN], [&quick, &full], at);
     let unstressed = |s: &mut RingSettings, (dx, speed)| {
         (s.spacing, s.speed, s.xi) = (dx, speed, 0.0);
@@ -83,6 +83,7 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     let others = [(0.2, SPEED), (0.1, SPEED), (0.1, 0.12)];
     table.over(Group::Unstressed, &["seed"], [&[], &others], unstressed);
     table.over(Group::Coarse, &["seed", "leapfrog", LAGRANGIAN], [COARSE; 2], dx);
+    table.over(Group::Coarse, &["single-sweep"], [&[], COARSE], dx);
     table.over(Group::Turned, &["seed", COMPONENTWISE], [&[], &[30.0]], |s, angle| {
         (s.spacing, s.angle) = (0.2, angle);
     });

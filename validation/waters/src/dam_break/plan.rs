@@ -97,7 +97,7 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     table.over(Free, &["ghosts-slip", "ghosts-split"], [&[20], &[20]], across);
     let ladder: [&[usize]; 2] = [&[7, 10, 14, 20], &[10, 14, 20, 28, 40]];
     table.over(Ladder, &["seed", "modern", "modern-interface"], ladder, across);
-    table.over(Ladder, &["single-sweep"], [&[], ladder[1]], across);
+    table.over(Ladder, &["single-sweep"], [&[10], ladder[1]], across);
     table.one(Extreme(SINGLE), "modern", |s| {
         (s.width, s.height, s.n, s.tank) = (0.01, 0.2, 1, 0.5);
     });
