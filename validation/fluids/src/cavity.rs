@@ -336,11 +336,14 @@ fn curves(table: &table::Table<Cavity, f64>) -> Curves {
         let known = ("finite differences", known);
         CurvePanel::linear(&format!("Re {re}"), axes, rows.map(line).collect(), known)
     };
+    let finest = table.rows.iter().map(|row| row.settings.n).max().unwrap_or_default();
     let panels = [(100.0, 0), (100.0, 1), (1000.0, 0), (1000.0, 1)].map(panel);
     Curves {
         id: "cavity-mid-lines".into(),
         title: "Velocity on the mid-lines".into(),
-        caption: "Mean velocity with the finest spacing, at the places of Ghia et al.".into(),
+        caption: format!(
+            "Mean velocity with {finest} spacings a side at the places of Ghia et al., joined by lines."
+        ),
         columns: 2,
         panels: panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect(),
     }
