@@ -257,8 +257,8 @@ static RAMP: Cause = Cause::new(
 
 /// Why the vortex is too weak.
 static LAYERS: Cause = Cause::new(
-    "The vortex of the cavity, above all its return flow, is too weak by an error of first order or less; \
-     it is not known why.",
+    "The vortex of the cavity, above all its return flow, is too weak by an error of first order or less, \
+     for unknown reasons.",
     "Finer spacing at the walls, and the error of each term in such a layer, measured alone.",
 );
 
