@@ -1,4 +1,4 @@
-//! Deliberate errors of a run: one constant of its scene is multiplied by a factor, while everything that is
+//! Deliberate changes of a run: errors and disorder. Of an error, one constant of its scene is multiplied by a factor, while everything that is
 //! measured and judged follows the settings as before. A gate that such a run passes cannot detect the error.
 
 use std::fmt;
@@ -20,6 +20,17 @@ impl Mutation {
     pub fn factor_of(self, constant: Constant) -> f64 {
         if self.of == constant { self.factor } else { 1.0 }
     }
+}
+
+/// A small disorder of the start of a run, no error: particles of the fluid are displaced along each axis by
+/// uniform random numbers. Runs that differ in its seed alone are an ensemble.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Disorder {
+    /// the largest displacement along each axis \[dx\]
+    pub most: f64,
+    /// seed of the displacements
+    pub seed: u32,
 }
 
 /// A physical constant of a problem or an ingredient of the method.

@@ -24,7 +24,7 @@ use thiserror::Error;
 
 use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
-use crate::mutation::Mutation;
+use crate::mutation::{Disorder, Mutation};
 use crate::reference::sha256;
 use crate::settings::Settings;
 use crate::spec::{Keep, Measure, RunKey, RunSpec, Task};
@@ -111,6 +111,9 @@ pub struct Record {
     /// a deliberate error of the scene
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mutation: Option<Mutation>,
+    /// a small disorder of the start
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disorder: Option<Disorder>,
     /// the other code that made the run
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub submission: Option<Box<Submission>>,
@@ -415,8 +418,9 @@ impl Record {
 
     /// The same record, which states that it is of this run.
     pub fn of(self, spec: &RunSpec) -> Self {
-        let RunSpec { task, allow_unstable, keep, mutation, submission, .. } = spec.clone();
-        Self { task, allow_unstable, keep, mutation, submission, ..self }
+        let RunSpec { task, allow_unstable, keep, mutation, disorder, submission, .. } =
+            spec.clone();
+        Self { task, allow_unstable, keep, mutation, disorder, submission, ..self }
     }
 
     /// The run that it is of, whatever was measured of it.
@@ -430,6 +434,7 @@ impl Record {
             allow_unstable: *allow_unstable,
             keep: *keep,
             mutation: self.mutation,
+            disorder: self.disorder,
             submission: self.submission.clone(),
             measure: Measure::default(),
         }
@@ -460,6 +465,7 @@ impl Record {
             allow_unstable: false,
             keep: Keep::default(),
             mutation: None,
+            disorder: None,
             submission: None,
             status: Status::Completed,
             metrics: BTreeMap::new(),

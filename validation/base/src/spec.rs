@@ -21,7 +21,7 @@ use serde_json::{Map, Value};
 use thiserror::Error;
 
 use crate::{
-    mutation::{Constant, Detect, Mutation},
+    mutation::{Constant, Detect, Disorder, Mutation},
     reference::sha256,
     submission::Submission,
 };
@@ -51,6 +51,9 @@ pub struct RunSpec {
     /// a deliberate error of the scene
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mutation: Option<Mutation>,
+    /// a small disorder of the start
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disorder: Option<Disorder>,
     /// the other code that made the run
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub submission: Option<Box<Submission>>,
@@ -213,10 +216,18 @@ impl fmt::Display for RunKey {
 impl RunSpec {
     /// One simulation that keeps metrics and curves.
     pub fn new(case: &str, variant: &str, settings: Value) -> Self {
-        let (case, variant) = (case.to_string(), variant.to_string());
-        let (task, keep, measure) = (Task::Simulate, Keep::default(), Measure::default());
-        let (allow_unstable, mutation, submission) = (false, None, None);
-        Self { case, variant, settings, task, allow_unstable, keep, mutation, submission, measure }
+        Self {
+            case: case.to_string(),
+            variant: variant.to_string(),
+            settings,
+            task: Task::Simulate,
+            allow_unstable: false,
+            keep: Keep::default(),
+            mutation: None,
+            disorder: None,
+            submission: None,
+            measure: Measure::default(),
+        }
     }
 
     /// The same, whatever its time step.
@@ -249,6 +260,11 @@ impl RunSpec {
     /// The same with a deliberate error of the scene.
     pub fn mutated(self, mutation: Mutation) -> Self {
         Self { mutation: Some(mutation), ..self }
+    }
+
+    /// The same, whose particles start off their places.
+    pub fn disordered(self, disorder: Disorder) -> Self {
+        Self { disorder: Some(disorder), ..self }
     }
 
     /// The same, of which all is measured.
@@ -302,6 +318,9 @@ impl RunSpec {
             };
             within("mutation.factor", mutation.factor, range, allowed)?;
         }
+        if let Some(Disorder { most, .. }) = self.disorder {
+            within("disorder.most", most, 0.0..=0.5, "0 to 0.5")?;
+        }
         let Task::Bisect(Bisect { guess, unit, resolution, end, .. }) = self.task else {
             return Ok(());
         };
@@ -347,6 +366,9 @@ mod tests {
             spec.clone().detect(Detect { of: Constant::Xsph, only_allowed: false }),
             spec.clone().detect(Detect { of: Constant::Xsph, only_allowed: true }),
             spec.clone().mutated(Mutation { of: Constant::Xsph, factor: 1.03 }),
+            spec.clone().disordered(Disorder { most: 1e-6, seed: 1 }),
+            spec.clone().disordered(Disorder { most: 1e-6, seed: 2 }),
+            spec.clone().disordered(Disorder { most: 2e-6, seed: 1 }),
         ];
         let keys: std::collections::BTreeSet<_> = others.iter().map(RunSpec::key).collect();
         assert_eq!(keys.len(), others.len());
@@ -399,6 +421,10 @@ mod tests {
             (
                 spec(r#""mutation":{"of":"time_step","factor":-1}"#),
                 "mutation.factor is -1.0; allowed is 0.1 to 10",
+            ),
+            (
+                spec(r#""disorder":{"most":0.6,"seed":1}"#),
+                "disorder.most is 0.6; allowed is 0 to 0.5",
             ),
             (bisect(r#","resolution":0"#), "task.bisect.resolution is 0.0; allowed is 1e-6 to 1"),
             (bisect(r#","resolution":-1"#), "task.bisect.resolution is -1.0"),

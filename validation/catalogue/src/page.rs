@@ -269,6 +269,7 @@ pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
         Task::Detect(detect) => words.push(format!("(smallest detected error of {})", detect.of)),
     }
     words.extend(spec.mutation.map(|m| format!("({} × {})", m.of, m.factor)));
+    words.extend(spec.disorder.map(|d| format!("(disorder {} dx, seed {})", d.most, d.seed)));
     words.join(" ")
 }
 

@@ -7,7 +7,7 @@ use std::sync::{
 };
 
 use base::{
-    mutation::Mutation,
+    mutation::{Disorder, Mutation},
     record::Profile,
     spec::{Measure, RunSpec},
 };
@@ -47,6 +47,8 @@ pub struct Context<'a> {
     pub frames: Option<(PathBuf, usize)>,
     /// A deliberate error of the scene.
     pub mutation: Option<Mutation>,
+    /// A small disorder of the start.
+    pub disorder: Option<Disorder>,
     /// Where all fields of the particles at the end are put.
     pub at_the_end: Option<&'a Mutex<Option<Profile>>>,
     /// Keep the particles of the last time in the record.
@@ -110,6 +112,7 @@ impl Context<'_> {
             keep_particles: spec.keep.particles,
             pictures: spec.keep.pictures,
             mutation: spec.mutation,
+            disorder: spec.disorder,
             measure: spec.measure,
             ..self.clone()
         }

@@ -9,7 +9,7 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-use base::mutation::{Constant, Mutation};
+use base::mutation::{Constant, Disorder, Mutation};
 use maths::theory::{
     Stepping,
     lattice::SquareLattice,
@@ -58,6 +58,8 @@ pub struct Parts<X = ()> {
     pub threads: usize,
     /// A deliberate error.
     pub mutation: Option<Mutation>,
+    /// A small disorder of the start.
+    pub disorder: Option<Disorder>,
     /// Where these parts are told, if another code wants to know them.
     pub outline: Option<Sink>,
 }
@@ -72,7 +74,7 @@ impl<X: Numbers> Parts<X> {
         context: &Context,
     ) -> Self {
         let (mirrors, bodies, limits) = (Vec::new(), Vec::new(), solver::Limits::default());
-        let &Context { threads, mutation, ref outline, .. } = context;
+        let &Context { threads, mutation, disorder, ref outline, .. } = context;
         let (skin, outline) = (None, outline.clone());
         let particles = match context.playback {
             Some(playback) => playback.particles(particles),
@@ -88,6 +90,7 @@ impl<X: Numbers> Parts<X> {
             limits,
             threads,
             mutation,
+            disorder,
             outline,
         }
     }

@@ -1,19 +1,25 @@
-//! Deliberate errors of a scene.
+//! Deliberate errors and a deliberate disorder of a scene.
 
-use base::mutation::Constant;
+use base::{
+    mutation::{Constant, Disorder},
+    random::Random,
+};
 use nalgebra::Vector2;
 use solver::{Numbers, Role};
 
 use super::Parts;
 use crate::relation::{NoSymmetry, Relation, View};
 
-/// Multiplies the constant that is wrong by its factor; the time step is not a part of a scene, and neither
+/// Disorders the start, then multiplies the constant that is wrong by its factor; the time step is not a part of a scene, and neither
 /// is the lifetime of neighbour lists. Before, the parts are told to who wants to know them, as that observer
 /// sees them.
 pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     if let Some(outline) = parts.outline.clone() {
         let view = outline.relation.map_or(Ok(View::default()), |relation| see(parts, relation));
         outline.scene(parts.medium, parts.domain, &parts.mirrors, &parts.bodies, view);
+    }
+    if let Some(disorder) = parts.disorder {
+        disturb(parts, disorder);
     }
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);
@@ -46,6 +52,15 @@ pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     for mirror in mirrors {
         mirror.velocity *= of(Constant::WallSpeed);
         mirror.point.component_mul_assign(&stretch);
+    }
+}
+
+/// Displaces the particles that move on their own, in the order of the scene.
+fn disturb<X: Numbers>(parts: &mut Parts<X>, Disorder { most, seed }: Disorder) {
+    let (mut random, most) = (Random::new(seed.into()), most * parts.medium.dx);
+    let mut shake = || most * (2.0 * random.uniform() - 1.0);
+    for particle in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
+        particle.position += Vector2::new(shake(), shake());
     }
 }
 
@@ -156,5 +171,23 @@ mod tests {
         let mut same = parts(Some(Mutation { of: Constant::Height, factor: 1.0 }));
         mutate(&mut same);
         assert_eq!(numbers(&same), healthy);
+    }
+
+    #[test]
+    fn disorder_moves_fluid_alone_by_what_its_seed_says() {
+        let healthy = numbers(&parts(None));
+        let moved = |seed| {
+            let mut parts = parts(None);
+            parts.disorder = Some(Disorder { most: 1e-3, seed });
+            mutate(&mut parts);
+            let pairs = healthy.iter().zip(numbers(&parts)).enumerate();
+            let moved = pairs.filter(|(_, (a, b))| **a != *b).map(|(k, (a, b))| (k, b - a));
+            moved.collect::<Vec<_>>()
+        };
+        let [one, other] = [1, 2].map(moved);
+        // Position of the first particle, the only one of fluid, by less than 1e-3 dx = 1e-4.
+        assert_eq!(one.iter().map(|(k, _)| *k).collect::<Vec<_>>(), [15, 16]);
+        assert!(one.iter().all(|(_, by)| by.abs() <= 1e-4) && one != other);
+        assert_eq!(one, moved(1), "a seed says it all");
     }
 }
