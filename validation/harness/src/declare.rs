@@ -14,6 +14,7 @@ use report::{Axis, Colour};
 use serde_json::Value;
 
 use crate::{
+    ensemble::Ensembles,
     planned::{Planned, Tier},
     rules::Rules,
     runs::Runs,
@@ -30,6 +31,8 @@ pub struct Declaration {
     pub accuracy: Vec<Accuracy>,
     /// Comparisons with references whose uncertainty is stated.
     pub comparisons: Vec<Comparison>,
+    /// Runs that differ by next to nothing at the start.
+    pub ensembles: Option<Ensembles>,
     /// Contributions to the error.
     pub budgets: Option<Budgets>,
     /// Largest stable time steps.
@@ -88,6 +91,7 @@ pub struct Card {
 }
 
 /// A comparison with a reference, whose uncertainty is that of ASME V&V 20.
+#[derive(Clone)]
 pub struct Comparison {
     /// What is compared, with its unit if that is a length or a velocity.
     pub what: String,
@@ -635,6 +639,8 @@ impl Declaration {
             levels.iter().for_each(|level| plain(&level.run.spec));
             inputs.iter().flatten().for_each(&mut plain);
         }
+        let ensembles = self.ensembles.iter().flat_map(|ensembles| &ensembles.of);
+        ensembles.flat_map(|ensemble| &ensemble.members).for_each(&mut plain);
         let budgets = self.budgets.iter().flat_map(|budgets| &budgets.of);
         budgets.flat_map(|budget| &budget.changes).for_each(|change| plain(&change.spec));
         self.limits.iter().flat_map(|limits| &limits.of).for_each(|limit| plain(&limit.spec));

@@ -28,7 +28,8 @@ pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
 pub fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
     let plans = [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| of_case(case, tier));
     let is_this = |of: &RunSpec| {
-        of.task == Task::Simulate && of.variant == spec.variant && of.settings == spec.settings
+        let is_alike = of.variant == spec.variant && of.settings == spec.settings;
+        of.task == Task::Simulate && is_alike && of.disorder == spec.disorder
     };
     let mut names = BTreeSet::new();
     let gates = plans.filter(|planned| is_this(&planned.spec)).flat_map(|planned| planned.gates);

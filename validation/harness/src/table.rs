@@ -3,13 +3,19 @@
 //! A case states its runs here once. Its plan, its ladders and its studies look them up by what they are for,
 //! so none of them states variants, resolutions or tiers again.
 
-use base::{gate::Gate, settings::Settings, spec::RunSpec};
+use base::{gate::Gate, mutation::Disorder, settings::Settings, spec::RunSpec};
+
+use std::ops::RangeInclusive;
 
 use crate::{
     composed::Composed,
     declare::{Ladder, Level},
     planned::{Planned, Tier},
 };
+
+/// By how much the starts of an ensemble differ \[dx\]: less than any method or experiment knows, and more
+/// than round-off.
+const DISORDER: f64 = 1e-6;
 
 /// One run of a table.
 pub struct Row<T, G> {
@@ -65,6 +71,20 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         let place = self.rows.len();
         self.rows.push(Row { group, variant, settings, run });
         &mut self.rows[place]
+    }
+
+    /// Adds the members of an ensemble, in both tiers: a run a seed, all of the same settings.
+    pub fn starts(
+        &mut self,
+        group: G,
+        variant: &'static str,
+        seeds: RangeInclusive<u32>,
+        set: impl Fn(&mut T),
+    ) {
+        for seed in seeds {
+            let run = &mut self.one(group, variant, &set).run;
+            run.spec = run.spec.clone().disordered(Disorder { most: DISORDER, seed });
+        }
     }
 
     /// Gives every row the gates that `gates` states of it.

@@ -5,6 +5,7 @@ mod card;
 pub mod causes;
 mod cost;
 mod curves;
+mod ensemble;
 mod limit;
 #[cfg(test)]
 mod made_up;
@@ -27,6 +28,7 @@ pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     if !declared.comparisons.is_empty() {
         studies.push(validation::study(case, &declared.comparisons, runs));
     }
+    studies.extend(declared.ensembles.iter().map(|of| ensemble::study(of, runs)));
     studies.extend(declared.budgets.iter().map(|budgets| budget::study(budgets, runs)));
     studies.extend(declared.limits.iter().map(|limits| limit::study(case, limits, runs)));
     let sensitivity = declared.sensitivity.iter().filter(|sensitivity| !sensitivity.of.is_empty());

@@ -3,7 +3,7 @@
 //! constants that the gates must detect.
 
 use super::{
-    DAM_BREAK, DamSettings, NAME, curves, lobovsky,
+    DAM_BREAK, DamSettings, NAME, curves, ensembles, lobovsky,
     metrics::{
         FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, MACH,
     },
@@ -47,9 +47,11 @@ pub fn declaration(tier: Tier) -> Declaration {
         uncertainty: Some(FRONT_SPREAD),
         reach: ("n", "", " spacings across the column"),
     };
+    let comparisons = comparisons(tier);
     Declaration {
         card: Some(card),
-        comparisons: comparisons(tier),
+        ensembles: ensembles::ensembles(tier, &comparisons),
+        comparisons,
         curves: curves::curves(tier),
         budgets: Some(budgets(tier, &accuracy)),
         accuracy: vec![accuracy],

@@ -8,6 +8,7 @@
 mod ablation;
 mod curves;
 mod declared;
+mod ensembles;
 mod measure;
 mod metrics;
 mod momentum;

@@ -2,7 +2,7 @@
 //! extremes, with the gates of each and what is known to lie outside of them.
 
 use super::{
-    DAM_BREAK, DamSettings, NAME, lobovsky,
+    DAM_BREAK, DamSettings, NAME, ensembles, lobovsky,
     metrics::{
         self, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, Z,
     },
@@ -33,12 +33,17 @@ pub enum Group {
     Ladder,
     /// What each ingredient buys.
     Ablation,
+    /// The tank of Lobovsky et al. from many starts.
+    Ensemble,
     /// Settings far outside of the usual, by name.
     Extreme(&'static str),
 }
 
 /// A run of this case.
 pub type Row = table::Row<DamSettings, Group>;
+
+/// H/dx of the ensembles.
+pub const ENSEMBLES: [usize; 2] = [20, 30];
 
 const SINGLE: &str = "a column one particle wide";
 const CROWDED: &str = "water that starts on the surface of the walls";
@@ -84,7 +89,7 @@ pub fn change(s: &mut DamSettings, value: f64, set: Set) {
 /// All runs of a tier. Spacings are along the width of the column of Martin & Moyce, and along the height of
 /// that of Lobovsky et al.; successive ones of a ladder differ by √2 or nearly so, and each fills the column.
 pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
-    use Group::{Ablation, Extreme, Free, Ladder, Tank};
+    use Group::{Ablation, Ensemble, Extreme, Free, Ladder, Tank};
     let mut table = table::Table::new(&DAM_BREAK, tier);
     let across = |s: &mut DamSettings, n: usize| s.n = n;
     let along = |s: &mut DamSettings, n: usize| {
@@ -107,6 +112,14 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     table.one(Extreme(CROWDED), "modern", |s| (s.n, s.offset) = (10, 0.5));
     for (variants, values, set) in CHANGES {
         table.over(Ablation, variants, [&[], values], |s, value| change(s, value, set));
+    }
+    for n in if tier == Tier::Quick { &[][..] } else { &ENSEMBLES } {
+        for variant in ["modern", "seed"] {
+            table.starts(Ensemble, variant, ensembles::SEEDS, |s| {
+                lobovsky(s);
+                (s.n, s.end) = (*n, ensembles::END);
+            });
+        }
     }
     let finest = match tier {
         Tier::Quick => [(Free, 40), (Tank, 30)],
@@ -161,7 +174,7 @@ fn gates(row: &Row) -> Vec<Gate> {
             [invariants(&id), tank_references(&id), tank_model(&id)].concat()
         }
         Group::Extreme(name) => extreme(&format!("{NAME}.extreme.{}", name.replace(' ', "-"))),
-        Group::Ladder | Group::Ablation => Vec::new(),
+        Group::Ladder | Group::Ablation | Group::Ensemble => Vec::new(),
     };
     let known = known(row);
     let limited = |gate: Gate| match known.iter().find(|known| known.0.name() == gate.metric) {

@@ -1,0 +1,153 @@
+//! The horizon of a flow: the time until which runs that differ by next to nothing at the start agree.
+
+use base::random::Random;
+
+use crate::quantiles::{CONFIDENCE, between};
+
+/// Members without which there is no interval, nor a horizon: fewer bound no median.
+pub const FEWEST: usize = 6;
+/// Draws of the bootstrap, and its seed: the same numbers on every machine.
+const DRAWS: usize = 1000;
+const SEED: u64 = 1;
+
+/// When the members of an ensemble part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Horizon {
+    /// The median over all pairs of members of the time at which they first differ by more than a tolerance;
+    /// infinite if more than half of the pairs never do.
+    pub time: f64,
+    /// Its interval by a bootstrap over members.
+    pub within: [f64; 2],
+    /// When the first pair parts; infinite if none does.
+    pub first: f64,
+}
+
+/// A history: points in ascending order of the time.
+pub type Curve = Vec<(f64, f64)>;
+
+impl Horizon {
+    /// Of histories at the same times, one a member.
+    ///
+    /// # Errors
+    /// Why nothing can be said.
+    pub fn of(members: &[Curve], tolerance: f64) -> Result<Self, String> {
+        let times = |curve: &Curve| curve.iter().map(|(t, _)| t.to_bits()).collect::<Vec<_>>();
+        let count = members.len();
+        if !(tolerance.is_finite() && tolerance > 0.0) {
+            return Err("the tolerance is not known".into());
+        }
+        if count < FEWEST {
+            return Err(format!("{count} members; {FEWEST} are needed"));
+        }
+        let is_alike = members.iter().all(|member| times(member) == times(&members[0]));
+        if !is_alike || members[0].is_empty() {
+            return Err("members are not sampled at the same times".into());
+        }
+        if members.iter().flatten().any(|(_, value)| !value.is_finite()) {
+            return Err("a member has a value that is no number".into());
+        }
+        let parted: Vec<Vec<f64>> = members
+            .iter()
+            .map(|one| members.iter().map(|other| parting(one, other, tolerance)).collect())
+            .collect();
+        let all: Vec<usize> = (0..count).collect();
+        let mut random = Random::new(SEED);
+        let mut draw = || (random.uniform() * count as f64) as usize;
+        let mut medians: Vec<f64> = (0..DRAWS)
+            .map(|_| median(&parted, &(0..count).map(|_| draw()).collect::<Vec<_>>()))
+            .filter(|median| !median.is_nan())
+            .collect();
+        medians.sort_by(f64::total_cmp);
+        let tail = 0.5 * (1.0 - CONFIDENCE);
+        let first = parted.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+        let within = [tail, 1.0 - tail].map(|share| between(&medians, share));
+        Ok(Self { time: median(&parted, &all), within, first })
+    }
+}
+
+/// When two histories first differ by more than a tolerance; infinite if they never do.
+fn parting(one: &Curve, other: &Curve, tolerance: f64) -> f64 {
+    let mut pairs = one.iter().zip(other);
+    pairs.find(|((_, a), (_, b))| (a - b).abs() > tolerance).map_or(f64::INFINITY, |((t, _), _)| *t)
+}
+
+/// The median over the pairs of different members among some, each as often as it is there.
+fn median(parted: &[Vec<f64>], among: &[usize]) -> f64 {
+    let pairs = among.iter().enumerate().flat_map(|(k, one)| {
+        let others = among[..k].iter().filter(move |other| *other != one);
+        others.map(move |other| parted[*one][*other])
+    });
+    let mut times: Vec<f64> = pairs.collect();
+    times.sort_by(f64::total_cmp);
+    between(&times, 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::functions::{exp, ln};
+
+    const RATE: f64 = 2.0;
+
+    /// Members that part by 1e-6 exp(2t) times a number of theirs.
+    fn diverging(count: usize, seed: u64) -> Vec<Curve> {
+        let mut random = Random::new(seed);
+        let mut one = || -> Curve {
+            let own = 1e-6 * (2.0 * random.uniform() - 1.0);
+            let time = |k: u32| 0.01 * f64::from(k);
+            (0..1000).map(time).map(|t| (t, t + own * exp(RATE * t))).collect()
+        };
+        (0..count).map(|_| one()).collect()
+    }
+
+    #[test]
+    fn an_exponential_divergence_has_the_horizon_of_its_rate() {
+        // The median distance of two uniform numbers of [-1, 1] is 2 - √2.
+        let exact = |tolerance: f64| ln(tolerance / (1e-6 * (2.0 - 2.0_f64.sqrt()))) / RATE;
+        for tolerance in [1e-4, 1e-2] {
+            let expected = exact(tolerance);
+            let mut hits = 0;
+            for seed in 0..40 {
+                let Horizon { time, within: [low, high], first } =
+                    Horizon::of(&diverging(20, seed), tolerance).expect("a horizon");
+                assert!((time - expected).abs() < 0.2, "{time} instead of {expected}");
+                assert!(low <= time && time <= high && high - low < 0.6 && first < low);
+                // Sampled every 0.01, at the next sample.
+                hits += i32::from(low - 0.01 <= expected && expected <= high);
+            }
+            assert!(hits >= 35, "{hits} of 40 intervals contain the horizon");
+        }
+    }
+
+    #[test]
+    fn the_interval_has_the_same_bits_whenever_it_is_computed() {
+        let of = || Horizon::of(&diverging(20, 7), 1e-3);
+        assert_eq!(of(), of());
+        let Horizon { time, within, first } = of().expect("a horizon");
+        let shown = format!("{time:.3} {:.3} {:.3} {first:.3}", within[0], within[1]);
+        assert_eq!(shown, "3.700 3.590 3.830 3.320");
+    }
+
+    #[test]
+    fn members_that_agree_have_no_end_and_few_or_damaged_ones_no_horizon() {
+        let members = diverging(20, 1);
+        let never = Horizon::of(&members, 1e9).expect("a horizon");
+        assert_eq!((never.time, never.first), (f64::INFINITY, f64::INFINITY));
+        let refused = |members: &[Curve], tolerance| {
+            Horizon::of(members, tolerance).expect_err("no horizon can be told")
+        };
+        assert_eq!(refused(&members[..1], 1.0), "1 members; 6 are needed");
+        assert_eq!(refused(&[], 1.0), "0 members; 6 are needed");
+        for tolerance in [f64::NAN, 0.0, f64::INFINITY] {
+            assert_eq!(refused(&members, tolerance), "the tolerance is not known");
+        }
+        let mut shorter = members.clone();
+        shorter[3].truncate(500);
+        assert_eq!(refused(&shorter, 1.0), "members are not sampled at the same times");
+        let mut damaged = members.clone();
+        damaged[3][7].1 = f64::NAN;
+        assert_eq!(refused(&damaged, 1.0), "a member has a value that is no number");
+        let empty = vec![Curve::new(); 20];
+        assert_eq!(refused(&empty, 1.0), "members are not sampled at the same times");
+    }
+}
