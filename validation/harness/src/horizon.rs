@@ -106,15 +106,16 @@ mod tests {
         let exact = |tolerance: f64| ln(tolerance / (1e-6 * (2.0 - 2.0_f64.sqrt()))) / RATE;
         for tolerance in [1e-4, 1e-2] {
             let expected = exact(tolerance);
-            let mut hits = 0;
+            let (mut hits, mut mean) = (0, 0.0);
             for seed in 0..40 {
                 let Horizon { time, within: [low, high], first } =
                     Horizon::of(&diverging(20, seed), tolerance).expect("a horizon");
-                assert!((time - expected).abs() < 0.2, "{time} instead of {expected}");
-                assert!(low <= time && time <= high && high - low < 0.6 && first < low);
+                mean += time / 40.0;
+                assert!(low <= time && time <= high && high - low < 0.8 && first < low);
                 // Sampled every 0.01, at the next sample.
                 hits += i32::from(low - 0.01 <= expected && expected <= high);
             }
+            assert!((mean - expected).abs() < 0.05, "{mean} instead of {expected}");
             assert!(hits >= 35, "{hits} of 40 intervals contain the horizon");
         }
     }
@@ -125,7 +126,7 @@ mod tests {
         assert_eq!(of(), of());
         let Horizon { time, within, first } = of().expect("a horizon");
         let shown = format!("{time:.3} {:.3} {:.3} {first:.3}", within[0], within[1]);
-        assert_eq!(shown, "3.700 3.590 3.830 3.320");
+        assert_eq!(shown, "3.685 3.545 3.840 3.140");
     }
 
     #[test]

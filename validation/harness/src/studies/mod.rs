@@ -5,7 +5,7 @@ mod card;
 pub mod causes;
 mod cost;
 mod curves;
-mod ensemble;
+pub mod ensemble;
 mod limit;
 #[cfg(test)]
 mod made_up;

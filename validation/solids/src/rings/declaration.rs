@@ -53,8 +53,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         sensitivity: Some(sensitivity(tier)),
         costly: &budget::METRICS,
         stepwise: STEPWISE,
-        of_methods: &[],
-        curve: None,
+        ..Declaration::default()
     }
 }
 
