@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use base::mutation::{Constant, Detect, Mutation};
+use base::mutation::{Constant, Detect, Disorder, Mutation};
 use base::record::{Metric, Record, Status};
 use base::spec::{Bisect, EndAfter, Keep, RunSpec, Task};
 use base::submission::{Division, Submission};
@@ -200,6 +200,7 @@ fn rare_records(record: &Record) -> Vec<Value> {
     rare.allow_unstable = true;
     rare.keep = Keep { particles: true, pictures: Some(2) };
     rare.mutation = Some(Mutation { of: Constant::BodyForce, factor: 1.03 });
+    rare.disorder = Some(Disorder { most: 1e-6, seed: 1 });
     let [code, version, scheme, method] = ["code", "1", "WCSPH", "abc"].map(String::from);
     let division = Division::Closed;
     rare.submission =

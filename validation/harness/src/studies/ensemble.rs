@@ -244,3 +244,165 @@ fn quantiles(members: &[Curve]) -> Vec<(f64, [f64; 5])> {
 fn thinned(curve: &Curve) -> Curve {
     curve.iter().step_by(curve.len().div_ceil(2 * DRAWN).max(1)).copied().collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use base::record::Status;
+    use report::{Block, Panel};
+
+    use super::*;
+    use crate::{
+        declare::{Comparison, Level},
+        planned::Planned,
+        runs::JudgedRun,
+        studies::made_up::{ERROR, column, spec, tables},
+    };
+
+    const ALL: usize = 20;
+
+    /// Members k = 1 … 20 whose history is (k − 10.5) 1e-6 exp(2t) until t = 8 and whose number is k.
+    fn member(n: usize) -> JudgedRun {
+        let spec = spec("seed", n);
+        let settings = spec.settings.clone();
+        let mut record = Record::new(&spec.case, &spec.variant, settings, 1).of(&spec);
+        record.put(ERROR, n as f64);
+        JudgedRun::new(Planned::new(spec), record)
+    }
+
+    /// The levels of a comparison with u_val = 0.03: u_num is the distance of two.
+    fn ladder() -> Vec<JudgedRun> {
+        let of = |(n, error): (usize, f64)| {
+            let mut run = member(n);
+            run.record.put(ERROR, error);
+            run
+        };
+        [(1000, 0.04), (1001, 0.01)].map(of).into()
+    }
+
+    fn ensembles() -> Ensembles {
+        let level = |n: usize| Level {
+            run: Planned::new(spec("seed", n)),
+            spacing: 1.0 / n as f64,
+            label: String::new(),
+        };
+        let comparison = Comparison {
+            what: "made up".into(),
+            against: "nothing",
+            metric: ERROR.into(),
+            levels: [1000, 1001].map(level).into(),
+            inputs: Vec::new(),
+            reference: 0.0,
+            because: "made up",
+        };
+        let points = |record: &Record| {
+            let own = 1e-6 * (record.value(ERROR).unwrap_or(f64::NAN) - 10.5);
+            let at = |k: u32| 0.01 * f64::from(k);
+            (0..=800).map(at).map(|t| (t, own * base::functions::exp(2.0 * t))).collect()
+        };
+        let gate = |name: &str, bound| {
+            Gate::new(format!("case.{name}"), name, bound, Evidence::Invariant, "made up")
+        };
+        let history = History {
+            name: "level [H]".into(),
+            points: Box::new(points),
+            tolerance: (comparison, 2.0),
+            measured: vec![vec![(0.0, 0.0), (9.0, 1.0)]],
+            is_drawn: true,
+            gate: Some(gate("agree", Bound::Above(4.0))),
+        };
+        let number = Number {
+            name: ["number", "1"],
+            value: Box::new(|record| record.value(ERROR)),
+            measured: vec![3.0, 4.0],
+            gate: Some(gate("median", Bound::Within(9.0, 12.0))),
+        };
+        let of = Ensemble {
+            id: "case.ensemble".into(),
+            variant: "seed",
+            label: "n = 1".into(),
+            members: (1..=ALL).map(|n| spec("seed", n)).collect(),
+            histories: vec![history],
+            numbers: vec![number],
+            is_drawn: true,
+        };
+        let (id, time) = ("case-ensembles".into(), ["time", "s"]);
+        Ensembles { id, about: "Made up.".into(), time, of: vec![of] }
+    }
+
+    /// The names of the gates that fail, and the study.
+    fn judged(members: Vec<JudgedRun>, with_ladder: bool) -> (Vec<String>, Study) {
+        let others = if with_ladder { ladder() } else { Vec::new() };
+        let runs = Runs::new([members, others].concat());
+        let study = study(&ensembles(), &runs);
+        let failed = study.judged.iter().filter(|of| of.judgement.verdict.is_failure());
+        (failed.map(|of| of.gate.id.clone()).collect(), study)
+    }
+
+    fn all() -> Vec<JudgedRun> {
+        (1..=ALL).map(member).collect()
+    }
+
+    fn row(study: &Study, table: usize, heads: &[&str]) -> Vec<String> {
+        heads.iter().map(|head| column(tables(study)[table], head)[0].clone()).collect()
+    }
+
+    #[test]
+    fn a_known_divergence_and_known_quantiles_are_shown_and_judged() {
+        let (failed, study) = judged(all(), true);
+        assert_eq!(failed, [""; 0]);
+        // Tolerance 2 · 0.03 = 0.06. The first pair, 19 e-6 apart, parts at ln(0.06/19e-6)/2 = 4.03, and the
+        // median, of 6e-6, at ln(0.06/6e-6)/2 = 4.61: each at the next sample.
+        let found = row(&study, 0, &["members", "tolerance", "horizon", "first pair", "verdict"]);
+        assert_eq!(found, ["20 of 20", "0.0600", "4.61", "4.03", "a draw beyond the horizon"]);
+        let found = row(&study, 1, &["median", "lower quartile", "least", "largest", "measured"]);
+        let expected = ["10.5 (6.00 … 15.0)", "5.75 (2.00 … 10.0)", "1.00", "20.0", "3.00; 4.00"];
+        assert_eq!(found, expected);
+        let figure = study.blocks.iter().find_map(|block| match block {
+            Block::Figure(figure) => Some(figure),
+            _ => None,
+        });
+        let [Panel::Plot(plot)] = figure.expect("a figure").panels.as_slice() else {
+            panic!("one plot")
+        };
+        // Two bands, the median, one series of the experiment until the end of the runs, the horizon.
+        assert_eq!(plot.layers.len(), 5);
+    }
+
+    #[test]
+    fn a_member_that_diverged_or_is_missing_fails_its_gate_and_the_others_are_shown() {
+        let mut diverged = all();
+        diverged[4].record.status = Status::Interrupted { step: 1, time: 0.1 };
+        for members in [diverged, all()[1..].to_vec()] {
+            let (failed, study) = judged(members, true);
+            assert_eq!(failed, ["case.ensemble.members"]);
+            assert_eq!(row(&study, 0, &["members"]), ["19 of 20"]);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_told_has_its_reason_and_fails_its_gate() {
+        let reason = |study: &Study| row(study, 0, &["horizon", "verdict"]);
+        let (failed, one) = judged(all()[..1].to_vec(), true);
+        assert_eq!(failed, ["case.ensemble.members", "case.agree", "case.median"]);
+        assert_eq!(reason(&one), ["–", "nothing can be said: 1 members; 6 are needed"]);
+        assert_eq!(row(&one, 1, &["median"]), ["1.00 (– … –)"]);
+        let (failed, none) = judged(Vec::new(), true);
+        assert_eq!(failed.len(), 3);
+        assert_eq!(row(&none, 1, &["median", "least"]), ["– (– … –)", "–"]);
+        let (failed, unknown) = judged(all(), false);
+        assert_eq!(failed, ["case.agree"]);
+        assert_eq!(reason(&unknown), ["–", "nothing can be said: the tolerance is not known"]);
+    }
+
+    #[test]
+    fn members_that_never_part_agree_until_the_end_of_the_runs() {
+        let same = |n| {
+            let mut run = member(n);
+            run.record.put(ERROR, 10.5);
+            run
+        };
+        let (failed, study) = judged((1..=ALL).map(same).collect(), true);
+        assert_eq!(failed, [""; 0]);
+        assert_eq!(row(&study, 0, &["horizon", "verdict"]), ["–", "all agree until 8.00"]);
+    }
+}

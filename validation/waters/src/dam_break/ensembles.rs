@@ -287,7 +287,7 @@ mod tests {
         assert!(ensembles(Tier::Quick, &[]).is_none());
         let all = declared::declaration(Tier::Full).ensembles.expect("ensembles").of;
         let count = |of: &Ensemble| (of.members.len(), of.histories.len(), of.numbers.len());
-        assert_eq!(all.iter().map(count).collect::<Vec<_>>(), [(20, 7, 7); 4]);
+        assert_eq!(all.iter().map(count).collect::<Vec<_>>(), [(20, 7, 8); 4]);
         let [one, other] = [0, 19].map(|k| all[0].members[k].clone());
         assert_eq!(one.disorder.map(|of| (of.most, of.seed)), Some((1e-6, 1)));
         assert_eq!(RunSpec { disorder: other.disorder, ..one.clone() }, other);
