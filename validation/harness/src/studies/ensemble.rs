@@ -64,7 +64,7 @@ impl<'a> Followed<'a> {
             Ok(Horizon { time, .. }) if time.is_infinite() => {
                 format!("most pairs agree until {end}")
             }
-            Ok(_) => "a draw beyond the horizon".into(),
+            Ok(Horizon { time, .. }) => format!("predictable until {}", sig(*time, 3)),
         }
     }
 }
@@ -100,7 +100,8 @@ pub fn study(ensembles: &Ensembles, runs: &Runs) -> Study {
 /// A distribution without those members that ended early would be that of the lucky ones.
 fn complete(made: &Made) -> Judged {
     let (id, all) = (format!("{}.members", made.of.id), made.of.members.len() as f64);
-    let because = "A distribution without the members that ended early is one of those that did not.";
+    let because =
+        "A distribution without the members that ended early is one of those that did not.";
     let name = "members that reached their end [1]";
     let gate = Gate::new(id, name, Bound::Equals(all), Evidence::Invariant, because);
     Judged::new(gate, Some(made.records.len() as f64))
@@ -353,7 +354,7 @@ mod tests {
         // Tolerance 2 · 0.03 = 0.06. The first pair, 19 e-6 apart, parts at ln(0.06/19e-6)/2 = 4.03, and the
         // median, of 6e-6, at ln(0.06/6e-6)/2 = 4.61: each at the next sample.
         let found = row(&study, 0, &["members", "tolerance", "horizon", "first pair", "verdict"]);
-        assert_eq!(found, ["20 of 20", "0.0600", "4.61", "4.03", "a draw beyond the horizon"]);
+        assert_eq!(found, ["20 of 20", "0.0600", "4.61", "4.03", "predictable until 4.61"]);
         let found = row(&study, 1, &["median", "lower quartile", "least", "largest", "measured"]);
         let expected = ["10.5 (6.00 … 15.0)", "5.75 (2.00 … 10.0)", "1.00", "20.0", "3.00; 4.00"];
         assert_eq!(found, expected);
