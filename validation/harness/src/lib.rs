@@ -18,7 +18,6 @@ pub mod convergence;
 pub mod declare;
 pub mod deep;
 pub mod detect;
-pub mod ensemble;
 pub mod error;
 pub mod frames;
 pub mod horizon;

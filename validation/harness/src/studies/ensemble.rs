@@ -9,7 +9,7 @@ use report::{Axis, Cell, Colour, Dash, Figure, Layer, Legend, Plot, Series, Tabl
 use super::validation::Found;
 use crate::{
     columns::Columns,
-    ensemble::{Ensemble, Ensembles, History, Number},
+    declare::{Ensemble, Ensembles, History, Number},
     horizon::{Curve, Horizon},
     quantiles::{CONFIDENCE, Quantile},
     runs::{Judged, Runs},
