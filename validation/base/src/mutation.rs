@@ -1,6 +1,6 @@
-//! Deliberate changes of a run: errors and disorder. Of an error, one constant of the scene is multiplied by a
-//! factor, while everything that is measured and judged follows the settings as before. A gate that such a run
-//! passes cannot detect the error.
+//! Deliberate changes of a run: errors and disorder. Of an error, one constant of the scene is multiplied by
+//! a factor, while everything that is measured and judged follows the settings as before. A gate that such a
+//! run passes cannot detect the error.
 
 use std::fmt;
 

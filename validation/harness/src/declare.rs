@@ -123,8 +123,8 @@ impl Comparison {
     }
 }
 
-/// The ensembles of a case: runs that differ by a small disorder of their start alone. Until their horizon any
-/// of them says what all say, and later each is one draw of a distribution.
+/// The ensembles of a case: runs that differ by a small disorder of their start alone. Until their horizon
+/// any of them says what all say, and later each is one draw of a distribution.
 pub struct Ensembles {
     /// Anchor of the study: letters, digits, hyphens.
     pub id: String,

@@ -47,13 +47,13 @@ pub fn ensembles(tier: Tier, comparisons: &[Comparison]) -> Option<Ensembles> {
             }),
         }
     }
-    let about = "The tank of Lobovsky et al. from twenty starts whose particles are off their lattice by up \
-                 to a millionth of a spacing, which no method and no experiment knows. Levels are compared with \
-                 two series of the experiment. Of its pressures there is one event, and of P2 a second \
-                 sensor; the hundred repetitions of SPHERIC 10 (first peak 3710 ± 732 Pa) are of another \
-                 tank and say nothing of this one. Two spacings have different distributions, by more than \
-                 their intervals: what comes beyond the horizon depends on the spacing too, so the scatter \
-                 of an ensemble is not its error.";
+    let about = "The tank of Lobovsky et al. from twenty starts whose particles are off their lattice by \
+                 up to a millionth of a spacing, far less than any method or experiment resolves. Levels \
+                 are compared with two series of the experiment. Of its pressures there is one event, and \
+                 of P2 a second sensor; the hundred repetitions of SPHERIC 10 (first peak 3710 ± 732 Pa) \
+                 are of another tank and say nothing of this one. Two spacings have different \
+                 distributions, by more than their intervals: what comes beyond the horizon depends on the \
+                 spacing too, so the scatter of an ensemble is not its error.";
     let (id, time) = ("dam-break-ensembles".into(), ["time", "√(H/g)"]);
     (!of.is_empty()).then(|| Ensembles { id, about: about.into(), time, of })
 }
