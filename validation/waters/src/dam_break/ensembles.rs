@@ -19,12 +19,8 @@ use super::{
 };
 use crate::water::curve;
 
-/// Seeds of the members.
-pub const SEEDS: std::ops::RangeInclusive<u32> = 1..=20;
-/// End of the runs \[(H/g)^(1/2)\]: the splash of the jet has run over all probes but the first.
-pub const END: f64 = 8.0;
 /// When the levels and impulses of what comes after the jet has closed are taken \[(H/g)^(1/2)\].
-const LATE: [f64; 2] = [6.0, END];
+const LATE: [f64; 2] = [6.0, plan::UNTIL];
 /// Until when single runs are compared: levels; impulses since the arrival at P1 \[(H/g)^(1/2)\].
 const LEVELS_UNTIL: f64 = 5.5;
 
