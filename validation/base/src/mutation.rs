@@ -30,7 +30,7 @@ impl Mutation {
 pub struct Disorder {
     /// the largest displacement along each axis \[dx\]
     pub most: f64,
-    /// seed of the displacements
+    /// seed of the displacements \[-\]
     pub seed: u32,
 }
 
