@@ -194,7 +194,8 @@ fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Vec<u8>) -> Result<(),
     let Checkpoint { progress, lag, particles, built_at, past } = state;
     let &Progress { time, dt, work, last_approach, built_inside_a_step, call, made } = progress;
     let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-    let stored = |(k, ((id, p), at)): (usize, (&(u32, Particle<X>), &Vector2<f64>))| {
+    let mut all: Vec<Stored> = Vec::new();
+    for (k, ((id, p), at)) in particles.iter().zip(built_at).enumerate() {
         let (x, v) = (p.position, p.velocity);
         let mut numbers = Vec::new();
         save_extra(&p.extra, &mut numbers)?;
@@ -203,12 +204,11 @@ fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Vec<u8>) -> Result<(),
             save_extra(&extra, &mut numbers)?;
         }
         let at = [x.x, x.y, v.x, v.y, p.density, p.mass, at.x, at.y];
-        Ok::<Stored, CheckpointError>((*id, p.role as u8, at, numbers))
-    };
-    let all = particles.iter().zip(built_at).enumerate().map(stored);
+        all.push((*id, p.role as u8, at, numbers));
+    }
     let times = [time, dt, last_approach, *lag, call[0], call[1], call[2]];
     let counts = [steps, pair_interactions, right_hand_sides, list_builds, made];
-    let state: State = (times, counts, built_inside_a_step, all.collect::<Result<_, _>>()?);
+    let state: State = (times, counts, built_inside_a_step, all);
     state.write_to(to);
     Ok(())
 }

@@ -447,7 +447,7 @@ mod tests {
     #[test]
     fn boxes_have_the_limits_of_theory_and_diverge_beyond_them() {
         let judged = judged(&[&RESTING_BOX]);
-        assert_eq!(judged.len(), 6 + 3 + 4 + 3 + 2 + 2 + 10);
+        assert_eq!(judged.len(), 6 + 3 + 4 + 2 + 3 + 2 + 2 + 10);
         for judged in &judged {
             let (id, value) = (&judged.gate.id, judged.judgement.value);
             assert!(!judged.judgement.verdict.is_failure(), "{id}: {value:?}");
