@@ -49,9 +49,16 @@ impl<P: Physics> Engine<P> {
         Self { kernel, terms, wall_terms, data, columns, extents, extrapolated, inverses }
     }
 
-    /// Starts a step at this state: particles may be put in another order and wrapped into the period,
-    /// and terms take over the largest speed. Refreshes everything that is derived from the state.
+    /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
+    /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
+    /// that is derived from the state.
     pub fn begin(&mut self, state: &mut State<P>) -> Result<(), Fault> {
+        if P::Walls::SLIPS {
+            for wall in self.data.neighbours.mirrors() {
+                let fluid = &mut state[..self.data.counts[0]];
+                fluid.iter_mut().for_each(|particle| wall.put_back(particle));
+            }
+        }
         let mut extent = self.fill(state)?;
         if self.data.progress.built_inside_a_step || self.data.is_stale_soon(extent) {
             self.data.sort(state);

@@ -166,6 +166,14 @@ impl Neighbours {
         Self { support, radius, spacing, domain, maps, ..Self::default() }
     }
 
+    /// The walls that mirror.
+    pub fn mirrors(&self) -> impl Iterator<Item = &PlaneWall> {
+        self.maps.iter().map_while(|map| match map {
+            Map::Mirror(wall) => Some(wall),
+            _ => None,
+        })
+    }
+
     /// Neighbours of all lists that were inside the support when these were built.
     pub fn pairs(&self) -> u64 {
         self.blocks().map(|b| b.pairs).sum()

@@ -14,7 +14,7 @@ pub static NO_SLIP_IMAGES: Cause = Cause::new(
 pub static PRESSED_THROUGH: Cause = Cause::new(
     "A particle that is pressed into the plane of a ghost wall feels equal forces from both sides and may \
      cross it.",
-    "Walls of particles, as in `modern`, or a rule that returns particles that cross.",
+    "Walls of particles, as in `modern`, or ghosts along which water slips, which put it back.",
 );
 
 /// What artificial viscosity does beside damping noise.

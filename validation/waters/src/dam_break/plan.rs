@@ -359,7 +359,6 @@ fn known(row: &Row) -> Vec<(MetricName, f64, Why)> {
             (metrics::MOMENTUM_GAP.into(), 0.046, SPLASHED),
             (metrics::MACH.into(), 0.60, MIRRORED),
         ],
-        (Group::Free, "ghosts-slip") => vec![(metrics::OUTSIDE.into(), 5.0, CROSSED)],
         (Group::Free, "modern") if row.settings.n > 40 => vec![(z3, 4.125, AHEAD)],
         (Group::Tank, "modern") => vec![(FRONT.rms_shifted.into(), 0.14, FAST)],
         (Group::Extreme(SINGLE), _) => vec![(ledger::ENERGY_GAP.into(), 0.034, IMPACTS)],
@@ -385,7 +384,8 @@ const SPLASHED: Why = (
 const CROSSED: Why = (
     &PRESSED_THROUGH,
     "The lowest row of a layer that is stretched sinks into the plane of the floor, and feels no force \
-     across it there. `ghosts-slip` loses 5 particles in the tank, which is the bound.",
+     across it there. Walls along which water slips put such a particle back; behind them 5 were lost in the \
+     tank before they did, which is the bound.",
 );
 const AHEAD: Why = (
     &FREE_SLIP,
