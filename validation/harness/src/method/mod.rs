@@ -149,7 +149,7 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     /// The square lattice as its kernel sees it, from h/dx and η²/h².
     lattice: fn(f64, f64) -> SquareLattice,
     /// Are gradients corrected by the inverse of the moments?
-    is_corrected: bool,
+    pub is_corrected: bool,
 }
 
 impl<X: Numbers, D: ?Sized> Method<X, D> {

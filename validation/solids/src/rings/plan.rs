@@ -63,7 +63,7 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     table.over(Group::Paper, &["leapfrog"], [&[0.2, 0.1]; 2], dx);
     table.over(Group::Paper, &["single-sweep"], [&[], &[0.2, 0.1]], dx);
     table.over(Group::Paper, &[COMPONENTWISE], [&[0.2]; 2], dx);
-    // Rings of 20 layers diverge at 159 L/c0.
+    // Rings of 20 layers tear, and are refused.
     table.over(Group::Paper, &[CORRECTED], [&[0.2], &[0.2, 0.1]], dx);
     table.over(Group::Paper, &[LAGRANGIAN], [&[0.2, 0.1], &[0.2, 0.1, 0.05]], dx);
     // 0.03 has a reference that no setting was chosen with, the others none.

@@ -36,6 +36,10 @@ pub struct Rings {
     pub rules: Rules,
 }
 
+/// The most layers that are known to stay whole with corrected gradients at the paper's speed. Those of 20
+/// tear at the inner face (docs/limits.md).
+const MOST_CORRECTED: f64 = 10.0;
+
 impl Rings {
     /// Checks the settings and derives the rest.
     pub fn new<D: ?Sized>(
@@ -50,6 +54,10 @@ impl Rings {
         if s.inner > s.outer - 2.0 * s.spacing {
             let most = s.outer - 2.0 * s.spacing;
             return too_much("the inner radius", s.inner, most, "inner, outer or spacing");
+        }
+        if method.is_corrected && layers > MOST_CORRECTED && !context.allow_unstable {
+            let what = "the number of layers of rings with corrected gradients";
+            return too_much(what, layers, MOST_CORRECTED, "spacing, or use --allow-unstable");
         }
         if s.outer > s.centre {
             // The rings would overlap before the first step.
