@@ -9,7 +9,7 @@ use super::{
     setup,
 };
 use base::{
-    gate::{Bound, Evidence, Gate},
+    gate::{Bound, Cause, Evidence, Gate},
     record::MetricKey,
 };
 use harness::{
@@ -168,23 +168,29 @@ fn flat() -> Gate {
 
 /// How near to finite elements the best variant must be.
 fn of_reference(gate: Gating, re: f64, n: usize) -> Vec<Gate> {
-    let (goal, reach) = (goal(n), if n >= 20 { 0.1 } else { 0.2 });
+    let (goal, reach) = (goal(n), if n >= 40 { 0.05 } else { 0.1 });
     let around = |most: f64| Bound::Within(-most, most);
     let velocity = "The goal is 4 % of U_b at 10 spacings, 2 % at 20 and 1 % at 40: first order.";
     let force = "The force follows the velocity at the walls, so it has the same goal.";
-    let places = "The goal is a tenth of H, two spacings at 20. The reference is known to 7e-4 H.";
+    let places = "The goal is a tenth of H, and half of it at 40 spacings, where the wall shear is wrong by \
+                  half as much. The reference is known to 7e-4 H, and the measure is exact to 2e-3 H.";
     let mut gates = vec![
         gate(L2_U, Bound::Below(goal), Evidence::Reference, velocity),
         gate(FORCE_ERROR, around(goal), Evidence::Reference, force),
     ];
     if re > 10.0 {
         gates.push(gate(REATTACHMENT_ERROR, around(reach), Evidence::Reference, places));
-    }
-    if re > 10.0 && n >= 20 {
         gates.push(gate(SEPARATION_ERROR, around(reach), Evidence::Reference, places));
     }
     gates
 }
+
+/// Why the velocity beside the walls is too steep.
+static MEAN_OF_REACH: Cause = Cause::new(
+    "Particles of extrapolating walls have minus the mean velocity of the fluid in reach, at any depth, so \
+     that fluid beside them is too fast.",
+    "Wall particles that know their depth, and the curvature of the velocity across the wall.",
+);
 
 /// What holds whatever the flow is: walls in place, mass, momentum, steadiness.
 fn balances(gate: Gating, n: usize) -> Vec<Gate> {
@@ -197,12 +203,18 @@ fn balances(gate: Gating, n: usize) -> Vec<Gate> {
     let flux = "The controller integrates, so the flux that it holds is the one wanted.";
     let drags = "In steady flow the walls take what the force gives: to 1 %, and at ten spacings four times \
                  that, because the slope at the wall is found to second order.";
+    let slope = "The velocity beside the walls is too steep, which is of first order in the spacing. In a \
+                 trial with velocities that are exact for linear fields the excess at 20 spacings falls from \
+                 3.6 to 1.1 %. The bound is 9 % at ten spacings, where 5 to 7 % are found.";
+    let steep = Bound::Within(-drag, 0.9 / n as f64);
     let steady = "A quarter of the goal is left of the decay, extrapolated from three windows.";
     vec![
         gate(WALL_OFFSET, Bound::Below(0.05), Evidence::Invariant, walls),
         gate(SECTION_FLUX, Bound::Below(section), Evidence::Invariant, sections),
         gate(FLUX, Bound::Within(-1e-3, 1e-3), Evidence::Invariant, flux),
-        gate(DRAG_BALANCE, Bound::Within(-drag, drag), Evidence::Invariant, drags),
+        gate(DRAG_BALANCE, Bound::Within(-drag, drag), Evidence::Invariant, drags)
+            .with_limitation(steep, slope)
+            .because_of(&MEAN_OF_REACH),
         gate(UNSTEADY, Bound::Below(0.25 * goal(n)), Evidence::Theory, steady),
     ]
 }
