@@ -102,25 +102,32 @@ impl Contact {
     }
 }
 
-/// A rigid plane without friction, which pushes and never pulls. A particle touches it at the distance
-/// t = s/2, half of its size. Nearer, at d < t, it is pushed with the force 2 k (t − d) t/d: twice the
-/// stiffness of a face, since the plane does not yield, and so much at last that nothing passes.
+/// A rigid plane without friction, which pushes and never pulls. Each particle stays on the side of it on
+/// which it is without stress, so that a plane between two bodies keeps them apart. A particle touches it at
+/// the distance t = s/2, half of its size. Nearer, at d < t, it is pushed with the force 2 k (t − d) t/d:
+/// twice the stiffness of a face, since the plane does not yield, and so much at last that nothing passes.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidPlane {
     /// A point of it \[m\].
     pub point: Vector2<f64>,
-    /// Unit normal to the side of the body.
+    /// Unit normal.
     pub normal: Vector2<f64>,
     /// How it pushes.
     pub contact: Contact,
 }
 
 impl RigidPlane {
-    /// Half the size t of each particle, and its distance d from the plane \[m\].
-    fn distances<'a>(&self, on: &Loaded<'a>) -> impl Iterator<Item = (f64, f64)> + use<'a> {
+    /// The normal to the side of each particle, half its size t, and its distance d from the plane \[m\].
+    fn distances<'a>(
+        &self,
+        on: &Loaded<'a>,
+    ) -> impl Iterator<Item = (Vector2<f64>, f64, f64)> + use<'a> {
         let Self { point, normal, .. } = *self;
-        let depth = move |evolved: &Evolved<Symmetric>| (evolved.position - point).dot(&normal);
-        on.state.iter().zip(on.sizes).map(move |(at, size)| (0.5 * size, depth(at)))
+        let of = move |((at, size), reference): ((&Evolved<Symmetric>, &f64), &Vector2<f64>)| {
+            let out = normal * (reference - point).dot(&normal).signum();
+            (out, 0.5 * size, (at.position - point).dot(&out))
+        };
+        on.state.iter().zip(on.sizes).zip(on.reference).map(of)
     }
 
     /// 2 k (t − d) t/d \[N/m\].
@@ -139,12 +146,12 @@ impl RigidPlane {
 impl Load for RigidPlane {
     fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) {
         let pushed = accelerations.iter_mut().zip(on.masses).zip(self.distances(on));
-        for ((acceleration, mass), (touch, distance)) in pushed {
-            *acceleration += self.normal * (self.force(touch, distance) / mass);
+        for ((acceleration, mass), (out, touch, distance)) in pushed {
+            *acceleration += out * (self.force(touch, distance) / mass);
         }
     }
     fn energy(&self, on: &Loaded) -> f64 {
-        self.distances(on).fold(0.0, |sum, (touch, distance)| sum + self.stored(touch, distance))
+        self.distances(on).fold(0.0, |sum, (_, touch, distance)| sum + self.stored(touch, distance))
     }
 }
 

@@ -243,6 +243,42 @@ fn the_stiffness_of_contact_is_a_quarter_of_the_modulus_of_longitudinal_waves() 
     assert!(largest < 1e-14, "a plane half a size away pushes with {largest:e} N/m, expected 0");
 }
 
+/// A plane between two blocks pushes each to its own side with the force that it has for the other, and a
+/// block beside it as if it were alone.
+#[test]
+fn a_plane_between_two_bodies_pushes_both_apart() {
+    let normal = Vector2::new(0.6, 0.8);
+    let middle = Vector2::new(0.3, -0.1);
+    let plane = RigidPlane { point: middle, normal, contact: Contact::of(&MODULI) };
+    // The nearest particle is 0.45 away, of sizes near 1.
+    let mut right = block(4, 3, 0.1);
+    let nearest = |all: &[solver::Particle<solver::Symmetric>]| {
+        all.iter().map(|p| (p.position - middle).dot(&normal)).fold(f64::INFINITY, f64::min)
+    };
+    let shift = normal * (0.45 - nearest(&right));
+    right.iter_mut().for_each(|p| p.position += shift);
+    let mirror = |x: Vector2<f64>| x - normal * (2.0 * (x - middle).dot(&normal));
+    let left: Vec<_> =
+        right.iter().map(|p| solver::Particle { position: mirror(p.position), ..*p }).collect();
+    let count = right.len();
+    let of = |particles: Vec<_>| {
+        let bodies = (0..particles.len()).map(|k| u32::from(k >= count)).collect();
+        build::<Hencky, _, _>(SolidScene { bodies, ..scene(particles, Open, plane) })
+    };
+    let push = |solid: &common::Block<Hencky, RigidPlane>, side: f64| {
+        let own =
+            forces(solid).into_iter().filter(|(_, x, ..)| side * (x - middle).dot(&normal) > 0.0);
+        own.fold(Vector2::zeros(), |sum, (.., force)| sum + force)
+    };
+    let (alone, both) = (of(right.clone()), of([left, right].concat()));
+    let [expected, own, other] = [push(&alone, 1.0), push(&both, 1.0), push(&both, -1.0)];
+    assert!(expected.dot(&normal) > 0.05, "the block touches: {expected}");
+    assert!((own - expected).norm() < 1e-13, "{own}, alone {expected}");
+    assert!((other + expected).norm() < 1e-13, "{other}, expected {}", -expected);
+    let [one, two] = [&alone, &both].map(|solid| solid.potential().unwrap().loads);
+    assert!((two - 2.0 * one).abs() < 1e-13, "energy {two:e}, expected twice {one:e}");
+}
+
 /// Two blocks meet and part: the energy that contact stores is given back, and momentum stays.
 #[test]
 fn bodies_that_collide_keep_momentum_and_energy_and_part() {

@@ -11,8 +11,8 @@ use super::Parts;
 use crate::relation::{NoSymmetry, Relation, View};
 
 /// Disorders the start, then multiplies the constant that is wrong by its factor; the time step is not a
-/// part of a scene, and neither is the lifetime of neighbour lists. Before, the parts are told to who wants
-/// to know them, as that observer sees them.
+/// part of a scene, and neither are the lifetime of neighbour lists and what bodies of a total Lagrangian
+/// solid have. Before, the parts are told to who wants to know them, as that observer sees them.
 pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     if let Some(outline) = parts.outline.clone() {
         let view = outline.relation.map_or(Ok(View::default()), |relation| see(parts, relation));

@@ -2,5 +2,6 @@
 
 pub mod budget;
 pub mod energy;
+pub mod history;
 pub mod norms;
 pub mod profile;

@@ -100,7 +100,7 @@ impl Budget {
     /// Takes a sample of a simulation that has been brought to a time.
     pub fn sample(&mut self, rings: &Rings, simulation: &dyn Metered) {
         self.account.add(simulation.time(), &simulation.powers(rings));
-        let Energy { kinetic, compression, shear } = Energy::of(simulation, &rings.material);
+        let Energy { kinetic, compression, shear, .. } = Energy::of(simulation, &rings.material);
         let [a, b, c] = ITEMS.map(|(name, _)| self.account.work(name));
         self.rows.push([simulation.time(), kinetic, compression, shear, a, b, c]);
     }

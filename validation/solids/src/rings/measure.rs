@@ -72,6 +72,9 @@ pub struct Series<'a> {
     is_seen: bool,
     next: f64,
     samples: usize,
+    /// Largest energies of contacts and of modes that deform no particle, of a simulation that knows them
+    /// \[J/m\].
+    held: Option<[f64; 2]>,
     /// Pieces of both rings at the last count, and the fewest holes of one.
     counted: Vec<f64>,
     rows: Vec<[f64; COLUMNS]>,
@@ -79,7 +82,7 @@ pub struct Series<'a> {
 
 harness::observed! {
     Series<'_>:
-    changes(next, samples, counted, rows), parts(),
+    changes(next, samples, held, counted, rows), parts(),
     stays(rings, every, least_hole, bonds, is_seen)
 }
 
@@ -107,9 +110,10 @@ impl<'a> Series<'a> {
         let start = rings.particles();
         let bonds =
             halves(&start).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * rings.medium.dx));
-        let (next, samples, counted, rows) = (every, 0, Vec::new(), Vec::new());
+        let (is_seen, next, samples, held) = (false, every, 0, None);
+        let (counted, rows) = (Vec::new(), Vec::new());
         let mut this =
-            Self { rings, every, least_hole, bonds, is_seen: false, next, samples, counted, rows };
+            Self { rings, every, least_hole, bonds, is_seen, next, samples, held, counted, rows };
         this.is_seen = is_whole(this.count(&start));
         this
     }
@@ -132,7 +136,11 @@ impl<'a> Series<'a> {
         }
         self.samples += 1;
         let [centre, velocity, extent] = side(right, dx);
-        let Energy { kinetic, compression, shear } =
+        if let Some(Energy { of_loads, of_modes, .. }) = known {
+            let [loads, modes] = self.held.unwrap_or_default();
+            self.held = Some([loads.max(of_loads), modes.max(of_modes)]);
+        }
+        let Energy { kinetic, compression, shear, .. } =
             known.unwrap_or_else(|| Energy::of_all(particles, &rings.material));
         let bonds = self.bonds.iter().zip([left, right]);
         let stretch = largest(bonds.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx));
@@ -203,6 +211,16 @@ impl<'a> Series<'a> {
         ] {
             let moving = (speed > 0.0).then_some(value);
             put_or(record, metric, moving, "the rings are at rest at the start");
+        }
+        let held = self.held.filter(|_| speed > 0.0);
+        for (k, metric) in [CONTACT_MOST, MODES_MOST].into_iter().enumerate() {
+            let share = held.map(|held| held[k] / energy(first));
+            put_or(
+                record,
+                metric,
+                share,
+                "its forces derive from no energy, or the rings are at rest",
+            );
         }
         self.measure_contact(last[2] / speed, record);
     }

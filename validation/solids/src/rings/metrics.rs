@@ -20,6 +20,9 @@ base::metrics! {
     X_C_END = "x_c_end" ["L"] "that distance at the end";
     ENERGY_LOST = "energy_lost" ["-"] "1 - (kinetic + strain energy) at the end/at the start";
     ENERGY_GAINED = "energy_gained" ["-"] "largest total energy at any time/at the start - 1";
+    CONTACT_MOST = "contact_most" ["-"] "largest energy of contacts at any time/energy at the start";
+    MODES_MOST = "modes_most" ["-"]
+        "largest energy, at any time, of what resists modes that deform no particle/energy at the start";
     PUSHED_BY_ITSELF = "pushed_by_itself" ["-"]
         "max |v_c - v_c(end)|/V of a ring in the last tenth of the run";
     MIRROR = "mirror" ["dx"] "max over particles and times of the distance from the mirror image";
@@ -45,6 +48,7 @@ base::metrics! {
     V_C_RMS = "v_c_rms" ["c0"] "rms over the run of v_c - finite elements";
     WIDTH_RMS = "width_rms" ["L"] "rms over the run of width - finite elements";
     HEIGHT_RMS = "height_rms" ["L"] "rms over the run of height - finite elements";
+    HISTORIES = "histories" ["-"] "the largest of x_c_rms, width_rms and height_rms/outer diameter";
     ENERGY_GAP = "energy_gap" ["-"] "max over samples of |E(t) - E(0) - work of all terms|/E(0)";
     WORK_VISCOSITY = "work_viscosity" ["-"]
         "energy that the artificial viscosity has added until the end/E(0)";

@@ -99,6 +99,9 @@ pub const CORRECTED: &str = "corrected";
 /// The variant with a stored energy.
 pub const LAGRANGIAN: &str = "lagrangian";
 
+/// The same with a rigid plane between the rings.
+pub const PLANE: &str = "plane";
+
 /// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
 const LONG_STEPS: f64 = 0.8;
@@ -153,13 +156,25 @@ fn variants() -> Vec<Composition<RingSettings>> {
                     Built::Several(solid) => Box::new(solid),
                 })
             }),
-            |s| {
-                (s.alpha, s.beta, s.xsph, s.xi) = (0.0, 0.0, 0.0, 0.0);
-                total::choose(s);
-                s.courant = total::COURANT_OF_FOLDS;
-            },
+            choose,
+        )
+        .with(
+            PLANE,
+            "`lagrangian` with a rigid plane between the rings in place of contact between their faces: is \
+             an error that of the contact?",
+            total::named::<Hencky, _>(|parts| {
+                Ok(Box::new(total::beside_a_plane::<Hencky>(parts)?))
+            }),
+            choose,
         )
         .all
+}
+
+/// The settings of total Lagrangian rings.
+fn choose(s: &mut RingSettings) {
+    (s.alpha, s.beta, s.xsph, s.xi) = (0.0, 0.0, 0.0, 0.0);
+    total::choose(s);
+    s.courant = total::COURANT_OF_FOLDS;
 }
 
 /// Colliding rubber rings.

@@ -1,7 +1,7 @@
 //! The table of the runs, and what a run is judged by.
 
 use super::{
-    COMPONENTWISE, CORRECTED, LAGRANGIAN, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings,
+    COMPONENTWISE, CORRECTED, LAGRANGIAN, MOST_ENERGY_GAINED, PLANE, RUBBER_RINGS, RingSettings,
     measure::NEIGHBOURS, metrics::*, reference::Reference,
 };
 use crate::{
@@ -11,6 +11,7 @@ use crate::{
 use base::{
     functions::exp,
     gate::{Bound, Evidence, Gate},
+    mutation::{Constant, Mutation},
     record::MetricName,
 };
 use harness::{
@@ -29,6 +30,9 @@ pub enum Group {
     Unstressed,
     /// Few layers, which only show how the error falls.
     Coarse,
+    /// The total Lagrangian collision with another contact, or with another modulus against modes that
+    /// deform no particle: whose is the error of the restitution?
+    Contact,
     /// A film.
     Film,
     /// The scene turned by an angle.
@@ -50,6 +54,9 @@ pub type Row = table::Row<RingSettings, Group>;
 pub const SPEED: f64 = 0.059;
 /// Pictures of the film.
 pub const FRAMES: usize = 21;
+
+/// What is changed of total Lagrangian rings of ten layers, and by which factor.
+const VARIED: [(Constant, f64); 2] = [(Constant::Contact, 4.0), (Constant::Hourglass, 0.75)];
 
 /// The runs of a tier; only [`plan`] judges them, so that no gate of a run is there twice.
 pub fn table(tier: Tier) -> Table<RingSettings, Group> {
@@ -76,6 +83,13 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     let full =
         [(0.2, 0.03), (0.1, 0.03), (0.05, 0.03), (0.1, 0.12), (0.1, 0.2), (0.2, 0.3), (0.1, 0.25)];
     table.over(Group::Speed, &[LAGRANGIAN], [&quick, &full], at);
+    table.over(Group::Contact, &[PLANE], [&[], &[0.2, 0.1, 0.05]], dx);
+    if tier == Tier::Full {
+        for (of, factor) in VARIED {
+            let row = table.one(Group::Contact, LAGRANGIAN, |s| s.spacing = 0.1);
+            row.run.spec = row.run.spec.clone().mutated(Mutation { of, factor });
+        }
+    }
     let unstressed = |s: &mut RingSettings, (dx, speed)| {
         (s.spacing, s.speed, s.xi) = (dx, speed, 0.0);
     };

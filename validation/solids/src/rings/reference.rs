@@ -5,18 +5,19 @@ use std::sync::LazyLock;
 use ::lagrangian::{Hencky, Law as _};
 
 use super::{
-    LAGRANGIAN, RingSettings,
+    LAGRANGIAN, PLANE, RingSettings,
     measure::{Phase, Series},
     metrics::{
-        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, IMPULSE_ERROR, RMS, X_C_END_ERROR,
-        X_C_WORST, phase, put_or,
+        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, HEIGHT_RMS, HISTORIES, IMPULSE_ERROR,
+        RMS, WIDTH_RMS, X_C_END_ERROR, X_C_RMS, X_C_WORST, phase, put_or,
     },
 };
-use crate::solid::{Quantities, rows};
+use crate::solid::{Quantities, largest, rows};
 use base::{
     record::{MetricKey, Record},
     reference::{Reference as Package, Table},
 };
+use maths::metrics::{history, norms::rms};
 
 /// The law of (10) to (12), as the tables name it.
 const JAUMANN: &str = "jaumann";
@@ -39,6 +40,8 @@ pub struct Reference {
     pub times: Vec<f64>,
     /// The columns of [`Reference::COLUMNS`] at these times.
     pub columns: [Vec<f64>; 4],
+    /// The uncertainty of [`HISTORIES`], from that of the columns.
+    pub uncertainty: f64,
     /// Least distance of the ring from the plane at these times \[L\].
     gap: Vec<f64>,
     /// Largest principal logarithmic strain at any time and place \[-\].
@@ -65,10 +68,14 @@ pub fn leave_out(record: &mut Record) {
     const NOT_COMPUTED: &str =
         "finite elements have rings of 3 and 4 L, 0.22 K, at 0.059 and 0.03 c0, to 200 L/c0";
     let errors = COMPARED.map(|(_, error)| error);
-    for metric in errors.into_iter().chain(RMS).chain([X_C_WORST, X_C_END_ERROR]) {
+    for metric in errors.into_iter().chain(OF_HISTORIES) {
         record.leave_out(metric, NOT_COMPUTED);
     }
 }
+
+/// What is compared at every time of the reference.
+const OF_HISTORIES: [MetricKey; 7] =
+    [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES, X_C_WORST, X_C_END_ERROR];
 
 impl Reference {
     /// Columns of the series: centre of mass, its velocity, extents.
@@ -80,7 +87,7 @@ impl Reference {
         if rings(settings) != rings(&RingSettings::default()) {
             return None;
         }
-        let law = if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN };
+        let law = if [LAGRANGIAN, PLANE].contains(&variant) { Hencky::NAME } else { JAUMANN };
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
         let column = |table: &Table, name: &str, of: &[(&str, &str)]| -> Option<Vec<f64>> {
@@ -102,11 +109,15 @@ impl Reference {
         let phase = |k: usize| [impulse[k], early[k], half[k], late[k]];
         let strain = [("check", "greatest principal logarithmic strain"), of[0], of[1]];
         let [x_c, v_c, width, height] = Self::COLUMNS;
+        let columns = [series(x_c)?, series(v_c)?, series(width)?, series(height)?];
+        let uncertain = |name: &str| Some(rms(series(&format!("{name}_uncertainty"))?.into_iter()));
+        let uncertain = [uncertain(x_c)?, uncertain(width)?, uncertain(height)?];
         let found = Self {
             quantities: Quantities::of(table("summary")?, &of).ok()?,
             phases: (0..impulse.len()).map(phase).collect(),
             times: series("t")?,
-            columns: [series(x_c)?, series(v_c)?, series(width)?, series(height)?],
+            uncertainty: largest(uncertain) / diameter(&columns),
+            columns,
             gap: series("gap")?,
             // The finest mesh comes last.
             strain: column(table("checks")?, "value", &strain)?.last().copied().unwrap_or(f64::NAN),
@@ -145,12 +156,31 @@ impl Reference {
             put_or(record, error, value, "the run has no number to compare");
         }
         self.compare_phases(&series.phases(), record);
-        for (k, rms) in RMS.into_iter().enumerate() {
-            let distances = self.distances(k, series);
-            let squares = distances.iter().fold(0.0, |sum, distance| sum + distance * distance);
-            record.put(rms, (squares / distances.len() as f64).sqrt());
+        self.compare_histories(series, record);
+    }
+
+    /// Distances of centre, velocity and extents over the times of finite elements, all of which a run must
+    /// have.
+    fn compare_histories(&self, series: &Series, record: &mut Record) {
+        let of = |(k, column): (usize, &Vec<f64>)| {
+            let exact = self.times.iter().copied().zip(column.iter().copied());
+            history::differences(&series.points(1 + k), &exact.collect::<Vec<_>>())
+        };
+        let found: Result<Vec<Vec<f64>>, _> = self.columns.iter().enumerate().map(of).collect();
+        let found = match found {
+            Ok(found) => found,
+            Err(why) => {
+                OF_HISTORIES.into_iter().for_each(|key| record.leave_out(key, why.to_string()));
+                return;
+            }
+        };
+        for (metric, differences) in RMS.into_iter().zip(&found) {
+            record.put(metric, rms(differences.iter().copied()));
         }
-        let path = self.distances(0, series);
+        let lengths = [X_C_RMS, WIDTH_RMS, HEIGHT_RMS].map(|key| record.value(key));
+        let lengths = lengths.map(|length| length.unwrap_or(f64::NAN));
+        record.put(HISTORIES, largest(lengths) / diameter(&self.columns));
+        let path = &found[0];
         let worst = path.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
         record.put(X_C_WORST, worst.unwrap_or(f64::NAN));
         record.put(X_C_END_ERROR, path.last().copied().unwrap_or(f64::NAN));
@@ -177,17 +207,11 @@ impl Reference {
             }
         }
     }
+}
 
-    /// Less finite elements, at each of their times that the samples enclose.
-    fn distances(&self, column: usize, series: &Series) -> Vec<f64> {
-        let found = series.points(1 + column);
-        let between = |(t, exact): (&f64, &f64)| {
-            let k = found.iter().position(|(time, _)| time >= t)?.max(1);
-            let [(t0, y0), (t1, y1)] = [found[k - 1], found[k]];
-            Some(y0 + (y1 - y0) * ((t - t0) / (t1 - t0)) - exact)
-        };
-        self.times.iter().zip(&self.columns[column]).filter_map(between).collect()
-    }
+/// The outer diameter \[L\]: the width before the rings touch.
+fn diameter([_, _, width, _]: &[Vec<f64>; 4]) -> f64 {
+    width.first().copied().unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

@@ -15,6 +15,10 @@ pub struct Energy {
     pub compression: f64,
     /// Σ (m/ρ) S:S/(4μ) with Sᶻᶻ = −(Sˣˣ + Sʸʸ).
     pub shear: f64,
+    /// What loads store, a part of `compression`; 0 if it is not known.
+    pub of_loads: f64,
+    /// What resists modes that deform no particle stores, a part of `shear`; 0 if it is not known.
+    pub of_modes: f64,
 }
 
 impl Energy {
@@ -32,7 +36,9 @@ impl Energy {
         let Potential { compression, shear, hourglass, loads } = simulation.potential()?;
         let half = |(mass, p): (f64, &Evolved<Symmetric>)| 0.5 * mass * p.velocity.norm_squared();
         let kinetic = simulation.fluid().map(half).fold(0.0, |sum, one| sum + one);
-        Some(Self { kinetic, compression: compression + loads, shear: shear + hourglass })
+        let (of_loads, of_modes) = (loads, hourglass);
+        let (compression, shear) = (compression + loads, shear + hourglass);
+        Some(Self { kinetic, compression, shear, of_loads, of_modes })
     }
 
     /// Of all of these particles.
@@ -59,6 +65,7 @@ impl Energy {
             kinetic: 0.5 * mass * particle.velocity.norm_squared(),
             compression: mass * c2 * (ln_1p(x) - x / ratio),
             shear,
+            ..Self::default()
         }
     }
 
@@ -75,6 +82,8 @@ impl std::ops::Add for Energy {
             kinetic: self.kinetic + other.kinetic,
             compression: self.compression + other.compression,
             shear: self.shear + other.shear,
+            of_loads: self.of_loads + other.of_loads,
+            of_modes: self.of_modes + other.of_modes,
         }
     }
 }

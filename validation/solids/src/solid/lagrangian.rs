@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use lagrangian::{BetweenFaces, Contact, Law, Moduli, Solid, SolidScene, Weight};
+use lagrangian::{BetweenFaces, Contact, Law, Moduli, RigidPlane, Solid, SolidScene, Weight};
 use nalgebra::Vector2;
 use solver::{
     Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
 };
 
 use super::leave_out;
-use base::settings::Settings;
+use base::{mutation::Constant, settings::Settings};
 use harness::method::{Medium, Method, Parts, mutate};
 use maths::theory::{
     bending,
@@ -92,11 +92,41 @@ pub fn solid<L: Law>(mut parts: Parts<Symmetric>) -> Result<Built<L>, SceneError
     if parts.bodies.is_empty() {
         return Ok(Built::One(scene(parts, ()).build()?));
     }
-    let contact = Contact::of(&moduli(&parts.medium));
+    let contact = contact(&parts);
     Ok(Built::Several(scene(parts, BetweenFaces::new(contact)).build()?))
 }
 
+/// Two bodies with a rigid plane half-way between their centres of mass, in place of contact between faces.
+pub fn beside_a_plane<L: Law>(
+    mut parts: Parts<Symmetric>,
+) -> Result<Solid<WendlandC2, L, RigidPlane>, SceneError> {
+    mutate(&mut parts);
+    let centre = |body: u32| {
+        let all = parts.particles.iter().zip(&parts.bodies).filter(|(_, of)| **of == body);
+        let sum = all.fold((Vector2::zeros(), 0.0), |(sum, mass), (p, _)| {
+            (sum + p.position * p.mass, mass + p.mass)
+        });
+        sum.0 / sum.1
+    };
+    let [left, right] = [centre(0), centre(1)];
+    let (point, normal) = (0.5 * (left + right), (right - left).normalize());
+    let plane = RigidPlane { point, normal, contact: contact(&parts) };
+    scene(parts, plane).build()
+}
+
+/// The contact of bodies, with the factor of a deliberate error.
+fn contact(parts: &Parts<Symmetric>) -> Contact {
+    let Contact { stiffness } = Contact::of(&moduli(&parts.medium));
+    Contact { stiffness: stiffness * factor(parts, Constant::Contact) }
+}
+
+/// By how much a constant is wrong.
+fn factor(parts: &Parts<Symmetric>, of: Constant) -> f64 {
+    parts.mutation.map_or(1.0, |mutation| mutation.factor_of(of))
+}
+
 fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
+    let hourglass = HOURGLASS * factor(&parts, Constant::Hourglass);
     let Parts { medium, domain, particles, mirrors, bodies, limits, threads, .. } = parts;
     let without_stress = |p: Particle<Symmetric>| Particle {
         density: medium.density,
@@ -111,7 +141,7 @@ fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
         bodies,
         walls: Ghosts { walls: mirrors },
         moduli: moduli(&medium),
-        hourglass: HOURGLASS,
+        hourglass,
         loads,
         limits: Limits { density: DENSITIES.map(|ratio| ratio * medium.density), ..limits },
         parallel_from: if threads > 1 { 10_000 } else { usize::MAX },

@@ -1,0 +1,127 @@
+//! The distance of a history from that of a reference, each at times of its own.
+
+use thiserror::Error;
+
+/// Times before the first or after the last sample by this share of the time between both are taken for its.
+const ROUND_OFF: f64 = 1e-6;
+
+/// Why there is no distance.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum HistoryError {
+    /// Nothing to compare.
+    #[error("there are {samples} samples and {times} times of the reference to compare")]
+    Empty {
+        /// Number of samples.
+        samples: usize,
+        /// Number of times of the reference.
+        times: usize,
+    },
+    /// A time of the reference is not among those of the samples.
+    #[error("the reference has the time {time}, and samples are from {first} to {last}")]
+    Missing {
+        /// The time of the reference.
+        time: f64,
+        /// Time of the first sample.
+        first: f64,
+        /// Time of the last sample.
+        last: f64,
+    },
+    /// A value is NaN or infinite.
+    #[error("the history or the reference is not finite at the time {time}")]
+    NotFinite {
+        /// The time of the reference.
+        time: f64,
+    },
+}
+
+/// y(tᵢ) − eᵢ at every time tᵢ of a reference (tᵢ, eᵢ), in the unit of the values. The history y is linear
+/// between its samples (t, y), whose times ascend.
+///
+/// # Errors
+/// [`HistoryError`] if there is nothing to compare, if samples do not enclose every time of the reference,
+/// and if a value is not finite.
+pub fn differences(
+    samples: &[(f64, f64)],
+    reference: &[(f64, f64)],
+) -> Result<Vec<f64>, HistoryError> {
+    let (Some((first, _)), Some((last, _)), false) =
+        (samples.first(), samples.last(), reference.is_empty())
+    else {
+        return Err(HistoryError::Empty { samples: samples.len(), times: reference.len() });
+    };
+    let slack = ROUND_OFF * (last - first);
+    let at = |&(time, exact): &(f64, f64)| {
+        if !(first - slack..=last + slack).contains(&time) {
+            return Err(HistoryError::Missing { time, first: *first, last: *last });
+        }
+        let after = samples.partition_point(|(t, _)| *t < time).min(samples.len() - 1);
+        let [(t0, y0), (t1, y1)] = [samples[after.saturating_sub(1)], samples[after]];
+        let share = if t1 > t0 { ((time - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 1.0 };
+        let difference = y0 + (y1 - y0) * share - exact;
+        let is_known = difference.is_finite();
+        if is_known { Ok(difference) } else { Err(HistoryError::NotFinite { time }) }
+    };
+    reference.iter().map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::norms::rms;
+
+    /// t² − 3 at these times.
+    fn history(times: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+        times.map(|t| (t, t * t - 3.0)).collect()
+    }
+
+    fn every(step: f64, end: f64) -> impl Iterator<Item = f64> {
+        (0..=(end / step).round() as usize).map(move |k| step * k as f64)
+    }
+
+    #[test]
+    fn a_history_has_no_distance_from_itself_and_a_shift_is_the_distance() {
+        let own = history(every(0.5, 10.0));
+        assert_eq!(differences(&own, &own), Ok(vec![0.0; 21]));
+        let shifted: Vec<(f64, f64)> = own.iter().map(|(t, y)| (*t, y + 0.125)).collect();
+        let found = differences(&shifted, &own).expect("the same times");
+        assert_eq!(rms(found.into_iter()), 0.125);
+    }
+
+    /// Of t², the chord of a sample interval d is above by d²/4 at its middle.
+    #[test]
+    fn between_samples_a_history_is_linear() {
+        let (coarse, fine) = (history(every(1.0, 8.0)), history(every(0.5, 8.0)));
+        let found = differences(&coarse, &fine).expect("enclosed");
+        let expected = |k: usize| if k % 2 == 1 { 0.25 } else { 0.0 };
+        assert!(found.iter().enumerate().all(|(k, d)| *d == expected(k)), "{found:?}");
+        // Samples at other times than those of the reference, and more of them, change nothing.
+        let ramp =
+            |times: &mut dyn Iterator<Item = f64>| times.map(|t| (t, 2.0 * t - 1.0)).collect();
+        let [fine, coarse]: [Vec<(f64, f64)>; 2] =
+            [ramp(&mut every(0.3, 9.0)), ramp(&mut every(0.5, 8.5))];
+        let found = differences(&fine, &coarse).expect("enclosed");
+        assert!(found.iter().all(|d| d.abs() < 1e-14), "{found:?}");
+    }
+
+    #[test]
+    fn times_that_are_missing_are_said_and_round_off_is_none() {
+        let (short, whole) = (history(every(0.5, 9.5)), history(every(0.5, 10.0)));
+        let missing = HistoryError::Missing { time: 10.0, first: 0.0, last: 9.5 };
+        assert_eq!(differences(&short, &whole), Err(missing));
+        assert_eq!(
+            missing.to_string(),
+            "the reference has the time 10, and samples are from 0 to 9.5"
+        );
+        let late = whole[1..].to_vec();
+        assert!(matches!(differences(&late, &whole), Err(HistoryError::Missing { .. })));
+        let mut rounded = whole.clone();
+        rounded[20].0 -= 1e-9;
+        let found = differences(&rounded, &whole).expect("the end is there");
+        assert!(found[20].abs() < 1e-7, "{found:?}");
+        assert_eq!(differences(&[], &whole), Err(HistoryError::Empty { samples: 0, times: 21 }));
+        assert_eq!(differences(&whole, &[]), Err(HistoryError::Empty { samples: 21, times: 0 }));
+        let mut unknown = whole.clone();
+        unknown[7].1 = f64::NAN;
+        assert_eq!(differences(&unknown, &whole), Err(HistoryError::NotFinite { time: 3.5 }));
+    }
+}
