@@ -300,6 +300,9 @@ fn bounds_of_rings() -> Vec<(&'static str, Bound, &'static str)> {
         .extend(["width_rms", "height_rms", "x_c_rms"].map(|name| (name, Bound::Below(2.0), soft)));
     bounds.extend([
         ("energy_lost", Bound::Within(0.0, 1.0), "viscosity takes energy and nothing adds any"),
+        ("histories", Bound::Below(0.25), soft),
+        ("contact_most", Bound::Within(0.0, 1.0), share),
+        ("modes_most", Bound::Within(0.0, 1.0), share),
         ("restitution", Bound::Within(0.0, 1.0), "rings do not part faster than they met"),
         ("impulse", Bound::Within(0.0, 2.6), "at most twice the momentum of a ring, 2 m V = 2.6"),
         ("pieces", Bound::Equals(2.0), "two rings"),

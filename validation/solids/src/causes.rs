@@ -25,8 +25,9 @@ pub static DISPERSION: Cause = Cause::new(
 
 /// Folds of few spacings.
 pub static FOLDS: Cause = Cause::new(
-    "Where a thin ring is folded, its curvature changes within a few spacings, so that flattened rings are \
-     too stiff.",
+    "Where a thin ring is folded, its curvature changes within a few spacings, and what resists modes that \
+     deform no particle makes flattened rings too stiff. It is no error of the contact: against a rigid plane \
+     it is the same.",
     "More particles through the thickness.",
 );
 

@@ -352,7 +352,9 @@ impl Distances<'_> {
             .map(|metric| reference(self.id, metric, Bound::Within(-small, small), goal));
         let known = Bound::Within(-small, if is_coarse { 0.041 } else { 0.01 });
         let restitution = restitution.with_limitation(known, SENSITIVE).because_of(&FOLDS);
-        let mut gates = vec![restitution, width, height];
+        let half = Bound::Below(0.25 * self.row.settings.spacing / self.row.settings.outer);
+        let histories = reference(self.id, HISTORIES, half, HALF_A_SPACING);
+        let mut gates = vec![histories, restitution, width, height];
         if self.row.group == Group::Paper {
             let end = CONTACT_END_ERROR.at(phase(1));
             let end = reference(self.id, end, Bound::Within(-3.0, 3.0), goal);
@@ -387,6 +389,8 @@ const SHARED: &str = "Rings of 10 and 20 layers have 6 and 4 % less impulse in t
 const TEAR_BEGINS: &str = "A tear begins at the inner face: neighbours part to 2.7 dx in rings of 20 layers, \
     and with corrected gradients to 2.9 dx in rings of 10 while they fly apart. The bound: beyond 3 dx, the \
     reach of the kernel, neighbours have let go.";
+const HALF_A_SPACING: &str = "The surface of a body of particles is known to half a spacing, and so are its \
+    extents over time. The bound: half a spacing over the outer diameter.";
 const SENSITIVE: &str = "The restitution hangs on how the second contact meets the vibration of the rings: \
     in finite elements the law of St. Venant and Kirchhoff changes it by +3.1 %. The folds of flattened \
     rings are a few spacings wide. The bound: the difference of the two laws and 1 %; with 20 layers 1 %.";

@@ -96,19 +96,20 @@ pub fn solid<L: Law>(mut parts: Parts<Symmetric>) -> Result<Built<L>, SceneError
     Ok(Built::Several(scene(parts, BetweenFaces::new(contact)).build()?))
 }
 
-/// Two bodies with a rigid plane half-way between their centres of mass, in place of contact between faces.
+/// Two bodies with a rigid plane at rest half-way between them, in place of contact between faces.
 pub fn beside_a_plane<L: Law>(
     mut parts: Parts<Symmetric>,
 ) -> Result<Solid<WendlandC2, L, RigidPlane>, SceneError> {
     mutate(&mut parts);
-    let centre = |body: u32| {
+    // Extents do not depend on the order of the particles.
+    let middle = |body: u32| {
         let all = parts.particles.iter().zip(&parts.bodies).filter(|(_, of)| **of == body);
-        let sum = all.fold((Vector2::zeros(), 0.0), |(sum, mass), (p, _)| {
-            (sum + p.position * p.mass, mass + p.mass)
-        });
-        sum.0 / sum.1
+        let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
+        let (low, high) = all
+            .fold((low, high), |(low, high), (p, _)| (low.inf(&p.position), high.sup(&p.position)));
+        0.5 * (low + high)
     };
-    let [left, right] = [centre(0), centre(1)];
+    let [left, right] = [middle(0), middle(1)];
     let (point, normal) = (0.5 * (left + right), (right - left).normalize());
     let plane = RigidPlane { point, normal, contact: contact(&parts) };
     scene(parts, plane).build()
