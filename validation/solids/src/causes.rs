@@ -26,8 +26,7 @@ pub static DISPERSION: Cause = Cause::new(
 /// Folds of few spacings.
 pub static FOLDS: Cause = Cause::new(
     "Where a thin ring is folded, its curvature changes within a few spacings, and what resists modes that \
-     deform no particle makes flattened rings too stiff. It is no error of the contact: against a rigid plane \
-     it is the same.",
+     deform no particle makes flattened rings too stiff, against each other and against a rigid plane.",
     "More particles through the thickness.",
 );
 
