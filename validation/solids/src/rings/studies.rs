@@ -143,7 +143,7 @@ fn contact(rows: &[Row], runs: &Runs) -> Option<Study> {
         "Is the error of the restitution of `lagrangian` one of the contact or one of the folds? A rigid \
          plane between the rings changes the restitution by {changes} with 5, 10 and 20 layers; with 10 \
          layers a contact four times as stiff by {}, and three quarters of the modulus against modes that \
-         deform no particle, which fold the ring, by {}. An error of the contact would hang on the first \
+         deform no particle by {}. An error of the contact would hang on the first \
          two, one of the folds on the last.",
         percent(stiffer, 2),
         percent(softer, 2)
