@@ -25,8 +25,8 @@ pub static DISPERSION: Cause = Cause::new(
 
 /// Folds of few spacings.
 pub static FOLDS: Cause = Cause::new(
-    "Where a thin ring is folded, its curvature changes within a few spacings, and what resists modes that \
-     deform no particle makes flattened rings too stiff, against each other and against a rigid plane.",
+    "Where a thin ring is folded its curvature changes within a few spacings, and what \
+     resists modes that deform no particle makes it too stiff.",
     "More particles through the thickness.",
 );
 
