@@ -219,12 +219,19 @@ impl<P: Physics> Engine<P> {
         targets: &mut State<P>,
         update: &BlockUpdate<P::Extra>,
     ) {
-        let Neighbours { lists, wall_lists, .. } = &self.data.neighbours;
-        sweep::run(sweep, lists, targets, update);
-        if !(wall_lists.of.is_empty() || P::Walls::EXTRAPOLATES) {
-            self.sweep_walls(&mut targets[wall_lists.of.start..], update);
+        let fluid = self.data.fluid_count();
+        sweep::run(sweep, &self.data.neighbours.lists, targets, update);
+        if self.swept() > fluid {
+            self.sweep_walls(&mut targets[fluid..], update);
         }
         self.data.enter(Phase::Rest);
+    }
+
+    /// Number of particles that have rates, the first of a state: those of the fluid, and of walls that do
+    /// not extrapolate.
+    pub(crate) fn swept(&self) -> usize {
+        let [fluid, walls] = self.data.counts;
+        if P::Walls::EXTRAPOLATES { fluid } else { fluid + walls }
     }
 
     fn sweep_walls(&self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {

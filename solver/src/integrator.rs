@@ -1,7 +1,5 @@
 //! Time integration. A physics together with an integrator is a scheme.
 
-use nalgebra::Vector2;
-
 use crate::{
     engine::Engine,
     kernel::Kernel,
@@ -16,8 +14,8 @@ use crate::{
 /// Whether a step stayed within the bounds of its scene.
 pub type Stepped = Result<(), Fault>;
 
-/// An explicit time integration of (x, v, ρ) of the physics `P`. A value of the type holds what is needed
-/// from step to step.
+/// An explicit time integration of (x, v, ρ) of the physics `P`. A value of the type holds memory that steps
+/// use; what the next step needs of the ones before is in [`crate::ParticleData`].
 pub trait Integrator<P: Physics>: Default + Send + Sync + 'static {
     /// Its name in settings and reports.
     const NAME: &'static str;
@@ -36,23 +34,6 @@ pub trait Integrator<P: Physics>: Default + Send + Sync + 'static {
     /// They are computed by the same pair sweeps that a step uses.
     fn rates(engine: &Engine<P>) -> Vec<Rate<P::Extra>> {
         engine.rates_in_one_sweep()
-    }
-
-    /// The time by which the velocities lag behind the other quantities \[s\]. Nothing else is kept between
-    /// steps.
-    fn lag(&self) -> f64 {
-        0.0
-    }
-
-    /// The velocities of fluid particles \[m/s\] from which the next step goes on; none where these are those
-    /// of the state.
-    fn held(&self) -> &[Vector2<f64>] {
-        &[]
-    }
-
-    /// An integrator with this lag \[s\].
-    fn with_lag(_lag: f64) -> Self {
-        Self::default()
     }
 
     /// Memory in addition to the state \[bytes\].
@@ -126,11 +107,7 @@ impl<P: Physics> Integrator<P> for PredictorCorrector<P::Extra> {
 /// at every dt. `K` advances the velocities, by default [`ForwardKick`].
 #[derive(Debug, Default)]
 pub struct Leapfrog<K = ForwardKick> {
-    /// The time by which the velocities lag behind the positions \[s\].
-    lag: f64,
     kick: K,
-    /// Velocities as they were before they were synchronised, until the next step \[m/s\].
-    held: Vec<Vector2<f64>>,
 }
 
 /// How a [`Leapfrog`] advances velocities while positions and densities stay as they are.
@@ -172,12 +149,10 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
     const ORDER: [u32; 2] = K::ORDER;
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
-        for (evolved, velocity) in state.iter_mut().zip(self.held.drain(..)) {
-            evolved.velocity = velocity;
-        }
+        engine.data.stagger(state);
         engine.begin(state)?;
-        let half = 0.5 * dt;
-        self.kick.kick(engine, state, [self.lag + half, half])?;
+        let (lag, half) = (engine.data.lag, 0.5 * dt);
+        self.kick.kick(engine, state, [lag + half, half])?;
         engine.refresh(state)?;
         // Wall particles have a velocity too, but do not move.
         let fluid = engine.data.fluid_count();
@@ -187,15 +162,15 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
                 evolved.position -= evolved.velocity * half;
             }
         });
-        self.lag = half;
+        engine.data.lag = half;
         Ok(())
     }
 
     fn synchronise(&mut self, engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
-        if self.lag != 0.0 && self.held.is_empty() {
+        if engine.data.is_staggered() {
             engine.begin(state)?;
-            self.held.extend(state[..engine.data.fluid_count()].iter().map(|e| e.velocity));
-            self.kick.kick(engine, state, [self.lag, 0.0])?;
+            engine.data.hold(state);
+            self.kick.kick(engine, state, [engine.data.lag, 0.0])?;
         }
         Ok(())
     }
@@ -204,20 +179,8 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
         engine.rates_in_two_sweeps()
     }
 
-    fn lag(&self) -> f64 {
-        self.lag
-    }
-
-    fn held(&self) -> &[Vector2<f64>] {
-        &self.held
-    }
-
-    fn with_lag(lag: f64) -> Self {
-        Self { lag, ..Self::default() }
-    }
-
     fn bytes(&self) -> usize {
-        self.held.capacity() * size_of::<Vector2<f64>>() + self.kick.bytes()
+        self.kick.bytes()
     }
 }
 

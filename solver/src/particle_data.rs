@@ -193,6 +193,10 @@ pub struct ParticleData<X = ()> {
     pub(crate) parallel: bool,
     pub(crate) progress: Progress,
     pub(crate) order: Vec<u32>,
+    /// The time by which the velocities of a staggered integrator lag behind the other quantities \[s\].
+    pub(crate) lag: f64,
+    /// Velocities of the fluid as they were before they were synchronised, until the next step \[m/s\].
+    pub(crate) held: Vec<Vector2<f64>>,
     /// In the order of `state`; empty for integrators that keep nothing.
     pub(crate) past: Vec<Past<X>>,
     /// Memory of the columns that a pair sweep reads \[bytes\].
@@ -234,9 +238,21 @@ impl<X: Numbers> ParticleData<X> {
         self.counts[0]
     }
 
-    /// Number of particles whose rates a sweep sums, where walls do not extrapolate.
-    pub(crate) fn swept(&self) -> usize {
-        self.counts[0] + self.counts[1]
+    /// Whether velocities lag behind the other quantities.
+    pub(crate) fn is_staggered(&self) -> bool {
+        self.lag != 0.0 && self.held.is_empty()
+    }
+
+    /// Keeps the velocities that lag, which a staggered integrator then synchronises.
+    pub(crate) fn hold(&mut self, state: &[Evolved<X>]) {
+        self.held.extend(state[..self.counts[0]].iter().map(|evolved| evolved.velocity));
+    }
+
+    /// Gives a state back the velocities that were held, if any were.
+    pub(crate) fn stagger(&mut self, state: &mut [Evolved<X>]) {
+        for (evolved, velocity) in state.iter_mut().zip(self.held.drain(..)) {
+            evolved.velocity = velocity;
+        }
     }
 
     /// Mass \[kg/m\] and state of the fluid particles as they are stored, without order; for observers
@@ -320,12 +336,16 @@ impl<X: Numbers> ParticleData<X> {
         self.watch = watch;
     }
 
-    /// Everything that is needed to continue from here; `lag` is the lag of the velocities \[s\].
-    pub fn checkpoint(&self, lag: f64) -> Checkpoint<X> {
+    /// Everything that is needed to continue from here.
+    pub fn checkpoint(&self) -> Checkpoint<X> {
+        let mut particles: Vec<_> = self.stored().collect();
+        for ((_, particle), velocity) in particles.iter_mut().zip(&self.held) {
+            particle.velocity = *velocity;
+        }
         Checkpoint {
             progress: self.progress,
-            lag,
-            particles: self.stored().collect(),
+            lag: self.lag,
+            particles,
             built_at: self.neighbours.built_at.to_vec(),
             past: self.past.clone(),
         }
@@ -336,6 +356,7 @@ impl<X: Numbers> ParticleData<X> {
         self.state.capacity() * size_of::<Evolved<X>>()
             + self.fixed.capacity() * size_of::<Fixed>()
             + self.order.capacity() * size_of::<u32>()
+            + self.held.capacity() * size_of::<Vector2<f64>>()
             + self.past.capacity() * size_of::<Past<X>>()
             + self.neighbours.bytes()
     }

@@ -187,20 +187,17 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         observer.after_step(self);
     }
     fn checkpoint(&self) -> Checkpoint<S::Extra> {
-        let mut checkpoint = self.engine.data.checkpoint(self.integrator.lag());
-        for ((_, particle), velocity) in checkpoint.particles.iter_mut().zip(self.integrator.held())
-        {
-            particle.velocity = *velocity;
-        }
-        checkpoint
+        self.engine.data.checkpoint()
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
         from.check()?;
         self.engine.data.put(&from.particles);
         self.engine.build_lists(&mut from.built_at.iter().copied());
         self.engine.data.progress = from.progress;
+        self.engine.data.lag = from.lag;
+        self.engine.data.held.clear();
         self.engine.data.past.clone_from(&from.past);
-        self.integrator = S::Integrator::with_lag(from.lag);
+        self.integrator = S::Integrator::default();
         Ok(())
     }
     fn weight(&self, r2: f64) -> f64 {

@@ -1,7 +1,5 @@
 //! A leapfrog with one pair sweep a step, in place of two.
 
-use nalgebra::Vector2;
-
 use crate::{
     engine::Engine,
     integrator::{Integrator, Stepped},
@@ -9,7 +7,6 @@ use crate::{
     particle_data::Past,
     particles::Evolved,
     physics::{Physics, State},
-    walls::Walls,
 };
 
 /// Forces and drift from one pair sweep at (xⁿ, vⁿ⁻½, ρ̃ⁿ): with a the forces and D the drift of it,
@@ -25,30 +22,23 @@ use crate::{
 /// is damped by (ω dt)⁴/2 a step. Of first order in dt, because Dⁿ has positions half a step later than its
 /// velocities.
 #[derive(Debug, Default)]
-pub struct SingleSweep {
-    /// The time by which the velocities lag behind the positions \[s\].
-    lag: f64,
-    /// Velocities as they were before they were synchronised, until the next step \[m/s\].
-    held: Vec<Vector2<f64>>,
-}
+pub struct SingleSweep;
 
 impl<P: Physics> Integrator<P> for SingleSweep {
     const NAME: &'static str = "single-sweep";
     const ORDER: [u32; 2] = [1, 1];
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
-        for (evolved, velocity) in state.iter_mut().zip(self.held.drain(..)) {
-            evolved.velocity = velocity;
-        }
+        engine.data.stagger(state);
         engine.begin(state)?;
-        let (half, fluid) = (0.5 * dt, engine.data.fluid_count());
-        let swept = if P::Walls::EXTRAPOLATES { fluid } else { engine.data.swept() };
-        let (kick, known) = (self.lag + half, 2.0 * self.lag);
+        let (lag, half, fluid) = (engine.data.lag, 0.5 * dt, engine.data.fluid_count());
+        let (kick, known) = (lag + half, 2.0 * lag);
         if known == 0.0 {
             let start = |e: &Evolved<P::Extra>| Past {
                 drifted: (e.density, e.extra),
                 rate: Default::default(),
             };
+            let swept = engine.swept();
             engine.data.past.clear();
             engine.data.past.extend(state[..swept].iter().map(start));
         }
@@ -70,33 +60,17 @@ impl<P: Physics> Integrator<P> for SingleSweep {
             (evolved.density, evolved.extra) = next.advanced(-dt * ahead, past.rate);
             past.rate = rate;
         }
-        self.lag = half;
+        engine.data.lag = half;
         Ok(())
     }
 
     fn synchronise(&mut self, engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
-        if self.lag != 0.0 && self.held.is_empty() {
+        if engine.data.is_staggered() {
             engine.begin(state)?;
-            self.held.extend(state[..engine.data.fluid_count()].iter().map(|e| e.velocity));
-            let lag = self.lag;
+            engine.data.hold(state);
+            let lag = engine.data.lag;
             engine.sweep_forces(state, |_, evolved, rate| evolved.kick(lag, rate));
         }
         Ok(())
-    }
-
-    fn lag(&self) -> f64 {
-        self.lag
-    }
-
-    fn held(&self) -> &[Vector2<f64>] {
-        &self.held
-    }
-
-    fn with_lag(lag: f64) -> Self {
-        Self { lag, ..Self::default() }
-    }
-
-    fn bytes(&self) -> usize {
-        self.held.capacity() * size_of::<Vector2<f64>>()
     }
 }

@@ -58,7 +58,7 @@ impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
         (frame.skin, frame.limits) = (1e-9 * h, limits);
         let data = frame.build()?.into_particles();
         let of = |(id, _): &(u32, _)| bodies.get(*id as usize).copied().unwrap_or(0);
-        let bodies: Vec<u32> = data.checkpoint(0.0).particles.iter().map(of).collect();
+        let bodies: Vec<u32> = data.checkpoint().particles.iter().map(of).collect();
         let kernel = Smoothing::<K>::new(h);
         let reference = Reference::new(&data, &kernel, &bodies, W::SLIPS)?;
         let sizes = reference.volumes.iter().map(|volume| volume.sqrt()).collect();
@@ -175,7 +175,7 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
         observer.after_step(self);
     }
     fn checkpoint(&self) -> Checkpoint<Symmetric> {
-        self.data.checkpoint(0.0)
+        self.data.checkpoint()
     }
     fn restore(&mut self, from: &Checkpoint<Symmetric>) -> Result<(), &'static str> {
         self.data.resume(from)?;
