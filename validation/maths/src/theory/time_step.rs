@@ -223,15 +223,8 @@ impl Mode {
         };
         let searched = (0..SEARCHED).map(|k| shortest * 1.01_f64.powi(k));
         let mut within = searched.take_while(|dt| *dt < 1.01 * longest);
-        let Some(mut high) = within.find(|dt| !is_stable(*dt)) else {
-            return f64::INFINITY;
-        };
-        let mut low = high / 1.01;
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if is_stable(middle) { low = middle } else { high = middle }
-        }
-        low
+        let found = within.find(|dt| !is_stable(*dt));
+        found.map_or(f64::INFINITY, |dt| last_stable([dt / 1.01, dt], is_stable))
     }
 
     fn limit_of_single_sweep(&self, longest: f64) -> f64 {
@@ -240,15 +233,9 @@ impl Mode {
         let far = longest.min(2.0 * self.limit(Integrator::Leapfrog)).min(f64::MAX.sqrt());
         let mut searched =
             (1..=SEARCHED_SINGLY).map(|k| far * f64::from(k) / f64::from(SEARCHED_SINGLY));
-        let Some(mut high) = searched.find(|dt| !is_stable(*dt)) else {
-            return longest;
-        };
-        let mut low = high - far / f64::from(SEARCHED_SINGLY);
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if is_stable(middle) { low = middle } else { high = middle }
-        }
-        low
+        let found = searched.find(|dt| !is_stable(*dt));
+        let before = |dt: f64| dt - far / f64::from(SEARCHED_SINGLY);
+        found.map_or(longest, |dt| last_stable([before(dt), dt], is_stable))
     }
 
     /// ln of the spectral radius of one step.
@@ -343,6 +330,15 @@ impl Mode {
         let slow = if fast == 0.0 { 0.0 } else { product / fast };
         [Complex::new(fast, 0.0), Complex::new(slow, 0.0), shear]
     }
+}
+
+/// The last stable step between one that is stable and a longer one that is not.
+fn last_stable([mut low, mut high]: [f64; 2], is_stable: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if is_stable(middle) { low = middle } else { high = middle }
+    }
+    low
 }
 
 /// ln of the spectral radius, from the 2⁴⁰th power.
