@@ -253,48 +253,24 @@ mod tests {
 
     use super::*;
     use crate::{
-        declare::{Comparison, Level},
-        planned::Planned,
         runs::JudgedRun,
-        studies::made_up::{ERROR, column, spec, tables},
+        studies::made_up::{ERROR, column, comparison, run, spec, tables},
     };
 
     const ALL: usize = 20;
 
     /// Members k = 1 … 20 whose history is (k − 10.5) 1e-6 exp(2t) until t = 8 and whose number is k.
     fn member(n: usize) -> JudgedRun {
-        let spec = spec("seed", n);
-        let settings = spec.settings.clone();
-        let mut record = Record::new(&spec.case, &spec.variant, settings, 1).of(&spec);
-        record.put(ERROR, n as f64);
-        JudgedRun::new(Planned::new(spec), record)
+        run(spec("seed", n), |record| record.put(ERROR, n as f64))
     }
 
     /// The levels of a comparison with u_val = 0.03: u_num is the distance of two.
     fn ladder() -> Vec<JudgedRun> {
-        let of = |(n, error): (usize, f64)| {
-            let mut run = member(n);
-            run.record.put(ERROR, error);
-            run
-        };
+        let of = |(n, error)| run(spec("seed", n), |record| record.put(ERROR, error));
         [(1000, 0.04), (1001, 0.01)].map(of).into()
     }
 
     fn ensembles() -> Ensembles {
-        let level = |n: usize| Level {
-            run: Planned::new(spec("seed", n)),
-            spacing: 1.0 / n as f64,
-            label: String::new(),
-        };
-        let comparison = Comparison {
-            what: "made up".into(),
-            against: "nothing",
-            metric: ERROR.into(),
-            levels: [1000, 1001].map(level).into(),
-            inputs: Vec::new(),
-            reference: 0.0,
-            because: "made up",
-        };
         let points = |record: &Record| {
             let own = 1e-6 * (record.value(ERROR).unwrap_or(f64::NAN) - 10.5);
             let at = |k: u32| 0.01 * f64::from(k);
@@ -306,7 +282,7 @@ mod tests {
         let history = History {
             name: "level [H]".into(),
             points: Box::new(points),
-            tolerance: (comparison, 2.0),
+            tolerance: (comparison("seed", &[1000, 1001]), 2.0),
             measured: vec![vec![(0.0, 0.0), (9.0, 1.0)]],
             is_drawn: true,
             gate: Some(gate("agree", Bound::Above(4.0))),
@@ -397,11 +373,7 @@ mod tests {
 
     #[test]
     fn members_that_never_part_agree_until_the_end_of_the_runs() {
-        let same = |n| {
-            let mut run = member(n);
-            run.record.put(ERROR, 10.5);
-            run
-        };
+        let same = |n| run(spec("seed", n), |record| record.put(ERROR, 10.5));
         let (failed, study) = judged((1..=ALL).map(same).collect(), true);
         assert_eq!(failed, [""; 0]);
         assert_eq!(row(&study, 0, &["horizon", "verdict"]), ["–", "all agree until 8.00"]);

@@ -5,6 +5,7 @@ use report::{Block, Table};
 use serde_json::json;
 
 use crate::{
+    declare::{Comparison, Level},
     planned::Planned,
     runs::{JudgedRun, Runs},
     study::Study,
@@ -28,12 +29,33 @@ pub fn runs(errors: impl IntoIterator<Item = (RunSpec, f64)>) -> Runs {
 
 /// Runs that reached their end, and what their records hold.
 pub fn records<F: FnOnce(&mut Record)>(of: impl IntoIterator<Item = (RunSpec, F)>) -> Runs {
-    let run = |(spec, fill): (RunSpec, F)| {
-        let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(&spec);
-        fill(&mut record);
-        JudgedRun::new(Planned::new(spec), record)
+    Runs::new(of.into_iter().map(|(spec, fill)| run(spec, fill)).collect())
+}
+
+/// A run that reached its end, and what its record holds.
+pub fn run(spec: RunSpec, fill: impl FnOnce(&mut Record)) -> JudgedRun {
+    let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(&spec);
+    fill(&mut record);
+    JudgedRun::new(Planned::new(spec), record)
+}
+
+/// The comparison of the error of a variant at these resolutions with a reference that is exact, without
+/// inputs.
+pub fn comparison(variant: &str, resolutions: &[usize]) -> Comparison {
+    let level = |n: &usize| Level {
+        run: Planned::new(spec(variant, *n)),
+        spacing: 1.0 / *n as f64,
+        label: String::new(),
     };
-    Runs::new(of.into_iter().map(run).collect())
+    Comparison {
+        what: "made up".into(),
+        against: "nothing",
+        metric: ERROR.into(),
+        levels: resolutions.iter().map(level).collect(),
+        inputs: Vec::new(),
+        reference: 0.0,
+        because: "made up",
+    }
 }
 
 /// The tables of a study, in its order.

@@ -196,10 +196,7 @@ pub fn line(comparisons: &[Comparison], runs: &Runs) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        planned::Planned,
-        studies::made_up::{ERROR, column, runs, spec, tables},
-    };
+    use crate::studies::made_up::{column, comparison, runs, spec, tables};
 
     fn of(values: &[(f64, f64)]) -> (f64, String) {
         let level = |&(n, value): &(f64, f64)| Level { spacing: 1.0 / n, value };
@@ -265,22 +262,13 @@ mod tests {
 
     #[test]
     fn a_comparison_reads_its_ladder_and_the_runs_of_its_inputs() {
-        let level = |n: usize| crate::declare::Level {
-            run: Planned::new(spec("best", n)),
-            spacing: 1.0 / n as f64,
-            label: String::new(),
-        };
         let comparison = Comparison {
-            what: "made up".into(),
-            against: "nothing",
-            metric: ERROR.into(),
-            levels: [10, 20, 40].map(level).into(),
             inputs: vec![
                 [spec("best", 40), spec("changed", 1)],
                 [spec("best", 40), spec("changed", 2)],
             ],
             reference: 0.01,
-            because: "made up",
+            ..comparison("best", &[10, 20, 40])
         };
         let of = |n: f64| 0.1 + 1.0 / n;
         let mut all: Vec<_> = [10, 20, 40].map(|n| (spec("best", n), of(n as f64))).into();
