@@ -185,10 +185,11 @@ impl Means {
             record.profiles.insert(name.into(), profile);
         }
         let sum = |of: fn(f64, f64) -> f64| all().map(|(m, p)| of(*m, p.2[0])).sum::<f64>();
-        let least = |all: &mut dyn Iterator<Item = f64>| all.fold(f64::INFINITY, f64::min);
-        let along = || all().filter(|(_, place)| place.1 == 0);
-        let exact = least(&mut along().map(|(_, place)| place.2[0]));
-        record.put(RETURN, least(&mut along().map(|(mean, _)| *mean)) / exact - 1.0);
+        let least = |of: fn(f64, f64) -> f64| {
+            let along = all().filter(|(_, place)| place.1 == 0);
+            along.map(|(m, p)| of(*m, p.2[0])).fold(f64::INFINITY, f64::min)
+        };
+        record.put(RETURN, least(|mean, _| mean) / least(|_, exact| exact) - 1.0);
         record.put(STRENGTH, sum(|mean, exact| mean * exact) / sum(|_, exact| exact * exact) - 1.0);
     }
 }

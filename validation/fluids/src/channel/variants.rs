@@ -62,8 +62,8 @@ fn single_sweep(s: &mut ChannelSettings) {
 pub type Seed<F, D, W = Ghosts> = Compose<CubicSpline, F, D, W, PredictorCorrector>;
 /// Quintic spline, leapfrog and super-time-stepping of viscosity.
 pub type Stiff<B> = Compose<QuinticSpline, StiffFluid<B>, Stabilised, Ghosts, Leapfrog<SuperSteps>>;
-/// Quintic spline and leapfrog.
-pub type Modern<F, D, W = Ghosts> = Compose<QuinticSpline, F, D, W, Leapfrog>;
+/// Quintic spline and, as a rule, leapfrog.
+pub type Modern<F, D, W = Ghosts, I = Leapfrog> = Compose<QuinticSpline, F, D, W, I>;
 
 type All<'a> = Variants<'a, ChannelSettings, Method>;
 
@@ -127,7 +127,7 @@ fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
         .with(
             "single-sweep",
             "modern with one pair sweep a step in place of two: is its error cheaper?",
-            Method::of::<Compose<QuinticSpline, Fluid<B>, Stabilised, Ghosts, SingleSweep>>(),
+            Method::of::<Modern<Fluid<B>, Stabilised, Ghosts, SingleSweep>>(),
             single_sweep,
         )
         .with(

@@ -20,8 +20,8 @@ use harness::{
     method::{self, Method, Standard},
 };
 use solver::{
-    BodyForce, Compose, ConsistentPressure, ConsistentViscosity, Continuity, ExtrapolatingWall,
-    InterfaceWall, NoSlip, Pressure, QuinticSpline, ShiftAdvection, SingleSweep, Tait, Viscosity,
+    BodyForce, ConsistentPressure, ConsistentViscosity, Continuity, ExtrapolatingWall,
+    InterfaceWall, Leapfrog, NoSlip, Pressure, ShiftAdvection, SingleSweep, Tait, Viscosity,
 };
 
 use crate::{
@@ -72,8 +72,7 @@ type Extrapolating = ExtrapolatingWall<Tait, NoSlip>;
 type Pairs = (Pressure<Tait>, Viscosity, BodyForce);
 type Carried = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
-type Single = Compose<QuinticSpline, Carried, Stabilised, Extrapolating, SingleSweep>;
-type Quintic<F, D, W = Extrapolating> = Modern<F, D, W>;
+type Quintic<F, D, W = Extrapolating, I = Leapfrog> = Modern<F, D, W, I>;
 
 /// The amplitude of the vortices' `strong`, for the same reason.
 fn strong(s: &mut HillSettings) {
@@ -109,7 +108,7 @@ fn variants() -> Vec<Composition<HillSettings>> {
         .with(
             SINGLE_SWEEP,
             "carried with one pair sweep a step in place of two: is its error cheaper?",
-            method::<Single>(),
+            method::<Quintic<Carried, Stabilised, Extrapolating, SingleSweep>>(),
             |s| {
                 strong(s);
                 s.courant /= 8_f64.sqrt();

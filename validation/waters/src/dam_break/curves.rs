@@ -87,26 +87,34 @@ fn column(tier: Tier, model: &VolumeOfFluid) -> Curves {
     }
 }
 
+/// A length of the tank \[H\] over time \[(H/g)^(1/2)\].
+fn length(record: &Record, name: &str) -> Curve {
+    let s: DamSettings = record.settings_as();
+    curve(record, "series", ["t", name], [s.unit_time(), s.height])
+}
+
+/// The level at a probe, likewise.
+pub fn depth(record: &Record, probe: usize) -> Curve {
+    length(record, &format!("H{}", probe + 1))
+}
+
+/// The pressure on a sensor \[ρ g H\] over time.
+pub fn pressure(record: &Record, sensor: usize) -> Curve {
+    curve(record, "pressure", ["t", &format!("P{}", sensor + 1)], [1.0, 1.0])
+}
+
 fn tank(tier: Tier, model: &VolumeOfFluid) -> Curves {
     let lobovsky = Lobovsky::load().unwrap_or_default();
-    let of = |name: &str, zero: f64| {
-        let name = name.to_string();
-        move |record: &Record| {
-            let s: DamSettings = record.settings_as();
-            let points = curve(record, "series", ["t", &name], [s.unit_time(), s.height]);
-            scaled(&points, 1.0, 1.0, zero)
-        }
-    };
     let time = "time [√(H/g)]";
     let mut panels = vec![panel(
         "front".into(),
         ([time, "front from the gate [H]"], 2.8),
-        lines(tier, Group::Tank, of("front", 2.0)),
+        lines(tier, Group::Tank, |record| scaled(&length(record, "front"), 1.0, 1.0, 2.0)),
         [&lobovsky.front, &scaled(&model.front, 1.0, 1.0, 2.0)],
     )];
     for (k, place) in PROBES.iter().enumerate() {
         let name = format!("H{}", k + 1);
-        let lines = lines(tier, Group::Tank, of(&name, 0.0));
+        let lines = lines(tier, Group::Tank, move |record| depth(record, k));
         let curves = [&lobovsky.level(k, 6.0), &model.levels[k]];
         let title = format!("{name}, x = {place} m");
         panels.push(panel(title, ([time, "depth [H]"], 6.0), lines, curves));
@@ -121,13 +129,13 @@ fn tank(tier: Tier, model: &VolumeOfFluid) -> Curves {
     for (k, height) in SENSORS.iter().enumerate() {
         let name = format!("P{}", k + 1);
         let title = format!("{name}, {} mm above the floor", sig(1e3 * height, 2));
-        let pressure = move |record: &Record| {
+        let arrived = move |record: &Record| {
             // NaN, so that no curve is drawn, if the wave did not arrive.
             let arrival = record.value(metrics::ARRIVAL).unwrap_or(f64::NAN);
-            since(&curve(record, "pressure", ["t", &name], [1.0, 1.0]), arrival)
+            since(&pressure(record, k), arrival)
         };
         let axes = (["time since arrival [√(H/g)]", "pressure [ρ g H]"], 3.4);
-        let lines = lines(tier, Group::Tank, pressure);
+        let lines = lines(tier, Group::Tank, arrived);
         let of = panel(title, axes, lines, [&measured[k], &computed[k]]);
         let mut of = CurvePanel { y: of.y.range(-0.2, 3.5), ..of };
         if k == 1 {

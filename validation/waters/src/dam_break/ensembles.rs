@@ -3,7 +3,7 @@
 
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricName, Record},
+    record::MetricName,
 };
 use harness::{
     case::Tier,
@@ -11,14 +11,13 @@ use harness::{
 };
 
 use super::{
-    DamSettings, NAME,
+    NAME,
+    curves::{depth, pressure},
     measure::PROBES,
     metrics::{self, IMPULSE, LEVELS},
     plan::{self, Group},
-    reference::{Curve, Lobovsky, VolumeOfFluid, WINDOWS, arrival, impulse},
+    reference::{Curve, Lobovsky, VolumeOfFluid, WINDOWS, arrival, impulse, mean, trapezoid},
 };
-use crate::water::curve;
-
 /// When the levels and impulses of what comes after the jet has closed are taken \[(H/g)^(1/2)\].
 const LATE: [f64; 2] = [6.0, plan::UNTIL];
 /// Until when single runs are compared: levels; impulses since the arrival at P1 \[(H/g)^(1/2)\].
@@ -102,22 +101,11 @@ fn histories(id: &str, variant: &str, comparisons: &[Comparison]) -> Vec<History
     (0..PROBES.len()).filter_map(level).chain((0..3).filter_map(pressed)).collect()
 }
 
-/// The level at a probe \[H\] over time.
-fn depth(record: &Record, k: usize) -> Curve {
-    let s: DamSettings = record.settings_as();
-    curve(record, "series", ["t", &format!("H{}", k + 1)], [s.unit_time(), s.height])
-}
-
-/// The pressure on a sensor \[ρ g H\] over time.
-fn pressure(record: &Record, k: usize) -> Curve {
-    curve(record, "pressure", ["t", &format!("P{}", k + 1)], [1.0, 1.0])
-}
-
 /// The impulse since the start, by the trapezoidal rule.
 fn summed(pressure: &Curve) -> Curve {
     let mut sum = 0.0;
     let add = |pair: &[(f64, f64)]| {
-        sum += 0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1);
+        sum += trapezoid(pair);
         (pair[1].0, sum)
     };
     pressure.windows(2).map(add).collect()
@@ -125,9 +113,7 @@ fn summed(pressure: &Curve) -> Curve {
 
 /// The mean of a curve over [`LATE`]; none if it does not reach so far.
 fn late(curve: &Curve) -> Option<f64> {
-    let inside = curve.iter().filter(|(t, _)| (LATE[0]..=LATE[1]).contains(t));
-    let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
-    (count > 0.0).then(|| sum / count)
+    Some(mean(curve, LATE)).filter(|mean| !mean.is_nan())
 }
 
 /// The numbers whose distribution is shown.

@@ -21,8 +21,8 @@ mod studies;
 use harness::composed::{Best, Composed, Composition, Variants};
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, Leapfrog, NoSlipImages,
-    PredictorCorrector, Pressure, SingleSweep, SlipGhosts, Tait, WendlandC2, Xsph,
+    ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlipImages, PredictorCorrector, Pressure,
+    SingleSweep, SlipGhosts, Tait, WendlandC2, Xsph,
 };
 
 pub use setup::Dam;
@@ -90,13 +90,7 @@ type Drift = (Continuity, Diffusion);
 type Sticking = Compose<WendlandC2, Water, Drift, ExtrapolatingWall<Tait>, Leapfrog>;
 
 /// `modern` with one pair sweep a step, in the same share of its limit.
-type Single = Compose<
-    WendlandC2,
-    Water<(), FluidPairs<ArtificialViscosity<Tait>>>,
-    Drift,
-    ExtrapolatingWall<Tait>,
-    SingleSweep,
->;
+type Single = Modern<Drift, ExtrapolatingWall<Tait>, SingleSweep>;
 
 /// The variants, each with the question that it answers.
 fn variants() -> Vec<Composition<DamSettings>> {

@@ -196,15 +196,25 @@ pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
 pub fn impulse(pressure: &[(f64, f64)], from: f64, window: f64) -> f64 {
     let inside: Vec<(f64, f64)> =
         pressure.iter().filter(|(t, _)| *t >= from && *t <= from + window).copied().collect();
-    inside.windows(2).map(|w| 0.5 * (w[1].0 - w[0].0) * (w[0].1 + w[1].1)).sum()
+    inside.windows(2).map(trapezoid).sum()
+}
+
+/// ∫ y dt between two points of a curve.
+pub fn trapezoid(pair: &[(f64, f64)]) -> f64 {
+    0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1)
+}
+
+/// The mean of the points of a curve between two times; NaN if there are none.
+pub fn mean(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> f64 {
+    let inside = curve.iter().filter(|(t, _)| (from..=to).contains(t));
+    let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
+    sum / count
 }
 
 /// Mean of a level \[H\] for one (H/g)^(1/2) from when it first exceeds 0.02: the thickness of what comes.
 fn tongue(level: &[(f64, f64)]) -> f64 {
     let arrival = level.iter().find(|(_, y)| *y > 0.02).map_or(f64::NAN, |(t, _)| *t);
-    let next = level.iter().filter(|(t, _)| (arrival..=arrival + 1.0).contains(t));
-    let (sum, count) = next.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
-    sum / count
+    mean(level, [arrival, arrival + 1.0])
 }
 
 /// rms distance of a curve from its running mean, from t = `from` on.

@@ -35,8 +35,8 @@ pub type Seed<W, I = PredictorCorrector> =
 /// Density diffusion that leaves a column at rest alone.
 pub type Diffusion = DensityDiffusion<Hydrostatic>;
 /// The best known settings; water slips along boundary particles.
-pub type Modern<D = (Continuity, Diffusion), W = ExtrapolatingWall<Tait>> =
-    Compose<WendlandC2, Water<(), <W as Beside>::Viscosity>, D, W, Leapfrog>;
+pub type Modern<D = (Continuity, Diffusion), W = ExtrapolatingWall<Tait>, I = Leapfrog> =
+    Compose<WendlandC2, Water<(), <W as Beside>::Viscosity>, D, W, I>;
 
 /// The artificial viscosity of water beside these walls, if water slips along boundary particles: it leaves
 /// them out, because they stand still. Images have the velocity that their walls give them.
