@@ -99,9 +99,9 @@ pub struct Progress {
 /// What an integrator keeps of earlier steps, of a particle: its density \[kg/m³\] and its extra fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Past<X> {
-    /// As the rates of all steps but the present one made them.
+    /// Their values by the rates of all steps but the present one.
     pub drifted: (f64, X),
-    /// Their rates of the step before \[1/s\].
+    /// Their rates in the step before, in these units per second.
     pub rate: (f64, X),
 }
 

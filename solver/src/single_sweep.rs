@@ -51,7 +51,7 @@ impl<P: Physics> Integrator<P> for SingleSweep {
             }
             (evolved.density, evolved.extra) = (rate.density, rate.extra);
         });
-        // From the middle of the last step, whose rate this is, to that of this one.
+        // A rate is that of the middle of the last step; it is extrapolated to the middle of this one.
         let ahead = if known > 0.0 { kick / known } else { 0.0 };
         for (evolved, past) in state.iter_mut().zip(&mut engine.data.past) {
             let rate = (evolved.density, evolved.extra);
