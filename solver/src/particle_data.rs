@@ -351,6 +351,13 @@ impl<X: Numbers> ParticleData<X> {
         }
     }
 
+    /// Goes on from a checkpoint whose particles were put and listed.
+    pub(crate) fn go_on(&mut self, from: &Checkpoint<X>) {
+        (self.progress, self.lag) = (from.progress, from.lag);
+        self.held.clear();
+        self.past.clone_from(&from.past);
+    }
+
     /// Memory held \[bytes\].
     pub fn bytes(&self) -> usize {
         self.state.capacity() * size_of::<Evolved<X>>()

@@ -89,47 +89,28 @@ impl<S: Scheme> Scene<S> {
 
     /// Checks the scene, and builds a simulation that is ready to step.
     pub fn build(self) -> Result<Simulation<S>, SceneError> {
-        let kernel = Smoothing::<S::Kernel>::new(self.h);
-        let Self { h, domain, particles, walls, skin, skin_share, limits, .. } = &self;
-        let (mirrors, support) = (walls.mirrors(), kernel.support());
-        check(particles, [*h, *skin, S::Kernel::SUPPORT], domain, mirrors)?;
-        let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
-        let area: f64 = fluid.clone().map(|p| p.mass / p.density).sum();
-        let spacing = (area / fluid.count() as f64).sqrt();
-        let neighbours = Neighbours::new([support, *skin, spacing], *domain, mirrors);
-        let mut data = data(particles, neighbours, *limits, skin_share * skin);
-        data.parallel = particles.len() >= self.parallel_from;
-        let mut state = std::mem::take(&mut data.state);
-        data.sort(&mut state);
+        let Self { h, domain, limits, skin, skin_share, .. } = self;
+        let lengths = [h, skin, skin_share, S::Kernel::SUPPORT];
+        let mirrors = self.walls.mirrors();
+        let mut data = ready(&self.particles, lengths, (domain, mirrors), limits)?;
+        data.parallel = self.particles.len() >= self.parallel_from;
+        let kernel = Smoothing::<S::Kernel>::new(h);
         let mut engine = Engine::new(kernel, (self.forces, self.drift), &self.walls, data);
+        let state = std::mem::take(&mut engine.data.state);
         engine.build_lists(&mut state.iter().map(|e| e.position));
         engine.data.state = state;
         Ok(Simulation { engine, integrator: S::Integrator::default() })
     }
 }
 
-/// The particles of a scene, ready to be sorted, with this slack of their lists \[m\].
-fn data<X: Numbers>(
+/// The particles of a sound scene, sorted, without lists. The lengths: h \[m\], the skin \[m\], the share of
+/// it after which lists are stale, and the support \[h\].
+fn ready<X: Numbers>(
     particles: &[Particle<X>],
-    neighbours: Neighbours,
+    [h, skin, skin_share, support]: [f64; 4],
+    (domain, mirrors): (Domain, &[PlaneWall]),
     limits: Limits,
-    slack: f64,
-) -> ParticleData<X> {
-    let periods = neighbours.domain.period.iter().flatten();
-    // The root of the largest number: its square is finite.
-    let half_period = 0.5 * periods.fold(f64::MAX.sqrt(), |a, b| a.min(*b));
-    let mut data = ParticleData { neighbours, limits, ..Default::default() };
-    data.put(&by_role(particles));
-    [data.slack, data.reach2] = [slack, half_period * half_period];
-    data
-}
-
-fn check<X: Numbers>(
-    particles: &[Particle<X>],
-    [h, skin, support]: [f64; 3],
-    domain: &Domain,
-    mirrors: &[PlaneWall],
-) -> Checked {
+) -> Result<ParticleData<X>, SceneError> {
     let lengths = [
         (h > 0.0 && h.is_finite(), "smoothing length in m", h, "finite and above 0"),
         (skin >= 0.0 && skin.is_finite(), "skin in m", skin, "finite and at least 0"),
@@ -137,7 +118,20 @@ fn check<X: Numbers>(
     require(Part::Scene, lengths)?;
     check_particles(particles)?;
     check_walls(mirrors)?;
-    check_domain(domain, support * h, skin)
+    check_domain(&domain, support * h, skin)?;
+    let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
+    let area: f64 = fluid.clone().map(|p| p.mass / p.density).sum();
+    let spacing = (area / fluid.count() as f64).sqrt();
+    // The root of the largest number: its square is finite.
+    let half_period = 0.5 * domain.period.iter().flatten().fold(f64::MAX.sqrt(), |a, b| a.min(*b));
+    let neighbours = Neighbours::new([support * h, skin, spacing], domain, mirrors);
+    let mut data = ParticleData { neighbours, limits, ..Default::default() };
+    data.put(&by_role(particles));
+    [data.slack, data.reach2] = [skin_share * skin, half_period * half_period];
+    let mut state = std::mem::take(&mut data.state);
+    data.sort(&mut state);
+    data.state = state;
+    Ok(data)
 }
 
 /// The particles in the order of their storage at the start (by role), with their numbers in the scene.

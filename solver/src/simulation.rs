@@ -193,10 +193,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         from.check()?;
         self.engine.data.put(&from.particles);
         self.engine.build_lists(&mut from.built_at.iter().copied());
-        self.engine.data.progress = from.progress;
-        self.engine.data.lag = from.lag;
-        self.engine.data.held.clear();
-        self.engine.data.past.clone_from(&from.past);
+        self.engine.data.go_on(from);
         self.integrator = S::Integrator::default();
         Ok(())
     }

@@ -354,7 +354,7 @@ impl Accuracy {
                 spacing: 1.0 / n as f64,
                 label: format!("n = {n}"),
             };
-            Ladder::new(variant, resolutions.map(level))
+            Ladder::new(variant, resolutions.map(level).into())
         }));
         self
     }
@@ -370,9 +370,9 @@ impl Accuracy {
 }
 
 impl Ladder {
-    /// The levels of a variant, coarse to fine, whose order is not judged.
-    pub fn new(variant: &'static str, levels: impl IntoIterator<Item = Level>) -> Self {
-        let levels = levels.into_iter().collect();
+    /// The levels of a variant, sorted from coarse to fine, whose order is not judged.
+    pub fn new(variant: &'static str, mut levels: Vec<Level>) -> Self {
+        levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
         Self { variant, note: String::new(), levels, order: None }
     }
 }

@@ -115,14 +115,11 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
     ) -> Ladder {
         let rows = self.rows.iter().filter(|row| row.variant == variant);
         let rows = rows.filter(|row| groups.contains(&row.group));
-        let mut levels: Vec<Level> = rows
-            .map(|row| {
-                let (spacing, label) = level(&row.settings);
-                Level { run: row.run.clone(), spacing, label }
-            })
-            .collect();
-        levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
-        Ladder::new(variant, levels)
+        let levels = rows.map(|row| {
+            let (spacing, label) = level(&row.settings);
+            Level { run: row.run.clone(), spacing, label }
+        });
+        Ladder::new(variant, levels.collect())
     }
 
     /// The plan: every run with its gates.
