@@ -2,28 +2,19 @@
 //! settings, the rules that turn them into a scene, variants and measurements.
 
 mod declaration;
-mod limits;
 mod maps;
-pub mod matrices;
 mod measure;
 mod plan;
 mod run;
-mod runs;
-mod sensitivity;
 mod settings;
-mod setup;
 mod stiff;
-mod studies;
 pub mod variants;
 mod waves;
 
-pub use declaration::declaration;
-pub use limits::is_stable;
-pub use plan::{ladder, plan};
-pub use run::{COUETTE, POISEUILLE};
+pub use declaration::{declaration, is_stable, studies};
+pub use plan::{GHOSTS, ladder, plan};
+pub use run::{COUETTE, Flow, POISEUILLE, Setup};
 pub use settings::ChannelSettings;
-pub use setup::{Flow, Setup};
-pub use studies::studies;
 pub use variants::{Drive, Fluid, Modern, Seed, Stabilised, Stiff};
 
 use harness::{
