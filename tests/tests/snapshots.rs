@@ -8,7 +8,6 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    f64::consts::TAU,
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
@@ -425,16 +424,6 @@ fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
                 Bound::Within(0.9, 1.0),
                 "a smoothed gradient is weaker than the gradient: by (k h)^2 of about 0.2, less",
             ),
-            (
-                "frequency",
-                Bound::Within(0.9 * TAU, 1.17 * TAU),
-                "c0 k is 2 pi 1/s, on the compressed lattice 1.05^3 = 1.158 times that",
-            ),
-            (
-                "decay",
-                Bound::Within(0.0, 0.6),
-                "nu k^2/2 is 0.02 1/s, density diffusion adds delta h c0 k^2/2 = 0.15 1/s: both damp",
-            ),
         ],
         "elastic_bar" | "spinning_disk" | "oscillating_plate" | "rubber_rings" => {
             bounds_of_solids(case)
@@ -470,7 +459,6 @@ fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
                 Bound::Within(0.9, 1.05),
                 "the Laplacian, smoothed, eta^2 = 0.01 h^2",
             ),
-            ("decay", Bound::Within(0.35, 0.42), "nu k^2 = 0.395 1/s"),
         ],
     }
 }
