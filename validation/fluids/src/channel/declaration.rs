@@ -311,18 +311,15 @@ fn limit(Channel { flow, case }: Channel, variant: &'static str) -> StepLimit {
     }
 }
 
-const STRESS: &str = "The velocity of a channel flow does not depend on the density, and no gate judges a \
-                      stress in Pa. A density that is wrong by 30 % is detected, because it is outside the \
-                      bounds beyond which a run ends.";
-const SOUND: &str = "The exact flow is incompressible. At a tenth of the sound speed, compressibility \
-                     changes its velocity by less than the spacing does.";
+const STRESS: &str = "No gate judges a stress in Pa. Beyond 30 % the density ends the run.";
+const SOUND: &str =
+    "At Mach 0.1 compressibility changes the velocity by less than the spacing does.";
 const ORDER: &str =
     "At Re 0.5 particles stay in straight rows, and this term acts on disorder alone.";
-const REACH: &str = "Sums over neighbours hold for any reach of the kernel. At 20 rows, the error that a \
-                     longer reach adds to a parabolic profile is inside the bounds until the reach is wrong \
-                     by 20 %.";
-const LISTS: &str = "Lists are built again before a particle has crossed half of the skin, and a list that \
-                     is kept 30 % too long still holds every neighbour.";
+const REACH: &str = "What a longer reach adds to the error of a parabolic profile at 20 rows is inside the \
+                     bounds until the reach is wrong by 20 %.";
+const LISTS: &str = "A list that is kept 30 % too long still holds every neighbour, for it is built again \
+                     before a particle has crossed half of the skin.";
 
 /// The runs with the most gates, one without and one with density diffusion and shifting.
 fn sensitivity(channel: Channel, tier: Tier) -> Sensitivity {
@@ -386,12 +383,11 @@ fn reynolds(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::couette::COUETTE;
 
     /// The gates of a variant whose default settings were refused were not there at all.
     #[test]
     fn a_variant_that_is_refused_keeps_its_gates() {
-        let channel = Channel { flow: Flow::Couette, case: &COUETTE };
+        let channel = Channel { flow: Flow::Couette, case: &super::super::COUETTE };
         let refused = limit(channel, "no such variant");
         assert_eq!(refused.of_default[0].id, "stability.default.no such variant.stable");
         assert!(refused.of_default[0].judge(None).verdict.is_failure());

@@ -121,11 +121,6 @@ fn shear_error(setup: &Setup, fluid: &[Particle], wall: usize, t: f64) -> f64 {
 pub const WINDOW: f64 = 60.0;
 /// Name of the curve of the pressure mode; it is missing if the run was over before the window was full.
 pub const MODE: &str = "mode";
-/// Its column of the time before the end \[L/c0\].
-pub const MODE_TIME: &str = "t";
-/// Its column of the amplitude \[ρV²\].
-pub const MODE_AMPLITUDE: &str = "amplitude";
-
 /// Watches the lowest pressure mode cos(πy/L), which is 0 in the exact flow: the waves of hypothesis H3.
 pub struct Mode<'a> {
     setup: &'a Setup,
@@ -150,7 +145,7 @@ impl<'a> Mode<'a> {
         }
         let all = self.series.iter().map(|(t, p)| [since_end(*t), *p]);
         let rows: Vec<[f64; 2]> = all.filter(|[t, _]| *t >= -WINDOW).collect();
-        Some(Profile::of_rows(&[(MODE_TIME, "L/c0"), (MODE_AMPLITUDE, "rho V^2")], &rows))
+        Some(Profile::of_rows(&[("t", "L/c0"), ("amplitude", "rho V^2")], &rows))
     }
 }
 
@@ -277,8 +272,8 @@ mod tests {
         let crossing = s.width / eos.sound_speed;
         mode.series = (0..=100).map(|k| (f64::from(k) * crossing, f64::from(k))).collect();
         let last = mode.until(100.001 * crossing).expect("long enough");
-        assert_eq!(last.column(MODE_AMPLITUDE).first(), Some(&41.0));
-        assert!((last.column(MODE_TIME)[0] + 59.001).abs() < 1e-9);
+        assert_eq!(last.column("amplitude").first(), Some(&41.0));
+        assert!((last.column("t")[0] + 59.001).abs() < 1e-9);
         assert!(mode.until(59.0 * crossing).is_none());
     }
 }

@@ -13,13 +13,10 @@ mod run;
 
 use harness::{
     case::Case,
-    composed::{Best, Composed, Composition, Variants},
+    composed::*,
     method::{self, Method, Standard},
 };
-use solver::{
-    BodyForce, ConsistentPressure, ConsistentViscosity, Continuity, ExtrapolatingWall,
-    InterfaceWall, Leapfrog, NoSlip, Pressure, ShiftAdvection, SingleSweep, Tait, Viscosity,
-};
+use solver::*;
 
 use crate::{
     channel::{Modern, Stabilised},

@@ -58,8 +58,8 @@ pub fn table(tier: Tier) -> Table {
     ];
     // Three quarters of the time, which the goal at ten spacings allows and finer ones do not.
     table.over(For::Figures, &[BEST], [&[(50.0, 10, 30.0, false)], &full], flow);
-    let control = [[quick[1]], [coarse[3]]];
-    table.over(For::Control, &["plain"], [&control[0], &control[1]], flow);
+    let control = (10.0, 5, 20.0, false);
+    table.over(For::Control, &["plain"], [&[control], &coarse[3..]], flow);
     // The flux has filled the period 0.96 times at the end.
     table.over(For::Fast, &[BEST], [&[], &[(1000.0, 10, 12.0, false)]], flow);
     let finest = if tier == Tier::Quick { 10 } else { 20 };

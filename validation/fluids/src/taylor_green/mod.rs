@@ -5,11 +5,7 @@ mod declaration;
 mod plan;
 mod run;
 
-use harness::{
-    case::Case,
-    composed::{self, Best, Composed, Composition, Variants},
-    method::Method,
-};
+use harness::{case::Case, composed::*, method::Method};
 use solver::{
     ConsistentPressure, ConsistentViscosity, Continuity, Open, Pressure, ShiftAdvection, Tait,
     Viscosity,
@@ -106,7 +102,7 @@ static CASE: Composed<VortexSettings> = Composed {
             stagnation points, so that the order of the start is soon lost. The case therefore shows what \
             a method does with disorder. Runs start from a square lattice or from a disturbed one.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: declaration::declaration,
     plan: plan::plan,
     studies: declaration::studies,
