@@ -5,13 +5,11 @@
 //! fluid, and against conservation: mass is exact, momentum follows gravity and the force of the walls, and
 //! every term accounts for its energy.
 
-mod ablation;
 mod curves;
 mod declared;
 mod ensembles;
 mod measure;
 mod metrics;
-mod momentum;
 mod plan;
 mod reference;
 mod run;
@@ -19,15 +17,11 @@ mod setup;
 mod studies;
 
 use harness::composed::{Best, Composed, Composition, Variants};
-use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlipImages, PredictorCorrector, Pressure,
-    SingleSweep, SlipGhosts, Tait, WendlandC2, Xsph,
-};
+use solver::*;
 
 pub use setup::Dam;
 
-use crate::water::{Diffusion, Modern, Seed, Water, method};
+use crate::water::{Diffusion, Modern, Seed, method};
 
 crate::water_settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
@@ -84,13 +78,11 @@ fn modern(s: &mut DamSettings) {
 type Split = (Pressure<Tait, ArtificialStress>, NoSlipImages<ArtificialViscosity<Tait>>, BodyForce);
 /// The seed with them.
 type SeedSplit = Compose<CubicSpline, Split, (Continuity, Xsph), SlipGhosts, PredictorCorrector>;
-/// The drift of `modern`.
+/// The drift of `modern`, and its walls.
 type Drift = (Continuity, Diffusion);
+type Walls = ExtrapolatingWall<Tait>;
 /// `modern` with artificial viscosity between water and walls too.
-type Sticking = Compose<WendlandC2, Water, Drift, ExtrapolatingWall<Tait>, Leapfrog>;
-
-/// `modern` with one pair sweep a step, in the same share of its limit.
-type Single = Modern<Drift, ExtrapolatingWall<Tait>, SingleSweep>;
+type Sticking = Modern<Drift, Walls, Leapfrog, ArtificialViscosity<Tait>>;
 
 /// The variants, each with the question that it answers.
 fn variants() -> Vec<Composition<DamSettings>> {
@@ -132,12 +124,6 @@ fn variants() -> Vec<Composition<DamSettings>> {
             seed,
         )
         .with(
-            "modern-interface",
-            "modern with interface and wall particles: what do walls buy that extrapolate the pressure?",
-            method::<Modern<Drift, InterfaceWall>>(),
-            modern,
-        )
-        .with(
             "modern-sticking",
             "modern with artificial viscosity that sees the particles of the walls too, which stand still: \
              how much do they drag the water?",
@@ -146,8 +132,9 @@ fn variants() -> Vec<Composition<DamSettings>> {
         )
         .with(
             "single-sweep",
-            "modern with one pair sweep a step in place of two: is its error cheaper?",
-            method::<Single>(),
+            "modern with one pair sweep a step in place of two, in the same share of its limit: is its error \
+             cheaper?",
+            method::<Modern<Drift, Walls, SingleSweep>>(),
             |s| {
                 modern(s);
                 s.courant = 0.28;

@@ -40,12 +40,6 @@ pub struct Dam {
     pub rules: Rules,
 }
 
-/// Whether water at this place counts when the foremost particle is looked for, in a column of this height
-/// \[m\]: below a quarter of it, so that spray does not.
-pub fn near_the_floor(place: Vector2<f64>, height: f64) -> bool {
-    place.y < 0.25 * height
-}
-
 impl Dam {
     /// Checks the settings and derives the rest for a method.
     pub fn new(s: &DamSettings, method: &WaterMethod, context: &Context) -> Result<Self, RunError> {
