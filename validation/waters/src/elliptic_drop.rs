@@ -3,12 +3,12 @@
 
 use base::{gate::*, record::*};
 use harness::{
-    case::*, columns::Columns, composed::*, context::Context, declare::*, method::*, pictures,
-    runner::Drive, runs::Runs, simulate, study::Study, table,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
+    runs::Runs, simulate, study::Study, table,
 };
 use maths::exact::EllipticDrop as Exact;
 use nalgebra::Vector2;
-use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, sig};
+use report::{Axis, ColourMap, Figure, ParticleMap, sig};
 use solver::*;
 
 use super::{
@@ -233,7 +233,7 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |tier, runs| vec![study(tier, runs)],
+    studies,
 };
 
 /// What a run is for.
@@ -345,14 +345,12 @@ fn gates(row: &Row) -> Vec<Gate> {
     gates
 }
 
-fn study(tier: Tier, runs: &Runs) -> Study {
-    let mut study = Study::new("elliptic-drop-errors", "Errors of a free drop").block(errors(runs));
+fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
     let pictured = table.rows.iter().find(|row| is_pictured(row));
-    if let Some(record) = pictured.and_then(|row| runs.record(&row.run.spec)) {
-        study = study.block(picture(record));
-    }
-    study
+    let record = pictured.and_then(|row| runs.record(&row.run.spec));
+    let study = Study::new("elliptic-drop-picture", "A free drop at the end");
+    record.map(|record| study.block(picture(record))).into_iter().collect()
 }
 
 fn picture(record: &Record) -> Figure {
@@ -368,20 +366,6 @@ fn picture(record: &Record) -> Figure {
     Figure::new("elliptic-drop-picture", caption)
         .panel(map.diameter(2.0 / s.n as f64))
         .panel_size(360.0, 320.0)
-}
-
-fn errors(runs: &Runs) -> Table {
-    let caption = "Largest relative errors of the semi-axes until A t = 0.8. The drop is then four times \
-                   as long as wide. Energies are over the initial kinetic energy.";
-    Columns::of_variants()
-        .changed("settings", &ELLIPTIC_DROP)
-        .percent("error of a", "-", A_ERROR, 1.0)
-        .percent("error of b", "-", B_ERROR, 1.0)
-        .percent("energy that viscosity took", "-", ledger::WORK_VISCOSITY, -1.0)
-        .percent("that artificial stress gave", "-", ledger::WORK_STRESS, 1.0)
-        .metric(["energy not accounted for", "-"], ledger::ENERGY_GAP, |gap| Cell::sci(gap, 2))
-        .steps()
-        .table(caption, runs.all().iter().map(|run| &run.record))
 }
 
 #[cfg(test)]

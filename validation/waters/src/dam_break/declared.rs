@@ -26,7 +26,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     let card = Card {
         title: "Dam break",
-        picture: ("dam-break-martin-moyce-pictures", 3),
+        picture: ("dam-break-lobovsky-pictures", 3),
         error: "front after its best shift in time, rms in column widths".into(),
         metric: FRONT.rms_shifted.into(),
         runs: accuracy.finest(&[DAM_BREAK.best.variant, "seed"]),

@@ -12,7 +12,7 @@ use super::{
     reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS, WINDOWS},
 };
 use crate::{causes::*, water::ledger};
-use base::{gate::*, record::MetricName, spec::RunSpec};
+use base::{gate::*, record::MetricName};
 use harness::{case::Tier, table};
 
 /// What a run is for.
@@ -65,16 +65,13 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
             s.end = UNTIL;
         });
     }
+    let finest = if tier == Tier::Quick { 30 } else { 120 };
     for Row { group, variant, settings, run } in &mut table.rows {
         let whole = if [Tank, Ablation, Ensemble].contains(group) { 12.0 } else { 6.0 };
         // Two right-hand sides a step where the seed's integrator is.
         let dear = if variant.starts_with("modern") { 1.0 } else { 2.5 };
         run.seconds = whole * dear * (settings.n as f64 / 40.0).powi(3);
-        let finest = match tier {
-            Tier::Quick => [(Free, 20), (Tank, 30)],
-            _ => [(Free, 80), (Tank, 120)],
-        };
-        if *variant == "modern" && finest.contains(&(*group, settings.n)) {
+        if *group == Tank && settings.n == finest {
             run.spec = run.spec.clone().keep_particles();
         }
     }
@@ -107,11 +104,6 @@ fn ablate(table: &mut table::Table<DamSettings, Group>) {
         // Without viscosity the predictor-corrector has no stable step at all: it runs as it is.
         row.run.spec = row.run.spec.clone().allow_unstable().measure_all();
     }
-}
-
-/// The finest run of `modern` in a group, of which there are pictures.
-pub fn finest(tier: Tier, group: Group) -> Option<RunSpec> {
-    table(tier).specs(group).find(|spec| spec.keep.particles)
 }
 
 /// The gates of a run.

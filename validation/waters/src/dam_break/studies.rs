@@ -1,4 +1,4 @@
-//! Pictures of both experiments, and what each ingredient buys.
+//! Pictures of the tank, and what each ingredient buys.
 
 use super::{
     DAM_BREAK, DamSettings,
@@ -13,16 +13,17 @@ use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, sig};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let finest = [Group::Free, Group::Tank].map(|group| plan::finest(tier, group));
-    let records = finest.into_iter().flatten().filter_map(|spec| runs.record(&spec));
-    let study = Study::new("dam-break-pictures", "Pictures of both experiments");
-    let shown = records.map(pictures).fold(study, Study::block);
+    let table = plan::table(tier);
+    let kept = table.rows.iter().find(|row| row.run.spec.keep.particles);
+    let record = kept.and_then(|row| runs.record(&row.run.spec));
+    let study = Study::new("dam-break-pictures", "Pictures of the tank");
+    let shown = record.map(|record| study.block(pictures(record)));
     let study = Study::new("dam-break-ablation", "What each ingredient buys");
     let bought = match tier {
         Tier::Quick => study.prose("It takes 17 runs, which are made in the full tier only."),
         _ => study.block(ablation(runs)),
     };
-    vec![shown, bought]
+    shown.into_iter().chain([bought]).collect()
 }
 
 fn ablation(runs: &Runs) -> Table {
@@ -56,29 +57,21 @@ fn ablation(runs: &Runs) -> Table {
         .table(caption, runs.records(plan::table(Tier::Full).specs(Group::Ablation)))
 }
 
-/// Six times of a run, on the same axes.
+/// Six times of a run in the tank, on the same axes.
 fn pictures(record: &Record) -> Figure {
     let s = record.settings_as::<DamSettings>();
-    let dx = s.width.min(s.height) / s.n as f64 / s.height;
-    let (name, side, spike, [width, height]) = match s.height > s.width {
-        true => {
-            let spike = " Particles that lag at the back wall make the spike at x = 0.";
-            ("martin-moyce", "a", spike, [2.6, 1.1])
-        }
-        false => ("lobovsky", "H", "", [1.61 / 0.3, 2.0]),
-    };
     let caption = format!(
-        "The water at six times, {}, {side}/dx = {}, coloured by pressure, cut at 0 and 1 ρ g H.{spike}",
+        "The water at six times, {}, H/dx = {}, coloured by pressure, cut at 0 and 1 ρ g H.",
         record.variant, s.n
     );
-    let mut figure = Figure::new(format!("dam-break-{name}-pictures"), caption).columns(2);
+    let mut figure = Figure::new("dam-break-lobovsky-pictures", caption).columns(2);
     for share in PICTURES {
         let points = pictures::points(record, &format!("particles@{share}"), "p");
-        let [x, y] = [("x [H]", width), ("y [H]", height)]
+        let [x, y] = [("x [H]", s.tank / s.height), ("y [H]", s.rim)]
             .map(|(label, most)| Axis::linear(label).range(0.0, most));
         let title = format!("time {} √(H/g)", sig(s.end * share, 3));
         let map = ParticleMap::new(&title, (x, y), "p [ρ g H]", ColourMap::Sequential, points);
-        figure = figure.panel(map.diameter(dx).values(0.0, 1.0));
+        figure = figure.panel(map.diameter(1.0 / s.n as f64).values(0.0, 1.0));
     }
-    figure.panel_size(430.0, 430.0 * height / width)
+    figure.panel_size(430.0, 430.0 * s.rim * s.height / s.tank)
 }
