@@ -392,8 +392,8 @@ fn gates(row: &Row) -> Vec<Gate> {
                   spacing leaves a visible gap.";
     let still = "Nothing moves. The bound is the energy that raises the surface by a tenth of a spacing, \
                  (0.1 dx/H)² M g H at 20 rows.";
-    let light = "Control: without gravity in the extrapolation, the bottom bears the mean pressure of the water \
-                 before it instead of the pressure at its own depth, and the water sinks.";
+    let light = "Control: without gravity in the extrapolation, the bottom bears the mean pressure of the \
+                 water before it instead of the pressure at its own depth, and the water sinks.";
     let levelled = "Control: density diffusion that does not know the weight of the water levels its density \
                     out, and the column rises by 3 % of its depth.";
     let tight = "No particle passes a wall.";

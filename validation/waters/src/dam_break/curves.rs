@@ -27,7 +27,7 @@ struct Panels {
 }
 
 impl Panels {
-    /// Adds one: title, axes, end, curves of runs, and those measured and (without a name) by volume of fluid.
+    /// Adds one: title, axes, end, curves of runs, those measured and (without a name) by volume of fluid.
     fn add(
         &mut self,
         title: String,

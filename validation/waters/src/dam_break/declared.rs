@@ -88,8 +88,8 @@ fn vof(scene: &str, name: &str) -> [f64; 2] {
     Reference::summarised("dam_break_vof", &[("scene", scene), ("quantity", name)])
 }
 
-/// Comparisons of the ladder of a group with volume of fluid and with an experiment, each of which states what
-/// is compared, its metric and u_D; `digit` is half of the last digit of a height over that height.
+/// Comparisons of the ladder of a group with volume of fluid and with an experiment, each with what is
+/// compared, its metric and u_D; `digit` is half of the last digit of a height over that height.
 fn compared(
     tier: Tier,
     group: Group,
@@ -136,8 +136,8 @@ fn accuracy(tier: Tier) -> Accuracy {
     }
     Accuracy {
         about: "Front of the column of Martin & Moyce at T = 1, less that of the same model by volume of \
-                fluid, in widths a of the column. Later fronts of fine runs are ahead of that one by up to its \
-                uncertainty of 0.017 a, so they do not show how the error falls."
+                fluid, in widths a of the column. Later fronts of fine runs are ahead of that one by up \
+                to its uncertainty of 0.017 a, so they do not show how the error falls."
             .into(),
         spacing: "dx/a [-]",
         slope: Some(1.0),

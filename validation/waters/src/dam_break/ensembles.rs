@@ -140,8 +140,8 @@ fn numbers(id: &str, variant: &str) -> Vec<Number> {
     ]
 }
 
-/// The gate on a median: `known` is that of forty other starts, seeds 21 to 60, and their scatter, `by_gravity`
-/// the medians of twenty with 3 % more and less gravity.
+/// The gate on a median: `known` is that of forty other starts, seeds 21 to 60, and their scatter,
+/// `by_gravity` the medians of twenty with 3 % more and less gravity.
 fn judged(id: String, metric: &str, [median, scatter]: [f64; 2], by_gravity: [f64; 2]) -> Gate {
     // A median of normal numbers scatters by (π/2)^(1/2) = 1.25 of their mean's.
     let bound = 4.0 * 1.25 * scatter * (1.0_f64 / 20.0 + 1.0 / 40.0).sqrt();

@@ -79,8 +79,8 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     table
 }
 
-/// A coarse column in the tank until the impact is over and before the wave breaks, as the variants are and with
-/// one setting changed; in the full tier.
+/// A coarse column in the tank until the impact is over and before the wave breaks, as the variants are and
+/// with one setting changed; in the full tier.
 fn ablate(table: &mut table::Table<DamSettings, Group>) {
     type Set = fn(&mut DamSettings, f64);
     let walls = ["seed", "ghosts", "ghosts-slip", "ghosts-split", "modern", "modern-sticking"];

@@ -266,8 +266,8 @@ pub fn until(curve: &[(f64, f64)], end: f64) -> Curve {
     curve.iter().filter(|(t, _)| *t <= end).copied().collect()
 }
 
-/// Adds to the record of a run, of which it has the series and the pressures, the distance from the experiment
-/// that the settings are those of, if they are, and from the same model by volume of fluid.
+/// Adds to a record, which has the series and the pressures, the distance from the experiment that the
+/// settings are those of, if they are, and from the same model by volume of fluid.
 pub fn compare(dam: &Dam, record: &mut Record) {
     if dam.is_martin_moyce() {
         with_martin_moyce(&dam.settings, record);
@@ -391,8 +391,7 @@ mod tests {
         Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
     }
 
-    /// The metrics that a comparison of these samples, with t, front, height and levels, and of these pressures
-    /// puts.
+    /// The metrics that a comparison of these samples (t, front, height, levels) and pressures puts.
     fn compared(
         dam: &Dam,
         samples: impl Iterator<Item = [f64; 7]>,
