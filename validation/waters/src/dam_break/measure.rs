@@ -281,20 +281,14 @@ impl Gauge {
 mod tests {
     use super::*;
     use crate::{
-        dam_break::{DAM_BREAK, DamSettings, lobovsky},
+        dam_break::lobovsky,
         water::{Modern, method},
     };
     use harness::{context::Context, method::Parts};
     use maths::metrics::budget::Metered;
     use solver::{Particle, Smoothing, WendlandC2};
 
-    /// The numbers of a dam break, and a simulation of these particles in place of its own, without walls.
-    fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
-        let spec = DAM_BREAK.spec("modern", set);
-        let settings = serde_json::from_value(spec.settings).expect("settings of the case");
-        Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
-    }
-
+    /// A simulation of these particles in place of those of a dam break, without walls.
     fn simulation(dam: &Dam, particles: Vec<Particle>) -> Box<dyn Metered<()>> {
         let (method, context) = (method::<Modern>(), Context::default());
         let parts = Parts { particles, ..dam.parts(&method, &context) };
@@ -325,10 +319,11 @@ mod tests {
 
     #[test]
     fn front_height_and_levels_are_those_of_water_put_by_hand() {
-        let tank = dam(|s| {
+        let tank = Dam::changed(|s| {
             lobovsky(s);
             s.n = 10;
-        });
+        })
+        .unwrap();
         let dx = tank.medium.dx;
         let mut samples = Samples::new(&tank);
         for (from, to, rows) in [(0, 20, 10), (3, 40, 4), (5, 50, 2)] {
@@ -359,7 +354,7 @@ mod tests {
 
     #[test]
     fn what_is_behind_the_walls_and_how_fast_is_measured() {
-        let free = dam(|s| s.n = 10);
+        let free = Dam::changed(|s| s.n = 10).unwrap();
         let (dx, width) = (free.medium.dx, free.tank.width());
         let at = |x, y| Particle::fluid(Vector2::new(x, y) * dx, Vector2::zeros(), 1e3, dx * dx);
         let mut particles = water(&free, 0, 10, 20, Vector2::zeros());
@@ -386,7 +381,7 @@ mod tests {
     /// as lost through the wall.
     #[test]
     fn a_particle_that_left_over_the_rim_counted_as_one_that_passed_a_wall() {
-        let dam = dam(|s| s.n = 10);
+        let dam = Dam::changed(|s| s.n = 10).unwrap();
         let (dx, width, rim) = (dam.medium.dx, dam.tank.width(), dam.rim);
         assert!((rim / (1.25 * 0.1143) - 1.0).abs() < 0.5 / 25.0, "{rim}");
         let mut samples = Samples::new(&dam);
@@ -413,10 +408,11 @@ mod tests {
 
     #[test]
     fn a_sensor_reads_a_linear_pressure_at_its_height_and_less_where_it_is_half_dry() {
-        let tank = dam(|s| {
+        let tank = Dam::changed(|s| {
             lobovsky(s);
             s.n = 60;
-        });
+        })
+        .unwrap();
         let (dx, eos, weight) = (tank.medium.dx, tank.medium.eos, 1e3 * 9.81);
         let pressure = |y: f64| weight * (0.5 - y);
         // Water behind the floor too, so that no kernel is cut and each mean is the value in its middle.
@@ -446,7 +442,7 @@ mod tests {
 
     #[test]
     fn pressures_are_means_over_blocks_of_time() {
-        let tank = dam(lobovsky);
+        let tank = Dam::changed(lobovsky).unwrap();
         let (unit, scale) = (tank.settings.unit_time(), tank.unit_pressure());
         let row = |k: u32| {
             let t = 0.002 * f64::from(k) + 0.001;
@@ -532,7 +528,7 @@ mod tests {
     /// a sensor is.
     #[test]
     fn a_sensor_is_as_wide_as_in_the_experiment() {
-        let tank = dam(lobovsky);
+        let tank = Dam::changed(lobovsky).unwrap();
         let smoothing = Smoothing::<WendlandC2>::new(0.01);
         let gauge = Gauge::new(&tank, smoothing.support(), &|r2| smoothing.w(r2));
         assert_eq!(gauge.sensors.len(), 4, "sensors on the far wall");

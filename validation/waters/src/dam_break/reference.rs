@@ -333,15 +333,11 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        dam_break::{
-            DAM_BREAK, lobovsky,
-            measure::{Gauge, Samples},
-        },
-        water::{Modern, method},
+    use crate::dam_break::{
+        lobovsky,
+        measure::{Gauge, Samples},
     };
     use base::record::MetricName;
-    use harness::context::Context;
 
     #[test]
     fn a_curve_that_starts_late_is_found_shifted() {
@@ -384,13 +380,6 @@ mod tests {
         assert!((left - 0.4).abs() < 1e-3, "{left}");
     }
 
-    /// A tank with these settings.
-    fn dam(set: impl FnOnce(&mut DamSettings)) -> Dam {
-        let spec = DAM_BREAK.spec("modern", set);
-        let settings = serde_json::from_value(spec.settings).expect("settings of the case");
-        Dam::new(&settings, &method::<Modern>(), &Context::default()).expect("sound settings")
-    }
-
     /// The metrics that a comparison of these samples (t, front, height, levels) and pressures puts.
     fn compared(
         dam: &Dam,
@@ -414,7 +403,7 @@ mod tests {
     /// A computation that is early by 0.2 T and by 0.1 tau.
     #[test]
     fn a_computation_that_has_the_curves_of_martin_and_moyce_early_is_that_early() {
-        let dam = dam(|_| {});
+        let dam = Dam::changed(|_| {}).unwrap();
         let [front, height] = &*MARTIN_MOYCE;
         let (a, g) = (dam.settings.width, dam.settings.gravity);
         let (t, tau) = ((0.5 * a / g).sqrt(), (a / g).sqrt());
@@ -437,7 +426,7 @@ mod tests {
     /// Pressures 5, 10, 15 and 20 % too high, on another clock; levels 5 % too high.
     #[test]
     fn what_a_computation_of_lobovsky_has_too_much_of_is_measured() {
-        let dam = dam(lobovsky);
+        let dam = Dam::changed(lobovsky).unwrap();
         let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
         let levels = [0, 1, 2, 3].map(|k| LOBOVSKY.level(k, 6.0));
         let row = |k: u32| {
@@ -491,7 +480,7 @@ mod tests {
     /// A front 0.03 a ahead, a height 0.02 H too large.
     #[test]
     fn how_far_a_column_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
-        let dam = dam(|_| {});
+        let dam = Dam::changed(|_| {}).unwrap();
         let of = &dam.settings;
         let row = |k: u32| {
             let t = 0.002 * f64::from(k);
@@ -507,7 +496,7 @@ mod tests {
     /// A front 0.03 H ahead, levels 0.01 to 0.04 H too high, pressures 5 to 20 % too high and late by 0.3.
     #[test]
     fn how_far_a_tank_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
-        let dam = dam(lobovsky);
+        let dam = Dam::changed(lobovsky).unwrap();
         let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
         let row = |k: u32| {
             let t = 0.01 * f64::from(k);
