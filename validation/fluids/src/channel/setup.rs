@@ -1,17 +1,12 @@
 //! From settings to numbers: the rules for sound speed, time step and arrangement, each stated once.
 
+use base::random::Random;
+use harness::{case::*, context::Context, method::*, simulate};
+use maths::exact::{couette::Couette, poiseuille::Poiseuille};
 use nalgebra::Vector2;
 use solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
 
 use super::ChannelSettings;
-use base::random::Random;
-use harness::{
-    case::{Rules, RunError, Step},
-    context::Context,
-    method::{FirstRow, Medium, Method, Parts},
-    runner, simulate,
-};
-use maths::exact::{couette::Couette, poiseuille::Poiseuille};
 
 /// What drives the fluid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +79,8 @@ impl Setup {
         };
         let dx = s.width / s.rows as f64;
         let h = s.h_over_dx * dx;
-        let fewest = fewest_columns(method.support, s.h_over_dx);
+        // A period of at least two supports.
+        let fewest = (2.0 * method.support * s.h_over_dx - 1e-9).floor() as usize + 1;
         let columns = if s.columns == 0 { fewest } else { s.columns };
         let sound_speed = s.c0.unwrap_or_else(|| sound_speed(s, v, force, h));
         let eos = Tait {
@@ -126,13 +122,8 @@ impl Setup {
             let (what, setting) = ("the sound speed", "c0, re, nu or width");
             return Err(RunError::TooMuch { what, value, most: MOST_SOUND, setting });
         }
-        let Self { settings: s, medium, columns, .. } = self;
-        simulate::check_step(method.integrator, &self.rules, context)?;
-        let (steps, particles) = (self.time(s.end) / self.dt(), s.rows as f64 * *columns as f64);
-        let size =
-            simulate::size(method, medium, [steps, particles]).with_sweeps(self.rules.sweeps());
-        let size = if s.watch_mode { size.sampled_at_every_step() } else { size };
-        runner::check_size(size, DECISIVE, context)
+        let particles = self.settings.rows as f64 * self.columns as f64;
+        simulate::check(method, &self.medium, &self.rules, particles, DECISIVE, context)
     }
 
     /// Time step \[s\].
@@ -257,9 +248,4 @@ fn sound_speed(s: &ChannelSettings, v: f64, force: f64, h: f64) -> f64 {
     let forced = force * s.width;
     let morris = (inertial.max(viscous).max(forced) / s.density_variation).sqrt();
     morris.max(s.c0_viscous * s.nu / h)
-}
-
-/// The fewest particles along a period of at least two supports and the skin.
-fn fewest_columns(support: f64, h_over_dx: f64) -> usize {
-    (2.0 * support * h_over_dx - 1e-9).floor() as usize + 1
 }

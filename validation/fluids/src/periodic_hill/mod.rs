@@ -11,18 +11,13 @@ mod plan;
 mod reference;
 mod run;
 mod setup;
-mod steadiness;
-mod studies;
 
 use harness::{
     case::Case,
-    composed::{Best, Composed, Composition, Variants},
+    composed::*,
     method::{self, Method, Standard},
 };
-use solver::{
-    BodyForce, ConsistentPressure, ConsistentViscosity, Continuity, ExtrapolatingWall,
-    InterfaceWall, Leapfrog, NoSlip, Pressure, ShiftAdvection, SingleSweep, Tait, Viscosity,
-};
+use solver::*;
 
 use crate::{
     channel::{Modern, Stabilised},
@@ -148,7 +143,7 @@ static CASE: Composed<HillSettings> = Composed {
     is_stable: declaration::is_stable,
     declaration: declaration::declaration,
     plan: plan::plan,
-    studies: studies::studies,
+    studies: declaration::studies,
 };
 
 /// Flow over periodic hills.

@@ -1,14 +1,10 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
+use base::record::*;
+use harness::{case::RunError, composed::Program, context::Context, runner::Drive, simulate};
 use solver::EquationOfState;
 
-use super::{
-    HillMethod, HillSettings, NAME, Setup,
-    control::{Controller, Driving},
-    measure::{self, Window},
-};
-use base::record::{Profile, Record, Status};
-use harness::{case::RunError, composed::Program, context::Context, runner::Drive, simulate};
+use super::{HillMethod, HillSettings, NAME, Setup, control::*, measure::*};
 
 /// Runs of the flow over hills.
 pub const PROGRAM: Program<HillSettings, HillMethod> =
@@ -18,8 +14,7 @@ pub const PROGRAM: Program<HillSettings, HillMethod> =
 const STRETCH: f64 = 10.0;
 /// Time between entries of the history \[H/U_b\].
 const ENTRY: f64 = 0.5;
-/// Samples of the field in a window, as far as the controller looks that often: disorder, and not the
-/// decay, is what moves a mean of few.
+/// Samples of the field in the last part of the run, as far as the controller looks that often.
 const SAMPLES: f64 = 40.0;
 
 /// Times at equal intervals.
@@ -41,11 +36,9 @@ impl Schedule {
     }
 }
 
-/// The number of the window of a time, of three of a `length` that end at `end`; none before the first. A
-/// time between two belongs to the later one.
-fn window_of(time: f64, end: f64, length: f64) -> Option<usize> {
-    let left = (end - time) / length;
-    usize::try_from(2 - (left - 1e-9).max(0.0).floor().min(3.0) as isize).ok()
+/// Is a time in the last part of a run, which has this length?
+fn is_last(time: f64, end: f64, length: f64) -> bool {
+    (end - time) / length - 1e-9 < 1.0
 }
 
 /// Holds the flux and samples the flow through time.
@@ -53,7 +46,7 @@ struct Monitor<'a> {
     setup: &'a Setup,
     area: f64,
     controller: Controller,
-    windows: [Window; 3],
+    window: Window,
     entry: Schedule,
     sample: Schedule,
     /// t, force, flux, kinetic energy.
@@ -61,21 +54,20 @@ struct Monitor<'a> {
 }
 
 harness::observed! {
-    Monitor<'_>: changes(controller, windows, entry, sample, series), parts(), stays(setup, area)
+    Monitor<'_>: changes(controller, window, entry, sample, series), parts(), stays(setup, area)
 }
 
 impl Monitor<'_> {
     /// After a stretch: the controller acts, and the flow is sampled if it is time.
     fn look(&mut self, simulation: &mut dyn Driving, stretch: f64) {
         let (setup, time, force) = (self.setup, simulation.time(), self.controller.force);
-        let mean = measure::mean_velocity(simulation, self.area);
+        let mean = mean_velocity(simulation, self.area);
         let flux = mean * self.area / setup.hill.period();
-        let is_due = self.sample.has_come(time);
-        let end = setup.settings.end;
-        if let Some(k) = window_of(time, end, setup.settings.average * end) {
-            self.windows[k].force(force, flux);
+        let (is_due, s) = (self.sample.has_come(time), &setup.settings);
+        if is_last(time, s.end, s.average * s.end) {
+            self.window.forces.push([force, flux]);
             if is_due {
-                self.windows[k].sample(setup, simulation);
+                self.window.sample(setup, simulation);
             }
         }
         self.controller.look(mean, stretch);
@@ -107,13 +99,13 @@ fn run(
     let times: Vec<f64> = (1..=stretches).map(|k| stretch * k as f64).collect();
     let area = setup.area();
     let wanted = setup.flux() * setup.hill.period() / area;
-    let last = measure::mean_velocity(&*simulation, area);
+    let last = mean_velocity(&*simulation, area);
     let controller = Controller { wanted, response: s.response, force: s.force, last };
     let start = [0.0, s.force, last * area / setup.hill.period(), kinetic_energy(&*simulation)];
-    let (windows, series) = (Default::default(), vec![start]);
+    let (window, series) = (Window::default(), vec![start]);
     let entry = Schedule { next: 0.0, every: ENTRY };
     let sample = Schedule { next: 0.0, every: s.average * s.end / SAMPLES };
-    let mut monitor = Monitor { setup, area, controller, windows, entry, sample, series };
+    let mut monitor = Monitor { setup, area, controller, window, entry, sample, series };
     let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, &pressure, &mut monitor)
@@ -126,26 +118,14 @@ fn run(
             })
             .run(context)?;
     if record.status == Status::Completed {
-        measure::measure(setup, &monitor.windows, area, &mut record);
-        let (particles, outside) = measure::particles(setup, &*simulation);
-        record.put(measure::OUTSIDE, outside as f64);
-        record.put(measure::WALL_OFFSET, measure::wall_offset(setup, &*simulation));
-        if context.keep_particles {
-            record.profiles.insert("particles".into(), particles);
-        }
+        measure(setup, &monitor.window, area, &mut record);
+        particles(setup, &*simulation, context.keep_particles, &mut record);
     }
-    record.profiles.insert("series".into(), profile(&monitor.series));
+    let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
+    let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];
+    record.profiles.insert("series".into(), Profile::of_rows(&columns, &monitor.series));
     record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
-}
-
-fn profile(series: &[[f64; 4]]) -> Profile {
-    let column = |k: usize| series.iter().map(|row| row[k]).collect();
-    Profile::default()
-        .with("t", "H/U_b", column(0))
-        .with("force", "U_b^2/H", column(1))
-        .with("flux", "U_b H", column(2))
-        .with("kinetic energy", "rho U_b^2 H^2", column(3))
 }
 
 #[cfg(test)]
@@ -154,12 +134,10 @@ mod tests {
 
     /// Clocks that were off by a part of a window passed every test.
     #[test]
-    fn samples_come_at_their_times_and_in_their_windows() {
-        let window = |time| window_of(time, 40.0, 8.0);
-        assert_eq!([0.0, 15.9].map(window), [None; 2]);
-        assert_eq!([16.1, 23.9].map(window), [Some(0); 2]);
-        assert_eq!([24.1, 31.9].map(window), [Some(1); 2]);
-        assert_eq!([32.0, 32.1, 40.0].map(window), [Some(2); 3]);
+    fn samples_come_at_their_times_and_in_the_last_part() {
+        let is_last = |time| is_last(time, 40.0, 8.0);
+        assert!(![0.0, 16.1, 31.9].into_iter().any(is_last));
+        assert!([32.0, 32.1, 40.0].into_iter().all(is_last));
         let mut schedule = Schedule { next: 0.0, every: 0.5 };
         let looks = (1..=1000).map(|k| f64::from(k) * 0.01);
         let times: Vec<f64> = looks.filter(|time| schedule.has_come(*time)).collect();

@@ -1,5 +1,7 @@
 //! From settings to numbers and particles.
 
+use harness::{case::RunError, context::Context, method::Parts};
+use maths::geometry::{Curve, Hill};
 use nalgebra::Vector2;
 use solver::{Domain, Particle};
 
@@ -8,8 +10,6 @@ use super::{
     reference::{KNOWN_SETTINGS, Reference},
 };
 use crate::unit_flow::{Scales, UnitFlow};
-use harness::{case::RunError, context::Context, method::Parts};
-use maths::geometry::{Curve, Hill};
 
 /// Gap over the crest of the reference \[H\]: with U_b = 1 the flux per depth.
 pub const FLUX: f64 = 2.035;

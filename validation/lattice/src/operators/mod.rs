@@ -15,12 +15,7 @@ mod tests;
 
 use std::rc::Rc;
 
-use harness::{
-    composed::{self, Best, Composed, Composition},
-    context::Context,
-    declare::Declaration,
-    method::{FromMedium, Medium, Method},
-};
+use harness::{composed::*, context::Context, declare::Declaration, method::*};
 use solver::{
     Compose, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
     CubicSpline, Kernel, Leapfrog, Open, Pressure, QuinticSpline, Rate, Smoothing, Tait, Term,
@@ -82,26 +77,18 @@ impl Subject {
         }
     }
 
-    /// Is it a derivative whose sum over the kernel nothing corrects?
-    fn is_derivative_as_summed(&self) -> bool {
-        !self.is_corrected && self.operator != Operator::Density
-    }
-
     fn about(&self) -> &'static str {
         match (self.operator, self.is_corrected) {
             (Operator::Density, _) => "is the density the sum of the masses, m W?",
             (Operator::Gradient, false) => {
                 "is the pressure force (5) the gradient of the pressure?"
             }
-            (Operator::Gradient, true) => "is it with a gradient that is exact for linear fields?",
             (Operator::Laplacian, false) => {
                 "is the viscous force (6) the Laplacian of the velocity?"
             }
             (Operator::Laplacian, true) => "is it if linear fields are subtracted?",
             (Operator::Divergence, false) => "is (3) the divergence of the velocity?",
-            (Operator::Divergence, true) => {
-                "is it with a gradient that is exact for linear fields?"
-            }
+            (_, true) => "is it with a gradient that is exact for linear fields?",
         }
     }
 }
@@ -221,7 +208,7 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
             (`divergence`). The rate of that, the particles at the end less those of the start over the \
             time, is the operator, which is compared with its exact value.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: |_| Declaration::default(),
     plan: plan::plan,
     studies: study::studies,
