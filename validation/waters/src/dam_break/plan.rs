@@ -35,6 +35,8 @@ pub enum Group {
 /// A run of this case.
 pub type Row = table::Row<DamSettings, Group>;
 
+/// H/dx of the ensembles.
+pub const ENSEMBLES: [usize; 2] = [20, 30];
 /// Seeds of the members of an ensemble.
 const SEEDS: RangeInclusive<u32> = 1..=20;
 /// Their end \[(H/g)^(1/2)\]: the splash of the jet has run over all probes but the first.
@@ -59,11 +61,13 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     table.over(Ladder, &["single-sweep"], [&[10], ladder[1]], across);
     table.one(Crowded, "modern", |s| (s.n, s.offset) = (10, 0.5));
     ablate(&mut table);
-    for variant in if tier == Tier::Quick { &[][..] } else { &["modern", "seed"] } {
-        table.starts(Ensemble, variant, SEEDS, |s| {
-            along(s, 20);
-            s.end = UNTIL;
-        });
+    for n in if tier == Tier::Quick { &[][..] } else { &ENSEMBLES } {
+        for variant in ["modern", "seed"] {
+            table.starts(Ensemble, variant, SEEDS, |s| {
+                along(s, *n);
+                s.end = UNTIL;
+            });
+        }
     }
     let finest = if tier == Tier::Quick { 30 } else { 120 };
     for Row { group, variant, settings, run } in &mut table.rows {
