@@ -5,7 +5,6 @@ use base::{
     manifest::{Known, Manifest},
     record::Record,
     reference::{Reference, ReferenceError},
-    settings::Field,
     spec::{RunSpec, Task},
 };
 use harness::{
@@ -200,12 +199,8 @@ fn case_section(results: &CaseResults) -> Section {
     }
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
     section.block(Block::Details {
-        summary: "Variants, settings, all runs".into(),
-        blocks: vec![
-            Block::List(variants),
-            settings_table(results).into(),
-            run_table(case, results.runs.all()).into(),
-        ],
+        summary: "Variants and all runs".into(),
+        blocks: vec![Block::List(variants), run_table(case, results.runs.all()).into()],
     })
 }
 
@@ -230,21 +225,12 @@ fn measured(value: f64) -> Cell {
     if is_whole { Cell::exact(value) } else { Cell::num(value, 4) }
 }
 
-fn settings_table(results: &CaseResults) -> Table {
-    let caption = "Settings (`--set key=value`). Variants change some of the defaults.";
-    Columns::<Field>::default()
-        .code("setting", |field| field.name)
-        .text("meaning", |field| field.doc)
-        .text("unit", |field| field.unit)
-        .text("allowed", |field| field.range)
-        .text("default", |field| field.default().to_string())
-        .table(caption, results.case.fields())
-}
-
 fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
-    let caption = "All runs and their cost. Seconds alone are the median of timings with nothing else of \
-                   this program at work; other seconds were taken side by side and are only rough. The state \
-                   is a digest of the bits at the end: the same for any number of threads.";
+    let caption = "All runs, the settings that are not the defaults of their variant (`touchstone list` and \
+                   the name of the case show these), and their cost. Seconds alone are the median of timings \
+                   with nothing else of this program at work; other seconds were taken side by side and are \
+                   only rough. The state is a digest of the bits at the end: the same for any number of \
+                   threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
     Columns::of_variants()
         .text("set", |record| what(case, &record.spec()))

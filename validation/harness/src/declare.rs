@@ -1,6 +1,5 @@
 //! The declaration of a case, from which the studies common to all cases are made: curves compared with
-//! their reference, order of accuracy, error against cost, cheapest settings, error budget, largest stable
-//! time step, maps. A declaration is plain data for one tier. [`crate::studies`] turns it into runs and the
+//! their reference, order of accuracy, error against cost, error budget, largest stable time step, maps. A declaration is plain data for one tier. [`crate::studies`] turns it into runs and the
 //! records of these runs into studies.
 
 use base::{
@@ -26,7 +25,7 @@ pub struct Declaration {
     pub card: Option<Card>,
     /// Profiles or histories over their reference.
     pub curves: Vec<Curves>,
-    /// Resolution ladders: order, error against cost, cheapest settings.
+    /// Resolution ladders: order, error against cost.
     pub accuracy: Vec<Accuracy>,
     /// Comparisons with references whose uncertainty is stated.
     pub comparisons: Vec<Comparison>,
@@ -203,8 +202,6 @@ pub struct Accuracy {
     pub slope: Option<f64>,
     /// One ladder of resolutions per variant, coarse to fine.
     pub ladders: Vec<Ladder>,
-    /// More points of the cost diagram and of the table of cheapest settings, beside the ladders.
-    pub more: Vec<Ladder>,
     /// Results of other codes.
     pub peers: Vec<Peer>,
 }
@@ -286,8 +283,6 @@ pub struct Peer {
     pub label: String,
     /// Processor seconds \[s\].
     pub seconds: f64,
-    /// Spacing, in the unit of [`Accuracy::spacing`].
-    pub spacing: f64,
     /// Error, in the unit of [`Accuracy::label`].
     pub error: f64,
     /// Machine and date of the timing.
@@ -334,8 +329,8 @@ impl Accuracy {
     pub fn new(id: &str, error: ErrorOf, label: &str) -> Self {
         let (id, label, about) = (id.to_string(), label.to_string(), String::new());
         let (spacing, slope) = ("Δx [-]", Some(2.0));
-        let (ladders, more, peers) = (Vec::new(), Vec::new(), Vec::new());
-        Self { id, error, label, about, spacing, slope, ladders, more, peers }
+        let (ladders, peers) = (Vec::new(), Vec::new());
+        Self { id, error, label, about, spacing, slope, ladders, peers }
     }
 }
 
@@ -689,8 +684,8 @@ impl Declaration {
     /// Every run that the studies need.
     pub fn runs(&self) -> Vec<Planned> {
         let mut runs = Vec::new();
-        for Accuracy { error, ladders, more, .. } in &self.accuracy {
-            let levels = ladders.iter().chain(more).flat_map(|ladder| &ladder.levels);
+        for Accuracy { error, ladders, .. } in &self.accuracy {
+            let levels = ladders.iter().flat_map(|ladder| &ladder.levels);
             runs.extend(levels.map(|level| level.run.clone().timed()));
             if let ErrorOf::Distance { finest, .. } = error {
                 runs.push(Planned::new(finest.clone()));

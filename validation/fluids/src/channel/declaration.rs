@@ -131,7 +131,6 @@ fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
         about: "Runs at Re 0.5 to νt/L² = 1. Of the other codes the plain scalar reimplementation is no \
                 package, but a program of this method, written for this comparison."
             .into(),
-        more: table.of(For::Coarse).map(|r| of_table(table, r.group, r.variant)).collect(),
         ..accuracy(flow.name(), flow, ladder(flow).map(of).into(), 0.5)
     }
 }

@@ -254,7 +254,7 @@ mod tests {
     use super::*;
     use crate::{
         runs::JudgedRun,
-        studies::made_up::{ERROR, column, comparison, run, spec, tables},
+        studies::tests::{ERROR, column, comparison, run, spec, tables},
     };
 
     const ALL: usize = 20;

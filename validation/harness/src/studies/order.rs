@@ -2,7 +2,7 @@
 //! of errors and their cost shows.
 
 use base::gate::{Bound, Evidence, Gate};
-use report::{Axis, Cell, Layer, Legend, Plot, Series, Table, exact, sig};
+use report::{Axis, Cell, Layer, Legend, Plot, Series, Table, exact, percent, sig};
 
 use crate::{
     columns::Columns,
@@ -44,13 +44,17 @@ pub struct Orders {
     pub panel: Plot,
     /// What the caption of the panel has to explain, beginning with a space.
     pub caption: String,
-    /// Orders, intervals, floors.
+    /// Orders, intervals, and what errors cost.
     pub table: Table,
     /// Gates of ladders with their orders.
     pub judged: Vec<(Gate, f64)>,
 }
 
-pub fn orders(accuracy: &Accuracy, runs: &Runs) -> Orders {
+/// The errors of which the table tells the least run time that reaches them.
+pub const GOALS: [f64; 2] = [1e-2, 1e-3];
+
+/// `costs` are the seconds that each ladder takes to reach the [`GOALS`], NaN if it does not.
+pub fn orders(accuracy: &Accuracy, costs: &[[f64; 2]], runs: &Runs) -> Orders {
     let successive = match accuracy.error {
         ErrorOf::Metric(_) => "",
         ErrorOf::Distance { .. } => {
@@ -80,10 +84,11 @@ pub fn orders(accuracy: &Accuracy, runs: &Runs) -> Orders {
             judged.push((gate, found.as_ref().map_or(f64::NAN, |c| c.order)));
         }
         let finest = points.last().map_or(f64::NAN, |p| p.value);
-        rows.push((name, found, finest));
+        rows.push(Row { name, found, finest, costs: costs[k] });
     }
     let panel = slopes.into_iter().fold(panel, |panel, order| panel.layer(Layer::slope(order)));
-    let table = table(format!("Observed orders of accuracy. {}", accuracy.about), rows);
+    let about = format!("Observed orders of accuracy. {} {TIMES}", accuracy.about);
+    let table = table(about, &rows);
     Orders { panel, caption: format!("{successive}{slope}"), table, judged }
 }
 
@@ -103,12 +108,22 @@ fn slopes(accuracy: &Accuracy) -> Vec<f64> {
     slopes
 }
 
-/// Name of a ladder, its order or why it has none, its finest error.
-type Row = (String, Result<Convergence, ConvergenceError>, f64);
+const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of every \
+    finer level, is at most so much: at a single level errors of time and spacing can cancel.";
 
-fn table(about: String, rows: Vec<Row>) -> Table {
+struct Row {
+    /// Name of the ladder.
+    name: String,
+    /// Its order, or why it has none.
+    found: Result<Convergence, ConvergenceError>,
+    /// Its finest error.
+    finest: f64,
+    costs: [f64; 2],
+}
+
+fn table(about: String, rows: &[Row]) -> Table {
     let of = |show: fn(&Convergence) -> String| {
-        move |(_, found, _): &Row| found.as_ref().map_or("–".into(), show)
+        move |row: &Row| row.found.as_ref().map_or("–".into(), show)
     };
     let order = of(|found| format!("{} ± {}", sig(found.order, 3), sig(found.standard_error, 2)));
     let interval = of(|found| {
@@ -119,25 +134,24 @@ fn table(about: String, rows: Vec<Row>) -> Table {
         let orders: Vec<String> = found.local_orders.iter().map(|p| sig(*p, 2)).collect();
         orders.join(", ")
     });
-    let label = |(_, found, _): &Row| match found {
+    let label = |row: &Row| match &row.found {
         Ok(Convergence { label: Label::Asymptotic, .. }) => "asymptotic".into(),
         Ok(Convergence { label: Label::FloorReached, .. }) => "floor reached".into(),
         Ok(Convergence { label: Label::NotAsymptotic, .. }) => "not asymptotic".into(),
         Err(error) => format!("no order: {error}"),
     };
-    let floor = |(_, found, _): &Row| {
-        let floor = found.as_ref().ok().and_then(|found| found.floor);
-        floor.map_or(Cell::text("–"), |floor| Cell::percent(floor.error, 2))
-    };
-    Columns::default()
-        .code("variant", |(name, ..): &Row| name.clone())
+    let columns = Columns::default()
+        .code("variant", |row: &Row| row.name.clone())
         .num(["order ± standard error", "-"], move |row| Cell::text(order(row)))
         .text("95 % interval", interval)
         .text("local orders, coarse to fine", local)
         .text("label", label)
-        .of(["finest error", "-"], |(.., finest)| *finest, |error| Cell::percent(error, 2))
-        .num(["fitted floor", "-"], floor)
-        .table(about, rows)
+        .of(["finest error", "-"], |row| row.finest, |error| Cell::percent(error, 2));
+    let columns = GOALS.iter().enumerate().fold(columns, |columns, (k, goal)| {
+        let head = format!("time to {}", percent(*goal, 1));
+        columns.of([&head, "s"], move |row| row.costs[k], Cell::seconds)
+    });
+    columns.table(about, rows)
 }
 
 #[cfg(test)]
@@ -149,7 +163,7 @@ mod tests {
         declare::{Level, OrderGate},
         planned::Planned,
         runs::Runs,
-        studies::made_up::{ERROR, column, runs, spec},
+        studies::tests::{ERROR, column, runs, spec},
     };
 
     /// Ladders of `seed` and `best` at n = 10, 20, 40, 80; the order of the second is judged.
@@ -181,13 +195,16 @@ mod tests {
             "seed" => -4.0 / (n * n), // a metric with a sign
             _ => 8.0 / n.powi(3),
         });
-        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &runs);
+        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &[[0.5, f64::NAN]; 2], &runs);
         assert_eq!(column(&orders.table, "variant"), ["`seed`", "`best`"]);
         let local = column(&orders.table, "local orders, coarse to fine");
         assert_eq!(local, ["2.0, 2.0, 2.0", "3.0, 3.0, 3.0"]);
         assert_eq!(column(&orders.table, "label"), ["asymptotic", "asymptotic"]);
         let finest = column(&orders.table, "finest error");
         assert_eq!(finest, ["0.062 %", "0.0016 %"], "4/80² and 8/80³");
+        let times =
+            GOALS.map(|goal| column(&orders.table, &format!("time to {}", percent(goal, 1))));
+        assert_eq!(times, [["500 ms"; 2], ["–"; 2]]);
         let [(gate, order)] = orders.judged.as_slice() else { panic!("one order is judged") };
         assert_eq!(
             (gate.id.as_str(), gate.judge(Some(*order)).verdict),
@@ -226,7 +243,7 @@ mod tests {
     #[test]
     fn a_level_that_failed_leaves_no_order_and_its_gate_fails() {
         let runs = made(|_, n| if n == 20.0 { f64::NAN } else { 1.0 / n });
-        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &runs);
+        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &[[0.5, f64::NAN]; 2], &runs);
         assert!(orders.judged[0].1.is_nan(), "order {}", orders.judged[0].1);
         assert!(
             column(&orders.table, "label")[0].starts_with("no order: a level with spacing 0.05")

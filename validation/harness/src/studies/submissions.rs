@@ -168,62 +168,38 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
         Some((accuracy, marks)) => study.block(figure(&format!("{id}-cost"), accuracy, marks)),
         None => study,
     };
-    let of = |division: Division| {
-        let is_of = |run: &&JudgedRun| {
-            run.record.submission.as_ref().is_some_and(|of| of.division == division)
-        };
-        runs.submissions().iter().filter(is_of).collect::<Vec<_>>()
-    };
-    let tables = [
-        (
-            Division::Closed,
-            "Closed division: our particles, spacing and support of the kernel. The best first.",
-        ),
-        (Division::Open, "Open division: other particles or another resolution, at a stated cost."),
-    ];
-    let some = tables.into_iter().map(|(division, caption)| (of(division), caption));
-    let some = some.filter(|(runs, _)| !runs.is_empty());
-    let add = |study: Study, (of, caption): (Vec<&JudgedRun>, &str)| {
-        study.block(table(declared, caption, of, runs))
-    };
-    Some(some.fold(study, add))
+    Some(study.block(table(declared, runs)))
 }
 
-fn table(
-    declared: &Declaration,
-    caption: &str,
-    mut of: Vec<&JudgedRun>,
-    runs: &Runs,
-) -> report::Table {
-    let words =
-        |run: &JudgedRun| run.record.submission.as_ref().map_or(String::new(), |of| of.to_string());
-    let error = |run: &JudgedRun| {
-        let mut of = declared.accuracy.iter();
-        of.find_map(|of| of.error.value(&run.record, runs))
-    };
-    let place = |run: &&JudgedRun| error(run).unwrap_or(f64::INFINITY);
-    of.sort_by(|a, b| place(a).total_cmp(&place(b)));
-    let gates = |run: &JudgedRun| {
+/// The runs of the closed division, then those of the open one, the best first.
+fn table(declared: &Declaration, runs: &Runs) -> report::Table {
+    type Row<'a> = (&'a Submission, &'a JudgedRun, f64);
+    let rows = runs.submissions().iter().filter_map(|run| {
+        let error = declared.accuracy.iter().find_map(|of| of.error.value(&run.record, runs));
+        Some((run.record.submission.as_deref()?, run, error.unwrap_or(f64::NAN)))
+    });
+    let mut rows: Vec<Row> = rows.collect();
+    rows.sort_by(|a, b| a.0.division.cmp(&b.0.division).then(a.2.total_cmp(&b.2)));
+    let gates = |(_, run, _): &Row| {
         let (apply, others) = run.applicable();
         let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure()).count();
         let passed = apply.len() - failed;
         format!("{passed} pass, {failed} fail, {} not applicable", others.len())
     };
-    Columns::<&JudgedRun>::default()
-        .text("code", |run| words(run))
-        .code("variant of the problem", |run| &run.record.variant)
-        .num(["particles", "1"], |run| Cell::count(run.record.cost.particles as u64))
-        .num(["error", "-"], |run| match error(run) {
-            Some(error) => Cell::percent(error, 2),
-            None => Cell::text("–"),
-        })
-        .num(["processor time", "s"], |run| match run.record.cost.cpu_s {
-            seconds if seconds.is_finite() => Cell::seconds(seconds),
-            _ => Cell::text("unknown"),
-        })
-        .text("gates", |run| gates(run))
-        .text("ended", |run| run.record.status.to_string())
-        .table(caption, of)
+    Columns::<Row>::default()
+        .text("division", |(of, ..)| of.division.to_string())
+        .text("code", |(of, ..)| of.to_string())
+        .code("variant of the problem", |(_, run, _)| &run.record.variant)
+        .num(["particles", "1"], |(_, run, _)| Cell::count(run.record.cost.particles as u64))
+        .of(["error", "-"], |(.., error)| *error, |error| Cell::percent(error, 2))
+        .of(["processor time", "s"], |(_, run, _)| run.record.cost.cpu_s, Cell::seconds)
+        .text("gates", gates)
+        .text("ended", |(_, run, _)| run.record.status.to_string())
+        .table(
+            "Closed division: our particles, spacing and support of the kernel. Open division: other \
+             particles or another resolution, at a stated cost. In each the best first.",
+            rows,
+        )
 }
 
 #[cfg(test)]
