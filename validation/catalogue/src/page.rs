@@ -54,12 +54,11 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
             reused(suite),
             provenance(&manifest)
         )],
-        counts: Some(suite.counts()),
+        counts: suite.counts(),
         cards,
         notes,
         sections,
         png_folder: "figures".into(),
-        footer: String::new(),
     }
 }
 

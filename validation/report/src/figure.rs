@@ -8,8 +8,6 @@ use super::colour::{Colour, ColourMap};
 pub struct Figure {
     /// Unique on its page; also the name of its PNG file.
     pub id: String,
-    /// Drawn above the panels; may be empty.
-    pub title: String,
     /// What is seen, with commit and settings; inline markup as in [`super::Block::Prose`].
     pub caption: String,
     /// Panels, row by row.
@@ -25,17 +23,11 @@ impl Figure {
     pub fn new(id: impl Into<String>, caption: impl Into<String>) -> Self {
         Self {
             id: id.into(),
-            title: String::new(),
             caption: caption.into(),
             panels: Vec::new(),
             columns: 1,
             panel_size: (420.0, 290.0),
         }
-    }
-
-    /// Sets the title.
-    pub fn title(self, title: impl Into<String>) -> Self {
-        Self { title: title.into(), ..self }
     }
 
     /// Adds a panel.
@@ -149,13 +141,6 @@ pub enum Layer {
         /// Ratio of the ends in x, 2 say.
         factor: f64,
     },
-    /// A dashed grey line across the plot at one value, with a label beside it.
-    Rule {
-        /// The value.
-        at: f64,
-        /// May be empty.
-        label: String,
-    },
     /// The area between two curves.
     Band {
         /// Name in the legend; may be empty.
@@ -165,19 +150,12 @@ pub enum Layer {
         /// Drawn as a pale tint of this colour.
         colour: Colour,
     },
-    /// Runs without a result, as crosses in a strip at the upper edge: (x, reason).
-    Failed(Vec<(f64, String)>),
 }
 
 impl Layer {
     /// A slope triangle of width factor 2.
     pub fn slope(order: f64) -> Self {
         Self::Slope { order, factor: 2.0 }
-    }
-
-    /// A dashed grey horizontal line.
-    pub fn horizontal(at: f64, label: impl Into<String>) -> Self {
-        Self::Rule { at, label: label.into() }
     }
 
     /// A shaded area between two curves, points (x, lower, upper).
@@ -351,8 +329,8 @@ pub struct ParticleMap {
     pub values: Option<(f64, f64)>,
     /// Quantity and unit of the colour bar.
     pub label: String,
-    /// Diameter of a dot in units of x and y (the particle spacing, say); `None` guesses.
-    pub diameter: Option<f64>,
+    /// Diameter of a dot in units of x and y (the particle spacing, say), drawn with two pixels at least.
+    pub diameter: f64,
     /// Lines over the dots.
     pub lines: Vec<Series>,
 }
@@ -368,7 +346,7 @@ impl ParticleMap {
     ) -> Self {
         let (title, label) = (title.into(), label.into());
         let lines = Vec::new();
-        Self { title, x, y, points, map, values: None, label, diameter: None, lines }
+        Self { title, x, y, points, map, values: None, label, diameter: 0.0, lines }
     }
 
     /// Sets the ends of the colour bar.
@@ -389,7 +367,7 @@ impl ParticleMap {
 
     /// Sets the diameter of a dot in units of x and y.
     pub fn diameter(self, diameter: f64) -> Self {
-        Self { diameter: Some(diameter), ..self }
+        Self { diameter, ..self }
     }
 }
 

@@ -120,14 +120,17 @@ fn figure(
 ) -> Figure {
     let growth = work_growth(points);
     let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
-    let failed = points.iter().any(|point| point.failure.is_some());
-    let crosses = if failed { " Crosses above are runs that failed." } else { "" };
+    let failed: Vec<&str> = points.iter().filter_map(|p| p.failure.as_deref()).collect();
+    let failed = match failed.is_empty() {
+        true => String::new(),
+        false => format!(" Runs that failed: {}.", failed.join("; ")),
+    };
     let peers = &accuracy.peers;
     let others =
         peers.first().map_or(String::new(), |peer| format!(" Grey: other codes ({}).", peer.timed));
     let caption = format!(
         "{} {} over spacing (left), run time on one core (middle) and work (right).\
-         {explained}{crosses}{others}",
+         {explained}{failed}{others}",
         first_sentence(&accuracy.about).0,
         name_of_error(&accuracy.label),
     );
@@ -191,9 +194,7 @@ fn panel(title: &str, cost_label: &str, points: &[Point], cost: Cost) -> Plot {
         }
         plot = plot.layer(series);
     }
-    let failed: Vec<(f64, String)> =
-        points.iter().filter_map(|p| Some((cost(p), p.failure.clone()?))).collect();
-    if failed.is_empty() { plot } else { plot.layer(Layer::Failed(failed)) }
+    plot
 }
 
 /// Behind everything else.
