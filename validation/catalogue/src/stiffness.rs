@@ -79,8 +79,8 @@ pub fn table(rows: &[Row]) -> Table {
             format!("{number} {}", step.by).trim_start().to_string()
         });
     let limit = |value: f64| Cell::num(value, 3);
-    let mechanisms = Mechanism::ALL.into_iter().fold(columns, |columns, mechanism| {
-        columns.of([mechanism.name(), ""], move |row| row.headroom(mechanism), limit)
+    let mechanisms = Mechanism::ALL.into_iter().fold(columns, |columns, (mechanism, name)| {
+        columns.of([name, ""], move |row| row.headroom(mechanism), limit)
     });
     mechanisms
         .of(["together", ""], |row| row.rules.dt_limit() / row.rules.dt(), limit)

@@ -72,6 +72,7 @@ pub fn table(Channel { flow, case }: Channel, tier: Tier) -> ChannelTable {
 }
 
 fn of_couette(table: &mut ChannelTable) {
+    table.over(For::Coarse, &["wendland-leapfrog", "plain"], [&[6]; 2], |s, rows| s.rows = rows);
     let ratios = SMOOTHED.map(|(ratio, _)| ratio);
     let variants = ["plain", "wendland-leapfrog"];
     table.over(For::Smoothing, &variants, [&[0.9, 1.5, 3.0], &ratios], |s, ratio| {
@@ -98,7 +99,7 @@ fn of_poiseuille(table: &mut ChannelTable) {
 /// The plan: the runs that are not of a ladder, which the declaration has.
 pub fn plan(channel: Channel, tier: Tier) -> Vec<Planned> {
     let mut table = table(channel, tier);
-    table.rows.retain(|row| !matches!(row.group, For::Ladder | For::Peers));
+    table.rows.retain(|row| !matches!(row.group, For::Ladder | For::Coarse | For::Peers));
     table.plan()
 }
 

@@ -8,6 +8,8 @@ use harness::table::Table;
 pub enum For {
     /// Error over spacing and cost at Re 0.5.
     Ladder,
+    /// The same with fewer rows than orders are fitted to: what the cheapest settings cost.
+    Coarse,
     /// Error over cost at the Reynolds number of other codes.
     Peers,
     /// Walls that extrapolate.

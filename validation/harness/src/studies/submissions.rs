@@ -2,11 +2,10 @@
 
 use base::submission::{Division, OURS, SESSION, Submission};
 use report::{Axis, Cell, Colour, Figure, Legend, Plot, Series, percent, seconds};
-use serde_json::Value;
 
 use crate::{
     columns::Columns,
-    declare::{Accuracy, Declaration, ErrorOf, Level},
+    declare::{Accuracy, Declaration, ErrorOf},
     runs::{JudgedRun, Runs},
     study::Study,
 };
@@ -16,7 +15,8 @@ struct Mark<'a> {
     of: &'a Submission,
     /// Code, scheme and the variant of its problem; of ours the variant.
     name: String,
-    resolution: String,
+    /// How many; 0 of a profile or a series.
+    particles: usize,
     /// When it was made together with others.
     session: Option<&'a str>,
     error: f64,
@@ -35,7 +35,7 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
         Some(Mark {
             of,
             name,
-            resolution: resolution(accuracy, &record.settings),
+            particles: record.cost.particles,
             session: record.numerics.get(SESSION).and_then(|day| day.as_str()),
             error: accuracy.error.value(record, runs)?,
             seconds: record.cost.cpu_s,
@@ -46,25 +46,7 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     marks
 }
 
-/// The resolution in words: that of a level with the same value of the setting in which levels differ.
-fn resolution(accuracy: &Accuracy, settings: &Value) -> String {
-    let of = |level: &Level, key: &str| level.run.spec.settings[key].clone();
-    let ladders = || accuracy.ladders.iter().flat_map(|ladder| ladder.levels.windows(2));
-    let differs = |key: &&String| ladders().any(|two| of(&two[0], key) != of(&two[1], key));
-    let key = settings.as_object().and_then(|all| all.keys().find(differs));
-    let Some(key) = key else { return String::new() };
-    let level = ladders().flatten().find(|level| of(level, key) == settings[key]);
-    // Of a value without a level: the words of one with this value in place of its own.
-    let value = |settings: &Value| settings[key].to_string();
-    let other = ladders().flatten().find_map(|level| {
-        let (label, own) = (&level.label, value(&level.run.spec.settings));
-        label.contains(&own).then(|| label.replace(&own, &value(settings)))
-    });
-    let words = || other.unwrap_or_else(|| format!("{key} = {}", settings[key]));
-    level.map_or_else(words, |level| level.label.clone())
-}
-
-/// Where another code is better than ours in the same session: in error at equal resolution, or in time at
+/// Where another code is better than ours in the same session: in error with as many particles, or in time at
 /// no more error, whatever the resolution.
 fn better(marks: &[Mark]) -> Option<String> {
     let (ours, others): (Vec<&Mark>, Vec<&Mark>) = marks.iter().partition(|m| m.of.code == OURS);
@@ -75,9 +57,9 @@ fn better(marks: &[Mark]) -> Option<String> {
     let mut found = Vec::new();
     for peer in others {
         let with = || ours.iter().filter(|own| own.session == peer.session);
-        let equal = with().filter(|own| own.resolution == peer.resolution);
+        let equal = with().filter(|own| own.particles == peer.particles);
         let error = least(&mut equal.map(|own| own.error));
-        let who = format!("{} ({}, {})", peer.name, peer.resolution, peer.of.division);
+        let who = format!("{} ({} particles, {})", peer.name, peer.particles, peer.of.division);
         if error.is_finite() && peer.error < error {
             let [its, best] = [peer.error, error].map(|error| percent(error, 2));
             found.push(format!("{who} has an error of {its}, the best of ours {best}"));
@@ -90,7 +72,7 @@ fn better(marks: &[Mark]) -> Option<String> {
         }
     }
     Some(match found.is_empty() {
-        true => "No other code below is more accurate than ours at equal resolution, or faster with no more \
+        true => "No other code below is more accurate than ours with as many particles, or faster with no more \
                  error."
             .into(),
         false => format!("Better than ours: {}.", found.join("; ")),
@@ -101,7 +83,7 @@ fn better(marks: &[Mark]) -> Option<String> {
 fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     let caption = "Runs of other codes (in parentheses the variant whose problem they ran), and ours of \
                    the same session in black: error over the time of the loop on one core. Labels are \
-                   resolutions."
+                   numbers of particles."
         .to_string();
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
@@ -111,7 +93,7 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
         let plot = Plot::new(format!("{division} division"), x, y).legend(Legend::Outside);
         let series = |(k, all): (usize, &[&Mark])| {
             let points = all.iter().map(|mark| (mark.seconds, mark.error)).collect();
-            let labels = all.iter().map(|mark| mark.resolution.clone());
+            let labels = all.iter().map(|mark| mark.particles.to_string());
             let series = Series::line_markers(&all[0].name, points).cycle(k).labels(labels);
             if all[0].of.code == OURS { series.colour(Colour::BLACK) } else { series }
         };
@@ -212,9 +194,9 @@ mod tests {
         Submission { code, version, scheme, division, method, seed: None }
     }
 
-    fn mark<'a>(of: &'a Submission, session: &'a str, rows: u32, error: f64, s: f64) -> Mark<'a> {
-        let (name, resolution, session) = (of.code.clone(), format!("{rows} rows"), Some(session));
-        Mark { of, name, resolution, session, error, seconds: s }
+    fn mark<'a>(of: &'a Submission, session: &'a str, rows: usize, error: f64, s: f64) -> Mark<'a> {
+        let (name, particles, session) = (of.code.clone(), rows, Some(session));
+        Mark { of, name, particles, session, error, seconds: s }
     }
 
     /// At equal resolution errors compare, at no more error times, and nothing across sessions.
