@@ -17,8 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     let html = page.html();
     page.write_html(&folder.join("index.html"), &html)?;
-    println!("{:?}", check_page(&html)?);
-    Ok(())
+    Ok(check_page(&html)?)
 }
 
 /// A plot over logarithmic axes, with all that runs add to it, and a map of particles.

@@ -227,8 +227,6 @@ pub struct Series {
     pub shape: Option<Shape>,
     /// Open markers: reference data.
     pub open: bool,
-    /// Diameter of a marker in CSS pixels.
-    pub size: f64,
     /// (lower, upper) end of the bar in x for each point; empty for none.
     pub x_bars: Vec<(f64, f64)>,
     /// A short text beside each point, left out where there is no room; empty for none.
@@ -247,7 +245,6 @@ impl Series {
             marked: false,
             shape: None,
             open: false,
-            size: 6.5,
             x_bars: Vec::new(),
             labels: Vec::new(),
         }
@@ -294,11 +291,6 @@ impl Series {
     /// Makes the markers open.
     pub fn open(self) -> Self {
         Self { open: true, ..self }
-    }
-
-    /// Sets the diameter of the markers.
-    pub fn size(self, size: f64) -> Self {
-        Self { size, ..self }
     }
 
     /// Bars in x, (lower, upper) for each point.

@@ -13,6 +13,8 @@ use super::ticks::{Ticks, minus, with_exponent};
 
 const SLOPE_EM: f64 = 10.5;
 const MARK_EM: f64 = 9.0;
+/// Diameter of a marker in CSS pixels.
+const MARKER: f64 = 6.5;
 /// How many points of lines, which lie a few pixels apart, the label of a point may hide.
 const MARK_HIDES: usize = 2;
 /// Opacity of bands.
@@ -115,7 +117,7 @@ impl<'a> Prepared<'a> {
             let mut segments = self.bars(series);
             for run in runs(&series.points, |p| self.place(p)) {
                 all.extend_from_slice(&run);
-                let r = if series.marked { 0.5 * series.size } else { 0.0 };
+                let r = if series.marked { 0.5 * MARKER } else { 0.0 };
                 let around = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)];
                 all.extend(run.iter().flat_map(|p| around.map(|d| (p.0 + d.0, p.1 + d.1))));
                 if series.line.is_some() {
@@ -349,7 +351,7 @@ fn with_looks(layers: &[Layer]) -> Vec<(&Series, Look)> {
     let (mut colours, mut shapes) = ((0..).map(Colour::cycle), (0..).map(Shape::cycle));
     let look = |s: &Series| {
         let colour = s.colour.or_else(|| colours.next()).unwrap_or(Colour::BLACK);
-        let mut shape = || s.shape.or_else(|| shapes.next()).map(|shape| (shape, s.size));
+        let mut shape = || s.shape.or_else(|| shapes.next()).map(|shape| (shape, MARKER));
         let marker = if s.marked { shape() } else { None };
         Look { colour, line: s.line, width: s.width, marker, open: s.open }
     };
