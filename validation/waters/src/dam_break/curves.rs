@@ -6,10 +6,12 @@ use super::{
     DamSettings,
     measure::{PROBES, SENSORS},
     metrics,
-    plan::{self, Group},
-    reference::{self, Curve, Lobovsky, VolumeOfFluid, front, scaled, until},
+    plan::{self, Group, Row},
+    reference::{
+        Curve, LOBOVSKY, MARTIN_MOYCE, MODEL, arrival, depth, front, front_from, height, pressure,
+        until,
+    },
 };
-use crate::water::curve;
 use base::record::Record;
 use harness::{
     case::Tier,
@@ -17,63 +19,61 @@ use harness::{
 };
 use report::{Axis, sig};
 
-/// A panel over time until an end: title, axes, curves of runs, and those measured and (without a name) by
-/// volume of fluid.
-fn panel(
-    title: String,
-    ([x, y], end): ([&str; 2], f64),
-    lines: Vec<CurveOf>,
-    curves: [&Curve; 2],
-) -> CurvePanel {
-    let [measured, other] = curves.map(|curve| until(curve, end));
-    let (x, y) = (Axis::linear(x).range(0.0, end), Axis::linear(y));
-    let references = vec![("experiment".into(), measured), (String::new(), other)];
-    CurvePanel { title, x, y, lines, references, symbols: false }
+/// Panels over time until an end, of the judged runs of the best variant and of the paper's.
+struct Panels {
+    tier: Tier,
+    group: Group,
+    of: Vec<CurvePanel>,
+}
+
+impl Panels {
+    /// Adds one: title, axes, end, curves of runs, those measured and (without a name) by volume of fluid.
+    fn add(
+        &mut self,
+        title: String,
+        ([x, y], end): ([&str; 2], f64),
+        points: impl Fn(&Record) -> Curve + Clone + Send + Sync + 'static,
+        curves: [&Curve; 2],
+    ) -> &mut CurvePanel {
+        let table = plan::table(self.tier);
+        let line = |row: &Row| CurveOf {
+            name: format!("{}, {} spacings", row.variant, row.settings.n),
+            spec: row.run.spec.clone(),
+            points: Box::new(points.clone()),
+        };
+        let shown = table.of(self.group).filter(|row| ["modern", "seed"].contains(&row.variant));
+        let [measured, other] = curves.map(|curve| until(curve, end));
+        let place = self.of.len();
+        self.of.push(CurvePanel {
+            title,
+            x: Axis::linear(x).range(0.0, end),
+            y: Axis::linear(y),
+            lines: shown.map(line).collect(),
+            references: vec![("experiment".into(), measured), (String::new(), other)],
+            symbols: false,
+        });
+        &mut self.of[place]
+    }
 }
 
 /// Both figures.
 pub fn curves(tier: Tier) -> Vec<Curves> {
-    // Packages are embedded and checked by a test.
-    let model = VolumeOfFluid::load().unwrap_or_default();
-    vec![column(tier, &model), tank(tier, &model)]
+    vec![column(tier), tank(tier)]
 }
 
-/// Curves of the judged runs of the best variant and of the paper's.
-fn lines(
-    tier: Tier,
-    group: Group,
-    points: impl Fn(&Record) -> Curve + Clone + Send + Sync + 'static,
-) -> Vec<CurveOf> {
-    let table = plan::table(tier);
-    let shown = table.of(group).filter(|row| ["modern", "seed"].contains(&row.variant));
-    let line = |row: &plan::Row| CurveOf {
-        name: format!("{}, {} spacings", row.variant, row.settings.n),
-        spec: row.run.spec.clone(),
-        points: Box::new(points.clone()),
-    };
-    shown.map(line).collect()
-}
-
-fn column(tier: Tier, model: &VolumeOfFluid) -> Curves {
-    let [measured_front, measured_height] = reference::martin_moyce().unwrap_or_default();
-    let height = |record: &Record| {
+fn column(tier: Tier) -> Curves {
+    let mut panels = Panels { tier, group: Group::Free, of: Vec::new() };
+    let [measured_front, measured_height] = &*MARTIN_MOYCE;
+    let axes = (["time T = t √(2g/a) [-]", "front Z [a]"], 3.6);
+    panels.add("front".into(), axes, front, [measured_front, &MODEL.free[0]]);
+    let fallen = |record: &Record| {
         let DamSettings { width: a, gravity: g, .. } = record.settings_as();
-        curve(record, "series", ["t", "height"], [(a / g).sqrt(), 2.0 * a])
+        height(record, (a / g).sqrt())
     };
     // Its clock is in √(H/g), and H is 2a.
-    let model_height = scaled(&model.free[1], FRAC_1_SQRT_2, 1.0, 0.0);
-    let fronts = panel(
-        "front".into(),
-        (["time T = t √(2g/a) [-]", "front Z [a]"], 3.6),
-        lines(tier, Group::Free, front),
-        [&measured_front, &model.free[0]],
-    );
-    let heights = panel(
-        "residual height".into(),
-        (["time τ = t √(g/a) [-]", "height [2a]"], 2.6),
-        lines(tier, Group::Free, height),
-        [&measured_height, &model_height],
-    );
+    let model = MODEL.free[1].iter().map(|(t, y)| (t / FRAC_1_SQRT_2, *y)).collect();
+    let axes = (["time τ = t √(g/a) [-]", "height [2a]"], 2.6);
+    panels.add("residual height".into(), axes, fallen, [measured_height, &model]);
     let caption = "Front from the back wall (left) and height near it, at 0.2 a (right), of a water column \
                    of width a = 57.15 mm and height 2a. Black is the experiment of Martin & Moyce 1952, \
                    whose fronts are digitised within 0.1 a, and grey volume of fluid, which solves the same \
@@ -83,65 +83,43 @@ fn column(tier: Tier, model: &VolumeOfFluid) -> Curves {
         title: "Martin & Moyce 1952: front and height".into(),
         caption: caption.into(),
         columns: 2,
-        panels: vec![fronts, heights],
+        panels: panels.of,
     }
 }
 
-/// A length of the tank \[H\] over time \[(H/g)^(1/2)\].
-fn length(record: &Record, name: &str) -> Curve {
-    let s: DamSettings = record.settings_as();
-    curve(record, "series", ["t", name], [s.unit_time(), s.height])
-}
-
-/// The level at a probe, likewise.
-pub fn depth(record: &Record, probe: usize) -> Curve {
-    length(record, &format!("H{}", probe + 1))
-}
-
-/// The pressure on a sensor \[ρ g H\] over time.
-pub fn pressure(record: &Record, sensor: usize) -> Curve {
-    curve(record, "pressure", ["t", &format!("P{}", sensor + 1)], [1.0, 1.0])
-}
-
-fn tank(tier: Tier, model: &VolumeOfFluid) -> Curves {
-    let lobovsky = Lobovsky::load().unwrap_or_default();
+fn tank(tier: Tier) -> Curves {
+    let mut panels = Panels { tier, group: Group::Tank, of: Vec::new() };
     let time = "time [√(H/g)]";
-    let mut panels = vec![panel(
-        "front".into(),
-        ([time, "front from the gate [H]"], 2.8),
-        lines(tier, Group::Tank, |record| scaled(&length(record, "front"), 1.0, 1.0, 2.0)),
-        [&lobovsky.front, &scaled(&model.front, 1.0, 1.0, 2.0)],
-    )];
+    let from_gate = |record: &Record| front_from(record, record.settings_as::<DamSettings>().width);
+    // The column is 2 H long.
+    let model = MODEL.front.iter().map(|(t, x)| (*t, x - 2.0)).collect();
+    let axes = ([time, "front from the gate [H]"], 2.8);
+    panels.add("front".into(), axes, from_gate, [&LOBOVSKY.front, &model]);
     for (k, place) in PROBES.iter().enumerate() {
-        let name = format!("H{}", k + 1);
-        let lines = lines(tier, Group::Tank, move |record| depth(record, k));
-        let curves = [&lobovsky.level(k, 6.0), &model.levels[k]];
-        let title = format!("{name}, x = {place} m");
-        panels.push(panel(title, ([time, "depth [H]"], 6.0), lines, curves));
+        let title = format!("H{}, x = {place} m", k + 1);
+        let curves = [&LOBOVSKY.level(k, 6.0), &MODEL.levels[k]];
+        panels.add(title, ([time, "depth [H]"], 6.0), move |record| depth(record, k), curves);
     }
     let since = |curve: &Curve, arrival: f64| -> Curve {
         let from = curve.iter().map(|(t, p)| (t - arrival, *p));
         from.filter(|(t, _)| *t >= 0.0).collect()
     };
-    let [measured, computed] = [&lobovsky.pressure, &model.pressure]
-        .map(|p| p.each_ref().map(|of| since(of, reference::arrival(&p[0]))));
-    let aside = since(&lobovsky.aside, reference::arrival(&lobovsky.pressure[0]));
+    let [theirs, models] = [&LOBOVSKY.pressure, &MODEL.pressure].map(|p| arrival(&p[0]));
     for (k, height) in SENSORS.iter().enumerate() {
-        let name = format!("P{}", k + 1);
-        let title = format!("{name}, {} mm above the floor", sig(1e3 * height, 2));
+        let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
         let arrived = move |record: &Record| {
             // NaN, so that no curve is drawn, if the wave did not arrive.
             let arrival = record.value(metrics::ARRIVAL).unwrap_or(f64::NAN);
             since(&pressure(record, k), arrival)
         };
         let axes = (["time since arrival [√(H/g)]", "pressure [ρ g H]"], 3.4);
-        let lines = lines(tier, Group::Tank, arrived);
-        let of = panel(title, axes, lines, [&measured[k], &computed[k]]);
-        let mut of = CurvePanel { y: of.y.range(-0.2, 3.5), ..of };
+        let curves = [(&LOBOVSKY.pressure[k], theirs), (&MODEL.pressure[k], models)]
+            .map(|(curve, arrival)| since(curve, arrival));
+        let panel = panels.add(title, axes, arrived, curves.each_ref());
+        panel.y = panel.y.clone().range(-0.2, 3.5);
         if k == 1 {
-            of.references.push((String::new(), aside.clone()));
+            panel.references.push((String::new(), since(&LOBOVSKY.aside, theirs)));
         }
-        panels.push(of);
     }
     let caption = "Front, depth at four stations, and pressure on four sensors in the far wall, of a column \
                    600 mm long and 300 mm high in a tank of 1610 mm. Black is the experiment of Lobovsky et \
@@ -153,6 +131,6 @@ fn tank(tier: Tier, model: &VolumeOfFluid) -> Curves {
         title: "Lobovsky et al. 2014: front, levels, pressures".into(),
         caption: caption.into(),
         columns: 3,
-        panels,
+        panels: panels.of,
     }
 }

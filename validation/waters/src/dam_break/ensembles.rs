@@ -1,10 +1,7 @@
 //! The column in the tank from twenty starts that differ by a millionth of a spacing: until when levels and
 //! impulses agree, and how what comes after the jet has fallen back is distributed.
 
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::MetricName,
-};
+use base::{gate::*, record::MetricName};
 use harness::{
     case::Tier,
     declare::{Comparison, Ensemble, Ensembles, History, Number},
@@ -12,52 +9,47 @@ use harness::{
 
 use super::{
     NAME,
-    curves::{depth, pressure},
-    measure::PROBES,
-    metrics::{self, IMPULSE, LEVELS},
+    metrics::{IMPULSE, LEVELS, PEAK},
     plan::{self, Group},
-    reference::{Curve, Lobovsky, VolumeOfFluid, WINDOWS, arrival, impulse, mean, trapezoid},
+    reference::{
+        Curve, LEVELS_UNTIL, LOBOVSKY, MODEL, WINDOWS, arrival, depth, impulse, mean, pressure,
+        trapezoid,
+    },
 };
-/// When the levels and impulses of what comes after the jet has closed are taken \[(H/g)^(1/2)\].
-const LATE: [f64; 2] = [6.0, plan::UNTIL];
-/// Until when single runs are compared: levels; impulses since the arrival at P1 \[(H/g)^(1/2)\].
-const LEVELS_UNTIL: f64 = 5.5;
 
-/// All of them; none in the quick tier.
+/// When the levels of what comes after the jet has closed are taken \[(H/g)^(1/2)\].
+const LATE: [f64; 2] = [6.0, plan::UNTIL];
+
+/// Both of them, of `modern` and `seed`; none in the quick tier.
 pub fn ensembles(tier: Tier, comparisons: &[Comparison]) -> Option<Ensembles> {
     let table = plan::table(tier);
-    let mut of: Vec<Ensemble> = Vec::new();
-    for row in table.of(Group::Ensemble) {
-        let id = format!("{NAME}.ensemble.{}.{}", row.variant, row.settings.n);
-        match of.iter_mut().find(|ensemble| ensemble.id == id) {
-            Some(ensemble) => ensemble.members.push(row.run.spec.clone()),
-            None => of.push(Ensemble {
-                histories: histories(&id, row.variant, comparisons),
-                numbers: numbers(&id, row.variant, row.settings.n),
-                variant: row.variant,
-                label: format!("H/dx = {}", row.settings.n),
-                members: vec![row.run.spec.clone()],
-                is_drawn: row.settings.n == plan::ENSEMBLES[1],
-                id,
-            }),
+    let ensemble = |variant: &'static str| {
+        let rows = table.of(Group::Ensemble).filter(|row| row.variant == variant);
+        let id = format!("{NAME}.ensemble.{variant}.20");
+        Ensemble {
+            histories: histories(&id, variant, comparisons),
+            numbers: numbers(&id, variant),
+            variant,
+            label: "H/dx = 20".into(),
+            members: rows.map(|row| row.run.spec.clone()).collect(),
+            is_drawn: true,
+            id,
         }
-    }
+    };
     let about = "The tank of Lobovsky et al. from twenty starts whose particles are off their lattice by \
                  up to a millionth of a spacing, far less than any method or experiment resolves. Levels \
                  are compared with two series of the experiment. Of its pressures there is one event, and \
                  of P2 a second sensor; the hundred repetitions of SPHERIC 10 (first peak 3710 ± 732 Pa) \
-                 are of another tank and say nothing of this one. Two spacings have different \
+                 are of another tank and say nothing of this one. Ensembles with 30 spacings have other \
                  distributions, by more than their intervals: what comes beyond the horizon depends on the \
                  spacing too, so the scatter of an ensemble is not its error.";
     let (id, time) = ("dam-break-ensembles".into(), ["time", "√(H/g)"]);
-    (!of.is_empty()).then(|| Ensembles { id, about: about.into(), time, of })
+    let of = || ["modern", "seed"].map(ensemble).into();
+    (tier != Tier::Quick).then(|| Ensembles { id, about: about.into(), time, of: of() })
 }
 
 /// Levels and impulses. Until the end of what single runs are compared by, all must agree.
 fn histories(id: &str, variant: &str, comparisons: &[Comparison]) -> Vec<History> {
-    // Packages are embedded and checked by a test.
-    let lobovsky = Lobovsky::load().unwrap_or_default();
-    let model = VolumeOfFluid::load().unwrap_or_default();
     let tolerance = |metric: MetricName, unit: f64| {
         let comparison = comparisons.iter().find(|of| of.metric == metric);
         comparison.cloned().map(|of| (of, unit))
@@ -76,29 +68,28 @@ fn histories(id: &str, variant: &str, comparisons: &[Comparison]) -> Vec<History
             name: format!("level {name} [H]"),
             points: Box::new(move |record| depth(record, k)),
             tolerance: tolerance(LEVELS.rms_shifted.into(), 1.0)?,
-            measured: lobovsky.levels[k].clone(),
+            measured: LOBOVSKY.levels[k].clone(),
             is_drawn: k > 1,
             gate,
         })
     };
-    let [theirs, models] = [&lobovsky.pressure, &model.pressure].map(|p| arrival(&p[0]));
+    let [theirs, models] = [&LOBOVSKY.pressure, &MODEL.pressure].map(|p| arrival(&p[0]));
     let pressed = |k: usize| {
         let name = format!("P{}", k + 1);
-        let measured = &lobovsky.pressure[k];
+        let measured = &LOBOVSKY.pressure[k];
         let gate = (variant == "modern").then(|| agree(&name, models + WINDOWS[0]));
         // On the clock of the model, by which the wave arrives.
+        let later = |(t, y): (f64, f64)| (t + models - theirs, y);
         Some(History {
             name: format!("impulse on {name} [ρ g H √(H/g)]"),
             points: Box::new(move |record| summed(&pressure(record, k))),
             tolerance: tolerance(IMPULSE[k].at(1), impulse(measured, theirs, WINDOWS[0]))?,
-            measured: vec![
-                summed(measured).iter().map(|(t, y)| (t + models - theirs, *y)).collect(),
-            ],
+            measured: vec![summed(measured).into_iter().map(later).collect()],
             is_drawn: k == 0,
             gate,
         })
     };
-    (0..PROBES.len()).filter_map(level).chain((0..3).filter_map(pressed)).collect()
+    (0..4).filter_map(level).chain((0..3).filter_map(pressed)).collect()
 }
 
 /// The impulse since the start, by the trapezoidal rule.
@@ -116,106 +107,52 @@ fn late(curve: &Curve) -> Option<f64> {
     Some(mean(curve, LATE)).filter(|mean| !mean.is_nan())
 }
 
-/// The numbers whose distribution is shown.
-fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
-    // Packages are embedded and checked by a test.
-    let lobovsky = Lobovsky::load().unwrap_or_default();
-    let from = arrival(&lobovsky.pressure[0]);
-    let level = |k: usize, name: &'static str| Number {
-        name: [name, "H"],
-        value: Box::new(move |record| late(&depth(record, k))),
-        measured: lobovsky.levels[k].iter().filter_map(late).collect(),
-        gate: (k == 2).then(|| judged(id, (variant, n), Of::LevelH3)).flatten(),
+/// The numbers whose distribution is shown: two that are judged in `modern`, and the largest pressure.
+fn numbers(id: &str, variant: &str) -> Vec<Number> {
+    let highest = LOBOVSKY.pressure[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
+    let judged = |name: &str, median: &str, known, by_gravity| {
+        (variant == "modern")
+            .then(|| judged(format!("{id}.{name}.median"), median, known, by_gravity))
     };
-    let metric = |name: [&'static str; 2], metric: MetricName, measured: Vec<f64>| Number {
-        gate: None,
-        name,
-        value: Box::new(move |record| record.value(metric.clone())),
-        measured,
-    };
-    let long = |k: usize| IMPULSE[k].at(WINDOWS[1]);
-    let [one, other] =
-        [&lobovsky.pressure[1], &lobovsky.aside].map(|p| impulse(p, from, WINDOWS[1]));
-    let highest = lobovsky.pressure[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
+    let [level, impulse] =
+        ["level H3, mean of 6 ≤ t ≤ 8", "impulse on P3 during 2.5, over the measured one, less 1"];
+    let of_level = "median of the level at H3, mean of 6 ≤ t ≤ 8 [H]";
+    let of_impulse = "median of the impulse on P3 during 2.5, over the measured one, less 1";
     vec![
-        level(2, "level H3, mean of 6 ≤ t ≤ 8"),
-        level(3, "level H4, mean of 6 ≤ t ≤ 8"),
         Number {
-            name: ["pressure P1, mean of 6 ≤ t ≤ 8", "ρ g H"],
-            value: Box::new(|record| late(&pressure(record, 0))),
-            measured: Vec::new(),
+            name: [level, "H"],
+            value: Box::new(|record| late(&depth(record, 2))),
+            measured: LOBOVSKY.levels[2].iter().filter_map(late).collect(),
+            gate: judged("H3", of_level, [0.5150, 0.0108], [0.549, 0.476]),
+        },
+        Number {
+            name: [impulse, "-"],
+            value: Box::new(|record| record.value(IMPULSE[2].at(WINDOWS[1]))),
+            measured: vec![0.0],
+            gate: judged("P3", of_impulse, [0.1284, 0.0046], [0.174, 0.099]),
+        },
+        Number {
+            name: ["largest P1", "ρ g H"],
+            value: Box::new(|record| record.value(PEAK)),
+            measured: vec![highest],
             gate: None,
         },
-        metric(
-            ["impulse on P1 during 2.5, over the measured one, less 1", "-"],
-            long(0),
-            vec![0.0],
-        ),
-        metric(
-            ["impulse on P2 during 2.5, over the measured one, less 1", "-"],
-            long(1),
-            vec![0.0, other / one - 1.0],
-        ),
-        Number {
-            gate: judged(id, (variant, n), Of::ImpulseP3),
-            ..metric(
-                ["impulse on P3 during 2.5, over the measured one, less 1", "-"],
-                long(2),
-                vec![0.0],
-            )
-        },
-        metric(["largest P1", "ρ g H"], metrics::PEAK[0].into(), vec![highest]),
-        metric(["noise of P2", "ρ g H"], metrics::NOISE.into(), vec![0.020]),
     ]
 }
 
-/// A median of forty other starts of `modern`, seeds 21 to 60, and their scatter.
-struct Known {
-    n: usize,
-    of: Of,
-    median: f64,
-    scatter: f64,
-    /// The medians of twenty with 3 % more and less gravity.
-    by_gravity: [f64; 2],
-}
-
-/// What has a median that is judged.
-#[derive(Clone, Copy, PartialEq)]
-enum Of {
-    LevelH3,
-    ImpulseP3,
-}
-
-const fn known(n: usize, of: Of, [median, scatter]: [f64; 2], by_gravity: [f64; 2]) -> Known {
-    Known { n, of, median, scatter, by_gravity }
-}
-
-const KNOWN: [Known; 4] = [
-    known(20, Of::LevelH3, [0.5150, 0.0108], [0.549, 0.476]),
-    known(20, Of::ImpulseP3, [0.1284, 0.0046], [0.174, 0.099]),
-    known(30, Of::LevelH3, [0.5629, 0.0100], [0.526, 0.521]),
-    known(30, Of::ImpulseP3, [0.1218, 0.0039], [0.153, 0.083]),
-];
-
-/// The gate on a median of `modern`.
-fn judged(id: &str, (variant, n): (&str, usize), of: Of) -> Option<Gate> {
-    let is_this = |known: &&Known| variant == "modern" && known.n == n && known.of == of;
-    let Known { median, scatter, by_gravity: [more, less], .. } = KNOWN.iter().find(is_this)?;
+/// The gate on a median: `known` is that of forty other starts, seeds 21 to 60, and their scatter,
+/// `by_gravity` the medians of twenty with 3 % more and less gravity.
+fn judged(id: String, metric: &str, [median, scatter]: [f64; 2], by_gravity: [f64; 2]) -> Gate {
     // A median of normal numbers scatters by (π/2)^(1/2) = 1.25 of their mean's.
     let bound = 4.0 * 1.25 * scatter * (1.0_f64 / 20.0 + 1.0 / 40.0).sqrt();
-    let (name, metric) = match of {
-        Of::LevelH3 => ("H3", "median of the level at H3, mean of 6 ≤ t ≤ 8 [H]"),
-        Of::ImpulseP3 => {
-            ("P3", "median of the impulse on P3 during 2.5, over the measured one, less 1")
-        }
-    };
+    let [more, less] = by_gravity;
     let because = format!(
         "Forty other starts, seeds 21 to 60, have the median {median} with a scatter of {scatter}. The bound \
          is four standard errors of a difference from it of a median of twenty. With 3 % more and less \
          gravity the median is {more} and {less}."
     );
     let bound = Bound::Within(median - bound, median + bound);
-    Some(Gate::new(format!("{id}.{name}.median"), metric, bound, Evidence::Regression, because))
+    Gate::new(id, metric, bound, Evidence::Regression, because)
 }
 
 #[cfg(test)]
@@ -280,7 +217,7 @@ mod tests {
         assert!(ensembles(Tier::Quick, &[]).is_none());
         let all = declared::declaration(Tier::Full).ensembles.expect("ensembles").of;
         let count = |of: &Ensemble| (of.members.len(), of.histories.len(), of.numbers.len());
-        assert_eq!(all.iter().map(count).collect::<Vec<_>>(), [(20, 7, 8); 4]);
+        assert_eq!(all.iter().map(count).collect::<Vec<_>>(), [(20, 7, 3); 2]);
         let [one, other] = [0, 19].map(|k| all[0].members[k].clone());
         assert_eq!(one.disorder.map(|of| (of.most, of.seed)), Some((1e-6, 1)));
         assert_eq!(RunSpec { disorder: other.disorder, ..one.clone() }, other);

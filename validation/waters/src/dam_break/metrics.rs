@@ -39,12 +39,8 @@ base::metrics! {
         "most particles more than dx/2 behind bottom and sides at any time, without those that left over \
          the rim";
     OUTSIDE_END = "outside_end" ["1"] "those at the end";
-    OUTSIDE_DEPTH = "outside_depth" ["dx"]
-        "the deepest that a particle was behind bottom or sides, without those that left over the rim";
     SPILLED = "spilled" ["-"] "share of the particles that left the tank over the rim of its walls";
     MACH = "mach" ["-"] "largest speed of a particle/c0, without those that left over the rim";
-    DENSITY_MOST = "density_most" ["-"] "largest rho/rho_0 - 1, without the water that left over the rim";
-    DENSITY_LEAST = "density_least" ["-"] "least rho/rho_0 - 1, without the water that left over the rim";
     MOMENTUM_GAP = "momentum_gap" ["-"]
         "max |change of momentum - impulse of walls and gravity|/(M (g H)^(1/2))";
     MASS_ERROR = "mass_error" ["-"]
@@ -55,22 +51,11 @@ base::metrics! {
          at t (g/H)^(1/2)";
     HEIGHT_AWAY = "height_away" ["-"]
         "rms distance of the residual height/H from that of the same model by volume of fluid";
-    ARRIVAL_AWAY = "arrival_away" ["-"]
-        "arrival less that of the same model by volume of fluid, in (H/g)^(1/2)";
-    FRONT_SPEED = "front_speed" ["-"]
-        "slope of the least squares line of x/H over t (g/H)^(1/2) from 1 to 2.3, at the times of the \
-         experiment";
-    FRONT_SPEED_MEASURED = "front_speed_measured" ["-"] "the same of the experiment";
-    TONGUE = "tongue" ["-"]
-        "mean level at H4 for one (H/g)^(1/2) from when it first exceeds 0.02 H, over that of the \
-         experiment, less 1";
     ARRIVAL = "arrival" ["-"]
         "t (g/H)^(1/2) at which P1 first exceeds 0.1 rho g H; pressures are aligned by it";
-    ARRIVAL_MEASURED = "arrival_measured" ["-"]
-        "the same of the experiment, on the clock of its pressures";
+    PEAK = "peak_P1" ["-"] "largest pressure on P1/(rho g H), means over 0.01 (H/g)^(1/2)";
     NOISE = "pressure_noise" ["-"]
         "rms distance of P2/(rho g H) from its running mean over 0.101 (H/g)^(1/2)";
-    NOISE_MEASURED = "pressure_noise_measured" ["-"] "the same of the experiment, sampled at 2 kHz";
 }
 
 /// A metric of each of four probes or sensors.
@@ -83,11 +68,6 @@ const fn four(formula: &'static str, [a, b, c, d]: [&'static str; 4]) -> [Metric
     ]
 }
 
-/// Distance of each level.
-pub const LEVEL_RMS: [MetricKey; 4] = four(
-    "rms distance of the level/H from the mean of the series, as released",
-    ["H1_rms", "H2_rms", "H3_rms", "H4_rms"],
-);
 /// Distance of each level from that of the reference that shares the model.
 pub const LEVEL_AWAY: [MetricKey; 4] = four(
     "rms distance of the level/H from that of the same model by volume of fluid, until t (g/H)^(1/2) = 5.5",
@@ -103,9 +83,4 @@ pub const IMPULSE_AWAY: [MetricKey; 4] = four(
 pub const IMPULSE: [MetricKey; 4] = four(
     "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured one, less 1",
     ["impulse_P1", "impulse_P2", "impulse_P3", "impulse_P4"],
-);
-/// Peak of each sensor.
-pub const PEAK: [MetricKey; 4] = four(
-    "largest pressure/(rho g H), means over 0.01",
-    ["peak_P1", "peak_P2", "peak_P3", "peak_P4"],
 );

@@ -5,13 +5,11 @@
 //! fluid, and against conservation: mass is exact, momentum follows gravity and the force of the walls, and
 //! every term accounts for its energy.
 
-mod ablation;
 mod curves;
 mod declared;
 mod ensembles;
 mod measure;
 mod metrics;
-mod momentum;
 mod plan;
 mod reference;
 mod run;
@@ -19,15 +17,11 @@ mod setup;
 mod studies;
 
 use harness::composed::{Best, Composed, Composition, Variants};
-use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlipImages, PredictorCorrector, Pressure,
-    SingleSweep, SlipGhosts, Tait, WendlandC2, Xsph,
-};
+use solver::*;
 
 pub use setup::Dam;
 
-use crate::water::{Diffusion, Modern, Seed, Water, method};
+use crate::water::{Diffusion, Modern, Seed, method};
 
 crate::water_settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
@@ -84,75 +78,38 @@ fn modern(s: &mut DamSettings) {
 type Split = (Pressure<Tait, ArtificialStress>, NoSlipImages<ArtificialViscosity<Tait>>, BodyForce);
 /// The seed with them.
 type SeedSplit = Compose<CubicSpline, Split, (Continuity, Xsph), SlipGhosts, PredictorCorrector>;
-/// The drift of `modern`.
+/// The drift of `modern`, and its walls.
 type Drift = (Continuity, Diffusion);
+type Walls = ExtrapolatingWall<Tait>;
 /// `modern` with artificial viscosity between water and walls too.
-type Sticking = Compose<WendlandC2, Water, Drift, ExtrapolatingWall<Tait>, Leapfrog>;
-
-/// `modern` with one pair sweep a step, in the same share of its limit.
-type Single = Modern<Drift, ExtrapolatingWall<Tait>, SingleSweep>;
+type Sticking = Modern<Drift, Walls, Leapfrog, ArtificialViscosity<Tait>>;
 
 /// The variants, each with the question that it answers.
 fn variants() -> Vec<Composition<DamSettings>> {
+    let paper = "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
+                 stress, predictor-corrector";
+    let ghosts = "the seed with ghosts; in a corner a particle has a third one, turned by half a turn about \
+                  it, with its own velocity";
+    let best = "Wendland C2, density diffusion that keeps a column at rest, leapfrog, walls that \
+                extrapolate the pressure, not below 0, so that they cannot suck, little artificial \
+                viscosity, and none between water and walls, so that water slips";
+    let slip = "the seed with ghosts that keep the velocity along the wall: is the opposite velocity what \
+                makes `ghosts` noisy?";
+    let split = "the same with the opposite velocity for viscosity alone, which so drags the water along the \
+                 wall: is it what (3) makes of the opposite velocity, or the drag?";
+    let sticking = "modern with artificial viscosity that sees the particles of the walls too, which stand \
+                    still: how much do they drag the water?";
+    let single = "modern with one pair sweep a step in place of two, in the same share of its limit: is its \
+                  error cheaper?";
+    let slower = |s: &mut DamSettings| (s.alpha, s.courant) = (0.02, 0.28);
     Variants::of(&run::PROGRAM)
-        .with(
-            "seed",
-            "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
-             stress, predictor-corrector",
-            method::<Seed<InterfaceWall>>(),
-            seed,
-        )
-        .with(
-            "ghosts",
-            "the seed with ghosts; in a corner a particle has a third one, turned by half a turn about \
-             it, with its own velocity",
-            method::<Seed<Ghosts>>(),
-            seed,
-        )
-        .with(
-            "modern",
-            "Wendland C2, density diffusion that keeps a column at rest, leapfrog, walls that \
-             extrapolate the pressure, not below 0, so that they cannot suck, little artificial \
-             viscosity, and none between water and walls, so that water slips",
-            method::<Modern>(),
-            modern,
-        )
-        .with(
-            "ghosts-slip",
-            "the seed with ghosts that keep the velocity along the wall: is the opposite velocity what makes \
-             `ghosts` noisy?",
-            method::<Seed<SlipGhosts>>(),
-            seed,
-        )
-        .with(
-            "ghosts-split",
-            "the same with the opposite velocity for viscosity alone, which so drags the water along the \
-             wall: is it what (3) makes of the opposite velocity, or the drag?",
-            method::<SeedSplit>(),
-            seed,
-        )
-        .with(
-            "modern-interface",
-            "modern with interface and wall particles: what do walls buy that extrapolate the pressure?",
-            method::<Modern<Drift, InterfaceWall>>(),
-            modern,
-        )
-        .with(
-            "modern-sticking",
-            "modern with artificial viscosity that sees the particles of the walls too, which stand still: \
-             how much do they drag the water?",
-            method::<Sticking>(),
-            modern,
-        )
-        .with(
-            "single-sweep",
-            "modern with one pair sweep a step in place of two: is its error cheaper?",
-            method::<Single>(),
-            |s| {
-                modern(s);
-                s.courant = 0.28;
-            },
-        )
+        .with("seed", paper, method::<Seed<InterfaceWall>>(), seed)
+        .with("ghosts", ghosts, method::<Seed<Ghosts>>(), seed)
+        .with("modern", best, method::<Modern>(), modern)
+        .with("ghosts-slip", slip, method::<Seed<SlipGhosts>>(), seed)
+        .with("ghosts-split", split, method::<SeedSplit>(), seed)
+        .with("modern-sticking", sticking, method::<Sticking>(), modern)
+        .with("single-sweep", single, method::<Modern<Drift, Walls, SingleSweep>>(), slower)
         .all
 }
 

@@ -40,12 +40,6 @@ pub struct Dam {
     pub rules: Rules,
 }
 
-/// Whether water at this place counts when the foremost particle is looked for, in a column of this height
-/// \[m\]: below a quarter of it, so that spray does not.
-pub fn near_the_floor(place: Vector2<f64>, height: f64) -> bool {
-    place.y < 0.25 * height
-}
-
 impl Dam {
     /// Checks the settings and derives the rest for a method.
     pub fn new(s: &DamSettings, method: &WaterMethod, context: &Context) -> Result<Self, RunError> {
@@ -127,6 +121,15 @@ impl Dam {
 }
 
 #[cfg(test)]
+impl Dam {
+    /// The numbers of a run of `modern` with settings changed.
+    pub fn changed(set: impl FnOnce(&mut DamSettings)) -> Result<Self, RunError> {
+        let settings = super::DAM_BREAK.chosen("modern", set);
+        Self::new(&settings, &water::method::<water::Modern>(), &Context::default())
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use harness::case::Case;
     use solver::InterfaceWall;
@@ -137,15 +140,9 @@ mod tests {
         water::{Modern, Seed, method},
     };
 
-    fn dam(set: impl FnOnce(&mut DamSettings)) -> Result<Dam, RunError> {
-        let spec = DAM_BREAK.spec("modern", set);
-        let settings = serde_json::from_value(spec.settings).expect("settings of the case");
-        Dam::new(&settings, &method::<Modern>(), &Context::default())
-    }
-
     #[test]
     fn the_column_fills_its_corner_and_bears_its_weight() {
-        let dam = dam(|_| {}).unwrap();
+        let dam = Dam::changed(|_| {}).unwrap();
         assert!(dam.is_martin_moyce() && !dam.is_lobovsky());
         assert!((dam.settings.unit_time() - (0.1143_f64 / 9.81).sqrt()).abs() < 1e-12);
         assert!((dam.unit_pressure() - 1121.283).abs() < 1e-3);
@@ -163,10 +160,17 @@ mod tests {
 
     #[test]
     fn the_experiments_are_told_apart_at_any_scale() {
-        let tank = dam(lobovsky).unwrap();
+        let tank = Dam::changed(lobovsky).unwrap();
         assert!(tank.is_lobovsky() && !tank.is_martin_moyce());
-        assert!(!dam(|s| s.tank = 0.2).unwrap().is_martin_moyce(), "its end would be reached");
-        assert!(dam(|s| (s.width, s.height, s.tank) = (1.0, 2.0, 10.0)).unwrap().is_martin_moyce());
+        assert!(
+            !Dam::changed(|s| s.tank = 0.2).unwrap().is_martin_moyce(),
+            "its end would be reached"
+        );
+        assert!(
+            Dam::changed(|s| (s.width, s.height, s.tank) = (1.0, 2.0, 10.0))
+                .unwrap()
+                .is_martin_moyce()
+        );
     }
 
     /// A step of 167 s, allowed by --allow-unstable, made lists of a million neighbours for a million
@@ -182,11 +186,11 @@ mod tests {
     #[test]
     fn scenes_that_make_no_sense_are_refused_with_their_setting() {
         let is_too_much =
-            |set: fn(&mut DamSettings)| matches!(dam(set), Err(RunError::TooLong { .. }));
-        assert!(matches!(dam(|s| s.tank = 0.05), Err(RunError::TooMuch { .. })));
+            |set: fn(&mut DamSettings)| matches!(Dam::changed(set), Err(RunError::TooLong { .. }));
+        assert!(matches!(Dam::changed(|s| s.tank = 0.05), Err(RunError::TooMuch { .. })));
         assert!(is_too_much(|s| (s.n, s.tank) = (2000, 100.0)));
         assert!(is_too_much(|s| s.courant = 1e-6));
-        assert!(matches!(dam(|s| s.courant = 2.0), Err(RunError::TimeStep { .. })));
+        assert!(matches!(Dam::changed(|s| s.courant = 2.0), Err(RunError::TimeStep { .. })));
         let unused = DAM_BREAK.spec("modern", |s| s.xsph = 0.25);
         assert!(matches!(
             DAM_BREAK.run(&unused, &Context::default()),

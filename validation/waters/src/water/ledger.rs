@@ -1,4 +1,5 @@
-//! The energy of a run of water through time, and what each term has done to it.
+//! The balances of a run of water: its energy through time against what each term has done to it, and its
+//! momentum against the impulse of walls and gravity.
 
 use base::record::{MetricKey, Profile, Record};
 use harness::method::Medium;
@@ -7,6 +8,7 @@ use maths::metrics::{
     energy::{Energy, Water, water_slope},
 };
 use nalgebra::Vector2;
+use solver::Stepper;
 
 base::metrics! {
     ENERGY_GAP = "energy_gap" ["-"] "max over samples of |E(t) - E(0) - work of all terms|/{}";
@@ -32,33 +34,65 @@ pub const ITEMS: [(&str, MetricKey); 5] = [
 pub const METRICS: [MetricKey; 6] =
     [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
 
-/// Keeps the budget of a run.
+/// Keeps the balances of a run.
 pub struct Ledger {
     water: Water,
     account: Account,
+    /// Momentum at the start \[kg/s\], force at the last sample \[N/m\], impulse since the start by the
+    /// trapezoidal rule, and the largest difference of momentum that it does not explain \[kg/s\].
+    start: Vector2<f64>,
+    force: Vector2<f64>,
+    impulse: Vector2<f64>,
+    unexplained: f64,
     /// t \[s\], kinetic, potential and compression energy, then the works of [`ITEMS`] \[J/m\].
     rows: Vec<[f64; 9]>,
 }
 
-harness::observed! { Ledger: changes(account, rows), parts(), stays(water) }
+harness::observed! {
+    Ledger: changes(account, start, force, impulse, unexplained, rows), parts(), stays(water)
+}
 
 impl Ledger {
     /// An empty ledger of water of this medium.
     pub fn new(medium: &Medium) -> Self {
         let water = Water { eos: medium.eos, gravity: medium.acceleration };
-        Self { water, account: Account::default(), rows: Vec::new() }
+        let [start, force, impulse] = [Vector2::zeros(); 3];
+        let (account, unexplained, rows) = (Account::default(), 0.0, Vec::new());
+        Self { water, account, start, force, impulse, unexplained, rows }
     }
 
-    /// Takes a sample of a simulation that has been brought to a time. Returns the force of all pairs on the
-    /// water \[N/m\].
-    pub fn sample(&mut self, simulation: &mut dyn Metered<()>) -> Vector2<f64> {
-        let (powers, force) = simulation.powers(&water_slope(&self.water));
-        self.account.add(simulation.time(), &powers);
+    /// Takes a sample of a simulation that has been brought to a time.
+    pub fn sample(&mut self, simulation: &mut dyn Metered<()>) {
+        let (powers, pairs) = simulation.powers(&water_slope(&self.water));
+        let time = simulation.time();
+        self.account.add(time, &powers);
+        self.balance_momentum(&*simulation, pairs);
         let Energy { kinetic, potential, compression } = self.water.energy(&*simulation);
         let [a, b, c, d, e] = ITEMS.map(|(name, _)| self.account.work(name));
-        let time = simulation.time();
         self.rows.push([time, kinetic, potential, compression, a, b, c, d, e]);
-        force
+    }
+
+    /// Adds the impulse since the last sample; `pairs` is the force of all pairs on the water \[N/m\].
+    fn balance_momentum(&mut self, simulation: &dyn Stepper<()>, pairs: Vector2<f64>) {
+        let (mut momentum, mut force) = (Vector2::zeros(), pairs);
+        for (mass, p) in simulation.fluid() {
+            momentum += p.velocity * mass;
+            force += self.water.gravity * mass;
+        }
+        match self.rows.last() {
+            None => self.start = momentum,
+            Some(last) => {
+                self.impulse += (self.force + force) * (0.5 * (simulation.time() - last[0]));
+                let gap = (momentum - self.start - self.impulse).norm();
+                self.unexplained = self.unexplained.max(gap);
+            }
+        }
+        self.force = force;
+    }
+
+    /// The largest change of momentum that walls and gravity do not explain \[kg/s\]; NaN without a sample.
+    pub fn unexplained_momentum(&self) -> f64 {
+        if self.rows.is_empty() { f64::NAN } else { self.unexplained }
     }
 
     /// The largest |E(t) − E(0) − work(t)| so far \[J/m\].
@@ -101,6 +135,26 @@ mod tests {
         let mut simulation = (method::<Modern>().build)(parts).expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         simulation
+    }
+
+    #[test]
+    fn momentum_that_no_force_explains_is_the_gap() {
+        let medium = method::<Modern>().medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
+        let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
+        // A free fall: gravity gives what the water has.
+        let mut falling = particles(&medium, 0.0, Vector2::zeros());
+        let mut ledger = Ledger::new(&medium);
+        for k in 0..4 {
+            falling.advance(0.01 * f64::from(k), 1e-3, &mut ());
+            ledger.sample(&mut *falling);
+        }
+        assert!(ledger.unexplained_momentum() < 1e-12, "{:e}", ledger.unexplained_momentum());
+        // A kick of all masses, of 6 kg/m, and then a smaller one: the largest counts.
+        let mut ledger = Ledger::new(&Medium { acceleration: Vector2::zeros(), ..medium });
+        for v in [Vector2::zeros(), Vector2::new(0.3, 0.4), Vector2::new(0.1, 0.0)] {
+            ledger.sample(&mut *particles(&medium, 0.0, v));
+        }
+        assert!((ledger.unexplained_momentum() - 6.0 * 0.5).abs() < 1e-9);
     }
 
     #[test]

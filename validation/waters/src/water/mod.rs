@@ -6,23 +6,21 @@
 
 pub mod ledger;
 
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::{MetricName, Record},
-};
+use base::record::Record;
 use harness::{
     limits::Limits,
     method::{self, FirstRow, Medium, Method, Standard},
 };
 use maths::{
+    exact,
     geometry::Tank,
     metrics::budget::{Metered, WaterDrift, WaterForces},
 };
 use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, ExtrapolatingWall, FluidPairs, InterfaceWall, Leapfrog, Mirrors, Open,
-    PredictorCorrector, Pressure, Role, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+    DensityDiffusion, ExtrapolatingWall, FluidPairs, Leapfrog, PredictorCorrector, Pressure, Role,
+    Tait, WendlandC2, Xsph, terms::Hydrostatic,
 };
 
 pub use ledger::Ledger;
@@ -34,32 +32,15 @@ pub type Seed<W, I = PredictorCorrector> =
     Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), W, I>;
 /// Density diffusion that leaves a column at rest alone.
 pub type Diffusion = DensityDiffusion<Hydrostatic>;
-/// The best known settings; water slips along boundary particles.
-pub type Modern<D = (Continuity, Diffusion), W = ExtrapolatingWall<Tait>, I = Leapfrog> =
-    Compose<WendlandC2, Water<(), <W as Beside>::Viscosity>, D, W, I>;
-
-/// The artificial viscosity of water beside these walls, if water slips along boundary particles: it leaves
-/// them out, because they stand still. Images have the velocity that their walls give them.
-pub trait Beside {
-    /// The term.
-    type Viscosity;
-}
-
-impl Beside for Open {
-    type Viscosity = ArtificialViscosity<Tait>;
-}
-
-impl<const SLIPS: bool> Beside for Mirrors<SLIPS> {
-    type Viscosity = ArtificialViscosity<Tait>;
-}
-
-impl Beside for InterfaceWall {
-    type Viscosity = FluidPairs<ArtificialViscosity<Tait>>;
-}
-
-impl Beside for ExtrapolatingWall<Tait> {
-    type Viscosity = FluidPairs<ArtificialViscosity<Tait>>;
-}
+/// The viscosity of water that slips along boundary particles: it leaves them out, because they stand still.
+pub type Slipping = FluidPairs<ArtificialViscosity<Tait>>;
+/// The best known settings.
+pub type Modern<
+    D = (Continuity, Diffusion),
+    W = ExtrapolatingWall<Tait>,
+    I = Leapfrog,
+    V = Slipping,
+> = Compose<WendlandC2, Water<(), V>, D, W, I>;
 
 /// A method whose simulations can say what each term does to the energy.
 pub type WaterMethod = Method<(), dyn Metered<()>>;
@@ -87,6 +68,16 @@ pub fn limits<D: ?Sized>(
     method.limits([h_over_dx, ETA2], n, &waves)
 }
 
+/// Water of a medium at rest under its gravity.
+pub fn at_rest(medium: &Medium) -> exact::Hydrostatic {
+    exact::Hydrostatic {
+        density: medium.eos.density,
+        sound_speed: medium.eos.sound_speed,
+        gamma: f64::from(medium.eos.gamma),
+        gravity: -medium.acceleration.y,
+    }
+}
+
 /// Places and roles of the particles of a tank's walls, out to the support \[m\].
 pub fn wall_particles(walls: FirstRow, tank: &Tank, support: f64) -> Vec<(Vector2<f64>, Role)> {
     let of =
@@ -99,18 +90,6 @@ pub fn wall_particles(walls: FirstRow, tank: &Tank, support: f64) -> Vec<(Vector
         }
         FirstRow::Behind => of(tank.rows_behind(support), Role::Wall).collect(),
     }
-}
-
-/// A gate on a metric, named after it.
-pub fn gate(
-    id: &str,
-    metric: impl Into<MetricName>,
-    bound: Bound,
-    evidence: Evidence,
-    because: &str,
-) -> Gate {
-    let metric = metric.into();
-    Gate::new(format!("{id}.{}", metric.name()), metric.name(), bound, evidence, because)
 }
 
 /// A column of a profile over another one, each in a unit.
