@@ -1,14 +1,9 @@
 //! Bounds of gates that are made from the row-reduced matrix are computed again.
 
-use base::gate::Gate;
-use fluids::{
-    channel::{Flow, TIMES, matrices::*},
-    couette::COUETTE as CASE,
-};
-use harness::case::{Case, Tier};
+use fluids::channel::{Flow, GHOSTS, TIMES};
 use maths::exact::{Couette, Poiseuille};
 use nalgebra::DVector;
-use solver::{Kernel, QuinticSpline, WendlandC2};
+use solver::{Kernel, QuinticSpline};
 use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
 
 const COUETTE: Couette = Couette { v0: 1.0, l: 1.0, nu: 1.0 };
@@ -59,17 +54,6 @@ fn assert_near(found: f64, printed: f64, tolerance: f64) {
 }
 
 #[test]
-fn the_errors_of_walls_that_extrapolate_are_those_of_the_matrix() {
-    for (rows, printed) in EXTRAPOLATED {
-        for (flow, printed) in [Flow::Couette, Flow::Poiseuille].into_iter().zip(printed) {
-            let wall = WallRule::Adami;
-            let model = model::<QuinticSpline>((flow, rows, 1.0), wall, Alignment::Aligned);
-            assert_near(error_at(flow, &model, 1.0), printed, 0.02);
-        }
-    }
-}
-
-#[test]
 fn the_errors_of_ghost_walls_are_those_of_the_matrices() {
     for (flow, rows, printed) in GHOSTS {
         let error = |alignment| {
@@ -85,39 +69,10 @@ fn the_errors_of_ghost_walls_are_those_of_the_matrices() {
         assert_near(a.min(b), printed[0], 1e-3);
         assert_near(a.max(b), printed[1], 1e-3);
     }
-    let of = (Flow::Couette, 20, 1.0);
-    let model = model::<QuinticSpline>(of, WallRule::Ghosts, Alignment::Aligned);
-    let exact = error_at(Flow::Couette, &model, 0.1);
-    assert_near(exact, IN_COLUMNS, 1e-4);
-    assert!(IN_COLUMNS <= exact, "{exact}");
     // With 40 rows and more the bound of `stiff` is the goal of 0.1 %.
     let of = (Flow::Couette, 40, 1.0);
-    let model = self::model::<QuinticSpline>(of, WallRule::Ghosts, Alignment::Aligned);
+    let model = model::<QuinticSpline>(of, WallRule::Ghosts, Alignment::Aligned);
     assert!(error_at(Flow::Couette, &model, 0.1) < 8e-4);
-}
-
-/// The bounds of all smoothing lengths are made from these errors, with the steps of the runs.
-#[test]
-fn the_errors_of_smoothing_lengths_are_those_of_the_matrices() {
-    let mut seen = 0;
-    let is_asked = |gate: &Gate| gate.id.starts_with("extremes.smoothing.");
-    let plan = CASE.plan(Tier::Full).into_iter();
-    for spec in plan.filter(|run| run.gates.iter().any(is_asked)).map(|run| run.spec) {
-        let dt = CASE.rules(&spec).expect("a run").dt();
-        let ratio = spec.settings["h_over_dx"].as_f64().expect("a number");
-        let (k, model): (usize, fn(_, _, _) -> _) = match &*spec.variant {
-            "plain" => (0, model::<QuinticSpline>),
-            _ => (1, model::<WendlandC2>),
-        };
-        let of = (Flow::Couette, 20, ratio);
-        let error = |alignment| error_of_leapfrog(&model(of, WallRule::Ghosts, alignment), dt);
-        let [a, b] = ALIGNMENTS.map(error);
-        let (_, printed) = SMOOTHED.into_iter().find(|(of, _)| *of == ratio).expect("one");
-        assert_near(a.max(b), printed[k], 1e-4);
-        assert!(printed[k] <= a.max(b), "a bound that is rounded up is looser");
-        seen += 1;
-    }
-    assert_eq!(seen, 2 * SMOOTHED.len());
 }
 
 /// The length of which the bounds of orders with interface walls make use.

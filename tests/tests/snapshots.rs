@@ -8,7 +8,6 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    f64::consts::TAU,
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
@@ -322,19 +321,13 @@ fn bounds_of_rings() -> Vec<(&'static str, Bound, &'static str)> {
 /// Bounds on what no gate is on, of flow over hills at Re 50.
 fn bounds_of_hills() -> Vec<(&'static str, Bound, &'static str)> {
     let part = "parts of the body force on a period, 0.9 rho U_b^2 H, and no suction upstream";
-    let steady = "a steady flow, whose force a controller holds";
     vec![
-        ("drift", Bound::Below(0.02), "transients decay by 0.11 U_b/H, and 30 H/U_b have passed"),
-        ("drift_of_disorder", Bound::Below(0.01), "means over a fifth of the run"),
-        ("flux_ripple", Bound::Below(1e-3), steady),
-        ("force_ripple", Bound::Below(0.05), steady),
         ("hill_pressure_drag", Bound::Within(0.0, 0.9), part),
         ("hill_shear_drag", Bound::Within(0.0, 0.9), part),
         ("lid_shear_drag", Bound::Within(0.0, 0.9), part),
         ("l2_v", Bound::Below(0.04), "as good as the velocity along the channel has to be"),
         ("reattachment", Bound::Within(1.929, 7.071), "on the flat floor between two hills"),
         ("separation", Bound::Within(0.0, 1.929), "on the lee side of a hill"),
-        ("shear_error", Bound::Below(0.1), "a derivative at the wall, of ten spacings a hill"),
     ]
 }
 
@@ -402,7 +395,7 @@ fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     let walls = "walls are first order in dx where the velocity is not linear: at 8 rows some 5 %";
     match case {
         "couette" | "poiseuille" => {
-            vec![("linf", Bound::Below(0.1), walls), ("field_l2", Bound::Below(0.15), walls)]
+            vec![("linf", Bound::Below(0.1), walls)]
         }
         "acoustic_wave" => vec![
             ("momentum_error", Bound::Below(1e-9), MOMENTUM),
@@ -410,16 +403,6 @@ fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
                 "sound_factor",
                 Bound::Within(0.9, 1.0),
                 "a smoothed gradient is weaker than the gradient: by (k h)^2 of about 0.2, less",
-            ),
-            (
-                "frequency",
-                Bound::Within(0.9 * TAU, 1.17 * TAU),
-                "c0 k is 2 pi 1/s, on the compressed lattice 1.05^3 = 1.158 times that",
-            ),
-            (
-                "decay",
-                Bound::Within(0.0, 0.6),
-                "nu k^2/2 is 0.02 1/s, density diffusion adds delta h c0 k^2/2 = 0.15 1/s: both damp",
             ),
         ],
         "elastic_bar" | "spinning_disk" | "oscillating_plate" | "rubber_rings" => {
@@ -456,7 +439,6 @@ fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
                 Bound::Within(0.9, 1.05),
                 "the Laplacian, smoothed, eta^2 = 0.01 h^2",
             ),
-            ("decay", Bound::Within(0.35, 0.42), "nu k^2 = 0.395 1/s"),
         ],
     }
 }

@@ -4,17 +4,15 @@ use base::reference::Reference;
 pub use harness::case::find_in;
 use harness::case::{Case, RunError};
 
-use fluids::{
-    cavity, couette, manufactured, periodic_hill, poiseuille, taylor_couette, taylor_green,
-};
+use fluids::{cavity, channel, manufactured, periodic_hill, taylor_couette, taylor_green};
 use lattice::{extremes, operators, resting_box, wave};
 use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk};
 use waters::{dam_break, elliptic_drop, hydrostatic, still_wedge};
 
 /// Every case, in the order of the report: the five of the paper, then those that support them.
 pub const CASES: &[&dyn Case] = &[
-    &couette::COUETTE,
-    &poiseuille::POISEUILLE,
+    &channel::COUETTE,
+    &channel::POISEUILLE,
     periodic_hill::PERIODIC_HILL,
     &dam_break::DAM_BREAK,
     &rings::RUBBER_RINGS,

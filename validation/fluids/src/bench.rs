@@ -77,15 +77,10 @@ fn batch<S: Scheme>(simulation: &mut Simulation<S>, dt: f64, steps: u64) -> f64 
     }
 }
 
-/// Steps that fill this part of the budget, where one takes so many seconds.
-fn steps_in(budget: f64, seconds: f64) -> u64 {
-    ((budget / seconds) as u64).clamp(3, 1_000_000)
-}
-
 /// Seconds a step, the best of a few batches; a machine that is busy only ever makes it longer.
 pub fn seconds_per_step<S: Scheme>(simulation: &mut Simulation<S>, dt: f64, budget: f64) -> f64 {
     let first = batch(simulation, dt, 3); // touches the memory
-    let steps = steps_in(budget / 4.0, first);
+    let steps = ((budget / 4.0 / first) as u64).clamp(3, 1_000_000);
     (0..4).map(|_| batch(simulation, dt, steps)).fold(first, f64::min)
 }
 

@@ -3,11 +3,9 @@
 pub mod bench;
 pub mod cavity;
 pub mod channel;
-pub mod couette;
 pub mod manufactured;
 mod peers;
 pub mod periodic_hill;
-pub mod poiseuille;
 pub mod taylor_couette;
 pub mod taylor_green;
 mod unit_flow;
@@ -16,8 +14,8 @@ use harness::case::Case;
 
 /// The cases of the family.
 pub const CASES: &[&dyn Case] = &[
-    &couette::COUETTE,
-    &poiseuille::POISEUILLE,
+    &channel::COUETTE,
+    &channel::POISEUILLE,
     periodic_hill::PERIODIC_HILL,
     taylor_green::TAYLOR_GREEN,
     taylor_couette::TAYLOR_COUETTE,

@@ -1,21 +1,12 @@
 //! Steady flow between two cylinders, the inner one turning: exact, with one convex and one concave wall.
 
-use nalgebra::Vector2;
-use solver::{
-    Continuity, Domain, ExtrapolatingWall, InterfaceWall, NoSlip, Particle, Pressure, Role, Tait,
-    Viscosity,
-};
-
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::{Profile, Record, Status},
-};
+use base::{gate::*, record::*};
 use harness::{
-    case::{Case, Rules, RunError, Step, Tier},
-    composed::{self, Best, Composed, Composition, Program, Variants},
+    case::*,
+    composed::*,
     context::Context,
-    declare::{Accuracy, CurveOf, CurvePanel, Curves, Declaration, ErrorOf, Ladder, OrderGate},
-    method::{Medium, Method, Parts},
+    declare::*,
+    method::*,
     simulate,
     table::{Row, Table},
 };
@@ -24,7 +15,9 @@ use maths::{
     geometry::{Curve, Row as Particles},
     metrics::norms::{Scale, l2},
 };
+use nalgebra::Vector2;
 use report::Axis;
+use solver::*;
 
 use crate::{channel::Modern, unit_flow::LIMIT_BOX};
 
@@ -170,12 +163,11 @@ fn measure(flow: &TaylorCouette, particles: &[Particle], record: &mut Record) {
     record.put(L2, error.unwrap_or(f64::NAN));
     record.put(RADIAL_RMS, square.sqrt() / flow.speed);
     record.put(OUTSIDE, outside as f64);
-    let column = |of: &dyn Fn(&[f64; 3]) -> f64| fluid.iter().map(of).collect();
-    let profile = Profile::default()
-        .with("r", "inner radius", column(&|f| f[0] / flow.inner))
-        .with("u", "V", column(&|f| f[1] / flow.speed))
-        .with("u_exact", "V", column(&|f| flow.velocity(f[0]) / flow.speed));
-    record.profiles.insert("velocity".into(), profile);
+    let row =
+        |f: &[f64; 3]| [f[0] / flow.inner, f[1] / flow.speed, flow.velocity(f[0]) / flow.speed];
+    let columns = [("r", "inner radius"), ("u", "V"), ("u_exact", "V")];
+    let rows: Vec<[f64; 3]> = fluid.iter().map(row).collect();
+    record.profiles.insert("velocity".into(), Profile::of_rows(&columns, &rows));
 }
 
 fn variants() -> Vec<Composition<CylinderSettings>> {
@@ -209,10 +201,10 @@ static CASE: Composed<CylinderSettings> = Composed {
             and the outer one concave, and made of rows of particles that are spaced by their own arc \
             length.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration,
-    plan: composed::no_plan,
-    studies: composed::no_studies,
+    plan: no_plan,
+    studies: no_studies,
 };
 
 /// Flow between two cylinders.

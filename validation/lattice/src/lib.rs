@@ -5,11 +5,7 @@ pub mod operators;
 pub mod resting_box;
 pub mod wave;
 
-use harness::{
-    case::Case,
-    context::Context,
-    method::{Medium, Parts},
-};
+use harness::{case::Case, context::Context, method::*};
 use nalgebra::Vector2;
 use solver::{Domain, Particle};
 

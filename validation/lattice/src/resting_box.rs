@@ -8,34 +8,27 @@
 //! growing modes have time to show. A larger box has waves between, of which one may be stiffer: with 20
 //! limits are up to 1.6 % shorter, measured and in theory, and take twice as long to find.
 
+use base::{gate::*, random::Random, record::*, spec::Bisect};
+use harness::{
+    bisect::Growth,
+    case::*,
+    composed::*,
+    context::Context,
+    declare::*,
+    limits,
+    method::*,
+    rules::PLANNED_DT_OVER_LIMIT,
+    runner::Drive,
+    simulate,
+    table::{Row, Table},
+};
+use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
 use solver::{
     ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion, EquationOfState, Flow,
     Leapfrog, Limits, Observer, Open, PredictorCorrector, Pressure, QuinticSpline, SingleSweep,
     Split, Stepper, SuperSteps, Tait, Viscosity, terms::Always,
 };
-
-use base::{
-    functions::ln,
-    gate::{Bound, Evidence, Gate},
-    random::Random,
-    record::{Record, Status},
-    spec::Bisect,
-};
-use harness::{
-    bisect::Growth,
-    case::{Planned, Rules, RunError, Step, Tier},
-    composed::{self, Best, Composed, Composition, Program, Variants},
-    context::Context,
-    declare::{Declaration, StepLimit, StepLimits},
-    limits,
-    method::{Knob, Medium, Method, Parts},
-    rules::{PLANNED_DT, PLANNED_DT_OVER_LIMIT},
-    runner::Drive,
-    simulate,
-    table::{Row, Table},
-};
-use maths::theory::time_step::{self, Mode};
 
 use crate::{torus, wave::plain};
 
@@ -57,9 +50,6 @@ base::settings! {
         courant: f64 ["h/c0"] in 1e-9..=1e3 = 0.25,
         /// number of time steps
         steps: usize ["-"] in 4..=100000000 = 300,
-        /// do all steps; otherwise the run is over as soon as its energy exceeds a hundred times that of
-        /// the start
-        to_the_end: bool = false,
     }
 }
 
@@ -68,7 +58,6 @@ base::metrics! {
         "1 if the energy exceeded a hundred times that of the start at some step, or in the mean of the \
          last quarter of the steps 1.5 times that of the second; else 0";
     ENERGY = "energy_ratio" ["-"] "kinetic and acoustic energy at the end/at the start";
-    LASTED = "lasted" ["1"] "steps until the divergence";
 }
 
 /// A lattice at rest.
@@ -85,8 +74,8 @@ pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     variants,
     is_stable,
     declaration,
-    plan,
-    studies: composed::no_studies,
+    plan: no_plan,
+    studies: no_studies,
 };
 
 fn is_stable(record: &Record) -> bool {
@@ -220,11 +209,10 @@ fn parts(method: &Method, s: &BoxSettings) -> Parts {
 /// Watches the energy, and ends the run if it grew beyond doubt.
 struct Watch {
     growth: Growth,
-    to_the_end: bool,
     stopped: bool,
 }
 
-harness::observed! { Watch: changes(growth, stopped), parts(), stays(to_the_end) }
+harness::observed! { Watch: changes(growth, stopped), parts(), stays() }
 
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
 fn energy(simulation: &dyn Stepper<()>) -> f64 {
@@ -236,7 +224,7 @@ fn energy(simulation: &dyn Stepper<()>) -> f64 {
 
 impl Observer<()> for Watch {
     fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
-        self.stopped = self.growth.see(energy(simulation)) && !self.to_the_end;
+        self.stopped = self.growth.see(energy(simulation));
         if self.stopped { Flow::Stop } else { Flow::Continue }
     }
 }
@@ -254,7 +242,7 @@ fn run(
     let mut simulation = (method.build)(parts(method, s))?;
     let start = energy(&*simulation);
     let growth = Growth::new(start, s.steps as u64);
-    let mut watch = Watch { growth, to_the_end: s.to_the_end, stopped: false };
+    let mut watch = Watch { growth, stopped: false };
     let pressure = |density| Tait::new(1.0, 1.0).pressure(density);
     let (status, cost) = Drive::new(&mut *simulation, dt, &end, &pressure, &mut watch)
         .after_step("energy", &Watch::after_step)
@@ -268,9 +256,6 @@ fn run(
     ];
     let (name, serial) = ((RESTING_BOX.name, variant), Context::default());
     let mut record = simulate::begin(name, s, method, &numbers, &serial);
-    if let Status::Diverged { step, .. } = status {
-        record.put(LASTED, step as f64);
-    }
     let grew = matches!(status, Status::Diverged { .. }) || watch.growth.grew();
     record.put(GREW, f64::from(u8::from(grew)));
     record.put(ENERGY, energy(&*simulation) / start);
@@ -281,19 +266,8 @@ fn run(
     Ok(record)
 }
 
-/// What a run is for.
-#[derive(Clone, Copy, PartialEq)]
-enum Group {
-    /// A bisection of the time step.
-    Limit,
-    /// A step at the limit, where nothing grows.
-    At,
-    /// A step beyond it, where a run must diverge.
-    Beyond,
-}
-
-/// All runs.
-fn table(tier: Tier) -> Table<BoxSettings, Group> {
+/// All bisections.
+fn table(tier: Tier) -> Table<BoxSettings, ()> {
     const INVISCID: f64 = f64::INFINITY;
     let mut table = Table::new(&RESTING_BOX, tier);
     // The limit of a box with what damps it: c₀h/ν, α, δ.
@@ -322,86 +296,32 @@ fn table(tier: Tier) -> Table<BoxSettings, Group> {
         (SINGLE, [&[1.0, INVISCID], all]),
         (QUINTIC, [&[1.0, 10.0, INVISCID]; 2]),
     ] {
-        table.over(Group::Limit, &[variant], values, viscous(variant));
+        table.over((), &[variant], values, viscous(variant));
     }
     let [alpha, delta] = [[INVISCID, 1.0, 0.0], [INVISCID, 0.0, 1.0]];
     let together = [alpha, delta, [30.0, 0.1, 0.1]];
-    table.over(Group::Limit, &[DAMPED], [&together[..2], &together], limit(DAMPED));
-    let at = |s: &mut BoxSettings, stiffness| {
-        (s.n, s.to_the_end) = (20, true);
-        viscous(SUPER)(s, stiffness);
-    };
-    table.over(Group::At, &[SUPER], [&[1.0, 10.0]; 2], at);
-    for (variant, stiffness) in
-        [(CUBIC, INVISCID), (CUBIC, 1.0), (MIDPOINT, 1.0), (SUPER, 1.0), (SUPER, 10.0)]
-    {
-        table.over(Group::Beyond, &[variant], [&[1.05, 2.0]; 2], |s, factor| {
-            at(s, stiffness);
-            let method = method(variant);
-            s.courant = factor * time_step::time_step_limit(&modes(&method, s), method.theory);
-            s.steps = (3.0 * steps_to_divergence(&method, s) + 20.0).ceil() as usize;
-        });
-    }
-    table.judge(gates);
+    table.over((), &[DAMPED], [&together[..2], &together], limit(DAMPED));
+    table.judge(|row| vec![gate(row)]);
     table
 }
 
-/// Steps in which the fastest wave grows from the noise to the speed of sound.
-fn steps_to_divergence(method: &Method, s: &BoxSettings) -> f64 {
-    let growth = time_step::growth_per_step(&modes(method, s), method.theory, s.courant);
-    ln(1.0 / NOISE) / growth
-}
-
-/// What is judged of a run, and why.
-fn gates(Row { group, variant, settings: s, .. }: &Row<BoxSettings, Group>) -> Vec<Gate> {
-    let (method, stiffness) = (method(variant), stiffness(s));
-    let (kernel, integrator) = (method.kernel, method.integrator);
-    let factor = s.courant / time_step::time_step_limit(&modes(&method, s), method.theory);
-    let percent = (100.0 * factor).round();
-    let step = format!("extremes.step.{integrator}.{stiffness}.{}", percent / 100.0);
-    let (id, metric, bound, because) = match group {
-        Group::Limit => {
-            let damping = match s.alpha > 0.0 || s.delta > 0.0 {
-                true => format!(".alpha{}.delta{}", s.alpha, s.delta),
-                false => String::new(),
-            };
-            let h = s.h_over_dx;
-            (
-                format!("stability.{kernel}.h{h}.{integrator}.stiffness{stiffness}{damping}.ratio"),
-                String::from("measured limit/theory"),
-                Bound::Within(0.97, 1.03),
-                "Linear theory of the same box is exact. Bisection resolves 0.4 %, and the criterion of \
-                 growth 0.5 %.",
-            )
-        }
-        Group::At => (
-            step,
-            GREW.into(),
-            Bound::Equals(0.0),
-            "Up to the limit of sound and viscosity together no wave grows, however stiff viscosity is.",
-        ),
-        Group::Beyond => {
-            let share = |times: f64| ln(times) / ln(1.0 / NOISE);
-            let [low, high] = [1.0 - share(4.0 / 0.3), 1.0 + share(800.0)];
-            let expected = steps_to_divergence(&method, s);
-            (
-                step,
-                LASTED.into(),
-                Bound::Within(low * expected, high * expected),
-                "The expected number of steps is ln(c0/noise)/growth. The run may end earlier, by ln(4/0.3) \
-                 of that logarithm, because the largest of 800 normal numbers is 4 times their deviation and \
-                 30 % of compression end the run as well. It may end later, by ln(20 · 20 · 2), because the \
-                 noise of 20 × 20 particles leaves 1/20 of itself to a wave, of 800 waves one starts 20 \
-                 times lower with a chance of 1/400, and a speed of 2 c0 ends the run.",
-            )
-        }
+/// What is judged of a bisection.
+fn gate(Row { variant, settings: s, .. }: &Row<BoxSettings, ()>) -> Gate {
+    let Method { kernel, integrator, .. } = method(variant);
+    let damping = match s.alpha > 0.0 || s.delta > 0.0 {
+        true => format!(".alpha{}.delta{}", s.alpha, s.delta),
+        false => String::new(),
     };
-    let gate = Gate::new(id, metric, bound, Evidence::Theory, because);
-    vec![if *group == Group::Beyond { gate.even_if_diverged() } else { gate }]
+    let (h, stiffness) = (s.h_over_dx, stiffness(s));
+    let id = format!("stability.{kernel}.h{h}.{integrator}.stiffness{stiffness}{damping}.ratio");
+    let because = "Linear theory of the same box is exact. Bisection resolves 0.4 %, and the criterion of \
+                   growth 0.5 %.";
+    let (metric, bound) = ("measured limit/theory", Bound::Within(0.97, 1.03));
+    Gate::new(id, metric, bound, Evidence::Theory, because)
 }
 
 /// The bisection of a row, whose step is the limit of theory.
-fn bisected(row: Row<BoxSettings, Group>) -> StepLimit {
+fn bisected(row: Row<BoxSettings, ()>) -> StepLimit {
     let Row { variant, settings: s, run, .. } = row;
     let bisect = Bisect {
         setting: "courant".into(),
@@ -426,15 +346,8 @@ fn declaration(tier: Tier) -> Declaration {
     let about = "A box at rest is stable if the energy of its noise does not grow. Theory is linear \
                  stability of the same box, with every wave vector and with sound and damping together. The \
                  predictor-corrector has no limit without damping, because it grows at every step.";
-    let rows = table(tier).rows.into_iter().filter(|row| row.group == Group::Limit);
-    let limits = StepLimits::new("resting-box", about, rows.map(bisected));
+    let limits = StepLimits::new("resting-box", about, table(tier).rows.into_iter().map(bisected));
     Declaration { limits: Some(limits), ..Declaration::default() }
-}
-
-/// The runs that are not bisections.
-fn plan(tier: Tier) -> Vec<Planned> {
-    let rows = table(tier).rows.into_iter().filter(|row| row.group != Group::Limit);
-    rows.map(|Row { run, .. }| Planned { spec: run.spec.allow_unstable(), ..run }).collect()
 }
 
 #[cfg(test)]
@@ -445,9 +358,9 @@ mod tests {
     use harness::case::Case;
 
     #[test]
-    fn boxes_have_the_limits_of_theory_and_diverge_beyond_them() {
+    fn boxes_have_the_limits_of_theory() {
         let judged = judged(&[&RESTING_BOX]);
-        assert_eq!(judged.len(), 6 + 3 + 4 + 2 + 3 + 2 + 2 + 10);
+        assert_eq!(judged.len(), 6 + 3 + 4 + 2 + 3 + 2);
         for judged in &judged {
             let (id, value) = (&judged.gate.id, judged.judgement.value);
             assert!(!judged.judgement.verdict.is_failure(), "{id}: {value:?}");

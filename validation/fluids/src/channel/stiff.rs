@@ -3,20 +3,16 @@
 
 use super::{
     ChannelSettings, Flow,
-    matrices::IN_COLUMNS,
     measure::L2,
-    runs::{ChannelTable, For},
+    plan::{ChannelTable, For},
 };
-use base::{
-    gate::{Bound, Cause, Evidence, Gate},
-    record::Record,
-};
+use base::{gate::*, record::Record};
 use harness::{columns::Columns, runs::Runs, study::Study};
 use report::Cell;
 
-/// Reynolds numbers, and the share of the pair interactions of `modern` that is allowed. At the least one
+/// Reynolds numbers, and the share of the pair interactions of `modern` that is allowed. At the lower one
 /// sound limits no step any more, so that the cost is that of accuracy.
-pub const REYNOLDS: [(f64, f64); 3] = [(0.5, 1.0 / 5.0), (0.0125, 1.0 / 10.0), (1e-4, 1.0 / 10.0)];
+pub const REYNOLDS: [(f64, f64); 2] = [(0.5, 1.0 / 5.0), (1e-4, 1.0 / 10.0)];
 
 static SOUND: Cause = Cause::new(
     "Morris' rule makes sound in Poiseuille flow 2.8 times as fast as in Couette flow, and sound sets the \
@@ -47,34 +43,24 @@ fn gates(flow: Flow, pair: &Pair) -> Vec<(Gate, f64)> {
     let ChannelSettings { rows, re, .. } = *pair.0;
     let id = |what: &str| format!("{}.stiff.{rows}.re{re}.{what}", flow.name());
     let [modern, error] = errors(pair, flow);
-    let spacing = match flow {
-        Flow::Couette if rows > 20 => 0.0,
-        Flow::Couette => IN_COLUMNS,
-        Flow::Poiseuille if modern.is_finite() => modern,
-        Flow::Poiseuille => 0.0,
-    };
-    let because = "The bound is 0.1 %, or where the spacing allows no less its error and 0.02 % for time and \
-                   motion: in Couette flow that of the row-reduced matrix, which is exact in time, in \
-                   Poiseuille flow that of `modern`.";
+    let is_poiseuille = flow == Flow::Poiseuille;
+    let spacing = if is_poiseuille && modern.is_finite() { modern } else { 0.0 };
+    let because = "The bound is 0.1 %, or in Poiseuille flow where the spacing allows no less the error of \
+                   `modern` and 0.02 % for time and motion.";
     let (metric, goal) = (L2.at(flow.compared_at()), Bound::Below((spacing + 2e-4).max(1e-3)));
-    let mut gates = vec![(Gate::new(id("l2"), metric, goal, Evidence::Analytic, because), error)];
-    let allowed = REYNOLDS.iter().find(|(of, _)| rows >= 40 && *of == re);
-    gates.extend(allowed.map(|(_, allowed)| {
-        let because = "Accuracy and sound need fewer steps, each of as many stages as the square root of its \
-                       ratio to the explicit limit: the goal is a fifth of the pair interactions at Re 0.5, \
-                       where sound sets the step, and a tenth below.";
-        let (metric, bound) = ("pair interactions/those of modern", Bound::Below(*allowed));
-        let gate = Gate::new(id("pairs"), metric, bound, Evidence::Theory, because);
-        let known = "The steps that 0.75 of the limit of sound allows, counted before the run, make 1/3.7 at \
-                     Re 0.5 and 1/8.4 at Re 0.0125; the bound adds 5 % for pairs at the edge of the kernel.";
-        let most = if re > 0.1 { 1.05 / 3.7 } else { 1.05 / 8.4 };
-        let gate = match flow == Flow::Poiseuille && rows == 40 && re > 1e-3 {
-            true => gate.with_limitation(Bound::Below(most), known).because_of(&SOUND),
-            false => gate,
-        };
-        (gate, share(pair))
-    }));
-    gates
+    let l2 = Gate::new(id("l2"), metric, goal, Evidence::Analytic, because);
+    let allowed = REYNOLDS.iter().find(|(of, _)| *of == re).map_or(0.0, |(_, allowed)| *allowed);
+    let because = "Accuracy and sound need fewer steps, each of as many stages as the square root of its \
+                   ratio to the explicit limit: the goal is a fifth of the pair interactions at Re 0.5, \
+                   where sound sets the step, and a tenth below.";
+    let (metric, bound) = ("pair interactions/those of modern", Bound::Below(allowed));
+    let mut pairs = Gate::new(id("pairs"), metric, bound, Evidence::Theory, because);
+    if is_poiseuille && rows == 40 && re > 0.1 {
+        let known = "The steps that 0.75 of the limit of sound allows, counted before the run, make 1/3.7; \
+                     the bound adds 5 % for pairs at the edge of the kernel.";
+        pairs = pairs.with_limitation(Bound::Below(1.05 / 3.7), known).because_of(&SOUND);
+    }
+    vec![(l2, error), (pairs, share(pair))]
 }
 
 /// The study.

@@ -4,14 +4,12 @@ use harness::{
     composed::{Composition, Variants},
     method::{FromMedium, Method},
 };
-use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, ExtrapolatingWall, Ghosts, InterfaceWall, Leapfrog, NoSlip,
-    PredictorCorrector, Pressure, QuinticSpline, Shifting, SingleSweep, Split, SuperSteps, Tait,
-    Term, Viscosity, WendlandC2, Xsph,
-};
+use solver::*;
 
-use super::{ChannelProgram, ChannelSettings};
+use super::{
+    ChannelProgram, ChannelSettings,
+    run::{COUETTE, POISEUILLE},
+};
 
 /// Forces of a channel flow: pressure, viscosity, and the driving force `B`, `()` for Couette flow.
 pub type Fluid<B, R = ()> = (Pressure<Tait, R>, Viscosity, B);
@@ -68,13 +66,13 @@ pub type Modern<F, D, W = Ghosts, I = Leapfrog> = Compose<QuinticSpline, F, D, W
 type All<'a> = Variants<'a, ChannelSettings, Method>;
 
 /// The variants of Couette flow.
-pub fn of_couette(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>> {
-    both::<()>(program).all
+pub fn of_couette() -> Vec<Composition<ChannelSettings>> {
+    both::<()>(&COUETTE).all
 }
 
 /// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable.
-pub fn of_poiseuille(program: &ChannelProgram) -> Vec<Composition<ChannelSettings>> {
-    let both = both::<BodyForce>(program).with(
+pub fn of_poiseuille() -> Vec<Composition<ChannelSettings>> {
+    let both = both::<BodyForce>(&POISEUILLE).with(
         "curved",
         "plain with ghosts that know the curvature of the velocity at the wall: is it their error?",
         Method::of::<Modern<Fluid<BodyForce>, Continuity>>(),

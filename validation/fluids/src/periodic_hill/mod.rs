@@ -10,19 +10,13 @@ mod measure;
 mod plan;
 mod reference;
 mod run;
-mod setup;
-mod steadiness;
-mod studies;
 
 use harness::{
     case::Case,
-    composed::{Best, Composed, Composition, Variants},
+    composed::*,
     method::{self, Method, Standard},
 };
-use solver::{
-    BodyForce, ConsistentPressure, ConsistentViscosity, Continuity, ExtrapolatingWall,
-    InterfaceWall, Leapfrog, NoSlip, Pressure, ShiftAdvection, SingleSweep, Tait, Viscosity,
-};
+use solver::*;
 
 use crate::{
     channel::{Modern, Stabilised},
@@ -30,7 +24,7 @@ use crate::{
 };
 
 pub use control::{Driven, Driving};
-pub use setup::Setup;
+pub use run::Setup;
 
 unit_settings! {
     /// Settings of the flow over hills. H = U_b = ρ = 1.
@@ -148,7 +142,7 @@ static CASE: Composed<HillSettings> = Composed {
     is_stable: declaration::is_stable,
     declaration: declaration::declaration,
     plan: plan::plan,
-    studies: studies::studies,
+    studies: declaration::studies,
 };
 
 /// Flow over periodic hills.

@@ -4,16 +4,11 @@
 mod declaration;
 mod plan;
 mod run;
-mod studies;
 
-use harness::{
-    case::Case,
-    composed::{self, Best, Composed, Composition, Variants},
-    method::Method,
-};
+use harness::{case::Case, composed::*, method::Method};
 use solver::{
-    Compose, ConsistentPressure, ConsistentViscosity, Continuity, Leapfrog, Open, Pressure,
-    QuinticSpline, ShiftAdvection, Split, SuperSteps, Tait, Viscosity,
+    ConsistentPressure, ConsistentViscosity, Continuity, Open, Pressure, ShiftAdvection, Tait,
+    Viscosity,
 };
 
 use crate::{
@@ -44,10 +39,8 @@ unit_settings! {
 }
 
 type Quintic<F, D> = Modern<F, D, Open>;
-type Stiff = Compose<QuinticSpline, StiffConsistent, ConsistentDrift, Open, Leapfrog<SuperSteps>>;
 type Pairs = (Pressure<Tait>, Viscosity);
 type Carried = (Pressure<Tait>, Viscosity, ShiftAdvection);
-type StiffConsistent = Split<(ConsistentPressure<Tait>, ShiftAdvection), ConsistentViscosity>;
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, ShiftAdvection);
 
 /// Shifting of amplitude A = 3. A lattice that is squeezed to half along one axis and stretched along the
@@ -59,12 +52,6 @@ type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, ShiftAdvection
 /// 2.7.
 fn strong(s: &mut VortexSettings) {
     s.shift = 3.0;
-}
-
-/// Steps that sound limits; at Re 0.1 and below those of viscosity are 20 explicit limits long.
-fn stiff(s: &mut VortexSettings) {
-    strong(s);
-    s.viscous = 10.0;
 }
 
 fn variants() -> Vec<Composition<VortexSettings>> {
@@ -93,12 +80,6 @@ fn variants() -> Vec<Composition<VortexSettings>> {
             Method::of::<Quintic<Consistent, ConsistentDrift>>(),
             strong,
         )
-        .with(
-            STIFF,
-            "consistent with super-time-stepping: is it cheaper where viscosity limits the step?",
-            Method::of::<Stiff>(),
-            stiff,
-        )
         .all
 }
 
@@ -106,9 +87,6 @@ const NAME: &str = "taylor_green";
 
 /// The variant that is held to the goals.
 const BEST: &str = "consistent";
-
-/// Super-time-stepping, of the terms of the best variant.
-const STIFF: &str = "stiff";
 
 static CASE: Composed<VortexSettings> = Composed {
     name: NAME,
@@ -124,10 +102,10 @@ static CASE: Composed<VortexSettings> = Composed {
             stagnation points, so that the order of the start is soon lost. The case therefore shows what \
             a method does with disorder. Runs start from a square lattice or from a disturbed one.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: declaration::declaration,
     plan: plan::plan,
-    studies: studies::studies,
+    studies: declaration::studies,
 };
 
 /// Taylor-Green vortices.

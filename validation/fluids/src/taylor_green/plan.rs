@@ -1,13 +1,7 @@
 //! The runs of the case and their gates.
 
-use super::{
-    BEST, CASE, STIFF, VortexSettings,
-    run::{ENERGY, L2, L2_WORST, MOMENTUM_ADDED, NEAREST},
-};
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::MetricKey,
-};
+use super::{BEST, CASE, VortexSettings, run::*};
+use base::{gate::*, record::MetricKey};
 use harness::{
     case::{Planned, Tier},
     table,
@@ -24,10 +18,6 @@ pub enum For {
     Control,
     /// How far it goes: other Reynolds numbers, at Re 10 to the same decay.
     Far,
-    /// What a sound speed costs and what it buys.
-    Sound,
-    /// Re 1, where viscosity is stiff: explicit steps and super-time-stepping.
-    Viscous,
 }
 
 /// The runs of a tier.
@@ -40,16 +30,6 @@ pub const DISTURBED: f64 = 0.2;
 
 /// Variants that keep particles apart.
 pub const LADDER: [&str; 3] = ["modern", "carried", BEST];
-
-/// Viscous numbers of explicit steps: that of the channels, three quarters of the limit; and one at which the
-/// error of the first order that such steps have is small.
-pub const VISCOUS: [f64; 2] = [0.4, 0.05];
-
-/// The sound speed at Re 1 \[U\]. The pressure falls with the square of the velocity, and the density that
-/// follows it takes a flow of a = νk U/(2 c0²), with k = 2π/L: at c0 = 40 that is 0.2 % of U, and 1.4 % of
-/// the velocity that is left at the end, below the goal of 2 % at 50 particles a side. At c0 = 10, as at
-/// Re 100, it would be 21 %.
-const STIFF_SOUND: f64 = 40.0;
 
 /// Largest error of the velocity that the best variant may have with n particles a side.
 pub fn most_error(n: usize) -> f64 {
@@ -72,21 +52,6 @@ pub fn table(tier: Tier) -> Table {
     table.over(For::Far, &[BEST], [&[], &[(10.0, 0.2), (1000.0, 2.0)]], |s, (re, end)| {
         (s.re, s.end, s.perturb) = (re, end, DISTURBED);
     });
-    let n = if tier == Tier::Quick { 24 } else { 50 };
-    table.over(For::Sound, &["modern", BEST], [&[5.0, 20.0, 40.0]; 2], |s, c0| {
-        (s.n, s.c0, s.perturb) = (n, c0, DISTURBED);
-    });
-    // At the end as much of the decay has passed as at Re 100.
-    let viscous = |s: &mut VortexSettings, n| {
-        (s.n, s.perturb, s.re, s.end, s.c0) = (n, DISTURBED, 1.0, 0.02, STIFF_SOUND);
-    };
-    table.over(For::Viscous, &[STIFF], [&[50], &[50, 100]], viscous);
-    for number in VISCOUS {
-        table.over(For::Viscous, &[BEST], [&[50], &[50, 100]], |s, n| {
-            viscous(s, n);
-            s.viscous = number;
-        });
-    }
     for row in &mut table.rows {
         row.run.seconds = 3.0 * (row.settings.n as f64 / 50.0).powi(3);
         if is_pictured(row) {
@@ -124,14 +89,7 @@ fn gates(row: &Row) -> Vec<Gate> {
     let pairs = "Forces of pairs are opposite and shifting changes no velocity, but for round-off.";
     let conserved = gate(MOMENTUM_ADDED, Bound::Below(1e-12), Evidence::Invariant, pairs);
     match row.group {
-        For::Far | For::Sound => Vec::new(),
-        For::Viscous if row.settings.viscous == VISCOUS[1] => Vec::new(),
-        For::Viscous => {
-            let because = "The goal is that at Re 100, here at every time of the decay.";
-            let id = format!("taylor_green.{variant}.{n}.re1.error");
-            let bound = Bound::Below(most_error(n));
-            vec![Gate::new(id, L2_WORST, bound, Evidence::Analytic, because)]
-        }
+        For::Far => Vec::new(),
         For::Control => {
             let because = "Control: without shifting, strings and voids form.";
             let control = gate(L2, Bound::Below(0.02), Evidence::Analytic, because);

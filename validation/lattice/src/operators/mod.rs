@@ -15,12 +15,7 @@ mod tests;
 
 use std::rc::Rc;
 
-use harness::{
-    composed::{self, Best, Composed, Composition},
-    context::Context,
-    declare::Declaration,
-    method::{FromMedium, Medium, Method},
-};
+use harness::{composed::*, context::Context, declare::Declaration, method::*};
 use solver::{
     Compose, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
     CubicSpline, Kernel, Leapfrog, Open, Pressure, QuinticSpline, Rate, Smoothing, Tait, Term,
@@ -221,7 +216,7 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
             (`divergence`). The rate of that, the particles at the end less those of the start over the \
             time, is the operator, which is compared with its exact value.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: |_| Declaration::default(),
     plan: plan::plan,
     studies: study::studies,

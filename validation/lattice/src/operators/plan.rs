@@ -1,15 +1,12 @@
 //! The runs of the case and the gates of each.
 
-use base::{
-    gate::{Bound, Evidence, Gate},
-    mutation::{Constant, Mutation},
-};
+use base::gate::*;
 use harness::{
     case::{Planned, Tier},
     table,
 };
 
-use super::{OPERATORS, Operator, OperatorSettings, QUINTIC, Subject, run::SYMBOL_ERROR, subjects};
+use super::{OPERATORS, OperatorSettings, QUINTIC, run::SYMBOL_ERROR, subjects};
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +19,6 @@ pub(super) enum For {
     Neighbours,
     /// More disorder.
     Disorder,
-    /// A lattice with a viscosity that is wrong on purpose.
-    Broken,
 }
 
 /// The runs of a tier.
@@ -55,11 +50,6 @@ pub(super) fn table(tier: Tier) -> Table {
                 (s.n, s.disorder) = (SIDE, disorder);
             });
         }
-        if of.kernel == QUINTIC {
-            let row = table.one(For::Broken, of.name, |s| (s.n, s.disorder) = (24, 0.0));
-            let wrong = Mutation { of: Constant::Viscosity, factor: 1.03 };
-            row.run.spec = row.run.spec.clone().mutated(wrong);
-        }
     }
     table
 }
@@ -68,26 +58,11 @@ pub(super) fn table(tier: Tier) -> Table {
 pub(super) fn plan(tier: Tier) -> Vec<Planned> {
     let mut table = table(tier);
     table.judge(|row| {
-        let gate = |run: String, because: &str| {
-            OPERATORS.gate(run, SYMBOL_ERROR, Bound::Below(1e-5), Evidence::Theory, because)
-        };
         let exact = "On a lattice a wave stays a wave, and its factor, the symbol of the sum, is known \
                      exactly. Steps of 1e-6 h/c0 change it by less than 1e-5 of itself.";
-        match row.group {
-            For::Lattice => vec![gate(format!("{}.{}", row.variant, row.settings.n), exact)],
-            For::Broken => {
-                let wrong = "Control: the viscosity is 3 % too large, which must fail the gates of the \
-                             Laplacian and no other one.";
-                let gate = gate(format!("viscosity_wrong.{}", row.variant), wrong);
-                let is_guilty = find(row.variant).is_some_and(|of| of.operator == Operator::Laplacian);
-                vec![if is_guilty { gate.expected_to_fail() } else { gate }]
-            }
-            _ => Vec::<Gate>::new(),
-        }
+        let (run, bound) = (format!("{}.{}", row.variant, row.settings.n), Bound::Below(1e-5));
+        let gate = OPERATORS.gate(run, SYMBOL_ERROR, bound, Evidence::Theory, exact);
+        (row.group == For::Lattice).then_some(gate).into_iter().collect()
     });
     table.plan()
-}
-
-fn find(variant: &str) -> Option<&'static Subject> {
-    subjects().find(|of| of.name == variant)
 }

@@ -5,14 +5,9 @@ use std::f64::consts::TAU;
 use base::{
     functions::{cos, sin},
     random::Random,
-    record::{Record, Status},
+    record::*,
 };
-use harness::{
-    case::{Rules, RunError, Step},
-    context::Context,
-    method::{Medium, Method, Parts},
-    simulate,
-};
+use harness::{case::*, context::Context, method::*, simulate};
 use maths::theory::time_step;
 use nalgebra::Vector2;
 use solver::{Domain, EquationOfState, Particle, Stepper, Tait};

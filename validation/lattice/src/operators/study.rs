@@ -1,7 +1,7 @@
 //! The orders of the operators, in h, in the number of neighbours and in disorder.
 
 use base::{
-    gate::{Bound, Cause, Evidence, Gate},
+    gate::*,
     record::{MetricKey, Record},
 };
 use harness::{
@@ -13,12 +13,7 @@ use harness::{
     table::Row,
 };
 
-use super::{
-    CUBIC, OPERATORS, OperatorSettings, QUINTIC, Subject,
-    plan::{For, table},
-    run::{BIAS, NOISE},
-    subjects,
-};
+use super::{CUBIC, OPERATORS, OperatorSettings, QUINTIC, Subject, plan::*, run::*, subjects};
 
 /// Why an operator does not converge.
 static DISORDERED: Cause = Cause::new(
@@ -169,7 +164,7 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let study = Study::new("operators-orders", "Orders of single operators").prose(
         "What an operator makes of a wave is a gain times the exact value, and noise. On a lattice there \
          is no noise, and the gain is known to 1e-5 by theory, so that these gates name the operator that \
-         is wrong: with a viscosity of 103 % the gates of the Laplacian fail, and no other one.",
+         is wrong.",
     );
     let figure = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a \
                   lattice (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = \

@@ -25,13 +25,6 @@ pub struct DampedMode {
     pub gamma: f64,
 }
 
-impl DampedMode {
-    /// The frequency that is seen, (ω² - γ²/4)^(1/2) \[1/s\]; 0 when overdamped.
-    pub fn frequency(&self) -> f64 {
-        (self.omega * self.omega - 0.25 * self.gamma * self.gamma).max(0.0).sqrt()
-    }
-}
-
 /// The matrix of one step of (p, v), where density decays by itself too: p' = -ω v - γ_ρ p, γ_ρ = `diffusion`
 /// \[1/s\].
 pub fn step(mode: &DampedMode, diffusion: f64, integrator: Integrator, dt: f64) -> Matrix2<f64> {
@@ -155,8 +148,8 @@ mod tests {
         let mode = DampedMode { omega: 2.0, gamma: 0.7 };
         let next = step(&mode, 0.0, PredictorCorrector, 1e-4) * Vector2::new(0.4, -0.2);
         // exp(-γt/2) (cos σt + ...), the solution of p' = -ω v, v' = ω p - γ v.
-        let ([p, v], t, sigma) = ([0.4, -0.2], 1e-4, mode.frequency());
-        let (decay, half) = (exp(-0.5 * mode.gamma * t), 0.5 * mode.gamma);
+        let ([p, v], t, half) = ([0.4, -0.2], 1e-4, 0.5 * mode.gamma);
+        let (decay, sigma) = (exp(-half * t), (mode.omega.powi(2) - half.powi(2)).sqrt());
         let (c, s) = (decay * cos(sigma * t), decay * sin(sigma * t) / sigma);
         let exact = [p * c + (half * p - 2.0 * v) * s, v * c + (2.0 * p - half * v) * s];
         assert_relative_eq!(next, Vector2::from(exact), epsilon = 3e-8);

@@ -14,23 +14,19 @@
 mod fit;
 mod run;
 
-use solver::{
-    Compose, Continuity, CubicSpline, DensityDiffusion, Integrator, Kernel, Leapfrog, Open,
-    PredictorCorrector, Pressure, QuinticSpline, Tait, Viscosity, WendlandC2,
-};
-
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::MetricKey,
-};
+use base::{gate::*, record::MetricKey};
 use harness::{
-    case::{Planned, Tier},
-    composed::{self, Best, Composed, Composition, Program, Variants},
+    case::*,
+    composed::*,
     declare::Declaration,
     method::Method,
     table::{Row, Table},
 };
 use maths::theory::Stepping;
+use solver::{
+    Compose, Continuity, CubicSpline, DensityDiffusion, Integrator, Kernel, Leapfrog, Open,
+    PredictorCorrector, Pressure, QuinticSpline, Tait, Viscosity, WendlandC2,
+};
 
 base::settings! {
     /// Settings of one mode in a periodic square box.
@@ -100,10 +96,10 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
             rules: |method, s| run::rules(Polarisation::Sound, method, s),
         })
     },
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
-    studies: composed::no_studies,
+    studies: no_studies,
 };
 
 /// A decaying shear wave.
@@ -122,10 +118,10 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
             rules: |method, s| run::rules(Polarisation::Shear, method, s),
         })
     },
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
-    studies: composed::no_studies,
+    studies: no_studies,
 };
 
 const BEST: Best = Best {
@@ -158,8 +154,6 @@ const STEPWISE: &[MetricKey] = &[
     DECAY_ERROR,
     TRAJECTORY_ERROR,
     MOMENTUM_ERROR,
-    run::FREQUENCY,
-    run::DECAY,
     run::SOUND_FACTOR,
     run::VISCOUS_FACTOR,
 ];

@@ -4,4 +4,3 @@ pub mod budget;
 pub mod energy;
 pub mod history;
 pub mod norms;
-pub mod profile;
