@@ -15,6 +15,7 @@ use end::End;
 use harness::{
     case::RunError,
     composed::{self, Best, Composed, Composition, Variants},
+    context::Context,
     method::Method,
 };
 use path::*;
@@ -190,7 +191,7 @@ impl Problem for CantileverSettings {
         self.length / self.dx() * self.n as f64
     }
 
-    fn check(&self) -> Result<(), RunError> {
+    fn check(&self, _: &Method<Symmetric>, _: &Context) -> Result<(), RunError> {
         solid::check_length(self.dx(), self.length)
     }
 

@@ -18,6 +18,7 @@ use base::{
 use harness::{
     case::RunError,
     composed::{self, Best, Composed, Composition, Variants},
+    context::Context,
     method::Method,
 };
 
@@ -148,7 +149,7 @@ impl Problem for PlateSettings {
         self.length / self.dx() * self.n as f64
     }
 
-    fn check(&self) -> Result<(), RunError> {
+    fn check(&self, _: &Method<Symmetric>, _: &Context) -> Result<(), RunError> {
         solid::check_length(self.dx(), self.length)
     }
 
