@@ -287,7 +287,7 @@ fn table(tier: Tier) -> Table<DiskSettings, For> {
     table.over(For::Order, &["seed"], [&[4], &[4, 16]], spacings);
     table.over(For::Order, &["bare"], [&[4, 16], &[4, 16]], spacings);
     table.over(For::Kept, &[CORRECTED], [&[8], &[8]], spacings);
-    table.over(For::Kept, &[CORRECTED], [&[8], &[8]], |s, n| (s.xi, s.n, s.end) = (0.0, n, 10.0));
+    table.over(For::Kept, &[CORRECTED], [&[], &[8]], |s, n| (s.xi, s.n, s.end) = (0.0, n, 10.0));
     table.over(For::Kept, &["lagrangian"], [&[8], &[8]], |s, n| (s.n, s.end) = (n, 10.0));
     table.over(For::Steps, &["bare"], [&[0.4, 0.1, 0.8], &[0.4, 0.1, 0.8]], |s, courant| {
         (s.n, s.end, s.courant) = (8, 0.1, Some(courant));

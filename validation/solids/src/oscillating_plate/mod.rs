@@ -310,10 +310,7 @@ fn compare(settings: &PlateSettings, path: &Path, record: &mut Record) {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use harness::{
-        context::Context,
-        method::{Method, Parts},
-    };
+    use harness::{case::Case, method::Parts};
 
     /// A tip at a sin(2 pi t/T), at times that do not divide the period.
     fn swing(s: &PlateSettings, periods: f64) -> Record {
@@ -413,5 +410,18 @@ mod tests {
         assert!(matches!(refused("thickness=1e-9"), Some(RunError::TooLong { .. })));
         // It had no free particle, and the run panicked at the first sample.
         assert!(matches!(refused("length=1e-3"), Some(RunError::TooMuch { .. })));
+    }
+
+    /// The fastest modes are at the corners, and theory has them exactly.
+    #[test]
+    fn the_step_limit_of_the_total_lagrangian_plate_is_that_of_theory() {
+        let spec = OSCILLATING_PLATE.spec(LAGRANGIAN, |s| (s.n, s.end) = (5, 0.5));
+        let limit = OSCILLATING_PLATE.rules(&spec).expect("sound settings").dt_limit();
+        for (share, is_stable) in [(0.97, true), (1.03, false)] {
+            let set = |s: &mut PlateSettings| (s.n, s.end, s.dt) = (5, 0.5, Some(share * limit));
+            let spec = OSCILLATING_PLATE.spec(LAGRANGIAN, set).allow_unstable();
+            let record = OSCILLATING_PLATE.run(&spec, &Context::default()).expect("a run");
+            assert_eq!(composed::completed(&record), is_stable, "{share} of the limit");
+        }
     }
 }
