@@ -83,13 +83,8 @@ base::metrics! {
 }
 
 /// What is read from the motion between two steps.
-const STEPWISE: &[MetricKey] = &[
-    TRAVEL_ERROR,
-    TRAVEL_LATTICE_ERROR,
-    STRESS_ERROR,
-    CONTACT_TIME_ERROR,
-    EXCHANGE,
-];
+const STEPWISE: &[MetricKey] =
+    &[TRAVEL_ERROR, TRAVEL_LATTICE_ERROR, STRESS_ERROR, CONTACT_TIME_ERROR, EXCHANGE];
 
 /// Where the pulse starts, and between which places its centre is timed \[L\].
 const START: f64 = 0.25;
@@ -281,10 +276,7 @@ impl Motion {
         let time = (to - from) / (EXCHANGED[1] - EXCHANGED[0]);
         let last = self.series.last().copied().unwrap_or([f64::NAN; 4]);
         let least = self.series.iter().map(|row| row[2]).fold(f64::INFINITY, f64::min);
-        let mut put = |metric, value: Option<f64>, lacks| match value {
-            Some(value) => record.put(metric, value),
-            None => record.leave_out(metric, lacks),
-        };
+        let mut put = |metric, value, lacks| solid::put_or(record, metric, value, lacks);
         let lacks = "the left bar does not come to rest";
         put(STRESS_ERROR, self.stress.map(|stress| stress / exact.stress - 1.0), lacks);
         let (time, lacks) =
@@ -307,20 +299,18 @@ impl Watch for Motion {
         let momentum = simulate::momentum(&simulation.particles()) - self.momentum;
         record.put(MOMENTUM_ERROR, momentum.norm() / self.total);
         record.put(ENERGY_CHANGE, after.total() / self.energy - 1.0);
-        let columns = [
-            ("t", "s"),
-            ("centre of velocity", "m"),
-            ("left mean velocity", "m/s"),
-            ("right mean velocity", "m/s"),
-        ];
         let rows = [&[self.start], &self.series[..]].concat();
+        let column = |k: usize| rows.iter().map(|row| row[k]).collect();
+        let time = Profile::default().with("t", "s", column(0));
         // Bars that collide have no momentum together, and so no centre of it; a pulse has one side.
-        let kept: &[usize] = if self.settings.collide { &[0, 2, 3] } else { &[0, 1] };
-        let add = |profile: Profile, &k: &usize| {
-            let (name, unit) = columns[k];
-            profile.with(name, unit, rows.iter().map(|row| row[k]).collect())
+        let profile = match self.settings.collide {
+            true => time.with("left mean velocity", "m/s", column(2)).with(
+                "right mean velocity",
+                "m/s",
+                column(3),
+            ),
+            false => time.with("centre of velocity", "m", column(1)),
         };
-        let profile = kept.iter().fold(Profile::default(), add);
         record.profiles.insert("motion".into(), profile);
     }
 }

@@ -88,7 +88,7 @@ fn gates(row: &Row<PlateSettings, For>) -> Vec<Gate> {
         Order => Vec::new(),
         Three => [of_elements(row), vec![stored(row)]].concat(),
         Damped => vec![amplitude(row)],
-        Locked => locked(row),
+        Locked => vec![locked(row)],
         Fast => vec![stored(row)],
     }
 }
@@ -182,7 +182,7 @@ const LOCKS: &str = "The displacements of an even number of layers cannot keep t
     an endless plate: one of finite length is a little less stiff, for its end is free.";
 
 /// A total Lagrangian plate that hardly changes its volume.
-fn locked(row: &Row<PlateSettings, For>) -> Vec<Gate> {
+fn locked(row: &Row<PlateSettings, For>) -> Gate {
     let thin = "Shear and rotary inertia lengthen the period by 1 %, and the clamp shortens it by half of \
                 that. Beside it is allowed what the project set out to reach with 5 and 10 layers, 3 and 1 \
                 %.";
@@ -192,11 +192,10 @@ fn locked(row: &Row<PlateSettings, For>) -> Vec<Gate> {
     let near = Bound::Within(least - error, most + error);
     let period = gate(row, PERIOD_EXCESS, near, Evidence::Theory, thin);
     let locked = 1.0 / lagrangian::bending(n, poisson).sqrt() - 1.0;
-    if locked < -error {
-        let known = Bound::Within(locked + least, most);
-        return vec![period.with_limitation(known, LOCKS).because_of(&LOCKING)];
+    if locked >= -error {
+        return period;
     }
-    vec![period, gate(row, BENDING_EXCESS, Bound::Within(least, most), Evidence::Theory, thin)]
+    period.with_limitation(Bound::Within(locked + least, most), LOCKS).because_of(&LOCKING)
 }
 
 /// Order in the full tier; the quick tier has one resolution.

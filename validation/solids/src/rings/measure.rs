@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use solver::{EquationOfState, Flow as Going, Observer, Particle, Stepper, Symmetric};
 
 use super::{RingSettings, metrics::*, reference};
-use crate::solid::{Energy, Problem, SharedSettings, Watch, largest};
+use crate::solid::{Energy, Problem, SharedSettings, Watch, largest, put_or};
 use base::{
     functions::hypot,
     record::{MetricKey, Profile, Record, Status},
@@ -17,7 +17,7 @@ const SAMPLES: f64 = 800.0;
 const COUNTED_EVERY: usize = 8;
 /// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
 /// nearest one or two of the layers beside it.
-pub const NEIGHBOURS: f64 = 1.2;
+const NEIGHBOURS: f64 = 1.2;
 /// Shares of the run at which particles are kept for pictures.
 pub const PICTURES: [f64; 5] = [0.16, 0.3, 0.4, 0.6, 1.0];
 

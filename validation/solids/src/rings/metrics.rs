@@ -1,6 +1,6 @@
 //! What the records of the rings state.
 
-use base::record::{MetricKey, MetricName, Record};
+use base::record::{MetricKey, Record};
 
 base::metrics! {
     RESTITUTION = "restitution" ["-"]
@@ -83,17 +83,4 @@ pub const RMS: [MetricKey; 4] = [X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS];
 /// The mark of the metrics of a phase of contact, counted from 0.
 pub fn phase(k: usize) -> String {
     format!("phase{}", k + 1)
-}
-
-/// Puts a metric, or says why there is none.
-pub fn put_or(
-    record: &mut Record,
-    metric: impl Into<MetricName>,
-    value: Option<f64>,
-    why: &'static str,
-) {
-    match value {
-        Some(value) => record.put(metric, value),
-        None => record.leave_out(metric, why),
-    }
 }

@@ -1,15 +1,14 @@
 //! The table of the runs, and what a run is judged by.
 
 use super::{
-    COMPONENTWISE, CORRECTED, LAGRANGIAN, MOST_ENERGY_GAINED, PLANE, RUBBER_RINGS, RingSettings,
-    measure::NEIGHBOURS, metrics::*, reference::Reference,
+    COMPONENTWISE, CORRECTED, LAGRANGIAN, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings,
+    metrics::*, reference::Reference,
 };
 use crate::{
     causes::{FOLDS, FREE_FACES, SHARED_IMPULSE, SOFT_CONTACT, TEARING},
     solid::faces,
 };
 use base::{
-    functions::exp,
     gate::{Bound, Evidence, Gate},
     record::MetricName,
 };
@@ -56,7 +55,6 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     // Rings of 20 layers tear, and are refused.
     table.over(Paper, &[CORRECTED], [&[], &[0.2, 0.1]], dx);
     table.over(Paper, &[LAGRANGIAN], [&[0.2, 0.1], &[0.2, 0.1, 0.05]], dx);
-    table.over(Paper, &[PLANE], [&[], &[0.1]], dx);
     // 0.03 has a reference that no setting was chosen with, the others none.
     let full = [(0.2, 0.03), (0.1, 0.03), (0.2, 0.12), (0.1, 0.12), (0.2, 0.2)];
     table.over(Speed, &["seed"], [&[(0.2, 0.12)], &full], at);
@@ -88,29 +86,24 @@ pub fn plan(tier: Tier) -> Vec<Planned> {
     table.plan()
 }
 
-/// Does a run follow from a stored energy?
-fn is_lagrangian(row: &Row) -> bool {
-    [LAGRANGIAN, PLANE].contains(&row.variant)
-}
-
 /// Gates of a run: what holds whatever the settings, whether the rings stay whole, distances from finite
 /// elements.
 fn gates(row: &Row) -> Vec<Gate> {
     if row.group == Group::Coarse {
         return Vec::new();
     }
-    let (id, s) = (&id(row), &row.settings);
+    let (id, s, is_lagrangian) = (&id(row), &row.settings, row.variant == LAGRANGIAN);
     let is_compared = row.variant != COMPONENTWISE && row.group != Group::Unstressed;
     let mut always = vec![
         (MOMENTUM, Bound::Below(1e-12), "Forces of pairs are opposite, so only round-off is left."),
         (ENERGY_GAINED, Bound::Below(MOST_ENERGY_GAINED), GAINED),
     ];
-    if is_lagrangian(row) {
+    if is_lagrangian {
         always.push((ENERGY_LOST, Bound::Within(-0.01, 0.01), NOTHING_DISSIPATES));
     }
     if is_compared && row.group == Group::Paper {
         always.push((MIRROR, Bound::Below(1e-6), EXACT_MIRROR));
-        if !is_lagrangian(row) {
+        if !is_lagrangian {
             always.push((PUSHED_BY_ITSELF, Bound::Below(1e-10), FREE));
         }
     }
@@ -123,8 +116,7 @@ fn gates(row: &Row) -> Vec<Gate> {
     gates.extend(of_wholeness(row, id));
     let Some(exact) = Reference::of(row.variant, s).filter(|_| is_compared) else { return gates };
     let distances = Distances { row, id, exact, allowed: 0.5 * s.spacing };
-    gates.push(distances.of_stretch());
-    match is_lagrangian(row) {
+    match is_lagrangian {
         true => gates.extend(distances.of_lagrangian()),
         false => gates.extend(distances.of_extremes()),
     }
@@ -177,7 +169,7 @@ fn of_wholeness(row: &Row, id: &str) -> Vec<Gate> {
         }
         // At 0.3 c0 a ring is pressed flat, and its hole closes for a while.
         (_, LAGRANGIAN) if speed > 0.25 => return vec![pieces],
-        (_, LAGRANGIAN | PLANE) => false,
+        (_, LAGRANGIAN) => false,
         (_, "seed") => speed >= 0.2 || (speed >= 0.12 && is_fine),
         _ => speed >= 0.12,
     };
@@ -244,7 +236,7 @@ impl Distances<'_> {
         let phases = reference(self.id, PHASES, Bound::Equals(2.0), twice);
         let end = CONTACT_END_ERROR.at(phase(1));
         let spacing = self.row.settings.spacing;
-        if is_lagrangian(self.row) {
+        if self.row.variant == LAGRANGIAN {
             let end = reference(self.id, end, Bound::Within(-3.0, 3.0), GOAL);
             let late = |end: Gate| end.with_limitation(Bound::Within(-3.0, 8.3), LIGHT_TOUCH);
             let is_coarse = spacing > 0.051;
@@ -265,23 +257,6 @@ impl Distances<'_> {
             gate.with_limitation(known, SHARED).because_of(&SHARED_IMPULSE)
         });
         [phases, end].into_iter().chain(impulses).collect()
-    }
-
-    /// The largest distance of particles that were neighbours at the start.
-    fn of_stretch(&self) -> Gate {
-        let because = "Neighbours at the start are at most 1.2 dx apart, and no line becomes longer than \
-                       by the largest principal strain in finite elements.";
-        let most = Bound::Below(NEIGHBOURS * exp(self.exact.strain));
-        let gate = reference(self.id, STRETCH_MOST, most, because);
-        let RingSettings { spacing, h_over_dx, .. } = self.row.settings;
-        let tears_below = match self.row.variant {
-            LAGRANGIAN | PLANE => 0.0,
-            CORRECTED => 0.2,
-            _ => 0.1,
-        };
-        let let_go = Bound::Below(2.0 * h_over_dx);
-        let torn = |gate: Gate| gate.with_limitation(let_go, TEAR_BEGINS).because_of(&TEARING);
-        if spacing < tears_below { torn(gate) } else { gate }
     }
 
     /// Extremes of the total Lagrangian rings.
@@ -319,9 +294,6 @@ const SHARED: &str = "Rings of 10 and 20 layers have 6 and 4 % less impulse in t
     in the second, up to 7 and 12 % at 0.03 c0. It is one error seen twice, because the sum goes with the \
     restitution. The bound: the largest of these, and the 2 % by which a quarter of the viscosity changes \
     it.";
-const TEAR_BEGINS: &str = "A tear begins at the inner face: neighbours part to 2.7 dx in rings of 20 layers, \
-    and with corrected gradients to 2.9 dx in rings of 10 while they fly apart. The bound: beyond 3 dx, the \
-    reach of the kernel, neighbours have let go.";
 const HALF_A_SPACING: &str = "The surface of a body of particles is known to half a spacing, and so are its \
     extents over time. The bound: half a spacing over the outer diameter.";
 const SENSITIVE: &str = "The restitution hangs on how the second contact meets the vibration of the rings: \

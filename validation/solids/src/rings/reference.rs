@@ -5,11 +5,11 @@ use std::sync::LazyLock;
 use ::lagrangian::{Hencky, Law as _};
 
 use super::{
-    LAGRANGIAN, PLANE, RingSettings,
+    LAGRANGIAN, RingSettings,
     measure::{Phase, Series},
     metrics::*,
 };
-use crate::solid::{Quantities, largest, rows};
+use crate::solid::{Quantities, largest, put_or, quantities, rows};
 use base::{
     record::{MetricKey, Record},
     reference::{Reference as Package, Table},
@@ -41,8 +41,6 @@ pub struct Reference {
     pub uncertainty: f64,
     /// Least distance of the ring from the plane at these times \[L\].
     gap: Vec<f64>,
-    /// Largest principal logarithmic strain at any time and place \[-\].
-    pub strain: f64,
 }
 
 /// The faces of the right ring at a time of the table \[L\]; none at any other.
@@ -95,7 +93,7 @@ impl Reference {
         if rings(settings) != rings(&RingSettings::default()) {
             return None;
         }
-        let law = if [LAGRANGIAN, PLANE].contains(&variant) { Hencky::NAME } else { JAUMANN };
+        let law = if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN };
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
         let column = |table: &Table, name: &str, of: &[(&str, &str)]| -> Option<Vec<f64>> {
@@ -111,27 +109,24 @@ impl Reference {
         let [impulse, early, late] =
             [phases("impulse")?, phases("impulse_1")?, phases("impulse_99")?];
         let phase = |k: usize| [impulse[k], early[k], late[k]];
-        let strain = [("check", "greatest principal logarithmic strain"), of[0], of[1]];
         let [x_c, v_c, width, height] = Self::COLUMNS;
         let columns = [series(x_c)?, series(v_c)?, series(width)?, series(height)?];
         let uncertain = |name: &str| Some(rms(series(&format!("{name}_uncertainty"))?.into_iter()));
         let uncertain = [uncertain(x_c)?, uncertain(width)?, uncertain(height)?];
         let found = Self {
-            quantities: Quantities::of(table("summary")?, &of).ok()?,
+            quantities: quantities(table("summary")?, &of).ok()?,
             phases: (0..impulse.len()).map(phase).collect(),
             times: series("t")?,
             uncertainty: largest(uncertain) / diameter(&columns),
             columns,
             gap: series("gap")?,
-            // The finest mesh comes last.
-            strain: column(table("checks")?, "value", &strain)?.last().copied().unwrap_or(f64::NAN),
         };
         (!found.phases.is_empty()).then_some(found)
     }
 
     /// A number of the summary with its uncertainty.
     pub fn number(&self, quantity: MetricKey) -> Option<[f64; 2]> {
-        self.quantities.get(&String::from(quantity))
+        self.quantities.get(&String::from(quantity)).copied()
     }
 
     /// When the ring of finite elements is farther than this distance \[L\] from the plane after the last phase

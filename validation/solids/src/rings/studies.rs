@@ -2,17 +2,14 @@
 //! with claim M2, and pictures.
 
 use super::{
-    PLANE, RUBBER_RINGS, RingSettings,
+    RUBBER_RINGS, RingSettings,
     measure::PICTURES,
     metrics::{self, *},
     plan::{FRAMES, Group, Row, SPEED, table},
     reference::{self, Reference},
 };
 use crate::solid::largest;
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::Record,
-};
+use base::record::Record;
 use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{Axis, Cell, ColourMap, Figure, Film, ParticleMap, Series, exact, sig};
 
@@ -78,28 +75,7 @@ fn collisions(rows: &[Row], runs: &Runs) -> Study {
     let records = runs.records(all.map(|row| row.run.spec.clone()));
     let title = "Collisions: fracture and distances from finite elements";
     let study = Study::new("rubber-rings-collisions", title).prose(verdict);
-    let because = "The best variant is the one whose histories are nearest to finite elements, at every \
-                   spacing at which variants are compared.";
-    let what = "distance of histories of the best over the least of the others";
-    let best =
-        Gate::new("rubber_rings.best", what, Bound::Below(1.0), Evidence::Reference, because);
-    study.block(table.table(caption, records)).judge(best, nearest(rows, runs))
-}
-
-/// The distance of histories of the best variant over the least of the others, at the spacing at which that
-/// is largest.
-fn nearest(rows: &[Row], runs: &Runs) -> f64 {
-    let distance = |row: &Row| runs.completed(&row.run.spec).and_then(|r| r.value(HISTORIES));
-    let (best, others): (Vec<&Row>, Vec<&Row>) =
-        of(rows, &[Group::Paper]).partition(|row| row.variant == RUBBER_RINGS.best.variant);
-    let ratio = |row: &&Row| {
-        let own = distance(row).unwrap_or(f64::NAN);
-        let same = others.iter().filter(|other| {
-            other.variant != PLANE && other.settings.spacing == row.settings.spacing
-        });
-        own / same.filter_map(|other| distance(other)).fold(f64::INFINITY, f64::min)
-    };
-    largest(best.iter().map(ratio))
+    study.block(table.table(caption, records))
 }
 
 /// The rings at five times, coloured by the largest principal stress, with those of finite elements; a film;

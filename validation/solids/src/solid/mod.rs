@@ -17,7 +17,7 @@ use harness::{
     context::Context,
 };
 
-pub use elements::{Elements, Path, Quantities, rows};
+pub use elements::{Elements, Path, Quantities, compare, put_or, quantities, rows};
 pub use energy::{Energy, angular_momentum, norm_squared};
 pub use material::{Material, limits};
 pub use method::{Bare, Clamp, HeavyRubber, Plain, Rubber};
