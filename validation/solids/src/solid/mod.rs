@@ -17,8 +17,8 @@ use harness::{
     context::Context,
 };
 
-pub use elements::{Elements, Path, Quantities, rows};
-pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
+pub use elements::{Elements, Path, Quantities, compare, put_or, quantities, rows};
+pub use energy::{Energy, angular_momentum, norm_squared};
 pub use material::{Material, limits};
 pub use method::{Bare, Clamp, HeavyRubber, Plain, Rubber};
 pub use plates::{FIRST_MODE, clamp, thin_plate_period};
