@@ -267,7 +267,7 @@ fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
             .into(),
         spacing: "dx/d [-]",
         ladders: [(INTERFACE, 1.0), (EXTRAPOLATING, 2.0)].map(ladder).into(),
-        ..Accuracy::new("taylor-couette", ErrorOf::Metric(L2.into()), label)
+        ..Accuracy::new("taylor-couette", L2, label)
     }
 }
 

@@ -15,7 +15,6 @@ use serde_json::Value;
 use crate::{
     planned::{Planned, Tier},
     rules::Rules,
-    runs::Runs,
 };
 
 /// The declaration of one case for one tier.
@@ -190,8 +189,9 @@ pub struct Accuracy {
     /// Anchor of its studies in the report: the case in letters, digits and hyphens, and a suffix if the case
     /// has several.
     pub id: String,
-    /// What an error is.
-    pub error: ErrorOf,
+    /// What an error is: the distance from an exact solution or a reference. Of a metric with a sign the
+    /// magnitude counts.
+    pub error: MetricName,
     /// Name of the error with its unit, for axes.
     pub label: String,
     /// What was run and compared, one or two sentences.
@@ -206,36 +206,10 @@ pub struct Accuracy {
     pub peers: Vec<Peer>,
 }
 
-/// What the error of a run is.
-#[derive(Clone)]
-pub enum ErrorOf {
-    /// A metric of its record: the distance from an exact solution or a reference. Of a metric with a sign
-    /// the magnitude counts.
-    Metric(MetricName),
-    /// The distance between two records; the error of a run is its distance from one that was made with the
-    /// finest spacing.
-    Distance {
-        /// The finest run, which has no error of its own.
-        finest: RunSpec,
-        /// The distance, symmetric.
-        between: fn(&Record, &Record) -> f64,
-    },
-}
-
-impl ErrorOf {
-    /// The error of a run that reached its end; `None` if it did not, or if it is what others are compared
-    /// with.
-    pub fn value(&self, record: &Record, runs: &Runs) -> Option<f64> {
-        let value = match self {
-            _ if record.status != Status::Completed => None,
-            ErrorOf::Metric(metric) => record.value(metric.clone()).map(f64::abs),
-            ErrorOf::Distance { finest, .. } if record.key() == finest.key() => None,
-            ErrorOf::Distance { finest, between } => {
-                runs.completed(finest).map(|finest| between(record, finest))
-            }
-        };
-        value.filter(|value| value.is_finite())
-    }
+/// The magnitude of this metric of a run that reached its end, which is its error.
+pub fn error_of(metric: &MetricName, record: &Record) -> Option<f64> {
+    let value = record.value(metric.clone()).filter(|_| record.status == Status::Completed);
+    value.map(f64::abs).filter(|value| value.is_finite())
 }
 
 /// Runs of one variant over resolutions.
@@ -293,8 +267,9 @@ pub struct Peer {
 pub struct Budgets {
     /// Anchor of the study.
     pub id: String,
-    /// What an error is.
-    pub error: ErrorOf,
+    /// What an error is: the distance from an exact solution or a reference. Of a metric with a sign the
+    /// magnitude counts.
+    pub error: MetricName,
     /// Name of the error.
     pub label: String,
     /// What was run, one or two sentences.
@@ -326,8 +301,9 @@ pub struct Change {
 impl Accuracy {
     /// No ladders yet. The arguments are the id of the studies, what an error is, and the name of the error
     /// with its unit. Spacings are in units of a length of the problem; the expected order is 2.
-    pub fn new(id: &str, error: ErrorOf, label: &str) -> Self {
+    pub fn new(id: &str, error: impl Into<MetricName>, label: &str) -> Self {
         let (id, label, about) = (id.to_string(), label.to_string(), String::new());
+        let error = error.into();
         let (spacing, slope) = ("Δx [-]", Some(2.0));
         let (ladders, peers) = (Vec::new(), Vec::new());
         Self { id, error, label, about, spacing, slope, ladders, peers }
@@ -684,12 +660,9 @@ impl Declaration {
     /// Every run that the studies need.
     pub fn runs(&self) -> Vec<Planned> {
         let mut runs = Vec::new();
-        for Accuracy { error, ladders, .. } in &self.accuracy {
-            let levels = ladders.iter().flat_map(|ladder| &ladder.levels);
+        for accuracy in &self.accuracy {
+            let levels = accuracy.ladders.iter().flat_map(|ladder| &ladder.levels);
             runs.extend(levels.map(|level| level.run.clone().timed()));
-            if let ErrorOf::Distance { finest, .. } = error {
-                runs.push(Planned::new(finest.clone()));
-            }
         }
         let mut plain = |spec: &RunSpec| runs.push(Planned::new(spec.clone()));
         for Comparison { levels, inputs, .. } in &self.comparisons {

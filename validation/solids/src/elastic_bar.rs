@@ -19,7 +19,7 @@ use base::{
 use harness::{
     case::Tier,
     composed::{self, Best, Composed},
-    declare::{Accuracy, Declaration, ErrorOf},
+    declare::{Accuracy, Declaration},
     simulate,
     table::{Row, Table},
 };
@@ -459,7 +459,7 @@ fn meeting(
 
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
-    let error = ErrorOf::Metric(TRAVEL_LATTICE_ERROR.into());
+    let error = TRAVEL_LATTICE_ERROR;
     let level = |s: &BarSettings| (1.0 / s.n as f64, format!("n = {}", s.n));
     let ladder = |variant| table.ladder(&[For::Pulse, For::Order], variant, level);
     let accuracy = Accuracy {

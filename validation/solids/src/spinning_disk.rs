@@ -18,7 +18,7 @@ use base::{
 use harness::{
     case::Tier,
     composed::{self, Best, Composed, Composition, Variants},
-    declare::{Accuracy, Budget, Budgets, Change, Declaration, ErrorOf},
+    declare::{Accuracy, Budget, Budgets, Change, Declaration},
     method::Method,
     simulate,
     table::{Row, Table},
@@ -368,7 +368,7 @@ fn gates(row: &Row<DiskSettings, For>) -> Vec<Gate> {
 
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
-    let error = ErrorOf::Metric(ANGULAR_MOMENTUM_DRIFT.into());
+    let error = ANGULAR_MOMENTUM_DRIFT;
     let level = |s: &DiskSettings| (1.0 / s.n as f64, format!("n = {}", s.n));
     let ladder = |variant| table.ladder(&[For::Braked, For::Order], variant, level);
     let accuracy = Accuracy {

@@ -98,7 +98,7 @@ fn accuracy(id: &str, flow: Flow, ladders: Vec<Ladder>, re: f64) -> Accuracy {
         spacing: "Δx/L [-]",
         ladders,
         peers: peers(flow, re),
-        ..Accuracy::new(id, ErrorOf::Metric(L2.at(tau)), &label)
+        ..Accuracy::new(id, L2.at(tau), &label)
     }
 }
 

@@ -106,7 +106,7 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders,
-        ..Accuracy::new("periodic-hill", ErrorOf::Metric(L2_U.into()), "rms error of u [U_b]")
+        ..Accuracy::new("periodic-hill", L2_U, "rms error of u [U_b]")
     }
 }
 

@@ -32,7 +32,7 @@ pub fn declaration(tier: Tier) -> Declaration {
                 .into(),
         });
     }
-    let error = ErrorOf::Metric(L2.into());
+    let error = L2;
     let accuracy = Accuracy {
         about: "Taylor-Green vortices at Re 100 from the disturbed lattice, at t = 2 L/U.".into(),
         spacing: "dx/L [-]",

@@ -4,7 +4,7 @@ use report::Cell;
 
 use crate::{
     columns::Columns,
-    declare::{Budgets, Change},
+    declare::{Budgets, Change, error_of},
     runs::Runs,
     study::Study,
 };
@@ -20,7 +20,7 @@ pub fn study(budgets: &Budgets, runs: &Runs) -> Study {
     for budget in &budgets.of {
         let error = |change: &Change| {
             let record = runs.record(&change.spec);
-            record.and_then(|record| budgets.error.value(record, runs)).unwrap_or(f64::NAN)
+            record.and_then(|record| error_of(&budgets.error, record)).unwrap_or(f64::NAN)
         };
         let errors: Vec<f64> = budget.changes.iter().map(error).collect();
         for (change, error) in budget.changes.iter().zip(&errors) {
@@ -43,7 +43,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        declare::{Budget, ErrorOf},
+        declare::Budget,
         studies::tests::{ERROR, column, runs, spec, tables},
     };
 
@@ -57,7 +57,7 @@ mod tests {
             };
         let budgets = Budgets {
             id: "case-error-budget".into(),
-            error: ErrorOf::Metric(ERROR.into()),
+            error: ERROR.into(),
             label: "error".into(),
             about: "Made up.".into(),
             of: vec![Budget {

@@ -7,7 +7,7 @@ use base::record::{Status, median};
 use report::{Axis, Colour, Figure, Layer, Plot, Series, Shape, first_sentence};
 
 use crate::{
-    declare::{Accuracy, Ladder, Level, Peer},
+    declare::{Accuracy, Ladder, Level, Peer, error_of},
     runs::Runs,
     studies::order::{GOALS, orders},
     study::Study,
@@ -49,13 +49,10 @@ impl Point {
 pub fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
     let point = |level: &Level| {
         let record = runs.record(&level.run.spec)?;
-        let error = accuracy.error.value(record, runs);
+        let error = error_of(&accuracy.error, record);
         let name = format!("{}{}", ladder.variant, ladder.note);
         let has_failed = record.status != Status::Completed;
         let failure = has_failed.then(|| format!("{name}, {}", level.label));
-        if error.is_none() && failure.is_none() {
-            return None; // the run that the others are compared with
-        }
         let mut seconds = record.cost.alone_s.clone();
         seconds.sort_by(f64::total_cmp);
         Some(Point {

@@ -7,35 +7,16 @@ use report::{Axis, Cell, Layer, Legend, Plot, Series, Table, exact, percent, sig
 use crate::{
     columns::Columns,
     convergence::{Convergence, ConvergenceError, Label, Level as Point, convergence},
-    declare::{Accuracy, ErrorOf, Ladder},
+    declare::{Accuracy, Ladder, Level, error_of},
     runs::Runs,
 };
 
-/// The points that the order of a ladder is fitted to.
-///
-/// With a metric these are the errors of its levels. With a distance they are the distances between
-/// successive levels at the coarser spacing, which fall as the error does: the distance from a finest run
-/// would fall faster.
-pub fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
-    let levels = ladder.levels.iter();
-    match &accuracy.error {
-        error @ ErrorOf::Metric(_) => levels
-            .map(|level| {
-                let record = runs.record(&level.run.spec);
-                let value = record.and_then(|record| error.value(record, runs));
-                Point { spacing: level.spacing, value: value.unwrap_or(f64::NAN) }
-            })
-            .collect(),
-        ErrorOf::Distance { between, .. } => ladder
-            .levels
-            .windows(2)
-            .map(|pair| {
-                let [coarse, fine] = [0, 1].map(|k| runs.completed(&pair[k].run.spec));
-                let distance = coarse.zip(fine).map(|(coarse, fine)| between(coarse, fine));
-                Point { spacing: pair[0].spacing, value: distance.unwrap_or(f64::NAN) }
-            })
-            .collect(),
-    }
+/// The errors of the levels of a ladder.
+fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
+    let error = |level: &Level| error_of(&accuracy.error, runs.record(&level.run.spec)?);
+    let point =
+        |level: &Level| Point { spacing: level.spacing, value: error(level).unwrap_or(f64::NAN) };
+    ladder.levels.iter().map(point).collect()
 }
 
 /// What is found of the orders of all ladders.
@@ -55,13 +36,6 @@ pub const GOALS: [f64; 2] = [1e-2, 1e-3];
 
 /// `costs` are the seconds that each ladder takes to reach the [`GOALS`], NaN if it does not.
 pub fn orders(accuracy: &Accuracy, costs: &[[f64; 2]], runs: &Runs) -> Orders {
-    let successive = match accuracy.error {
-        ErrorOf::Metric(_) => "",
-        ErrorOf::Distance { .. } => {
-            " Against the spacing, an error is the distance between runs of successive spacings, drawn at \
-             the coarser one."
-        }
-    };
     let slopes = slopes(accuracy);
     let shown: Vec<String> = slopes.iter().map(|order| exact(*order)).collect();
     let slope = match shown.as_slice() {
@@ -89,7 +63,7 @@ pub fn orders(accuracy: &Accuracy, costs: &[[f64; 2]], runs: &Runs) -> Orders {
     let panel = slopes.into_iter().fold(panel, |panel, order| panel.layer(Layer::slope(order)));
     let about = format!("Observed orders of accuracy. {} {TIMES}", accuracy.about);
     let table = table(about, &rows);
-    Orders { panel, caption: format!("{successive}{slope}"), table, judged }
+    Orders { panel, caption: slope, table, judged }
 }
 
 /// The orders that theory expects: that of the method, and the middle of what gates of ladders allow.
@@ -156,19 +130,19 @@ fn table(about: String, rows: &[Row]) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use base::{gate::Verdict, record::Record};
+    use base::gate::Verdict;
 
     use super::*;
     use crate::{
-        declare::{Level, OrderGate},
+        declare::OrderGate,
         planned::Planned,
         runs::Runs,
         studies::tests::{ERROR, column, runs, spec},
     };
 
     /// Ladders of `seed` and `best` at n = 10, 20, 40, 80; the order of the second is judged.
-    fn accuracy(error: ErrorOf) -> Accuracy {
-        let mut accuracy = Accuracy::new("case", error, "Error [-]").over(
+    fn accuracy() -> Accuracy {
+        let mut accuracy = Accuracy::new("case", ERROR, "Error [-]").over(
             &["seed", "best"],
             [10, 20, 40, 80],
             |variant, n| Planned::new(spec(variant, n)),
@@ -195,7 +169,7 @@ mod tests {
             "seed" => -4.0 / (n * n), // a metric with a sign
             _ => 8.0 / n.powi(3),
         });
-        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &[[0.5, f64::NAN]; 2], &runs);
+        let orders = orders(&accuracy(), &[[0.5, f64::NAN]; 2], &runs);
         assert_eq!(column(&orders.table, "variant"), ["`seed`", "`best`"]);
         let local = column(&orders.table, "local orders, coarse to fine");
         assert_eq!(local, ["2.0, 2.0, 2.0", "3.0, 3.0, 3.0"]);
@@ -215,35 +189,10 @@ mod tests {
         assert_eq!(orders.caption, " The left triangles show orders 2 and 3.");
     }
 
-    /// Values 1 + 1/n²: their distances are 3/4 of the error of the coarser one, and are drawn there. At the
-    /// finer spacing, or against the finest run, other orders would be found.
-    #[test]
-    fn distances_of_successive_runs_stand_at_the_coarser_spacing() {
-        let between = |a: &Record, b: &Record| {
-            (a.value(ERROR).unwrap_or(f64::NAN) - b.value(ERROR).unwrap_or(f64::NAN)).abs()
-        };
-        let accuracy = accuracy(ErrorOf::Distance { finest: spec("best", 80), between });
-        let runs = made(|_, n| 1.0 + 1.0 / (n * n));
-        let points = points(&accuracy, &accuracy.ladders[0], &runs);
-        assert_eq!(points.len(), 3, "three distances of four runs");
-        for (point, n) in points.iter().zip([10.0, 20.0, 40.0_f64]) {
-            let expected = 0.75 / (n * n);
-            assert_eq!(point.spacing, 1.0 / n);
-            assert!(
-                (point.value / expected - 1.0).abs() < 1e-9,
-                "n = {n}: {} for {expected}",
-                point.value
-            );
-        }
-        let fine = accuracy.ladders[1].levels.last().map(|Level { run, .. }| run.spec.clone());
-        let finest = runs.record(&fine.expect("levels")).expect("made");
-        assert_eq!(accuracy.error.value(finest, &runs), None, "others are compared with it");
-    }
-
     #[test]
     fn a_level_that_failed_leaves_no_order_and_its_gate_fails() {
         let runs = made(|_, n| if n == 20.0 { f64::NAN } else { 1.0 / n });
-        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &[[0.5, f64::NAN]; 2], &runs);
+        let orders = orders(&accuracy(), &[[0.5, f64::NAN]; 2], &runs);
         assert!(orders.judged[0].1.is_nan(), "order {}", orders.judged[0].1);
         assert!(
             column(&orders.table, "label")[0].starts_with("no order: a level with spacing 0.05")

@@ -5,7 +5,7 @@ use report::{Axis, Cell, Colour, Figure, Legend, Plot, Series, percent, seconds}
 
 use crate::{
     columns::Columns,
-    declare::{Accuracy, Declaration, ErrorOf},
+    declare::{Accuracy, Declaration, error_of},
     runs::{JudgedRun, Runs},
     study::Study,
 };
@@ -37,7 +37,7 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
             name,
             particles: record.cost.particles,
             session: record.numerics.get(SESSION).and_then(|day| day.as_str()),
-            error: accuracy.error.value(record, runs)?,
+            error: error_of(&accuracy.error, record)?,
             seconds: record.cost.cpu_s,
         })
     };
@@ -119,16 +119,6 @@ fn provenance(runs: &Runs) -> Option<String> {
     ))
 }
 
-/// That errors are distances from a run of ours, if they are.
-fn partial(accuracy: &Accuracy) -> Option<String> {
-    let ErrorOf::Distance { finest, .. } = &accuracy.error else { return None };
-    Some(format!(
-        "Errors are distances from our own finest run, of variant {}, which favours this variant: there is \
-         no solution of which all codes would be equally independent.",
-        finest.variant
-    ))
-}
-
 /// All submissions of a case, if there are any: the closed division, then the open one.
 pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     if runs.submissions().is_empty() {
@@ -138,8 +128,7 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     let accuracy = declared.accuracy.iter();
     let found = accuracy.map(|of| (of, marks(of, runs))).find(|(_, marks)| !marks.is_empty());
     let first = found.as_ref().and_then(|(_, marks)| better(marks));
-    let words = first.into_iter().chain(found.as_ref().and_then(|(of, _)| partial(of)));
-    let words = words.chain(provenance(runs));
+    let words = first.into_iter().chain(provenance(runs));
     let study = words.fold(Study::new(&id, "Runs of other codes"), Study::prose);
     let study = study.prose(
             "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
@@ -157,7 +146,7 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
 fn table(declared: &Declaration, runs: &Runs) -> report::Table {
     type Row<'a> = (&'a Submission, &'a JudgedRun, f64);
     let rows = runs.submissions().iter().filter_map(|run| {
-        let error = declared.accuracy.iter().find_map(|of| of.error.value(&run.record, runs));
+        let error = declared.accuracy.iter().find_map(|of| error_of(&of.error, &run.record));
         Some((run.record.submission.as_deref()?, run, error.unwrap_or(f64::NAN)))
     });
     let mut rows: Vec<Row> = rows.collect();

@@ -11,7 +11,7 @@ use base::{
 };
 use harness::{
     case::Tier,
-    declare::{Accuracy, Declaration, ErrorOf},
+    declare::{Accuracy, Declaration},
     table::{Row, Table},
 };
 
@@ -204,7 +204,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     if tier == Tier::Quick {
         return Declaration { stepwise, of_methods, ..Declaration::default() };
     }
-    let error = ErrorOf::Metric(PERIOD_ERROR.into());
+    let error = PERIOD_ERROR;
     let level = |s: &PlateSettings| (1.0 / s.n as f64, format!("{} layers", s.n));
     let ladder = |variant| table.ladder(&[Paper, Order, Three], variant, level);
     let accuracy = Accuracy {

@@ -16,7 +16,7 @@ use harness::{
     case::{Case, Rules, Tier},
     declare::{
         Accuracy, Budget, Budgets, Card, Change, Comparison, CurveOf, CurvePanel, Curves,
-        Declaration, ErrorOf, Ladder, Map, MapPanel, Sensitivity, StepLimit, StepLimits, Watched,
+        Declaration, Ladder, Map, MapPanel, Sensitivity, StepLimit, StepLimits, Watched,
     },
     studies::causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
 };
@@ -146,7 +146,7 @@ fn accuracy(tier: Tier) -> Accuracy {
         spacing: "spacing [L]",
         slope: Some(1.0),
         ladders: variants.iter().copied().map(ladder).collect(),
-        ..Accuracy::new("rubber-rings-histories", ErrorOf::Metric(HISTORIES.into()), label)
+        ..Accuracy::new("rubber-rings-histories", HISTORIES, label)
     }
 }
 

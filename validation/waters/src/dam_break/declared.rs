@@ -144,7 +144,7 @@ fn accuracy(tier: Tier) -> Accuracy {
         ladders: ladders.into(),
         ..Accuracy::new(
             "dam-break",
-            ErrorOf::Metric(FRONT_AWAY.at(1)),
+            FRONT_AWAY.at(1),
             "error of the front at T = 1 [a]",
         )
     }
