@@ -316,7 +316,8 @@ fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let mut all = vec![refinement((For::Strained, "Re 0.5: strained"))];
     all.extend((tier == Tier::Full).then(|| refinement((For::Mixed, "Re 10: mixed"))));
     let figure = "Relative L2 error of the velocity of a manufactured steady flow between walls over the \
-                  spacing: at Re 0.5, where the lattice is strained and not mixed, and in the full tier at Re 10.";
+                  spacing: at Re 0.5, where the lattice is strained and not mixed, and in the full tier at \
+                  Re 10.";
     let caption = "Errors of the velocity, and their order by method and walls.";
     let study = Study::new("manufactured-orders", "Orders of whole methods by a manufactured flow");
     vec![orders::study(study, [figure, caption], &all, |_| true)]

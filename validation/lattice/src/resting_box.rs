@@ -74,7 +74,7 @@ pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     variants,
     is_stable,
     declaration,
-    plan: no_plan,
+    plan,
     studies: no_studies,
 };
 
@@ -266,24 +266,25 @@ fn run(
     Ok(record)
 }
 
+/// Sets the step to the limit of a box with what damps it, c₀h/ν, α, δ, and the number of steps.
+fn at_limit(variant: &str) -> impl Fn(&mut BoxSettings, [f64; 3]) {
+    let method = method(variant);
+    move |s, [stiffness, alpha, delta]| {
+        s.stiffness = stiffness.is_finite().then_some(stiffness);
+        (s.alpha, s.delta) = (alpha, delta);
+        let modes = modes(&method, s);
+        s.courant = time_step::time_step_limit(&modes, method.theory);
+        let growth = time_step::growth_per_step(&modes, method.theory, SEEN_FROM * s.courant);
+        s.steps = (0.5 / growth).clamp(STEPS[0], STEPS[1]) as usize;
+    }
+}
+
 /// All bisections.
 fn table(tier: Tier) -> Table<BoxSettings, ()> {
     const INVISCID: f64 = f64::INFINITY;
     let mut table = Table::new(&RESTING_BOX, tier);
-    // The limit of a box with what damps it: c₀h/ν, α, δ.
-    let limit = |variant| {
-        let method = method(variant);
-        move |s: &mut BoxSettings, [stiffness, alpha, delta]: [f64; 3]| {
-            s.stiffness = stiffness.is_finite().then_some(stiffness);
-            (s.alpha, s.delta) = (alpha, delta);
-            let modes = modes(&method, s);
-            s.courant = time_step::time_step_limit(&modes, method.theory);
-            let growth = time_step::growth_per_step(&modes, method.theory, SEEN_FROM * s.courant);
-            s.steps = (0.5 / growth).clamp(STEPS[0], STEPS[1]) as usize;
-        }
-    };
     let viscous = |variant| {
-        let limit = limit(variant);
+        let limit = at_limit(variant);
         move |s: &mut BoxSettings, stiffness: f64| limit(s, [stiffness, 0.0, 0.0])
     };
     let all = &[1.0, 3.0, 10.0, 30.0, 100.0, INVISCID];
@@ -300,7 +301,7 @@ fn table(tier: Tier) -> Table<BoxSettings, ()> {
     }
     let [alpha, delta] = [[INVISCID, 1.0, 0.0], [INVISCID, 0.0, 1.0]];
     let together = [alpha, delta, [30.0, 0.1, 0.1]];
-    table.over((), &[DAMPED], [&together[..2], &together], limit(DAMPED));
+    table.over((), &[DAMPED], [&together[..2], &together], at_limit(DAMPED));
     table.judge(|row| vec![gate(row)]);
     table
 }
@@ -350,6 +351,19 @@ fn declaration(tier: Tier) -> Declaration {
     Declaration { limits: Some(limits), ..Declaration::default() }
 }
 
+/// Super-time-stepping at its limit, in a larger box.
+fn plan(_: Tier) -> Vec<Planned> {
+    let because = "Up to the limit of sound and viscosity together no wave grows, however stiff viscosity is.";
+    let (id, none) = ("extremes.step.super-leapfrog.10.1", Bound::Equals(0.0));
+    let gate = Gate::new(id, String::from(GREW), none, Evidence::Theory, because);
+    let mut run = RESTING_BOX.planned(SUPER, |s| {
+        s.n = 20;
+        at_limit(SUPER)(s, [10.0, 0.0, 0.0]);
+    });
+    run.spec = run.spec.allow_unstable();
+    vec![run.judged(vec![gate])]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -360,7 +374,7 @@ mod tests {
     #[test]
     fn boxes_have_the_limits_of_theory() {
         let judged = judged(&[&RESTING_BOX]);
-        assert_eq!(judged.len(), 6 + 3 + 4 + 2 + 3 + 2);
+        assert_eq!(judged.len(), 6 + 3 + 4 + 2 + 3 + 2 + 1);
         for judged in &judged {
             let (id, value) = (&judged.gate.id, judged.judgement.value);
             assert!(!judged.judgement.verdict.is_failure(), "{id}: {value:?}");

@@ -4,9 +4,9 @@
 //! hypotheses on waves and instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
 
 use super::{
-    Channel, ChannelSettings, Flow, maps,
+    Channel, ChannelSettings, ChannelTable, Flow, For, maps,
     measure::*,
-    plan::{self, ChannelTable, For, PEERS_RE, ladder},
+    plan::{self, PEERS_RE, ladder},
     stiff, waves,
 };
 use crate::peers;

@@ -17,11 +17,7 @@ use harness::{
 };
 use report::{Colour, percent, sig};
 
-use super::{
-    ChannelSettings,
-    measure::L2_WORST,
-    plan::{ChannelTable, For},
-};
+use super::{ChannelSettings, ChannelTable, For, measure::L2_WORST};
 
 /// Reynolds numbers of H4 and H5; the quick tier has the middle three from 1 to 10.
 const REYNOLDS: [f64; 6] = [0.5, 1.0, 5.0, 10.0, 20.0, 50.0];

@@ -2,7 +2,7 @@
 
 use solver::{EquationOfState, Flow as Going, Observer, Particle, Stepper};
 
-use super::run::Setup;
+use super::Setup;
 use base::functions::cos;
 use base::record::{MetricKey, Profile, Record};
 use maths::metrics::norms::{Scale, l2, linf};

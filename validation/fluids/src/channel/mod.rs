@@ -1,5 +1,5 @@
-//! Flow between two parallel plates from rest: Couette and Poiseuille flow, which have settings, the rules that
-//! turn them into a scene, variants and measurements in common.
+//! Flow between two parallel plates from rest: Couette and Poiseuille flow, which have settings, the rules
+//! that turn them into a scene, variants and measurements in common.
 
 mod declaration;
 mod maps;
@@ -7,19 +7,21 @@ mod measure;
 mod plan;
 mod run;
 mod settings;
+mod setup;
 mod stiff;
 pub mod variants;
 mod waves;
 
 use declaration::{declaration, is_stable, studies};
 pub use plan::{GHOSTS, ladder};
-pub use run::{Flow, Setup};
 pub use settings::ChannelSettings;
+pub use setup::{Flow, Setup};
 pub use variants::{Drive, Fluid, Modern, Seed, Stabilised, Stiff};
 
 use harness::{
     composed::{Best, Composed, Program},
     method::Method,
+    table::Table,
 };
 
 /// νt/L² at which profiles are compared.
@@ -30,6 +32,28 @@ pub type ChannelCase = Composed<ChannelSettings>;
 
 /// What runs the variants of a channel flow.
 pub type ChannelProgram = Program<ChannelSettings, Method>;
+
+/// What a run is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum For {
+    /// Error over spacing and cost at Re 0.5.
+    Ladder,
+    /// Error over cost at the Reynolds number of other codes.
+    Peers,
+    /// One rule for every Reynolds number.
+    Reynolds,
+    /// Steps that viscosity does not limit.
+    Stiff,
+    /// H3: waves between the walls.
+    Waves,
+    /// H4 and H5: outcomes over Reynolds number and sound speed.
+    Map,
+    /// What cures the instability.
+    Cures,
+}
+
+/// The runs of a flow.
+pub type ChannelTable = Table<ChannelSettings, For>;
 
 /// A flow and its case.
 #[derive(Clone, Copy)]

@@ -1,33 +1,14 @@
 //! The runs of the channel flows, stated once, and their gates.
 
-use super::{Channel, ChannelCase, ChannelSettings, Flow, TIMES, maps, measure::*, stiff, waves};
+use super::{
+    Channel, ChannelCase, ChannelSettings, ChannelTable, Flow, For, TIMES, maps, measure::*, stiff,
+    waves,
+};
 use base::{gate::*, record::MetricName};
 use harness::{
     case::{Planned, Tier},
     table::{Row, Table},
 };
-
-/// What a run is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum For {
-    /// Error over spacing and cost at Re 0.5.
-    Ladder,
-    /// Error over cost at the Reynolds number of other codes.
-    Peers,
-    /// One rule for every Reynolds number.
-    Reynolds,
-    /// Steps that viscosity does not limit.
-    Stiff,
-    /// H3: waves between the walls.
-    Waves,
-    /// H4 and H5: outcomes over Reynolds number and sound speed.
-    Map,
-    /// What cures the instability.
-    Cures,
-}
-
-/// The runs of a flow.
-pub type ChannelTable = Table<ChannelSettings, For>;
 
 /// Variants whose error is drawn against their cost. In Couette flow, without a body force, `curved` would be
 /// `plain`.
@@ -51,8 +32,8 @@ const REYNOLDS: [(f64, f64); 10] = [
     (1000.0, 0.5),
 ];
 
-/// Errors of ghost walls by their row-reduced matrices (`tests/src/row_matrix.rs`; a test computes them again),
-/// with the quintic spline, h = dx, at the time of the comparison: rows of a flow, the lesser and the larger
+/// Errors of ghost walls by their row-reduced matrices (`tests/src/row_matrix.rs`; a test computes them
+/// again), with the quintic spline, h = dx, at the time of the comparison: rows of a flow, the lesser and the larger
 /// one of rows in columns and of rows that slid past each other, Couette flow with the steps of the leapfrog.
 pub const GHOSTS: [(Flow, usize, [f64; 2]); 5] = [
     (Flow::Couette, 10, [1.2712e-3, 1.5453e-3]),

@@ -1,11 +1,7 @@
 //! What super-time-stepping of viscosity saves: pair interactions of `stiff` against `modern` at one error,
 //! over the Reynolds number.
 
-use super::{
-    ChannelSettings, Flow,
-    measure::L2,
-    plan::{ChannelTable, For},
-};
+use super::{ChannelSettings, ChannelTable, Flow, For, measure::L2};
 use base::{gate::*, record::Record};
 use harness::{columns::Columns, runs::Runs, study::Study};
 use report::Cell;

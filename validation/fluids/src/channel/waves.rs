@@ -1,17 +1,14 @@
 //! Hypothesis H3 of the paper: pressure waves leave the walls. The lowest pressure mode between them rings
 //! with the period 2L/c0 of a wave that bounces between them, whatever c0.
 
-use super::{
-    measure::MODE,
-    plan::{ChannelTable, For},
-};
+use super::{ChannelTable, For, measure::MODE};
 use base::functions::{cos, hypot, powf, sin};
 use base::{gate::*, record::Record};
 use harness::{columns::Columns, runs::Runs, study::Study, table::Row};
 use report::Cell;
 
-/// Adds the runs at Re 20, to νt/L² = 1.5, for waves are judged by the end of a run: two sound speeds \[V\]. The
-/// instability grows from the disorder of the start, 1e-4 dx, or from round-off if there is none.
+/// Adds the runs at Re 20, to νt/L² = 1.5, for waves are judged by the end of a run: two sound speeds \[V\].
+/// The instability grows from the disorder of the start, 1e-4 dx, or from round-off if there is none.
 pub fn runs(table: &mut ChannelTable) {
     table.over(For::Waves, &["seed"], [&[10.0, 20.0]; 2], |s, sound| {
         (s.re, s.end, s.jitter, s.watch_mode) = (20.0, 1.5, 1e-4, true);

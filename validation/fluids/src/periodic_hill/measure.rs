@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector2, Vector3};
 use solver::{EquationOfState, Particle, Role, Stepper};
 
-use super::{reference::KNOWN_SETTINGS, run::Setup};
+use super::{Setup, reference::KNOWN_SETTINGS};
 use base::functions::hypot;
 use base::record::{MetricKey, Profile, Record};
 use maths::metrics::norms::rms;
@@ -377,7 +377,7 @@ mod tests {
     use solver::{QuinticSpline, Smoothing};
 
     use crate::channel::Stabilised;
-    use crate::periodic_hill::{Carried, HillSettings, Quintic, method, run::FLUX as BULK};
+    use crate::periodic_hill::{Carried, HillSettings, Quintic, method, setup::FLUX as BULK};
     use base::functions::{cos, sin};
     use harness::context::Context;
     use std::f64::consts::TAU;

@@ -10,6 +10,7 @@ mod measure;
 mod plan;
 mod reference;
 mod run;
+mod setup;
 
 use harness::{
     case::Case,
@@ -24,7 +25,7 @@ use crate::{
 };
 
 pub use control::{Driven, Driving};
-pub use run::Setup;
+pub use setup::Setup;
 
 unit_settings! {
     /// Settings of the flow over hills. H = U_b = ρ = 1.

@@ -88,15 +88,12 @@ impl Subject {
             (Operator::Gradient, false) => {
                 "is the pressure force (5) the gradient of the pressure?"
             }
-            (Operator::Gradient, true) => "is it with a gradient that is exact for linear fields?",
             (Operator::Laplacian, false) => {
                 "is the viscous force (6) the Laplacian of the velocity?"
             }
             (Operator::Laplacian, true) => "is it if linear fields are subtracted?",
             (Operator::Divergence, false) => "is (3) the divergence of the velocity?",
-            (Operator::Divergence, true) => {
-                "is it with a gradient that is exact for linear fields?"
-            }
+            (_, true) => "is it with a gradient that is exact for linear fields?",
         }
     }
 }

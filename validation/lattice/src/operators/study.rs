@@ -34,8 +34,6 @@ struct Refined {
     name: &'static str,
     title: &'static str,
     axis: &'static str,
-    metric: MetricKey,
-    slopes: &'static [f64],
     spacing: fn(&OperatorSettings) -> f64,
 }
 
@@ -45,8 +43,6 @@ const REFINED: [Refined; 4] = [
         name: "bias",
         title: "Lattice: gain",
         axis: "h/L [-]",
-        metric: BIAS,
-        slopes: &[2.0],
         spacing: |s| s.h_over_dx / s.n as f64,
     },
     Refined {
@@ -54,8 +50,6 @@ const REFINED: [Refined; 4] = [
         name: "noise_h",
         title: "Disorder: smaller h",
         axis: "h/L [-]",
-        metric: NOISE,
-        slopes: &[1.0],
         spacing: |s| s.h_over_dx / s.n as f64,
     },
     Refined {
@@ -63,8 +57,6 @@ const REFINED: [Refined; 4] = [
         name: "noise_neighbours",
         title: "Disorder: more neighbours",
         axis: "dx/h [-]",
-        metric: NOISE,
-        slopes: &[2.0],
         spacing: |s| 1.0 / s.h_over_dx,
     },
     Refined {
@@ -72,8 +64,6 @@ const REFINED: [Refined; 4] = [
         name: "noise_disorder",
         title: "Less disorder",
         axis: "displacement/dx [-]",
-        metric: NOISE,
-        slopes: &[1.0],
         spacing: |s| s.disorder,
     },
 ];
@@ -141,9 +131,13 @@ impl Refined {
 pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
     let all = REFINED.map(|refined| {
+        let (metric, axis): (MetricKey, _) = match refined.of {
+            For::Lattice => (BIAS, "bias [-]"),
+            _ => (NOISE, "noise [-]"),
+        };
         let lines = subjects().filter(|of| tier == Tier::Full || of.kernel == QUINTIC).map(|of| {
             let rows = table.of(refined.of).filter(|row| row.variant == of.name);
-            let value = |record: &Record| record.value(refined.metric);
+            let value = |record: &Record| record.value(metric);
             let level = |row: &Row<OperatorSettings, For>| Level {
                 spacing: (refined.spacing)(&row.settings),
                 value: runs.completed(&row.run.spec).and_then(value).unwrap_or(f64::NAN),
@@ -158,8 +152,10 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
             let (levels, gate) = (rows.map(level).collect(), refined.gate(of));
             Line { name: of.name, kind, levels, expected, gate }
         });
-        let axes = [refined.axis, if refined.metric == BIAS { "bias [-]" } else { "noise [-]" }];
-        Refinement { title: refined.title, axes, slopes: refined.slopes, lines: lines.collect() }
+        let is_second = matches!(refined.of, For::Lattice | For::Neighbours);
+        let slopes: &[f64] = if is_second { &[2.0] } else { &[1.0] };
+        let (title, axes) = (refined.title, [refined.axis, axis]);
+        Refinement { title, axes, slopes, lines: lines.collect() }
     });
     let study = Study::new("operators-orders", "Orders of single operators").prose(
         "What an operator makes of a wave is a gain times the exact value, and noise. On a lattice there \

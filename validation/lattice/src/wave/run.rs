@@ -81,7 +81,10 @@ impl Wave {
         let lattice = [s.h_over_dx, s.eta2_over_h2];
         let density = s.rho * (1.0 + s.compression);
         let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
-        let eos = without_pressure_at(density, Tait::new(s.rho, s.c0));
+        // A background pressure takes p to 0 at this density: a displacement then meets a pressure of its own
+        // order, as the theory of the lattice has it.
+        let eos = Tait::new(s.rho, s.c0);
+        let eos = Tait { background: -eos.pressure(density), ..eos };
         let medium = Medium {
             density,
             sound_speed,
@@ -201,12 +204,6 @@ impl Observer<()> for Projection<'_> {
 
 /// The exponent of [`Tait::new`].
 const GAMMA: i32 = 7;
-
-/// The same water with a background pressure that takes p to 0 at this density: a displacement then
-/// meets a pressure of its own order, as the theory of the lattice has it.
-fn without_pressure_at(density: f64, eos: Tait) -> Tait {
-    Tait { background: -eos.pressure(density), ..eos }
-}
 
 /// What the rules choose.
 pub(super) fn rules(
