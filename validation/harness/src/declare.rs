@@ -3,7 +3,7 @@
 //! records of these runs into studies.
 
 use base::{
-    gate::{Bound, Cause, Evidence, Gate},
+    gate::{Cause, Gate},
     mutation::{Constant, Detect, Mutation},
     record::{MetricKey, MetricName, Record, Status},
     spec::{Bisect, Measure, RunSpec},
@@ -221,7 +221,7 @@ pub struct Ladder {
     /// The runs, coarse to fine.
     pub levels: Vec<Level>,
     /// Gate on the order, if it is judged.
-    pub order: Option<OrderGate>,
+    pub order: Option<Gate>,
 }
 
 /// One resolution of a ladder.
@@ -233,19 +233,6 @@ pub struct Level {
     pub spacing: f64,
     /// The resolution in words, such as `20 rows`.
     pub label: String,
-}
-
-/// A gate on an observed order.
-#[derive(Clone)]
-pub struct OrderGate {
-    /// Name of the gate.
-    pub id: String,
-    /// Where the order must lie.
-    pub bound: Bound,
-    /// The kind of evidence behind the bound.
-    pub evidence: Evidence,
-    /// The reason for the bound.
-    pub because: String,
 }
 
 /// A result of another code.

@@ -54,8 +54,7 @@ pub fn orders(accuracy: &Accuracy, costs: &[[f64; 2]], runs: &Runs) -> Orders {
         panel = panel.layer(Series::line_markers(&name, line).cycle(k));
         let found = convergence(&points);
         if let Some(order) = ladder.order.clone() {
-            let gate = Gate::new(order.id, "order", order.bound, order.evidence, order.because);
-            judged.push((gate, found.as_ref().map_or(f64::NAN, |c| c.order)));
+            judged.push((order, found.as_ref().map_or(f64::NAN, |c| c.order)));
         }
         let finest = points.last().map_or(f64::NAN, |p| p.value);
         rows.push(Row { name, found, finest, costs: costs[k] });
@@ -134,7 +133,6 @@ mod tests {
 
     use super::*;
     use crate::{
-        declare::OrderGate,
         planned::Planned,
         runs::Runs,
         studies::tests::{ERROR, column, runs, spec},
@@ -147,12 +145,9 @@ mod tests {
             [10, 20, 40, 80],
             |variant, n| Planned::new(spec(variant, n)),
         );
-        accuracy.ladders[1].order = Some(OrderGate {
-            id: "case.order".into(),
-            bound: Bound::Within(2.9, 3.1),
-            evidence: Evidence::Theory,
-            because: "made up".into(),
-        });
+        let bound = Bound::Within(2.9, 3.1);
+        let gate = Gate::new("case.order", "order", bound, Evidence::Theory, "made up");
+        accuracy.ladders[1].order = Some(gate);
         accuracy
     }
 
