@@ -1,6 +1,7 @@
 //! The declaration of a case, from which the studies common to all cases are made: curves compared with
-//! their reference, order of accuracy, error against cost, error budget, largest stable time step, maps. A declaration is plain data for one tier. [`crate::studies`] turns it into runs and the
-//! records of these runs into studies.
+//! their reference, order of accuracy, error against cost, error budget, largest stable time step, maps. A
+//! declaration is plain data for one tier. [`crate::studies`] turns it into runs and the records of these
+//! runs into studies.
 
 use base::{
     gate::{Cause, Gate},

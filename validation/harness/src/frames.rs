@@ -97,7 +97,7 @@ fn vtp(time: f64, columns: &Profile) -> Result<Particles, VtkError> {
     others.fold(Ok(frame), |frame, column| frame?.scalar(&column.name, &column.values))
 }
 
-/// All fields of the particles at one time, as columns; the number of a particle stays the same through a run.
+/// All fields of the particles at one time, as columns. A particle keeps its number through a run.
 pub fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> f64) -> Profile {
     let column = |f: &dyn Fn(&Particle<X>) -> f64| particles.iter().map(f).collect();
     let profile = Profile::default()

@@ -81,8 +81,8 @@ fn slopes(accuracy: &Accuracy) -> Vec<f64> {
     slopes
 }
 
-const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of every \
-    finer level, is at most so much: at a single level errors of time and spacing can cancel.";
+const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of \
+    every finer level, is at most so much: at a single level errors of time and spacing can cancel.";
 
 struct Row {
     /// Name of the ladder.

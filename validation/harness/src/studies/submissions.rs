@@ -72,8 +72,8 @@ fn better(marks: &[Mark]) -> Option<String> {
         }
     }
     Some(match found.is_empty() {
-        true => "No other code below is more accurate than ours with as many particles, or faster with no more \
-                 error."
+        true => "No other code below is more accurate than ours with as many particles, or faster with no \
+                 more error."
             .into(),
         false => format!("Better than ours: {}.", found.join("; ")),
     })
