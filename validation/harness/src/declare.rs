@@ -296,9 +296,7 @@ impl Accuracy {
         let (ladders, peers) = (Vec::new(), Vec::new());
         Self { id, error, label, about, spacing, slope, ladders, peers }
     }
-}
 
-impl Accuracy {
     /// The same with one ladder per variant, whose order is not judged. `level` gives the run of a variant at
     /// a resolution n; its spacing is 1/n.
     pub fn over<const N: usize>(
@@ -317,9 +315,7 @@ impl Accuracy {
         }));
         self
     }
-}
 
-impl Accuracy {
     /// The runs of these variants with the finest spacing of their ladders.
     pub fn finest(&self, variants: &[&str]) -> Vec<RunSpec> {
         let ladder = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
