@@ -33,8 +33,9 @@ const REYNOLDS: [(f64, f64); 10] = [
 ];
 
 /// Errors of ghost walls by their row-reduced matrices (`tests/src/row_matrix.rs`; a test computes them
-/// again), with the quintic spline, h = dx, at the time of the comparison: rows of a flow, the lesser and the larger
-/// one of rows in columns and of rows that slid past each other, Couette flow with the steps of the leapfrog.
+/// again), with the quintic spline, h = dx, at the time of the comparison: rows of a flow, the lesser and the
+/// larger one of rows in columns and of rows that slid past each other, Couette flow with the steps of the
+/// leapfrog.
 pub const GHOSTS: [(Flow, usize, [f64; 2]); 5] = [
     (Flow::Couette, 10, [1.2712e-3, 1.5453e-3]),
     (Flow::Couette, 20, [3.8402e-4, 6.7664e-4]),

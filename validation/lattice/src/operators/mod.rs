@@ -77,11 +77,6 @@ impl Subject {
         }
     }
 
-    /// Is it a derivative whose sum over the kernel nothing corrects?
-    fn is_derivative_as_summed(&self) -> bool {
-        !self.is_corrected && self.operator != Operator::Density
-    }
-
     fn about(&self) -> &'static str {
         match (self.operator, self.is_corrected) {
             (Operator::Density, _) => "is the density the sum of the masses, m W?",
