@@ -231,8 +231,8 @@ impl Watch for Tip {
         let (s, path) = (self.settings, Path(self.series));
         let errors = [(PERIOD, PERIOD_ERROR), (AMPLITUDE_RATIO, AMPLITUDE_ERROR)];
         let exact = elements(&record.variant, &s);
-        let lacks = "the run is too short, or finite elements have no such plate: they have 0.2 m and 0.02 m, \
-                     2 MPa, Poisson's ratio 0.3975, 1000 kg/m^3, 0.01 c0, and 5, 10 and 20 layers";
+        let lacks = "the run is too short, or finite elements have no such plate: they have 0.2 m and 0.02 \
+                     m, 2 MPa, Poisson's ratio 0.3975, 1000 kg/m^3, 0.01 c0, and 5, 10 and 20 layers";
         let of_path = (PATH_RMS, "extreme_1");
         solid::compare(exact.as_ref(), &errors, of_path, (&path, lacks), record);
         let error = record.value(PERIOD_ERROR).filter(|_| record.variant == LAGRANGIAN);

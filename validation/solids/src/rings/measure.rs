@@ -155,7 +155,7 @@ impl Series {
     }
 
     /// (t \[L/c0\], column number `k`) of every sample.
-    pub fn points(&self, k: usize) -> Vec<(f64, f64)> {
+    fn points(&self, k: usize) -> Vec<(f64, f64)> {
         self.rows.iter().map(|row| (row[0], row[k])).collect()
     }
 
@@ -190,7 +190,8 @@ impl Series {
             put_or(record, metric, moving, "the rings are at rest at the start");
         }
         self.put_contact(last[2] / speed, record);
-        reference::compare(self, &self.settings, record);
+        let columns = [1, 2, 3, 4].map(|k| self.points(k));
+        reference::compare(&self.settings, &self.phases(), &columns, record);
     }
 
     /// Metrics of contact; `restitution` is that of rings that have parted.
@@ -214,7 +215,7 @@ impl Series {
 
     /// Phases of contact: where the force on a ring is above 1 % of its largest, with pauses of less
     /// than 5 L/c0 bridged, as in `references/rubber_rings`.
-    pub fn phases(&self) -> Vec<Phase> {
+    fn phases(&self) -> Vec<Phase> {
         let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
         let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
         let least = TOUCH * forces.iter().copied().fold(0.0, f64::max);
@@ -244,17 +245,6 @@ impl Series {
         let is_over = end + 1 < self.rows.len();
         Phase { impulse: mass * (last - first), times, is_over }
     }
-}
-
-/// One phase of contact.
-#[derive(Clone, Copy, Debug)]
-pub struct Phase {
-    /// Mass of a ring times the change of its velocity \[ρ c₀ L²\].
-    pub impulse: f64,
-    /// When [`SHARES`] of it have passed \[L/c₀\].
-    pub times: [f64; 2],
-    /// Does it end before the run does?
-    pub is_over: bool,
 }
 
 /// Shares of a phase's impulse whose times are kept.

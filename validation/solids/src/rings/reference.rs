@@ -4,11 +4,7 @@ use std::sync::LazyLock;
 
 use ::lagrangian::{Hencky, Law as _};
 
-use super::{
-    LAGRANGIAN, RingSettings,
-    measure::{Phase, Series},
-    metrics::*,
-};
+use super::{LAGRANGIAN, RingSettings, metrics::*};
 use crate::solid::{Quantities, largest, put_or, quantities, rows};
 use base::{
     record::{MetricKey, Record},
@@ -61,10 +57,13 @@ pub fn outlines(speed: f64, time: f64) -> Option<Vec<Vec<(f64, f64)>>> {
 /// What is compared at every time of the reference.
 const OF_HISTORIES: [MetricKey; 6] = [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES, X_C_WORST];
 
+/// Points of [`Reference::COLUMNS`] of a run over t \[L/c0\].
+type Histories = [Vec<(f64, f64)>; 4];
+
 /// Adds the distances from finite elements to the metrics of a run that has been measured, or says why there
 /// are none.
-pub fn compare(series: &Series, settings: &RingSettings, record: &mut Record) {
-    let Some(exact) = Reference::of(&record.variant, settings) else {
+pub fn compare(s: &RingSettings, phases: &[Phase], found: &Histories, record: &mut Record) {
+    let Some(exact) = Reference::of(&record.variant, s) else {
         let errors = COMPARED.map(|(_, error)| error);
         for metric in errors.into_iter().chain(OF_HISTORIES) {
             record.leave_out(
@@ -79,8 +78,8 @@ pub fn compare(series: &Series, settings: &RingSettings, record: &mut Record) {
         let value = pair.map(|([exact, _], found)| found / exact - 1.0);
         put_or(record, error, value, "the run has no number to compare");
     }
-    exact.compare_phases(&series.phases(), record);
-    exact.compare_histories(series, record);
+    exact.compare_phases(phases, record);
+    exact.compare_histories(found, record);
 }
 
 impl Reference {
@@ -129,8 +128,8 @@ impl Reference {
         self.quantities.get(&String::from(quantity)).copied()
     }
 
-    /// When the ring of finite elements is farther than this distance \[L\] from the plane after the last phase
-    /// \[L/c₀\].
+    /// When the ring of finite elements is farther than this distance \[L\] from the plane after the last
+    /// phase \[L/c₀\].
     pub fn leaves(&self, reach: f64) -> f64 {
         let end = self.phases[self.phases.len() - 1][2].0;
         let mut gaps = self.times.iter().zip(&self.gap);
@@ -139,12 +138,12 @@ impl Reference {
 
     /// Distances of centre, velocity and extents over the times of finite elements, all of which a run must
     /// have.
-    fn compare_histories(&self, series: &Series, record: &mut Record) {
-        let of = |(k, column): (usize, &Vec<f64>)| {
+    fn compare_histories(&self, found: &Histories, record: &mut Record) {
+        let of = |(column, found): (&Vec<f64>, &Vec<(f64, f64)>)| {
             let exact = self.times.iter().copied().zip(column.iter().copied());
-            history::differences(&series.points(1 + k), &exact.collect::<Vec<_>>())
+            history::differences(found, &exact.collect::<Vec<_>>())
         };
-        let found: Result<Vec<Vec<f64>>, _> = self.columns.iter().enumerate().map(of).collect();
+        let found: Result<Vec<Vec<f64>>, _> = self.columns.iter().zip(found).map(of).collect();
         let found = match found {
             Ok(found) => found,
             Err(why) => {

@@ -111,9 +111,9 @@ impl Problem for RingSettings {
         Ok(())
     }
 
-    /// Concentric layers, their numbers multiples of four, so that mass is exact, the edge is smooth, and each
-    /// ring is its own mirror image. The ring on the right is the mirror image of the one on the left, in the
-    /// same order.
+    /// Concentric layers, their numbers multiples of four, so that mass is exact, the edge is smooth, and
+    /// each ring is its own mirror image. The ring on the right is the mirror image of the one on the left,
+    /// in the same order.
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, v) = (self.dx(), self.speed());
         let rotation = self.to_flight().inverse();

@@ -69,8 +69,8 @@ pub trait Problem: SharedSettings {
     fn check(&self, _method: &Method<Symmetric>, _context: &Context) -> Result<(), RunError> {
         Ok(())
     }
-    /// The times to which steps lead exactly \[s\], ascending; the last is the end. One beside the end changes
-    /// the length of the steps before it.
+    /// The times to which steps lead exactly \[s\], ascending; the last is the end. Any other changes the
+    /// length of the steps before it.
     fn stops(&self) -> Vec<f64> {
         vec![self.end()]
     }
