@@ -93,8 +93,8 @@ fn vtp(time: f64, columns: &Profile) -> Result<Particles, VtkError> {
         columns.column(x).iter().zip(columns.column(y)).map(|(x, y)| [*x, *y]).collect()
     };
     let frame = Particles::new(time, &pairs(["x", "y"]))?.vector("velocity", &pairs(["u", "v"]))?;
-    let others = columns.columns.iter().filter(|c| !["x", "y", "u", "v"].contains(&&*c.name));
-    others.fold(Ok(frame), |frame, column| frame?.scalar(&column.name, &column.values))
+    let mut others = columns.columns.iter().filter(|c| !["x", "y", "u", "v"].contains(&&*c.name));
+    others.try_fold(frame, |frame, column| frame.scalar(&column.name, &column.values))
 }
 
 /// All fields of the particles at one time, as columns. A particle keeps its number through a run.

@@ -26,7 +26,7 @@ fn figure() -> Figure {
     let plot = Plot::new("Error", Axis::log("Δx [1]"), Axis::log("relative error [1]"))
         .layer(Series::line_markers("cubic spline", error(0.3)))
         .layer(Series::line_markers("quintic spline", error(0.5)).labels(["10".into()]))
-        .layer(Layer::slope(1.5));
+        .layer(Layer::Slope(1.5));
     let at = |k: i32| 0.05 * f64::from(k);
     let points = (0..400).map(|k| (at(k % 20), at(k / 20), at(k % 7))).collect();
     let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));

@@ -133,14 +133,9 @@ pub enum Legend {
 pub enum Layer {
     /// A line, markers, or both, with or without error bars.
     Series(Series),
-    /// A triangle that shows the slope `order` on two logarithmic axes, at a free place near the data (with
-    /// a smaller factor if need be); left out where there is none.
-    Slope {
-        /// d log y / d log x; negative where x counts particles.
-        order: f64,
-        /// Ratio of the ends in x, 2 say.
-        factor: f64,
-    },
+    /// A triangle that shows a slope d log y / d log x on two logarithmic axes, at a free place near the data;
+    /// left out where there is none.
+    Slope(f64),
     /// The area between two curves.
     Band {
         /// Name in the legend; may be empty.
@@ -153,11 +148,6 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// A slope triangle of width factor 2.
-    pub fn slope(order: f64) -> Self {
-        Self::Slope { order, factor: 2.0 }
-    }
-
     /// A shaded area between two curves, points (x, lower, upper).
     pub fn band(name: impl Into<String>, points: Vec<(f64, f64, f64)>, colour: Colour) -> Self {
         Self::Band { name: name.into(), points, colour }

@@ -134,10 +134,10 @@ impl<'a> Prepared<'a> {
     /// Decides where the slope triangles lie, and makes them obstacles.
     fn place_slopes(&mut self, obstacles: &mut Vec<Point>) {
         for layer in &self.plot.layers {
-            let Layer::Slope { order, factor } = layer else { continue };
+            let Layer::Slope(order) = layer else { continue };
             let corners = [1.0, 0.7, 0.5, 0.35, 0.25, 0.18]
                 .iter()
-                .find_map(|&part| self.free_triangle(*order, factor.powf(part), obstacles));
+                .find_map(|&part| self.free_triangle(*order, 2_f64.powf(part), obstacles));
             if let Some(corners) = corners {
                 sample_rect(obstacles, around(&corners, *order));
                 self.slopes.push((*order, corners));
@@ -322,7 +322,7 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
                 xs.extend(points.iter().map(|p| p.0));
                 ys.extend(points.iter().flat_map(|p| [p.1, p.2]));
             }
-            Layer::Slope { .. } => {}
+            Layer::Slope(_) => {}
         }
     }
     (xs, ys)

@@ -235,7 +235,7 @@ mod tests {
             .layer(Series::line_markers("a", pairs.clone()))
             .layer(Series::markers("b", pairs.clone()).shape(Shape::Cross).x_bars(pairs.clone()))
             .layer(Layer::band("c", triples, Colour::SKY))
-            .layer(Layer::slope(any))
+            .layer(Layer::Slope(any))
     }
 
     #[test]

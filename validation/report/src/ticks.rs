@@ -113,11 +113,6 @@ fn is_spread(values: &[f64], lo: f64, hi: f64) -> bool {
 
 /// `10⁻³`.
 pub(super) fn power_of_ten(k: i32) -> String {
-    format!("10{}", superscript(k))
-}
-
-/// An integer in superscript digits.
-pub(super) fn superscript(k: i32) -> String {
     let digit = |c: char| match c {
         '-' => '⁻',
         '1' => '¹',
@@ -125,7 +120,7 @@ pub(super) fn superscript(k: i32) -> String {
         '3' => '³',
         c => char::from_u32('⁰' as u32 + c as u32 - '0' as u32).unwrap_or(c),
     };
-    k.to_string().chars().map(digit).collect()
+    format!("10{}", k.to_string().chars().map(digit).collect::<String>())
 }
 
 /// Values with their labels, all of one format: `0.02`, `50` if that suits each, else `2·10⁻²`.

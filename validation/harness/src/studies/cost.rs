@@ -2,7 +2,6 @@
 //! seconds of a run that was made alone, and in pair interactions, which do not depend on the machine or on
 //! other programs.
 
-use base::functions::ln;
 use base::record::{Status, median};
 use report::{Axis, Colour, Figure, Layer, Plot, Series, Shape, first_sentence};
 
@@ -115,8 +114,6 @@ fn figure(
     points: &[Point],
     (orders, explained): (Plot, String),
 ) -> Figure {
-    let growth = work_growth(points);
-    let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
     let failed: Vec<&str> = points.iter().filter_map(|p| p.failure.as_deref()).collect();
     let failed = match failed.is_empty() {
         true => String::new(),
@@ -136,11 +133,7 @@ fn figure(
     let clock = peers.into_iter().fold(clock, Plot::layer);
     let pairs = |p: &Point| p.pairs;
     let counted = panel("Error against work", "pair interactions [-]", points, pairs);
-    let with_slope = |plot: Plot| match slope {
-        Some(order) => plot.layer(Layer::Slope { order, factor: 5.0 }),
-        None => plot,
-    };
-    let panels = [orders, with_slope(clock), with_slope(counted)];
+    let panels = [orders, clock, counted];
     let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
     panels.into_iter().fold(figure, Figure::panel)
 }
@@ -155,19 +148,6 @@ fn name_of_error(label: &str) -> String {
         Some(first) => first.to_uppercase().chain(letters).collect(),
         None => format!("The {name}"),
     }
-}
-
-/// The power of 1/spacing with which pair interactions grow: the median over the ladders.
-fn work_growth(points: &[Point]) -> f64 {
-    let growth = |ladder: &[Point]| {
-        let (first, last) = (ladder.first()?, ladder.last()?);
-        let growth = ln(last.pairs / first.pairs) / ln(first.spacing / last.spacing);
-        growth.is_finite().then_some(growth)
-    };
-    let ladders = points.chunk_by(|a, b| a.ladder == b.ladder);
-    let mut all: Vec<f64> = ladders.filter_map(growth).collect();
-    all.sort_by(f64::total_cmp);
-    median(&all).unwrap_or(f64::NAN)
 }
 
 /// The first number of a resolution in words.
@@ -279,11 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn work_is_seen_to_grow_as_it_does() {
-        let at =
-            |n: f64| Point { spacing: 1.0 / n, pairs: n.powi(3), ..point("cubic", 0.1, &[1.0]) };
-        assert!((work_growth(&[at(10.0), at(15.0), at(20.0)]) - 3.0).abs() < 1e-12);
-        assert!(work_growth(&[]).is_nan() && work_growth(&[at(10.0)]).is_nan());
+    fn a_resolution_in_short_is_its_first_number() {
         assert_eq!(
             ["20 rows", "H/dx = 10", "50 x 50", "fine"].map(short),
             ["20", "10", "50", "fine"]

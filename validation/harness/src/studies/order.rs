@@ -1,7 +1,7 @@
 //! The observed order of accuracy with its confidence interval: a panel, a table and gates, which the study
 //! of errors and their cost shows.
 
-use base::gate::{Bound, Evidence, Gate};
+use base::gate::Gate;
 use report::{Axis, Cell, Layer, Legend, Plot, Series, Table, exact, percent, sig};
 
 use crate::{
@@ -36,13 +36,7 @@ pub const GOALS: [f64; 2] = [1e-2, 1e-3];
 
 /// `costs` are the seconds that each ladder takes to reach the [`GOALS`], NaN if it does not.
 pub fn orders(accuracy: &Accuracy, costs: &[[f64; 2]], runs: &Runs) -> Orders {
-    let slopes = slopes(accuracy);
-    let shown: Vec<String> = slopes.iter().map(|order| exact(*order)).collect();
-    let slope = match shown.as_slice() {
-        [] => String::new(),
-        [order] => format!(" The left triangle shows order {order}."),
-        orders => format!(" The left triangles show orders {}.", orders.join(" and ")),
-    };
+    let slope = accuracy.slope.map(|order| format!(" The triangle shows order {}.", exact(order)));
     let axes = (Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
     let mut panel = Plot::new("Error against spacing", axes.0, axes.1).legend(Legend::Hidden);
     let (mut rows, mut judged) = (Vec::new(), Vec::new());
@@ -59,26 +53,10 @@ pub fn orders(accuracy: &Accuracy, costs: &[[f64; 2]], runs: &Runs) -> Orders {
         let finest = points.last().map_or(f64::NAN, |p| p.value);
         rows.push(Row { name, found, finest, costs: costs[k] });
     }
-    let panel = slopes.into_iter().fold(panel, |panel, order| panel.layer(Layer::slope(order)));
+    let panel = accuracy.slope.into_iter().map(Layer::Slope).fold(panel, Plot::layer);
     let about = format!("Observed orders of accuracy. {} {TIMES}", accuracy.about);
     let table = table(about, &rows);
-    Orders { panel, caption: slope, table, judged }
-}
-
-/// The orders that theory expects: that of the method, and the middle of what gates of ladders allow.
-fn slopes(accuracy: &Accuracy) -> Vec<f64> {
-    let gates = accuracy.ladders.iter().filter_map(|ladder| ladder.order.as_ref());
-    let expected = gates.filter_map(|gate| match (gate.bound, gate.evidence) {
-        (Bound::Within(low, high), Evidence::Theory) => Some(0.5 * (low + high)),
-        _ => None,
-    });
-    let mut slopes: Vec<f64> = accuracy.slope.into_iter().collect();
-    for order in expected {
-        if slopes.iter().all(|other| (other - order).abs() > 0.1) {
-            slopes.push((10.0 * order).round() / 10.0);
-        }
-    }
-    slopes
+    Orders { panel, caption: slope.unwrap_or_default(), table, judged }
 }
 
 const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of \
@@ -129,7 +107,7 @@ fn table(about: String, rows: &[Row]) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use base::gate::Verdict;
+    use base::gate::{Bound, Evidence, Verdict};
 
     use super::*;
     use crate::{
@@ -180,8 +158,7 @@ mod tests {
             ("case.order", Verdict::Pass)
         );
         assert!((order - 3.0).abs() < 1e-12, "order {order} of errors 8/n³");
-        // Order 2 of the method, and 3, the middle of what the gate allows.
-        assert_eq!(orders.caption, " The left triangles show orders 2 and 3.");
+        assert_eq!(orders.caption, " The triangle shows order 2.");
     }
 
     #[test]
