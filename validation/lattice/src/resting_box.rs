@@ -353,8 +353,7 @@ fn declaration(tier: Tier) -> Declaration {
 
 /// Super-time-stepping at its limit, in a larger box.
 fn plan(_: Tier) -> Vec<Planned> {
-    let because =
-        "Up to the limit of sound and viscosity together no wave grows, however stiff it is.";
+    let because = "Up to the limit of sound and viscosity together no wave grows.";
     let (id, none) = ("extremes.step.super-leapfrog.10.1", Bound::Equals(0.0));
     let gate = Gate::new(id, String::from(GREW), none, Evidence::Theory, because);
     let mut run = RESTING_BOX.planned(SUPER, |s| {

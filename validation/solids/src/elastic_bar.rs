@@ -603,7 +603,7 @@ mod tests {
 
     #[test]
     fn settings_that_make_no_sense_are_refused() {
-        let refused = |variant, set| solid::refused(&ELASTIC_BAR, variant, set);
+        let refused = |variant, set| solid::tests::refused(&ELASTIC_BAR, variant, set);
         assert!(matches!(refused("bare", "alpha=1"), Some(RunError::Unused { .. })));
         assert!(matches!(refused("bare", "xsph=0.5"), Some(RunError::Unused { .. })));
         assert!(matches!(refused("bare", "poisson=0.5"), Some(RunError::Setting(_))));

@@ -256,7 +256,7 @@ mod tests {
     /// No column of particles was left, and the run panicked.
     #[test]
     fn a_bar_that_is_shorter_than_two_spacings_is_refused() {
-        let refused = |set| solid::refused(&CANTILEVER, LAGRANGIAN, set);
+        let refused = |set| solid::tests::refused(&CANTILEVER, LAGRANGIAN, set);
         assert!(matches!(refused("length=1e-3"), Some(RunError::TooMuch { .. })));
         assert!(matches!(refused("n=1"), Some(RunError::Setting(_))));
         assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));

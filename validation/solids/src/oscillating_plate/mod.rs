@@ -379,7 +379,7 @@ mod tests {
 
     #[test]
     fn a_plate_that_makes_no_sense_is_refused() {
-        let refused = |set| solid::refused(&OSCILLATING_PLATE, "plain", set);
+        let refused = |set| solid::tests::refused(&OSCILLATING_PLATE, "plain", set);
         assert!(matches!(refused("n=1"), Some(RunError::Setting(_))));
         assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));
         assert!(matches!(refused("thickness=1e-9"), Some(RunError::TooLong { .. })));

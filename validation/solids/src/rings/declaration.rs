@@ -278,7 +278,7 @@ fn sensitivity(tier: Tier) -> Sensitivity {
         Watched::blind_up_to(Constant::ShearModulus, 1.0, STIFF, &WIDE_BOUNDS),
         Watched::blind_up_to(Constant::Density, 1.0, STIFF, &WIDE_BOUNDS),
         Watched::blind_up_to(Constant::Height, 0.1, SPEED, &WIDE_BOUNDS),
-        Watched::blind_up_to(Constant::Normalisation, 1.0, STIFF, &WIDE_BOUNDS),
+        Watched::new(Constant::Normalisation),
         Watched::new(Constant::SmoothingLength).quick(),
         Watched::blind_up_to(Constant::TimeStep, 1.0, STEP, &SAFETY_MARGIN),
         Watched::blind_up_to(Constant::ArtificialViscosity, 1.0, LOSS, &WIDE_BOUNDS),

@@ -9,7 +9,7 @@ use base::{
     functions::hypot,
     record::{MetricKey, Profile, Record, Status},
 };
-use harness::context::Context;
+use harness::{context::Context, simulate};
 use maths::geometry::{Bonds, Topology};
 
 /// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
@@ -17,7 +17,7 @@ const SAMPLES: f64 = 800.0;
 const COUNTED_EVERY: usize = 8;
 /// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
 /// nearest one or two of the layers beside it.
-const NEIGHBOURS: f64 = 1.2;
+pub const NEIGHBOURS: f64 = 1.2;
 /// Shares of the run at which particles are kept for pictures.
 pub const PICTURES: [f64; 5] = [0.16, 0.3, 0.4, 0.6, 1.0];
 
@@ -309,11 +309,9 @@ impl Watch for Series {
                 self.sample(time, &particles, Energy::known(simulation));
             }
             self.put(record);
-            let (momentum, mass) =
-                particles.iter().fold((Vector2::zeros(), 0.0), |(sum, mass), p| {
-                    (sum + p.velocity * p.mass, mass + p.mass)
-                });
+            let mass = particles.iter().fold(0.0, |sum, p| sum + p.mass);
             let of_ring = 0.5 * mass * self.settings.speed().max(f64::MIN_POSITIVE);
+            let momentum = simulate::momentum(&particles);
             record.put(MOMENTUM, momentum.norm() / of_ring);
         }
         record.profiles.insert("series".into(), Profile::of_rows(&NAMES, &self.rows));

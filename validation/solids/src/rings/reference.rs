@@ -37,6 +37,8 @@ pub struct Reference {
     pub uncertainty: f64,
     /// Least distance of the ring from the plane at these times \[L\].
     gap: Vec<f64>,
+    /// Largest principal logarithmic strain at any time and place \[-\].
+    pub strain: f64,
 }
 
 /// The faces of the right ring at a time of the table \[L\]; none at any other.
@@ -108,6 +110,7 @@ impl Reference {
         let [impulse, early, late] =
             [phases("impulse")?, phases("impulse_1")?, phases("impulse_99")?];
         let phase = |k: usize| [impulse[k], early[k], late[k]];
+        let strain = [("check", "greatest principal logarithmic strain"), of[0], of[1]];
         let [x_c, v_c, width, height] = Self::COLUMNS;
         let columns = [series(x_c)?, series(v_c)?, series(width)?, series(height)?];
         let uncertain = |name: &str| Some(rms(series(&format!("{name}_uncertainty"))?.into_iter()));
@@ -119,6 +122,8 @@ impl Reference {
             uncertainty: largest(uncertain) / diameter(&columns),
             columns,
             gap: series("gap")?,
+            // The finest mesh comes last.
+            strain: column(table("checks")?, "value", &strain)?.last().copied().unwrap_or(f64::NAN),
         };
         (!found.phases.is_empty()).then_some(found)
     }

@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn settings_that_make_no_rings_are_refused() {
         let refused = |set| {
-            let error = solid::refused(&RUBBER_RINGS, "leapfrog", set);
+            let error = solid::tests::refused(&RUBBER_RINGS, "leapfrog", set);
             error.unwrap_or_else(|| panic!("{set} is not refused")).to_string()
         };
         assert!(refused("centre=3.9").contains("outer radius"));
