@@ -256,7 +256,6 @@ fn a_run_writes_its_files_whole() {
         "profile.csv",
         "profile.png",
         "record.json",
-        "series.csv",
         "vtk/particles.pvd",
         "vtk/particles_0000.vtp",
         "vtk/particles_0001.vtp",
