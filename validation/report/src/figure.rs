@@ -133,8 +133,8 @@ pub enum Legend {
 pub enum Layer {
     /// A line, markers, or both, with or without error bars.
     Series(Series),
-    /// A triangle that shows a slope d log y / d log x on two logarithmic axes, at a free place near the data;
-    /// left out where there is none.
+    /// A triangle that shows a slope d log y / d log x on two logarithmic axes, at a free place near the
+    /// data; left out where there is none.
     Slope(f64),
     /// The area between two curves.
     Band {

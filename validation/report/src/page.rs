@@ -178,8 +178,8 @@ impl Page {
         page.into_string()
     }
 
-    /// Writes what [`Page::html`] has said, and the figures' PNG files into their folder beside it. Every file
-    /// appears whole or not at all.
+    /// Writes what [`Page::html`] has said, and the figures' PNG files into their folder beside it. Every
+    /// file appears whole or not at all.
     pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
         if !self.png_folder.is_empty() {
