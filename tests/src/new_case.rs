@@ -47,7 +47,7 @@ fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record
 
 fn declaration(_: Tier) -> Declaration {
     let level = |variant: &str, n| DECAY.planned(variant, |s| s.n = n);
-    let error = Accuracy::new("decay", ErrorOf::Metric(ERROR.into()), "Error [-]");
+    let error = Accuracy::new("decay", ERROR, "Error [-]");
     let accuracy = error.over(&["cubic", "quintic"], [8, 16, 32], level);
     let none = Change::new("none", "–", DECAY.spec("cubic", |_| {}));
     let halved = Change::new("dt/2", "time", DECAY.spec("cubic", |s| s.step *= 0.5));

@@ -1,6 +1,6 @@
 //! The row-reduced matrix of a channel and the factors of a lattice, against the tables of the design notes.
 
-#[path = "../../validation/maths/src/theory/printed.rs"]
+#[path = "../../validation/maths/src/theory/tests.rs"]
 mod printed;
 
 use base::functions::log2;

@@ -257,11 +257,7 @@ fn group(metric: &str) -> &str {
 fn bounds_of_solids(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     let little = "energy is lost to viscosity and may not be gained: 1 % for kinetic energy half a step late";
     match case {
-        "elastic_bar" => vec![
-            ("energy_change", Bound::Within(-0.5, 0.01), little),
-            ("stress_ratio", Bound::Within(0.97, 1.1), "rho c_p V, 5 % more at V = 0.1 c_p"),
-            ("contact_time_ratio", Bound::Within(0.9, 1.03), "2 L/c_p, 5 % less at V = 0.1 c_p"),
-        ],
+        "elastic_bar" => vec![("energy_change", Bound::Within(-0.5, 0.01), little)],
         "spinning_disk" => vec![
             (
                 "largest_stress",
@@ -274,7 +270,6 @@ fn bounds_of_solids(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
                 "a gradient that misses half of its neighbours is half of the spin",
             ),
             ("energy_drift", Bound::Within(-0.01, 0.01), "nothing dissipates, half a step late"),
-            ("radius", Bound::Within(0.95, 1.05), "strains are of the order of (0.05)^2"),
         ],
         "oscillating_plate" => vec![
             ("period", Bound::Within(0.254, 0.4), "not faster than theory"),
@@ -291,29 +286,19 @@ fn bounds_of_rings() -> Vec<(&'static str, Bound, &'static str)> {
         "a ring of outer radius 4 L that is flattened, and stays apart from its mirror image";
     let soft = "five layers bend too softly: the gates allow a seventh of the width";
     let run = "within the run, of 200 L/c0";
-    let share = "no more than the energy of the start";
-    let mut bounds: Vec<_> = ["t_impulse_1", "t_impulse_50", "t_impulse_99", "t_stretch_most"]
-        .map(|name| (name, Bound::Within(0.0, 200.0), run))
-        .into();
+    let mut bounds: Vec<_> =
+        ["t_impulse_1", "t_impulse_99"].map(|name| (name, Bound::Within(0.0, 200.0), run)).into();
     bounds
         .extend(["width_rms", "height_rms", "x_c_rms"].map(|name| (name, Bound::Below(2.0), soft)));
     bounds.extend([
         ("energy_lost", Bound::Within(0.0, 1.0), "viscosity takes energy and nothing adds any"),
+        ("contact_begin_error", Bound::Within(-4.0, 4.0), "rings come nearer by dx in 3.4 L/c0"),
         ("histories", Bound::Below(0.25), soft),
-        ("contact_most", Bound::Within(0.0, 1.0), share),
-        ("modes_most", Bound::Within(0.0, 1.0), share),
         ("restitution", Bound::Within(0.0, 1.0), "rings do not part faster than they met"),
         ("impulse", Bound::Within(0.0, 2.6), "at most twice the momentum of a ring, 2 m V = 2.6"),
-        ("pieces", Bound::Equals(2.0), "two rings"),
         ("height_max", Bound::Within(8.0, 12.0), round),
         ("width_min", Bound::Within(2.0, 8.0), round),
-        ("x_c_min", Bound::Within(1.0, 4.0), round),
-        ("x_c_min_error", Bound::Within(-0.2, 0.2), soft),
-        ("x_c_end", Bound::Within(4.0, 9.0), "it has flown away from the plane again"),
         ("v_c_rms", Bound::Below(0.059), "less than the speed itself"),
-        ("work_elastic", Bound::Within(-0.01, 0.01), "the elastic law keeps energy"),
-        ("work_stress", Bound::Within(-0.1, 0.1), share),
-        ("work_viscosity", Bound::Within(-1.0, 0.0), share),
     ]);
     bounds
 }

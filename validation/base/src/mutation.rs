@@ -72,10 +72,6 @@ pub enum Constant {
     Shifting,
     /// how far a particle may move before neighbour lists are built again
     ListLifetime,
-    /// stiffness of the contact of solid bodies
-    Contact,
-    /// modulus against modes that deform no particle of a solid
-    Hourglass,
 }
 
 impl Constant {
@@ -116,8 +112,6 @@ impl Constant {
             Self::DensityDiffusion => "density_diffusion",
             Self::Shifting => "shifting",
             Self::ListLifetime => "list_lifetime",
-            Self::Contact => "contact",
-            Self::Hourglass => "hourglass",
         }
     }
 }

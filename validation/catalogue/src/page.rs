@@ -5,7 +5,6 @@ use base::{
     manifest::{Known, Manifest},
     record::Record,
     reference::{Reference, ReferenceError},
-    settings::Field,
     spec::{RunSpec, Task},
 };
 use harness::{
@@ -55,12 +54,11 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
             reused(suite),
             provenance(&manifest)
         )],
-        counts: Some(suite.counts()),
+        counts: suite.counts(),
         cards,
         notes,
         sections,
         png_folder: "figures".into(),
-        footer: String::new(),
     }
 }
 
@@ -153,8 +151,7 @@ const READING: [&str; 2] = [
     "A cost diagram shows one point for each run. The number at a point is the resolution. Run time is the \
      processor time of the time stepping on one core, the median of repeated runs with no other run at work; \
      bars reach from the fastest to the slowest. The pale band joins the points that no other beats in both \
-     error and cost. The triangle has the slope that the order of accuracy gives for the growth of work that \
-     was measured.",
+     error and cost.",
     "A convergence diagram shows the error over the spacing of particles. The triangle has the slope of the \
      order that theory expects. The order in the table below it is a least-squares fit over all levels, with \
      the 95 % interval of Student's t distribution.",
@@ -200,12 +197,8 @@ fn case_section(results: &CaseResults) -> Section {
     }
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
     section.block(Block::Details {
-        summary: "Variants, settings, all runs".into(),
-        blocks: vec![
-            Block::List(variants),
-            settings_table(results).into(),
-            run_table(case, results.runs.all()).into(),
-        ],
+        summary: "Variants and all runs".into(),
+        blocks: vec![Block::List(variants), run_table(case, results.runs.all()).into()],
     })
 }
 
@@ -230,21 +223,12 @@ fn measured(value: f64) -> Cell {
     if is_whole { Cell::exact(value) } else { Cell::num(value, 4) }
 }
 
-fn settings_table(results: &CaseResults) -> Table {
-    let caption = "Settings (`--set key=value`). Variants change some of the defaults.";
-    Columns::<Field>::default()
-        .code("setting", |field| field.name)
-        .text("meaning", |field| field.doc)
-        .text("unit", |field| field.unit)
-        .text("allowed", |field| field.range)
-        .text("default", |field| field.default().to_string())
-        .table(caption, results.case.fields())
-}
-
 fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
-    let caption = "All runs and their cost. Seconds alone are the median of timings with nothing else of \
-                   this program at work; other seconds were taken side by side and are only rough. The state \
-                   is a digest of the bits at the end: the same for any number of threads.";
+    let caption = "All runs, the settings that are not the defaults of their variant (`touchstone list` and \
+                   the name of the case show these), and their cost. Seconds alone are the median of timings \
+                   with nothing else of this program at work; other seconds were taken side by side and are \
+                   only rough. The state is a digest of the bits at the end: the same for any number of \
+                   threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
     Columns::of_variants()
         .text("set", |record| what(case, &record.spec()))

@@ -3,11 +3,8 @@
 use harness::{
     case::{self, Case, Rules, RunError},
     columns::Columns,
-    declare::StepLimits,
     limits::Mechanism,
-    runs::Runs,
-    studies::limit_of_theory,
-    suite::Suite,
+    suite::{CaseResults, Suite},
 };
 use report::{Block, Cell, Section, Table};
 
@@ -19,34 +16,20 @@ pub struct Row {
     pub variant: &'static str,
     /// What its rules choose.
     pub rules: Rules,
-    /// The least and the largest measured limit of the step over that of theory, of the runs of which they
-    /// were bisected.
-    measured: Option<[f64; 2]>,
 }
 
 impl Row {
-    /// The variants of a case whose rules state a step before the run, without what was measured.
+    /// The variants of a case whose rules state a step before the run.
     ///
     /// # Errors
     /// If the default settings of a variant are refused.
     pub fn of(case: &dyn Case) -> Result<Vec<Self>, RunError> {
         let row = |variant: case::Variant| {
             let rules = case.rules(&case::spec(case, variant.name, &[])?);
-            Ok(Self { case: case.name(), variant: variant.name, rules: rules?, measured: None })
+            Ok(Self { case: case.name(), variant: variant.name, rules: rules? })
         };
         let all = case.variants().into_iter().map(row);
         all.filter(|row| !matches!(row, Err(RunError::NoRules { .. }))).collect()
-    }
-
-    fn measured(self, limits: Option<&StepLimits>, runs: &Runs) -> Self {
-        let of = limits.iter().flat_map(|limits| &limits.of);
-        let of = of.filter(|limit| limit.variant == self.variant);
-        let ratios = of.filter_map(|limit| limit_of_theory(limit, runs));
-        let both = |all: Option<[f64; 2]>, ratio: f64| {
-            let [least, most] = all.unwrap_or([ratio; 2]);
-            Some([least.min(ratio), most.max(ratio)])
-        };
-        Self { measured: ratios.fold(None, both), ..self }
     }
 
     /// The limit of a mechanism over the step; infinite if the scene lacks it.
@@ -68,13 +51,6 @@ impl Row {
     /// Steps of the run over those that the slowest mechanism alone would need.
     pub fn cost(&self) -> f64 {
         self.rules.limits.slowest(self.rules.end) / self.rules.dt()
-    }
-
-    fn measured_words(&self) -> String {
-        let Some([least, most]) = self.measured.map(|both| both.map(|x| report::sig(x, 3))) else {
-            return "–".into();
-        };
-        if least == most { least } else { format!("{least} to {most}") }
     }
 }
 
@@ -103,12 +79,11 @@ pub fn table(rows: &[Row]) -> Table {
             format!("{number} {}", step.by).trim_start().to_string()
         });
     let limit = |value: f64| Cell::num(value, 3);
-    let mechanisms = Mechanism::ALL.into_iter().fold(columns, |columns, mechanism| {
-        columns.of([mechanism.name(), ""], move |row| row.headroom(mechanism), limit)
+    let mechanisms = Mechanism::ALL.into_iter().fold(columns, |columns, (mechanism, name)| {
+        columns.of([name, ""], move |row| row.headroom(mechanism), limit)
     });
     mechanisms
         .of(["together", ""], |row| row.rules.dt_limit() / row.rules.dt(), limit)
-        .text("measured/theory", Row::measured_words)
         .text("bound by", |row| row.rules.limits.binding().name())
         .num(["slowest/stiffest", ""], |row| Cell::num(row.stiffness(), 3))
         .num(["steps", "1"], |row| Cell::num(row.steps(), 3))
@@ -117,27 +92,16 @@ pub fn table(rows: &[Row]) -> Table {
         .table("What limits the time step: each limit over the step that is taken.", rows)
 }
 
-/// The table of all cases, with the limits that were measured.
+/// The table of all cases.
 pub fn section(suite: &Suite) -> Section {
-    let of_case = |results: &harness::suite::CaseResults| {
-        let limits = results.case.declaration(suite.tier).limits;
-        let rows = Row::of(results.case).unwrap_or_default();
-        let measured = move |row: Row| row.measured(limits.as_ref(), &results.runs);
-        rows.into_iter().map(measured).collect::<Vec<Row>>()
-    };
+    let of_case = |results: &CaseResults| Row::of(results.case).unwrap_or_default();
     let rows: Vec<Row> = suite.cases.iter().flat_map(of_case).collect();
     let summary = format!("The limits of {} variants", rows.len());
+    let note = "`touchstone stability --theory` prints the table without any run. Each case compares the \
+                longest stable step by bisection with *together*; on lattices at rest the two agree within \
+                3 %, as gates of the case `resting_box` demand.";
     Section::new("stiffness", "What limits the time step").prose(READING).block(Block::Details {
         summary,
-        blocks: vec![
-            table(&rows).into(),
-            Block::Prose(vec![
-                "Measured/theory is the longest stable step by bisection over *together*, of the runs that \
-                 each case declares; they need not have the default resolution. On lattices at rest the two \
-                 agree within 3 %, as gates of the case `resting_box` demand. \
-                 `touchstone stability --theory` prints the table without any run."
-                    .into(),
-            ]),
-        ],
+        blocks: vec![table(&rows).into(), Block::Prose(vec![note.into()])],
     })
 }

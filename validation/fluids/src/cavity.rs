@@ -313,7 +313,7 @@ fn declaration(tier: Tier) -> Declaration {
     let accuracy = Accuracy {
         about: "The lid-driven cavity, steady, against finite differences of this project.".into(),
         ladders: both.map(ladder).into_iter().filter(|l| !l.levels.is_empty()).collect(),
-        ..Accuracy::new(NAME, ErrorOf::Metric(U_RMS.into()), "rms error of u on x = L/2 [U]")
+        ..Accuracy::new(NAME, U_RMS, "rms error of u on x = L/2 [U]")
     };
     let speed = Watched::new(Constant::WallSpeed).quick().faults(&[-1.0, 0.5]);
     Declaration {

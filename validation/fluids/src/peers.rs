@@ -22,7 +22,6 @@ pub fn peers(
             name: format!("{}, {}", codes[k], schemes[k]),
             label: label(resolutions[k]?),
             seconds: seconds[k]?,
-            spacing: 1.0 / resolutions[k]?,
             error: errors[k]? / 100.0,
             timed: timed.into(),
         })

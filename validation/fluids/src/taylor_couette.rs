@@ -250,12 +250,13 @@ fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
                    linearly of second. A tolerance of 0.3 tells one from the other, whatever the number of \
                    levels, but not an order that falls slowly.";
     let ladder = |(variant, expected): (&'static str, f64)| {
-        let order = OrderGate {
-            id: format!("{NAME}.{variant}.order"),
-            bound: Bound::Within(expected - 0.3, expected + 0.3),
-            evidence: Evidence::Theory,
-            because: because.into(),
-        };
+        let order = Gate::new(
+            format!("{NAME}.{variant}.order"),
+            "order",
+            Bound::Within(expected - 0.3, expected + 0.3),
+            Evidence::Theory,
+            because,
+        );
         let level =
             |s: &CylinderSettings| (1.0 / s.layers as f64, format!("{} spacings across", s.layers));
         Ladder { order: Some(order), ..table.ladder(&[()], variant, level) }
@@ -267,7 +268,7 @@ fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
             .into(),
         spacing: "dx/d [-]",
         ladders: [(INTERFACE, 1.0), (EXTRAPOLATING, 2.0)].map(ladder).into(),
-        ..Accuracy::new("taylor-couette", ErrorOf::Metric(L2.into()), label)
+        ..Accuracy::new("taylor-couette", L2, label)
     }
 }
 

@@ -9,7 +9,7 @@
 //!   largest: the error first decreased with a clear order and then stopped decreasing;
 //! - [`Label::NotAsymptotic`] otherwise.
 
-use base::functions::{ln, powf};
+use base::functions::ln;
 use thiserror::Error;
 
 /// Local orders within this fraction of the fitted one count as the same order.
@@ -39,17 +39,6 @@ pub enum Label {
     NotAsymptotic,
 }
 
-/// E = E₀ + C hᵖ.
-#[derive(Clone, Copy, Debug)]
-pub struct Floor {
-    /// E₀ ≥ 0, the error that refinement does not remove.
-    pub error: f64,
-    /// C ≥ 0.
-    pub coefficient: f64,
-    /// p, between 0.5 and 6.
-    pub order: f64,
-}
-
 /// The outcome of [`convergence`].
 #[derive(Clone, Debug)]
 pub struct Convergence {
@@ -63,9 +52,6 @@ pub struct Convergence {
     pub local_orders: Vec<f64>,
     /// Whether to believe the order.
     pub label: Label,
-    /// The floor, if reached: least squares of E₀ + C hᵖ in relative errors. Rough when the error
-    /// dips below its floor on the way, as two errors of opposite sign make it do.
-    pub floor: Option<Floor>,
 }
 
 /// Why no order can be computed, in words.
@@ -86,9 +72,8 @@ pub fn convergence(levels: &[Level]) -> Result<Convergence, ConvergenceError> {
     let local_orders: Vec<f64> =
         (1..x.len()).map(|k| (y[k - 1] - y[k]) / (x[k - 1] - x[k])).collect();
     let label = label(order, &local_orders);
-    let floor = (label == Label::FloorReached).then(|| fit_floor(&levels));
     let interval = [order - half_width, order + half_width];
-    Ok(Convergence { order, standard_error, interval, local_orders, label, floor })
+    Ok(Convergence { order, standard_error, interval, local_orders, label })
 }
 
 /// The levels, coarse to fine.
@@ -148,62 +133,6 @@ fn label(order: f64, local: &[f64]) -> Label {
     }
 }
 
-/// Least squares of E = E₀ + C hᵖ, E₀ and C ≥ 0, with weights 1/E²: linear for given p, a scan in
-/// steps of 0.05 and golden sections for p.
-fn fit_floor(levels: &[Level]) -> Floor {
-    let misfit = |order: f64| misfit(levels, &linear_floor(levels, order));
-    let mut best = SLOWEST;
-    for k in 0..=110 {
-        let order = SLOWEST + 0.05 * f64::from(k);
-        if misfit(order) < misfit(best) {
-            best = order;
-        }
-    }
-    let golden = 0.5 * (5f64.sqrt() - 1.0);
-    let (mut low, mut high) = ((best - 0.05).max(SLOWEST), best + 0.05);
-    while high - low > 1e-10 {
-        let width = golden * (high - low);
-        if misfit(high - width) < misfit(low + width) {
-            high = low + width
-        } else {
-            low = high - width
-        }
-    }
-    linear_floor(levels, 0.5 * (low + high))
-}
-
-/// The best E₀ and C at a given order: weighted normal equations, then the better edge if one is
-/// negative.
-fn linear_floor(levels: &[Level], order: f64) -> Floor {
-    let (mut aa, mut ab, mut bb, mut a, mut b) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for Level { spacing, value } in levels {
-        // Relative residual 1 - E₀ u - C w.
-        let (u, w) = (1.0 / value, powf(*spacing, order) / value);
-        aa += u * u;
-        ab += u * w;
-        bb += w * w;
-        a += u;
-        b += w;
-    }
-    let determinant = aa * bb - ab * ab;
-    let inner =
-        [(a * bb - b * ab) / determinant, (b * aa - a * ab) / determinant].map(|x| x.max(0.0));
-    let floor = |[error, coefficient]: [f64; 2]| Floor { error, coefficient, order };
-    let edges = [inner, [a / aa, 0.0], [0.0, b / bb]].map(floor);
-    let [first, rest @ ..] = edges;
-    rest.into_iter().fold(first, |best, edge| {
-        if misfit(levels, &edge) < misfit(levels, &best) { edge } else { best }
-    })
-}
-
-/// Σ (1 - (E₀ + C hᵖ)/E)².
-fn misfit(levels: &[Level], floor: &Floor) -> f64 {
-    let residual = |level: &Level| {
-        1.0 - (floor.error + floor.coefficient * powf(level.spacing, floor.order)) / level.value
-    };
-    levels.iter().map(residual).map(|r| r * r).sum()
-}
-
 /// The 97.5 % quantile of Student's t with `freedom` ≥ 1 degrees: a table to 10, beyond it the
 /// expansion in 1/n of Abramowitz & Stegun 26.7.5 (error below 1e-5).
 fn student_t(freedom: usize) -> f64 {
@@ -223,6 +152,8 @@ fn student_t(freedom: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use base::functions::powf;
+
     use super::*;
     use approx::assert_relative_eq;
 
@@ -239,7 +170,7 @@ mod tests {
         shuffled.swap(0, 2);
         let found = convergence(&shuffled).expect("usable");
         assert_relative_eq!(found.order, 1.7, epsilon = 1e-12);
-        assert!(found.standard_error < 1e-12 && found.floor.is_none());
+        assert!(found.standard_error < 1e-12);
         assert_eq!(found.label, Label::Asymptotic);
         assert_eq!(found.local_orders.len(), 3);
     }
@@ -302,17 +233,6 @@ mod tests {
         assert!(found.interval[0] < 2.0 && 2.0 < found.interval[1]);
     }
 
-    #[test]
-    fn a_floor_is_seen_and_measured() {
-        let found =
-            convergence(&levels([0.1, 0.05, 0.025, 0.0125, 0.00625], |h| 5e-4 + h * h)).unwrap();
-        assert_eq!(found.label, Label::FloorReached);
-        let floor = found.floor.expect("reached");
-        assert_relative_eq!(floor.error, 5e-4, max_relative = 1e-6);
-        assert_relative_eq!(floor.coefficient, 1.0, max_relative = 1e-5);
-        assert_relative_eq!(floor.order, 2.0, max_relative = 1e-6);
-    }
-
     /// Ghost walls with the seed's kernel and with the quintic, from the row-reduced channel.
     #[test]
     fn lattice_floors_of_the_channel_are_seen() {
@@ -320,13 +240,13 @@ mod tests {
         let label = |errors: [f64; 4]| {
             let levels: Vec<_> =
                 rows.iter().zip(errors).map(|(h, value)| Level { spacing: *h, value }).collect();
-            let found = convergence(&levels).expect("usable");
-            (found.label, found.floor.map(|floor| floor.error))
+            convergence(&levels).expect("usable").label
         };
-        let (seed, floor) = label([3.615e-2, 2.369e-2, 2.068e-2, 1.994e-2]);
-        assert_eq!(seed, Label::FloorReached);
-        assert!((floor.unwrap() - 1.97e-2).abs() < 2e-4, "{floor:?}");
-        assert_eq!(label([1.713e-2, 3.744e-3, 5.061e-4, 5.529e-4]).0, Label::FloorReached);
+        for errors in
+            [[3.615e-2, 2.369e-2, 2.068e-2, 1.994e-2], [1.713e-2, 3.744e-3, 5.061e-4, 5.529e-4]]
+        {
+            assert_eq!(label(errors), Label::FloorReached);
+        }
     }
 
     #[test]
@@ -338,7 +258,6 @@ mod tests {
             }
             let found = convergence(&levels).expect("usable");
             assert_eq!(found.label, Label::NotAsymptotic, "{errors:?}");
-            assert!(found.floor.is_none());
         }
     }
 

@@ -1,10 +1,10 @@
 //! The declaration of a case, from which the studies common to all cases are made: curves compared with
-//! their reference, order of accuracy, error against cost, cheapest settings, error budget, largest stable
-//! time step, maps. A declaration is plain data for one tier. [`crate::studies`] turns it into runs and the
-//! records of these runs into studies.
+//! their reference, order of accuracy, error against cost, error budget, largest stable time step, maps. A
+//! declaration is plain data for one tier. [`crate::studies`] turns it into runs and the records of these
+//! runs into studies.
 
 use base::{
-    gate::{Bound, Cause, Evidence, Gate},
+    gate::{Cause, Gate},
     mutation::{Constant, Detect, Mutation},
     record::{MetricKey, MetricName, Record, Status},
     spec::{Bisect, Measure, RunSpec},
@@ -16,7 +16,6 @@ use serde_json::Value;
 use crate::{
     planned::{Planned, Tier},
     rules::Rules,
-    runs::Runs,
 };
 
 /// The declaration of one case for one tier.
@@ -26,7 +25,7 @@ pub struct Declaration {
     pub card: Option<Card>,
     /// Profiles or histories over their reference.
     pub curves: Vec<Curves>,
-    /// Resolution ladders: order, error against cost, cheapest settings.
+    /// Resolution ladders: order, error against cost.
     pub accuracy: Vec<Accuracy>,
     /// Comparisons with references whose uncertainty is stated.
     pub comparisons: Vec<Comparison>,
@@ -191,8 +190,9 @@ pub struct Accuracy {
     /// Anchor of its studies in the report: the case in letters, digits and hyphens, and a suffix if the case
     /// has several.
     pub id: String,
-    /// What an error is.
-    pub error: ErrorOf,
+    /// What an error is: the distance from an exact solution or a reference. Of a metric with a sign the
+    /// magnitude counts.
+    pub error: MetricName,
     /// Name of the error with its unit, for axes.
     pub label: String,
     /// What was run and compared, one or two sentences.
@@ -203,42 +203,14 @@ pub struct Accuracy {
     pub slope: Option<f64>,
     /// One ladder of resolutions per variant, coarse to fine.
     pub ladders: Vec<Ladder>,
-    /// More points of the cost diagram and of the table of cheapest settings, beside the ladders.
-    pub more: Vec<Ladder>,
     /// Results of other codes.
     pub peers: Vec<Peer>,
 }
 
-/// What the error of a run is.
-#[derive(Clone)]
-pub enum ErrorOf {
-    /// A metric of its record: the distance from an exact solution or a reference. Of a metric with a sign
-    /// the magnitude counts.
-    Metric(MetricName),
-    /// The distance between two records; the error of a run is its distance from one that was made with the
-    /// finest spacing.
-    Distance {
-        /// The finest run, which has no error of its own.
-        finest: RunSpec,
-        /// The distance, symmetric.
-        between: fn(&Record, &Record) -> f64,
-    },
-}
-
-impl ErrorOf {
-    /// The error of a run that reached its end; `None` if it did not, or if it is what others are compared
-    /// with.
-    pub fn value(&self, record: &Record, runs: &Runs) -> Option<f64> {
-        let value = match self {
-            _ if record.status != Status::Completed => None,
-            ErrorOf::Metric(metric) => record.value(metric.clone()).map(f64::abs),
-            ErrorOf::Distance { finest, .. } if record.key() == finest.key() => None,
-            ErrorOf::Distance { finest, between } => {
-                runs.completed(finest).map(|finest| between(record, finest))
-            }
-        };
-        value.filter(|value| value.is_finite())
-    }
+/// The magnitude of this metric of a run that reached its end, which is its error.
+pub fn error_of(metric: &MetricName, record: &Record) -> Option<f64> {
+    let value = record.value(metric.clone()).filter(|_| record.status == Status::Completed);
+    value.map(f64::abs).filter(|value| value.is_finite())
 }
 
 /// Runs of one variant over resolutions.
@@ -250,7 +222,7 @@ pub struct Ladder {
     /// The runs, coarse to fine.
     pub levels: Vec<Level>,
     /// Gate on the order, if it is judged.
-    pub order: Option<OrderGate>,
+    pub order: Option<Gate>,
 }
 
 /// One resolution of a ladder.
@@ -264,19 +236,6 @@ pub struct Level {
     pub label: String,
 }
 
-/// A gate on an observed order.
-#[derive(Clone)]
-pub struct OrderGate {
-    /// Name of the gate.
-    pub id: String,
-    /// Where the order must lie.
-    pub bound: Bound,
-    /// The kind of evidence behind the bound.
-    pub evidence: Evidence,
-    /// The reason for the bound.
-    pub because: String,
-}
-
 /// A result of another code.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Peer {
@@ -286,8 +245,6 @@ pub struct Peer {
     pub label: String,
     /// Processor seconds \[s\].
     pub seconds: f64,
-    /// Spacing, in the unit of [`Accuracy::spacing`].
-    pub spacing: f64,
     /// Error, in the unit of [`Accuracy::label`].
     pub error: f64,
     /// Machine and date of the timing.
@@ -298,8 +255,9 @@ pub struct Peer {
 pub struct Budgets {
     /// Anchor of the study.
     pub id: String,
-    /// What an error is.
-    pub error: ErrorOf,
+    /// What an error is: the distance from an exact solution or a reference. Of a metric with a sign the
+    /// magnitude counts.
+    pub error: MetricName,
     /// Name of the error.
     pub label: String,
     /// What was run, one or two sentences.
@@ -331,15 +289,14 @@ pub struct Change {
 impl Accuracy {
     /// No ladders yet. The arguments are the id of the studies, what an error is, and the name of the error
     /// with its unit. Spacings are in units of a length of the problem; the expected order is 2.
-    pub fn new(id: &str, error: ErrorOf, label: &str) -> Self {
+    pub fn new(id: &str, error: impl Into<MetricName>, label: &str) -> Self {
         let (id, label, about) = (id.to_string(), label.to_string(), String::new());
+        let error = error.into();
         let (spacing, slope) = ("Δx [-]", Some(2.0));
-        let (ladders, more, peers) = (Vec::new(), Vec::new(), Vec::new());
-        Self { id, error, label, about, spacing, slope, ladders, more, peers }
+        let (ladders, peers) = (Vec::new(), Vec::new());
+        Self { id, error, label, about, spacing, slope, ladders, peers }
     }
-}
 
-impl Accuracy {
     /// The same with one ladder per variant, whose order is not judged. `level` gives the run of a variant at
     /// a resolution n; its spacing is 1/n.
     pub fn over<const N: usize>(
@@ -358,9 +315,7 @@ impl Accuracy {
         }));
         self
     }
-}
 
-impl Accuracy {
     /// The runs of these variants with the finest spacing of their ladders.
     pub fn finest(&self, variants: &[&str]) -> Vec<RunSpec> {
         let ladder = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
@@ -689,12 +644,9 @@ impl Declaration {
     /// Every run that the studies need.
     pub fn runs(&self) -> Vec<Planned> {
         let mut runs = Vec::new();
-        for Accuracy { error, ladders, more, .. } in &self.accuracy {
-            let levels = ladders.iter().chain(more).flat_map(|ladder| &ladder.levels);
+        for accuracy in &self.accuracy {
+            let levels = accuracy.ladders.iter().flat_map(|ladder| &ladder.levels);
             runs.extend(levels.map(|level| level.run.clone().timed()));
-            if let ErrorOf::Distance { finest, .. } = error {
-                runs.push(Planned::new(finest.clone()));
-            }
         }
         let mut plain = |spec: &RunSpec| runs.push(Planned::new(spec.clone()));
         for Comparison { levels, inputs, .. } in &self.comparisons {

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::{
     case::{self, Case, Planned, Tier},
-    declare::{Accuracy, Declaration, ErrorOf, Ladder, Level, Map},
+    declare::{Accuracy, Declaration, Ladder, Level, Map},
     plan,
 };
 
@@ -27,21 +27,16 @@ pub fn deepened(mut declared: Declaration, case: &dyn Case) -> Declaration {
     declared
 }
 
-/// Ladders, and the finest run that their errors are the distances from, go on by their last ratio.
+/// Ladders go on by their last ratio.
 fn refine(accuracy: &mut Accuracy, case: &dyn Case) {
-    if let ErrorOf::Distance { finest, .. } = &mut accuracy.error {
-        let of_variant = accuracy.ladders.iter().find(|ladder| ladder.variant == finest.variant);
-        let longer = of_variant.and_then(|ladder| finer(ladder, finest, FINER, case));
-        *finest = longer.map_or_else(|| finest.clone(), |level| level.run.spec);
-    }
     for ladder in &mut accuracy.ladders {
         let Some(last) = ladder.levels.last().map(|level| level.run.spec.clone()) else { continue };
         let next = |k| finer(ladder, &last, k, case);
         let more: Vec<Level> = (1..=FINER).filter_map(next).collect();
         ladder.levels.extend(more);
     }
-    accuracy.about += " In the deep tier each ladder goes two levels further by the ratio of its last two, \
-                       and so does the finest run, if errors are distances from one.";
+    accuracy.about +=
+        " In the deep tier each ladder goes two levels further by the ratio of its last two.";
 }
 
 /// A run `steps` levels finer: each number in which the last two levels of the ladder differ goes on by their

@@ -67,22 +67,7 @@ impl<'a> Frames<'a> {
     ) -> Result<(), FrameError> {
         let name = format!("particles_{:04}.vtp", self.come);
         self.come += 1;
-        let particles = simulation.particles();
-        let column =
-            |f: &dyn Fn(&Particle<X>) -> f64| -> Vec<f64> { particles.iter().map(f).collect() };
-        let xy = |v: nalgebra::Vector2<f64>| [v.x, v.y];
-        let positions: Vec<_> = particles.iter().map(|p| xy(p.position)).collect();
-        let velocities: Vec<_> = particles.iter().map(|p| xy(p.velocity)).collect();
-        let mut frame = Particles::new(simulation.time(), &positions)?
-            .vector("velocity", &velocities)?
-            .scalar("density", &column(&|p| p.density))?
-            .scalar("pressure", &column(&|p| (self.pressure)(p.density)))?
-            .scalar("mass", &column(&|p| p.mass))?
-            .scalar("role", &column(&|p| f64::from(p.role as u8)))?
-            .scalar("id", &ids(&particles))?;
-        if let Some(stress) = stress(&particles) {
-            frame = frame.triple(STRESS, &stress)?;
-        }
+        let frame = vtp(simulation.time(), &columns(&simulation.particles(), self.pressure))?;
         self.folder.write(&name, frame.to_xml().as_bytes())?;
         self.written.push(simulation.time(), &name);
         self.folder.write("particles.pvd", self.written.to_xml().as_bytes())?;
@@ -93,11 +78,6 @@ impl<'a> Frames<'a> {
 /// Name of the deviatoric stress of a solid: xx, yy, xy \[Pa\].
 const STRESS: &str = "deviatoric stress";
 
-/// The number of each particle, which stays the same through a run.
-fn ids<X>(particles: &[Particle<X>]) -> Vec<f64> {
-    (0..particles.len()).map(|k| k as f64).collect()
-}
-
 /// The deviatoric stress of each particle \[Pa\], if it is a solid that these are of.
 fn stress<X: Numbers>(particles: &[Particle<X>]) -> Option<Vec<[f64; 3]>> {
     let stress = |p: &Particle<X>| {
@@ -107,11 +87,21 @@ fn stress<X: Numbers>(particles: &[Particle<X>]) -> Option<Vec<[f64; 3]>> {
     particles.iter().map(stress).collect()
 }
 
-/// All fields of the particles at one time, as columns.
+/// A frame of these columns.
+fn vtp(time: f64, columns: &Profile) -> Result<Particles, VtkError> {
+    let pairs = |[x, y]: [&str; 2]| -> Vec<[f64; 2]> {
+        columns.column(x).iter().zip(columns.column(y)).map(|(x, y)| [*x, *y]).collect()
+    };
+    let frame = Particles::new(time, &pairs(["x", "y"]))?.vector("velocity", &pairs(["u", "v"]))?;
+    let mut others = columns.columns.iter().filter(|c| !["x", "y", "u", "v"].contains(&&*c.name));
+    others.try_fold(frame, |frame, column| frame.scalar(&column.name, &column.values))
+}
+
+/// All fields of the particles at one time, as columns. A particle keeps its number through a run.
 pub fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> f64) -> Profile {
     let column = |f: &dyn Fn(&Particle<X>) -> f64| particles.iter().map(f).collect();
     let profile = Profile::default()
-        .with("id", "-", ids(particles))
+        .with("id", "-", (0..particles.len()).map(|k| k as f64).collect())
         .with("role", "-", column(&|p| f64::from(p.role as u8)))
         .with("x", "m", column(&|p| p.position.x))
         .with("y", "m", column(&|p| p.position.y))
@@ -119,10 +109,12 @@ pub fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> 
         .with("v", "m/s", column(&|p| p.velocity.y))
         .with("density", "kg/m^3", column(&|p| p.density))
         .with("pressure", "Pa", column(&|p| pressure(p.density)));
-    let Some(stress) = stress(particles) else { return profile };
-    ["xx", "yy", "xy"].iter().enumerate().fold(profile, |profile, (k, name)| {
+    let stress = stress(particles).unwrap_or_default();
+    let names = ["xx", "yy", "xy"].into_iter().enumerate().filter(|_| !stress.is_empty());
+    let profile = names.fold(profile, |profile, (k, name)| {
         profile.with(&format!("{STRESS} {name}"), "Pa", stress.iter().map(|s| s[k]).collect())
-    })
+    });
+    profile.with("mass", "kg/m", column(&|p| p.mass))
 }
 
 /// Why a frame was not written.

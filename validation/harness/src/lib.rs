@@ -46,4 +46,3 @@ pub mod study;
 pub mod suite;
 pub mod symmetry;
 pub mod table;
-mod words;

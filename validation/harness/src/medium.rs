@@ -97,37 +97,27 @@ pub enum Knob {
 }
 
 impl Knob {
-    const ALL: [Self; 10] = [
-        Self::Eta2,
-        Self::Alpha,
-        Self::Beta,
-        Self::Xsph,
-        Self::Xi,
-        Self::Exponent,
-        Self::Diffusion,
-        Self::Shift,
-        Self::WallCurvature,
-        Self::WallGravity,
+    const ALL: [(Self, &'static str); 10] = [
+        (Self::Eta2, "eta2_over_h2"),
+        (Self::Alpha, "alpha"),
+        (Self::Beta, "beta"),
+        (Self::Xsph, "xsph"),
+        (Self::Xi, "xi"),
+        (Self::Exponent, "exponent"),
+        (Self::Diffusion, "diffusion"),
+        (Self::Shift, "shift"),
+        (Self::WallCurvature, "wall_curvature"),
+        (Self::WallGravity, "wall_gravity"),
     ];
 
     /// The name of the setting, in every case that has it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Eta2 => "eta2_over_h2",
-            Self::Alpha => "alpha",
-            Self::Beta => "beta",
-            Self::Xsph => "xsph",
-            Self::Xi => "xi",
-            Self::Exponent => "exponent",
-            Self::Diffusion => "diffusion",
-            Self::Shift => "shift",
-            Self::WallCurvature => "wall_curvature",
-            Self::WallGravity => "wall_gravity",
-        }
+        Self::ALL[self as usize].1
     }
 
     /// The names of all settings but these.
     pub fn others(uses: &[Self]) -> impl Iterator<Item = &'static str> {
-        Self::ALL.into_iter().filter(|knob| !uses.contains(knob)).map(Self::name)
+        let others = Self::ALL.into_iter().filter(|(knob, _)| !uses.contains(knob));
+        others.map(|(_, name)| name)
     }
 }

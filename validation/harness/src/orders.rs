@@ -53,7 +53,7 @@ pub fn study(
             let points = line.levels.iter().map(|level| (level.spacing, level.value)).collect();
             plot.layer(Series::line_markers(line.name, points).cycle(k))
         });
-        of.slopes.iter().fold(plot, |plot, order| plot.layer(Layer::slope(*order)))
+        of.slopes.iter().fold(plot, |plot, order| plot.layer(Layer::Slope(*order)))
     };
     let panels = all.iter().enumerate().map(panel);
     let figure = Figure::new(study.id.clone(), figure).columns(2).panel_size(330.0, 260.0);

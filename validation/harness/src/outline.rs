@@ -25,7 +25,7 @@ pub struct Outline {
     pub mirrors: Vec<PlaneWall>,
     /// The body of each particle; empty if there is one.
     pub bodies: Vec<u32>,
-    /// All particles at the start, in the order of the scene: the columns of [`frames::columns`] and `mass`.
+    /// All particles at the start, in the order of the scene: the columns of [`frames::columns`].
     pub particles: Profile,
     /// The times at which it is measured \[s\].
     pub times: Vec<f64>,
@@ -147,10 +147,9 @@ impl Sink {
         let first = inside.outline.as_mut().filter(|outline| outline.times.is_empty());
         if let Some(outline) = first {
             let particles = simulation.particles();
-            let mass = particles.iter().map(|p| p.mass).collect();
             let view = outline.view;
             let pressure = |density| view.pressure_of(pressure, density);
-            outline.particles = frames::columns(&particles, &pressure).with("mass", "kg/m", mass);
+            outline.particles = frames::columns(&particles, &pressure);
             (outline.times, outline.dt) = (times.to_vec(), dt);
             // Walls of particles need no planes.
             if particles.iter().any(|p| p.role != Role::Fluid) {

@@ -1,6 +1,6 @@
 //! An axis, and the mapping of its values to the unit interval.
 
-use super::ticks::{Scale, Ticks, fixed, ticks};
+use super::ticks::{Scale, Ticks, ticks};
 
 /// One axis of a plot.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,14 +11,12 @@ pub struct Axis {
     pub scale: Scale,
     /// Ends of the axis; `None` takes the data's with some padding.
     pub range: Option<(f64, f64)>,
-    /// Labelled ticks; empty chooses them.
-    pub ticks: Vec<f64>,
 }
 
 impl Axis {
     /// A linear axis with automatic range.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear, range: None, ticks: Vec::new() }
+        Self { label: label.into(), scale: Scale::Linear, range: None }
     }
 
     /// A logarithmic axis with automatic range.
@@ -29,11 +27,6 @@ impl Axis {
     /// The same axis with fixed ends.
     pub fn range(self, lo: f64, hi: f64) -> Self {
         Self { range: Some((lo, hi)), ..self }
-    }
-
-    /// The same axis with labelled ticks at these values only.
-    pub fn ticks(self, ticks: impl Into<Vec<f64>>) -> Self {
-        Self { ticks: ticks.into(), ..self }
     }
 
     /// The mapping for the given data.
@@ -55,14 +48,6 @@ impl Axis {
             Scale::Log => padded_log(ends),
         };
         Mapping { scale: self.scale, lo, hi }
-    }
-
-    /// The ticks on a mapping of this axis, at most about `count` of them labelled.
-    pub(super) fn place_ticks(&self, mapping: &Mapping, count: usize) -> Ticks {
-        match self.ticks.as_slice() {
-            [] => ticks(self.scale, mapping.lo, mapping.hi, count),
-            values => fixed(values, mapping.lo, mapping.hi),
-        }
     }
 }
 
@@ -96,6 +81,11 @@ pub(super) struct Mapping {
 }
 
 impl Mapping {
+    /// The ticks of the axis, at most about `count` of them labelled.
+    pub fn ticks(&self, count: usize) -> Ticks {
+        ticks(self.scale, self.lo, self.hi, count)
+    }
+
     /// 0 at the low end, 1 at the high end, beyond them outside; `None` for what has no place.
     pub fn unit(&self, v: f64) -> Option<f64> {
         let place = match self.scale {
@@ -126,7 +116,7 @@ mod tests {
             for axis in [Axis::linear("x"), Axis::log("x")] {
                 let m = axis.mapping(data.iter().copied());
                 assert!(m.lo < m.hi && m.lo.is_finite() && m.hi.is_finite(), "{data:?} {m:?}");
-                assert!(axis.place_ticks(&m, 5).major.len() < 50);
+                assert!(m.ticks(5).major.len() < 50);
             }
         }
     }

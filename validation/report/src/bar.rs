@@ -43,7 +43,7 @@ impl Bar {
         let axis = Axis::linear("");
         let axis = if lo < hi { axis.range(lo, hi) } else { axis };
         let values = axis.mapping([lo, hi].into_iter());
-        let ticks = axis.place_ticks(&values, (height / 36.0) as usize);
+        let ticks = values.ticks((height / 36.0) as usize);
         let is_fixed = given.is_some();
         Self { map, label: label.into(), values, ticks, is_fixed, is_shared: false }
     }

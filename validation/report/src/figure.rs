@@ -8,8 +8,6 @@ use super::colour::{Colour, ColourMap};
 pub struct Figure {
     /// Unique on its page; also the name of its PNG file.
     pub id: String,
-    /// Drawn above the panels; may be empty.
-    pub title: String,
     /// What is seen, with commit and settings; inline markup as in [`super::Block::Prose`].
     pub caption: String,
     /// Panels, row by row.
@@ -25,17 +23,11 @@ impl Figure {
     pub fn new(id: impl Into<String>, caption: impl Into<String>) -> Self {
         Self {
             id: id.into(),
-            title: String::new(),
             caption: caption.into(),
             panels: Vec::new(),
             columns: 1,
             panel_size: (420.0, 290.0),
         }
-    }
-
-    /// Sets the title.
-    pub fn title(self, title: impl Into<String>) -> Self {
-        Self { title: title.into(), ..self }
     }
 
     /// Adds a panel.
@@ -141,21 +133,9 @@ pub enum Legend {
 pub enum Layer {
     /// A line, markers, or both, with or without error bars.
     Series(Series),
-    /// A triangle that shows the slope `order` on two logarithmic axes, at a free place near the data (with
-    /// a smaller factor if need be); left out where there is none.
-    Slope {
-        /// d log y / d log x; negative where x counts particles.
-        order: f64,
-        /// Ratio of the ends in x, 2 say.
-        factor: f64,
-    },
-    /// A dashed grey line across the plot at one value, with a label beside it.
-    Rule {
-        /// The value.
-        at: f64,
-        /// May be empty.
-        label: String,
-    },
+    /// A triangle that shows a slope d log y / d log x on two logarithmic axes, at a free place near the
+    /// data; left out where there is none.
+    Slope(f64),
     /// The area between two curves.
     Band {
         /// Name in the legend; may be empty.
@@ -165,21 +145,9 @@ pub enum Layer {
         /// Drawn as a pale tint of this colour.
         colour: Colour,
     },
-    /// Runs without a result, as crosses in a strip at the upper edge: (x, reason).
-    Failed(Vec<(f64, String)>),
 }
 
 impl Layer {
-    /// A slope triangle of width factor 2.
-    pub fn slope(order: f64) -> Self {
-        Self::Slope { order, factor: 2.0 }
-    }
-
-    /// A dashed grey horizontal line.
-    pub fn horizontal(at: f64, label: impl Into<String>) -> Self {
-        Self::Rule { at, label: label.into() }
-    }
-
     /// A shaded area between two curves, points (x, lower, upper).
     pub fn band(name: impl Into<String>, points: Vec<(f64, f64, f64)>, colour: Colour) -> Self {
         Self::Band { name: name.into(), points, colour }
@@ -249,8 +217,6 @@ pub struct Series {
     pub shape: Option<Shape>,
     /// Open markers: reference data.
     pub open: bool,
-    /// Diameter of a marker in CSS pixels.
-    pub size: f64,
     /// (lower, upper) end of the bar in x for each point; empty for none.
     pub x_bars: Vec<(f64, f64)>,
     /// A short text beside each point, left out where there is no room; empty for none.
@@ -269,7 +235,6 @@ impl Series {
             marked: false,
             shape: None,
             open: false,
-            size: 6.5,
             x_bars: Vec::new(),
             labels: Vec::new(),
         }
@@ -318,11 +283,6 @@ impl Series {
         Self { open: true, ..self }
     }
 
-    /// Sets the diameter of the markers.
-    pub fn size(self, size: f64) -> Self {
-        Self { size, ..self }
-    }
-
     /// Bars in x, (lower, upper) for each point.
     pub fn x_bars(self, x_bars: Vec<(f64, f64)>) -> Self {
         Self { x_bars, ..self }
@@ -351,8 +311,8 @@ pub struct ParticleMap {
     pub values: Option<(f64, f64)>,
     /// Quantity and unit of the colour bar.
     pub label: String,
-    /// Diameter of a dot in units of x and y (the particle spacing, say); `None` guesses.
-    pub diameter: Option<f64>,
+    /// Diameter of a dot in units of x and y (the particle spacing, say), drawn with two pixels at least.
+    pub diameter: f64,
     /// Lines over the dots.
     pub lines: Vec<Series>,
 }
@@ -368,7 +328,7 @@ impl ParticleMap {
     ) -> Self {
         let (title, label) = (title.into(), label.into());
         let lines = Vec::new();
-        Self { title, x, y, points, map, values: None, label, diameter: None, lines }
+        Self { title, x, y, points, map, values: None, label, diameter: 0.0, lines }
     }
 
     /// Sets the ends of the colour bar.
@@ -389,7 +349,7 @@ impl ParticleMap {
 
     /// Sets the diameter of a dot in units of x and y.
     pub fn diameter(self, diameter: f64) -> Self {
-        Self { diameter: Some(diameter), ..self }
+        Self { diameter, ..self }
     }
 }
 

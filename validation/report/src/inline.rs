@@ -1,5 +1,5 @@
 //! Inline markup of prose, captions and cells: `*emphasis*`, `**strong**`, `` `code` ``,
-//! `[label](target)`, and MathML copied as it stands.
+//! `[label](target)`.
 
 use base::text::escaped;
 use maud::{Markup, PreEscaped};
@@ -8,7 +8,7 @@ use maud::{Markup, PreEscaped};
 pub(super) fn inline(text: &str) -> Markup {
     let mut out = String::with_capacity(text.len() + 16);
     let mut rest = text;
-    while let Some(at) = rest.find(['*', '`', '[', '<']) {
+    while let Some(at) = rest.find(['*', '`', '[']) {
         out.push_str(&escaped(&rest[..at]));
         rest = &rest[at..];
         let used = element(rest, &mut out);
@@ -23,11 +23,6 @@ pub(super) fn inline(text: &str) -> Markup {
 
 /// Writes the element at the start of the text; the bytes that it took, 0 for none.
 fn element(text: &str, out: &mut String) -> usize {
-    if text.starts_with("<math") {
-        let Some(end) = text.find("</math>").map(|i| i + "</math>".len()) else { return 0 };
-        out.push_str(&text[..end]);
-        return end;
-    }
     if let Some(code) = text.strip_prefix('`') {
         let Some(end) = code.find('`') else { return 0 };
         out.push_str(&format!("<code>{}</code>", escaped(&code[..end])));
@@ -69,7 +64,7 @@ mod tests {
     fn marks_become_elements() {
         assert_eq!(of("a *b* **c** `d<e`"), "a <em>b</em> <strong>c</strong> <code>d&lt;e</code>");
         assert_eq!(of("see [Fig *x*](#fig-x)."), "see <a href=\"#fig-x\">Fig <em>x</em></a>.");
-        assert_eq!(of("<math><mi>ρ</mi></math> & co"), "<math><mi>ρ</mi></math> &amp; co");
+        assert_eq!(of("ρ & co"), "ρ &amp; co");
     }
 
     #[test]

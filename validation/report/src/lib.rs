@@ -35,7 +35,7 @@ mod ticks;
 
 pub use axis::Axis;
 pub use card::Card;
-pub use check::{Summary, check_page};
+pub use check::check_page;
 pub use colour::{Colour, ColourMap};
 pub use counts::Counts;
 pub use explorer::{Explorer, GateRow, VERDICTS, verdicts_where};

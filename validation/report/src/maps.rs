@@ -32,14 +32,10 @@ impl<'a> Particles<'a> {
         let (x_axis, y_axis) = (linear(&map.x), linear(&map.y));
         let mut x = x_axis.mapping(map.points.iter().map(|p| p.0));
         let mut y = y_axis.mapping(map.points.iter().map(|p| p.1));
-        let spacing = ((x.hi - x.lo) * (y.hi - y.lo) / map.points.len().max(1) as f64)
-            .sqrt()
-            .min(0.1 * (x.hi - x.lo));
-        let diameter = map.diameter.filter(|d| *d > 0.0).unwrap_or(0.9 * spacing);
         // A dot on the border is seen whole.
         for axis in [&mut x, &mut y] {
-            axis.lo -= 0.5 * diameter;
-            axis.hi += 0.5 * diameter;
+            axis.lo -= 0.5 * map.diameter;
+            axis.hi += 0.5 * map.diameter;
         }
         let (width, height) = (x.hi - x.lo, y.hi - y.lo);
         let pixels = (room.0 / width).min(room.1 / height);
@@ -49,12 +45,12 @@ impl<'a> Particles<'a> {
         Self {
             map,
             area,
-            x_ticks: x_axis.place_ticks(&x, (area.width / 60.0) as usize),
-            y_ticks: y_axis.place_ticks(&y, (area.height / 42.0) as usize),
+            x_ticks: x.ticks((area.width / 60.0) as usize),
+            y_ticks: y.ticks((area.height / 42.0) as usize),
             x,
             y,
             bar: Bar::new(map.map, &map.label, map.values, data, area.height),
-            radius: (0.5 * diameter * pixels).clamp(0.8, 9.0),
+            radius: (0.5 * map.diameter * pixels).clamp(0.8, 9.0),
             note: if lost > 0 { format!("{lost} not finite") } else { String::new() },
         }
     }
@@ -121,13 +117,14 @@ impl Drawn for Particles<'_> {
     }
 }
 
+/// Height that the names of columns take.
+const NAMES: f64 = 18.0;
+
 /// A category map with its legend.
 pub(super) struct Categories<'a> {
     map: &'a CategoryMap,
     size: (f64, f64),
     entries: Vec<Entry>,
-    /// Whether the column names are too long to lie flat.
-    upright: bool,
 }
 
 impl<'a> Categories<'a> {
@@ -136,21 +133,11 @@ impl<'a> Categories<'a> {
             name: name.clone(),
             sample: Sample::Patch(*colour),
         };
-        let column = size.0 / map.x.len().max(1) as f64;
-        let upright = map.x.iter().any(|name| font::width(name, TICK_EM) > column - 4.0);
-        Self { map, size, entries: map.categories.iter().map(entry).collect(), upright }
+        Self { map, size, entries: map.categories.iter().map(entry).collect() }
     }
 
     fn texts(&self) -> Texts<'_> {
         Texts { title: &self.map.title, note: "", x: "", y: &self.map.y_label }
-    }
-
-    /// Height that the column names take.
-    fn names(&self) -> f64 {
-        match self.upright {
-            true => widest(&self.map.x) + 8.0,
-            false => 18.0,
-        }
     }
 
     fn cell(&self, canvas: &mut Canvas, rect: Rect, cell: Option<&(usize, String)>) {
@@ -188,7 +175,7 @@ impl Drawn for Categories<'_> {
             } else {
                 legend::size(&self.entries).0 + 14.0
             },
-            bottom: self.names() + label,
+            bottom: NAMES + label,
             ..margins(&self.texts(), widest(&self.map.y))
         }
     }
@@ -200,11 +187,8 @@ impl Drawn for Categories<'_> {
         let height = area.height / map.y.len().max(1) as f64;
         for (column, name) in map.x.iter().enumerate() {
             let x = area.left + (column as f64 + 0.5) * width;
-            let how = Type::new(TICK_EM, if self.upright { Align::End } else { Align::Middle });
-            match self.upright {
-                true => canvas.text(name, (x, area.bottom() + 5.0), how.upright()),
-                false => canvas.text(name, (x, area.bottom() + 11.0), how),
-            }
+            let how = Type::new(fit(name, TICK_EM, width - 4.0), Align::Middle);
+            canvas.text(name, (x, area.bottom() + 11.0), how);
         }
         for (row, name) in map.y.iter().enumerate() {
             let top = area.bottom() - (row as f64 + 1.0) * height;
@@ -216,7 +200,7 @@ impl Drawn for Categories<'_> {
                 self.cell(canvas, Rect { left, top, width, height }.grown(-1.0), cell);
             }
         }
-        let below = (area.left + 0.5 * area.width, area.bottom() + self.names() + 9.0);
+        let below = (area.left + 0.5 * area.width, area.bottom() + NAMES + 9.0);
         let em = fit(&map.x_label, 12.0, area.width + 40.0);
         canvas.text(&map.x_label, below, Type::new(em, Align::Middle));
         legend::draw(canvas, &self.entries, (area.right() + 8.0, area.top - 4.0), false);

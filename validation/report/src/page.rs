@@ -26,16 +26,14 @@ pub struct Page {
     pub title: String,
     /// Paragraphs under the title; inline markup.
     pub lead: Vec<String>,
-    /// The verdict banner; `None` for none.
-    pub counts: Option<Counts>,
+    /// The verdict banner.
+    pub counts: Counts,
     /// What is said first.
     pub cards: Vec<Card>,
     /// Paragraphs below the cards; inline markup.
     pub notes: Vec<String>,
     /// Sections in order.
     pub sections: Vec<Section>,
-    /// Last line: commit, machine, command; inline markup.
-    pub footer: String,
     /// Folder of the figures' PNG files beside the page; empty writes and links none.
     pub png_folder: String,
 }
@@ -87,8 +85,7 @@ impl Section {
 /// One piece of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Block {
-    /// Paragraphs. Inline: `*emphasis*`, `**strong**`, `` `code` ``, `[label](#anchor)`, and
-    /// `<math>…</math>` copied as it stands.
+    /// Paragraphs. Inline: `*emphasis*`, `**strong**`, `` `code` ``, `[label](#anchor)`.
     Prose(Vec<String>),
     /// Bullets; inline markup.
     List(Vec<String>),
@@ -161,7 +158,7 @@ impl Page {
                 body {
                     header {
                         h1 { (self.title) }
-                        @if let Some(counts) = self.counts { (counts.html()) }
+                        (self.counts.html())
                         @for paragraph in &self.lead { p.lead { (inline(paragraph)) } }
                     }
                     main {
@@ -174,7 +171,6 @@ impl Page {
                         }
                         @for section in &self.sections { (writer.section(section, 2)) }
                     }
-                    @if !self.footer.is_empty() { footer { p { (inline(&self.footer)) } } }
                     script { (PreEscaped(SCRIPT)) }
                 }
             }
@@ -182,13 +178,8 @@ impl Page {
         page.into_string()
     }
 
-    /// Writes the page, and its figures' PNG files into their folder beside it. Every file appears
-    /// whole or not at all.
-    pub fn write(&self, path: &Path) -> io::Result<()> {
-        self.write_html(path, &self.html())
-    }
-
-    /// The same with what [`Page::html`] has said, which need not be said again.
+    /// Writes what [`Page::html`] has said, and the figures' PNG files into their folder beside it. Every
+    /// file appears whole or not at all.
     pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
         if !self.png_folder.is_empty() {
@@ -359,8 +350,8 @@ mod tests {
         let section = section.block(Figure::new("empty", "What is shown where there are runs"));
         let drawn = drawings(&section).len();
         let html = Page { sections: vec![section], ..Page::default() }.html();
-        let summary = crate::check_page(&html).expect("a page that opens");
-        assert_eq!((summary.figures, drawn), (0, 0));
+        crate::check_page(&html).expect("a page that opens");
+        assert!(drawn == 0 && !html.contains("<figure"), "{html}");
         assert!(html.contains("<p id=\"empty\">No figure: "), "{html}");
     }
 

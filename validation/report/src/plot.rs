@@ -4,17 +4,17 @@ use super::axis::Mapping;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::drawn::Drawn;
-use super::figure::{Dash, Layer, Legend, Plot, Series, Shape};
+use super::figure::{Layer, Legend, Plot, Series, Shape};
 use super::font;
-use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
+use super::frame::{Margins, TICK_EM, Texts, axes, labels, margins, widest_label};
 use super::geometry::{clip_line, clip_polygon, runs, sample_rect, sample_segment, thin};
 use super::legend::{self, Entry, Look, Sample};
 use super::ticks::{Ticks, minus, with_exponent};
 
-const NOTE_EM: f64 = 9.5;
-const RULE_EM: f64 = 10.5;
-const STRIP_ROW: f64 = 15.0;
+const SLOPE_EM: f64 = 10.5;
 const MARK_EM: f64 = 9.0;
+/// Diameter of a marker in CSS pixels.
+const MARKER: f64 = 6.5;
 /// How many points of lines, which lie a few pixels apart, the label of a point may hide.
 const MARK_HIDES: usize = 2;
 /// Opacity of bands.
@@ -25,29 +25,17 @@ pub(super) struct Prepared<'a> {
     plot: &'a Plot,
     /// What the axes enclose.
     area: Rect,
-    /// The same below the strip of failed runs.
-    inner: Rect,
     x: Mapping,
     y: Mapping,
     x_ticks: Ticks,
     y_ticks: Ticks,
     series: Vec<(&'a Series, Look)>,
-    failed: Vec<Failure<'a>>,
     /// Orders, and the corners of their triangles.
     slopes: Vec<(f64, [Point; 3])>,
-    rules: Vec<Rule<'a>>,
     marks: Vec<Mark<'a>>,
     entries: Vec<Entry>,
     legend: Legend,
     note: String,
-}
-
-/// A line across the plot, and the room of its label.
-struct Rule<'a> {
-    ends: (Point, Point),
-    label: &'a str,
-    room: Rect,
-    align: Align,
 }
 
 /// The label of a point, which starts in the middle of the left side of its room.
@@ -55,14 +43,6 @@ struct Mark<'a> {
     text: &'a str,
     room: Rect,
     colour: Colour,
-}
-
-/// A failed run in the strip at the upper edge.
-struct Failure<'a> {
-    x: f64,
-    row: usize,
-    align: Align,
-    reason: &'a str,
 }
 
 impl<'a> Prepared<'a> {
@@ -74,33 +54,25 @@ impl<'a> Prepared<'a> {
         let mut this = Self {
             plot,
             area,
-            inner: area,
-            x_ticks: x_ticks(plot, &x, size.0),
-            y_ticks: plot.y.place_ticks(&y, (size.1 / 42.0) as usize),
+            x_ticks: x_ticks(&x, size.0),
+            y_ticks: y.ticks((size.1 / 42.0) as usize),
             x,
             y,
             entries: entries(plot, &series),
             series,
-            failed: Vec::new(),
             slopes: Vec::new(),
-            rules: Vec::new(),
             marks: Vec::new(),
             legend: plot.legend,
             note: String::new(),
         };
-        this.place_failures();
         this.note = this.dropped();
         let mut obstacles = this.obstacles();
-        if !matches!(this.legend, Legend::Auto | Legend::Outside | Legend::Hidden) {
-            sample_rect(&mut obstacles, legend::rect(&this.entries, this.inner, this.legend));
-        }
         this.place_slopes(&mut obstacles);
-        this.place_rules(&mut obstacles);
         this.place_marks(&mut obstacles);
         if this.entries.is_empty() {
             this.legend = Legend::Hidden;
         } else if this.legend == Legend::Auto {
-            this.legend = legend::place(&this.entries, this.inner, &obstacles);
+            this.legend = legend::place(&this.entries, this.area, &obstacles);
         }
         this
     }
@@ -116,38 +88,7 @@ impl<'a> Prepared<'a> {
 
     /// Where a point lies.
     fn place(&self, (x, y): (f64, f64)) -> Option<Point> {
-        Some(self.inner.at((self.x.unit(x)?, self.y.unit(y)?)))
-    }
-
-    fn place_failures(&mut self) {
-        let mut ends: Vec<f64> = Vec::new();
-        for layer in &self.plot.layers {
-            let Layer::Failed(runs) = layer else { continue };
-            let mut runs: Vec<_> =
-                runs.iter().filter_map(|r| Some((self.x.unit(r.0)?, &r.1))).collect();
-            runs.retain(|r| is_inside(r.0));
-            runs.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (unit, reason) in runs {
-                let (x, width) = (unit * self.area.width, font::width(reason, NOTE_EM));
-                let [before, after] = [x - 12.0, self.area.width - x - 12.0];
-                let align = if width < after || after > before { Align::Start } else { Align::End };
-                let (from, to) = match align {
-                    Align::Start => (x - 8.0, x + 10.0 + width.min(after)),
-                    _ => (x - 10.0 - width.min(before), x + 8.0),
-                };
-                let row = ends.iter().position(|&end| end < from).unwrap_or(ends.len());
-                match ends.get_mut(row) {
-                    Some(end) => *end = to,
-                    None => ends.push(to),
-                }
-                self.failed.push(Failure { x, row, align, reason });
-            }
-        }
-        if !ends.is_empty() {
-            let strip = (ends.len() as f64 * STRIP_ROW + 4.0).min(0.6 * self.area.height);
-            self.inner.top = strip;
-            self.inner.height -= strip;
-        }
+        Some(self.area.at((self.x.unit(x)?, self.y.unit(y)?)))
     }
 
     /// What could not be drawn, in words.
@@ -158,7 +99,7 @@ impl<'a> Prepared<'a> {
                 match self.place((x, y)) {
                     _ if !(x.is_finite() && y.is_finite()) => infinite += 1,
                     None => nonpositive += 1,
-                    Some(p) if series.marked && !self.inner.grown(0.5).contains(p) => off += 1,
+                    Some(p) if series.marked && !self.area.grown(0.5).contains(p) => off += 1,
                     Some(_) => {}
                 }
             }
@@ -176,14 +117,14 @@ impl<'a> Prepared<'a> {
             let mut segments = self.bars(series);
             for run in runs(&series.points, |p| self.place(p)) {
                 all.extend_from_slice(&run);
-                let r = if series.marked { 0.5 * series.size } else { 0.0 };
+                let r = if series.marked { 0.5 * MARKER } else { 0.0 };
                 let around = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)];
                 all.extend(run.iter().flat_map(|p| around.map(|d| (p.0 + d.0, p.1 + d.1))));
                 if series.line.is_some() {
                     segments.extend(run.windows(2).map(|pair| (pair[0], pair[1])));
                 }
             }
-            for (a, b) in segments.into_iter().filter_map(|(a, b)| self.inner.clip(a, b)) {
+            for (a, b) in segments.into_iter().filter_map(|(a, b)| self.area.clip(a, b)) {
                 sample_segment(&mut all, a, b);
             }
         }
@@ -193,10 +134,10 @@ impl<'a> Prepared<'a> {
     /// Decides where the slope triangles lie, and makes them obstacles.
     fn place_slopes(&mut self, obstacles: &mut Vec<Point>) {
         for layer in &self.plot.layers {
-            let Layer::Slope { order, factor } = layer else { continue };
+            let Layer::Slope(order) = layer else { continue };
             let corners = [1.0, 0.7, 0.5, 0.35, 0.25, 0.18]
                 .iter()
-                .find_map(|&part| self.free_triangle(*order, factor.powf(part), obstacles));
+                .find_map(|&part| self.free_triangle(*order, 2_f64.powf(part), obstacles));
             if let Some(corners) = corners {
                 sample_rect(obstacles, around(&corners, *order));
                 self.slopes.push((*order, corners));
@@ -206,7 +147,7 @@ impl<'a> Prepared<'a> {
 
     /// The free place closest to the data.
     fn free_triangle(&self, order: f64, factor: f64, data: &[Point]) -> Option<[Point; 3]> {
-        let (x, y, area) = (self.x.lo, self.y.lo, self.inner);
+        let (x, y, area) = (self.x.lo, self.y.lo, self.area);
         let a = self.place((x, y)).filter(|_| order.is_finite())?;
         let b = self.place((x * factor, y))?;
         let c = self.place((x * factor, y * factor.powf(order)))?;
@@ -227,31 +168,6 @@ impl<'a> Prepared<'a> {
             }
         }
         best.map(|(_, corners)| corners)
-    }
-
-    /// Finds room for the labels of the rules, and makes lines and labels obstacles too.
-    fn place_rules(&mut self, obstacles: &mut Vec<Point>) {
-        for layer in &self.plot.layers {
-            let Layer::Rule { at, label } = layer else { continue };
-            let Some(ends) = self.across(*at) else { continue };
-            let hidden = |r: &Rect| {
-                obstacles.iter().filter(|&&p| r.grown(1.0).contains(p)).count()
-                    + if self.inner.encloses(r) { 0 } else { 100_000 }
-            };
-            let spots = rule_spots(ends, font::width(label, RULE_EM)).into_iter();
-            let Some((room, align)) = spots.min_by_key(|(r, _)| hidden(r)) else { continue };
-            sample_segment(obstacles, ends.0, ends.1);
-            if !label.is_empty() {
-                sample_rect(obstacles, room);
-            }
-            self.rules.push(Rule { ends, label, room, align });
-        }
-    }
-
-    /// The ends of a line across the plot.
-    fn across(&self, at: f64) -> Option<(Point, Point)> {
-        let y = self.y.unit(at).filter(|y| is_inside(*y))?;
-        Some((self.inner.at((0.0, y)), self.inner.at((1.0, y))))
     }
 
     /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
@@ -278,7 +194,7 @@ impl<'a> Prepared<'a> {
             let hidden = |room: &Rect| {
                 let hides = markers.iter().any(|p| room.grown(3.5).contains(*p));
                 let lines = obstacles.iter().filter(|&&p| room.contains(p)).count();
-                (self.inner.encloses(room) && !hides && lines <= MARK_HIDES).then_some(lines)
+                (self.area.encloses(room) && !hides && lines <= MARK_HIDES).then_some(lines)
             };
             let rooms = mark_rooms(at, font::width(text, MARK_EM)).into_iter();
             let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
@@ -295,7 +211,7 @@ impl<'a> Prepared<'a> {
         let bar = |(&(x, y), &(lo, hi)): (&(f64, f64), &(f64, f64))| {
             let low = self.x.unit(lo).or((lo <= 0.0).then_some(-1.0))?;
             let (_, y) = self.place((x, y))?;
-            let at = |unit: f64| (unit * self.inner.width, y);
+            let at = |unit: f64| (unit * self.area.width, y);
             Some((at(low), at(self.x.unit(hi)?)))
         };
         series.points.iter().zip(&series.x_bars).filter_map(bar).collect()
@@ -306,7 +222,7 @@ impl<'a> Prepared<'a> {
         for run in runs(points, ends) {
             let (lower, upper): (Vec<Point>, Vec<Point>) = run.into_iter().unzip();
             let outline: Vec<Point> = lower.into_iter().chain(upper.into_iter().rev()).collect();
-            let clipped = clip_polygon(&outline, self.inner);
+            let clipped = clip_polygon(&outline, self.area);
             if outline.len() > 2 && clipped.len() > 2 {
                 canvas.polygon(&thin(&clipped), colour.tint(BAND));
             }
@@ -315,45 +231,24 @@ impl<'a> Prepared<'a> {
 
     fn draw_series(&self, canvas: &mut Canvas, series: &Series, look: Look) {
         for (a, b) in self.bars(series) {
-            if let Some((p, q)) = self.inner.clip(a, b) {
+            if let Some((p, q)) = self.area.clip(a, b) {
                 canvas.line(p, q, look.colour, 1.0);
             }
-            for (x, y) in [a, b].into_iter().filter(|&p| self.inner.contains(p)) {
+            for (x, y) in [a, b].into_iter().filter(|&p| self.area.contains(p)) {
                 canvas.line((x, y - 3.5), (x, y + 3.5), look.colour, 1.0);
             }
         }
         if let Some(dash) = look.line {
             for run in runs(&series.points, |p| self.place(p)) {
-                for piece in clip_line(&thin(&run), self.inner) {
+                for piece in clip_line(&thin(&run), self.area) {
                     canvas.dashed(&piece, look.colour, look.width, dash);
                 }
             }
         }
         if let Some((shape, size)) = look.marker {
             let places = series.points.iter().filter_map(|&p| self.place(p));
-            let places: Vec<Point> =
-                places.filter(|p| self.inner.grown(0.5).contains(*p)).collect();
+            let places: Vec<Point> = places.filter(|p| self.area.grown(0.5).contains(*p)).collect();
             canvas.markers(&places, shape, size, look.colour, look.open);
-        }
-    }
-
-    fn draw_failures(&self, canvas: &mut Canvas) {
-        if self.failed.is_empty() {
-            return;
-        }
-        let strip = Rect { height: self.inner.top, ..self.area };
-        canvas.fill(strip, Colour::VERMILLION.tint(0.1));
-        canvas.line(self.inner.at((0.0, 1.0)), self.inner.at((1.0, 1.0)), Colour::GREY, 0.7);
-        for f in &self.failed {
-            let at = (f.x, 2.0 + (f.row as f64 + 0.5) * STRIP_ROW);
-            canvas.markers(&[at], Shape::Cross, 8.5, Colour::VERMILLION, false);
-            let (side, room) = match f.align {
-                Align::Start => (8.0, self.area.width - f.x),
-                _ => (-8.0, f.x),
-            };
-            let em = fit(f.reason, NOTE_EM, room - 12.0);
-            let how = Type::new(em, f.align).colour(Colour(150, 60, 0));
-            canvas.text(f.reason, (at.0 + side, at.1), how);
         }
     }
 }
@@ -389,9 +284,8 @@ impl Drawn for Prepared<'_> {
                 self.draw_band(canvas, points, *colour);
             }
         }
-        axes(canvas, self.inner, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
+        axes(canvas, self.area, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
         self.with_texts(|texts| labels(canvas, self.area, texts, widest_label(&self.y_ticks)));
-        self.rules.iter().for_each(|rule| draw_rule(canvas, rule));
         for (series, look) in &self.series {
             self.draw_series(canvas, series, *look);
         }
@@ -402,19 +296,13 @@ impl Drawn for Prepared<'_> {
             let at = mark.room.at((0.0, 0.5));
             canvas.text(mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
         }
-        self.draw_failures(canvas);
         canvas.frame(self.area, Colour::BLACK, 1.0);
         if self.legend != Legend::Hidden {
-            let rect = legend::rect(&self.entries, self.inner, self.legend);
+            let rect = legend::rect(&self.entries, self.area, self.legend);
             let boxed = self.legend != Legend::Outside;
             legend::draw(canvas, &self.entries, (rect.left, rect.top), boxed);
         }
     }
-}
-
-/// Whether a place on an axis lies between its ends.
-fn is_inside(unit: f64) -> bool {
-    (-1e-9..=1.0 + 1e-9).contains(&unit)
 }
 
 /// Every x and every y that an automatic range should show.
@@ -430,20 +318,18 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
                 }
                 xs.extend(s.x_bars.iter().flat_map(|b| [b.0, b.1]));
             }
-            Layer::Rule { at, .. } => ys.push(*at),
             Layer::Band { points, .. } => {
                 xs.extend(points.iter().map(|p| p.0));
                 ys.extend(points.iter().flat_map(|p| [p.1, p.2]));
             }
-            Layer::Slope { .. } => {}
-            Layer::Failed(runs) => xs.extend(runs.iter().map(|r| r.0)),
+            Layer::Slope(_) => {}
         }
     }
     (xs, ys)
 }
 
 /// Ticks of the x axis, as many as have room for their labels.
-fn x_ticks(plot: &Plot, mapping: &Mapping, width: f64) -> Ticks {
+fn x_ticks(mapping: &Mapping, width: f64) -> Ticks {
     let overlap = |t: &Ticks| {
         t.major.windows(2).any(|pair| {
             let at = |v: f64| mapping.unit(v).unwrap_or(0.0) * width;
@@ -452,8 +338,8 @@ fn x_ticks(plot: &Plot, mapping: &Mapping, width: f64) -> Ticks {
         })
     };
     let most = ((width / 52.0) as usize).max(3);
-    let found = (2..=most).rev().map(|n| plot.x.place_ticks(mapping, n)).find(|t| !overlap(t));
-    found.unwrap_or_else(|| plot.x.place_ticks(mapping, 2))
+    let found = (2..=most).rev().map(|n| mapping.ticks(n)).find(|t| !overlap(t));
+    found.unwrap_or_else(|| mapping.ticks(2))
 }
 
 /// The series with their colours and shapes, the next of the palette where they name none.
@@ -465,7 +351,7 @@ fn with_looks(layers: &[Layer]) -> Vec<(&Series, Look)> {
     let (mut colours, mut shapes) = ((0..).map(Colour::cycle), (0..).map(Shape::cycle));
     let look = |s: &Series| {
         let colour = s.colour.or_else(|| colours.next()).unwrap_or(Colour::BLACK);
-        let mut shape = || s.shape.or_else(|| shapes.next()).map(|shape| (shape, s.size));
+        let mut shape = || s.shape.or_else(|| shapes.next()).map(|shape| (shape, MARKER));
         let marker = if s.marked { shape() } else { None };
         Look { colour, line: s.line, width: s.width, marker, open: s.open }
     };
@@ -497,7 +383,7 @@ fn around(corners: &[Point; 3], order: f64) -> Rect {
     let most = |of: fn(&Point) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
     let (left, top) = (least(|p| p.0), least(|p| p.1));
     let (width, height) = (most(|p| p.0) - left, most(|p| p.1) - top);
-    let number = 5.0 + font::width(&slope_number(order), RULE_EM) + 3.0;
+    let number = 5.0 + font::width(&slope_number(order), SLOPE_EM) + 3.0;
     let before = if corners[1].0 > corners[0].0 { 14.0 } else { number };
     let width = width + 14.0 + number;
     Rect { left: left - before, top: top - 14.0, width, height: height + 28.0 }
@@ -511,7 +397,7 @@ fn draw_slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) 
             canvas.line(p, q, Colour::GREY, 1.0);
         }
     }
-    let how = |align| Type::new(RULE_EM, align).colour(Colour::GREY);
+    let how = |align| Type::new(SLOPE_EM, align).colour(Colour::GREY);
     let (align, side) = if b.0 > a.0 { (Align::Start, 5.0) } else { (Align::End, -5.0) };
     canvas.text(&slope_number(order), (b.0 + side, 0.5 * (b.1 + c.1)), how(align));
     let below = if c.1 < b.1 { 8.5 } else { -8.5 };
@@ -534,26 +420,4 @@ fn mark_rooms((x, y): Point, width: f64) -> [Rect; 8] {
         (left, below),
     ]
     .map(|(left, top)| Rect { left, top, width, height: MARK_EM })
-}
-
-fn draw_rule(canvas: &mut Canvas, rule: &Rule) {
-    let (a, b) = rule.ends;
-    canvas.dashed(&[a, b], Colour::GREY, 1.2, Dash::Dashed);
-    let how = Type::new(RULE_EM, rule.align).colour(Colour::GREY);
-    let end = if rule.align == Align::End { 1.0 } else { 0.0 };
-    canvas.text(rule.label, rule.room.at((end, 0.5)), how);
-}
-
-/// Places for the label of a rule: both ends, both sides.
-fn rule_spots((a, b): (Point, Point), width: f64) -> [(Rect, Align); 4] {
-    let (gap, inset, height) = (3.5, 8.0, RULE_EM);
-    let [above, below] = [a.1 - gap - height, a.1 + gap];
-    let [at_end, at_start] = [b.0 - inset - width, a.0 + inset];
-    [
-        (above, at_end, Align::End),
-        (below, at_end, Align::End),
-        (above, at_start, Align::Start),
-        (below, at_start, Align::Start),
-    ]
-    .map(|(top, left, align)| (Rect { left, top, width, height }, align))
 }

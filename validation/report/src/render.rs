@@ -1,11 +1,10 @@
 //! From a figure to an SVG text or a PNG file.
 
 use super::bar::Bar;
-use super::canvas::{Align, Canvas, Rect, Type};
+use super::canvas::{Canvas, Rect};
 use super::colour::Colour;
 use super::drawn::Drawn;
 use super::figure::{Figure, Panel};
-use super::frame::fit;
 use super::legend::{self, Entry};
 use super::maps::{Categories, Particles};
 use super::plot::Prepared;
@@ -19,8 +18,6 @@ use std::{fs::File, io, path::Path};
 const SUPERSAMPLE: u32 = 3;
 /// Pixels of a PNG per CSS pixel.
 const DENSITY: u32 = 2;
-const TITLE_EM: f64 = 14.0;
-const TITLE_HEIGHT: f64 = 26.0;
 const EDGE: f64 = 5.0;
 
 fn prepared(panel: &Panel, size: (f64, f64)) -> Box<dyn Drawn + '_> {
@@ -102,9 +99,8 @@ fn layout(figure: &Figure) -> Layout<'_> {
             most(&|i| margins[i].bottom, &here),
         ]
     });
-    let title = if figure.title.is_empty() { 0.0 } else { TITLE_HEIGHT };
     let (lefts, right) = starts(across, EDGE);
-    let (tops, bottom) = starts(down, EDGE + title);
+    let (tops, bottom) = starts(down, EDGE);
     let rects: Vec<_> = (0..panels.len())
         .map(|i| Rect {
             left: lefts[i % columns],
@@ -135,11 +131,9 @@ fn starts(slots: impl Iterator<Item = [f64; 3]>, first: f64) -> (Vec<f64>, f64) 
     (starts, at + EDGE)
 }
 
-fn draw(canvas: &mut Canvas, figure: &Figure, layout: &Layout) {
+fn draw(canvas: &mut Canvas, layout: &Layout) {
     let (width, height) = layout.size;
     canvas.fill(Rect { left: 0.0, top: 0.0, width, height }, Colour::WHITE);
-    let em = fit(&figure.title, TITLE_EM, width - 4.0 * EDGE);
-    canvas.text(&figure.title, (2.0 * EDGE, EDGE + 12.0), Type::new(em, Align::Start));
     for (panel, area) in &layout.panels {
         panel.draw(&mut canvas.from(*area));
     }
@@ -154,9 +148,8 @@ fn draw(canvas: &mut Canvas, figure: &Figure, layout: &Layout) {
 pub fn svg(figure: &Figure) -> String {
     let layout = layout(figure);
     let mut sheet = Svg::default();
-    draw(&mut Canvas::new(&mut sheet), figure, &layout);
-    let name = if figure.title.is_empty() { &figure.id } else { &figure.title };
-    svg::opening(name, layout.size) + &sheet.finish() + "</svg>\n"
+    draw(&mut Canvas::new(&mut sheet), &layout);
+    svg::opening(&figure.id, layout.size) + &sheet.finish() + "</svg>\n"
 }
 
 /// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
@@ -169,7 +162,7 @@ pub(super) fn pixels(figure: &Figure, density: u32) -> Result<(Vec<u8>, u32, u32
     let mut fine = vec![255; (fine_width * fine_height * 3) as usize];
     let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
     let mut sheet = Raster::new(backend, f64::from(scale));
-    draw(&mut Canvas::new(&mut sheet), figure, &layout);
+    draw(&mut Canvas::new(&mut sheet), &layout);
     sheet.finish()?;
     Ok((downsample(&fine, width as usize, height as usize), width, height))
 }
@@ -242,9 +235,7 @@ mod tests {
             .layer(Series::line_markers("a", pairs.clone()))
             .layer(Series::markers("b", pairs.clone()).shape(Shape::Cross).x_bars(pairs.clone()))
             .layer(Layer::band("c", triples, Colour::SKY))
-            .layer(Layer::slope(any))
-            .layer(Layer::horizontal(any, "e"))
-            .layer(Layer::Failed(values.iter().map(|&v| (v, "NaN".into())).collect()))
+            .layer(Layer::Slope(any))
     }
 
     #[test]
@@ -300,7 +291,7 @@ mod tests {
         let plot = Plot::new("", Axis::linear("x"), Axis::linear("y"))
             .layer(Series::markers("a name", cloud));
         let wide = layout(&figure(plot.clone())).size.0;
-        assert!(wide > layout(&figure(plot.legend(Legend::TopLeft))).size.0 + 50.0);
+        assert!(wide > layout(&figure(plot.legend(Legend::Hidden))).size.0 + 50.0);
     }
 
     #[test]

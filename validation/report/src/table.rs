@@ -206,11 +206,6 @@ impl Table {
         self
     }
 
-    /// The table as HTML.
-    pub fn html(&self) -> String {
-        self.markup("Table").into_string()
-    }
-
     /// The table with its caption; behind a click if it is long.
     pub(super) fn markup(&self, name: &str) -> Markup {
         let cells = self.rows.len() * self.columns.len();
@@ -271,8 +266,8 @@ mod tests {
             rows: vec![row(); rows],
             ..Table::new("Errors fall. Orders too.", columns())
         };
-        assert!(!with(1).html().contains("<details>"));
-        let long = with(2).html();
+        assert!(!with(1).markup("Table").into_string().contains("<details>"));
+        let long = with(2).markup("Table").into_string();
         assert!(long.contains("<summary><b>Table. </b>Errors fall.</summary><p>Orders too.</p>"));
     }
 
@@ -282,7 +277,7 @@ mod tests {
             .row(vec![Cell::text("a < b"), Cell::sci(1.2e-4, 2).with(Status::Fail)])
             .row(vec![Cell::text("short"), Cell::sci(0.123456789, 2)])
             .row(vec![Cell::text("none"), Cell::text("–")]);
-        let html = table.html();
+        let html = table.markup("Table").into_string();
         assert!(html.contains("<td data-v=\"0.123457\">1.2·10⁻¹</td>"), "{html}");
         assert!(html.contains("<td class=\"number\">–</td>"));
         assert!(html.contains("a &lt; b"));

@@ -32,12 +32,6 @@ pub(super) fn ticks(scale: Scale, lo: f64, hi: f64, count: usize) -> Ticks {
     }
 }
 
-/// The given values as ticks, those outside the range left out.
-pub(super) fn fixed(values: &[f64], lo: f64, hi: f64) -> Ticks {
-    let inside = values.iter().copied().filter(|v| (lo..=hi).contains(v)).collect();
-    Ticks { major: with_labels(inside), minor: Vec::new(), exponent: 0 }
-}
-
 /// Ticks at multiples of 1, 2 or 5 times a power of ten.
 fn linear(lo: f64, hi: f64, count: usize) -> Ticks {
     let (step, subdivisions) = nice_step((hi - lo) / count.max(1) as f64);
@@ -119,11 +113,6 @@ fn is_spread(values: &[f64], lo: f64, hi: f64) -> bool {
 
 /// `10⁻³`.
 pub(super) fn power_of_ten(k: i32) -> String {
-    format!("10{}", superscript(k))
-}
-
-/// An integer in superscript digits.
-pub(super) fn superscript(k: i32) -> String {
     let digit = |c: char| match c {
         '-' => '⁻',
         '1' => '¹',
@@ -131,7 +120,7 @@ pub(super) fn superscript(k: i32) -> String {
         '3' => '³',
         c => char::from_u32('⁰' as u32 + c as u32 - '0' as u32).unwrap_or(c),
     };
-    k.to_string().chars().map(digit).collect()
+    format!("10{}", k.to_string().chars().map(digit).collect::<String>())
 }
 
 /// Values with their labels, all of one format: `0.02`, `50` if that suits each, else `2·10⁻²`.
@@ -242,7 +231,6 @@ mod tests {
     fn one_axis_has_one_format() {
         let t = logarithmic(1.5e-3, 0.04, 6);
         assert_eq!(labels(&t), ["2·10⁻³", "3·10⁻³", "5·10⁻³", "10⁻²", "2·10⁻²", "3·10⁻²"]);
-        assert_eq!(labels(&fixed(&[1e-4, 0.5], 0.0, 1.0)), ["10⁻⁴", "5·10⁻¹"]);
     }
 
     #[test]
@@ -250,10 +238,5 @@ mod tests {
         let t = logarithmic(1e-16, 1.0, 6);
         assert!(t.major.len() <= 7, "{:?}", labels(&t));
         assert!(t.minor.iter().all(|m| (m.log10() - m.log10().round()).abs() < 1e-9));
-    }
-
-    #[test]
-    fn fixed_ticks_keep_to_the_range() {
-        assert_eq!(labels(&fixed(&[16.0, 32.0, 64.0, 1e-4], 10.0, 50.0)), ["16", "32"]);
     }
 }

@@ -449,7 +449,7 @@ fn figure(record: &Record, curves: &[Curve]) -> Figure {
         plot = plot.layer(Series::line(name, exact).colour(Colour::GREY).dash(Dash::Solid));
         let computed = points.iter().map(|[y, u, _]| (*y, *u)).collect();
         let name = format!("SPH, νt/L² = {tau}");
-        plot = plot.layer(Series::markers(name, computed).colour(Colour::cycle(k)).size(5.0));
+        plot = plot.layer(Series::markers(name, computed).colour(Colour::cycle(k)));
     }
     Figure::new("profile", "").panel(plot).panel_size(520.0, 360.0)
 }

@@ -88,9 +88,9 @@ fn theory(cases: &[&'static dyn Case], as_json: bool) -> Outcome {
 
 fn row_json(row: &Row) -> Value {
     let limits = &row.rules.limits;
-    let has = |mechanism: &Mechanism| limits.alone(*mechanism).is_finite();
-    let all = Mechanism::ALL.into_iter().filter(has);
-    let alone = all.map(|mechanism| (mechanism.name().to_string(), limits.alone(mechanism).into()));
+    let all = Mechanism::ALL.into_iter().map(|(of, name)| (name.to_string(), limits.alone(of)));
+    let alone =
+        all.filter(|(_, limit)| limit.is_finite()).map(|(name, limit)| (name, limit.into()));
     json!({
         "case": row.case, "variant": row.variant, "step_s": row.rules.dt(),
         "set_by": json!([row.rules.step.number, row.rules.step.by]),

@@ -295,11 +295,7 @@ fn declaration(tier: Tier) -> Declaration {
         spacing: "dx/R [-]",
         slope: Some(1.0),
         ladders: VARIANTS.map(ladder).into(),
-        ..Accuracy::new(
-            "elliptic-drop",
-            ErrorOf::Metric(B_ERROR.into()),
-            "largest error of the semi-axis b [-]",
-        )
+        ..Accuracy::new("elliptic-drop", B_ERROR, "largest error of the semi-axis b [-]")
     };
     Declaration { accuracy: vec![accuracy], costly: &ledger::METRICS, ..Declaration::default() }
 }

@@ -368,7 +368,7 @@ fn declaration(tier: Tier) -> Declaration {
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders: ladders.into_iter().filter(|ladder| !ladder.levels.is_empty()).collect(),
-        ..Accuracy::new("hydrostatic", ErrorOf::Metric(P_L2.into()), "error of the pressure [-]")
+        ..Accuracy::new("hydrostatic", P_L2, "error of the pressure [-]")
     };
     let watched = [
         Watched::new(Constant::BodyForce),

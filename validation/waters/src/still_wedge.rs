@@ -314,7 +314,7 @@ fn declaration(tier: Tier) -> Declaration {
         ladders: ["seed", "modern", "modern-interface"].map(ladder).into(),
         ..Accuracy::new(
             "still-wedge",
-            ErrorOf::Metric(P_BASE.into()),
+            P_BASE,
             "error of the pressure at the base of the wedge [ρ g H]",
         )
     };

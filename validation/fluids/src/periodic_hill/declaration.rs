@@ -94,19 +94,20 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let ladders = variants.into_iter();
     let mut ladders: Vec<_> = ladders.map(|of| table.ladder(&[For::Ladder], of, level)).collect();
     for ladder in ladders.iter_mut().filter(|of| of.variant == BEST && tier == Tier::Full) {
-        ladder.order = Some(OrderGate {
-            id: format!("{NAME}.{BEST}.50.order"),
-            bound: Bound::Above(1.0),
-            evidence: Evidence::Theory,
-            because: "Walls are of first order on disordered particles, sums of second.".into(),
-        });
+        ladder.order = Some(Gate::new(
+            format!("{NAME}.{BEST}.50.order"),
+            "order",
+            Bound::Above(1.0),
+            Evidence::Theory,
+            "Walls are of first order on disordered particles, sums of second.",
+        ));
     }
     Accuracy {
         about: about.into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders,
-        ..Accuracy::new("periodic-hill", ErrorOf::Metric(L2_U.into()), "rms error of u [U_b]")
+        ..Accuracy::new("periodic-hill", L2_U, "rms error of u [U_b]")
     }
 }
 

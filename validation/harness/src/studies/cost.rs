@@ -2,19 +2,14 @@
 //! seconds of a run that was made alone, and in pair interactions, which do not depend on the machine or on
 //! other programs.
 
-use base::functions::ln;
 use base::record::{Status, median};
-use report::{
-    Axis, Cell, Colour, Column, Figure, Layer, Plot, Series, Shape, Table, first_sentence, seconds,
-};
+use report::{Axis, Colour, Figure, Layer, Plot, Series, Shape, first_sentence};
 
 use crate::{
-    columns::Columns,
-    declare::{Accuracy, Ladder, Peer},
+    declare::{Accuracy, Ladder, Level, Peer, error_of},
     runs::Runs,
-    studies::order::orders,
+    studies::order::{GOALS, orders},
     study::Study,
-    words::name_of_error,
 };
 
 /// One run of a cost diagram.
@@ -32,8 +27,6 @@ pub struct Point {
     pub seconds: Vec<f64>,
     /// Pair interactions.
     pub pairs: f64,
-    /// Time steps.
-    pub steps: u64,
     /// Ladder and resolution of a run that failed, which has no error.
     pub failure: Option<String>,
 }
@@ -44,11 +37,6 @@ impl Point {
         median(&self.seconds).unwrap_or(f64::NAN)
     }
 
-    /// Ladder and resolution.
-    fn setting(&self) -> String {
-        format!("`{}`, {}", self.ladder, self.label)
-    }
-
     /// Fastest and slowest \[s\].
     pub fn spread(&self) -> (f64, f64) {
         let end = |value: Option<&f64>| value.copied().unwrap_or(f64::NAN);
@@ -56,38 +44,27 @@ impl Point {
     }
 }
 
-/// The points of some ladders.
-pub fn points<'a>(
-    accuracy: &Accuracy,
-    ladders: impl IntoIterator<Item = &'a Ladder>,
-    runs: &Runs,
-) -> Vec<Point> {
-    let mut points = Vec::new();
-    for ladder in ladders {
-        for level in &ladder.levels {
-            let Some(record) = runs.record(&level.run.spec) else { continue };
-            let error = accuracy.error.value(record, runs);
-            let name = format!("{}{}", ladder.variant, ladder.note);
-            let has_failed = record.status != Status::Completed;
-            let failure = has_failed.then(|| format!("{name}, {}", level.label));
-            if error.is_none() && failure.is_none() {
-                continue; // the run that the others are compared with
-            }
-            let mut seconds = record.cost.alone_s.clone();
-            seconds.sort_by(f64::total_cmp);
-            points.push(Point {
-                ladder: name,
-                spacing: level.spacing,
-                label: level.label.clone(),
-                error: error.unwrap_or(f64::NAN),
-                seconds,
-                pairs: record.cost.pair_interactions as f64,
-                steps: record.cost.steps,
-                failure,
-            });
-        }
-    }
-    points
+/// The points of a ladder.
+pub fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
+    let point = |level: &Level| {
+        let record = runs.record(&level.run.spec)?;
+        let error = error_of(&accuracy.error, record);
+        let name = format!("{}{}", ladder.variant, ladder.note);
+        let has_failed = record.status != Status::Completed;
+        let failure = has_failed.then(|| format!("{name}, {}", level.label));
+        let mut seconds = record.cost.alone_s.clone();
+        seconds.sort_by(f64::total_cmp);
+        Some(Point {
+            ladder: name,
+            spacing: level.spacing,
+            label: level.label.clone(),
+            error: error.unwrap_or(f64::NAN),
+            seconds,
+            pairs: record.cost.pair_interactions as f64,
+            failure,
+        })
+    };
+    ladder.levels.iter().filter_map(point).collect()
 }
 
 /// What a run costs.
@@ -106,57 +83,48 @@ fn pareto(points: &[Point], cost: Cost) -> Vec<&Point> {
     front
 }
 
-/// The cheapest point with at most this error, of those whose finer levels have at most this error too:
-/// a single level may be good because parts of its error cancel.
-pub fn cheapest(points: &[Point], error: f64) -> Option<&Point> {
+/// The least median of a point of a ladder with at most this error, of those whose finer levels have at most
+/// this error too: a single level may be good because parts of its error cancel. NaN if there is none.
+fn cheapest(ladder: &[Point], error: f64) -> f64 {
     let holds = |point: &&Point| {
-        let ladder = points.iter().filter(|p| p.ladder == point.ladder);
-        ladder.filter(|p| p.spacing <= point.spacing).all(|p| p.error <= error)
+        let finer = ladder.iter().filter(|p| p.spacing <= point.spacing);
+        finer.into_iter().all(|p| p.error <= error)
     };
-    points.iter().filter(holds).min_by(|a, b| a.median().total_cmp(&b.median()))
-}
-
-/// The most accurate point at a spacing.
-fn at_spacing(points: &[Point], spacing: f64) -> Option<&Point> {
-    let is_at = |p: &&Point| (p.spacing / spacing - 1.0).abs() < 1e-9 && p.error.is_finite();
-    points.iter().filter(is_at).min_by(|a, b| a.error.total_cmp(&b.error))
+    ladder.iter().filter(holds).map(Point::median).fold(f64::NAN, f64::min)
 }
 
 pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
-    let peers = &accuracy.peers;
     let id = format!("{}-work-precision", accuracy.id);
-    let all = accuracy.ladders.iter().chain(&accuracy.more);
-    let (drawn, listed) = (points(accuracy, &accuracy.ladders, runs), points(accuracy, all, runs));
-    let orders = orders(accuracy, runs);
+    let of = |ladder| points(accuracy, ladder, runs);
+    let ladders: Vec<Vec<Point>> = accuracy.ladders.iter().map(of).collect();
+    let costs: Vec<_> =
+        ladders.iter().map(|ladder| GOALS.map(|goal| cheapest(ladder, goal))).collect();
+    let orders = orders(accuracy, &costs, runs);
     let study = Study::new(&id, "Error against spacing and run time");
     let study =
         orders.judged.into_iter().fold(study, |study, (gate, order)| study.judge(gate, order));
-    let study = study
-        .block(figure(&id, (accuracy, peers), &drawn, (orders.panel, orders.caption)))
-        .block(orders.table)
-        .block(cheapest_table(&listed));
-    if peers.is_empty() {
-        return study;
-    }
-    study.block(peer_table(peers, &listed))
+    let figure = figure(&id, accuracy, &ladders.concat(), (orders.panel, orders.caption));
+    study.block(figure).block(orders.table)
 }
 
 /// Beside the panel of orders and what its caption explains.
 fn figure(
     id: &str,
-    (accuracy, peers): (&Accuracy, &[Peer]),
+    accuracy: &Accuracy,
     points: &[Point],
     (orders, explained): (Plot, String),
 ) -> Figure {
-    let growth = work_growth(points);
-    let slope = accuracy.slope.filter(|_| growth.is_finite()).map(|order| -order / growth);
-    let failed = points.iter().any(|point| point.failure.is_some());
-    let crosses = if failed { " Crosses above are runs that failed." } else { "" };
+    let failed: Vec<&str> = points.iter().filter_map(|p| p.failure.as_deref()).collect();
+    let failed = match failed.is_empty() {
+        true => String::new(),
+        false => format!(" Runs that failed: {}.", failed.join("; ")),
+    };
+    let peers = &accuracy.peers;
     let others =
         peers.first().map_or(String::new(), |peer| format!(" Grey: other codes ({}).", peer.timed));
     let caption = format!(
         "{} {} over spacing (left), run time on one core (middle) and work (right).\
-         {explained}{crosses}{others}",
+         {explained}{failed}{others}",
         first_sentence(&accuracy.about).0,
         name_of_error(&accuracy.label),
     );
@@ -165,26 +133,21 @@ fn figure(
     let clock = peers.into_iter().fold(clock, Plot::layer);
     let pairs = |p: &Point| p.pairs;
     let counted = panel("Error against work", "pair interactions [-]", points, pairs);
-    let with_slope = |plot: Plot| match slope {
-        Some(order) => plot.layer(Layer::Slope { order, factor: 5.0 }),
-        None => plot,
-    };
-    let panels = [orders, with_slope(clock), with_slope(counted)];
+    let panels = [orders, clock, counted];
     let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
     panels.into_iter().fold(figure, Figure::panel)
 }
 
-/// The power of 1/spacing with which pair interactions grow: the median over the ladders.
-fn work_growth(points: &[Point]) -> f64 {
-    let growth = |ladder: &[Point]| {
-        let (first, last) = (ladder.first()?, ladder.last()?);
-        let growth = ln(last.pairs / first.pairs) / ln(first.spacing / last.spacing);
-        growth.is_finite().then_some(growth)
-    };
-    let ladders = points.chunk_by(|a, b| a.ladder == b.ladder);
-    let mut all: Vec<f64> = ladders.filter_map(growth).collect();
-    all.sort_by(f64::total_cmp);
-    median(&all).unwrap_or(f64::NAN)
+/// The label of an axis without the mark of a number without unit, as the beginning of a sentence.
+fn name_of_error(label: &str) -> String {
+    let name = label.trim_end_matches(" [-]");
+    let mut letters = name.chars();
+    // An abbreviation or a symbol stays as it is.
+    let is_word = name.split(' ').next().is_some_and(|word| word.len() > 3);
+    match letters.next().filter(|_| is_word) {
+        Some(first) => first.to_uppercase().chain(letters).collect(),
+        None => format!("The {name}"),
+    }
 }
 
 /// The first number of a resolution in words.
@@ -208,9 +171,7 @@ fn panel(title: &str, cost_label: &str, points: &[Point], cost: Cost) -> Plot {
         }
         plot = plot.layer(series);
     }
-    let failed: Vec<(f64, String)> =
-        points.iter().filter_map(|p| Some((cost(p), p.failure.clone()?))).collect();
-    if failed.is_empty() { plot } else { plot.layer(Layer::Failed(failed)) }
+    plot
 }
 
 /// Behind everything else.
@@ -227,60 +188,6 @@ fn peer_layers(peers: &[Peer]) -> Vec<Layer> {
     peers.chunk_by(|a, b| a.name == b.name).enumerate().map(layer).collect()
 }
 
-const CHEAPEST: &str = "Cheapest setting that reaches an error. At a single level errors of time and \
-    spacing can cancel, so a point counts only if every finer level of its ladder meets the goal as well; \
-    of the finest level nothing finer is known.";
-
-fn cheapest_table(points: &[Point]) -> Table {
-    type Row<'a> = (f64, Option<&'a Point>);
-    let goals = [1e-2, 3e-3, 1e-3, 3e-4].map(|goal| (goal, cheapest(points, goal)));
-    let of = |show: fn(&Point) -> Cell| move |(_, p): &Row| p.map_or(Cell::text("–"), show);
-    let setting = |(_, p): &Row| p.map_or("none of the settings run".into(), Point::setting);
-    let spread = |p: &Point| {
-        let (fast, slow) = p.spread();
-        Cell::text(format!("{} – {} ({})", seconds(fast), seconds(slow), p.seconds.len()))
-    };
-    Columns::<Row>::default()
-        .num(["error wanted", "-"], |(goal, _)| Cell::percent(*goal, 1))
-        .text("cheapest setting", setting)
-        .num(["error", "-"], of(|p| Cell::percent(p.error, 2)))
-        .num(["median", "s"], of(|p| Cell::seconds(p.median())))
-        .with(Column::text("fastest – slowest (runs)"), of(spread))
-        .num(["steps", "1"], of(|p| Cell::count(p.steps)))
-        .num(["pair interactions", "1"], of(|p| Cell::sci(p.pairs, 2)))
-        .table(CHEAPEST, goals)
-}
-
-/// At the error of each peer, the cheapest of ours and how many times faster it is.
-fn peer_table<'a>(peers: &'a [Peer], points: &'a [Point]) -> Table {
-    let caption = "Other codes on the same work, and ours at equal error and at equal resolution. Ours at \
-                   equal error is the cheapest setting whose finer levels have no more error either; ours at \
-                   equal resolution is the most accurate.";
-    type Row<'a> = (&'a Peer, Option<&'a Point>, Option<&'a Point>);
-    let dash = || Cell::text("–");
-    let row =
-        |peer: &'a Peer| (peer, cheapest(points, peer.error), at_spacing(points, peer.spacing));
-    let rows = peers.iter().map(row);
-    let equal = |show: fn(&Point) -> Cell| move |(_, p, _): &Row| p.map_or_else(dash, show);
-    let at = |show: fn(&Point) -> Cell| move |(.., p): &Row| p.map_or_else(dash, show);
-    let faster = |peer: &Peer, ours: Option<&Point>| {
-        ours.map_or_else(dash, |p| Cell::num(peer.seconds / p.median(), 2))
-    };
-    Columns::<Row>::default()
-        .text("code", |(peer, ..)| format!("{}, {}", peer.name, peer.label))
-        .num(["its error", "-"], |(peer, ..)| Cell::percent(peer.error, 2))
-        .num(["its time", "s"], |(peer, ..)| Cell::seconds(peer.seconds))
-        .text("timed", |(peer, ..)| &peer.timed)
-        .with(Column::text("ours at no more error"), equal(|p| Cell::text(p.setting())))
-        .num(["our error", "-"], equal(|p| Cell::percent(p.error, 2)))
-        .num(["our time", "s"], equal(|p| Cell::seconds(p.median())))
-        .num(["times as fast", "-"], move |(peer, p, _)| faster(peer, *p))
-        .with(Column::text("ours at its resolution"), at(|p| Cell::text(format!("`{}`", p.ladder))))
-        .num(["our error", "-"], at(|p| Cell::percent(p.error, 2)))
-        .num(["times as fast", "-"], move |(peer, _, p)| faster(peer, *p))
-        .table(caption, rows)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -293,7 +200,6 @@ mod tests {
             error,
             seconds: seconds.to_vec(),
             pairs: 1.0,
-            steps: 1,
             failure: None,
         }
     }
@@ -311,8 +217,6 @@ mod tests {
         assert_eq!(names, ["fast and bad", "slow and good"]);
         assert_eq!(points[0].median(), 2.0);
         assert_eq!(points[0].spread(), (1.0, 3.0));
-        assert_eq!(cheapest(&points, 1e-2).map(|p| p.ladder.as_str()), Some("fast and bad"));
-        assert!(cheapest(&points, 1e-5).is_none());
     }
 
     fn names<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a str> {
@@ -337,56 +241,25 @@ mod tests {
         assert_eq!(names(pareto(&work, |p| p.pairs)), ["a hundredth better"]);
     }
 
-    /// The median, not the mean or the fastest, decides on what is cheapest.
+    /// The median, not the mean or the fastest, is what a level costs.
     #[test]
-    fn the_cheapest_is_that_of_the_least_median_and_every_finer_level_counts() {
-        let points = [
-            point("disturbed once", 1e-3, &[2.0, 2.1, 30.0]),
-            point("fast once", 1e-3, &[0.1, 2.5, 2.6]),
-        ];
-        assert_eq!(cheapest(&points, 1e-3).map(|p| p.ladder.as_str()), Some("disturbed once"));
-        assert_eq!(points[1].spread(), (0.1, 2.6));
+    fn the_cost_is_a_median_and_every_finer_level_counts() {
+        let disturbed = [point("disturbed once", 1e-3, &[2.0, 2.1, 30.0])];
+        assert_eq!((cheapest(&disturbed, 1e-3), disturbed[0].spread()), (2.1, (2.0, 30.0)));
+        assert!(cheapest(&disturbed, 1e-5).is_nan());
         // A failure has no error, so what is coarser than it does not count either.
         let failed = Point { spacing: 0.05, ..point("failed later", f64::NAN, &[9.0]) };
-        let points = [point("failed later", 1e-3, &[1.0]), failed];
-        assert_eq!(names(cheapest(&points, 1e-2)), [""; 0]);
+        assert!(cheapest(&[point("failed later", 1e-3, &[1.0]), failed], 1e-2).is_nan());
     }
 
     #[test]
-    fn another_code_is_compared_at_its_error_and_at_its_spacing() {
-        let of = |ladder: &str, spacing: f64, error: f64, seconds: f64| Point {
-            spacing,
-            ..point(ladder, error, &[seconds])
-        };
-        let points = [
-            of("coarse", 0.1, 1.9e-2, 0.5),
-            of("best at 0.05", 0.05, 0.8e-2, 2.0),
-            of("worse at 0.05", 0.05, 1.2e-2, 1.0),
-        ];
-        let peer = Peer {
-            name: "other".into(),
-            label: "20 rows".into(),
-            seconds: 3.0,
-            spacing: 0.05,
-            error: 2e-2,
-            timed: "made up".into(),
-        };
-        let table = peer_table(&[peer], &points);
-        let cells: Vec<String> =
-            table.rows[0].iter().map(|cell| cell.text.replace('\u{a0}', " ")).collect();
-        assert_eq!(
-            cells[4..],
-            ["`coarse`, 10 rows", "1.9 %", "500 ms", "6.0", "`best at 0.05`", "0.80 %", "1.5"],
-            "at no more than its 2 % 3 s / 0.5 s = 6, at its spacing the most accurate 3 s / 2 s"
-        );
+    fn captions_begin_with_a_whole_sentence() {
+        assert_eq!(name_of_error("relative error of u [-]"), "Relative error of u");
+        assert_eq!(name_of_error("rms error of u [U_b]"), "The rms error of u [U_b]");
     }
 
     #[test]
-    fn work_is_seen_to_grow_as_it_does() {
-        let at =
-            |n: f64| Point { spacing: 1.0 / n, pairs: n.powi(3), ..point("cubic", 0.1, &[1.0]) };
-        assert!((work_growth(&[at(10.0), at(15.0), at(20.0)]) - 3.0).abs() < 1e-12);
-        assert!(work_growth(&[]).is_nan() && work_growth(&[at(10.0)]).is_nan());
+    fn a_resolution_in_short_is_its_first_number() {
         assert_eq!(
             ["20 rows", "H/dx = 10", "50 x 50", "fine"].map(short),
             ["20", "10", "50", "fine"]
@@ -400,7 +273,7 @@ mod tests {
             ..point("cancels", error, &[seconds])
         };
         let points = [of(0.1, 1e-3, 0.1), of(0.05, 2e-3, 1.0), of(0.025, 5e-4, 9.0)];
-        assert_eq!(cheapest(&points, 1e-3).map(|p| p.spacing), Some(0.025));
-        assert_eq!(cheapest(&points, 3e-3).map(|p| p.spacing), Some(0.1));
+        assert_eq!(cheapest(&points, 1e-3), 9.0);
+        assert_eq!(cheapest(&points, 3e-3), 0.1);
     }
 }

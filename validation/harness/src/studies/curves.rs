@@ -56,7 +56,7 @@ mod tests {
     use super::*;
     use crate::{
         declare::CurveOf,
-        studies::made_up::{ERROR, runs, spec},
+        studies::tests::{ERROR, runs, spec},
     };
 
     fn line(name: &str, variant: &str, n: usize) -> CurveOf {

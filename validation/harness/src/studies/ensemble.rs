@@ -203,7 +203,7 @@ fn panel([time, unit]: &[&str; 2], made: &Made, followed: &Followed) -> Plot {
     let end = followed.end();
     let measured = followed.of.measured.iter().map(|curve| {
         let until: Curve = curve.iter().filter(|(t, _)| *t <= end).copied().collect();
-        Series::line("", thinned(&until)).colour(Colour::BLACK).width(0.8)
+        Series::line("", until).colour(Colour::BLACK).width(0.8)
     });
     let least = quantiles.iter().map(|(_, all)| all[0]).fold(0.0, f64::min);
     let most = quantiles.iter().map(|(_, all)| all[4]).fold(least, f64::max);
@@ -241,11 +241,6 @@ fn quantiles(members: &[Curve]) -> Vec<(f64, [f64; 5])> {
     (0..first.len()).step_by(every).map(at).collect()
 }
 
-/// A curve with as few points as are drawn.
-fn thinned(curve: &Curve) -> Curve {
-    curve.iter().step_by(curve.len().div_ceil(2 * DRAWN).max(1)).copied().collect()
-}
-
 #[cfg(test)]
 mod tests {
     use base::record::Status;
@@ -254,7 +249,7 @@ mod tests {
     use super::*;
     use crate::{
         runs::JudgedRun,
-        studies::made_up::{ERROR, column, comparison, run, spec, tables},
+        studies::tests::{ERROR, column, comparison, run, spec, tables},
     };
 
     const ALL: usize = 20;

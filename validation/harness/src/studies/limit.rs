@@ -53,7 +53,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::studies::made_up::{column, records, spec, tables};
+    use crate::studies::tests::{column, records, spec, tables};
 
     /// A limit of x = 1.2 where theory has 0.8 and the default is 0.6: 1.5 of theory, 2 of the default, and
     /// default/theory 0.75. Theory is 4 ms, so 6 ms were measured.

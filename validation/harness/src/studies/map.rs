@@ -37,7 +37,7 @@ mod tests {
     use report::{Block, Colour, Panel};
 
     use super::*;
-    use crate::studies::made_up::{ERROR, runs, spec};
+    use crate::studies::tests::{ERROR, runs, spec};
 
     /// Cells of x = 1, 2, 3 and y = 10, 20: the run of x + y, whose error is that; the cell of 2 and 10 was
     /// not run, that of 3 and 20 has two runs.

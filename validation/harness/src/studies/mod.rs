@@ -7,12 +7,12 @@ mod cost;
 mod curves;
 pub mod ensemble;
 mod limit;
-#[cfg(test)]
-mod made_up;
 mod map;
 mod order;
 mod sensitivity;
 mod submissions;
+#[cfg(test)]
+mod tests;
 pub mod validation;
 
 pub use card::{Headline, card};

@@ -1,41 +1,22 @@
 //! The observed order of accuracy with its confidence interval: a panel, a table and gates, which the study
 //! of errors and their cost shows.
 
-use base::gate::{Bound, Evidence, Gate};
-use report::{Axis, Cell, Layer, Legend, Plot, Series, Table, exact, sig};
+use base::gate::Gate;
+use report::{Axis, Cell, Layer, Legend, Plot, Series, Table, exact, percent, sig};
 
 use crate::{
     columns::Columns,
     convergence::{Convergence, ConvergenceError, Label, Level as Point, convergence},
-    declare::{Accuracy, ErrorOf, Ladder},
+    declare::{Accuracy, Ladder, Level, error_of},
     runs::Runs,
 };
 
-/// The points that the order of a ladder is fitted to.
-///
-/// With a metric these are the errors of its levels. With a distance they are the distances between
-/// successive levels at the coarser spacing, which fall as the error does: the distance from a finest run
-/// would fall faster.
-pub fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
-    let levels = ladder.levels.iter();
-    match &accuracy.error {
-        error @ ErrorOf::Metric(_) => levels
-            .map(|level| {
-                let record = runs.record(&level.run.spec);
-                let value = record.and_then(|record| error.value(record, runs));
-                Point { spacing: level.spacing, value: value.unwrap_or(f64::NAN) }
-            })
-            .collect(),
-        ErrorOf::Distance { between, .. } => ladder
-            .levels
-            .windows(2)
-            .map(|pair| {
-                let [coarse, fine] = [0, 1].map(|k| runs.completed(&pair[k].run.spec));
-                let distance = coarse.zip(fine).map(|(coarse, fine)| between(coarse, fine));
-                Point { spacing: pair[0].spacing, value: distance.unwrap_or(f64::NAN) }
-            })
-            .collect(),
-    }
+/// The errors of the levels of a ladder.
+fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
+    let error = |level: &Level| error_of(&accuracy.error, runs.record(&level.run.spec)?);
+    let point =
+        |level: &Level| Point { spacing: level.spacing, value: error(level).unwrap_or(f64::NAN) };
+    ladder.levels.iter().map(point).collect()
 }
 
 /// What is found of the orders of all ladders.
@@ -44,27 +25,18 @@ pub struct Orders {
     pub panel: Plot,
     /// What the caption of the panel has to explain, beginning with a space.
     pub caption: String,
-    /// Orders, intervals, floors.
+    /// Orders, intervals, and what errors cost.
     pub table: Table,
     /// Gates of ladders with their orders.
     pub judged: Vec<(Gate, f64)>,
 }
 
-pub fn orders(accuracy: &Accuracy, runs: &Runs) -> Orders {
-    let successive = match accuracy.error {
-        ErrorOf::Metric(_) => "",
-        ErrorOf::Distance { .. } => {
-            " Against the spacing, an error is the distance between runs of successive spacings, drawn at \
-             the coarser one."
-        }
-    };
-    let slopes = slopes(accuracy);
-    let shown: Vec<String> = slopes.iter().map(|order| exact(*order)).collect();
-    let slope = match shown.as_slice() {
-        [] => String::new(),
-        [order] => format!(" The left triangle shows order {order}."),
-        orders => format!(" The left triangles show orders {}.", orders.join(" and ")),
-    };
+/// The errors of which the table tells the least run time that reaches them.
+pub const GOALS: [f64; 2] = [1e-2, 1e-3];
+
+/// `costs` are the seconds that each ladder takes to reach the [`GOALS`], NaN if it does not.
+pub fn orders(accuracy: &Accuracy, costs: &[[f64; 2]], runs: &Runs) -> Orders {
+    let slope = accuracy.slope.map(|order| format!(" The triangle shows order {}.", exact(order)));
     let axes = (Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
     let mut panel = Plot::new("Error against spacing", axes.0, axes.1).legend(Legend::Hidden);
     let (mut rows, mut judged) = (Vec::new(), Vec::new());
@@ -76,39 +48,33 @@ pub fn orders(accuracy: &Accuracy, runs: &Runs) -> Orders {
         panel = panel.layer(Series::line_markers(&name, line).cycle(k));
         let found = convergence(&points);
         if let Some(order) = ladder.order.clone() {
-            let gate = Gate::new(order.id, "order", order.bound, order.evidence, order.because);
-            judged.push((gate, found.as_ref().map_or(f64::NAN, |c| c.order)));
+            judged.push((order, found.as_ref().map_or(f64::NAN, |c| c.order)));
         }
         let finest = points.last().map_or(f64::NAN, |p| p.value);
-        rows.push((name, found, finest));
+        rows.push(Row { name, found, finest, costs: costs[k] });
     }
-    let panel = slopes.into_iter().fold(panel, |panel, order| panel.layer(Layer::slope(order)));
-    let table = table(format!("Observed orders of accuracy. {}", accuracy.about), rows);
-    Orders { panel, caption: format!("{successive}{slope}"), table, judged }
+    let panel = accuracy.slope.into_iter().map(Layer::Slope).fold(panel, Plot::layer);
+    let about = format!("Observed orders of accuracy. {} {TIMES}", accuracy.about);
+    let table = table(about, &rows);
+    Orders { panel, caption: slope.unwrap_or_default(), table, judged }
 }
 
-/// The orders that theory expects: that of the method, and the middle of what gates of ladders allow.
-fn slopes(accuracy: &Accuracy) -> Vec<f64> {
-    let gates = accuracy.ladders.iter().filter_map(|ladder| ladder.order.as_ref());
-    let expected = gates.filter_map(|gate| match (gate.bound, gate.evidence) {
-        (Bound::Within(low, high), Evidence::Theory) => Some(0.5 * (low + high)),
-        _ => None,
-    });
-    let mut slopes: Vec<f64> = accuracy.slope.into_iter().collect();
-    for order in expected {
-        if slopes.iter().all(|other| (other - order).abs() > 0.1) {
-            slopes.push((10.0 * order).round() / 10.0);
-        }
-    }
-    slopes
+const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of \
+    every finer level, is at most so much: at a single level errors of time and spacing can cancel.";
+
+struct Row {
+    /// Name of the ladder.
+    name: String,
+    /// Its order, or why it has none.
+    found: Result<Convergence, ConvergenceError>,
+    /// Its finest error.
+    finest: f64,
+    costs: [f64; 2],
 }
 
-/// Name of a ladder, its order or why it has none, its finest error.
-type Row = (String, Result<Convergence, ConvergenceError>, f64);
-
-fn table(about: String, rows: Vec<Row>) -> Table {
+fn table(about: String, rows: &[Row]) -> Table {
     let of = |show: fn(&Convergence) -> String| {
-        move |(_, found, _): &Row| found.as_ref().map_or("–".into(), show)
+        move |row: &Row| row.found.as_ref().map_or("–".into(), show)
     };
     let order = of(|found| format!("{} ± {}", sig(found.order, 3), sig(found.standard_error, 2)));
     let interval = of(|found| {
@@ -119,52 +85,47 @@ fn table(about: String, rows: Vec<Row>) -> Table {
         let orders: Vec<String> = found.local_orders.iter().map(|p| sig(*p, 2)).collect();
         orders.join(", ")
     });
-    let label = |(_, found, _): &Row| match found {
+    let label = |row: &Row| match &row.found {
         Ok(Convergence { label: Label::Asymptotic, .. }) => "asymptotic".into(),
         Ok(Convergence { label: Label::FloorReached, .. }) => "floor reached".into(),
         Ok(Convergence { label: Label::NotAsymptotic, .. }) => "not asymptotic".into(),
         Err(error) => format!("no order: {error}"),
     };
-    let floor = |(_, found, _): &Row| {
-        let floor = found.as_ref().ok().and_then(|found| found.floor);
-        floor.map_or(Cell::text("–"), |floor| Cell::percent(floor.error, 2))
-    };
-    Columns::default()
-        .code("variant", |(name, ..): &Row| name.clone())
+    let columns = Columns::default()
+        .code("variant", |row: &Row| row.name.clone())
         .num(["order ± standard error", "-"], move |row| Cell::text(order(row)))
         .text("95 % interval", interval)
         .text("local orders, coarse to fine", local)
         .text("label", label)
-        .of(["finest error", "-"], |(.., finest)| *finest, |error| Cell::percent(error, 2))
-        .num(["fitted floor", "-"], floor)
-        .table(about, rows)
+        .of(["finest error", "-"], |row| row.finest, |error| Cell::percent(error, 2));
+    let columns = GOALS.iter().enumerate().fold(columns, |columns, (k, goal)| {
+        let head = format!("time to {}", percent(*goal, 1));
+        columns.of([&head, "s"], move |row| row.costs[k], Cell::seconds)
+    });
+    columns.table(about, rows)
 }
 
 #[cfg(test)]
 mod tests {
-    use base::{gate::Verdict, record::Record};
+    use base::gate::{Bound, Evidence, Verdict};
 
     use super::*;
     use crate::{
-        declare::{Level, OrderGate},
         planned::Planned,
         runs::Runs,
-        studies::made_up::{ERROR, column, runs, spec},
+        studies::tests::{ERROR, column, runs, spec},
     };
 
     /// Ladders of `seed` and `best` at n = 10, 20, 40, 80; the order of the second is judged.
-    fn accuracy(error: ErrorOf) -> Accuracy {
-        let mut accuracy = Accuracy::new("case", error, "Error [-]").over(
+    fn accuracy() -> Accuracy {
+        let mut accuracy = Accuracy::new("case", ERROR, "Error [-]").over(
             &["seed", "best"],
             [10, 20, 40, 80],
             |variant, n| Planned::new(spec(variant, n)),
         );
-        accuracy.ladders[1].order = Some(OrderGate {
-            id: "case.order".into(),
-            bound: Bound::Within(2.9, 3.1),
-            evidence: Evidence::Theory,
-            because: "made up".into(),
-        });
+        let bound = Bound::Within(2.9, 3.1);
+        let gate = Gate::new("case.order", "order", bound, Evidence::Theory, "made up");
+        accuracy.ladders[1].order = Some(gate);
         accuracy
     }
 
@@ -181,52 +142,29 @@ mod tests {
             "seed" => -4.0 / (n * n), // a metric with a sign
             _ => 8.0 / n.powi(3),
         });
-        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &runs);
+        let orders = orders(&accuracy(), &[[0.5, f64::NAN]; 2], &runs);
         assert_eq!(column(&orders.table, "variant"), ["`seed`", "`best`"]);
         let local = column(&orders.table, "local orders, coarse to fine");
         assert_eq!(local, ["2.0, 2.0, 2.0", "3.0, 3.0, 3.0"]);
         assert_eq!(column(&orders.table, "label"), ["asymptotic", "asymptotic"]);
         let finest = column(&orders.table, "finest error");
         assert_eq!(finest, ["0.062 %", "0.0016 %"], "4/80² and 8/80³");
+        let times =
+            GOALS.map(|goal| column(&orders.table, &format!("time to {}", percent(goal, 1))));
+        assert_eq!(times, [["500 ms"; 2], ["–"; 2]]);
         let [(gate, order)] = orders.judged.as_slice() else { panic!("one order is judged") };
         assert_eq!(
             (gate.id.as_str(), gate.judge(Some(*order)).verdict),
             ("case.order", Verdict::Pass)
         );
         assert!((order - 3.0).abs() < 1e-12, "order {order} of errors 8/n³");
-        // Order 2 of the method, and 3, the middle of what the gate allows.
-        assert_eq!(orders.caption, " The left triangles show orders 2 and 3.");
-    }
-
-    /// Values 1 + 1/n²: their distances are 3/4 of the error of the coarser one, and are drawn there. At the
-    /// finer spacing, or against the finest run, other orders would be found.
-    #[test]
-    fn distances_of_successive_runs_stand_at_the_coarser_spacing() {
-        let between = |a: &Record, b: &Record| {
-            (a.value(ERROR).unwrap_or(f64::NAN) - b.value(ERROR).unwrap_or(f64::NAN)).abs()
-        };
-        let accuracy = accuracy(ErrorOf::Distance { finest: spec("best", 80), between });
-        let runs = made(|_, n| 1.0 + 1.0 / (n * n));
-        let points = points(&accuracy, &accuracy.ladders[0], &runs);
-        assert_eq!(points.len(), 3, "three distances of four runs");
-        for (point, n) in points.iter().zip([10.0, 20.0, 40.0_f64]) {
-            let expected = 0.75 / (n * n);
-            assert_eq!(point.spacing, 1.0 / n);
-            assert!(
-                (point.value / expected - 1.0).abs() < 1e-9,
-                "n = {n}: {} for {expected}",
-                point.value
-            );
-        }
-        let fine = accuracy.ladders[1].levels.last().map(|Level { run, .. }| run.spec.clone());
-        let finest = runs.record(&fine.expect("levels")).expect("made");
-        assert_eq!(accuracy.error.value(finest, &runs), None, "others are compared with it");
+        assert_eq!(orders.caption, " The triangle shows order 2.");
     }
 
     #[test]
     fn a_level_that_failed_leaves_no_order_and_its_gate_fails() {
         let runs = made(|_, n| if n == 20.0 { f64::NAN } else { 1.0 / n });
-        let orders = orders(&accuracy(ErrorOf::Metric(ERROR.into())), &runs);
+        let orders = orders(&accuracy(), &[[0.5, f64::NAN]; 2], &runs);
         assert!(orders.judged[0].1.is_nan(), "order {}", orders.judged[0].1);
         assert!(
             column(&orders.table, "label")[0].starts_with("no order: a level with spacing 0.05")

@@ -157,7 +157,7 @@ mod tests {
         runs::JudgedRun,
         studies::{
             causes::NOT_MEASURED,
-            made_up::{ERROR, column, records, spec, tables},
+            tests::{ERROR, column, records, spec, tables},
         },
     };
 

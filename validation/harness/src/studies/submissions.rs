@@ -2,11 +2,10 @@
 
 use base::submission::{Division, OURS, SESSION, Submission};
 use report::{Axis, Cell, Colour, Figure, Legend, Plot, Series, percent, seconds};
-use serde_json::Value;
 
 use crate::{
     columns::Columns,
-    declare::{Accuracy, Declaration, ErrorOf, Level},
+    declare::{Accuracy, Declaration, error_of},
     runs::{JudgedRun, Runs},
     study::Study,
 };
@@ -16,7 +15,8 @@ struct Mark<'a> {
     of: &'a Submission,
     /// Code, scheme and the variant of its problem; of ours the variant.
     name: String,
-    resolution: String,
+    /// How many; 0 of a profile or a series.
+    particles: usize,
     /// When it was made together with others.
     session: Option<&'a str>,
     error: f64,
@@ -35,9 +35,9 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
         Some(Mark {
             of,
             name,
-            resolution: resolution(accuracy, &record.settings),
+            particles: record.cost.particles,
             session: record.numerics.get(SESSION).and_then(|day| day.as_str()),
-            error: accuracy.error.value(record, runs)?,
+            error: error_of(&accuracy.error, record)?,
             seconds: record.cost.cpu_s,
         })
     };
@@ -46,25 +46,7 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     marks
 }
 
-/// The resolution in words: that of a level with the same value of the setting in which levels differ.
-fn resolution(accuracy: &Accuracy, settings: &Value) -> String {
-    let of = |level: &Level, key: &str| level.run.spec.settings[key].clone();
-    let ladders = || accuracy.ladders.iter().flat_map(|ladder| ladder.levels.windows(2));
-    let differs = |key: &&String| ladders().any(|two| of(&two[0], key) != of(&two[1], key));
-    let key = settings.as_object().and_then(|all| all.keys().find(differs));
-    let Some(key) = key else { return String::new() };
-    let level = ladders().flatten().find(|level| of(level, key) == settings[key]);
-    // Of a value without a level: the words of one with this value in place of its own.
-    let value = |settings: &Value| settings[key].to_string();
-    let other = ladders().flatten().find_map(|level| {
-        let (label, own) = (&level.label, value(&level.run.spec.settings));
-        label.contains(&own).then(|| label.replace(&own, &value(settings)))
-    });
-    let words = || other.unwrap_or_else(|| format!("{key} = {}", settings[key]));
-    level.map_or_else(words, |level| level.label.clone())
-}
-
-/// Where another code is better than ours in the same session: in error at equal resolution, or in time at
+/// Where another code is better than ours in the same session: in error with as many particles, or in time at
 /// no more error, whatever the resolution.
 fn better(marks: &[Mark]) -> Option<String> {
     let (ours, others): (Vec<&Mark>, Vec<&Mark>) = marks.iter().partition(|m| m.of.code == OURS);
@@ -75,9 +57,9 @@ fn better(marks: &[Mark]) -> Option<String> {
     let mut found = Vec::new();
     for peer in others {
         let with = || ours.iter().filter(|own| own.session == peer.session);
-        let equal = with().filter(|own| own.resolution == peer.resolution);
+        let equal = with().filter(|own| own.particles == peer.particles);
         let error = least(&mut equal.map(|own| own.error));
-        let who = format!("{} ({}, {})", peer.name, peer.resolution, peer.of.division);
+        let who = format!("{} ({} particles, {})", peer.name, peer.particles, peer.of.division);
         if error.is_finite() && peer.error < error {
             let [its, best] = [peer.error, error].map(|error| percent(error, 2));
             found.push(format!("{who} has an error of {its}, the best of ours {best}"));
@@ -90,8 +72,8 @@ fn better(marks: &[Mark]) -> Option<String> {
         }
     }
     Some(match found.is_empty() {
-        true => "No other code below is more accurate than ours at equal resolution, or faster with no more \
-                 error."
+        true => "No other code below is more accurate than ours with as many particles, or faster with no \
+                 more error."
             .into(),
         false => format!("Better than ours: {}.", found.join("; ")),
     })
@@ -101,7 +83,7 @@ fn better(marks: &[Mark]) -> Option<String> {
 fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     let caption = "Runs of other codes (in parentheses the variant whose problem they ran), and ours of \
                    the same session in black: error over the time of the loop on one core. Labels are \
-                   resolutions."
+                   numbers of particles."
         .to_string();
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
@@ -111,7 +93,7 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
         let plot = Plot::new(format!("{division} division"), x, y).legend(Legend::Outside);
         let series = |(k, all): (usize, &[&Mark])| {
             let points = all.iter().map(|mark| (mark.seconds, mark.error)).collect();
-            let labels = all.iter().map(|mark| mark.resolution.clone());
+            let labels = all.iter().map(|mark| mark.particles.to_string());
             let series = Series::line_markers(&all[0].name, points).cycle(k).labels(labels);
             if all[0].of.code == OURS { series.colour(Colour::BLACK) } else { series }
         };
@@ -137,16 +119,6 @@ fn provenance(runs: &Runs) -> Option<String> {
     ))
 }
 
-/// That errors are distances from a run of ours, if they are.
-fn partial(accuracy: &Accuracy) -> Option<String> {
-    let ErrorOf::Distance { finest, .. } = &accuracy.error else { return None };
-    Some(format!(
-        "Errors are distances from our own finest run, of variant {}, which favours this variant: there is \
-         no solution of which all codes would be equally independent.",
-        finest.variant
-    ))
-}
-
 /// All submissions of a case, if there are any: the closed division, then the open one.
 pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     if runs.submissions().is_empty() {
@@ -156,8 +128,7 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     let accuracy = declared.accuracy.iter();
     let found = accuracy.map(|of| (of, marks(of, runs))).find(|(_, marks)| !marks.is_empty());
     let first = found.as_ref().and_then(|(_, marks)| better(marks));
-    let words = first.into_iter().chain(found.as_ref().and_then(|(of, _)| partial(of)));
-    let words = words.chain(provenance(runs));
+    let words = first.into_iter().chain(provenance(runs));
     let study = words.fold(Study::new(&id, "Runs of other codes"), Study::prose);
     let study = study.prose(
             "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
@@ -168,62 +139,38 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
         Some((accuracy, marks)) => study.block(figure(&format!("{id}-cost"), accuracy, marks)),
         None => study,
     };
-    let of = |division: Division| {
-        let is_of = |run: &&JudgedRun| {
-            run.record.submission.as_ref().is_some_and(|of| of.division == division)
-        };
-        runs.submissions().iter().filter(is_of).collect::<Vec<_>>()
-    };
-    let tables = [
-        (
-            Division::Closed,
-            "Closed division: our particles, spacing and support of the kernel. The best first.",
-        ),
-        (Division::Open, "Open division: other particles or another resolution, at a stated cost."),
-    ];
-    let some = tables.into_iter().map(|(division, caption)| (of(division), caption));
-    let some = some.filter(|(runs, _)| !runs.is_empty());
-    let add = |study: Study, (of, caption): (Vec<&JudgedRun>, &str)| {
-        study.block(table(declared, caption, of, runs))
-    };
-    Some(some.fold(study, add))
+    Some(study.block(table(declared, runs)))
 }
 
-fn table(
-    declared: &Declaration,
-    caption: &str,
-    mut of: Vec<&JudgedRun>,
-    runs: &Runs,
-) -> report::Table {
-    let words =
-        |run: &JudgedRun| run.record.submission.as_ref().map_or(String::new(), |of| of.to_string());
-    let error = |run: &JudgedRun| {
-        let mut of = declared.accuracy.iter();
-        of.find_map(|of| of.error.value(&run.record, runs))
-    };
-    let place = |run: &&JudgedRun| error(run).unwrap_or(f64::INFINITY);
-    of.sort_by(|a, b| place(a).total_cmp(&place(b)));
-    let gates = |run: &JudgedRun| {
+/// The runs of the closed division, then those of the open one, the best first.
+fn table(declared: &Declaration, runs: &Runs) -> report::Table {
+    type Row<'a> = (&'a Submission, &'a JudgedRun, f64);
+    let rows = runs.submissions().iter().filter_map(|run| {
+        let error = declared.accuracy.iter().find_map(|of| error_of(&of.error, &run.record));
+        Some((run.record.submission.as_deref()?, run, error.unwrap_or(f64::NAN)))
+    });
+    let mut rows: Vec<Row> = rows.collect();
+    rows.sort_by(|a, b| a.0.division.cmp(&b.0.division).then(a.2.total_cmp(&b.2)));
+    let gates = |(_, run, _): &Row| {
         let (apply, others) = run.applicable();
         let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure()).count();
         let passed = apply.len() - failed;
         format!("{passed} pass, {failed} fail, {} not applicable", others.len())
     };
-    Columns::<&JudgedRun>::default()
-        .text("code", |run| words(run))
-        .code("variant of the problem", |run| &run.record.variant)
-        .num(["particles", "1"], |run| Cell::count(run.record.cost.particles as u64))
-        .num(["error", "-"], |run| match error(run) {
-            Some(error) => Cell::percent(error, 2),
-            None => Cell::text("–"),
-        })
-        .num(["processor time", "s"], |run| match run.record.cost.cpu_s {
-            seconds if seconds.is_finite() => Cell::seconds(seconds),
-            _ => Cell::text("unknown"),
-        })
-        .text("gates", |run| gates(run))
-        .text("ended", |run| run.record.status.to_string())
-        .table(caption, of)
+    Columns::<Row>::default()
+        .text("division", |(of, ..)| of.division.to_string())
+        .text("code", |(of, ..)| of.to_string())
+        .code("variant of the problem", |(_, run, _)| &run.record.variant)
+        .num(["particles", "1"], |(_, run, _)| Cell::count(run.record.cost.particles as u64))
+        .of(["error", "-"], |(.., error)| *error, |error| Cell::percent(error, 2))
+        .of(["processor time", "s"], |(_, run, _)| run.record.cost.cpu_s, Cell::seconds)
+        .text("gates", gates)
+        .text("ended", |(_, run, _)| run.record.status.to_string())
+        .table(
+            "Closed division: our particles, spacing and support of the kernel. Open division: other \
+             particles or another resolution, at a stated cost. In each the best first.",
+            rows,
+        )
 }
 
 #[cfg(test)]
@@ -236,9 +183,9 @@ mod tests {
         Submission { code, version, scheme, division, method, seed: None }
     }
 
-    fn mark<'a>(of: &'a Submission, session: &'a str, rows: u32, error: f64, s: f64) -> Mark<'a> {
-        let (name, resolution, session) = (of.code.clone(), format!("{rows} rows"), Some(session));
-        Mark { of, name, resolution, session, error, seconds: s }
+    fn mark<'a>(of: &'a Submission, session: &'a str, rows: usize, error: f64, s: f64) -> Mark<'a> {
+        let (name, particles, session) = (of.code.clone(), rows, Some(session));
+        Mark { of, name, particles, session, error, seconds: s }
     }
 
     /// At equal resolution errors compare, at no more error times, and nothing across sessions.

@@ -196,7 +196,7 @@ pub fn line(comparisons: &[Comparison], runs: &Runs) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::made_up::{column, comparison, runs, spec, tables};
+    use crate::studies::tests::{column, comparison, runs, spec, tables};
 
     fn of(values: &[(f64, f64)]) -> (f64, String) {
         let level = |&(n, value): &(f64, f64)| Level { spacing: 1.0 / n, value };

@@ -133,7 +133,7 @@ pub fn wave_vectors(n: usize) -> impl Iterator<Item = Vector2<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::theory::printed::assert_rounds_to;
+    use crate::theory::tests::assert_rounds_to;
     use approx::assert_relative_eq;
     use solver::kernel::{CubicSpline, QuinticSpline, WendlandC2};
 

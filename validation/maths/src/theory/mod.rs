@@ -11,4 +11,4 @@ pub mod time_step;
 pub use stepping::Stepping;
 
 #[cfg(test)]
-mod printed;
+mod tests;

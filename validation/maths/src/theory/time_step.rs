@@ -375,7 +375,7 @@ fn midpoint_root(c: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::theory::printed::assert_rounds_to;
+    use crate::theory::tests::assert_rounds_to;
     use approx::assert_relative_eq;
     use solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 

@@ -2,9 +2,9 @@
 //! cost, an error budget, step limits, maps, errors of constants that the gates must detect.
 
 use super::{
-    COMPONENTWISE, LAGRANGIAN, RUBBER_RINGS, RingSettings, budget,
+    LAGRANGIAN, RUBBER_RINGS, RingSettings,
     metrics::*,
-    plan::{Group, Row, SPEED, table},
+    plan::{Group, SPEED, table},
     reference::Reference,
 };
 use base::{
@@ -16,51 +16,49 @@ use harness::{
     case::{Case, Rules, Tier},
     declare::{
         Accuracy, Budget, Budgets, Card, Change, Comparison, CurveOf, CurvePanel, Curves,
-        Declaration, ErrorOf, Ladder, Map, MapPanel, Sensitivity, StepLimit, StepLimits, Watched,
+        Declaration, Ladder, Map, MapPanel, Sensitivity, StepLimit, StepLimits, Watched,
     },
     studies::causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
 };
-use report::{Axis, Colour, exact, sig};
+use report::{Colour, sig};
 
 /// What is read from the phases of contact, which begin and end between two steps; extremes of every step;
 /// and energies that lack the stress.
 const STEPWISE: &[MetricKey] = &[
     RESTITUTION,
     RESTITUTION_ERROR,
-    CONTACT_MOST,
-    MODES_MOST,
     IMPULSE,
     IMPULSE_ERROR,
     T_IMPULSE_1,
-    T_IMPULSE_50,
     T_IMPULSE_99,
     CONTACT_BEGIN_ERROR,
     CONTACT_END_ERROR,
     STRETCH_MOST,
-    T_STRETCH_MOST,
     ENERGY_GAINED,
 ];
+
+/// The variants whose histories and comparisons are shown.
+const SHOWN: [&str; 2] = [LAGRANGIAN, "seed"];
 
 /// Everything that the harness draws and judges.
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     Declaration {
-        card: Some(card(&accuracy[0])),
+        card: Some(card(&accuracy)),
         curves: vec![histories(tier)],
         comparisons: comparisons(&accuracy),
-        accuracy,
-        budgets: Some(budgets()),
+        budgets: (tier == Tier::Full).then(|| budgets(&accuracy)),
         limits: Some(limits(tier)),
-        maps: maps(tier),
+        maps: vec![map(tier)],
         sensitivity: Some(sensitivity(tier)),
-        costly: &budget::METRICS,
         stepwise: STEPWISE,
+        accuracy: vec![accuracy],
         ..Declaration::default()
     }
 }
 
 /// The best variant and the paper's over their ladders, each with the reference of its law.
-fn comparisons(accuracy: &[Accuracy]) -> Vec<Comparison> {
+fn comparisons(accuracy: &Accuracy) -> Vec<Comparison> {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes, steps, contact, disorder \
                            (`references/rubber_rings`)";
     let of = |ladder: &Ladder| {
@@ -77,8 +75,8 @@ fn comparisons(accuracy: &[Accuracy]) -> Vec<Comparison> {
             Comparison::new(what, "finite elements", metric, ladder, (uncertainty, BECAUSE))
         })
     };
-    let compared = |ladder: &&Ladder| [LAGRANGIAN, "seed"].contains(&ladder.variant);
-    accuracy[0].ladders.iter().filter(compared).flat_map(of).collect()
+    let compared = |ladder: &&Ladder| SHOWN.contains(&ladder.variant);
+    accuracy.ladders.iter().filter(compared).flat_map(of).collect()
 }
 
 /// What the report says first of the case.
@@ -89,96 +87,70 @@ fn card(accuracy: &Accuracy) -> Card {
         picture: ("rubber-rings-pictures", 2),
         error: "centre, width and height over time, in outer diameters".into(),
         metric: HISTORIES.into(),
-        runs: accuracy.finest(&[LAGRANGIAN, "seed"]),
+        runs: accuracy.finest(&SHOWN),
         against: "finite elements",
         uncertainty: reference.map(|reference| reference.uncertainty),
         reach: ("speed", "speeds of", " c0 each"),
     }
 }
 
-/// The best variant and the paper's, each with the reference of its law.
+/// The best variant and the paper's, with the reference of the law of the best.
 fn histories(tier: Tier) -> Curves {
-    let table = table(tier);
-    let variants = [LAGRANGIAN, "seed"];
+    let (table, settings) = (table(tier), RingSettings::default());
+    let exact = Reference::of(LAGRANGIAN, &settings);
     let labels = ["centre of mass [L]", "its velocity [c0]", "width [L]", "height [L]"];
     let panel = |(k, label): (usize, &str)| {
-        let name = Reference::COLUMNS[k];
-        let rows = variants.map(|of| table.of(Group::Paper).filter(move |row| row.variant == of));
-        let lines = rows.into_iter().flatten().map(|row| CurveOf {
-            name: format!("{}, spacing {} L", row.variant, exact(row.settings.spacing)),
-            spec: row.run.spec.clone(),
-            points: Box::new(move |record| {
-                let [t, y] = ["t", name].map(|name| record.column("series", name));
-                t.iter().copied().zip(y.iter().copied()).collect()
-            }),
+        let rows = SHOWN.map(|of| table.of(Group::Paper).filter(move |row| row.variant == of));
+        let lines = rows.into_iter().flatten().map(|row| {
+            let name = format!("{}, spacing {} L", row.variant, row.settings.spacing);
+            CurveOf::columns(name, row.run.spec.clone(), "series", ["t", Reference::COLUMNS[k]])
         });
-        // The other law is a thin line without a name.
-        let references = variants.iter().zip(["finite elements", ""]).filter_map(|(of, title)| {
-            let reference = Reference::of(of, &RingSettings::default())?;
-            let points = reference.times.iter().zip(&reference.columns[k]);
-            Some((title.to_string(), points.map(|(t, y)| (*t, *y)).collect()))
+        let points = exact.iter().flat_map(|exact: &Reference| {
+            exact.times.iter().copied().zip(exact.columns[k].iter().copied())
         });
-        let (lines, references) = (lines.collect(), references.collect());
-        let (x, y) = (Axis::linear("t [L/c0]"), Axis::linear(label));
-        CurvePanel { title: String::new(), x, y, lines, references, symbols: false }
+        let points = points.collect();
+        let axes = ["t [L/c0]", label];
+        CurvePanel::linear("", axes, lines.collect(), ("finite elements", points))
     };
     Curves {
         id: "rubber-rings-histories".into(),
         title: "Histories over finite elements".into(),
-        caption: format!(
-            "Centre of mass of one of two rubber rings that collide at 0.059 c0 each, its velocity, and \
-             the width along and height across the line of flight. Coloured: the best variant, `{}`, and \
-             the paper's, `{}`. Black: finite elements with the law of the best; thin and grey, mostly \
-             hidden by it: with the law of the paper. Their uncertainty is less than the width of the lines.",
-            variants[0], variants[1]
-        ),
+        caption: "Centre of mass of one of two rubber rings that collide at 0.059 c0 each, its velocity, and \
+                  the width along and height across the line of flight. Coloured: the best variant and the \
+                  paper's. Black: finite elements with the law of the best, from which those with the law of \
+                  the paper differ little; their uncertainty is less than the width of the line."
+            .into(),
         columns: 2,
         panels: labels.into_iter().enumerate().map(panel).collect(),
     }
 }
 
-fn accuracy(tier: Tier) -> Vec<Accuracy> {
+/// Error of the histories over spacing and cost.
+fn accuracy(tier: Tier) -> Accuracy {
     let table = table(tier);
     let variants: &[&str] = match tier {
-        Tier::Quick => &["seed", "leapfrog", LAGRANGIAN],
+        Tier::Quick => &["seed", LAGRANGIAN],
         _ => &["seed", "leapfrog", "single-sweep", LAGRANGIAN],
     };
-    let of = |what: &str, metric: MetricKey, label: &str, about: &str| {
-        let id = format!("rubber-rings-{}", what.replace(' ', "-"));
-        let ladder = |variant| {
-            table.ladder(&[Group::Coarse, Group::Paper], variant, |s| {
-                (s.spacing, format!("{} layers", (1.0 / s.spacing).round()))
-            })
-        };
-        Accuracy {
-            about: format!(
-                "Rubber rings of thickness L collide at 0.059 c0 each; the reference is finite elements. \
-                 {about} in runs to t = 200 L/c0."
-            ),
-            spacing: "spacing [L]",
-            slope: Some(1.0),
-            ladders: variants.iter().copied().map(ladder).collect(),
-            ..Accuracy::new(&id, ErrorOf::Metric(metric.into()), label)
-        }
+    let ladder = |variant| {
+        table.ladder(&[Group::Coarse, Group::Paper], variant, |s| {
+            (s.spacing, format!("{} layers", (1.0 / s.spacing).round()))
+        })
     };
-    vec![
-        of(
-            "histories",
-            HISTORIES,
-            "distance of the histories [outer diameters]",
-            "The error is the largest of the root-mean-square distances of the centre of mass, the width and \
-             the height of a ring over time, in outer diameters, 8 L,",
-        ),
-        of(
-            "least width",
-            WIDTH_MIN_ERROR,
-            "relative error of the least width [-]",
-            "The least width is compared",
-        ),
-    ]
+    let label = "distance of the histories [outer diameters]";
+    Accuracy {
+        about: "Rubber rings of thickness L collide at 0.059 c0 each; the reference is finite elements. The \
+                error is the largest of the root-mean-square distances of the centre of mass, the width and \
+                the height of a ring over time, in outer diameters, 8 L, in runs to t = 200 L/c0."
+            .into(),
+        spacing: "spacing [L]",
+        slope: Some(1.0),
+        ladders: variants.iter().copied().map(ladder).collect(),
+        ..Accuracy::new("rubber-rings-histories", HISTORIES, label)
+    }
 }
 
-fn budgets() -> Budgets {
+fn budgets(accuracy: &Accuracy) -> Budgets {
     let change = |what: &str, part: &'static str, set: fn(&mut RingSettings)| {
         let spec = RUBBER_RINGS.spec("leapfrog", |s| {
             s.spacing = 0.25;
@@ -197,18 +169,16 @@ fn budgets() -> Budgets {
         change("ξ = 0", "artificial stress", |s| s.xi = 0.0),
     ];
     Budgets {
-        id: "rubber-rings-budget".into(),
-        error: ErrorOf::Metric(WIDTH_MIN_ERROR.into()),
-        label: "relative error of the least width".into(),
-        about: "Rings collide at 0.059 c0 each at spacing 0.25 L. The error is that of the least width \
-                against finite elements."
-            .into(),
-        of: vec![Budget { variant: "leapfrog", changes }],
+        about: "Rings collide at 0.059 c0 each at spacing 0.25 L.".into(),
+        ..Budgets::of(accuracy, vec![Budget { variant: "leapfrog", changes }])
     }
 }
 
 fn limits(tier: Tier) -> StepLimits {
-    let variants: &[&str] = if tier == Tier::Quick { &["leapfrog"] } else { &["seed", "leapfrog"] };
+    let variants: &[&str] = match tier {
+        Tier::Quick => &["leapfrog"],
+        _ => &["seed", "leapfrog", LAGRANGIAN],
+    };
     let about = "Rings of 4 layers collide at 0.059 c0 each, to t = 100 L/c0. A time step counts as stable \
                  if the energy never rises by more than 1 %. Theory is that of a stress-free lattice with \
                  artificial viscosity on every pair; rings have it on approaching pairs alone.";
@@ -216,9 +186,9 @@ fn limits(tier: Tier) -> StepLimits {
 }
 
 fn step_limit(variant: &'static str) -> StepLimit {
-    // A sample or a picture would shorten the step before it.
+    // A sample would shorten the step before it.
     let set = |s: &mut RingSettings| (s.spacing, s.end, s.samples) = (0.25, 100.0, 1);
-    let spec = RUBBER_RINGS.spec(variant, set).keep_pictures(1);
+    let spec = RUBBER_RINGS.spec(variant, set);
     let rules = RUBBER_RINGS.rules(&spec).unwrap_or(Rules::REFUSED);
     let because = "Nothing drives the rings, so at the default step their energy must not rise.";
     let id = format!("rubber_rings.{variant}.step_limit");
@@ -229,20 +199,15 @@ fn step_limit(variant: &'static str) -> StepLimit {
     StepLimit { of_default: vec![gate], ..limit }
 }
 
-/// Whole, torn or in pieces: over speed and spacing, and over the settings of what stabilises.
-fn maps(tier: Tier) -> Vec<Map> {
+/// Whole, torn or in pieces.
+fn map(tier: Tier) -> Map {
     let table = table(tier);
-    let whole = &[Group::Paper, Group::Speed][..];
-    let is_shown = |row: &&Row| whole.contains(&row.group) || row.group == Group::Unstressed;
-    let has = |is: &dyn Fn(&RingSettings) -> bool| {
-        table.rows.iter().filter(is_shown).any(|row| is(&row.settings))
+    let (speeds, spacings): (&[f64], &[f64]) = match tier {
+        Tier::Quick => (&[0.03, SPEED, 0.12, 0.3], &[0.1, 0.2]),
+        _ => (&[0.03, SPEED, 0.12, 0.2, 0.3], &[0.05, 0.1, 0.2]),
     };
-    let mut speeds = vec![0.03, SPEED, 0.12, 0.2, 0.3];
-    speeds.retain(|speed| has(&|s| s.speed == *speed));
-    let mut spacings = vec![0.05, 0.1, 0.2];
-    spacings.retain(|spacing| has(&|s| s.spacing == *spacing));
-    let panel = |(title, variant, groups): (&str, &str, &[Group])| {
-        MapPanel::over(title, &speeds, &spacings, |speed, spacing| {
+    let panel = |title, variant, groups: &[Group]| {
+        MapPanel::over(title, speeds, spacings, |speed, spacing| {
             let rows = table.rows.iter().filter(|row| {
                 let here = (row.settings.speed, row.settings.spacing) == (speed, spacing);
                 here && row.variant == variant && groups.contains(&row.group)
@@ -250,48 +215,7 @@ fn maps(tier: Tier) -> Vec<Map> {
             rows.map(|row| row.run.spec.clone()).collect()
         })
     };
-    let panels = [
-        ("seed", "seed", whole),
-        ("seed, ξ = 0", "seed", &[Group::Unstressed]),
-        (COMPONENTWISE, COMPONENTWISE, whole),
-        (LAGRANGIAN, LAGRANGIAN, whole),
-    ];
-    let mut maps = vec![map(
-        ["fracture", "M2: whole, torn or in pieces over speed and spacing"],
-        ["speed of each ring [c0]", "particle spacing [L]"],
-        "over speed and particle spacing; an empty cell was not run. In runs by hand, rings of ten layers \
-         hold at 0.08 c0 and tear at 0.09; rings of five hold at 0.08, are torn at 0.09, and hold at 0.12",
-        panels.map(panel).into(),
-    )];
-    if tier == Tier::Quick {
-        return maps;
-    }
-    let cell = |set: &dyn Fn(&mut RingSettings)| {
-        let spec = RUBBER_RINGS.spec("seed", |s| {
-            (s.spacing, s.speed) = (0.2, 0.12);
-            set(s);
-        });
-        vec![spec.allow_unstable()]
-    };
-    let (xi, n) = ([0.0, 0.1, 0.2, 0.3, 0.5], [2, 4, 6]);
-    let stress = |xi, n| cell(&|s| (s.xi, s.exponent) = (xi, n));
-    maps.push(map(
-        ["stress", "Stability over the artificial stress"],
-        ["strength of the artificial stress ξ [-]", "exponent n [-]"],
-        "at 0.12 c0 each, spacing 0.2 L, over strength and exponent of the artificial stress",
-        vec![MapPanel::over("", &xi, &n, stress)],
-    ));
-    let viscosity = |alpha, _| cell(&|s| (s.alpha, s.beta) = (alpha, 2.0 * alpha));
-    maps.push(map(
-        ["viscosity", "Stability over the artificial viscosity"],
-        ["artificial viscosity α [-]", ""],
-        "at 0.12 c0 each, spacing 0.2 L, over the coefficient α of the artificial viscosity (β = 2α)",
-        vec![MapPanel::over("", &[0.0, 0.5, 1.0, 2.0], &[""], viscosity)],
-    ));
-    maps
-}
-
-fn map([id, title]: [&str; 2], [x, y]: [&str; 2], over: &str, panels: Vec<MapPanel>) -> Map {
+    let whole = &[Group::Paper, Group::Speed];
     let fates = [
         (Fate::Whole, Colour::GREEN),
         (Fate::Torn, Colour::YELLOW),
@@ -299,17 +223,22 @@ fn map([id, title]: [&str; 2], [x, y]: [&str; 2], over: &str, panels: Vec<MapPan
         (Fate::Diverged, Colour::VERMILLION),
     ];
     Map {
-        id: format!("rubber-rings-{id}-map"),
-        title: title.into(),
-        caption: format!(
-            "Outcome of a collision of two rubber rings {over}. Whole rings show the coefficient of \
-             restitution e, or that they still touch at the end; torn rings (cut through once) the time of \
-             the tear in L/c0, and others the largest number of pieces."
-        ),
-        x: x.into(),
-        y: y.into(),
+        id: "rubber-rings-fracture-map".into(),
+        title: "M2: whole, torn or in pieces over speed and spacing".into(),
+        caption: "Outcome of a collision of two rubber rings over speed and particle spacing; an empty cell \
+                  was not run. In runs by hand, rings of ten layers hold at 0.08 c0 and tear at 0.09; rings \
+                  of five hold at 0.08, are torn at 0.09, and hold at 0.12. Whole rings show the coefficient \
+                  of restitution e, or that they still touch at the end; torn rings (cut through once) the \
+                  time of the tear in L/c0, and others the largest number of pieces."
+            .into(),
+        x: "speed of each ring [c0]".into(),
+        y: "particle spacing [L]".into(),
         outcomes: fates.map(|(fate, colour)| (fate.name().into(), colour)).into(),
-        panels,
+        panels: vec![
+            panel("seed", "seed", whole),
+            panel("seed, ξ = 0", "seed", &[Group::Unstressed]),
+            panel(LAGRANGIAN, LAGRANGIAN, whole),
+        ],
         outcome,
     }
 }
@@ -331,14 +260,12 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     (fate as usize, text)
 }
 
-/// Errors of constants that the gates of the coarsest judged collision must detect.
+/// Errors of constants that the gates of a collision of five layers must detect.
 fn sensitivity(tier: Tier) -> Sensitivity {
     const SPEED: &str = "Rings of five layers miss the reference by 9 % in restitution and by 14 % in width, \
         and the bounds that allow this leave room for an error of this size.";
     const STIFF: &str = "Rings of five layers bend too softly, so a ring that is stiffer for its mass comes \
-        nearer to the reference, and one sign of the error passes. A shear modulus that is 11 % too low \
-        fails the path of the centre, and with ten layers one that is 2 % too low fails the end of \
-        contact.";
+        nearer to the reference, and one sign of the error passes.";
     const LOSS: &str = "Artificial viscosity takes a small part of the energy of the rings, and 30 % of that \
         part is inside the bounds on the restitution.";
     const STRESS: &str = "Artificial stress that is 30 % weaker still keeps the rings whole at this speed. \
@@ -351,7 +278,7 @@ fn sensitivity(tier: Tier) -> Sensitivity {
         Watched::blind_up_to(Constant::ShearModulus, 1.0, STIFF, &WIDE_BOUNDS),
         Watched::blind_up_to(Constant::Density, 1.0, STIFF, &WIDE_BOUNDS),
         Watched::blind_up_to(Constant::Height, 0.1, SPEED, &WIDE_BOUNDS),
-        Watched::blind_up_to(Constant::Normalisation, 1.0, STIFF, &WIDE_BOUNDS),
+        Watched::new(Constant::Normalisation),
         Watched::new(Constant::SmoothingLength).quick(),
         Watched::blind_up_to(Constant::TimeStep, 1.0, STEP, &SAFETY_MARGIN),
         Watched::blind_up_to(Constant::ArtificialViscosity, 1.0, LOSS, &WIDE_BOUNDS),

@@ -4,36 +4,27 @@
 //! Judged against conservation, mirror symmetry, and an independent finite-element run of one ring
 //! against a frictionless plane (`references/rubber_rings`), which is half of this problem.
 
-mod budget;
 mod declaration;
 mod measure;
 mod metrics;
 mod plan;
 mod reference;
-mod run;
-mod setup;
+mod scene;
 mod studies;
 #[cfg(test)]
 mod tests;
 
 use base::record::{Record, Status};
 use harness::{
-    composed::{Best, Composed, Composition, Program, Variants},
-    method::{self, Method, Standard},
+    composed::{Best, Composed, Composition, Variants},
+    method::Method,
 };
 use solver::{
-    ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, Simulation, SingleSweep,
-    Symmetric,
+    ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, SingleSweep, Symmetric,
 };
 
-use crate::solid::{
-    Rubber,
-    corrected::Corrected,
-    lagrangian::{self as total, Built},
-};
+use crate::solid::{self, Problem, Rubber, corrected::Corrected, lagrangian as total};
 use ::lagrangian::Hencky;
-pub use budget::{Metered, Stressed};
-pub use setup::Rings;
 
 base::settings! {
     /// Settings of the collision of two rings; L is 1 m.
@@ -79,17 +70,6 @@ base::settings! {
     }
 }
 
-/// A method without its type, whose simulations can say where their energy goes.
-pub type RingMethod = Method<Symmetric, dyn Metered>;
-
-/// The method of a scheme.
-fn method<S: Standard<Extra = Symmetric>>() -> RingMethod
-where
-    Simulation<S>: Metered,
-{
-    Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
-}
-
 /// The variant whose artificial stress depends on the axes.
 pub const COMPONENTWISE: &str = "componentwise";
 
@@ -98,9 +78,6 @@ pub const CORRECTED: &str = "corrected";
 
 /// The variant with a stored energy.
 pub const LAGRANGIAN: &str = "lagrangian";
-
-/// The same with a rigid plane between the rings.
-pub const PLANE: &str = "plane";
 
 /// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
@@ -111,60 +88,46 @@ const SINGLE_STEPS: f64 = 0.43;
 
 fn variants() -> Vec<Composition<RingSettings>> {
     type Midpoint = PredictorCorrector<Symmetric>;
-    Variants::of(&Program { run: run::run, rules: run::rules })
+    Variants::of(&solid::program::<RingSettings>())
         .with(
             "seed",
             "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \
              stress in principal axes",
-            method::<Rubber<PrincipalStress, Midpoint>>(),
+            Method::of::<Rubber<PrincipalStress, Midpoint>>(),
             |_| {},
         )
         .with(
             COMPONENTWISE,
             "the seed with artificial stress component by component, as the paper writes it: does the \
              answer depend on the axes?",
-            method::<Rubber<ComponentStress, Midpoint>>(),
+            Method::of::<Rubber<ComponentStress, Midpoint>>(),
             |_| {},
         )
         .with(
             "leapfrog",
             "the seed with the staggered leapfrog, one right-hand side a step, and longer steps: does that \
              change anything but the cost?",
-            method::<Rubber<PrincipalStress, Leapfrog>>(),
+            Method::of::<Rubber<PrincipalStress, Leapfrog>>(),
             |s| s.courant = LONG_STEPS,
         )
         .with(
             "single-sweep",
             "leapfrog with one pair sweep a step in place of two: is its error cheaper?",
-            method::<Rubber<PrincipalStress, SingleSweep>>(),
+            Method::of::<Rubber<PrincipalStress, SingleSweep>>(),
             |s| s.courant = SINGLE_STEPS,
         )
         .with(
             CORRECTED,
             "the terms of `leapfrog` without XSPH, with corrected gradients, and the forces that are \
              conjugate to them: what do uncorrected gradients at free faces do?",
-            method::<Corrected<PrincipalStress>>(),
+            Method::of::<Corrected<PrincipalStress>>(),
             |s| (s.courant, s.xsph) = (LONG_STEPS, 0.0),
         )
         .with(
             LAGRANGIAN,
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
              Hencky, contact between the rings, velocity Verlet; nothing dissipates",
-            total::named::<Hencky, _>(|parts| {
-                Ok(match total::solid::<Hencky>(parts)? {
-                    Built::One(solid) => Box::new(solid),
-                    Built::Several(solid) => Box::new(solid),
-                })
-            }),
-            choose,
-        )
-        .with(
-            PLANE,
-            "`lagrangian` with a rigid plane between the rings in place of contact between their faces: is \
-             an error that of the contact?",
-            total::named::<Hencky, _>(|parts| {
-                Ok(Box::new(total::beside_a_plane::<Hencky>(parts)?))
-            }),
+            total::method::<Hencky>(),
             choose,
         )
         .all
@@ -172,14 +135,13 @@ fn variants() -> Vec<Composition<RingSettings>> {
 
 /// The settings of total Lagrangian rings.
 fn choose(s: &mut RingSettings) {
-    (s.alpha, s.beta, s.xsph, s.xi) = (0.0, 0.0, 0.0, 0.0);
     total::choose(s);
     s.courant = total::COURANT_OF_FOLDS;
 }
 
 /// Colliding rubber rings.
 pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
-    name: NAME,
+    name: RingSettings::NAME,
     problem: "Two rubber rings collide and bounce",
     best: Best {
         variant: LAGRANGIAN,
@@ -198,8 +160,6 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     plan: plan::plan,
     studies: studies::studies,
 };
-
-const NAME: &str = "rubber_rings";
 
 /// The largest energy at any time over that at the start, less 1: what stress rates in time leave.
 const MOST_ENERGY_GAINED: f64 = 0.01;

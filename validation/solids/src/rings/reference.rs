@@ -4,15 +4,8 @@ use std::sync::LazyLock;
 
 use ::lagrangian::{Hencky, Law as _};
 
-use super::{
-    LAGRANGIAN, PLANE, RingSettings,
-    measure::{Phase, Series},
-    metrics::{
-        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, HEIGHT_RMS, HISTORIES, IMPULSE_ERROR,
-        RMS, WIDTH_RMS, X_C_END_ERROR, X_C_RMS, X_C_WORST, phase, put_or,
-    },
-};
-use crate::solid::{Quantities, largest, rows};
+use super::{LAGRANGIAN, RingSettings, metrics::*};
+use crate::solid::{Quantities, largest, put_or, quantities, rows};
 use base::{
     record::{MetricKey, Record},
     reference::{Reference as Package, Table},
@@ -33,9 +26,9 @@ fn table(name: &str) -> Option<&'static Table> {
 #[derive(Clone, Debug)]
 pub struct Reference {
     quantities: Quantities,
-    /// Phases of contact: impulse \[ρ c₀ L²\] and times of [`super::measure::SHARES`] of it, each with its
-    /// uncertainty.
-    pub phases: Vec<[(f64, f64); 4]>,
+    /// Phases of contact: impulse \[ρ c₀ L²\] and the times when 1 and 99 % of it have passed \[L/c0\], each
+    /// with its uncertainty.
+    pub phases: Vec<[(f64, f64); 3]>,
     /// Times \[L/c0\].
     pub times: Vec<f64>,
     /// The columns of [`Reference::COLUMNS`] at these times.
@@ -63,19 +56,33 @@ pub fn outlines(speed: f64, time: f64) -> Option<Vec<Vec<(f64, f64)>>> {
     Some([face("outer")?, face("inner")?].into_iter().filter(|line| !line.is_empty()).collect())
 }
 
-/// Names the metrics that need a reference as absent.
-pub fn leave_out(record: &mut Record) {
-    const NOT_COMPUTED: &str =
-        "finite elements have rings of 3 and 4 L, 0.22 K, at 0.059 and 0.03 c0, to 200 L/c0";
-    let errors = COMPARED.map(|(_, error)| error);
-    for metric in errors.into_iter().chain(OF_HISTORIES) {
-        record.leave_out(metric, NOT_COMPUTED);
-    }
-}
-
 /// What is compared at every time of the reference.
-const OF_HISTORIES: [MetricKey; 7] =
-    [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES, X_C_WORST, X_C_END_ERROR];
+const OF_HISTORIES: [MetricKey; 6] = [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES, X_C_WORST];
+
+/// Points of [`Reference::COLUMNS`] of a run over t \[L/c0\].
+type Histories = [Vec<(f64, f64)>; 4];
+
+/// Adds the distances from finite elements to the metrics of a run that has been measured, or says why there
+/// are none.
+pub fn compare(s: &RingSettings, phases: &[Phase], found: &Histories, record: &mut Record) {
+    let Some(exact) = Reference::of(&record.variant, s) else {
+        let errors = COMPARED.map(|(_, error)| error);
+        for metric in errors.into_iter().chain(OF_HISTORIES) {
+            record.leave_out(
+                metric,
+                "finite elements have rings of 3 and 4 L, 0.22 K, at 0.059 and 0.03 c0, to 200 L/c0",
+            );
+        }
+        return;
+    };
+    for (quantity, error) in COMPARED {
+        let pair = exact.number(quantity).zip(record.value(quantity));
+        let value = pair.map(|([exact, _], found)| found / exact - 1.0);
+        put_or(record, error, value, "the run has no number to compare");
+    }
+    exact.compare_phases(phases, record);
+    exact.compare_histories(found, record);
+}
 
 impl Reference {
     /// Columns of the series: centre of mass, its velocity, extents.
@@ -87,7 +94,7 @@ impl Reference {
         if rings(settings) != rings(&RingSettings::default()) {
             return None;
         }
-        let law = if [LAGRANGIAN, PLANE].contains(&variant) { Hencky::NAME } else { JAUMANN };
+        let law = if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN };
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
         let column = |table: &Table, name: &str, of: &[(&str, &str)]| -> Option<Vec<f64>> {
@@ -100,20 +107,16 @@ impl Reference {
             let spread = column(table, &format!("{name}_uncertainty"), &of)?;
             Some(column(table, name, &of)?.into_iter().zip(spread).collect::<Vec<_>>())
         };
-        let [impulse, early, half, late] = [
-            phases("impulse")?,
-            phases("impulse_1")?,
-            phases("impulse_50")?,
-            phases("impulse_99")?,
-        ];
-        let phase = |k: usize| [impulse[k], early[k], half[k], late[k]];
+        let [impulse, early, late] =
+            [phases("impulse")?, phases("impulse_1")?, phases("impulse_99")?];
+        let phase = |k: usize| [impulse[k], early[k], late[k]];
         let strain = [("check", "greatest principal logarithmic strain"), of[0], of[1]];
         let [x_c, v_c, width, height] = Self::COLUMNS;
         let columns = [series(x_c)?, series(v_c)?, series(width)?, series(height)?];
         let uncertain = |name: &str| Some(rms(series(&format!("{name}_uncertainty"))?.into_iter()));
         let uncertain = [uncertain(x_c)?, uncertain(width)?, uncertain(height)?];
         let found = Self {
-            quantities: Quantities::of(table("summary")?, &of).ok()?,
+            quantities: quantities(table("summary")?, &of).ok()?,
             phases: (0..impulse.len()).map(phase).collect(),
             times: series("t")?,
             uncertainty: largest(uncertain) / diameter(&columns),
@@ -127,46 +130,25 @@ impl Reference {
 
     /// A number of the summary with its uncertainty.
     pub fn number(&self, quantity: MetricKey) -> Option<[f64; 2]> {
-        self.quantities.get(&String::from(quantity))
+        self.quantities.get(&String::from(quantity)).copied()
     }
 
-    /// When the ring of finite elements comes within this distance \[L\] of the plane before phase `k`, and
-    /// when it is farther away again \[L/c₀\]. Where it never is farther between two phases, the time when it
-    /// is farthest.
-    pub fn within(&self, reach: f64, k: usize) -> [f64; 2] {
-        let [start, end] = [1, 3].map(|at: usize| self.phases[k][at].0);
-        let before = k.checked_sub(1).map_or(f64::NEG_INFINITY, |k| self.phases[k][3].0);
-        let after = self.phases.get(k + 1).map_or(f64::INFINITY, |phase| phase[1].0);
-        let gaps = |from: f64, to: f64| {
-            let all = self.times.iter().copied().zip(self.gap.iter().copied());
-            all.filter(move |(t, _)| from < *t && *t < to)
-        };
-        let farthest = |from, to| gaps(from, to).max_by(|a, b| a.1.total_cmp(&b.1));
-        let far = |(_, gap): &(f64, f64)| *gap > reach;
-        let comes = gaps(before, start).rfind(far).or_else(|| farthest(before, start));
-        let leaves = gaps(end, after).find(far).or_else(|| farthest(end, after));
-        [comes, leaves].map(|found| found.map_or(f64::NAN, |(t, _)| t))
-    }
-
-    /// Adds the distances from the reference to the metrics of a run that has been measured.
-    pub fn compare(&self, series: &Series, record: &mut Record) {
-        for (quantity, error) in COMPARED {
-            let pair = self.number(quantity).zip(record.value(quantity));
-            let value = pair.map(|([exact, _], found)| found / exact - 1.0);
-            put_or(record, error, value, "the run has no number to compare");
-        }
-        self.compare_phases(&series.phases(), record);
-        self.compare_histories(series, record);
+    /// When the ring of finite elements is farther than this distance \[L\] from the plane after the last
+    /// phase \[L/c₀\].
+    pub fn leaves(&self, reach: f64) -> f64 {
+        let end = self.phases[self.phases.len() - 1][2].0;
+        let mut gaps = self.times.iter().zip(&self.gap);
+        gaps.find(|(t, gap)| **t > end && **gap > reach).map_or(f64::NAN, |(t, _)| *t)
     }
 
     /// Distances of centre, velocity and extents over the times of finite elements, all of which a run must
     /// have.
-    fn compare_histories(&self, series: &Series, record: &mut Record) {
-        let of = |(k, column): (usize, &Vec<f64>)| {
+    fn compare_histories(&self, found: &Histories, record: &mut Record) {
+        let of = |(column, found): (&Vec<f64>, &Vec<(f64, f64)>)| {
             let exact = self.times.iter().copied().zip(column.iter().copied());
-            history::differences(&series.points(1 + k), &exact.collect::<Vec<_>>())
+            history::differences(found, &exact.collect::<Vec<_>>())
         };
-        let found: Result<Vec<Vec<f64>>, _> = self.columns.iter().enumerate().map(of).collect();
+        let found: Result<Vec<Vec<f64>>, _> = self.columns.iter().zip(found).map(of).collect();
         let found = match found {
             Ok(found) => found,
             Err(why) => {
@@ -183,7 +165,6 @@ impl Reference {
         let path = &found[0];
         let worst = path.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
         record.put(X_C_WORST, worst.unwrap_or(f64::NAN));
-        record.put(X_C_END_ERROR, path.last().copied().unwrap_or(f64::NAN));
     }
 
     /// Begin, end and impulse of each phase. Of a run that has not as many phases, only the first begin and
@@ -193,14 +174,14 @@ impl Reference {
                               at the end";
         let is_same = found.len() == self.phases.len();
         let is_over = |found: &&Phase| found.is_over;
-        for (k, [(impulse, _), (begin, _), _, (end, _)]) in self.phases.iter().enumerate() {
+        for (k, [(impulse, _), (begin, _), (end, _)]) in self.phases.iter().enumerate() {
             let same = found.get(k).filter(|_| is_same).filter(is_over);
             let first = if k == 0 { found.first() } else { same };
             let is_last = k + 1 == self.phases.len();
             let last = if is_last { found.last().filter(is_over) } else { same };
             for (metric, error) in [
                 (CONTACT_BEGIN_ERROR, first.map(|found| found.times[0] - begin)),
-                (CONTACT_END_ERROR, last.map(|found| found.times[2] - end)),
+                (CONTACT_END_ERROR, last.map(|found| found.times[1] - end)),
                 (IMPULSE_ERROR, same.map(|found| found.impulse / impulse - 1.0)),
             ] {
                 put_or(record, metric.at(phase(k)), error, UNLIKE);
@@ -217,7 +198,6 @@ fn diameter([_, _, width, _]: &[Vec<f64>; 4]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rings::metrics::RESTITUTION;
 
     #[test]
     fn outlines_have_the_extents_of_the_series() {

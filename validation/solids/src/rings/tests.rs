@@ -1,20 +1,18 @@
 //! Runs of made-up motion, whose measures are known.
 
-use solver::Leapfrog;
-
 use super::{
-    RingSettings, Rings,
+    RUBBER_RINGS, RingSettings,
     measure::{self, Series},
     metrics::*,
-    reference::{self, Reference},
+    reference::Reference,
 };
-use crate::solid::Rubber;
+use crate::solid::Problem;
 use approx::assert_abs_diff_eq;
 use base::{
     functions::exp,
-    record::{MetricName, Record},
+    record::{MetricName, Record, Status},
 };
-use harness::{context::Context, method::Method};
+use harness::{case::Case, context::Context};
 
 /// Coarse rings that fly at 0.06 c0.
 fn settings() -> RingSettings {
@@ -24,12 +22,10 @@ fn settings() -> RingSettings {
 /// What is measured of rings whose centre, its velocity, width and height \[L, c0\] are given at each time
 /// \[L/c0\], four times in a unit of time.
 fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record {
-    let method = Method::of::<Rubber<(), Leapfrog>>();
-    let rings = Rings::new(settings, &method, &Context::default()).expect("sound settings");
-    let (start, dx) = (rings.particles(), rings.medium.dx);
+    let (start, dx) = (settings.particles(), settings.dx());
     let [_, _, extent] = measure::side(&start[start.len() / 2..], dx);
-    let mut series = Series::new(&rings);
-    for k in 0..=(4.0 * settings.end) as usize {
+    let mut series = Series::new(settings, &start, None);
+    for k in 1..=(4.0 * settings.end) as usize {
         let time = 0.25 * k as f64;
         let [x, v, width, height] = motion(time);
         let stretch = [(width - dx) / (extent.x - dx), (height - dx) / (extent.y - dx)];
@@ -40,14 +36,10 @@ fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record
             p.position.y *= stretch[1];
             p.velocity.x = side * v;
         }
-        series.sample(time / rings.c0, &particles, None);
+        series.sample(time / settings.c0(), &particles, None);
     }
     let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
-    series.measure(&mut record);
-    match Reference::of("seed", settings) {
-        Some(reference) => reference.compare(&series, &mut record),
-        None => reference::leave_out(&mut record),
-    }
+    series.put(&mut record);
     record
 }
 
@@ -79,25 +71,20 @@ fn a_known_motion_has_known_measures() {
         (RESTITUTION.into(), 0.75),
         (WIDTH_MIN.into(), 5.0),
         (HEIGHT_MAX.into(), 10.0),
-        (X_C_MIN.into(), 2.06),
-        (X_C_END.into(), 7.1),
         (ENERGY_LOST.into(), 0.4375),
         (ENERGY_GAINED.into(), 0.0),
         (PUSHED_BY_ITSELF.into(), 0.0),
         (MIRROR.into(), 0.0),
         (PHASES.into(), 2.0),
-        (PIECES.into(), 2.0),
         (HOLES_LEAST.into(), 1.0),
         (IMPULSE.at(phase(0)), mass * 0.03),
         (IMPULSE.at(phase(1)), mass * 0.075),
         (T_IMPULSE_1.at(phase(0)), 20.2),
-        (T_IMPULSE_50.at(phase(0)), 30.0),
         (T_IMPULSE_99.at(phase(0)), 39.8),
         (T_IMPULSE_1.at(phase(1)), 60.4),
-        (T_IMPULSE_50.at(phase(1)), 80.0),
         (T_IMPULSE_99.at(phase(1)), 99.6),
     ];
-    let expected: [(MetricName, f64); 20] = expected;
+    let expected: [(MetricName, f64); 15] = expected;
     for (metric, known) in expected {
         assert_abs_diff_eq!(value(&record, metric), known, epsilon = 1e-9);
     }
@@ -128,7 +115,7 @@ fn rings_that_still_touch_at_the_end_have_no_restitution() {
     assert_eq!(record.value(RESTITUTION), None);
     assert_eq!(record.absent["restitution"], "the rings still touch at the end");
     assert!(record.value(IMPULSE.at(phase(0))).is_some());
-    for metric in [IMPULSE, T_IMPULSE_1, T_IMPULSE_50, T_IMPULSE_99] {
+    for metric in [IMPULSE, T_IMPULSE_1, T_IMPULSE_99] {
         let metric = metric.at(phase(1));
         assert!(
             record.metric(metric.name()).is_none() && record.absent.contains_key(metric.name())
@@ -164,9 +151,7 @@ fn a_run_that_is_finite_elements_has_no_distance_from_them() {
             (RESTITUTION_ERROR.into(), 1e-3),
             (WIDTH_MIN_ERROR.into(), 1e-3),
             (HEIGHT_MAX_ERROR.into(), 1e-3),
-            (X_C_MIN_ERROR.into(), 1e-3),
             (X_C_WORST.into(), 1e-3),
-            (X_C_END_ERROR.into(), 1e-3),
         ];
         small.extend(RMS.map(|rms| (rms.into(), 1e-3)));
         for k in [0, 1] {
@@ -193,12 +178,8 @@ fn a_run_that_is_late_has_errors_with_their_sign() {
             assert!((late - 4.0).abs() < 0.25, "phase {k}: {late}");
         }
     }
-    // Behind the way out by 4 L/c0 of its last speed; on the way in it is as far ahead, which is more.
-    let (last, worst) = (value(&record, X_C_END_ERROR), value(&record, X_C_WORST));
-    assert!(
-        (last + 4.0 * 0.0470).abs() < 4.0 * 5e-4,
-        "last x_c: expected -0.188 L, it is {last} L"
-    );
+    // On the way in it is ahead by 4 L/c0 of its speed, which is more than it is behind on the way out.
+    let worst = value(&record, X_C_WORST);
     assert!(
         (worst - 4.0 * 0.059).abs() < 4.0 * 5e-4,
         "worst x_c: expected 0.236 L, it is {worst} L"
@@ -206,17 +187,59 @@ fn a_run_that_is_late_has_errors_with_their_sign() {
 }
 
 #[test]
-fn reach_is_when_finite_elements_come_near_and_leave() {
+fn reach_is_when_finite_elements_leave() {
     let exact = Reference::of("seed", &RingSettings::default()).expect("a reference");
-    let is_near = |found: [f64; 2], known: [f64; 2]| {
-        found.iter().zip(known).all(|(found, known)| (found - known).abs() <= 0.5)
-    };
-    // Until it touches the ring flies freely: the gap is 1 - 0.059 t.
-    let first = exact.within(0.1, 0);
-    assert!(is_near(first, [0.9 / 0.059, 69.5]), "near from 15.25 to 69.5 L/c0, found {first:?}");
-    let second = exact.within(0.1, 1);
-    assert!(is_near(second, [75.0, 126.0]), "near again from 75 to 126 L/c0, found {second:?}");
-    // Between the phases it is never farther than 0.14 L.
-    let never = [exact.within(0.2, 0)[1], exact.within(0.2, 1)[0]];
-    assert!(is_near(never, [72.5, 72.5]), "the phases part at 72.5 L/c0, found {never:?}");
+    let leaves = exact.leaves(0.1);
+    assert!((leaves - 126.0).abs() <= 0.5, "near until 126 L/c0, found {leaves}");
+    assert!(exact.leaves(0.2) > leaves);
+}
+
+/// A run and its record, however it ends.
+fn run(variant: &str, set: fn(&mut RingSettings)) -> Record {
+    let spec = RUBBER_RINGS.spec(variant, set).allow_unstable();
+    RUBBER_RINGS.run(&spec, &Context::default()).expect("a run")
+}
+
+/// Largest difference of a column of the series.
+fn apart(a: &Record, b: &Record, column: &str) -> f64 {
+    let [a, b] = [a, b].map(|record| record.column("series", column));
+    assert!(a.len() == b.len() && a.len() > 10, "{column}: {} and {} samples", a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// Neither at rest, where nothing rounds, nor in flight 9000 L away, where every step does.
+#[test]
+fn rings_that_nothing_acts_on_keep_their_shape() {
+    let set = [
+        |s: &mut RingSettings| (s.spacing, s.centre, s.speed, s.end) = (0.5, 9000.0, 0.0, 2e3),
+        |s: &mut RingSettings| (s.spacing, s.centre, s.speed, s.end) = (0.5, 9000.0, 0.02, 2e3),
+    ];
+    for set in set {
+        let record = run("seed", set);
+        for column in ["width", "height"] {
+            let found = record.column("series", column);
+            assert!(found.iter().all(|x| (x - found[0]).abs() < 1e-9), "{column}: {found:?}");
+        }
+    }
+}
+
+/// Only K has a unit of stress, so that motion in units of L and c0 is the same but for round-off.
+#[test]
+fn rings_that_are_a_hundred_times_as_stiff_move_alike() {
+    let soft = run("leapfrog", |s| (s.spacing, s.end) = (0.33, 80.0));
+    let stiff = run("leapfrog", |s| (s.spacing, s.end, s.bulk_modulus) = (0.33, 80.0, 100.0));
+    for column in ["t", "x_c", "v_c", "width", "height"] {
+        let apart = apart(&soft, &stiff, column);
+        assert!(apart < 1e-10, "{column}: {apart:e}");
+    }
+}
+
+/// Half the speed of sound is far beyond what rubber and (12) are for.
+#[test]
+fn rings_at_half_the_speed_of_sound_keep_their_momentum_or_diverge() {
+    let record = run("seed", |s| (s.spacing, s.speed, s.end) = (0.2, 0.5, 30.0));
+    match record.status {
+        Status::Completed => assert!(value(&record, MOMENTUM) < 1e-12),
+        status => assert!(matches!(status, Status::Diverged { .. }), "{status:?}"),
+    }
 }

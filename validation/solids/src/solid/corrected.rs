@@ -25,10 +25,6 @@ pub type Corrected<R> = Compose<
     Symmetric,
 >;
 
-/// Those of [`super::Bare`].
-pub type CorrectedBare =
-    Compose<CubicSpline, ConjugateStress<Linear>, Drift, Open, Leapfrog, Symmetric>;
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -39,6 +35,10 @@ mod tests {
     };
     use nalgebra::Vector2;
     use solver::{Domain, Outcome, Particle};
+
+    /// The terms of [`super::super::Bare`] with corrected gradients.
+    type CorrectedBare =
+        Compose<CubicSpline, ConjugateStress<Linear>, Drift, Open, Leapfrog, Symmetric>;
 
     const SIDE: usize = 24;
     const RUBBER: Material = Material { density: 1.0, bulk: 1.0, shear: 0.22 };

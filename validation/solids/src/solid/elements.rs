@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use base::{
-    record::{MetricKey, Record},
+    record::{MetricKey, MetricName, Record},
     reference::{Reference, ReferenceError, Table},
 };
 use nalgebra::Vector2;
@@ -21,23 +21,15 @@ pub fn rows(table: &Table, of: Texts) -> Result<Vec<usize>, ReferenceError> {
     Ok(rows)
 }
 
-/// Quantities of a summary by name, each with its uncertainty.
-#[derive(Clone, Debug)]
-pub struct Quantities(BTreeMap<String, [f64; 2]>);
+/// Quantities by name, each with its uncertainty.
+pub type Quantities = BTreeMap<String, [f64; 2]>;
 
-impl Quantities {
-    /// Those of the rows that have these texts.
-    pub fn of(summary: &Table, of: Texts) -> Result<Self, ReferenceError> {
-        let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
-        let spread = summary.numbers("uncertainty")?;
-        let quantity = |row: usize| (names[row].to_string(), [values[row], spread[row]]);
-        Ok(Self(rows(summary, of)?.into_iter().map(quantity).collect()))
-    }
-
-    /// A value and its uncertainty.
-    pub fn get(&self, name: &str) -> Option<[f64; 2]> {
-        self.0.get(name).copied()
-    }
+/// Those of the rows of a summary that have these texts.
+pub fn quantities(summary: &Table, of: Texts) -> Result<Quantities, ReferenceError> {
+    let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
+    let spread = summary.numbers("uncertainty")?;
+    let quantity = |row: usize| (names[row].to_string(), [values[row], spread[row]]);
+    Ok(rows(summary, of)?.into_iter().map(quantity).collect())
 }
 
 /// Finite elements of one place.
@@ -54,7 +46,7 @@ impl Elements {
         [summary, series]: [Texts; 2],
         [x, y]: [&str; 2],
     ) -> Result<Self, ReferenceError> {
-        let quantities = Quantities::of(package.table("summary")?, summary)?;
+        let quantities = quantities(package.table("summary")?, summary)?;
         let table = package.table("series")?;
         let [t, x, y] = [table.numbers("t")?, table.numbers(x)?, table.numbers(y)?];
         let path = rows(table, series)?.into_iter().map(|row| [t[row], x[row], y[row]]);
@@ -63,15 +55,38 @@ impl Elements {
 
     /// A quantity.
     pub fn number(&self, name: &str) -> Option<f64> {
-        self.quantities.get(name).map(|[value, _]| value)
+        self.quantities.get(name).map(|[value, _]| *value)
     }
+}
 
-    /// Puts a quantity over that of finite elements, less 1, or why it is absent.
-    pub fn compare(&self, record: &mut Record, [quantity, error]: [MetricKey; 2], lacks: &str) {
-        match record.value(quantity).zip(self.number(&String::from(quantity))) {
-            Some((found, exact)) => record.put(error, found / exact - 1.0),
-            None => record.leave_out(error, lacks),
-        }
+/// Puts quantities over those of finite elements, less 1, and the distance of the path of a whole run from
+/// theirs over one of their quantities; or why they are absent.
+pub fn compare(
+    exact: Option<&Elements>,
+    quantities: &[(MetricKey, MetricKey)],
+    (rms, scale): (MetricKey, &str),
+    (path, lacks): (&Path, &str),
+    record: &mut Record,
+) {
+    for (quantity, error) in quantities {
+        let exact = exact.and_then(|exact| exact.number(&String::from(*quantity)));
+        let ratio = record.value(*quantity).zip(exact).map(|(found, exact)| found / exact - 1.0);
+        put_or(record, *error, ratio, lacks);
+    }
+    let is_whole =
+        |exact: &&Elements| exact.path.end() > 0.0 && path.end() >= 0.99 * exact.path.end();
+    let distance = exact.filter(is_whole).and_then(|exact| {
+        let scale = exact.number(scale)?;
+        Some(path.distance(&exact.path) / scale)
+    });
+    put_or(record, rms, distance, lacks);
+}
+
+/// Puts a metric, or says why there is none.
+pub fn put_or(record: &mut Record, metric: impl Into<MetricName>, value: Option<f64>, why: &str) {
+    match value {
+        Some(value) => record.put(metric, value),
+        None => record.leave_out(metric, why),
     }
 }
 

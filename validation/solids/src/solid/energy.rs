@@ -2,7 +2,7 @@
 
 use base::functions::ln_1p;
 use nalgebra::Vector2;
-use solver::{Evolved, Numbers, Particle, Potential, Rate, Stepper, Symmetric};
+use solver::{Evolved, Numbers, Particle, Potential, Stepper, Symmetric};
 
 use super::Material;
 
@@ -15,10 +15,6 @@ pub struct Energy {
     pub compression: f64,
     /// Σ (m/ρ) S:S/(4μ) with Sᶻᶻ = −(Sˣˣ + Sʸʸ).
     pub shear: f64,
-    /// What loads store, a part of `compression`; 0 if it is not known.
-    pub of_loads: f64,
-    /// What resists modes that deform no particle stores, a part of `shear`; 0 if it is not known.
-    pub of_modes: f64,
 }
 
 impl Energy {
@@ -36,9 +32,7 @@ impl Energy {
         let Potential { compression, shear, hourglass, loads } = simulation.potential()?;
         let half = |(mass, p): (f64, &Evolved<Symmetric>)| 0.5 * mass * p.velocity.norm_squared();
         let kinetic = simulation.fluid().map(half).fold(0.0, |sum, one| sum + one);
-        let (of_loads, of_modes) = (loads, hourglass);
-        let (compression, shear) = (compression + loads, shear + hourglass);
-        Some(Self { kinetic, compression, shear, of_loads, of_modes })
+        Some(Self { kinetic, compression: compression + loads, shear: shear + hourglass })
     }
 
     /// Of all of these particles.
@@ -65,7 +59,6 @@ impl Energy {
             kinetic: 0.5 * mass * particle.velocity.norm_squared(),
             compression: mass * c2 * (ln_1p(x) - x / ratio),
             shear,
-            ..Self::default()
         }
     }
 
@@ -82,39 +75,14 @@ impl std::ops::Add for Energy {
             kinetic: self.kinetic + other.kinetic,
             compression: self.compression + other.compression,
             shear: self.shear + other.shear,
-            of_loads: self.of_loads + other.of_loads,
-            of_modes: self.of_modes + other.of_modes,
         }
-    }
-}
-
-/// The slope of the energy of a particle: m (v·v̇ + (p/ρ²) ρ̇ + S:Ṡ/(2μρ) − S:S ρ̇/(4μρ²)) \[W/m\].
-pub fn solid_slope(
-    material: &Material,
-) -> impl Fn(f64, &Evolved<Symmetric>, &Rate<Symmetric>) -> f64 + use<> {
-    let Material { density: rest, bulk, shear } = *material;
-    move |mass, particle, rate| {
-        let Evolved { velocity, density, extra, .. } = particle;
-        let pressure = bulk / rest * (density - rest) / (density * density);
-        let held = if shear > 0.0 {
-            let work = product(extra, &rate.extra) / (2.0 * shear * density);
-            work - norm_squared(extra) / (4.0 * shear * density * density) * rate.density
-        } else {
-            0.0
-        };
-        mass * (velocity.dot(&rate.velocity) + pressure * rate.density + held)
     }
 }
 
 /// S:S of a deviator of plane strain \[Pa²\]: Sᶻᶻ = −(Sˣˣ + Sʸʸ) counts too.
 pub fn norm_squared(s: &Symmetric) -> f64 {
-    product(s, s)
-}
-
-/// S:T of two of them.
-fn product(s: &Symmetric, t: &Symmetric) -> f64 {
-    let zz = (s.xx + s.yy) * (t.xx + t.yy);
-    s.xx * t.xx + s.yy * t.yy + zz + 2.0 * s.xy * t.xy
+    let zz = s.xx + s.yy;
+    s.xx * s.xx + s.yy * s.yy + zz * zz + 2.0 * s.xy * s.xy
 }
 
 /// Angular momentum about the centre of mass \[kg m²/s per m\].
@@ -161,22 +129,6 @@ mod tests {
         let along =
             Energy::of_one(5.0, &particle(2.0, 0.0, Symmetric { xx, yy, xy: 0.0 }), &material);
         assert_relative_eq!(along.shear, 2.5 * 4.0 / 3.0 * 3.0 * e * e / 2.0, max_relative = 1e-12);
-    }
-
-    #[test]
-    fn the_slope_is_that_of_the_energy() {
-        let material = Material { density: 2.0, bulk: 8.0, shear: 3.0 };
-        let start = particle(2.1, 0.7, Symmetric { xx: 0.3, yy: -0.1, xy: 0.2 });
-        let rate = Rate {
-            velocity: Vector2::new(0.4, 1.1),
-            density: -0.6,
-            extra: Symmetric { xx: 0.5, yy: 0.8, xy: -0.9 },
-            ..Rate::default()
-        };
-        let energy = |dt: f64| Energy::of_one(5.0, &start.advanced(dt, &rate), &material).total();
-        let d = 1e-6;
-        let slope = solid_slope(&material)(5.0, &start, &rate);
-        assert_relative_eq!((energy(d) - energy(-d)) / (2.0 * d), slope, max_relative = 1e-8);
     }
 
     /// The compression energy is the work of (12): de = p dρ/ρ².

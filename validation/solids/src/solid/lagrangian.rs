@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use lagrangian::{BetweenFaces, Contact, Law, Moduli, RigidPlane, Solid, SolidScene, Weight};
+use lagrangian::{BetweenFaces, Contact, Law, Moduli, SolidScene, Weight};
 use nalgebra::Vector2;
 use solver::{
     Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
 };
 
 use super::leave_out;
-use base::{mutation::Constant, settings::Settings};
+use base::settings::Settings;
 use harness::method::{Medium, Method, Parts, mutate};
 use maths::theory::{
     bending,
@@ -40,22 +40,30 @@ type Named = Compose<WendlandC2, (), (), Ghosts, Leapfrog, Symmetric>;
 /// The method with the stored energy `L`. Particles of the scene that are held are left out: the planes of
 /// its parts hold the body instead.
 pub fn method<L: Law>() -> Method<Symmetric> {
-    named::<L, _>(build::<L>)
+    named::<L>(|mut parts| {
+        mutate(&mut parts);
+        if parts.bodies.is_empty() {
+            return Ok(Box::new(scene(parts, ()).build::<WendlandC2, L>()?));
+        }
+        let contact = BetweenFaces::new(Contact::of(&moduli(&parts.medium)));
+        Ok(Box::new(scene(parts, contact).build::<WendlandC2, L>()?))
+    })
 }
 
 /// The same of one body that has weight: the acceleration of its medium.
 pub fn heavy<L: Law>() -> Method<Symmetric> {
-    named::<L, _>(|mut parts| {
+    named::<L>(|mut parts| {
         mutate(&mut parts);
         let weight = Weight(parts.medium.acceleration);
         Ok(Box::new(scene(parts, weight).build::<WendlandC2, L>()?))
     })
 }
 
-/// The method with the stored energy `L` whose simulations this builds, likewise.
-pub fn named<L: Law, D: ?Sized>(
-    build: fn(Parts<Symmetric>) -> Result<Box<D>, SceneError>,
-) -> Method<Symmetric, D> {
+/// A simulation, or why there is none.
+type Built = Result<Box<dyn Stepper<Symmetric>>, SceneError>;
+
+/// The method with the stored energy `L` whose simulations this builds.
+fn named<L: Law>(build: fn(Parts<Symmetric>) -> Built) -> Method<Symmetric> {
     let mut method = Method::with::<Named>(build);
     (method.integrator, method.walls) = ("velocity Verlet", "planes that hold");
     method.law = Some(L::ENERGY);
@@ -78,56 +86,7 @@ pub fn choose(settings: &mut impl Settings) {
     }
 }
 
-/// One body, or several that touch.
-pub enum Built<L> {
-    /// One.
-    One(Solid<WendlandC2, L, ()>),
-    /// Several.
-    Several(Solid<WendlandC2, L, BetweenFaces>),
-}
-
-/// The simulation of these parts.
-pub fn solid<L: Law>(mut parts: Parts<Symmetric>) -> Result<Built<L>, SceneError> {
-    mutate(&mut parts);
-    if parts.bodies.is_empty() {
-        return Ok(Built::One(scene(parts, ()).build()?));
-    }
-    let contact = contact(&parts);
-    Ok(Built::Several(scene(parts, BetweenFaces::new(contact)).build()?))
-}
-
-/// Two bodies with a rigid plane at rest half-way between them, in place of contact between faces.
-pub fn beside_a_plane<L: Law>(
-    mut parts: Parts<Symmetric>,
-) -> Result<Solid<WendlandC2, L, RigidPlane>, SceneError> {
-    mutate(&mut parts);
-    // Extents do not depend on the order of the particles.
-    let middle = |body: u32| {
-        let all = parts.particles.iter().zip(&parts.bodies).filter(|(_, of)| **of == body);
-        let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
-        let (low, high) = all
-            .fold((low, high), |(low, high), (p, _)| (low.inf(&p.position), high.sup(&p.position)));
-        0.5 * (low + high)
-    };
-    let [left, right] = [middle(0), middle(1)];
-    let (point, normal) = (0.5 * (left + right), (right - left).normalize());
-    let plane = RigidPlane { point, normal, contact: contact(&parts) };
-    scene(parts, plane).build()
-}
-
-/// The contact of bodies, with the factor of a deliberate error.
-fn contact(parts: &Parts<Symmetric>) -> Contact {
-    let Contact { stiffness } = Contact::of(&moduli(&parts.medium));
-    Contact { stiffness: stiffness * factor(parts, Constant::Contact) }
-}
-
-/// By how much a constant is wrong.
-fn factor(parts: &Parts<Symmetric>, of: Constant) -> f64 {
-    parts.mutation.map_or(1.0, |mutation| mutation.factor_of(of))
-}
-
 fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
-    let hourglass = HOURGLASS * factor(&parts, Constant::Hourglass);
     let Parts { medium, domain, particles, mirrors, bodies, limits, threads, .. } = parts;
     let without_stress = |p: Particle<Symmetric>| Particle {
         density: medium.density,
@@ -142,18 +101,11 @@ fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
         bodies,
         walls: Ghosts { walls: mirrors },
         moduli: moduli(&medium),
-        hourglass,
+        hourglass: HOURGLASS,
         loads,
         limits: Limits { density: DENSITIES.map(|ratio| ratio * medium.density), ..limits },
         parallel_from: if threads > 1 { 10_000 } else { usize::MAX },
     }
-}
-
-fn build<L: Law>(parts: Parts<Symmetric>) -> Result<Box<dyn Stepper<Symmetric>>, SceneError> {
-    Ok(match solid::<L>(parts)? {
-        Built::One(solid) => Box::new(solid),
-        Built::Several(solid) => Box::new(solid),
-    })
 }
 
 fn moduli(medium: &Medium) -> Moduli {

@@ -10,15 +10,11 @@ mod material;
 mod method;
 mod plates;
 mod problem;
-
 #[cfg(test)]
-use harness::{
-    case::{self, Case, RunError},
-    context::Context,
-};
+pub mod tests;
 
-pub use elements::{Elements, Path, Quantities, rows};
-pub use energy::{Energy, angular_momentum, norm_squared, solid_slope};
+pub use elements::{Elements, Path, Quantities, compare, put_or, quantities, rows};
+pub use energy::{Energy, angular_momentum, norm_squared};
 pub use material::{Material, limits};
 pub use method::{Bare, Clamp, HeavyRubber, Plain, Rubber};
 pub use plates::{FIRST_MODE, clamp, thin_plate_period};
@@ -30,13 +26,6 @@ pub use problem::{
 /// not pass.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
-}
-
-/// Why a run with this assignment is refused, if it is.
-#[cfg(test)]
-pub fn refused(case: &dyn Case, variant: &str, set: &str) -> Option<RunError> {
-    let spec = case::spec(case, variant, &[set.into()]);
-    spec.and_then(|spec| case.run(&spec, &Context::default())).err()
 }
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its

@@ -19,7 +19,6 @@ use harness::{
     context::Context,
     method::{Boundary, Medium, Method, Parts},
     outline::Sink,
-    rules::PLANNED_DT,
     runner::{self, Drive},
     simulate,
 };
@@ -63,12 +62,21 @@ pub trait Problem: SharedSettings {
     fn gravity(&self) -> Vector2<f64> {
         Vector2::zeros()
     }
-    /// Refuses settings that are in their ranges and make no body together.
+    /// Refuses settings that are in their ranges and make no body together, or none that this method holds.
     ///
     /// # Errors
     /// What is too large, and which settings it depends on.
-    fn check(&self) -> Result<(), RunError> {
+    fn check(&self, _method: &Method<Symmetric>, _context: &Context) -> Result<(), RunError> {
         Ok(())
+    }
+    /// The times to which steps lead exactly \[s\], ascending; the last is the end. Any other changes the
+    /// length of the steps before it.
+    fn stops(&self) -> Vec<f64> {
+        vec![self.end()]
+    }
+    /// Densities and speeds beyond which a run counts as diverged.
+    fn bounds(&self) -> solver::Limits {
+        solver::Limits::default()
     }
     /// Open, unless a case has a period.
     fn domain(&self) -> Domain {
@@ -95,6 +103,8 @@ pub trait Problem: SharedSettings {
 
 /// Sees every step of a run and measures it.
 pub trait Watch: Observer<Symmetric> + Observed {
+    /// Keeps the particles at a stop, of a run that is asked to; velocities may be half a step old.
+    fn keep(&self, _: &dyn Stepper<Symmetric>, _stop: usize, _: &Context, _: &mut Record) {}
     /// Puts metrics and profiles; `simulation` is at its end.
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
 }
@@ -174,7 +184,7 @@ fn run<P: Problem>(
     settings: &P,
     context: &Context,
 ) -> Result<Record, RunError> {
-    settings.check()?;
+    settings.check(method, context)?;
     let rules = rules(method, settings);
     simulate::check_step(method.integrator, &rules, context)?;
     let acceleration = settings.gravity();
@@ -182,22 +192,18 @@ fn run<P: Problem>(
     let size = simulate::size(method, &medium, [rules.end / rules.dt(), settings.count()])
         .sampled_at_every_step();
     runner::check_size(size, P::DECISIVE, context)?;
-    let (dt, end, material) = (rules.dt(), rules.end, settings.material());
-    let numbers = [
-        ("h/dx", settings.h_over_dx()),
-        ("dx [m]", medium.dx),
+    let material = settings.material();
+    let own = [
         ("K [Pa]", material.bulk),
         ("mu [Pa]", material.shear),
-        ("c0 [m/s]", material.sound_speed()),
         ("c_p [m/s]", material.p_wave_speed()),
-        (PLANNED_DT, dt),
-        ("dt c_p/h", dt * material.p_wave_speed() / medium.h),
     ];
+    let numbers = [&rules.numbers([settings.h_over_dx(), medium.dx])[..], &own].concat();
     let mut record = simulate::begin((P::NAME, variant), settings, method, &numbers, context);
     let (eos, particles) = (material.eos(), settings.particles());
-    let (mirrors, bodies) = (settings.held(), settings.bodies());
+    let (mirrors, bodies, limits) = (settings.held(), settings.bodies(), settings.bounds());
     let parts = Parts::new(medium, settings.domain(), particles.clone(), context);
-    let mut simulation = (method.build)(Parts { mirrors, bodies, ..parts })?;
+    let mut simulation = (method.build)(Parts { mirrors, bodies, limits, ..parts })?;
     if simulation.potential().is_some() {
         let by = |place| settings.displacement(place);
         let view = context.outline.as_ref().map(Sink::view).unwrap_or_default();
@@ -205,11 +211,17 @@ fn run<P: Problem>(
     }
     let energy = Energy::known(&*simulation);
     let mut watch = settings.watch(&particles, energy);
-    // No stop but the end: one would bring the leapfrog's velocities to a whole step.
-    let pressure = |density| eos.pressure(density);
-    (record.status, record.cost) = Drive::new(&mut *simulation, dt, &[end], &pressure, &mut watch)
-        .after_step("measurements", &P::Watch::after_step)
+    let (stops, pressure) = (settings.stops(), |density| eos.pressure(density));
+    let mut seen = (&mut watch, &mut record);
+    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &stops, &pressure, &mut seen)
+        .after_step("measurements", &|(watch, _), simulation| watch.after_step(simulation))
+        .at_positions("particles", &|(watch, record), simulation, stop| {
+            if context.keep_particles {
+                watch.keep(simulation, stop, context, record);
+            }
+        })
         .run(context)?;
+    (record.status, record.cost) = (status, cost);
     record.state = Some(digest(&simulation.particles()));
     watch.measure(&*simulation, &mut record);
     Ok(record)

@@ -127,12 +127,13 @@ fn accuracy(tier: Tier) -> Accuracy {
         let because = "Artificial viscosity, the place of a surface and what a wall sees of it are of first \
                        order in dx. A front is known to a quarter of a spacing, so the order is uncertain by \
                        0.5.";
-        ladders[1].order = Some(OrderGate {
-            id: format!("{NAME}.martin-moyce.modern.front.order"),
-            bound: Bound::Within(0.5, 1.5),
-            evidence: Evidence::Theory,
-            because: because.into(),
-        });
+        ladders[1].order = Some(Gate::new(
+            format!("{NAME}.martin-moyce.modern.front.order"),
+            "order",
+            Bound::Within(0.5, 1.5),
+            Evidence::Theory,
+            because,
+        ));
     }
     Accuracy {
         about: "Front of the column of Martin & Moyce at T = 1, less that of the same model by volume of \
@@ -144,7 +145,7 @@ fn accuracy(tier: Tier) -> Accuracy {
         ladders: ladders.into(),
         ..Accuracy::new(
             "dam-break",
-            ErrorOf::Metric(FRONT_AWAY.at(1)),
+            FRONT_AWAY.at(1),
             "error of the front at T = 1 [a]",
         )
     }

@@ -1,17 +1,4 @@
-//! PySPH: a script that reads `particles.csv` and `problem.json`, runs the scheme of its name, and writes
-//! `results.csv` and `system.json` as `touchstone submit` reads them.
-
-use super::{WriteError, check_fluid};
-use crate::problem::Problem;
-
-pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteError> {
-    check_fluid("PySPH", problem)?;
-    Ok(vec![("run_pysph.py", SCRIPT.to_string())])
-}
-
-/// EDAC, with a transport velocity, is for flows that fill their domain, whose walls extrapolate; the weakly
-/// compressible scheme is for free surfaces, too.
-const SCRIPT: &str = r#"# Runs the problem of this folder with PySPH: python run_pysph.py [edac|wcsph]
+# Runs the problem of this folder with PySPH: python run_pysph.py [edac|wcsph]
 import csv, json, platform, sys, time
 import numpy as np
 import pysph
@@ -111,4 +98,3 @@ json.dump({"machine": platform.processor() or platform.machine(), "threads": 1, 
            "steps": int(app.solver.count), "interactions": "unknown"}, open("system.json", "w"))
 json.dump({"code": "PySPH", "version": pysph.__version__, "scheme": which, "division": "closed",
            "settings": {"h": h, "dt": app.solver.dt}, "changed": "nothing"}, open("method.json", "w"))
-"#;
