@@ -78,6 +78,8 @@ pub const CORRECTED: &str = "corrected";
 
 /// The variant with a stored energy.
 pub const LAGRANGIAN: &str = "lagrangian";
+/// The same with a rigid plane between the rings.
+pub const PLANE: &str = "plane";
 
 /// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
@@ -128,6 +130,13 @@ fn variants() -> Vec<Composition<RingSettings>> {
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
              Hencky, contact between the rings, velocity Verlet; nothing dissipates",
             total::method::<Hencky>(),
+            choose,
+        )
+        .with(
+            PLANE,
+            "lagrangian with a rigid plane between the rings in place of contact between their faces: is \
+             an error that of the contact?",
+            total::beside_a_plane::<Hencky>(),
             choose,
         )
         .all

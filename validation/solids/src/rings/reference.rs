@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use ::lagrangian::{Hencky, Law as _};
 
-use super::{LAGRANGIAN, RingSettings, metrics::*};
+use super::{LAGRANGIAN, PLANE, RingSettings, metrics::*};
 use crate::solid::{Quantities, largest, put_or, quantities, rows};
 use base::{
     record::{MetricKey, Record},
@@ -94,7 +94,7 @@ impl Reference {
         if rings(settings) != rings(&RingSettings::default()) {
             return None;
         }
-        let law = if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN };
+        let law = if [LAGRANGIAN, PLANE].contains(&variant) { Hencky::NAME } else { JAUMANN };
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
         let column = |table: &Table, name: &str, of: &[(&str, &str)]| -> Option<Vec<f64>> {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use lagrangian::{BetweenFaces, Contact, Law, Moduli, SolidScene, Weight};
+use lagrangian::{BetweenFaces, Contact, Law, Moduli, RigidPlane, SolidScene, Weight};
 use nalgebra::Vector2;
 use solver::{
     Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
@@ -56,6 +56,27 @@ pub fn heavy<L: Law>() -> Method<Symmetric> {
         mutate(&mut parts);
         let weight = Weight(parts.medium.acceleration);
         Ok(Box::new(scene(parts, weight).build::<WendlandC2, L>()?))
+    })
+}
+
+/// The same of two bodies with a rigid plane at rest half-way between them, in place of contact between
+/// faces.
+pub fn beside_a_plane<L: Law>() -> Method<Symmetric> {
+    named::<L>(|mut parts| {
+        mutate(&mut parts);
+        // Extents do not depend on the order of the particles.
+        let middle = |body: u32| {
+            let all = parts.particles.iter().zip(&parts.bodies).filter(|(_, of)| **of == body);
+            let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
+            let (low, high) = all.fold((low, high), |(low, high), (p, _)| {
+                (low.inf(&p.position), high.sup(&p.position))
+            });
+            0.5 * (low + high)
+        };
+        let [left, right] = [middle(0), middle(1)];
+        let (point, normal) = (0.5 * (left + right), (right - left).normalize());
+        let plane = RigidPlane { point, normal, contact: Contact::of(&moduli(&parts.medium)) };
+        Ok(Box::new(scene(parts, plane).build::<WendlandC2, L>()?))
     })
 }
 
