@@ -5,6 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use base::functions::powf;
+use base::mutation::Disorder;
 use base::spec::{Keep, RunKey, RunSpec, Task};
 use serde_json::Value;
 
@@ -16,8 +17,11 @@ use crate::{
 
 /// Levels by which a ladder of the deep tier is longer.
 pub const FINER: i32 = 2;
-/// Starts of a cell of a map that has several.
+/// Starts of each cell of a map.
 pub const STARTS: usize = 20;
+/// The disorder by which starts of a cell differ that are one in the full tier \[spacings\]: more than
+/// round-off, and far less than what a map resolves.
+const DISORDER: f64 = 0.01;
 
 /// The declaration of the deep tier from that of the full one.
 pub fn deepened(mut declared: Declaration, case: &dyn Case) -> Declaration {
@@ -75,7 +79,8 @@ fn relabelled(label: &str, times: f64) -> String {
 }
 
 /// Adds starts to the cells of a map: values of the one setting in which the starts of a cell differ, spread
-/// by equal ratios between the least and the largest of the map.
+/// by equal ratios between the least and the largest of the map. Where all cells have one start, the others
+/// are disordered.
 fn start_often(map: &mut Map, case: &dyn Case) {
     let cells = || map.panels.iter().flat_map(|panel| &panel.cells).flatten();
     let mut values: BTreeMap<String, Vec<f64>> = BTreeMap::new();
@@ -88,6 +93,14 @@ fn start_often(map: &mut Map, case: &dyn Case) {
                 values.entry(name.clone()).or_default().extend([a, b]);
             }
         }
+    }
+    if values.is_empty() {
+        for cell in map.panels.iter_mut().flat_map(|panel| &mut panel.cells).flatten() {
+            let Some(first) = cell.first().cloned() else { continue };
+            let start = |seed| first.clone().disordered(Disorder { most: DISORDER, seed });
+            cell.extend((1..STARTS as u32).map(start));
+        }
+        return;
     }
     let mut values = values.into_iter();
     let (Some((name, of)), None) = (values.next(), values.next()) else { return };

@@ -244,10 +244,15 @@ fn map(tier: Tier) -> Map {
 }
 
 fn outcome(records: &[&Record]) -> (usize, String) {
-    let [record] = records else { return (Fate::Diverged as usize, String::new()) };
+    let fate_of = |record: &&&Record| Fate::of(record) as usize;
+    let Some(record) = records.iter().max_by_key(fate_of) else {
+        return (Fate::Diverged as usize, String::new());
+    };
     let number = |metric| record.value(metric).map_or("–".into(), |value| sig(value, 2));
     let fate = Fate::of(record);
+    let alike = records.iter().filter(|record| Fate::of(record) == fate).count();
     let text = match fate {
+        _ if records.len() > 1 => format!("{alike} of {}", records.len()),
         Fate::Whole if record.value(RESTITUTION).is_none() => "in touch".into(),
         Fate::Whole => format!("e = {}", number(RESTITUTION)),
         Fate::Torn => format!("at {}", number(TORN_AT)),
