@@ -94,7 +94,8 @@ fn our_own_results_are_measured_as_the_run_was() {
     }
 }
 
-/// A submission of the profile or series that `run --out` writes under this name.
+/// A submission of the profile or series that `run --out` writes under this name, whose columns have L = 1 m
+/// and c0 = 1 m/s for units.
 fn of_curve(line: &str, file: &str) -> (tempfile::TempDir, Record) {
     let (folder, case) = (tempfile::tempdir().unwrap(), line.split(' ').next().unwrap());
     for command in [&*format!("export {line} --out own"), &format!("run {line} --out run")] {
@@ -102,7 +103,10 @@ fn of_curve(line: &str, file: &str) -> (tempfile::TempDir, Record) {
         assert!(made.status.success(), "{command}: {}", said(&made));
     }
     let own = folder.path().join("own");
-    fs::copy(folder.path().join("run").join(file), own.join("curve.csv")).unwrap();
+    let written = read(&folder.path().join("run").join(file));
+    let (header, rows) = written.split_once('\n').unwrap();
+    let header = header.replace("[L/c0]", "[s]").replace("[L]", "[m]").replace("[c0]", "[m/s]");
+    fs::write(own.join("curve.csv"), format!("{header}\n{rows}")).unwrap();
     for file in ["method.json", "system.json"] {
         fs::copy(whole().join("whole").join(file), own.join(file)).unwrap();
     }
@@ -121,6 +125,8 @@ fn our_own_profile_or_path_is_measured_as_the_run_was() {
         ("couette --variant seed --set rows=8", "profile.csv", 20, "p_rms"),
         ("poiseuille --variant modern --set rows=8", "profile.csv", 20, "v_rms"),
         ("cantilever --variant lagrangian --set n=4", "end.csv", 20, "energy_change"),
+        ("dam_break --variant modern --set n=8", "series.csv", 6, "mach"),
+        ("rubber_rings --variant lagrangian --set spacing=0.25", "series.csv", 10, "mirror"),
     ] {
         let (folder, found) = of_curve(line, file);
         let own = Record::from_json(&read(&folder.path().join("run/record.json"))).unwrap();

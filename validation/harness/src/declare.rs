@@ -50,16 +50,17 @@ pub struct Declaration {
     pub curve: Option<Curve>,
 }
 
-/// Settings, the rows at a time and a position at the start, to a position and a velocity.
-type Place = fn(&Value, &[[f64; 2]], Vector2<f64>) -> [Vector2<f64>; 2];
+/// Settings, the rows at a time, and the positions at the start of the particles that move in their order, to
+/// their positions and velocities.
+type Place = fn(&Value, &[Vec<f64>], &[Vector2<f64>]) -> Vec<[Vector2<f64>; 2]>;
 
 /// A profile or a series from which some of the metrics follow.
 pub struct Curve {
     /// Names and units of its columns after the time.
-    pub columns: [(&'static str, &'static str); 2],
+    pub columns: &'static [(&'static str, &'static str)],
     /// Its rows at each time, of a run of these settings; the first column ascends in them.
     pub rows: fn(&Value) -> usize,
-    /// Position and velocity by which a particle stands for the rows at a time.
+    /// Positions and velocities by which particles stand for the rows at a time.
     pub place: Place,
     /// The metrics that follow from it, at whatever time; no other is measured of it.
     pub metrics: Vec<MetricKey>,

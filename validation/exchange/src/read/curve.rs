@@ -11,6 +11,9 @@ use nalgebra::Vector2;
 use super::{MOST_FLAWS, MOST_ROWS, Renamed, Results, table};
 use crate::{flaw::Flaw, problem::Problem};
 
+/// A column of the table.
+type Named = (&'static str, Vec<f64>);
+
 /// Name of the table.
 pub const CURVE: &str = "curve.csv";
 
@@ -24,24 +27,21 @@ pub fn frames(
     renamed: &Renamed,
     problem: &Problem,
 ) -> Result<Results, Vec<Flaw>> {
-    let [a, b] = curve.columns;
-    let columns = [("t", "s", false), (a.0, a.1, false), (b.0, b.1, false)];
-    let rows = table::rows(CURVE, text, renamed, &columns)?;
-    let [times, first, second] = columns.map(|(name, ..)| rows.columns.get(name));
-    let (times, first, second) = match (times, first, second) {
-        (Some(times), Some(first), Some(second)) => (times, first, second),
-        _ => return Err(vec![Flaw::of(CURVE, "it has no rows; expected one a point and time")]),
-    };
-    let line = |k: usize| rows.first_line + k as u64;
+    let (named, first_line) = read(curve, text, renamed)?;
+    let ((_, times), values) = (&named[0], &named[1..]);
+    let (ascending, first) = &values[0];
+    let line = |k: usize| first_line + k as u64;
     let (settings, mut flaws) = (&problem.spec.settings, Vec::new());
-    for (name, column) in [("t", times), (a.0, first), (b.0, second)] {
+    for (name, column) in &named {
         for (k, value) in column.iter().enumerate().filter(|(_, value)| !value.is_finite()) {
             let what = format!("it is {value}; expected a finite number");
-            flaws.push(Flaw::of(CURVE, what).at(line(k)).in_column(name));
+            flaws.push(Flaw::of(CURVE, what).at(line(k)).in_column(*name));
         }
     }
     let particles = &problem.outline.particles;
     let (x, y, moving) = (particles.column("x"), particles.column("y"), problem.moving());
+    let from: Vec<Vector2<f64>> =
+        moving.iter().map(|id| Vector2::new(x[*id as usize], y[*id as usize])).collect();
     let (mut results, count, mut k) = (Results::default(), (curve.rows)(settings), 0);
     while k < times.len() && flaws.len() < MOST_FLAWS {
         let (time, start) = (times[k], k);
@@ -58,28 +58,45 @@ pub fn frames(
         }
         if let Some(two) = first[start..k].windows(2).position(|two| two[0] >= two[1]) {
             let what = format!("it is {}; expected it to ascend", first[start + two + 1]);
-            flaws.push(flaw(what, a.0).at(line(start + two + 1)));
+            flaws.push(flaw(what, ascending).at(line(start + two + 1)));
         }
         if (results.frames.len() + 1) * moving.len() > MOST_ROWS {
             flaws
                 .push(flaw(format!("expected fewer times: at most {}", results.frames.len()), "t"));
         }
-        if !flaws.is_empty() || time == 0.0 {
-            continue; // the start is that of the problem
+        // The start is that of the problem, unless it is a time of output.
+        if !flaws.is_empty() || time == 0.0 && !problem.outline.times.contains(&0.0) {
+            continue;
         }
-        let at: Vec<[f64; 2]> = (start..k).map(|k| [first[k], second[k]]).collect();
-        let placed = |id: &u32| {
-            let from = Vector2::new(x[*id as usize], y[*id as usize]);
-            let [position, velocity] = (curve.place)(settings, &at, from);
-            Placed { id: *id, position, velocity, density: None }
-        };
-        results.frames.push(Frame { time, particles: moving.iter().map(placed).collect() });
+        let row = |k: usize| values.iter().map(|(_, column)| column[k]).collect();
+        let at: Vec<Vec<f64>> = (start..k).map(row).collect();
+        let placed = moving.iter().zip((curve.place)(settings, &at, &from));
+        let placed = placed.map(|(id, [position, velocity])| Placed {
+            id: *id,
+            position,
+            velocity,
+            density: None,
+        });
+        results.frames.push(Frame { time, particles: placed.collect() });
         results.places.push((CURVE.into(), line(start)));
     }
     if count == 1 {
         hold(&mut results, &problem.outline.times);
     }
     if flaws.is_empty() { Ok(results) } else { Err(flaws) }
+}
+
+/// Names and values of its columns, the time first, and the line of its first row.
+fn read(curve: &Curve, text: &str, renamed: &Renamed) -> Result<(Vec<Named>, u64), Vec<Flaw>> {
+    let columns = curve.columns.iter().map(|(name, unit)| (*name, *unit, false));
+    let columns: Vec<_> = [("t", "s", false)].into_iter().chain(columns).collect();
+    let rows = table::rows(CURVE, text, renamed, &columns)?;
+    let named = |&(name, ..): &(&'static str, _, _)| Some((name, rows.columns.get(name)?.clone()));
+    let named: Vec<Named> = columns.iter().filter_map(named).collect();
+    if named.len() < columns.len() {
+        return Err(vec![Flaw::of(CURVE, "it has no rows; expected one a point and time")]);
+    }
+    Ok((named, rows.first_line))
 }
 
 /// A series is sampled at intervals, and its last row counts until the end if that comes before the next one.

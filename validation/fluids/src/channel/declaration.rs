@@ -47,13 +47,15 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
 fn profile() -> Curve {
     let rows = |settings: &Value| settings["rows"].as_u64().unwrap_or_default() as usize;
     Curve {
-        columns: [("y", "m"), ("u", "m/s")],
+        columns: &[("y", "m"), ("u", "m/s")],
         rows,
-        place: |settings, at, start| {
+        place: |settings, at, starts| {
             let width = settings["width"].as_f64().unwrap_or(f64::NAN);
-            let row = (start.y / width * at.len() as f64) as usize;
-            let [y, u] = at[row.min(at.len() - 1)];
-            [Vector2::new(start.x, y), Vector2::new(u, 0.0)]
+            let place = |start: &Vector2<f64>| {
+                let row = &at[((start.y / width * at.len() as f64) as usize).min(at.len() - 1)];
+                [Vector2::new(start.x, row[0]), Vector2::new(row[1], 0.0)]
+            };
+            starts.iter().map(place).collect()
         },
         metrics: vec![L2, LINF, SHEAR_LOWER, SHEAR_UPPER, L2_WORST],
         shown: ("u@", &["y", "u", "u_exact"]),

@@ -112,11 +112,12 @@ pub fn declaration(tier: Tier) -> Declaration {
 fn path_of_end() -> Curve {
     let compared = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
     Curve {
-        columns: [("x", "m"), ("y", "m")],
+        columns: &[("x", "m"), ("y", "m")],
         rows: |_| 1,
-        place: |settings, at, start| {
+        place: |settings, at, starts| {
             let length = settings["length"].as_f64().unwrap_or(f64::NAN);
-            [start + Vector2::from(at[0]) * (start.x / length), Vector2::zeros()]
+            let end = Vector2::new(at[0][0], at[0][1]);
+            starts.iter().map(|from| [from + end * (from.x / length), Vector2::zeros()]).collect()
         },
         metrics: compared.chain([PATH_RMS]).collect(),
         shown: ("end", &["t", "x", "y"]),

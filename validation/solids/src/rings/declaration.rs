@@ -7,6 +7,7 @@ use super::{
     plan::{Group, SPEED, table},
     reference::Reference,
 };
+use crate::solid::Problem as _;
 use base::{
     gate::{Bound, Evidence, Gate},
     mutation::Constant,
@@ -15,11 +16,12 @@ use base::{
 use harness::{
     case::{Case, Rules, Tier},
     declare::{
-        Accuracy, Budget, Budgets, Card, Change, Comparison, CurveOf, CurvePanel, Curves,
+        Accuracy, Budget, Budgets, Card, Change, Comparison, Curve, CurveOf, CurvePanel, Curves,
         Declaration, Ladder, Map, MapPanel, Sensitivity, StepLimit, StepLimits, Watched,
     },
     studies::causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
 };
+use nalgebra::Vector2;
 use report::{Colour, sig};
 
 /// What is read from the phases of contact, which begin and end between two steps; extremes of every step;
@@ -40,6 +42,38 @@ const STEPWISE: &[MetricKey] = &[
 /// The variants whose histories and comparisons are shown.
 const SHOWN: [&str; 2] = [LAGRANGIAN, "seed"];
 
+/// Centre, velocity and extents of the ring on the right: both rings, stretched evenly, stand for them.
+fn path_and_extents() -> Curve {
+    let errors = [X_C_WORST, X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS, HISTORIES];
+    let extents = [WIDTH_MIN, WIDTH_MIN_ERROR, HEIGHT_MAX, HEIGHT_MAX_ERROR];
+    Curve {
+        columns: &[("x_c", "m"), ("v_c", "m/s"), ("width", "m"), ("height", "m")],
+        rows: |_| 1,
+        place: |settings, at, starts| {
+            let Ok(settings) = serde_json::from_value::<RingSettings>(settings.clone()) else {
+                return Vec::new();
+            };
+            let (to, dx) = (settings.to_flight(), settings.dx());
+            let (centre, speed) = (Vector2::new(at[0][0], 0.0), Vector2::new(at[0][1], 0.0));
+            let extent = Vector2::new(at[0][2], at[0][3]).add_scalar(-dx);
+            let starts: Vec<_> = starts.iter().map(|start| to * start).collect();
+            let put = |ring: &[Vector2<f64>], side: f64| -> Vec<[Vector2<f64>; 2]> {
+                let low = ring.iter().fold(Vector2::repeat(f64::INFINITY), |a, b| a.inf(b));
+                let high = ring.iter().fold(Vector2::repeat(f64::NEG_INFINITY), |a, b| a.sup(b));
+                let (middle, factor) = ((low + high) / 2.0, extent.component_div(&(high - low)));
+                let place =
+                    |from: &Vector2<f64>| centre * side + (from - middle).component_mul(&factor);
+                let back = |from| [to.inverse() * place(from), to.inverse() * speed * side];
+                ring.iter().map(back).collect()
+            };
+            let (left, right) = starts.split_at(starts.len() / 2);
+            [put(left, -1.0), put(right, 1.0)].concat()
+        },
+        metrics: [&errors[..], &extents[..]].concat(),
+        shown: ("series", &["t", "x_c", "v_c", "width", "height"]),
+    }
+}
+
 /// Everything that the harness draws and judges.
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
@@ -52,6 +86,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         maps: vec![map(tier)],
         sensitivity: Some(sensitivity(tier)),
         stepwise: STEPWISE,
+        curve: Some(path_and_extents()),
         accuracy: vec![accuracy],
         ..Declaration::default()
     }

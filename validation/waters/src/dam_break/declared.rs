@@ -5,7 +5,7 @@
 use super::{
     DAM_BREAK, DamSettings, NAME, curves, ensembles,
     metrics::{
-        FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, MACH,
+        FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, MACH, Z,
     },
     plan::{self, Group},
     reference::{FRONT_SPREAD, IMPULSE_SPREAD},
@@ -14,6 +14,7 @@ use super::{
 use crate::water::ledger::ENERGY_GAP;
 use base::{gate::*, mutation::*, record::*, reference::Reference};
 use harness::{case::*, declare::*, studies::causes::*};
+use nalgebra::Vector2;
 
 /// A run that ended, with the energy that it began with.
 pub fn is_stable(record: &Record) -> bool {
@@ -45,7 +46,23 @@ pub fn declaration(tier: Tier) -> Declaration {
         limits: Some(limits(tier)),
         sensitivity: Some(sensitivity(tier)),
         costly: COSTLY,
+        curve: Some(front()),
         ..Declaration::default()
+    }
+}
+
+/// The front over time: the column, moved with it, stands for it.
+fn front() -> Curve {
+    Curve {
+        columns: &[("front", "m")],
+        rows: |_| 1,
+        place: |settings, at, starts| {
+            let width = settings["width"].as_f64().unwrap_or(f64::NAN);
+            let moved = Vector2::new(at[0][0] - width, 0.0);
+            starts.iter().map(|start| [start + moved, Vector2::zeros()]).collect()
+        },
+        metrics: vec![Z, FRONT_AWAY, FRONT.rms, FRONT.rms_shifted, FRONT.shift],
+        shown: ("series", &["t", "front"]),
     }
 }
 
