@@ -86,7 +86,8 @@ impl Watch for End {
         if path.0.len() < LEAST_POINTS {
             let why = format!("the path of the end has less than {LEAST_POINTS} points");
             let all = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
-            all.chain([PATH_RMS]).for_each(|metric| record.leave_out(metric, why.clone()));
+            let all = all.chain([PATH_RMS]).chain(OF_METHODS.iter().copied());
+            all.for_each(|metric| record.leave_out(metric, why.clone()));
             return;
         }
         let found = path::measure(&path);
@@ -107,7 +108,23 @@ impl Watch for End {
         whole.iter().for_each(|(_, error)| record.leave_out(*error, lacks));
         let of_path = (PATH_RMS, "harmonic_y");
         solid::compare(exact.as_ref(), first, of_path, (&path, lacks), record);
+        compare_with_theory(s, record);
     }
+}
+
+/// Puts the distances of a total Lagrangian bar from one that bends as finite elements would with the
+/// stiffness that the method has by theory.
+fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
+    let [frequency, sag] = [FREQUENCY_ERROR, AVERAGE_Y_ERROR].map(|error| record.value(error));
+    let is_known = record.variant != "seed";
+    let Some((frequency, sag)) = frequency.zip(sag).filter(|_| is_known) else {
+        let lacks = if is_known { "no distance from finite elements" } else { "no theory" };
+        OF_METHODS.iter().for_each(|of| record.leave_out(*of, format!("there is {lacks}")));
+        return;
+    };
+    let stiffness = lagrangian::bending(settings.n, settings.poisson);
+    record.put(BENDING_FREQUENCY_ERROR, (1.0 + frequency) / stiffness.sqrt() - 1.0);
+    record.put(BENDING_SAG_ERROR, (1.0 + sag) * stiffness - 1.0);
 }
 
 #[cfg(test)]

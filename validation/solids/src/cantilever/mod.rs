@@ -59,6 +59,11 @@ base::metrics! {
     ENERGY_CHANGE = "energy_change" ["-"]
         "kinetic and strain energy and that of the weight: the greatest change from the start, over the \
          greatest kinetic energy";
+    BENDING_FREQUENCY_ERROR = "bending_frequency_error" ["-"]
+        "frequency over that of finite elements, over the root of the theory's stiffness of so many layers \
+         over E H^3/(12 (1 - nu^2)), less 1";
+    BENDING_SAG_ERROR = "bending_sag_error" ["-"]
+        "average_y over that of finite elements, times this stiffness, less 1";
     PATH_RMS = "path_rms" ["-"]
         "root of the mean square of the distance of the end from finite elements, over their amplitude \
          harmonic_y";
@@ -79,6 +84,8 @@ const COMPARED: [(MetricKey, MetricKey); 10] = [
 ];
 /// What is read from the energies of every step.
 const STEPWISE: &[MetricKey] = &[ENERGY_CHANGE];
+/// What compares with the theory of our own method.
+const OF_METHODS: &[MetricKey] = &[BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR];
 const FREQUENCY_ERROR: MetricKey = error("frequency_error");
 const AVERAGE_X_ERROR: MetricKey = error("average_x_error");
 const AVERAGE_Y_ERROR: MetricKey = error("average_y_error");
