@@ -284,7 +284,7 @@ fn a_signal_ends_every_command_within_a_second() {
     for (line, signal) in [
         (MAKE, "-INT"),
         (&plan, "-TERM"),
-        ("stability couette", "-HUP"),
+        ("stability --tier full", "-HUP"),
         ("verify couette poiseuille --store other", "-INT"),
         ("report --out report", "-TERM"),
         ("run couette --rows 200 --vtk 9999 --out out --set end=1e-4", "-INT"),

@@ -3,11 +3,12 @@
 
 use super::{
     LAGRANGIAN, RUBBER_RINGS, RingSettings,
+    measure::halves,
     metrics::*,
     plan::{Group, SPEED, table},
     reference::Reference,
 };
-use crate::solid::Problem as _;
+use crate::solid::{Problem as _, corners};
 use base::{
     gate::{Bound, Evidence, Gate},
     mutation::Constant,
@@ -58,15 +59,14 @@ fn path_and_extents() -> Curve {
             let extent = Vector2::new(at[0][2], at[0][3]).add_scalar(-dx);
             let starts: Vec<_> = starts.iter().map(|start| to * start).collect();
             let put = |ring: &[Vector2<f64>], side: f64| -> Vec<[Vector2<f64>; 2]> {
-                let low = ring.iter().fold(Vector2::repeat(f64::INFINITY), |a, b| a.inf(b));
-                let high = ring.iter().fold(Vector2::repeat(f64::NEG_INFINITY), |a, b| a.sup(b));
+                let [low, high] = corners(ring.iter().copied());
                 let (middle, factor) = ((low + high) / 2.0, extent.component_div(&(high - low)));
                 let place =
                     |from: &Vector2<f64>| centre * side + (from - middle).component_mul(&factor);
                 let back = |from| [to.inverse() * place(from), to.inverse() * speed * side];
                 ring.iter().map(back).collect()
             };
-            let (left, right) = starts.split_at(starts.len() / 2);
+            let [left, right] = halves(&starts);
             [put(left, -1.0), put(right, 1.0)].concat()
         },
         metrics: [&errors[..], &extents[..]].concat(),

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use solver::{EquationOfState, Flow as Going, Observer, Particle, Stepper, Symmetric};
 
 use super::{RingSettings, metrics::*, reference};
-use crate::solid::{Energy, Problem, SharedSettings, Watch, largest, put_or};
+use crate::solid::{Energy, Problem, SharedSettings, Watch, corners, largest, put_or};
 use base::{
     functions::hypot,
     record::{MetricKey, Profile, Record, Status},
@@ -36,13 +36,12 @@ fn along_flight(settings: &RingSettings, mut particles: Vec<Solid>) -> Vec<Solid
 /// half a spacing beyond the outermost particles \[m\].
 pub fn side(ring: &[Solid], dx: f64) -> [Vector2<f64>; 3] {
     let (mut mass, mut centre, mut momentum) = (0.0, Vector2::zeros(), Vector2::zeros());
-    let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
     for p in ring {
         mass += p.mass;
         centre += p.position * p.mass;
         momentum += p.velocity * p.mass;
-        (low, high) = (low.inf(&p.position), high.sup(&p.position));
     }
+    let [low, high] = corners(ring.iter().map(|p| p.position));
     [centre / mass, momentum / mass, high - low + Vector2::repeat(dx)]
 }
 
@@ -57,7 +56,7 @@ fn is_whole([pieces, holes]: [f64; 2]) -> bool {
 }
 
 /// The ring on the left and the one on the right.
-fn halves(particles: &[Solid]) -> [&[Solid]; 2] {
+pub fn halves<T>(particles: &[T]) -> [&[T]; 2] {
     let (left, right) = particles.split_at(particles.len() / 2);
     [left, right]
 }

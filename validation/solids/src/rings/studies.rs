@@ -34,9 +34,9 @@ fn contact(rows: &[Row], runs: &Runs) -> Study {
         of contact changes has to be less than what finite elements leave uncertain of the restitution.";
     let value = |row: &Row| runs.completed(&row.run.spec).and_then(|r| r.value(RESTITUTION));
     let study = Study::new("rubber-rings-contact", "Contact or folds").prose(
-        "An error of the contact would hang on its law. A rigid plane between the rings, with a law of its \
-         own, changes their restitution by less than finite elements leave uncertain: the error is that of \
-         the folds.",
+        "Is the error of the restitution one of the contact or one of the folds? An error of the contact \
+         would hang on its law. If a rigid plane between the rings, which has another law, changes the \
+         restitution by less than finite elements leave uncertain, the error is that of the folds.",
     );
     of(rows, &[Group::Contact]).fold(study, |study, row| {
         let is_own =

@@ -9,7 +9,7 @@ use solver::{
     Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
 };
 
-use super::leave_out;
+use super::{corners, leave_out};
 use base::settings::Settings;
 use harness::method::{Medium, Method, Parts, mutate};
 use maths::theory::{
@@ -67,10 +67,7 @@ pub fn beside_a_plane<L: Law>() -> Method<Symmetric> {
         // Extents do not depend on the order of the particles.
         let middle = |body: u32| {
             let all = parts.particles.iter().zip(&parts.bodies).filter(|(_, of)| **of == body);
-            let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
-            let (low, high) = all.fold((low, high), |(low, high), (p, _)| {
-                (low.inf(&p.position), high.sup(&p.position))
-            });
+            let [low, high] = corners(all.map(|(p, _)| p.position));
             0.5 * (low + high)
         };
         let [left, right] = [middle(0), middle(1)];

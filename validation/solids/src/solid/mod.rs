@@ -13,6 +13,8 @@ mod problem;
 #[cfg(test)]
 pub mod tests;
 
+use nalgebra::Vector2;
+
 pub use elements::{Elements, Path, Quantities, compare, put_or, quantities, rows};
 pub use energy::{Energy, angular_momentum, norm_squared};
 pub use material::{Material, limits};
@@ -26,6 +28,12 @@ pub use problem::{
 /// not pass.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+}
+
+/// The lower left and the upper right corner of the smallest box that holds these points.
+pub fn corners(points: impl IntoIterator<Item = Vector2<f64>>) -> [Vector2<f64>; 2] {
+    let nowhere = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
+    points.into_iter().fold(nowhere, |[low, high], x| [low.inf(&x), high.sup(&x)])
 }
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its

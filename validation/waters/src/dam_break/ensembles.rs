@@ -113,13 +113,9 @@ fn late(curve: &Curve) -> Option<f64> {
 /// The numbers whose distribution is shown: two that are judged in `modern`, and the largest pressure.
 fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
     let highest = LOBOVSKY.pressure[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
-    let judged = |name: &str, median: &str, known| {
-        (variant == "modern").then(|| judged(format!("{id}.{name}.median"), median, known))
-    };
-    let known = match n {
-        20 => [[[0.5150, 0.0108], [0.549, 0.476]], [[0.1284, 0.0046], [0.174, 0.099]]],
-        _ => [[[0.5629, 0.0100], [0.526, 0.521]], [[0.1218, 0.0039], [0.153, 0.083]]],
-    };
+    let known = MEDIANS.iter().find(|(of, ..)| variant == "modern" && *of == n);
+    let judged =
+        |name: &str, median: &str, known| judged(format!("{id}.{name}.median"), median, known);
     let [level, impulse] =
         ["level H3, mean of 6 ≤ t ≤ 8", "impulse on P3 during 2.5, over the measured one, less 1"];
     let of_level = "median of the level at H3, mean of 6 ≤ t ≤ 8 [H]";
@@ -129,13 +125,13 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
             name: [level, "H"],
             value: Box::new(|record| late(&depth(record, 2))),
             measured: LOBOVSKY.levels[2].iter().filter_map(late).collect(),
-            gate: judged("H3", of_level, known[0]),
+            gate: known.map(|(_, level, _)| judged("H3", of_level, *level)),
         },
         Number {
             name: [impulse, "-"],
             value: Box::new(|record| record.value(IMPULSE[2].at(WINDOWS[1]))),
             measured: vec![0.0],
-            gate: judged("P3", of_impulse, known[1]),
+            gate: known.map(|(.., impulse)| judged("P3", of_impulse, *impulse)),
         },
         Number {
             name: ["largest P1", "ρ g H"],
@@ -146,9 +142,18 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
     ]
 }
 
-/// The gate on a median: known are that of forty other starts, seeds 21 to 60, and their scatter, and the
-/// medians of twenty with 3 % more and less gravity.
-fn judged(id: String, metric: &str, [[median, scatter], [more, less]]: [[f64; 2]; 2]) -> Gate {
+/// What is known of a median of `modern`: that of forty other starts, seeds 21 to 60, and their scatter, and
+/// the medians of twenty with 3 % more and less gravity.
+type Known = [[f64; 2]; 2];
+
+/// H/dx, and what is known of the level at H3 and of the impulse on P3.
+const MEDIANS: [(usize, Known, Known); 2] = [
+    (20, [[0.5150, 0.0108], [0.549, 0.476]], [[0.1284, 0.0046], [0.174, 0.099]]),
+    (30, [[0.5629, 0.0100], [0.526, 0.521]], [[0.1218, 0.0039], [0.153, 0.083]]),
+];
+
+/// The gate on a median.
+fn judged(id: String, metric: &str, [[median, scatter], [more, less]]: Known) -> Gate {
     // A median of normal numbers scatters by (π/2)^(1/2) = 1.25 of their mean's.
     let bound = 4.0 * 1.25 * scatter * (1.0_f64 / 20.0 + 1.0 / 40.0).sqrt();
     let because = format!(
