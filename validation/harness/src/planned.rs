@@ -8,11 +8,11 @@ use base::{
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tier {
-    /// About a minute on two cores.
+    /// About half a minute on two cores.
     Quick,
     /// About twenty minutes.
     Full,
-    /// About a day on one core, for clusters. Cases declare two tiers; the harness extends the full one, see
+    /// About eight hours on one core, for clusters. Cases declare two tiers; the harness extends the full one, see
     /// [`crate::deep`].
     Deep,
 }

@@ -213,11 +213,11 @@ fn lines(text: &str) -> Result<Range<usize>, String> {
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Tier {
-    /// About a minute on two cores
+    /// About half a minute on two cores
     Quick,
     /// About twenty minutes
     Full,
-    /// About a day on one core, for clusters: finer ladders, more starts, all that gates detect
+    /// About eight hours on one core, for clusters: finer ladders, more starts, all that gates detect
     Deep,
 }
 
