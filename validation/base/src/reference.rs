@@ -224,13 +224,6 @@ impl Reference {
         EMBEDDED.keys().filter_map(|path| path.strip_suffix(PACKAGE)).collect()
     }
 
-    /// The references that are not as their descriptions state, and what is wrong with them: a table that was
-    /// changed has another hash.
-    pub fn unsound() -> Vec<(&'static str, ReferenceError)> {
-        let names = Self::names().into_iter();
-        names.filter_map(|name| Some((name, Self::load(name).err()?))).collect()
-    }
-
     /// Checks and reads an embedded reference. One whose second code does not agree is refused.
     pub fn load(name: &str) -> Result<Self, ReferenceError> {
         let reference = Self::read(name)?;

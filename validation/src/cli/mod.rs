@@ -140,8 +140,9 @@ pub struct World {
     cases: &'static [&'static dyn Case],
     /// Digest of the sources that decide what a case computes.
     sources: fn(&str) -> String,
-    /// The references that are not as they were described, each with the cases that are compared with it.
-    references: fn() -> Vec<(ReferenceError, &'static [&'static str])>,
+    /// The references of these cases, and of no case, that are not as they were described, each with the
+    /// cases that are compared with it.
+    references: fn(&[&'static dyn Case]) -> Vec<(ReferenceError, &'static [&'static str])>,
     /// Set to stop.
     interrupt: &'static AtomicBool,
 }
@@ -204,7 +205,7 @@ impl World {
     /// Refuses to run or judge cases by a reference that was changed, or to show one that no case uses.
     fn check_references(&self, cases: &[&'static dyn Case]) -> Result<(), Failure> {
         let mut words = Vec::new();
-        for (error, users) in (self.references)() {
+        for (error, users) in (self.references)(cases) {
             let is_used = |case: &&dyn Case| users.contains(&case.name());
             if users.is_empty() {
                 words.push(error.to_string());
@@ -280,9 +281,13 @@ fn sources(case: &str) -> String {
 }
 
 /// The embedded references that are not as they were described, and the cases that use them.
-fn references() -> Vec<(ReferenceError, &'static [&'static str])> {
-    let unsound = Reference::unsound().into_iter();
-    unsound.map(|(name, error)| (error, cases::users(name))).collect()
+fn references(of: &[&'static dyn Case]) -> Vec<(ReferenceError, &'static [&'static str])> {
+    let names = Reference::names().into_iter().map(|name| (name, cases::users(name)));
+    let are_asked =
+        |users: &[&str]| users.is_empty() || of.iter().any(|case| users.contains(&case.name()));
+    // To read all takes as long as half of a small run.
+    let asked = names.filter(|(_, users)| are_asked(users));
+    asked.filter_map(|(name, users)| Some((Reference::load(name).err()?, users))).collect()
 }
 
 /// Reads the arguments of the process and does what they ask.

@@ -161,7 +161,7 @@ fn run_on(
     let line = line.replace("OUT", out.to_str().expect("a plain path"));
     let words = std::iter::once("touchstone").chain(line.split(' '));
     let arguments = Arguments::try_parse_from(words).expect("a sound command line");
-    let world = World { cases, sources, references: Vec::new, interrupt };
+    let world = World { cases, sources, references: |_| vec![], interrupt };
     conclude(|| dispatch(&arguments.command, &world))
 }
 
@@ -282,7 +282,7 @@ fn the_page_is_there_when_one_case_is_complete_and_ends_as_it_would_have_without
 fn a_run_that_fails_keeps_no_case_from_being_shown() {
     static CASES: [&dyn Case; 3] = [&DIVERGING, &PANICKING, &MAIN];
     let folder = tempfile::tempdir().expect("a folder");
-    let world = World { cases: &CASES, sources, references: Vec::new, interrupt: &NEVER };
+    let world = World { cases: &CASES, sources, references: |_| vec![], interrupt: &NEVER };
     let (plans, store) = (suite::plans(&CASES, Tier::Quick), Store::open(folder.path()));
     let (store, told) = (store.expect("a store"), Mutex::new(Vec::new()));
     let early = |made: Made| {
@@ -310,14 +310,14 @@ fn a_page_that_may_not_open_is_told_and_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("a plain path");
     let arguments = Arguments::try_parse_from(["touchstone", "report", "--out", out]);
-    let world = World { cases: &TWICE, sources, references: Vec::new, interrupt: &NEVER };
+    let world = World { cases: &TWICE, sources, references: |_| vec![], interrupt: &NEVER };
     assert_eq!(conclude(|| dispatch(&arguments.expect("sound").command, &world)), Exit::Bug);
     let html = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
     assert!(check_page(&html).is_err_and(|reason| reason.contains("used twice")));
 }
 
 /// One number of a table was changed, and not its hash.
-fn changed() -> Vec<(ReferenceError, &'static [&'static str])> {
+fn changed(_: &[&'static dyn Case]) -> Vec<(ReferenceError, &'static [&'static str])> {
     let package = include_str!("../../../references/peers_channel/datapackage.json");
     let table = include_str!("../../../references/peers_channel/errors.csv").replacen('1', "2", 1);
     let refused = Reference::from_texts("peers_channel", package, &[("errors.csv", &table)]);
@@ -371,7 +371,7 @@ fn records_are_reused_judged_rendered_and_compared() {
     let on = |cases: &'static [&'static dyn Case], line: &str| {
         let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
         let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
-        let world = World { references: Vec::new, cases, sources, interrupt: &NEVER };
+        let world = World { references: |_| vec![], cases, sources, interrupt: &NEVER };
         conclude(|| dispatch(&arguments.command, &world))
     };
     static GOOD: [&dyn Case; 1] = [&RIGHT];
@@ -484,7 +484,7 @@ fn a_build_judges_its_own_records_unless_any_build_will_do() {
         let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
         let words = std::iter::once("touchstone").chain(line.split(' '));
         let arguments = Arguments::try_parse_from(words).expect("a sound command line");
-        let world = World { cases: &GOOD, sources, references: Vec::new, interrupt: &NEVER };
+        let world = World { cases: &GOOD, sources, references: |_| vec![], interrupt: &NEVER };
         conclude(|| dispatch(&arguments.command, &world))
     };
     let other: fn(&str) -> String = |_| "other".into();
