@@ -32,6 +32,8 @@ pub struct Engine<P: Physics> {
     extents: Vec<Extent>,
     /// What wall particles extrapolate: empty where they do not.
     extrapolated: Vec<Evolved<P::Extra>>,
+    /// Columns with wall particles at their feet: empty where these have none.
+    on_feet: Vec<Column<Vector2<f64>>>,
     /// Inverses of moments: empty where no force needs them.
     inverses: Vec<Rate<Symmetric>>,
 }
@@ -45,8 +47,8 @@ impl<P: Physics> Engine<P> {
         data: ParticleData<P::Extra>,
     ) -> Self {
         let (wall_terms, columns, extents) = (walls.terms(), vec![], vec![]);
-        let (extrapolated, inverses) = (vec![], vec![]);
-        Self { kernel, terms, wall_terms, data, columns, extents, extrapolated, inverses }
+        let (extrapolated, on_feet, inverses) = (vec![], vec![], vec![]);
+        Self { kernel, terms, wall_terms, data, columns, extents, extrapolated, on_feet, inverses }
     }
 
     /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
@@ -188,6 +190,7 @@ impl<P: Physics> Engine<P> {
             + self.columns.capacity() * size_of::<Column<Derived<P>>>()
             + self.extents.capacity() * size_of::<Extent>()
             + self.extrapolated.capacity() * size_of::<Evolved<P::Extra>>()
+            + self.on_feet.capacity() * size_of::<Column<Vector2<f64>>>()
             + self.inverses.capacity() * size_of::<Rate<Symmetric>>()
     }
 
@@ -238,6 +241,24 @@ impl<P: Physics> Engine<P> {
         self.data.enter(Phase::Walls);
         let sweep = self.sweep(&self.wall_terms, nothing(), false);
         sweep::run(&sweep, &self.data.neighbours.wall_lists, targets, update);
+    }
+
+    /// The same at the feet of wall particles.
+    fn sweep_feet(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+        self.data.enter(Phase::Walls);
+        let Self { kernel, wall_terms: terms, data, columns, on_feet, .. } = self;
+        on_feet.clear();
+        on_feet.extend(columns.iter().map(|column| {
+            let Column { position, velocity, common, .. } = *column;
+            Column { position, velocity, common, derived: Vector2::zeros() }
+        }));
+        for (column, foot) in on_feet[data.counts[0]..].iter_mut().zip(&data.neighbours.feet) {
+            column.position += foot;
+            column.derived = *foot;
+        }
+        let (columns, select) = (&on_feet[..], <P::Walls as Walls<P::Extra>>::foot);
+        let sweep = Sweep { kernel: &*kernel, terms: &*terms, columns, select, moving: false };
+        sweep::run(&sweep, &data.neighbours.wall_lists, targets, update);
     }
 
     /// Builds neighbour lists and images for particles at these places, and makes room for their columns.
@@ -292,7 +313,11 @@ impl<P: Physics> Engine<P> {
             target.velocity += rate.velocity;
             target.density = rate.density;
         };
-        self.sweep_walls(&mut implied, &by_blocks(update));
+        if P::Walls::FEET {
+            self.sweep_feet(&mut implied, &by_blocks(update));
+        } else {
+            self.sweep_walls(&mut implied, &by_blocks(update));
+        }
         self.data.enter(Phase::Refresh);
         let fixed = &self.data.fixed[fluid..];
         for ((column, implied), fixed) in self.columns[fluid..].iter_mut().zip(&implied).zip(fixed)

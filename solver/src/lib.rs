@@ -70,5 +70,6 @@ pub use terms::{
     Xsph,
 };
 pub use walls::{
-    ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall, SlipGhosts,
+    CurvedNoSlip, ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall,
+    SlipGhosts,
 };

@@ -139,6 +139,8 @@ pub(crate) struct Neighbours {
     pub lists: Lists,
     /// Those of the wall particles.
     pub wall_lists: Lists,
+    /// From each wall particle to the place whose neighbours it lists \[m\]; empty if to itself.
+    pub feet: Vec<Vector2<f64>>,
     /// Where the particles were when the lists were built.
     pub built_at: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
@@ -191,7 +193,8 @@ impl Neighbours {
 
     /// Memory held \[bytes\].
     pub fn bytes(&self) -> usize {
-        let points = [&self.built_at, &self.points, &self.cell_points].map(Vec::capacity);
+        let points =
+            [&self.feet, &self.built_at, &self.points, &self.cell_points].map(Vec::capacity);
         let numbers = [&self.cell_starts, &self.cell_columns].map(Vec::capacity);
         self.blocks().map(Block::bytes).sum::<usize>()
             + self.images.capacity() * size_of::<Image>()
@@ -236,6 +239,9 @@ impl Neighbours {
         let [lists, wall_lists] = [take(&mut self.lists), take(&mut self.wall_lists)];
         let up_to = if fluid_only { fluid } else { usize::MAX };
         self.lists = self.fill(lists, 0..fluid, usize::MAX, parallel);
+        for (point, foot) in self.points[fluid..].iter_mut().zip(&self.feet) {
+            *point += foot;
+        }
         self.wall_lists = self.fill(wall_lists, fluid..fluid + wall, up_to, parallel);
     }
 

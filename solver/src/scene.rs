@@ -58,6 +58,9 @@ pub struct Scene<S: Scheme> {
     pub drift: S::Drift,
     /// The walls.
     pub walls: S::Walls,
+    /// From each wall particle, in the order of the particles, to its foot, the nearest point of the surface
+    /// \[m\]: for walls that read it, [`Walls::FEET`]; else empty.
+    pub feet: Vec<Vector2<f64>>,
     /// Verlet skin: how far neighbour lists reach beyond the support radius \[m\]. With a larger skin the
     /// lists are longer and are rebuilt less often.
     pub skin: f64,
@@ -84,7 +87,20 @@ impl<S: Scheme> Scene<S> {
         let (skin, skin_share, limits) = (0.4 * h, 0.5, Limits::default());
         // For fewer particles, distributing the work is assumed to cost more than it saves; not measured.
         let parallel_from = 10_000;
-        Self { h, domain, particles, forces, drift, walls, skin, skin_share, limits, parallel_from }
+        let feet = Vec::new();
+        Self {
+            h,
+            domain,
+            particles,
+            forces,
+            drift,
+            walls,
+            feet,
+            skin,
+            skin_share,
+            limits,
+            parallel_from,
+        }
     }
 
     /// Checks the scene, and builds a simulation that is ready to step.
@@ -93,6 +109,8 @@ impl<S: Scheme> Scene<S> {
         let lengths = [h, skin, skin_share, S::Kernel::SUPPORT];
         let mirrors = self.walls.mirrors();
         let mut data = ready(&self.particles, lengths, (domain, mirrors), limits)?;
+        check_feet(S::Walls::FEET, &self.feet, data.counts[1])?;
+        data.neighbours.feet = self.feet;
         data.parallel = self.particles.len() >= self.parallel_from;
         let kernel = Smoothing::<S::Kernel>::new(h);
         let mut engine = Engine::new(kernel, (self.forces, self.drift), &self.walls, data);
@@ -191,6 +209,20 @@ fn check_walls(mirrors: &[PlaneWall]) -> Checked {
         require(Part::Wall(wall), all)?;
     }
     Ok(())
+}
+
+/// Walls that read feet need one for each wall particle, which lies off the surface; others need none.
+fn check_feet(reads: bool, feet: &[Vector2<f64>], walls: usize) -> Checked {
+    let (count, expected) = (feet.len(), if reads { walls } else { 0 });
+    let on_surface =
+        feet.iter().map(Vector2::norm).find(|depth| !(*depth > 0.0 && depth.is_finite()));
+    let (is_off, depth) = (on_surface.is_none(), on_surface.unwrap_or_default());
+    let allowed = format!("{expected}, that of the wall particles if the walls read feet, else 0");
+    let all = [
+        (count == expected, "number of feet", count as f64, &*allowed),
+        (is_off, "depth of a wall particle in m", depth, "finite and above 0"),
+    ];
+    require(Part::Scene, all)
 }
 
 fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {

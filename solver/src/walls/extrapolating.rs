@@ -1,14 +1,14 @@
-//! Boundary particles to which pressure, and with [`NoSlip`] velocity, are extrapolated from the fluid
-//! (Adami, Hu & Adams 2012).
+//! Boundary particles to which pressure, and with [`NoSlip`] or [`CurvedNoSlip`] velocity, are extrapolated
+//! from the fluid (Adami, Hu & Adams 2012).
 
 use lanes::Lane;
-use nalgebra::Vector2;
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::Walls;
 use crate::{
     eos::EquationOfState,
     kernel::Kernel,
-    numbers::{In, Numbers},
+    numbers::{In, Numbers, Symmetric},
     particles::{Common, Rate},
     terms::{Pair, Term},
 };
@@ -19,8 +19,9 @@ use crate::{
 ///
 /// - p_w = Σ_f \[p_f + ρ_f (g − a_w)·r_wf\] W_wf / Σ_f W_wf, and from it the density, ρ_w = ρ(p_w);
 /// - with `U` = [`NoSlip`] u_w = 2 u_wall − Σ_f u_f W_wf / Σ_f W_wf, which all terms read in place of the
-///   velocity of the wall particle, u_wall. With `U` = `()` the particle keeps that velocity and nothing
-///   is summed, which suffices without viscosity.
+///   velocity of the wall particle, u_wall. With `U` = [`CurvedNoSlip`] it is that of a parabola instead.
+///   With `U` = `()` the particle keeps that velocity and nothing is summed, which suffices without
+///   viscosity.
 ///
 /// A wall particle without fluid in its support keeps its initial velocity and density. The fluid
 /// does not read these, because the particle is not a neighbour of any fluid particle either.
@@ -33,7 +34,7 @@ pub struct ExtrapolatingWall<E, U = ()> {
     /// p_w is not below this \[Pa\]: 0 where there is a free surface, above which the wall would suck
     /// the fluid up; −∞ by default.
     pub least_pressure: f64,
-    /// `()` or [`NoSlip`].
+    /// `()`, [`NoSlip`] or [`CurvedNoSlip`].
     pub velocity: U,
 }
 
@@ -49,20 +50,40 @@ impl<E, U: Default> ExtrapolatingWall<E, U> {
     }
 }
 
-/// What an [`ExtrapolatingWall`] does about the velocity: `()`, nothing, or [`NoSlip`].
+/// What an [`ExtrapolatingWall`] does about the velocity: `()`, nothing, or [`NoSlip`], or [`CurvedNoSlip`].
 pub trait WallVelocity: Copy + Send + Sync + 'static {
-    /// Σ (u_wall − u_f) W.
+    /// From a wall particle to its foot, the nearest point of the surface, at which its sums are then made
+    /// \[m\]; `()` where it needs none.
+    type Foot: Numbers;
+    /// Sums of (u_wall − u_f) W.
     type Sum: Numbers;
-    /// Adds a fluid particle of weight `w`, with `v` = u_wall − u_f.
-    fn add<V: Lane>(v: Vector2<V>, w: V, sum: &mut In<Self::Sum, V>);
+    /// Whether there are feet.
+    const FEET: bool = false;
+    /// That of this vector.
+    fn foot(_: &Vector2<f64>) -> Self::Foot {
+        Self::Foot::default()
+    }
+    /// From a fluid particle to the wall particle \[m\], and W there.
+    #[inline(always)]
+    fn reach<V: Lane, K: Kernel>(pair: &Pair<V, K>, _: In<Self::Foot, V>) -> (Vector2<V>, V) {
+        (pair.r, pair.w())
+    }
+    /// Adds a fluid particle with `v` = u_wall − u_f, of weight `w` at the wall particle.
+    fn add<V: Lane, K: Kernel>(
+        pair: &Pair<V, K>,
+        foot: In<Self::Foot, V>,
+        w: V,
+        sum: &mut In<Self::Sum, V>,
+    );
     /// u_w − u_wall \[m/s\] from the sum and Σ W.
     fn beyond(sum: Self::Sum, weight: f64) -> Vector2<f64>;
 }
 
 impl WallVelocity for () {
+    type Foot = ();
     type Sum = ();
     #[inline(always)]
-    fn add<V: Lane>(_: Vector2<V>, _: V, _: &mut ()) {}
+    fn add<V: Lane, K: Kernel>(_: &Pair<V, K>, (): (), _: V, (): &mut ()) {}
     #[inline(always)]
     fn beyond(_: (), _: f64) -> Vector2<f64> {
         Vector2::zeros()
@@ -74,10 +95,11 @@ impl WallVelocity for () {
 pub struct NoSlip;
 
 impl WallVelocity for NoSlip {
+    type Foot = ();
     type Sum = Vector2<f64>;
     #[inline(always)]
-    fn add<V: Lane>(v: Vector2<V>, w: V, sum: &mut Vector2<V>) {
-        *sum += v * w;
+    fn add<V: Lane, K: Kernel>(pair: &Pair<V, K>, (): (), w: V, sum: &mut Vector2<V>) {
+        *sum += pair.v * w;
     }
     #[inline(always)]
     fn beyond(sum: Vector2<f64>, weight: f64) -> Vector2<f64> {
@@ -85,41 +107,112 @@ impl WallVelocity for NoSlip {
     }
 }
 
+/// u_w = u_wall − a + b/2 of the field u_wall + a η + b η²/2 + c ξ η that is fitted by least squares, with
+/// weights V W, to the fluid around the foot of the wall particle: η is the distance from the surface and ξ
+/// that along it, over the depth of the wall particle. Exact for every field of second degree that is
+/// u_wall on a plane surface. Each wall particle needs its foot, see [`crate::Scene::feet`]; where too few
+/// particles are near to tell a from b, b and c are 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CurvedNoSlip;
+
+/// Least determinant of the moments of a fit over the product of their diagonal: 0.003 to 0.02 where three
+/// rows of fluid are in reach, 0 where one is.
+const SINGULAR: f64 = 1e-4;
+
+impl WallVelocity for CurvedNoSlip {
+    type Foot = Vector2<f64>;
+    /// With p = (η, η²/2, ξη): Σ V W pₖpₗ for kl = 11, 22 and 12; 13 and 23; 33; Σ V W pₖ (u_wall − u_f).
+    type Sum = (Symmetric, Vector2<f64>, f64, Vector2<f64>, Vector2<f64>, Vector2<f64>);
+    const FEET: bool = true;
+
+    fn foot(foot: &Vector2<f64>) -> Vector2<f64> {
+        *foot
+    }
+    #[inline(always)]
+    fn reach<V: Lane, K: Kernel>(pair: &Pair<V, K>, foot: Vector2<V>) -> (Vector2<V>, V) {
+        let r = pair.r - foot;
+        (r, pair.kernel.w(r.x * r.x + r.y * r.y))
+    }
+    #[inline(always)]
+    fn add<V: Lane, K: Kernel>(
+        pair: &Pair<V, K>,
+        foot: Vector2<V>,
+        _: V,
+        sum: &mut In<Self::Sum, V>,
+    ) {
+        let (r, d2) = (pair.r, foot.x * foot.x + foot.y * foot.y);
+        let away = V::all(0.0) - (r.x * foot.x + r.y * foot.y) / d2;
+        let along = (r.y * foot.x - r.x * foot.y) / d2;
+        let (bent, turned) = (away * away * V::all(0.5), along * away);
+        let weight = pair.other.volume * pair.w();
+        let [a, b, c] = [away * weight, bent * weight, turned * weight];
+        sum.0 = sum.0 + Symmetric { xx: a * away, yy: b * bent, xy: a * bent };
+        sum.1 += Vector2::new(a * turned, b * turned);
+        sum.2 += c * turned;
+        sum.3 += pair.v * a;
+        sum.4 += pair.v * b;
+        sum.5 += pair.v * c;
+    }
+    #[inline(always)]
+    fn beyond((kk, k3, m33, a, b, c): Self::Sum, _: f64) -> Vector2<f64> {
+        let Symmetric { xx, yy, xy } = kk;
+        let moments = Matrix3::new(xx, xy, k3.x, xy, yy, k3.y, k3.x, k3.y, m33);
+        // The field at η = −1, ξ = 0; the sums have the opposite sign.
+        let inverse = (moments.determinant() > SINGULAR * xx * yy * m33)
+            .then(|| moments.try_inverse())
+            .flatten();
+        match inverse.map(|inverse| inverse * Vector3::new(1.0, -0.5, 0.0)) {
+            Some(weights) => a * weights.x + b * weights.y + c * weights.z,
+            None if xx > 0.0 => a / xx,
+            None => Vector2::zeros(),
+        }
+    }
+}
+
 impl<X, E: EquationOfState, U: WallVelocity> Walls<X> for ExtrapolatingWall<E, U> {
     type Terms = Self;
     const EXTRAPOLATES: bool = true;
+    const FEET: bool = U::FEET;
 
     fn terms(&self) -> Self {
         *self
+    }
+    fn foot(foot: &Vector2<f64>) -> U::Foot {
+        U::foot(foot)
     }
 }
 
 /// The sums over the fluid f, and from them ρ_w and u_w − u_wall in the places of their rates.
 impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U> {
-    type Derived = ();
+    type Derived = U::Foot;
     /// Σ W \[1/m²\], Σ \[p + ρ (g − a_w)·r\] W \[Pa/m²\], and what is summed of the velocity.
     type Sum = (f64, f64, U::Sum);
+
+    #[inline(always)]
+    fn derived(&self, _: &Common<f64>, _: &X) -> U::Foot {
+        U::Foot::default()
+    }
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
         pair: &Pair<V, K>,
-        _: [(); 2],
+        [foot, _]: [In<U::Foot, V>; 2],
         (weight, pressure, velocity): &mut In<Self::Sum, V>,
     ) {
-        let (w, density) = (pair.w(), pair.other.density);
+        let ((r, w), density) = (U::reach(pair, foot), pair.other.density);
         let a = self.acceleration;
-        let across = V::all(a.x) * pair.r.x + V::all(a.y) * pair.r.y;
+        let across = V::all(a.x) * r.x + V::all(a.y) * r.y;
         *weight += w;
         *pressure += (self.eos.pressure(density) + density * across) * w;
-        U::add(pair.v, w, velocity);
+        U::add(pair, foot, w, velocity);
     }
 
     #[inline(always)]
     fn finish(
         &self,
         own: &Common<f64>,
-        _: (),
+        _: U::Foot,
         (weight, pressure, velocity): Self::Sum,
         rate: &mut Rate<X>,
     ) {
@@ -130,5 +223,117 @@ impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U>
         } else {
             rate.density = own.density;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Compose, Continuity, Domain, Leapfrog, Particle, Pressure, QuinticSpline, Role, Scene,
+        SceneError, Simulation, Stepper, Tait, Viscosity,
+    };
+
+    const DX: f64 = 0.1;
+    const WALL: Vector2<f64> = Vector2::new(0.7, -0.2);
+
+    type Method<U> =
+        Compose<QuinticSpline, Pressure<Tait>, Continuity, ExtrapolatingWall<Tait, U>, Leapfrog>;
+
+    /// Rows of fluid off their lattice by up to half of `disorder` spacings with this velocity relative to the
+    /// wall, above three rows of a plane wall.
+    fn scene<U: WallVelocity + Default>(
+        domain: Domain,
+        rows: usize,
+        disorder: f64,
+        velocity: impl Fn(Vector2<f64>) -> Vector2<f64>,
+    ) -> Result<Simulation<Method<U>>, SceneError> {
+        let mut state = 1u32;
+        let mut random = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5) * disorder
+        };
+        let fluid = crate::lattice(Vector2::repeat(0.5 * DX), DX, 10, rows).map(|x| {
+            let place = x + Vector2::new(random(), random()) * DX;
+            Particle::fluid(place, WALL + velocity(place), 1.0 + 0.1 * random(), DX * DX)
+        });
+        let wall = crate::lattice(Vector2::new(0.5, -2.5) * DX, DX, 10, 3)
+            .map(|x| Particle::fluid(x, WALL, 1.0, DX * DX).with_role(Role::Wall));
+        let particles: Vec<Particle> = fluid.chain(wall).collect();
+        let wall = particles.iter().filter(|p| U::FEET && p.role == Role::Wall);
+        let feet = wall.map(|p| Vector2::new(0.0, -p.position.y)).collect();
+        let eos = Tait::new(1.0, 10.0);
+        let (pressure, walls) = (Pressure::new(eos), ExtrapolatingWall::new(eos, Vector2::zeros()));
+        let scene = Scene::new(DX, domain, particles, pressure, Continuity, walls);
+        let mut simulation = Scene { feet, ..scene }.build()?;
+        simulation.advance(0.0, 1.0, &mut ());
+        Ok(simulation)
+    }
+
+    /// The largest difference between the velocity of a wall particle that fluid sees and the field.
+    fn off<U: WallVelocity + Default>(
+        rows: usize,
+        disorder: f64,
+        velocity: impl Fn(Vector2<f64>) -> Vector2<f64>,
+    ) -> f64 {
+        let simulation = scene::<U>(Domain::open(), rows, disorder, &velocity).expect("a scene");
+        let walls =
+            simulation.columns().iter().filter(|c| (-2.0 * DX..0.0).contains(&c.position.y));
+        walls.map(|c| (c.velocity - WALL - velocity(c.position)).norm()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_curved_wall_velocity_continues_every_field_of_second_degree_over_any_particles() {
+        let linear = |x: Vector2<f64>| Vector2::new(3.0, -0.5) * x.y;
+        let bent = |x: Vector2<f64>| {
+            linear(x) + (Vector2::new(-9.0, 4.0) * x.y + Vector2::new(5.0, 2.0) * x.x) * x.y
+        };
+        for disorder in [0.0, 0.8] {
+            let found = off::<CurvedNoSlip>(6, disorder, bent);
+            assert!(found < 1e-12, "disorder {disorder}: {found:e}");
+            assert!(off::<NoSlip>(6, disorder, bent) > 0.1, "minus the mean of what is in reach");
+        }
+        let found = off::<CurvedNoSlip>(1, 0.0, linear);
+        assert!(found < 1e-13, "one row tells no curvature: {found:e}");
+    }
+
+    /// Of a parabola above a wall on a lattice the viscous force (6) is the same beside the wall as inside.
+    #[test]
+    fn the_viscous_force_beside_a_curved_wall_velocity_is_that_inside() {
+        let parabola = |x: Vector2<f64>| Vector2::new(3.0 * x.y - 9.0 * x.y * x.y, 0.0);
+        fn rows<U: WallVelocity + Default>(of: fn(Vector2<f64>) -> Vector2<f64>) -> Vec<[f64; 2]> {
+            let simulation = scene::<U>(Domain::channel(1.0), 12, 0.0, of).expect("a scene");
+            let rates = simulation.rates(&Viscosity { mu: 1.0, eta2: 1e-9 });
+            let places = simulation.fluid().map(|(_, p)| p.position.y);
+            places.zip(rates).map(|(y, rate)| [y, rate.velocity.x / -18.0]).collect()
+        }
+        let rows = [rows::<CurvedNoSlip>(parabola), rows::<NoSlip>(parabola)];
+        let worst = |rows: &[[f64; 2]]| {
+            let inside = rows.iter().find(|row| (row[0] / DX - 5.5).abs() < 0.1).expect("a row")[1];
+            assert!((inside - 1.0).abs() < 2e-3, "the factor of the lattice is near 1: {inside}");
+            let beside = rows.iter().filter(|row| row[0] < 3.0 * DX);
+            beside.map(|row| (row[1] / inside - 1.0).abs()).fold(0.0, f64::max)
+        };
+        let [curved, mean] = rows.map(|rows| worst(&rows));
+        assert!(curved < 1e-11, "{curved:e}");
+        assert!(mean > 0.3, "minus the mean of what is in reach: {mean}");
+    }
+
+    #[test]
+    fn feet_that_are_missing_or_on_the_particle_are_refused() {
+        let build = |feet: Vec<Vector2<f64>>| {
+            let eos = Tait::new(1.0, 10.0);
+            let at = |y| Particle::fluid(Vector2::new(0.0, y), WALL, 1.0, DX * DX);
+            let particles = vec![at(0.05), at(-0.05).with_role(Role::Wall)];
+            let walls = ExtrapolatingWall::<Tait, CurvedNoSlip>::new(eos, Vector2::zeros());
+            let (pressure, domain) = (Pressure::new(eos), Domain::open());
+            let scene = Scene::<Method<CurvedNoSlip>>::new(
+                DX, domain, particles, pressure, Continuity, walls,
+            );
+            Scene { feet, ..scene }.build().map(|_| ()).map_err(|error| error.quantity)
+        };
+        assert_eq!(build(vec![]), Err("number of feet"));
+        assert_eq!(build(vec![Vector2::zeros()]), Err("depth of a wall particle in m"));
+        assert_eq!(build(vec![Vector2::new(0.0, 0.05)]), Ok(()));
     }
 }

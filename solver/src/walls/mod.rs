@@ -7,13 +7,14 @@ mod ghosts;
 mod image;
 mod interface;
 
-pub use extrapolating::{ExtrapolatingWall, NoSlip, WallVelocity};
+pub use extrapolating::{CurvedNoSlip, ExtrapolatingWall, NoSlip, WallVelocity};
 pub use ghosts::{Ghosts, Mirrors, PlaneWall, SlipGhosts};
 pub(crate) use ghosts::{RIGHT_ANGLE, corners};
 pub use image::Map;
 pub use interface::InterfaceWall;
 
 use crate::terms::Term;
+use nalgebra::Vector2;
 
 /// How a scene treats its walls.
 pub trait Walls<X>: Clone + Send + Sync + 'static {
@@ -24,6 +25,13 @@ pub trait Walls<X>: Clone + Send + Sync + 'static {
     /// before each pair sweep, and their result is not a rate: it is the density of the wall particle, and
     /// what is added to its velocity, in the derived data.
     const EXTRAPOLATES: bool = false;
+    /// Whether walls that extrapolate sum over the neighbours of the foot of each wall particle, the nearest
+    /// point of the surface, in place of its own: [`crate::Scene::feet`].
+    const FEET: bool = false;
+    /// What [`Walls::Terms`] read of the vector from a wall particle to its foot \[m\].
+    fn foot(_: &Vector2<f64>) -> <Self::Terms as Term<X>>::Derived {
+        Default::default()
+    }
     /// The values of [`Walls::Terms`].
     fn terms(&self) -> Self::Terms;
     /// Whether mirror particles behind [`Walls::mirrors`] keep the tangential velocity (free slip).

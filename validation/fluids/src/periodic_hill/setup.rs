@@ -3,7 +3,7 @@
 use harness::{case::RunError, context::Context, method::Parts};
 use maths::geometry::{Curve, Hill};
 use nalgebra::Vector2;
-use solver::{Domain, Particle};
+use solver::{Domain, Particle, Role};
 
 use super::{
     HillMethod, HillSettings,
@@ -53,7 +53,15 @@ impl Setup {
     /// The scene. Walls extrapolate the pressure without the body force: over a spacing it is 1 % of the
     /// pressure of the flow and less.
     pub fn parts(&self, context: &Context) -> Parts {
-        self.flow.parts(Domain::channel(self.hill.period()), self.particles(), context)
+        let domain = Domain::channel(self.hill.period());
+        let parts = self.flow.parts(domain, self.particles(), context);
+        let [floor, lid] = self.curves();
+        let on_surface = |p: &Particle| match p.role {
+            Role::Wall if p.position.y < self.hill.lid() => floor.nearest(p.position),
+            Role::Wall => lid.nearest(p.position),
+            _ => p.position,
+        };
+        Parts { surface: parts.particles.iter().map(on_surface).collect(), ..parts }
     }
 
     /// Height of the floor at x \[m\].

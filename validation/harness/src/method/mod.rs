@@ -17,8 +17,8 @@ use maths::theory::{
 };
 use nalgebra::Vector2;
 use solver::{
-    Domain, Integrator as _, Kernel, Numbers, Particle, PlaneWall, Scene, SceneError, Scheme,
-    Smoothing, Stepper, Tait, Term,
+    Domain, Integrator as _, Kernel, Numbers, Particle, PlaneWall, Role, Scene, SceneError, Scheme,
+    Smoothing, Stepper, Tait, Term, walls::Walls as _,
 };
 
 pub use crate::medium::{Knob, Medium};
@@ -47,6 +47,9 @@ pub struct Parts<X = ()> {
     pub particles: Vec<Particle<X>>,
     /// Planes that mirror the fluid, if the walls are of mirror particles.
     pub mirrors: Vec<PlaneWall>,
+    /// The point of the surface that is nearest to each particle, for walls that read it of wall particles
+    /// ([`solver::Scene::feet`]); else empty.
+    pub surface: Vec<Vector2<f64>>,
     /// The number of the body of each particle, for methods of solids that keep bodies apart; empty if there
     /// is one body.
     pub bodies: Vec<u32>,
@@ -73,7 +76,8 @@ impl<X: Numbers> Parts<X> {
         particles: Vec<Particle<X>>,
         context: &Context,
     ) -> Self {
-        let (mirrors, bodies, limits) = (Vec::new(), Vec::new(), solver::Limits::default());
+        let (mirrors, surface, bodies) = (Vec::new(), Vec::new(), Vec::new());
+        let limits = solver::Limits::default();
         let &Context { threads, mutation, disorder, ref outline, .. } = context;
         let (skin, outline) = (None, outline.clone());
         let particles = match context.playback {
@@ -85,6 +89,7 @@ impl<X: Numbers> Parts<X> {
             domain,
             particles,
             mirrors,
+            surface,
             bodies,
             skin,
             limits,
@@ -102,12 +107,17 @@ where
     S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
 {
     mutate(&mut parts);
+    let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
+    let feet: Vec<_> = pairs.map(|(p, point)| point - p.position).collect();
     let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation, .. } = parts;
     let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
     let walls = S::Walls::new(&medium, mirrors);
     let mut scene = Scene::new(medium.h, domain, particles, forces, drift, walls);
     scene.skin = skin.unwrap_or(scene.skin);
     scene.limits = limits;
+    if S::Walls::FEET {
+        scene.feet = feet;
+    }
     scene.skin_share *= mutation.map_or(1.0, |m| m.factor_of(Constant::ListLifetime));
     if threads <= 1 {
         scene.parallel_from = usize::MAX;

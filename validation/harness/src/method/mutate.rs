@@ -5,7 +5,7 @@ use base::{
     random::Random,
 };
 use nalgebra::Vector2;
-use solver::{Numbers, Role};
+use solver::{Numbers, Particle, Role};
 
 use super::Parts;
 use crate::relation::{NoSymmetry, Relation, View};
@@ -23,7 +23,7 @@ pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     }
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);
-    let Parts { medium, particles, mirrors, .. } = parts;
+    let Parts { medium, particles, mirrors, surface, .. } = parts;
     medium.nu *= of(Constant::Viscosity);
     medium.acceleration *= of(Constant::BodyForce);
     medium.wall_acceleration *= of(Constant::BodyForce);
@@ -49,6 +49,7 @@ pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
         particle.density *= of(Constant::Density);
         particle.mass *= of(Constant::Density) * of(Constant::Height) * of(Constant::Normalisation);
     }
+    surface.iter_mut().for_each(|point| point.component_mul_assign(&stretch));
     for mirror in mirrors {
         mirror.velocity *= of(Constant::WallSpeed);
         mirror.point.component_mul_assign(&stretch);
@@ -67,10 +68,12 @@ fn disturb<X: Numbers>(parts: &mut Parts<X>, Disorder { most, seed }: Disorder) 
 /// Makes the parts those that another observer sees.
 fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetry> {
     let moves: Vec<bool> = parts.particles.iter().map(|p| p.role == Role::Fluid).collect();
-    let Parts { medium, domain, particles, mirrors, bodies, skin, limits, .. } = parts;
+    let Parts { medium, domain, particles, mirrors, surface, bodies, skin, limits, .. } = parts;
     let view = View::of(by, medium, domain, mirrors, &moves)?;
     let numbers = view.numbers(&moves);
     (*medium, *domain) = (view.medium(*medium), view.domain(*domain));
+    let at = |x: &Vector2<f64>| view.particle(&Particle { position: *x, ..particles[0] }).position;
+    *surface = numbers.iter().filter_map(|k| surface.get(*k)).map(at).collect();
     *particles = numbers.iter().map(|k| view.particle(&particles[*k])).collect();
     *bodies = numbers.iter().filter_map(|k| bodies.get(*k).copied()).collect();
     *mirrors = mirrors.iter().map(|wall| view.wall(wall)).collect();
@@ -83,7 +86,7 @@ fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetr
 #[cfg(test)]
 mod tests {
     use base::mutation::Mutation;
-    use solver::{Domain, Particle, PlaneWall, Tait};
+    use solver::{Domain, PlaneWall, Tait};
 
     use super::*;
     use crate::{

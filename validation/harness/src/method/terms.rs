@@ -3,9 +3,9 @@
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConjugateStress,
     ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure, ConsistentViscosity,
-    Continuity, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall,
-    JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall, Pressure, ShiftAdvection, Shifting,
-    SlipGhosts, Split, Tait, Viscosity, Xsph,
+    Continuity, CurvedNoSlip, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts,
+    InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall, Pressure,
+    ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension, Switch},
 };
 
@@ -202,6 +202,14 @@ impl Boundary for InterfaceWall {
     const FIRST_ROW: FirstRow = FirstRow::OnSurface;
     fn new(_: &Medium, _: Vec<PlaneWall>) -> Self {
         Self
+    }
+}
+
+impl Boundary for ExtrapolatingWall<Tait, CurvedNoSlip> {
+    const NAME: &'static str = "extrapolating-wall with curvature";
+    const FIRST_ROW: FirstRow = FirstRow::Behind;
+    fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self::new(medium.eos, medium.wall_acceleration)
     }
 }
 

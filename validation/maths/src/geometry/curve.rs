@@ -89,6 +89,19 @@ impl Curve {
         self.chords(&self.points).map(|chord| chord.norm()).sum()
     }
 
+    /// The point of the curve, in any period, that is nearest to a point less than half a period away.
+    pub fn nearest(&self, to: Point) -> Point {
+        let count = self.points.len() as isize;
+        let on_chord = |k: isize| {
+            let (start, end) = (self.point(k), self.point(k + 1));
+            let chord = end - start;
+            start + chord * ((to - start).dot(&chord) / chord.norm_squared()).clamp(0.0, 1.0)
+        };
+        let distance2 = |point: &Point| (point - to).norm_squared();
+        let all = (-count / 2..count + count / 2).map(on_chord);
+        all.min_by(|a, b| distance2(a).total_cmp(&distance2(b))).unwrap_or(to)
+    }
+
     /// Rows behind the curve out to the `support` \[m\], dx apart, the first one `first` dx behind it: 0
     /// for interface particles on the curve and wall particles behind, 1/2 for walls that extrapolate.
     pub fn rows_behind(&self, dx: f64, first: f64, support: f64) -> Vec<Row> {
