@@ -106,17 +106,19 @@ def quantities(folder, level):
 def values(folder):
     coarse, middle, fine = (quantities(folder / f"{level}_{COURANT:g}", level) for level in LEVELS)
     half = quantities(folder / f"{LEVELS[0]}_{COURANT / 2:g}", LEVELS[0])
-    for name, (unit, f) in fine.items():
-        c, m, h = (run[name][1] for run in (coarse, middle, half))
-        yield "lobovsky", name, unit, number(f), doubt(abs(f - m) + abs(h - c)), *map(number, (c, m, f, h))
+    for name, (unit, m) in middle.items():
+        c, h, f = (run[name][1] if name in run else None for run in (coarse, half, fine))
+        value, error = (m, abs(m - c)) if f is None else (f, abs(f - m))
+        cells = ("" if one is None else number(one) for one in (c, m, f, h))
+        yield "lobovsky", name, unit, number(value), doubt(error + abs(h - c)), *cells
 
 
 FIELDS = {"values": [
     ("scene", "string", "-", "as in the summary of dam_break_vof"),
     ("quantity", "string", "-", "as in the summary of dam_break_vof"),
     ("unit", "string", "-", "unit of the row"),
-    ("value", "number", "see column unit", "on the fine mesh"),
-    ("uncertainty", "number", "see column unit", "fine less middle mesh, plus half_step less coarse"),
+    ("value", "number", "see column unit", "on the finest mesh that has the number"),
+    ("uncertainty", "number", "see column unit", "finest mesh less the next, plus half_step less coarse"),
     *((name, "number", "see column unit", f"cells of {dam.BOX / 2**level:.4f} H")
       for name, level in zip(("coarse", "middle", "fine"), LEVELS, strict=True)),
     ("half_step", "number", "see column unit", "on the coarse mesh at half the Courant number")]}

@@ -31,11 +31,11 @@ pub static TWO_DIMENSIONS: Cause = Cause::new(
     "A computation in three dimensions with the moving wall of the experiment, friction and air.",
 );
 
-/// A reference that is not fine enough.
+/// A reference whose air acts on a thin jet.
 pub static UNCERTAIN_REFERENCE: Cause = Cause::new(
-    "The reference by volume of fluid is uncertain where a thin jet has just arrived, because the jet is a \
-     few cells wide.",
-    "The reference on its finest mesh beyond the arrival at the far wall.",
+    "Where a thin jet has just arrived, the impulse by volume of fluid changes with its step and with its \
+     air, which these runs lack.",
+    "Runs with air, or a reference without it, whose impulse does not change with its step.",
 );
 
 /// Powers between samples.

@@ -155,7 +155,7 @@ fn accuracy(tier: Tier) -> Accuracy {
     Accuracy {
         about: "Front of the column of Martin & Moyce at T = 1, less that of the same model by volume of \
                 fluid, in widths a of the column. Later fronts of fine runs are ahead of that one by up \
-                to its uncertainty of 0.017 a, so they do not show how the error falls."
+                to its uncertainty of 0.008 a, so they do not show how the error falls."
             .into(),
         spacing: "dx/a [-]",
         slope: Some(1.0),
