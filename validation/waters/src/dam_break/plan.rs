@@ -248,9 +248,8 @@ fn tank_references(run: &str) -> Vec<Gate> {
 
 /// Gates of the method on such a column: the same model by volume of fluid.
 fn tank_model(run: &str) -> Vec<Gate> {
-    let level =
-        "The bound is 1 % of the column. By volume of fluid these levels differ by 0.003 to 0.004 H, rms, \
-         between cells of 5 and 2.5 mm.";
+    let level = "The bound is 1 % of the column. By volume of fluid these levels differ by 0.003 to 0.004 \
+                 H, rms, between cells of 5 and 2.5 mm.";
     let impulse = "The bound is 10 % of the impulse. By volume of fluid it is known to 3, 6, 4 and 19 % at \
                    P1 to P4 during 1 √(H/g), and to 2, 2, 1 and 5 % during 2.5.";
     let uncertain = "The impulse by volume of fluid is 0.153, 0.137 and 0.131 ρ g H √(H/g) with cells of 10, 5 \
