@@ -252,9 +252,10 @@ fn tank_model(run: &str) -> Vec<Gate> {
                  H, rms, between cells of 5 and 2.5 mm.";
     let impulse = "The bound is 10 % of the impulse. By volume of fluid it is known to 3, 6, 4 and 19 % at \
                    P1 to P4 during 1 √(H/g), and to 2, 2, 1 and 5 % during 2.5.";
-    let uncertain = "The impulse by volume of fluid is 0.153, 0.137 and 0.131 ρ g H √(H/g) with cells of 10, 5 \
-                     and 2.5 mm, 0.131 ± 0.025; half the step of the last gives 0.116. These runs have 0.106, \
-                     0.106 and 0.103 at H/dx 30, 60 and 120. The bound adds this uncertainty, 19 %, to 10 %.";
+    let uncertain = "The impulse by volume of fluid is 0.153, 0.137 and 0.131 ρ g H √(H/g) with cells of \
+                     10, 5 and 2.5 mm, 0.131 ± 0.025; half the step of the last gives 0.116. These runs \
+                     have 0.106, 0.106 and 0.103 at H/dx 30, 60 and 120. The bound adds this uncertainty, \
+                     19 %, to 10 %.";
     let mut gates: Vec<Gate> =
         LEVEL_AWAY.map(|away| against(run, away, Bound::Below(0.01), level)).into();
     for window in WINDOWS {
