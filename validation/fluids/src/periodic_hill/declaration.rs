@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::{
     BEST, CASE, HillSettings, NAME, SINGLE_SWEEP,
     measure::*,
-    plan::{For, Row, Table, flow, name, shown, table},
+    plan::{END, For, Row, Table, flow, name, shown, table},
     reference::{REYNOLDS, Reference, floor, reference},
 };
 use base::{
@@ -116,7 +116,7 @@ fn budgets(accuracy: &Accuracy) -> Budgets {
     let about = "Runs from rest at Re 50, H/dx = 10. A change smaller than that by the start is within the \
                  effect of disorder.";
     let change = |what, part, variant, set: fn(&mut HillSettings)| {
-        let mut settings = CASE.chosen(variant, |s| flow(s, (50.0, 10, 40.0, false)));
+        let mut settings = CASE.chosen(variant, |s| flow(s, (50.0, 10, END, false)));
         set(&mut settings);
         Change::new(what, part, CASE.spec_of(variant, &settings))
     };

@@ -25,10 +25,10 @@ pub type Table = table::Table<HillSettings, For>;
 /// One of them.
 pub type Row = table::Row<HillSettings, For>;
 
-/// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50: at 30 the error of u at 20
-/// spacings is 0.8 % instead of 0.3 %. At Re 10 the decay
-/// is five times as fast, but leaves 0.3 % of U_b at 10. At Re 100 it takes twice as long.
-const END: f64 = 40.0;
+/// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50, and at 40 they still hold the
+/// reattachment 0.02 H from where it comes to rest. At Re 10 the decay is five times as fast, but leaves
+/// 0.3 % of U_b at 10.
+pub const END: f64 = 80.0;
 
 /// Reynolds number, spacings along the height of the hill, end \[H/U_b\], start from the reference?
 type Flow = (f64, usize, f64, bool);
@@ -51,11 +51,11 @@ pub fn table(tier: Tier) -> Table {
         (10.0, 10, 15.0, false),
         (10.0, 10, 15.0, true),
         (10.0, 20, 15.0, false),
-        (50.0, 10, END, true),
+        (50.0, 10, 0.5 * END, true),
         // From rest it would take twenty minutes; this shows that the flow stays near the reference.
         (50.0, 40, 6.0, true),
-        (100.0, 10, 2.0 * END, false),
-        (100.0, 10, END, true),
+        (100.0, 10, END, false),
+        (100.0, 10, 0.5 * END, true),
         (100.0, 20, 20.0, true),
     ];
     // Three quarters of the time, which the goal at ten spacings allows and finer ones do not.
@@ -139,16 +139,19 @@ type Gating<'a> = &'a dyn Fn(MetricKey, Bound, Evidence, &str) -> Gate;
 fn of_reference(gate: Gating, re: f64, n: usize) -> Vec<Gate> {
     let around = |most: f64| Bound::Within(-most, most);
     let reach = if n >= 40 { 0.05 } else { 0.1 };
+    let rested = re <= 50.0 && n == 20;
     let velocity = "The goal is 4 % of U_b at 10 spacings, 2 % at 20 and 1 % at 40: first order.";
     let force = "The force follows the velocity at the walls, so it has the same goal.";
-    let places = "The goal is a tenth of H, and half of it at 40 spacings. The reference is known to 7e-4 H, \
-                  and the measure is exact to 2e-3 H.";
+    let places = "The goal is a tenth of H, half of it at 40 spacings, where the flow has not come to rest, \
+                  and 0.01 H of the reattachment at 20 spacings at Re 50, where it has. The reference is \
+                  known to 7e-4 H, and the measure is exact to 2e-3 H.";
     let mut gates = vec![
         gate(L2_U, Bound::Below(goal(n)), Evidence::Reference, velocity),
         gate(FORCE_ERROR, around(goal(n)), Evidence::Reference, force),
     ];
     if re > 10.0 {
-        gates.push(gate(REATTACHMENT_ERROR, around(reach), Evidence::Reference, places));
+        let most = if rested { 0.01 } else { reach };
+        gates.push(gate(REATTACHMENT_ERROR, around(most), Evidence::Reference, places));
         gates.push(gate(SEPARATION_ERROR, around(reach), Evidence::Reference, places));
     }
     gates
