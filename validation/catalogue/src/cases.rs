@@ -41,28 +41,26 @@ pub fn find(name: &str) -> Result<&'static dyn Case, RunError> {
 }
 
 /// The references that cases are compared with, and these cases.
-const USERS: [(&str, &[&str]); 11] = [
+const USERS: [(&str, &[&str]); 9] = [
     ("cantilever", &["cantilever"]),
     ("cavity", &["cavity"]),
     ("dam_break_vof", &["dam_break"]),
     ("dambreak_lobovsky", &["dam_break"]),
     ("dambreak_martin_moyce", &["dam_break"]),
     ("oscillating_plate", &["oscillating_plate"]),
-    ("peers_channel", &["couette", "poiseuille"]),
-    ("peers_taylor_green", &["taylor_green"]),
     ("periodic_hill", &["periodic_hill"]),
     ("periodic_hill_geometry", &["periodic_hill"]),
     ("rubber_rings", &["rubber_rings"]),
 ];
 
-/// The cases that are compared with a reference; none with one that is only shown.
+/// The cases that are compared with a reference.
 pub fn users(reference: &str) -> &'static [&'static str] {
     USERS.iter().find(|(name, _)| *name == reference).map_or(&[], |(_, cases)| cases)
 }
 
 /// What stands behind the references that a case is compared with: name and grade of each.
 pub fn graded(case: &str) -> Vec<(&'static str, String)> {
-    let is_user = |name: &str| users(name).contains(&case) && !name.starts_with("peers");
+    let is_user = |name: &str| users(name).contains(&case);
     let found = Reference::names().into_iter().filter(|name| is_user(name));
     found.filter_map(|name| Some((name, Reference::load(name).ok()?.graded()))).collect()
 }

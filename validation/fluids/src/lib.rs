@@ -4,7 +4,6 @@ pub mod bench;
 pub mod cavity;
 pub mod channel;
 pub mod manufactured;
-mod peers;
 pub mod periodic_hill;
 pub mod taylor_couette;
 pub mod taylor_green;

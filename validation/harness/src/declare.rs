@@ -204,8 +204,6 @@ pub struct Accuracy {
     pub slope: Option<f64>,
     /// One ladder of resolutions per variant, coarse to fine.
     pub ladders: Vec<Ladder>,
-    /// Results of other codes.
-    pub peers: Vec<Peer>,
 }
 
 /// The magnitude of this metric of a run that reached its end, which is its error.
@@ -218,8 +216,6 @@ pub fn error_of(metric: &MetricName, record: &Record) -> Option<f64> {
 pub struct Ladder {
     /// Name of the variant.
     pub variant: &'static str,
-    /// What else distinguishes the ladder, shown after the name of the variant; mostly empty.
-    pub note: String,
     /// The runs, coarse to fine.
     pub levels: Vec<Level>,
     /// Gate on the order, if it is judged.
@@ -235,21 +231,6 @@ pub struct Level {
     pub spacing: f64,
     /// The resolution in words, such as `20 rows`.
     pub label: String,
-}
-
-/// A result of another code.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Peer {
-    /// Code and scheme.
-    pub name: String,
-    /// The resolution in words, such as `20 rows`.
-    pub label: String,
-    /// Processor seconds \[s\].
-    pub seconds: f64,
-    /// Error, in the unit of [`Accuracy::label`].
-    pub error: f64,
-    /// Machine and date of the timing.
-    pub timed: String,
 }
 
 /// Error budgets: the same run with one thing changed at a time.
@@ -294,8 +275,7 @@ impl Accuracy {
         let (id, label, about) = (id.to_string(), label.to_string(), String::new());
         let error = error.into();
         let (spacing, slope) = ("Δx [-]", Some(2.0));
-        let (ladders, peers) = (Vec::new(), Vec::new());
-        Self { id, error, label, about, spacing, slope, ladders, peers }
+        Self { id, error, label, about, spacing, slope, ladders: Vec::new() }
     }
 
     /// The same with one ladder per variant, whose order is not judged. `level` gives the run of a variant at
@@ -329,7 +309,7 @@ impl Ladder {
     /// The levels of a variant, sorted from coarse to fine, whose order is not judged.
     pub fn new(variant: &'static str, mut levels: Vec<Level>) -> Self {
         levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
-        Self { variant, note: String::new(), levels, order: None }
+        Self { variant, levels, order: None }
     }
 }
 

@@ -1,4 +1,4 @@
-# Runs the problem of this folder with PySPH: python run_pysph.py [edac|wcsph]
+# Runs the problem of this folder with PySPH: python run_pysph.py [edac|tvf|wcsph]
 import csv, json, platform, sys, time
 import numpy as np
 import pysph
@@ -7,7 +7,7 @@ from pysph.base.utils import get_particle_array
 from pysph.solver.application import Application
 from pysph.solver.solver import Solver
 from pysph.base.nnps import DomainManager
-from pysph.sph.scheme import WCSPHScheme
+from pysph.sph.scheme import TVFScheme, WCSPHScheme
 from pysph.sph.wc.edac import EDACScheme
 
 which = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else "edac"
@@ -57,8 +57,10 @@ class Run(Application):
             alpha = number(material["artificial_viscosity_alpha"])
             return WCSPHScheme(["fluid"], walls, dim=2, rho0=rho0, c0=c0, h0=h, hdx=h / dx, gamma=7.0,
                                alpha=alpha, beta=0.0, nu=nu, gx=gx, gy=gy)
-        return EDACScheme(["fluid"], walls, dim=2, rho0=rho0, c0=c0, nu=nu, gx=gx, gy=gy, h=h,
-                          pb=rho0 * c0**2)
+        of = dict(dim=2, rho0=rho0, c0=c0, nu=nu, gx=gx, gy=gy, pb=rho0 * c0**2)
+        if which == "tvf":
+            return TVFScheme(["fluid"], walls, p0=rho0 * c0**2, h0=h, **of)
+        return EDACScheme(["fluid"], walls, h=h, **of)
 
     def configure_scheme(self):
         step = 0.25 * h / (1.1 * c0)

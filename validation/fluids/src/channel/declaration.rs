@@ -6,11 +6,10 @@
 use super::{
     Channel, ChannelSettings, ChannelTable, Flow, For, maps,
     measure::*,
-    plan::{self, PEERS_RE, ladder},
+    plan::{self, ladder},
     stiff, waves,
 };
-use crate::peers;
-use base::{gate::*, mutation::Constant, record::*, reference::Table, spec::*};
+use base::{gate::*, mutation::Constant, record::*, spec::*};
 use harness::{
     case::*, columns::Columns, declare::*, runs::Runs, studies::causes::*, study::Study,
 };
@@ -24,15 +23,14 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
     let at_half = at_half(channel.flow, &table);
     let comparisons = comparisons(channel, &at_half);
     let (card, budgets) = (card(channel, &at_half), budgets(channel, &at_half, tier));
-    let (mut accuracy, mut maps) = (vec![at_half], Vec::new());
-    if channel.flow == Flow::Poiseuille {
-        accuracy.extend((tier == Tier::Full).then(|| like_peers(&table)));
-        maps = maps::declared(&table);
-    }
+    let maps = match channel.flow {
+        Flow::Couette => Vec::new(),
+        Flow::Poiseuille => maps::declared(&table),
+    };
     Declaration {
         card: Some(card),
         curves: vec![curves(channel)],
-        accuracy,
+        accuracy: vec![at_half],
         comparisons,
         budgets: Some(budgets),
         limits: Some(limits(channel, tier)),
@@ -92,22 +90,6 @@ fn card(Channel { flow, case }: Channel, accuracy: &Accuracy) -> Card {
     }
 }
 
-/// Ladders of the error at the time of the comparison.
-fn accuracy(id: &str, flow: Flow, ladders: Vec<Ladder>, re: f64) -> Accuracy {
-    let tau = flow.compared_at();
-    let label = format!("Relative L2 error of u at νt/L² = {tau} [-]");
-    Accuracy {
-        spacing: "Δx/L [-]",
-        ladders,
-        peers: peers(flow, re),
-        ..Accuracy::new(id, L2.at(tau), &label)
-    }
-}
-
-fn of_table(table: &ChannelTable, group: For, variant: &'static str) -> Ladder {
-    table.ladder(&[group], variant, |s| (1.0 / s.rows as f64, format!("{} rows", s.rows)))
-}
-
 /// The ladders at Re 0.5.
 fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
     let order = Gate::new(
@@ -118,44 +100,19 @@ fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
         "Mirrored walls and the kernel are of second order. Levels whose error is near what the \
                   lattice leaves at any spacing are not in the fit.",
     );
+    let level = |s: &ChannelSettings| (1.0 / s.rows as f64, format!("{} rows", s.rows));
     let of = |variant| Ladder {
         order: ((flow, variant) == (Flow::Poiseuille, "plain")).then(|| order.clone()),
-        ..of_table(table, For::Ladder, variant)
+        ..table.ladder(&[For::Ladder], variant, level)
     };
+    let tau = flow.compared_at();
+    let label = format!("Relative L2 error of u at νt/L² = {tau} [-]");
     Accuracy {
-        about: "Runs at Re 0.5 to νt/L² = 1. Of the other codes the plain scalar reimplementation is no \
-                package, but a program of this method, written for this comparison."
-            .into(),
-        ..accuracy(flow.name(), flow, ladder(flow).map(of).into(), 0.5)
+        about: "Runs at Re 0.5 to νt/L² = 1.".into(),
+        spacing: "Δx/L [-]",
+        ladders: ladder(flow).map(of).into(),
+        ..Accuracy::new(flow.name(), L2.at(tau), &label)
     }
-}
-
-fn like_peers(table: &ChannelTable) -> Accuracy {
-    let of = |(variant, note): (_, &str)| Ladder {
-        note: note.into(),
-        ..of_table(table, For::Peers, variant)
-    };
-    let ladders = [("plain", ", h/dx 1"), ("curved", ", h/dx 0.9")].map(of).into();
-    let about = "Poiseuille flow at Re 0.0125, as most other codes were timed, run to νt/L² = 1.";
-    let like = accuracy("poiseuille-like-peers", Flow::Poiseuille, ladders, PEERS_RE);
-    Accuracy { about: about.into(), ..like }
-}
-
-/// Other codes at this Reynolds number, with their error at the time nearest to that of ours: νt/L² =
-/// 0.1125 in Couette flow, 1 in Poiseuille flow. None if the reference cannot be read.
-fn peers(flow: Flow, re: f64) -> Vec<Peer> {
-    let (column, at) = match flow {
-        Flow::Couette => ("error_0.1125s", "; error at νt/L² = 0.1125"),
-        Flow::Poiseuille => ("error_1s", ""),
-    };
-    let is_like = |table: &Table| {
-        let (cases, reynolds) = (table.texts("case")?, table.optional("reynolds")?);
-        let both = cases.iter().zip(&reynolds);
-        Ok(both.map(|(case, of)| *case == flow.name() && *of == Some(re)).collect())
-    };
-    let timed = format!("wall time, one thread of a similar machine, 2025–26{at}");
-    let label = |rows: f64| format!("{rows} rows");
-    peers::peers("peers_channel", ["rows", column], label, &timed, is_like).unwrap_or_default()
 }
 
 /// Times that fit into a figure.

@@ -38,8 +38,6 @@ pub type ChannelProgram = Program<ChannelSettings, Method>;
 pub enum For {
     /// Error over spacing and cost at Re 0.5.
     Ladder,
-    /// Error over cost at the Reynolds number of other codes.
-    Peers,
     /// One rule for every Reynolds number.
     Reynolds,
     /// Steps that viscosity does not limit.

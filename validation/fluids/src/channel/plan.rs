@@ -59,11 +59,6 @@ pub fn table(Channel { flow, case }: Channel, tier: Tier) -> ChannelTable {
         table.over(For::Stiff, &["modern", "stiff"], [&[40], &[40, 80]], set);
     }
     if flow == Flow::Poiseuille {
-        for (variant, ratio, rows) in [("plain", 1.0, [10, 20, 40]), ("curved", 0.9, [8, 14, 20])] {
-            table.over(For::Peers, &[variant], [&[], &rows], |s, rows| {
-                (s.rows, s.h_over_dx, s.re) = (rows, ratio, PEERS_RE);
-            });
-        }
         waves::runs(&mut table);
         maps::runs(&mut table);
     }
@@ -78,15 +73,10 @@ pub fn table(Channel { flow, case }: Channel, tier: Tier) -> ChannelTable {
     table
 }
 
-/// The Reynolds number at which other codes were timed in Poiseuille flow. There rows hardly slide (by a
-/// quarter of a spacing at 20 rows), so the sum of the viscous term on the aligned lattice is what counts: 1
-/// + 8.0e-4 for the quintic spline at h = dx, 1 - 1.4e-4 at 0.9.
-pub const PEERS_RE: f64 = 0.0125;
-
 /// The plan: the runs that are not of a ladder, which the declaration has.
 pub fn plan(channel: Channel, tier: Tier) -> Vec<Planned> {
     let mut table = table(channel, tier);
-    table.rows.retain(|row| !matches!(row.group, For::Ladder | For::Peers));
+    table.rows.retain(|row| row.group != For::Ladder);
     table.plan()
 }
 

@@ -1,18 +1,12 @@
-//! What the studies that every case has are made of: error through time, order, error against run time with
-//! results of other codes, error budget; and what only the vortices have to say: pictures, all runs.
+//! What the studies that every case has are made of: error through time, order, error against run time,
+//! error budget; and what only the vortices have to say: pictures, all runs.
 
 use super::{
     BEST, CASE, NAME, VortexSettings,
     plan::{DISTURBED, For, LADDER, Row, Table, is_pictured, most_error, table, usual},
     run::*,
 };
-use crate::peers;
-use base::{
-    functions::log10,
-    gate::*,
-    record::Record,
-    reference::{self, ReferenceError},
-};
+use base::{functions::log10, gate::*, record::Record};
 use harness::{case::Tier, columns::Columns, declare::*, pictures, runs::Runs, study::Study};
 use report::{Axis, Cell, ColourMap, Figure, ParticleMap};
 
@@ -37,8 +31,6 @@ pub fn declaration(tier: Tier) -> Declaration {
         about: "Taylor-Green vortices at Re 100 from the disturbed lattice, at t = 2 L/U.".into(),
         spacing: "dx/L [-]",
         ladders: ladders.into(),
-        // Codes whose numbers cannot be read are missing; the reference has a test of its own.
-        peers: peers().ok().filter(|_| tier == Tier::Full).unwrap_or_default(),
         ..Accuracy::new("taylor-green", error, "relative L2 error of the velocity [-]")
     };
     Declaration {
@@ -47,14 +39,6 @@ pub fn declaration(tier: Tier) -> Declaration {
         accuracy: vec![accuracy],
         ..Declaration::default()
     }
-}
-
-/// Codes whose time was measured.
-fn peers() -> Result<Vec<Peer>, ReferenceError> {
-    let timed = "time loop, one thread of a 2-core x86-64 machine, 2025-26";
-    let label = |side: f64| format!("{side} x {side}");
-    let all = |table: &reference::Table| Ok(vec![true; table.len()]);
-    peers::peers("peers_taylor_green", ["side", "error"], label, timed, all)
 }
 
 /// One thing changed at a time, over the best variant at 50 x 50 from the disturbed lattice.

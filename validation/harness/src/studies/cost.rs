@@ -3,10 +3,10 @@
 //! other programs.
 
 use base::record::{Status, median};
-use report::{Axis, Colour, Figure, Layer, Plot, Series, Shape, first_sentence};
+use report::{Axis, Colour, Figure, Plot, Series, first_sentence};
 
 use crate::{
-    declare::{Accuracy, Ladder, Level, Peer, error_of},
+    declare::{Accuracy, Ladder, Level, error_of},
     runs::Runs,
     studies::order::{GOALS, orders},
     study::Study,
@@ -15,7 +15,7 @@ use crate::{
 /// One run of a cost diagram.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Name of the ladder: variant and note.
+    /// The variant of its ladder.
     pub ladder: String,
     /// Spacing.
     pub spacing: f64,
@@ -49,7 +49,7 @@ pub fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
     let point = |level: &Level| {
         let record = runs.record(&level.run.spec)?;
         let error = error_of(&accuracy.error, record);
-        let name = format!("{}{}", ladder.variant, ladder.note);
+        let name = ladder.variant.to_string();
         let has_failed = record.status != Status::Completed;
         let failure = has_failed.then(|| format!("{name}, {}", level.label));
         let mut seconds = record.cost.alone_s.clone();
@@ -119,18 +119,13 @@ fn figure(
         true => String::new(),
         false => format!(" Runs that failed: {}.", failed.join("; ")),
     };
-    let peers = &accuracy.peers;
-    let others =
-        peers.first().map_or(String::new(), |peer| format!(" Grey: other codes ({}).", peer.timed));
     let caption = format!(
         "{} {} over spacing (left), run time on one core (middle) and work (right).\
-         {explained}{failed}{others}",
+         {explained}{failed}",
         first_sentence(&accuracy.about).0,
         name_of_error(&accuracy.label),
     );
     let clock = panel("Error against run time", "run time on one core [s]", points, Point::median);
-    let peers = peer_layers(peers);
-    let clock = peers.into_iter().fold(clock, Plot::layer);
     let pairs = |p: &Point| p.pairs;
     let counted = panel("Error against work", "pair interactions [-]", points, pairs);
     let panels = [orders, clock, counted];
@@ -176,17 +171,6 @@ fn panel(title: &str, cost_label: &str, points: &[Point], cost: Cost) -> Plot {
 
 /// Behind everything else.
 const PALE: Colour = Colour(222, 222, 222);
-
-/// One series a code and scheme, so that each is named and has a symbol of its own.
-fn peer_layers(peers: &[Peer]) -> Vec<Layer> {
-    let layer = |(k, of): (usize, &[Peer])| {
-        let points = of.iter().map(|peer| (peer.seconds, peer.error)).collect();
-        let series = Series::line_markers(&of[0].name, points).width(0.6).colour(Colour::GREY);
-        let series = series.shape(Shape::cycle(k)).labels(of.iter().map(|peer| short(&peer.label)));
-        if k % 2 == 0 { series.into() } else { series.open().into() }
-    };
-    peers.chunk_by(|a, b| a.name == b.name).enumerate().map(layer).collect()
-}
 
 #[cfg(test)]
 mod tests {

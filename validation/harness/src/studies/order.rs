@@ -44,7 +44,7 @@ pub fn orders(accuracy: &Accuracy, costs: &[[f64; 2]], runs: &Runs) -> Orders {
         let points = points(accuracy, ladder, runs);
         let usable = points.iter().filter(|p| p.value.is_finite());
         let line = usable.map(|p| (p.spacing, p.value)).collect();
-        let name = format!("{}{}", ladder.variant, ladder.note);
+        let name = ladder.variant.to_string();
         panel = panel.layer(Series::line_markers(&name, line).cycle(k));
         let found = convergence(&points);
         if let Some(order) = ladder.order.clone() {
@@ -63,7 +63,7 @@ const TIMES: &str = "Times are the least median run time on one core of a level 
     every finer level, is at most so much: at a single level errors of time and spacing can cancel.";
 
 struct Row {
-    /// Name of the ladder.
+    /// The variant of the ladder.
     name: String,
     /// Its order, or why it has none.
     found: Result<Convergence, ConvergenceError>,

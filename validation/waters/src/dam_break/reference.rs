@@ -20,8 +20,8 @@ use base::{
 pub const FRONT_SPREAD: f64 = 0.1;
 /// By which the impulse on P2L differs from that on P2, for one (H/g)^(1/2) from the arrival at P1.
 pub const IMPULSE_SPREAD: f64 = 0.06;
-/// What three other codes of particles give for Z at T = 2 and 3, see the reference `peers` of the
-/// report: SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
+/// What three other codes of particles gave for Z at T = 2 and 3, as the founders measured it in 2025-26:
+/// SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
 pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
 
 /// A curve: points in ascending order of the first number.
