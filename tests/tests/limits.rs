@@ -24,7 +24,8 @@ fn first_step(case: &dyn Case, variant: &str, fault: Option<Mutation>) -> (f64, 
         }
     };
     let context = Context { progress: Some(&show), interrupt: Some(&stop), ..Context::of_rules() };
-    let spec = RunSpec { mutation: fault, ..case::spec(case, variant, &[]).unwrap() };
+    let spec = case::spec(case, variant, &[]).unwrap().allow_unstable();
+    let spec = RunSpec { mutation: fault, ..spec };
     let record = case.run(&spec, &context).unwrap();
     assert_eq!(record.cost.steps, 1, "{} {variant}", case.name());
     let planned = record.numerics.get(PLANNED_DT).and_then(|dt| dt.as_f64());

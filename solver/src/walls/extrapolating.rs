@@ -240,8 +240,8 @@ mod tests {
     type Method<U> =
         Compose<QuinticSpline, Pressure<Tait>, Continuity, ExtrapolatingWall<Tait, U>, Leapfrog>;
 
-    /// Rows of fluid off their lattice by up to half of `disorder` spacings with this velocity relative to the
-    /// wall, above three rows of a plane wall.
+    /// Rows of fluid off their lattice by up to half of `disorder` spacings with this velocity relative to
+    /// the wall, above three rows of a plane wall.
     fn scene<U: WallVelocity + Default>(
         domain: Domain,
         rows: usize,

@@ -6,9 +6,9 @@
 //!
 //! ```
 //! use base::reference::Reference;
-//! let table = Reference::load("cavity")?.table("lines")?.clone();
-//! assert_eq!((table.texts("quantity")?[1], table.numbers("place")?[1]), ("u", 0.0547));
-//! assert_eq!(table.unit("place")?, "L");
+//! let table = Reference::load("periodic_hill")?.table("profiles")?.clone();
+//! assert_eq!((table.numbers("re")?[1], table.numbers("y")?[1]), (10.0, 1.0152625));
+//! assert_eq!(table.unit("y")?, "H");
 //! # Ok::<(), base::reference::ReferenceError>(())
 //! ```
 

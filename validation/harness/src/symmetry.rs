@@ -154,6 +154,8 @@ pub type Found = (Relation, Result<Difference, RunError>);
 /// # Errors
 /// If the run is refused, or is none of a scene.
 pub fn battery(case: &dyn Case, spec: &RunSpec) -> Result<Vec<Found>, RunError> {
+    // A relation is asked at a few early times, which a scene that fails later passes.
+    let spec = &spec.clone().allow_unstable();
     let (base, frames) = seen(case, spec, Relation::Same)?;
     let steps = base.times.last().map_or(0.0, |end| (end / base.dt).round());
     let has_walls = moves(&base).contains(&false);

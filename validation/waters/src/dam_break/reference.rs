@@ -516,7 +516,8 @@ mod tests {
         for k in 0..4 {
             is(metric(LEVEL_AWAY[k].into()), 0.01 * (k + 1) as f64, 1e-4);
             for window in WINDOWS {
-                is(metric(IMPULSE_AWAY[k].at(window)), too_much(k), 0.02);
+                // The arrival is known to 0.011 of a window of 1, in which the pressure on P4 doubles.
+                is(metric(IMPULSE_AWAY[k].at(window)), too_much(k), 0.022);
             }
         }
     }
