@@ -133,6 +133,9 @@ type Outcome = Result<Exit, Failure>;
 /// Shows what is made before all is, and says what it did if it did anything.
 type Early<'a> = dyn Fn(Made) -> Option<String> + Sync + 'a;
 
+/// A reference that is not as it was described, and the names of the cases that are compared with it.
+type WrongReference = (ReferenceError, &'static [&'static str]);
+
 /// What commands work on.
 #[derive(Clone, Copy)]
 pub struct World {
@@ -142,7 +145,7 @@ pub struct World {
     sources: fn(&str) -> String,
     /// The references of these cases, and of no case, that are not as they were described, each with the
     /// cases that are compared with it.
-    references: fn(&[&'static dyn Case]) -> Vec<(ReferenceError, &'static [&'static str])>,
+    references: fn(&[&'static dyn Case]) -> Vec<WrongReference>,
     /// Set to stop.
     interrupt: &'static AtomicBool,
 }
