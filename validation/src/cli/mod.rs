@@ -136,6 +136,9 @@ type Early<'a> = dyn Fn(Made) -> Option<String> + Sync + 'a;
 /// A reference that is not as it was described, and the names of the cases that are compared with it.
 type WrongReference = (ReferenceError, &'static [&'static str]);
 
+/// Whether one of these cases, or none in particular, is asked for.
+type AreAsked<'a> = dyn Fn(&[&str]) -> bool + 'a;
+
 /// What commands work on.
 #[derive(Clone, Copy)]
 pub struct World {
@@ -143,9 +146,8 @@ pub struct World {
     cases: &'static [&'static dyn Case],
     /// Digest of the sources that decide what a case computes.
     sources: fn(&str) -> String,
-    /// The references of these cases, and of no case, that are not as they were described, each with the
-    /// cases that are compared with it.
-    references: fn(&[&'static dyn Case]) -> Vec<WrongReference>,
+    /// The references whose cases are asked for that are not as they were described.
+    references: fn(&AreAsked<'_>) -> Vec<WrongReference>,
     /// Set to stop.
     interrupt: &'static AtomicBool,
 }
@@ -207,15 +209,14 @@ impl World {
 
     /// Refuses to run or judge cases by a reference that was changed, or to show one that no case uses.
     fn check_references(&self, cases: &[&'static dyn Case]) -> Result<(), Failure> {
-        let mut words = Vec::new();
-        for (error, users) in (self.references)(cases) {
-            let is_used = |case: &&dyn Case| users.contains(&case.name());
-            if users.is_empty() {
-                words.push(error.to_string());
-            } else if cases.iter().any(is_used) {
-                words.push(format!("{error}; it judges {}", users.join(" and ")));
-            }
-        }
+        let are_asked = |users: &[&str]| {
+            users.is_empty() || cases.iter().any(|case| users.contains(&case.name()))
+        };
+        let word = |(error, users): WrongReference| match users {
+            [] => error.to_string(),
+            _ => format!("{error}; it judges {}", users.join(" and ")),
+        };
+        let words: Vec<String> = (self.references)(&are_asked).into_iter().map(word).collect();
         match words.is_empty() {
             true => Ok(()),
             false => {
@@ -283,11 +284,9 @@ fn sources(case: &str) -> String {
     digest.into()
 }
 
-/// The embedded references that are not as they were described, and the cases that use them.
-fn references(of: &[&'static dyn Case]) -> Vec<(ReferenceError, &'static [&'static str])> {
+/// The embedded references whose cases are asked for that are not as they were described.
+fn references(are_asked: &AreAsked<'_>) -> Vec<WrongReference> {
     let names = Reference::names().into_iter().map(|name| (name, cases::users(name)));
-    let are_asked =
-        |users: &[&str]| users.is_empty() || of.iter().any(|case| users.contains(&case.name()));
     // To read all takes as long as half of a small run.
     let asked = names.filter(|(_, users)| are_asked(users));
     asked.filter_map(|(name, users)| Some((Reference::load(name).err()?, users))).collect()

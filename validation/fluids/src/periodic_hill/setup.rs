@@ -24,6 +24,8 @@ pub struct Setup {
     pub flow: UnitFlow,
     /// Depth of the first row of wall particles \[dx\].
     pub first: f64,
+    /// Do wall particles read their feet?
+    has_feet: bool,
     /// What to compare with, where there is something.
     pub reference: Option<&'static Reference>,
 }
@@ -46,8 +48,8 @@ impl Setup {
                 allowed: format!("{KNOWN_SETTINGS}, the flows that have a reference"),
             });
         }
-        let first = method.first_row.depth();
-        Ok(Self { settings: s.clone(), hill, flow, first, reference })
+        let (first, has_feet) = (method.first_row.depth(), method.has_feet);
+        Ok(Self { settings: s.clone(), hill, flow, first, has_feet, reference })
     }
 
     /// The scene. Walls extrapolate the pressure without the body force: over a spacing it is 1 % of the
@@ -55,10 +57,14 @@ impl Setup {
     pub fn parts(&self, context: &Context) -> Parts {
         let domain = Domain::channel(self.hill.period());
         let parts = self.flow.parts(domain, self.particles(), context);
-        let [floor, lid] = self.curves();
+        if !self.has_feet {
+            return parts;
+        }
+        let curves = self.curves();
+        let [floor, lid] = curves.each_ref().map(Curve::nearest);
         let on_surface = |p: &Particle| match p.role {
-            Role::Wall if p.position.y < self.hill.lid() => floor.nearest(p.position),
-            Role::Wall => lid.nearest(p.position),
+            Role::Wall if p.position.y < self.hill.lid() => floor(p.position),
+            Role::Wall => lid(p.position),
             _ => p.position,
         };
         Parts { surface: parts.particles.iter().map(on_surface).collect(), ..parts }

@@ -108,16 +108,14 @@ where
 {
     mutate(&mut parts);
     let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
-    let feet: Vec<_> = pairs.map(|(p, point)| point - p.position).collect();
+    let feet = pairs.map(|(p, point)| point - p.position).collect();
     let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation, .. } = parts;
     let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
     let walls = S::Walls::new(&medium, mirrors);
     let mut scene = Scene::new(medium.h, domain, particles, forces, drift, walls);
     scene.skin = skin.unwrap_or(scene.skin);
     scene.limits = limits;
-    if S::Walls::FEET {
-        scene.feet = feet;
-    }
+    scene.feet = feet;
     scene.skin_share *= mutation.map_or(1.0, |m| m.factor_of(Constant::ListLifetime));
     if threads <= 1 {
         scene.parallel_from = usize::MAX;
@@ -142,6 +140,8 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     pub walls: &'static str,
     /// Where the first row of boundary particles lies.
     pub first_row: FirstRow,
+    /// Do its walls read [`Parts::surface`]?
+    pub has_feet: bool,
     /// The stored energy as an equation, of a method whose forces derive from one.
     pub law: Option<&'static str>,
     /// Support radius \[h\].
@@ -170,6 +170,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             integrator: S::Integrator::NAME,
             walls: S::Walls::NAME,
             first_row: S::Walls::FIRST_ROW,
+            has_feet: S::Walls::FEET,
             law: None,
             support: S::Kernel::SUPPORT,
             theory: S::Integrator::THEORY,

@@ -89,17 +89,27 @@ impl Curve {
         self.chords(&self.points).map(|chord| chord.norm()).sum()
     }
 
-    /// The point of the curve, in any period, that is nearest to a point less than half a period away.
-    pub fn nearest(&self, to: Point) -> Point {
-        let count = self.points.len() as isize;
-        let on_chord = |k: isize| {
-            let (start, end) = (self.point(k), self.point(k + 1));
-            let chord = end - start;
-            start + chord * ((to - start).dot(&chord) / chord.norm_squared()).clamp(0.0, 1.0)
+    /// The point of the curve, in any period, that is nearest to one less than half a period away.
+    pub fn nearest(&self) -> impl Fn(Point) -> Point {
+        const STRIDE: isize = 64;
+        let half = self.points.len() as isize / 2;
+        let (from, to) = (-half, self.points.len() as isize + half);
+        // No point of so many chords is farther from their first one than this.
+        let reach = self.chords(&self.points).map(|chord| chord.norm()).fold(0.0, f64::max)
+            * (1.01 * STRIDE as f64);
+        let on_chord = |k: isize, x: Point| {
+            let (start, chord) = (self.point(k), self.point(k + 1) - self.point(k));
+            start + chord * ((x - start).dot(&chord) / chord.norm_squared()).clamp(0.0, 1.0)
         };
-        let distance2 = |point: &Point| (point - to).norm_squared();
-        let all = (-count / 2..count + count / 2).map(on_chord);
-        all.min_by(|a, b| distance2(a).total_cmp(&distance2(b))).unwrap_or(to)
+        move |x: Point| {
+            let firsts =
+                (from..to).step_by(STRIDE as usize).map(|k| (k, (self.point(k) - x).norm()));
+            let most = firsts.clone().map(|(_, away)| away).fold(f64::INFINITY, f64::min) + reach;
+            let near = firsts.filter(|(_, away)| *away <= most);
+            let all = near.flat_map(|(k, _)| (k..to.min(k + STRIDE)).map(|k| on_chord(k, x)));
+            let distance2 = |point: &Point| (point - x).norm_squared();
+            all.min_by(|a, b| distance2(a).total_cmp(&distance2(b))).unwrap_or(x)
+        }
     }
 
     /// Rows behind the curve out to the `support` \[m\], dx apart, the first one `first` dx behind it: 0
@@ -314,5 +324,29 @@ mod tests {
         // Across the corner that is left the way is shorter than along it.
         let apart = row.points.windows(2).map(|w| (w[1] - w[0]).norm() / row.spacing);
         assert!(apart.fold(f64::MAX, f64::min) > 0.7);
+    }
+
+    /// On a circle it is as far as the circle is along the ray from the centre; on hills, in any period, no
+    /// point of a fine sample is nearer.
+    #[test]
+    fn the_nearest_point_is_nearer_than_all_others() {
+        let (dx, centre) = (0.1, Point::new(2.0, -1.0));
+        let circle = Curve::circle(centre, 1.5, true, dx);
+        let nearest = circle.nearest();
+        for turn in 0..16 {
+            let ray = Vector2::new(cos(0.4 * f64::from(turn)), sin(0.4 * f64::from(turn)));
+            let away = (nearest(centre + ray * 1.2) - centre - ray * 1.2).norm();
+            assert!((away - 0.3).abs() < 1e-5, "{turn}: {away}");
+        }
+        let hill = Hill::new(1.0).unwrap();
+        let at = |x: f64| Point::new(x, hill.wall(x));
+        let hills = Curve::new(at, [0.0, hill.period()], dx);
+        let nearest = hills.nearest();
+        for k in 0..90 {
+            let x = at(0.1 * f64::from(k)) - Vector2::new(0.0, 0.25);
+            let sampled = (-9000..18000).map(|k| (at(1e-3 * f64::from(k)) - x).norm());
+            let least = sampled.fold(f64::INFINITY, f64::min);
+            assert!((nearest(x) - x).norm() < least + 1e-5, "{k}");
+        }
     }
 }
