@@ -40,8 +40,8 @@ impl Colour {
             Colour::PURPLE,
             Colour::ORANGE,
             Colour::SKY,
-            Colour::BLACK,
             Colour::BROWN,
+            Colour::BLACK, // last, because it also stands for our runs beside others
         ];
         CYCLE[i % CYCLE.len()]
     }
