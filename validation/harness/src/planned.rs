@@ -12,7 +12,7 @@ pub enum Tier {
     Quick,
     /// About twenty minutes.
     Full,
-    /// About eight hours on one core, for clusters. Cases declare two tiers; the harness extends the full
+    /// About nine hours on one core, for clusters. Cases declare two tiers; the harness extends the full
     /// one, see [`crate::deep`].
     Deep,
 }

@@ -217,7 +217,7 @@ pub enum Tier {
     Quick,
     /// About twenty minutes
     Full,
-    /// About eight hours on one core, for clusters: finer ladders, more starts, all that gates detect
+    /// About nine hours on one core, for clusters: finer ladders, more starts, all that gates detect
     Deep,
 }
 
