@@ -9,19 +9,11 @@ use solver::{Evolved, Potential, Symmetric, parallel};
 
 use crate::{
     law::{Law, Moduli, Strain},
-    reference::Reference,
+    reference::{Four, Reference},
 };
 
 /// Particles that are worth a unit of parallel work.
 const BLOCK: usize = 512;
-
-/// What pairs read of a particle or an image: u and X \[m\].
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-struct Column {
-    displacement: Vector2<f64>,
-    place: Vector2<f64>,
-}
 
 /// A body with the stored energy `L`, or several that do not touch each other.
 #[derive(Clone, Debug)]
@@ -31,7 +23,8 @@ pub struct Body<L> {
     moduli: Moduli,
     /// c \[Pa\].
     hourglass: f64,
-    columns: Vec<Column>,
+    /// u of particles and images \[m\].
+    displacements: Vec<Vector2<f64>>,
     /// B of particles and images \[Pa\].
     tensors: Vec<Matrix2<f64>>,
     parallel: bool,
@@ -41,12 +34,10 @@ pub struct Body<L> {
 impl<L: Law> Body<L> {
     /// Of this reference. `strength` is χ, see [`hourglass`].
     pub fn new(reference: Reference, moduli: Moduli, strength: f64, parallel: bool) -> Self {
-        let at_rest =
-            |place: &Vector2<f64>| Column { displacement: Vector2::zeros(), place: *place };
-        let columns: Vec<Column> = reference.places.iter().map(at_rest).collect();
+        let displacements = vec![Vector2::zeros(); reference.places.len()];
         let hourglass = hourglass(moduli.shear, strength, reference.gradient_factor());
-        let tensors = vec![Matrix2::zeros(); columns.len()];
-        Self { reference, moduli, hourglass, columns, tensors, parallel, law: PhantomData }
+        let tensors = vec![Matrix2::zeros(); displacements.len()];
+        Self { reference, moduli, hourglass, displacements, tensors, parallel, law: PhantomData }
     }
 
     /// Gives the particles the density and the deviator of the Cauchy stress that their places imply, and
@@ -72,18 +63,19 @@ impl<L: Law> Body<L> {
 
     /// Takes over where particles are, and images with them.
     fn displace(&mut self, state: &[Evolved<Symmetric>]) {
-        for (column, evolved) in self.columns.iter_mut().zip(state) {
-            column.displacement = evolved.position - column.place;
+        let of = self.displacements.iter_mut().zip(&self.reference.places);
+        for ((displacement, place), evolved) in of.zip(state) {
+            *displacement = evolved.position - place;
         }
         for (k, image) in self.reference.images.iter().enumerate() {
-            let displacement = image.displaced * self.columns[image.source].displacement;
-            self.columns[state.len() + k].displacement = displacement;
+            self.displacements[state.len() + k] =
+                image.displaced * self.displacements[image.source];
         }
     }
 
     /// Where particles and images are \[m\].
     pub fn positions(&self) -> impl Iterator<Item = Vector2<f64>> {
-        self.columns.iter().map(|column| column.place + column.displacement)
+        self.reference.places.iter().zip(&self.displacements).map(|(place, u)| place + u)
     }
 
     /// The displacement gradient of a particle, by its sum over one neighbour after another.
@@ -111,19 +103,19 @@ impl<L: Law> Body<L> {
 
     /// uₐᵦ, Xₐᵦ and g of each neighbour.
     fn each_pair(&self, k: usize, mut each: impl FnMut(Vector2<f64>, Vector2<f64>, f64)) {
-        let own = self.columns[k];
-        for (chunk, weights) in self.reference.pairs(k) {
-            for lane in 0..LANES {
-                let other = self.columns[chunk[lane] as usize];
-                each(other.displacement - own.displacement, other.place - own.place, weights[lane]);
+        let places = &self.reference.places;
+        for Four { who, weights, .. } in self.reference.neighbours(k) {
+            for (&other, weight) in who.iter().zip(weights) {
+                let [u, x] = [&self.displacements, places].map(|of| of[other as usize] - of[k]);
+                each(u, x, *weight);
             }
         }
     }
 
     /// Memory held \[bytes\].
     pub fn bytes(&self) -> usize {
-        let columns = size_of_val(&self.columns[..]) + size_of_val(&self.tensors[..]);
-        self.reference.bytes() + columns
+        let moving = size_of_val(&self.displacements[..]) + size_of_val(&self.tensors[..]);
+        self.reference.bytes() + moving
     }
 }
 
@@ -132,15 +124,19 @@ pub fn hourglass(shear: f64, strength: f64, gradient_factor: f64) -> f64 {
     8.0 / 3.0 * strength * shear / gradient_factor
 }
 
-/// uₐᵦ and Xₐᵦ of four neighbours.
+/// uₐᵦ of four neighbours.
 #[inline(always)]
-fn gather<V: Lane>(columns: &[Column], own: &Column, chunk: &[u32; LANES]) -> [Vector2<V>; 2] {
-    let at = |lane: usize| &columns[chunk[lane] as usize];
+fn gather<V: Lane>(displacements: &[Vector2<f64>], k: usize, who: &[u32; LANES]) -> Vector2<V> {
+    let at = |lane: usize| displacements[who[lane] as usize];
     let others = [at(0), at(1), at(2), at(3)];
-    let u = gather_vector::<V>(|lane| others[lane].displacement);
-    let x = gather_vector::<V>(|lane| others[lane].place);
-    let [own_u, own_x] = [own.displacement, own.place].map(|own| own.map(V::all));
-    [u - own_u, x - own_x]
+    gather_vector::<V>(|lane| others[lane]) - displacements[k].map(V::all)
+}
+
+/// g Xₐᵦ of four neighbours.
+#[inline(always)]
+fn arms<V: Lane>(four: &Four) -> Vector2<V> {
+    let [x, y] = &four.arms;
+    Vector2::new(V::gather(|lane| x[lane]), V::gather(|lane| y[lane]))
 }
 
 /// The first sweep over some particles: H, the stress, B.
@@ -155,12 +151,11 @@ impl<L: Law> OnLanes for Stresses<'_, L> {
     #[inline(always)]
     fn run<V: Lane>(self) {
         let Self { body, first, evolved, tensors } = self;
-        let Body { reference, moduli, columns, .. } = body;
+        let Body { reference, moduli, displacements, .. } = body;
         for (k, (evolved, tensor)) in (first..).zip(evolved.iter_mut().zip(tensors)) {
             let mut sums = [V::all(0.0); 4];
-            for (chunk, weights) in reference.pairs(k) {
-                let [u, x] = gather::<V>(columns, &columns[k], chunk);
-                let x = x * V::gather(|lane| weights[lane]);
+            for four in reference.neighbours(k) {
+                let (u, x) = (gather::<V>(displacements, k, &four.who), arms::<V>(four));
                 sums[0] += u.x * x.x;
                 sums[1] += u.x * x.y;
                 sums[2] += u.y * x.x;
@@ -190,16 +185,15 @@ impl<L: Law> OnLanes for Forces<'_, L> {
     #[inline(always)]
     fn run<V: Lane>(self) {
         let Self { body, first, accelerations } = self;
-        let Body { reference, columns, tensors, .. } = body;
+        let Body { reference, displacements, tensors, .. } = body;
         let c = V::all(body.hourglass);
         for (k, acceleration) in (first..).zip(accelerations) {
             let own: [V; 4] = [0, 2, 1, 3].map(|part| V::all(tensors[k].as_slice()[part]));
             let mut sum = [V::all(0.0); 2];
-            for (chunk, weights) in reference.pairs(k) {
-                let [u, x] = gather::<V>(columns, &columns[k], chunk);
-                let x = x * V::gather(|lane| weights[lane]);
-                let u = u * (c * V::gather(|lane| weights[lane]));
-                let at = |lane: usize| tensors[chunk[lane] as usize].as_slice();
+            for four in reference.neighbours(k) {
+                let (u, x) = (gather::<V>(displacements, k, &four.who), arms::<V>(four));
+                let u = u * (c * V::gather(|lane| four.weights[lane]));
+                let at = |lane: usize| tensors[four.who[lane] as usize].as_slice();
                 let others = [at(0), at(1), at(2), at(3)];
                 let [xx, yx] = V::gather_pair(|lane| [others[lane][0], others[lane][1]]);
                 let [xy, yy] = V::gather_pair(|lane| [others[lane][2], others[lane][3]]);

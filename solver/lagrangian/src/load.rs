@@ -253,12 +253,19 @@ impl BetweenFaces {
     fn seen(&self, on: &Loaded) -> Vec<Seen> {
         let axis = usize::from(on.domain.period[0].is_some());
         let reach = REACH * on.sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
-        let place = |i: &u32| (on.state[*i as usize].position[axis], *i as usize);
-        let mut sorted: Vec<(f64, usize)> = on.faces.iter().map(place).collect();
-        sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // Across the axis copies are looked for below, where there are any.
+        let aside = if on.domain.period[1 - axis].is_some() { f64::INFINITY } else { reach };
+        let place = |i: &u32| (on.state[*i as usize].position, *i as usize);
+        let mut sorted: Vec<(Vector2<f64>, usize)> = on.faces.iter().map(place).collect();
+        sorted.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
         let mut seen = Vec::new();
         for (k, &(x, i)) in sorted.iter().enumerate() {
-            for &(_, j) in sorted[k + 1..].iter().take_while(|(other, _)| other - x < reach) {
+            let near =
+                sorted[k + 1..].iter().take_while(|(other, _)| other[axis] - x[axis] < reach);
+            for &(other, j) in near {
+                if (other[1 - axis] - x[1 - axis]).abs() >= aside {
+                    continue;
+                }
                 let apart = on.between(i, j, |k| on.state[k].position);
                 let size = 0.5 * (on.sizes[i] + on.sizes[j]);
                 let most = REACH * size;

@@ -38,6 +38,17 @@ impl Image {
     }
 }
 
+/// Four neighbours of a particle, or fewer and the particle itself in the lanes that are left.
+#[derive(Clone, Debug)]
+pub struct Four {
+    /// Particles or images.
+    pub who: [u32; LANES],
+    /// g of each, 0 for the particle itself \[1\].
+    pub weights: [f64; LANES],
+    /// g X, with X from the particle to the neighbour, along x and along y \[m\].
+    pub arms: [[f64; LANES]; 2],
+}
+
 /// Particles, then their images, in the reference configuration.
 #[derive(Clone, Debug, Default)]
 pub struct Reference {
@@ -51,11 +62,9 @@ pub struct Reference {
     pub inverse: Vec<Matrix2<f64>>,
     /// The images.
     pub images: Vec<Image>,
-    /// The neighbours of particle k are `chunks[starts[k]..starts[k + 1]]`.
+    /// The neighbours of particle k are `fours[starts[k]..starts[k + 1]]`.
     starts: Vec<u32>,
-    chunks: Vec<[u32; LANES]>,
-    /// g of each neighbour, 0 for those that pad a list to whole lanes, which are the particle itself.
-    weights: Vec<[f64; LANES]>,
+    fours: Vec<Four>,
 }
 
 impl Reference {
@@ -101,17 +110,20 @@ impl Reference {
         let (place, volume) = (self.places[i], self.volumes[i]);
         let mut moments = Matrix2::zeros();
         for chunk in near.chunks(LANES) {
-            let (mut columns, mut weights) = ([i as u32; LANES], [0.0; LANES]);
+            let [weights, x, y] = [[0.0; LANES]; 3];
+            let mut four = Four { who: [i as u32; LANES], weights, arms: [x, y] };
             for (lane, &j) in chunk.iter().enumerate() {
                 let x = self.places[j] - place;
                 let weight = volume * self.volumes[particle[j]] * kernel.f(x.norm_squared());
-                (columns[lane], weights[lane]) = (j as u32, weight);
+                (four.who[lane], four.weights[lane]) = (j as u32, weight);
+                for axis in 0..2 {
+                    four.arms[axis][lane] = x[axis] * weight;
+                }
                 moments += x * x.transpose() * weight;
             }
-            self.chunks.push(columns);
-            self.weights.push(weights);
+            self.fours.push(four);
         }
-        self.starts.push(self.chunks.len() as u32);
+        self.starts.push(self.fours.len() as u32);
         let determinant = moments.determinant() / (volume * volume);
         match moments.try_inverse() {
             Some(inverse) if determinant > SINGULAR => self.inverse.push(inverse),
@@ -155,11 +167,10 @@ impl Reference {
         self.volumes.len()
     }
 
-    /// The neighbours of particle k by fours, and their weights.
+    /// The neighbours of particle k.
     #[inline(always)]
-    pub fn pairs(&self, k: usize) -> impl Iterator<Item = (&[u32; LANES], &[f64; LANES])> {
-        let of = self.starts[k] as usize..self.starts[k + 1] as usize;
-        self.chunks[of.clone()].iter().zip(&self.weights[of])
+    pub fn neighbours(&self, k: usize) -> &[Four] {
+        &self.fours[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
     /// Memory held \[bytes\].
@@ -170,7 +181,6 @@ impl Reference {
             + size_of_val(&self.inverse[..])
             + size_of_val(&self.images[..])
             + size_of_val(&self.starts[..])
-            + size_of_val(&self.chunks[..])
-            + size_of_val(&self.weights[..])
+            + size_of_val(&self.fours[..])
     }
 }
