@@ -20,10 +20,9 @@ SHARED = {"lobovsky": 30, "martin_moyce": 20, "square": 20}  # the meshes on whi
 VARIANTS = {
     "mules": dict(solver="interFoam"),
     "tension": dict(tension=dam.TENSION),
-    "half_step": dict(courant=0.2),
     "high_rim": dict(rim=0.9),
 }
-STEPS = SHARED | {"lobovsky": 60}  # the meshes on which the change by half of the step counts
+DOUBLE = 0.4  # Courant number of the runs on the finest mesh with twice the step
 SAFETY = 1.25  # of the grid convergence index with three meshes (Roache)
 NEAR_BY = 0.1  # an uncertainty in a series is the greatest so near to the row [(H/g)^(1/2)]
 ARRIVAL = 0.1  # the wave has arrived when P1 first exceeds this [rho g H]
@@ -40,12 +39,20 @@ def variants():
             yield name, replace(dam.Run(scene, n), **changes)
 
 
+def steps(scene):
+    """The runs of a scene on its finest mesh, with its step and with twice the step.
+
+    The step is of first order, so the difference of the two is the error of the first.
+    """
+    run = dam.Run(scene, dam.SCENES[scene].meshes[-1])
+    return run, replace(run, courant=DOUBLE)
+
+
 def runs():
     """All runs, the cheap ones first."""
     base = [dam.Run(scene.name, n) for scene in (dam.REST, *dam.SCENES.values()) for n in scene.meshes]
-    steps = [replace(dam.Run(scene, n), **VARIANTS["half_step"]) for scene, n in STEPS.items()]
-    every = dict.fromkeys([*base, *(run for _, run in variants()), *steps])
-    return sorted(every, key=lambda run: np.prod(run.cells) * run.n)
+    every = dict.fromkeys([*base, *(run for _, run in variants()), *(steps(scene)[1] for scene in dam.SCENES)])
+    return sorted(every, key=lambda run: np.prod(run.cells) * run.n / run.courant)
 
 
 def simulate(run, runs):
@@ -199,32 +206,18 @@ def judge(numbers):
     return SAFETY * abs(adds[0]), numbers[-1] + adds[1], order
 
 
-def steps(folder, scene):
-    """The runs of a scene with whole and half steps, on the mesh where their difference counts."""
-    run = dam.Run(scene, STEPS[scene])
-    return [read.load(folder, one) for one in (run, replace(run, **VARIANTS["half_step"]))]
-
-
-def step_share(scene, n):
-    """The error of the step on a mesh over the change by half of it on the mesh where this is made.
-
-    The step is of first order, so its error is twice that change, and it shortens with the cells.
-    """
-    return 2.0 * STEPS[scene] / n
-
-
 def summary(folder):
     """Rows of summary.csv."""
     for scene, quantities in QUANTITIES.items():
         made = read.meshes(folder, scene)
-        whole, half = steps(folder, scene)
+        single, double = (read.load(folder, run) for run in steps(scene))
         for name, unit, of in quantities():
             numbers = {n: of(kept) for n, kept in made}
             finite = [(n, value) for n, value in numbers.items() if np.isfinite(value)]
             if not finite:
                 continue
             error, limit, order = judge([value for _, value in finite])
-            step = abs(of(whole) - of(half)) * step_share(scene, finite[-1][0])
+            step = abs(of(double) - of(single))
             error += step if np.isfinite(step) else 0.0
             each = [digits(numbers.get(n, np.nan)) for n in dam.SCENES[scene].meshes]
             yield (
@@ -242,7 +235,8 @@ def summary(folder):
 
 def spread(folder):
     """Rows of spread.csv."""
-    for name, run in variants():
+    doubled = (("double_step", steps(scene)[1]) for scene in dam.SCENES)
+    for name, run in [*variants(), *doubled]:
         made, base = read.load(folder, run), read.load(folder, dam.Run(run.scene, run.n))
         if made is None or base is None:
             continue
@@ -289,12 +283,12 @@ def segments(folder, scene):
     The finest mesh may end before the others; what comes later is that of the next, and column mesh says so.
     """
     made = [(n, with_curves(kept)) for n, kept in read.meshes(folder, scene)]
-    whole, half = (with_curves(kept) for kept in steps(folder, scene))
+    single, double = (with_curves(read.load(folder, run)) for run in steps(scene))
     done = -1.0
     for (_, coarse), (n, fine) in reversed(list(pairwise(made))):
         end = min(fine["t"][-1], coarse["t"][-1])
         if end > done:
-            yield n, [(SAFETY, fine, coarse), (step_share(scene, n), whole, half)], done, end
+            yield n, [(SAFETY, fine, coarse), (1.0, single, double)], done, end
             done = end
 
 

@@ -66,7 +66,7 @@ class Run:
     scene: str
     n: int
     solver: str = "interIsoFoam"
-    courant: float = 0.4
+    courant: float = 0.2
     tension: float = 0.0
     rim: float = 0.0  # height of the tank [m] if it is not that of the scene
 

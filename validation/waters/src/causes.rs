@@ -31,10 +31,11 @@ pub static TWO_DIMENSIONS: Cause = Cause::new(
     "A computation in three dimensions with the moving wall of the experiment, friction and air.",
 );
 
-/// A reference whose steps are too long.
+/// A reference whose steps are of first order.
 pub static UNCERTAIN_REFERENCE: Cause = Cause::new(
-    "Where a thin jet has just arrived, the impulse by volume of fluid falls by 11 % with half its step.",
-    "The reference with half its step on the finest mesh.",
+    "Where a thin jet has just arrived, the impulse by volume of fluid falls with its time step, by 11 % with \
+     half of it.",
+    "A reference whose steps are of second order.",
 );
 
 /// Powers between samples.
