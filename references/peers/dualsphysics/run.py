@@ -1,4 +1,4 @@
-"""Runs the problem of this folder with DualSPHysics: python run.py PROGRAMS [mDBC|DBC]
+"""Runs the problem of this folder with DualSPHysics: python run.py PROGRAMS [mDBC|DBC|none]
 
 PROGRAMS is a folder with `DualSPHysics5.4CPU_linux64` and `bi4`, as `run.sh` builds them. Settings are those
 of the examples of the code: `mdbc/02_Poiseuille` for viscous flow between walls, `mdbc/04_Dambreak` for the
@@ -157,6 +157,6 @@ for part, t in enumerate(problem.times, 0 if problem.times[0] == 0 else 1):
     if abs(now - t) > 1e-7 * times[-1]:
         sys.exit(f"output at t = {now} s in place of {t} s")
     submission.frame(t, free[:, 1:3], free[:, 3:5], free[:, 5])
-submission.done("DualSPHysics", "5.4, commit ef3721a", "no walls" if fluid.all() else walls,
-                parameters | {"h": h, "cflnumber": courant},
+scheme = "WCSPH" if fluid.all() else f"WCSPH, {walls}"
+submission.done("DualSPHysics", "5.4, commit ef3721a", scheme, parameters | {"h": h, "cflnumber": courant},
                 "one mass for all particles, the mean; velocities and densities in single precision")
