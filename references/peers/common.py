@@ -58,14 +58,14 @@ class Problem:
 class Submission:
     """Frames and clock of a run; seconds are processor time of the time loop."""
 
-    def __init__(self, problem, own=False):
+    def __init__(self, problem, own=False, density=True):
         """With `own`, particles count as chosen by the code: numbered from 0, with their mass, from t = 0 on."""
         self.problem, self.seconds, self.steps, self.mass = problem, 0.0, 0, None
         self.ids = problem.columns["id"][problem.fluid].astype(int)
         if own:
             self.ids, self.mass = np.arange(len(self.ids)), problem.columns["mass"][problem.fluid]
         self.file = open("results.csv", "w")
-        last = ",mass[kg/m]" if own else ",density[kg/m^3]"
+        last = ",mass[kg/m]" if own else ",density[kg/m^3]" if density else ""
         self.file.write(f"t[s],id,x[m],y[m],u[m/s],v[m/s]{last}\n")
 
     def __enter__(self):
@@ -76,9 +76,9 @@ class Submission:
         self.seconds += time.process_time() - self.began
 
     def frame(self, t, x, v, density=None):
-        """Particles of the fluid in the order of the problem."""
+        """Particles of the fluid in the order of the problem; the density may be None if there is none."""
         last = density if self.mass is None else self.mass
-        for row in zip(self.ids, x[:, 0], x[:, 1], v[:, 0], v[:, 1], last):
+        for row in zip(self.ids, x[:, 0], x[:, 1], v[:, 0], v[:, 1], *([] if last is None else [last])):
             numbers = ",".join(repr(float(of)) for of in row[1:])
             self.file.write(f"{float(t)!r},{row[0]},{numbers}\n")
 

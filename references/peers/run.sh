@@ -119,7 +119,11 @@ for spacing in $spacings; do
 done
 ( # The path of the end needs 400 frames.
     export FRAMES=400
-    if [ -z "${SHORT:-}" ]; then machdyn cantilever lagrangian n=5; fi
+    if [ -z "${SHORT:-}" ]; then
+        machdyn cantilever lagrangian n=5
+        dualsphysics cantilever lagrangian n=5 none
+    fi
+    for n in $layers; do dualsphysics cantilever lagrangian "n=$n end=0.75" none; done
     export COURANT=0.2
     for n in $layers; do machdyn cantilever lagrangian "n=$n end=0.75"; done
 )
