@@ -43,6 +43,16 @@ class Problem:
         self.x = np.stack([self.columns["x"], self.columns["y"]], axis=1)
         self.v = np.stack([self.columns["u"], self.columns["v"]], axis=1)
 
+    def planes(self, axis):
+        """Where walls begin along an axis: half a spacing before their nearest particles beside the fluid."""
+        if self.period[axis] is not None or self.fluid.all():
+            return -np.inf, np.inf
+        along, across = self.x[:, axis], self.x[:, 1 - axis]
+        low, high = across[self.fluid].min() - self.dx / 4, across[self.fluid].max() + self.dx / 4
+        beside = along[~self.fluid & (across > low) & (across < high)]
+        below, above = (beside[beside < along[self.fluid].min()], beside[beside > along[self.fluid].max()])
+        return below.max(initial=-np.inf) + self.dx / 2, above.min(initial=np.inf) - self.dx / 2
+
     def box(self, margin):
         """Lower corner and size of a box that repeats along both axes, wide enough where the problem is open."""
         low, size = self.low.copy(), np.zeros(2)

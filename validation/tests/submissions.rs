@@ -485,7 +485,16 @@ fn the_records_of_other_codes_are_sound() {
         codes.insert(record.submission.expect("the code that made it").code);
         assert!(!record.profiles.contains_key("particles"), "{:?}", entry.path());
     }
-    let expected = ["DualSPHysics", "JAX-SPH", "LAMMPS", "PySPH", "pySPlisHSPlasH", "salva2d", OURS];
+    let expected = [
+        "DualSPHysics",
+        "JAX-SPH",
+        "LAMMPS",
+        "PySPH",
+        "SPHinXsys",
+        "pySPlisHSPlasH",
+        "salva2d",
+        OURS,
+    ];
     assert_eq!(codes.into_iter().collect::<Vec<_>>(), expected);
 }
 

@@ -60,17 +60,6 @@ if periodic:
     parameters[{"X": "XPeriodicIncZ", "XZ": "XZPeriodic"}[periodic]] = 0
 
 
-def planes(axis):
-    """Where the fluid ends along an axis: half a spacing before the nearest wall particles beside it."""
-    if problem.period[axis] is not None or free.all() or solid:
-        return -np.inf, np.inf
-    along, across = x[:, axis], x[:, 1 - axis]
-    low, high = across[fluid].min(), across[fluid].max()
-    beside = along[~fluid & ((across > low - dx / 4) & (across < high + dx / 4))]
-    below, above = beside[beside < along[fluid].min()], beside[beside > along[fluid].max()]
-    return (below.max() + dx / 2 if below.size else -np.inf, above.min() - dx / 2 if above.size else np.inf)
-
-
 def box():
     """The box of the simulation: the period, or as far from the particles as these are apart."""
     low, high = x.min(axis=0), x.max(axis=0)
@@ -106,7 +95,7 @@ def steps():
 
 def particles():
     """The input of `bi4 write`: numbers of particles, constants, the box, and a line a particle."""
-    limits = [planes(axis) for axis in range(2)]
+    limits = [problem.planes(axis) for axis in range(2)]
     normals = np.stack([np.clip(x[:, k], *limits[k]) - x[:, k] for k in range(2)], axis=1)
     low, high = box()
     constants = (dx, h, rho * c0**2 / gamma, rho, gamma, mass, *low, *high)
