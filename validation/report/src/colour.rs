@@ -31,9 +31,10 @@ impl Colour {
     /// A dark brown, beside the Okabe–Ito colours: darker than vermillion to every eye.
     pub const BROWN: Self = Self(112, 66, 20);
 
-    /// The colour of the `i`th series that names none.
+    /// The colour of the `i`th series that names none; none is black, which stands for references and for
+    /// our runs beside others.
     pub fn cycle(i: usize) -> Self {
-        const CYCLE: [Colour; 8] = [
+        const CYCLE: [Colour; 7] = [
             Colour::BLUE,
             Colour::VERMILLION,
             Colour::GREEN,
@@ -41,7 +42,6 @@ impl Colour {
             Colour::ORANGE,
             Colour::SKY,
             Colour::BROWN,
-            Colour::BLACK, // last, because it also stands for our runs beside others
         ];
         CYCLE[i % CYCLE.len()]
     }
