@@ -33,8 +33,8 @@ pub static TWO_DIMENSIONS: Cause = Cause::new(
 
 /// A reference whose steps are of first order.
 pub static UNCERTAIN_REFERENCE: Cause = Cause::new(
-    "Where a thin jet has just arrived, the impulse by volume of fluid falls with its time step, by 11 % with \
-     half of it.",
+    "Where a thin jet has just arrived, the impulse by volume of fluid falls with its time step, by 11 % \
+     with half of it.",
     "A reference whose steps are of second order.",
 );
 

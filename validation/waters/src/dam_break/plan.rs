@@ -252,9 +252,9 @@ fn tank_model(run: &str) -> Vec<Gate> {
                  H, rms, between cells of 5 and 2.5 mm.";
     let impulse = "The bound is 10 % of the impulse. By volume of fluid it is known to 3, 3, 2 and 18 % at \
                    P1 to P4 during 1 √(H/g), and to 2, 2, 3 and 5 % during 2.5.";
-    let uncertain = "The impulse by volume of fluid is 0.116 ± 0.021 ρ g H √(H/g), 0.131 with twice the step, \
-                     of first order 0.101 without a step. These runs have 0.104, 0.103 and 0.102 at H/dx \
-                     30, 60 and 120. The bound adds this uncertainty, 18 %, to 10 %.";
+    let uncertain = "The impulse by volume of fluid is 0.116 ± 0.021 ρ g H √(H/g), 0.131 with twice the \
+                     step, of first order 0.101 without a step. These runs have 0.104, 0.103 and 0.102 at \
+                     H/dx 30, 60 and 120. The bound adds this uncertainty, 18 %, to 10 %.";
     let mut gates: Vec<Gate> =
         LEVEL_AWAY.map(|away| against(run, away, Bound::Below(0.01), level)).into();
     for window in WINDOWS {
