@@ -6,6 +6,7 @@
 # without it that code is left out. DUALSPHYSICS is a checkout of DualSPHysics at commit ef3721a, likewise; it
 # compiles for half an hour. SPHINXSYS is one of SPHinXsys at commit 9f33297, likewise; it needs CMake and
 # libsimbody-dev, libeigen3-dev, libtbb-dev, libboost-all-dev and libspdlog-dev of Debian, and compiles for an hour.
+# TRIXI is one of TrixiParticles.jl at commit a720b1d, whose results are handed in.
 # SHORT=1 runs the coarsest resolution of each problem only, ONLY=dam_break the problems of one case.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
@@ -133,6 +134,11 @@ for spacing in $spacings; do
     machdyn rubber_rings lagrangian spacing=$spacing
     sphinxsys rubber_rings lagrangian spacing=$spacing
 done
+if [ -n "${TRIXI:-}" ]; then
+    for n in 5 9 17; do
+        problem cantilever lagrangian-saint-venant n=$n csv trixi python3 "$here/trixiparticles/run.py" "$TRIXI"
+    done
+fi
 ( # The path of the end needs 400 frames.
     export FRAMES=400
     if [ -z "${SHORT:-}" ]; then

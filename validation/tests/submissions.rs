@@ -499,6 +499,7 @@ fn the_records_of_other_codes_are_sound() {
         "LAMMPS",
         "PySPH",
         "SPHinXsys",
+        "TrixiParticles.jl",
         "pySPlisHSPlasH",
         "salva2d",
         OURS,

@@ -1,8 +1,7 @@
 """Measures what the authors of TrixiParticles.jl committed of their oscillating beam: python measure.py CHECKOUT
 
 The beam is the cantilever of Turek & Hron, material of St. Venant and Kirchhoff; reference: finite elements of
-`references/cantilever`. Quantities are those of the case `cantilever`, of the first 4 s. There are no particles and
-no run times in these files, so this is a table and no submission.
+`references/cantilever`. Quantities are those of the case `cantilever`, of the first 4 s. `run.py` hands the paths in.
 """
 import csv, json, os, sys
 
