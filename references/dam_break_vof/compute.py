@@ -30,15 +30,6 @@ WINDOWS = (1.0, 2.5)  # impulses are counted for so long after the arrival [(H/g
 RUNNING = (1.0, 2.3)  # the speed of the front is found between these times [(H/g)^(1/2)]
 
 
-def variants():
-    """(name, run) of every variant."""
-    for name, changes in VARIANTS.items():
-        for scene, n in SHARED.items():
-            if name == "high_rim" and scene != "lobovsky":
-                continue
-            yield name, replace(dam.Run(scene, n), **changes)
-
-
 def steps(scene):
     """The runs of a scene on its finest mesh, with its step and with twice the step.
 
@@ -48,10 +39,21 @@ def steps(scene):
     return run, replace(run, courant=DOUBLE)
 
 
+def variants():
+    """(name, run) of every variant, at last twice the step on the finest mesh."""
+    for name, changes in VARIANTS.items():
+        for scene, n in SHARED.items():
+            if name == "high_rim" and scene != "lobovsky":
+                continue
+            yield name, replace(dam.Run(scene, n), **changes)
+    for scene in dam.SCENES:
+        yield "double_step", steps(scene)[1]
+
+
 def runs():
     """All runs, the cheap ones first."""
     base = [dam.Run(scene.name, n) for scene in (dam.REST, *dam.SCENES.values()) for n in scene.meshes]
-    every = dict.fromkeys([*base, *(run for _, run in variants()), *(steps(scene)[1] for scene in dam.SCENES)])
+    every = dict.fromkeys([*base, *(run for _, run in variants())])
     return sorted(every, key=lambda run: np.prod(run.cells) * run.n / run.courant)
 
 
@@ -235,8 +237,7 @@ def summary(folder):
 
 def spread(folder):
     """Rows of spread.csv."""
-    doubled = (("double_step", steps(scene)[1]) for scene in dam.SCENES)
-    for name, run in [*variants(), *doubled]:
+    for name, run in variants():
         made, base = read.load(folder, run), read.load(folder, dam.Run(run.scene, run.n))
         if made is None or base is None:
             continue
