@@ -53,6 +53,14 @@ class Problem:
         below, above = (beside[beside < along[self.fluid].min()], beside[beside > along[self.fluid].max()])
         return below.max(initial=-np.inf) + self.dx / 2, above.min(initial=np.inf) - self.dx / 2
 
+    def held(self):
+        """Who stands within the support before a plane that holds a body, and the images behind it."""
+        for plane in self.json["walls"]["planes"]:
+            point, normal = (np.array(value(plane[of])) for of in ("point", "normal_into_the_material"))
+            distance = (self.x - point) @ normal
+            near = distance < self.support
+            yield near, self.x[near] - 2 * distance[near, None] * normal
+
     def box(self, margin):
         """Lower corner and size of a box that repeats along both axes, wide enough where the problem is open."""
         low, size = self.low.copy(), np.zeros(2)

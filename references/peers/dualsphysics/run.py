@@ -11,7 +11,7 @@ import os, resource, shutil, subprocess, sys
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from common import Problem, Submission, value
+from common import Problem, Submission
 
 programs = os.path.abspath(sys.argv[1])
 walls = sys.argv[2] if len(sys.argv) > 2 else "mDBC"
@@ -22,12 +22,10 @@ gamma, alpha = material.get("exponent_gamma", 7.0), material.get("artificial_vis
 x, v, density = problem.x, problem.v, problem.columns["density"]
 free = problem.fluid  # what the problem asks for
 mass = problem.columns["mass"][free].mean()  # the code has one mass for all
-for plane in problem.json["walls"]["planes"] if solid else []:
-    point, normal = (np.array(value(plane[of])) for of in ("point", "normal_into_the_material"))
-    distance = (x - point) @ normal
-    near = distance < problem.support
-    x = np.concatenate([x, x[near] - 2 * distance[near, None] * normal])
-    v, density = np.concatenate([v, 0 * v[near]]), np.concatenate([density, density[near]])
+for near, images in problem.held() if solid else []:
+    x = np.concatenate([x, images])
+    v = np.concatenate([v, np.zeros_like(images)])
+    density = np.concatenate([density, problem.columns["density"][near]])
     free = np.concatenate([free, np.zeros(near.sum(), bool)])
 # Particles at rest come first, then those of a moving wall or an elastic body, then the fluid.
 moves = free if solid else ~free & (np.abs(v).max(axis=1) > 0)

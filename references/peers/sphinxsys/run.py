@@ -12,7 +12,7 @@ import os, subprocess, sys
 import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from common import Problem, Submission, value
+from common import Problem, Submission
 
 problem = Problem()
 fluid, margin = problem.fluid, 2 * problem.support
@@ -34,12 +34,8 @@ if elastic:
 def copies():
     """Wall particles, and their copies beyond the ends of a period; of a solid what holds it."""
     walls = np.concatenate([problem.x, problem.v], axis=1)[~fluid]
-    for plane in problem.json["walls"]["planes"]:
-        point, normal = (np.array(value(plane[of])) for of in ("point", "normal_into_the_material"))
-        distance = (problem.x - point) @ normal
-        near = distance < problem.support
-        behind = problem.x[near] - 2 * distance[near, None] * normal
-        walls = np.concatenate([walls, np.concatenate([behind, np.zeros_like(behind)], axis=1)])
+    for _, images in problem.held():
+        walls = np.concatenate([walls, np.concatenate([images, np.zeros_like(images)], axis=1)])
     for axis, period in enumerate(problem.period):
         if period is not None and len(walls):
             step = np.zeros(4)

@@ -253,7 +253,7 @@ impl BetweenFaces {
     fn seen(&self, on: &Loaded) -> Vec<Seen> {
         let axis = usize::from(on.domain.period[0].is_some());
         let reach = REACH * on.sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
-        // Across the axis copies are looked for below, where there are any.
+        // Where the other axis is periodic, a copy may be near although the particle is not.
         let aside = if on.domain.period[1 - axis].is_some() { f64::INFINITY } else { reach };
         let place = |i: &u32| (on.state[*i as usize].position, *i as usize);
         let mut sorted: Vec<(Vector2<f64>, usize)> = on.faces.iter().map(place).collect();
