@@ -1,14 +1,14 @@
 //! The lid-driven cavity: a closed box without a free surface, in which densities must not drift. Side
 //! L = 1 m, speed of the lid U = 1 m/s, ρ = 1 kg/m³.
 
-use base::{gate::*, mutation::Constant, record::*, reference::Reference};
+use base::{gate::*, mutation::Constant, record::*, reference::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
-    runs::*, simulate, study::Study, table,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive, simulate,
+    table,
 };
 use maths::metrics::norms::rms;
 use nalgebra::{SMatrix, SVector, Vector2};
-use report::{Axis, ColourMap, Figure, ParticleMap};
+use report::ColourMap;
 use solver::*;
 
 use crate::channel::{Modern, Seed, Stabilised};
@@ -81,7 +81,7 @@ static CASE: Composed<Cavity> = Composed {
     is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies,
+    studies: no_studies,
 };
 
 /// The cavity.
@@ -114,8 +114,7 @@ fn particles(method: &Method, flow: &UnitFlow) -> Vec<Particle> {
 /// have.
 type Place = (Vector2<f64>, usize, [f64; 2]);
 
-fn places(re: f64) -> Result<Vec<Place>, RunError> {
-    let read = || {
+fn places(re: f64) -> Result<Vec<Place>, ReferenceError> {
         let reference = Reference::load("cavity")?;
         let table = reference.table("lines")?;
         let (of, names) = (table.numbers("re")?, table.texts("quantity")?);
@@ -128,8 +127,6 @@ fn places(re: f64) -> Result<Vec<Place>, RunError> {
             Some((place, component, [value[k], ghia[k]]))
         };
         Ok((0..of.len()).filter_map(place).collect())
-    };
-    read().map_err(|error: base::reference::ReferenceError| RunError::Reference(error.to_string()))
 }
 
 /// The velocity at a place: that of a quadratic field that is fitted to the fluid within 4.5 spacings, with
@@ -203,7 +200,8 @@ fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Recor
     let mut record = simulate::begin((NAME, variant), s, m, &numbers, context);
     let mut simulation = (m.build)(parts)?;
     let time = |k: usize| s.end * (0.8 + 0.2 * k as f64 / SAMPLES as f64);
-    let (times, places): (Vec<f64>, _) = ((1..=SAMPLES).map(time).collect(), places(s.re)?);
+    let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
+    let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
     let mut means = Means { means: vec![0.0; places.len()], places, dx };
     let pressure = |density| eos.pressure(density);
     (record.status, record.cost) =
@@ -217,14 +215,12 @@ fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Recor
         means.measure(&mut record);
         all.retain(|p| p.role == Role::Fluid);
         record.put(VOLUME, all.iter().map(|p| p.mass / p.density).sum::<f64>() / volume - 1.0);
-        let is_out = |p: &&Particle| p.position.add_scalar(-0.5).amax() > 0.5;
-        record.put(OUTSIDE, all.iter().filter(is_out).count() as f64);
+        let beyond = all.iter().map(|p| p.position.add_scalar(-0.5).amax() - 0.5);
+        record.put(OUTSIDE, beyond.filter(|beyond| *beyond > 0.0).count() as f64);
     }
     if context.keep_particles {
-        let row = |p: &Particle| [p.position.x, p.position.y, p.velocity.norm()];
-        let (names, rows) = ([("x", "L"), ("y", "L"), ("speed", "U")], all.iter().map(row));
-        let rows: Vec<_> = rows.collect();
-        record.profiles.insert("particles".into(), Profile::of_rows(&names, &rows));
+        let speeds = all.iter().map(|p| (p.position, p.velocity.norm()));
+        pictures::keep(&mut record, "L", ("speed", "U"), speeds);
     }
     Ok(record)
 }
@@ -242,7 +238,7 @@ fn table(tier: Tier) -> table::Table<Cavity, f64> {
     });
     for row in &mut table.rows {
         row.run.seconds = 0.007 * row.settings.end * (row.settings.n as f64 / 12.0).powi(3);
-        if row.settings.n == if tier == Tier::Quick { 22 } else { 64 } {
+        if row.variant == BEST && row.settings.n == if tier == Tier::Quick { 22 } else { 64 } {
             row.run.spec = row.run.spec.clone().keep_particles();
         }
     }
@@ -268,8 +264,7 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
     let run = format!("{variant}.re{re}.{}", s.n);
     let of = |metric, bound, evidence, why| CASE.gate(&run, metric, bound, evidence, why);
     let half = "A wall is known to be where it is within dx/2; the mean slope of the lines is U/L.";
-    let control =
-        "Control: by (3), densities of walls at rest fall for ever beside a lid that glides by.";
+    let control = "Control: by (3), densities of walls fall for ever beside a lid that glides by.";
     let closed = "The box is closed. Pressures of the order ρ U^2 change densities by (U/c0)^2.";
     let rises = "The volume falls by 0.13 to 0.3 % in each L/U: the bound is 0.4 %.";
     let driven = "A lid that is wrong by 3 % must be told. Nothing but compression, (U/c0)^2 = 1 %, makes \
@@ -315,9 +310,13 @@ fn declaration(tier: Tier) -> Declaration {
         ..Accuracy::new(&format!("{NAME}-{re}"), U_RMS, "rms error of u on x = L/2 [U]")
     };
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
+    let caption = "Particles of `consistent` at the end, finest spacing, coloured by speed.";
+    let texts = ["cavity-picture", "The cavity", caption];
+    let panel = |r: &Row| (format!("Re {}", r.group), 1.0 / r.settings.n as f64);
     let speed = Watched::new(Constant::WallSpeed).quick().faults(&[-1.0, 0.5]);
     Declaration {
         curves: vec![curves(&table)],
+        pictures: vec![table.picture(texts, ("speed [U]", ColourMap::Sequential), [300.0, 270.0], panel)],
         accuracy: accuracy.filter(|of| !of.ladders[0].levels.is_empty()).collect(),
         sensitivity: Some(Sensitivity::new(NAME, tier, [CASE.spec(BEST, |s| s.n = 16)], [speed])),
         ..Declaration::default()
@@ -326,9 +325,10 @@ fn declaration(tier: Tier) -> Declaration {
 
 /// Both mid-lines of the finest runs.
 fn curves(table: &table::Table<Cavity, f64>) -> Curves {
+    let finest = table.rows.iter().map(|row| row.settings.n).max().unwrap_or_default();
     let panel = |(re, k): (f64, usize)| {
         let name = ["u", "v"][k];
-        let rows = table.of(re).filter(|row| row.run.spec.keep.particles);
+        let rows = table.of(re).filter(|row| row.settings.n == finest);
         let line =
             |row: &Row| CurveOf::columns(row.variant, row.run.spec.clone(), name, ["place", name]);
         let known = places(re).unwrap_or_default().into_iter().filter(|place| place.1 == k);
@@ -337,7 +337,6 @@ fn curves(table: &table::Table<Cavity, f64>) -> Curves {
         let known = ("finite differences", known);
         CurvePanel::linear(&format!("Re {re}"), axes, rows.map(line).collect(), known)
     };
-    let finest = table.rows.iter().map(|row| row.settings.n).max().unwrap_or_default();
     let panels = [(100.0, 0), (100.0, 1), (1000.0, 0), (1000.0, 1)].map(panel);
     Curves {
         id: "cavity-mid-lines".into(),
@@ -348,19 +347,4 @@ fn curves(table: &table::Table<Cavity, f64>) -> Curves {
         columns: 2,
         panels: panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect(),
     }
-}
-
-fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let caption = "Particles of `consistent` at the end, finest spacing, coloured by speed.";
-    let table = table(tier);
-    let shown = table.rows.iter().filter(|r| r.variant == BEST && r.run.spec.keep.particles);
-    let panels = shown.filter_map(|row| {
-        let points = pictures::points(runs.record(&row.run.spec)?, "particles", "speed");
-        let axes = (Axis::linear("x/L [-]"), Axis::linear("y/L [-]"));
-        let title = format!("Re {}", row.group);
-        let map = ParticleMap::new(&title, axes, "speed [U]", ColourMap::Sequential, points);
-        Some(map.diameter(1.0 / row.settings.n as f64))
-    });
-    let figure = panels.fold(Figure::new("cavity-picture", caption), Figure::panel);
-    vec![Study::new("cavity-picture", "The cavity").block(figure.panel_size(300.0, 270.0))]
 }

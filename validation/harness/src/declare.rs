@@ -10,7 +10,7 @@ use base::{
     spec::{Bisect, Measure, RunSpec},
 };
 use nalgebra::Vector2;
-use report::{Axis, Colour};
+use report::{Axis, Colour, ColourMap};
 use serde_json::Value;
 
 use crate::{
@@ -25,6 +25,8 @@ pub struct Declaration {
     pub card: Option<Card>,
     /// Profiles or histories over their reference.
     pub curves: Vec<Curves>,
+    /// Particles at the end of some runs.
+    pub pictures: Vec<Picture>,
     /// Resolution ladders: order, error against cost.
     pub accuracy: Vec<Accuracy>,
     /// Comparisons with references whose uncertainty is stated.
@@ -553,6 +555,28 @@ pub struct Curves {
     pub panels: Vec<CurvePanel>,
 }
 
+/// Particles at the end of some runs, coloured by what each keeps beside its place.
+pub struct Picture {
+    /// Anchor of the study and of its figure, title of the section, caption.
+    pub texts: [&'static str; 3],
+    /// Name of the colour bar with its unit, and its colours.
+    pub colours: (&'static str, ColourMap),
+    /// Width and height of a panel \[px\].
+    pub size: [f64; 2],
+    /// The panels.
+    pub panels: Vec<Pictured>,
+}
+
+/// The particles of one run.
+pub struct Pictured {
+    /// Title of the panel.
+    pub title: String,
+    /// The run, which keeps particles.
+    pub spec: RunSpec,
+    /// Their spacing, in the unit of their places.
+    pub spacing: f64,
+}
+
 /// One panel of curves.
 pub struct CurvePanel {
     /// Title of the panel.
@@ -650,6 +674,8 @@ impl Declaration {
         }
         let panels = self.curves.iter().flat_map(|curves| &curves.panels);
         panels.flat_map(|panel| &panel.lines).for_each(|line| plain(&line.spec));
+        let pictured = self.pictures.iter().flat_map(|picture| &picture.panels);
+        pictured.for_each(|panel| plain(&panel.spec));
         self.card.iter().flat_map(|card| &card.runs).for_each(&mut plain);
         runs
     }

@@ -1,9 +1,48 @@
 //! Pictures of particles, from what a record keeps of them.
 
-use base::record::Record;
+use base::record::{Profile, Record};
+use nalgebra::Vector2;
+use report::{Axis, Figure, ParticleMap};
+
+use crate::{
+    declare::{Picture, Pictured},
+    runs::Runs,
+    study::Study,
+};
+
+/// The profile of the particles at the end of a run.
+pub const END: &str = "particles";
+
+/// Keeps places in a unit, and a number of each particle.
+pub fn keep(
+    record: &mut Record,
+    unit: &str,
+    (name, of): (&str, &str),
+    particles: impl Iterator<Item = (Vector2<f64>, f64)>,
+) {
+    let rows: Vec<[f64; 3]> = particles.map(|(x, value)| [x.x, x.y, value]).collect();
+    let profile = Profile::of_rows(&[("x", unit), ("y", unit), (name, of)], &rows);
+    record.profiles.insert(END.into(), profile);
+}
 
 /// Places of the particles of a profile, each with its value of a column; none if there is no such profile.
 pub fn points(record: &Record, profile: &str, value: &str) -> Vec<(f64, f64, f64)> {
     let [x, y, values] = ["x", "y", value].map(|name| record.column(profile, name));
     x.iter().zip(y).zip(values).map(|((x, y), value)| (*x, *y, *value)).collect()
+}
+
+/// The runs that are there.
+pub(crate) fn study(of: &Picture, runs: &Runs) -> Study {
+    let panel = |Pictured { title, spec, spacing }: &Pictured| {
+        let record = runs.record(spec)?;
+        let [x, _, value] = &record.profiles.get(END)?.columns[..] else { return None };
+        let axes = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
+        let points = points(record, END, &value.name);
+        let (label, colours) = of.colours;
+        let map = ParticleMap::new(title, axes.into(), label, colours, points);
+        Some(map.diameter(*spacing))
+    };
+    let [id, title, caption] = of.texts;
+    let figure = Figure::new(id, caption).panel_size(of.size[0], of.size[1]);
+    Study::new(id, title).block(of.panels.iter().filter_map(panel).fold(figure, Figure::panel))
 }

@@ -4,12 +4,13 @@
 //! so none of them states variants, resolutions or tiers again.
 
 use base::{gate::Gate, mutation::Disorder, settings::Settings, spec::RunSpec};
+use report::ColourMap;
 
 use std::ops::RangeInclusive;
 
 use crate::{
     composed::Composed,
-    declare::{Ladder, Level},
+    declare::{Ladder, Level, Picture, Pictured},
     planned::{Planned, Tier},
 };
 
@@ -120,6 +121,22 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
             Level { run: row.run.clone(), spacing, label }
         });
         Ladder::new(variant, levels.collect())
+    }
+
+    /// A picture of the runs that keep particles; `panel` gives the title of one, and its spacing.
+    pub fn picture(
+        &self,
+        texts: [&'static str; 3],
+        colours: (&'static str, ColourMap),
+        size: [f64; 2],
+        panel: impl Fn(&Row<T, G>) -> (String, f64),
+    ) -> Picture {
+        let kept = self.rows.iter().filter(|row| row.run.spec.keep.particles);
+        let panels = kept.map(|row| {
+            let (title, spacing) = panel(row);
+            Pictured { title, spec: row.run.spec.clone(), spacing }
+        });
+        Picture { texts, colours, size, panels: panels.collect() }
     }
 
     /// The plan: every run with its gates.

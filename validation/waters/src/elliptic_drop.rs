@@ -3,12 +3,12 @@
 
 use base::{gate::*, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
-    runs::Runs, simulate, study::Study, table,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive, simulate,
+    table,
 };
 use maths::exact::EllipticDrop as Exact;
 use nalgebra::Vector2;
-use report::{Axis, ColourMap, Figure, ParticleMap, sig};
+use report::ColourMap;
 use solver::*;
 
 use super::{
@@ -206,12 +206,11 @@ fn run(
     record.state = Some(simulate::state(&particles));
     if context.keep_particles {
         let centre = shape(particles.iter().map(evolved)).centre;
-        let column = |f: &dyn Fn(&Particle) -> f64| particles.iter().map(f).collect();
-        let profile = Profile::default()
-            .with("x", "m", column(&|p| p.position.x - centre.x))
-            .with("y", "m", column(&|p| p.position.y - centre.y))
-            .with("p", "Pa", column(&|p| medium.eos.pressure(p.density)));
-        record.profiles.insert("particles".into(), profile);
+        let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
+        let pressures = particles.iter().map(|p| {
+            ((p.position - centre) / s.radius, medium.eos.pressure(p.density) / scale)
+        });
+        pictures::keep(&mut record, "R", ("p", "p(0)"), pressures);
     }
     Ok(record)
 }
@@ -233,7 +232,7 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies,
+    studies: no_studies,
 };
 
 /// What a run is for.
@@ -297,7 +296,14 @@ fn declaration(tier: Tier) -> Declaration {
         ladders: VARIANTS.map(ladder).into(),
         ..Accuracy::new("elliptic-drop", B_ERROR, "largest error of the semi-axis b [-]")
     };
-    Declaration { accuracy: vec![accuracy], costly: &ledger::METRICS, ..Declaration::default() }
+    let caption = "The drop of `modern` at the end, 40 particles across, coloured by pressure over the exact \
+                   initial pressure at its centre; its rows are two initial spacings apart.";
+    let texts = ["elliptic-drop-picture", "A free drop at the end", caption];
+    let colours = ("p/p(0) [-]", ColourMap::Sequential);
+    let pictures =
+        vec![table.picture(texts, colours, [360.0, 320.0], |_| ("A t = 0.8".into(), 0.05))];
+    let costly = &ledger::METRICS;
+    Declaration { accuracy: vec![accuracy], pictures, costly, ..Declaration::default() }
 }
 
 fn gates(row: &Row) -> Vec<Gate> {
@@ -339,29 +345,6 @@ fn gates(row: &Row) -> Vec<Gate> {
         }));
     }
     gates
-}
-
-fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let table = table(tier);
-    let pictured = table.rows.iter().find(|row| is_pictured(row));
-    let record = pictured.and_then(|row| runs.record(&row.run.spec));
-    let study = Study::new("elliptic-drop-picture", "A free drop at the end");
-    record.map(|record| study.block(picture(record))).into_iter().collect()
-}
-
-fn picture(record: &Record) -> Figure {
-    let s = record.settings_as::<DropSettings>();
-    let (r, scale) = (s.radius, s.rho * Exact::circle(s.radius, s.strain).central_pressure());
-    let points = pictures::points(record, "particles", "p");
-    let points = points.into_iter().map(|(x, y, p)| (x / r, y / r, p / scale)).collect();
-    let axes = (Axis::linear("x [R]").range(-0.7, 0.7), Axis::linear("y [R]"));
-    let title = format!("A t = {}", sig(s.end, 2));
-    let map = ParticleMap::new(&title, axes, "p/p(0) [-]", ColourMap::Sequential, points);
-    let caption = "The drop of `modern` at the end, 40 particles across, coloured by pressure over the exact \
-                   initial pressure at its centre; its rows are two initial spacings apart.";
-    Figure::new("elliptic-drop-picture", caption)
-        .panel(map.diameter(2.0 / s.n as f64))
-        .panel_size(360.0, 320.0)
 }
 
 #[cfg(test)]

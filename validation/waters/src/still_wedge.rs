@@ -2,12 +2,12 @@
 
 use base::{gate::*, mutation::Constant, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
-    runs::Runs, simulate, study::Study, table,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive, simulate,
+    table,
 };
 use maths::metrics::norms::rms;
 use nalgebra::Vector2;
-use report::{Axis, ColourMap, Figure, ParticleMap};
+use report::ColourMap;
 use solver::*;
 
 use super::water::{self, Diffusion, Modern, Seed, WaterMethod, method};
@@ -73,7 +73,7 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
     is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies,
+    studies: no_studies,
 };
 
 /// Half of the width of the tank \[H\].
@@ -245,11 +245,9 @@ fn measure(moments: &Moments, all: &[Particle], is_kept: bool, record: &mut Reco
         |p: &&Particle| (p.position.x - HALF).abs() > HALF || p.position.y < floor(s, p.position.x);
     record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
     if is_kept {
-        let places = water.map(|p| (p.position.x, p.position.y));
-        let (x, y): (Vec<f64>, Vec<f64>) = places.unzip();
-        let errors = moments.errors.iter().map(|sum| sum / moments.samples).collect();
-        let profile = Profile::default().with("x", "H", x).with("y", "H", y);
-        record.profiles.insert("particles".into(), profile.with("error", "rho g H", errors));
+        let errors = moments.errors.iter().map(|sum| sum / moments.samples);
+        let errors = water.map(|p| p.position).zip(errors);
+        pictures::keep(record, "H", ("error", "rho g H"), errors);
     }
 }
 
@@ -321,21 +319,11 @@ fn declaration(tier: Tier) -> Declaration {
     let watched = [Watched::new(Constant::BodyForce).quick(), Watched::new(Constant::Density)];
     let run = STILL_WEDGE.spec("modern", |_| {});
     let sensitivity = Some(Sensitivity::new(NAME, tier, [run], watched));
-    Declaration { accuracy: vec![accuracy], sensitivity, ..Declaration::default() }
-}
-
-fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let caption = "Mean error of the pressure of each particle over the last quarter of the run, with 20 \
                    spacings along the depth.";
-    let table = table(tier);
-    let panels = table.rows.iter().filter(|row| row.settings.n == 20).filter_map(|row| {
-        let points = pictures::points(runs.record(&row.run.spec)?, "particles", "error");
-        let axes = (Axis::linear("x/H [-]"), Axis::linear("y/H [-]"));
-        let label = "(p − p_exact)/(ρ g H) [-]";
-        let map = ParticleMap::new(row.variant, axes, label, ColourMap::Diverging, points);
-        Some(map.diameter(1.0 / 20.0))
-    });
-    let figure = panels.fold(Figure::new("still-wedge-errors", caption), Figure::panel);
-    let figure = figure.panel_size(360.0, 220.0);
-    vec![Study::new("still-wedge-errors", "Errors of still water over a wedge").block(figure)]
+    let texts = ["still-wedge-errors", "Errors of still water over a wedge", caption];
+    let colours = ("p − p_exact [ρ g H]", ColourMap::Diverging);
+    let pictures =
+        vec![table.picture(texts, colours, [360.0, 220.0], |row| (row.variant.into(), 0.05))];
+    Declaration { accuracy: vec![accuracy], pictures, sensitivity, ..Declaration::default() }
 }

@@ -10,7 +10,8 @@ use base::{
     record::{Profile, Record, Status},
 };
 use harness::{
-    case::RunError, composed::Program, context::Context, method::Method, runner::Drive, simulate,
+    case::RunError, composed::Program, context::Context, method::Method, pictures, runner::Drive,
+    simulate,
 };
 use maths::exact::TaylorGreen;
 
@@ -107,7 +108,7 @@ fn run(
     if record.status == Status::Completed {
         measure(&setup, [&start, &end], &series, &mut record);
         if context.keep_particles {
-            record.profiles.insert("particles".into(), particles(&setup, &*simulation));
+            particles(&setup, &*simulation, &mut record);
         }
     }
     let columns = [("t", "L/U"), ("error", "-")];
@@ -173,14 +174,13 @@ fn nearest(particles: &[Particle]) -> f64 {
 }
 
 /// The particles themselves: x, y, error.
-fn particles(setup: &Setup, simulation: &dyn Stepper<()>) -> Profile {
+fn particles(setup: &Setup, simulation: &dyn Stepper<()>, record: &mut Record) {
     let (t, scale) = (simulation.time(), setup.exact.decay(simulation.time()));
-    let row = |p: &Particle| {
+    let all = simulation.particles().into_iter().map(|p| {
         let error = (p.velocity - setup.exact.velocity(p.position, t)).norm() / scale;
-        [p.position.x.rem_euclid(1.0), p.position.y.rem_euclid(1.0), error]
-    };
-    let rows: Vec<[f64; 3]> = simulation.particles().iter().map(row).collect();
-    Profile::of_rows(&[("x", "m"), ("y", "m"), ("error", "U exp(bt)")], &rows)
+        (p.position.map(|x| x.rem_euclid(1.0)), error)
+    });
+    pictures::keep(record, "L", ("error", "U exp(bt)"), all);
 }
 
 #[cfg(test)]
