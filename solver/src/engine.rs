@@ -28,8 +28,11 @@ pub struct Engine<P: Physics> {
     wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
     pub(crate) data: ParticleData<P::Extra>,
     columns: Vec<Column<Derived<P>>>,
-    /// What was found in each block while filling columns.
+    /// What was found in each block while filling columns, and of what was not filled.
     extents: Vec<Extent>,
+    /// What was found of particles that need not be filled again until lists are built: those of walls that
+    /// extrapolate, which do not move.
+    still: Option<Extent>,
     /// What wall particles extrapolate: empty where they do not.
     extrapolated: Vec<Evolved<P::Extra>>,
     /// Columns with wall particles at their feet: empty where these have none.
@@ -46,9 +49,18 @@ impl<P: Physics> Engine<P> {
         walls: &P::Walls,
         data: ParticleData<P::Extra>,
     ) -> Self {
-        let (wall_terms, columns, extents) = (walls.terms(), vec![], vec![]);
-        let (extrapolated, on_feet, inverses) = (vec![], vec![], vec![]);
-        Self { kernel, terms, wall_terms, data, columns, extents, extrapolated, on_feet, inverses }
+        Self {
+            kernel,
+            terms,
+            wall_terms: walls.terms(),
+            data,
+            columns: vec![],
+            extents: vec![],
+            still: None,
+            extrapolated: vec![],
+            on_feet: vec![],
+            inverses: vec![],
+        }
     }
 
     /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
@@ -89,7 +101,10 @@ impl<P: Physics> Engine<P> {
     /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
     /// 0 for wall particles: walls are at rest, and images have the differences that follow.
     pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), Fault> {
+        // Here walls have another velocity.
+        self.still = None;
         self.fill(state)?;
+        self.still = None;
         self.refresh_walls(state, 0.0);
         Ok(())
     }
@@ -266,6 +281,7 @@ impl<P: Physics> Engine<P> {
         self.data.enter(Phase::Search);
         self.data.neighbours.place(positions);
         self.data.build_lists(P::Walls::EXTRAPOLATES);
+        self.still = None;
         let columns = self.data.fixed.len() + self.data.neighbours.images.len();
         self.columns.resize(columns + 1, Column::sentinel());
         self.columns[columns] = Column::sentinel();
@@ -276,9 +292,13 @@ impl<P: Physics> Engine<P> {
     /// were built.
     fn fill(&mut self, state: &State<P>) -> Result<Extent, Fault> {
         self.data.enter(Phase::Refresh);
-        let Self { terms, data, columns, extents, .. } = self;
-        extents.resize(state.len().div_ceil(BLOCK), Extent::NIL);
-        let blocks = columns[..state.len()].chunks_mut(BLOCK).zip(&mut *extents).enumerate();
+        let Self { terms, data, columns, extents, still, .. } = self;
+        let fluid = data.counts[0];
+        let filled = if still.is_some() { fluid } else { state.len() };
+        let count = filled.div_ceil(BLOCK);
+        extents.resize(count + 1, Extent::NIL);
+        extents[count] = still.unwrap_or(Extent::NIL);
+        let blocks = columns[..filled].chunks_mut(BLOCK).zip(&mut *extents).enumerate();
         parallel::for_each(blocks, data.parallel, &|(b, (columns, extent))| {
             let particles = b * BLOCK..b * BLOCK + columns.len();
             let (state, fixed) = (&state[particles.clone()], &data.fixed[particles.clone()]);
@@ -289,6 +309,9 @@ impl<P: Physics> Engine<P> {
             }
             *extent = data.extent(state, &data.neighbours.built_at[particles]);
         });
+        if P::Walls::EXTRAPOLATES && still.is_none() {
+            *still = Some(data.extent(&state[fluid..], &data.neighbours.built_at[fluid..]));
+        }
         data.check(state, extents)
     }
 
@@ -309,6 +332,10 @@ impl<P: Physics> Engine<P> {
         let mut implied = std::mem::take(&mut self.extrapolated);
         implied.clear();
         implied.extend_from_slice(&state[walls]);
+        // What they extrapolated before is not what they have.
+        for (column, own) in self.columns[fluid..].iter_mut().zip(&implied) {
+            (column.velocity, column.common.density) = (own.velocity, own.density);
+        }
         let update = |_, target: &mut Evolved<P::Extra>, rate: &Rate<P::Extra>| {
             target.velocity += rate.velocity;
             target.density = rate.density;

@@ -3,8 +3,8 @@
 
 use base::{gate::*, mutation::Constant, record::*, reference::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive, simulate,
-    table,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
+    simulate, table,
 };
 use maths::metrics::norms::rms;
 use nalgebra::{SMatrix, SVector, Vector2};
@@ -115,18 +115,18 @@ fn particles(method: &Method, flow: &UnitFlow) -> Vec<Particle> {
 type Place = (Vector2<f64>, usize, [f64; 2]);
 
 fn places(re: f64) -> Result<Vec<Place>, ReferenceError> {
-        let reference = Reference::load("cavity")?;
-        let table = reference.table("lines")?;
-        let (of, names) = (table.numbers("re")?, table.texts("quantity")?);
-        let (value, ghia) = (table.numbers("value")?, table.numbers("published")?);
-        let places = table.optional("place")?;
-        let place = |k: usize| {
-            let along = places[k].filter(|x| *x > 0.0 && *x < 1.0 && of[k] == re)?;
-            let component = usize::from(names[k] == "v");
-            let place = [Vector2::new(0.5, along), Vector2::new(along, 0.5)][component];
-            Some((place, component, [value[k], ghia[k]]))
-        };
-        Ok((0..of.len()).filter_map(place).collect())
+    let reference = Reference::load("cavity")?;
+    let table = reference.table("lines")?;
+    let (of, names) = (table.numbers("re")?, table.texts("quantity")?);
+    let (value, ghia) = (table.numbers("value")?, table.numbers("published")?);
+    let places = table.optional("place")?;
+    let place = |k: usize| {
+        let along = places[k].filter(|x| *x > 0.0 && *x < 1.0 && of[k] == re)?;
+        let component = usize::from(names[k] == "v");
+        let place = [Vector2::new(0.5, along), Vector2::new(along, 0.5)][component];
+        Some((place, component, [value[k], ghia[k]]))
+    };
+    Ok((0..of.len()).filter_map(place).collect())
 }
 
 /// The velocity at a place: that of a quadratic field that is fitted to the fluid within 4.5 spacings, with
@@ -316,7 +316,12 @@ fn declaration(tier: Tier) -> Declaration {
     let speed = Watched::new(Constant::WallSpeed).quick().faults(&[-1.0, 0.5]);
     Declaration {
         curves: vec![curves(&table)],
-        pictures: vec![table.picture(texts, ("speed [U]", ColourMap::Sequential), [300.0, 270.0], panel)],
+        pictures: vec![table.picture(
+            texts,
+            ("speed [U]", ColourMap::Sequential),
+            [300.0, 270.0],
+            panel,
+        )],
         accuracy: accuracy.filter(|of| !of.ladders[0].levels.is_empty()).collect(),
         sensitivity: Some(Sensitivity::new(NAME, tier, [CASE.spec(BEST, |s| s.n = 16)], [speed])),
         ..Declaration::default()

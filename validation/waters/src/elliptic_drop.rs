@@ -3,8 +3,8 @@
 
 use base::{gate::*, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive, simulate,
-    table,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
+    simulate, table,
 };
 use maths::exact::EllipticDrop as Exact;
 use nalgebra::Vector2;
@@ -207,9 +207,9 @@ fn run(
     if context.keep_particles {
         let centre = shape(particles.iter().map(evolved)).centre;
         let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
-        let pressures = particles.iter().map(|p| {
-            ((p.position - centre) / s.radius, medium.eos.pressure(p.density) / scale)
-        });
+        let pressures = particles
+            .iter()
+            .map(|p| ((p.position - centre) / s.radius, medium.eos.pressure(p.density) / scale));
         pictures::keep(&mut record, "R", ("p", "p(0)"), pressures);
     }
     Ok(record)

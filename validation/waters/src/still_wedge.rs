@@ -2,8 +2,8 @@
 
 use base::{gate::*, mutation::Constant, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive, simulate,
-    table,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
+    simulate, table,
 };
 use maths::metrics::norms::rms;
 use nalgebra::Vector2;

@@ -113,9 +113,12 @@ impl Setup {
             }
         }
         for curve in self.curves() {
+            let first = particles.len();
             for row in curve.rows_behind(dx, self.first, self.flow.support) {
                 particles.extend(row.particles(dx, 1.0, |_| Vector2::zeros()));
             }
+            // Particles in one list should see the same fluid.
+            particles[first..].sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
         }
         particles
     }
