@@ -73,6 +73,13 @@ class Problem:
         return low, size
 
 
+def describe(method, system):
+    """Writes who made the run, and what it took."""
+    for name, document in (("method.json", method), ("system.json", system)):
+        with open(name, "w") as file:
+            json.dump(document, file, indent=1)
+
+
 class Submission:
     """Frames and clock of a run; seconds are processor time of the time loop."""
 
@@ -106,6 +113,4 @@ class Submission:
                   "interactions": "unknown"}
         method = {"code": code, "version": version, "scheme": scheme, "division": division,
                   "settings": settings, "changed": changed}
-        for name, document in (("system.json", system), ("method.json", method)):
-            with open(name, "w") as file:
-                json.dump(document, file, indent=1)
+        describe(method, system)

@@ -135,17 +135,21 @@ for spacing in $spacings; do
     sphinxsys rubber_rings lagrangian spacing=$spacing
 done
 if [ -n "${TRIXI:-}" ]; then
-    for n in 5 9 17; do
-        problem cantilever lagrangian-saint-venant n=$n csv trixi python3 "$here/trixiparticles/run.py" "$TRIXI"
+    for n in 5 9 17 33 65; do
+        problem cantilever lagrangian-saint-venant n=$n csv trixi "$python" "$here/trixiparticles/run.py" "$TRIXI"
     done
 fi
 ( # The path of the end needs 400 frames.
     export FRAMES=400
     if [ -z "${SHORT:-}" ]; then
+        ours cantilever lagrangian n=5
         machdyn cantilever lagrangian n=5
         dualsphysics cantilever lagrangian n=5 none
     fi
-    for n in $layers; do dualsphysics cantilever lagrangian "n=$n end=0.75" none; done
+    for n in $layers; do
+        ours cantilever lagrangian "n=$n end=0.75"
+        dualsphysics cantilever lagrangian "n=$n end=0.75" none
+    done
     export COURANT=0.2
     for n in $layers; do machdyn cantilever lagrangian "n=$n end=0.75"; done
     if [ -z "${SHORT:-}" ]; then sphinxsys cantilever lagrangian n=5; fi

@@ -5,6 +5,9 @@ variant `lagrangian-saint-venant`. The files hold the path of the end, and neith
 """
 import json, os, sys
 
+sys.path.append(os.path.join(os.path.dirname(__file__), ".."))
+from common import describe
+
 with open("problem.json") as file:
     problem = json.load(file)
 layers, end = problem["spec"]["settings"]["n"], problem["end"]["value"]
@@ -20,7 +23,4 @@ with open("curve.csv", "w") as file:
 method = {"code": found["meta"]["solver_name"], "version": "commit a720b1d", "division": "open",
           "scheme": "total Lagrangian", "settings": {"layers": layers},
           "changed": "the outermost particles are on the faces of the bar"}
-unknown = ("machine", "threads", "seconds", "steps", "interactions")
-for name, document in (("method.json", method), ("system.json", dict.fromkeys(unknown, "unknown"))):
-    with open(name, "w") as file:
-        json.dump(document, file, indent=1)
+describe(method, dict.fromkeys(("machine", "threads", "seconds", "steps", "interactions"), "unknown"))

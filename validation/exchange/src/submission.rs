@@ -249,6 +249,19 @@ impl Entry {
         Ok(())
     }
 
+    /// The problem in whose scene it is measured, if that is not the one that it solves: a series of one
+    /// point does not depend on the resolution, and a fine scene would take its memory once a time.
+    ///
+    /// # Errors
+    /// As [`Problem::of`].
+    pub fn scene(&self, case: &dyn Case, problem: &Problem) -> Result<Option<Problem>, RunError> {
+        let curve = self.curve.as_ref().and_then(|_| case.declaration(Tier::Quick).curve);
+        let Some(coarsen) = curve.and_then(|curve| curve.coarsen) else { return Ok(None) };
+        let mut spec = problem.spec.clone();
+        coarsen(&mut spec.settings);
+        Problem::of(case, spec).map(Some)
+    }
+
     /// Whose particles are measured: those of the problem stand for a curve.
     fn particles(&self) -> Division {
         if self.curve.is_some() { Division::Closed } else { self.method.division }

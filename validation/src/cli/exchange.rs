@@ -7,7 +7,7 @@ use ::exchange::{
     challenge,
     flaw::Flaw,
     problem::{Asked, Problem, Sealed},
-    read::{COLUMNS, RESULTS},
+    read::{COLUMNS, RESULTS, curve::CURVE},
     submission::{self, Entry, METHOD, SYSTEM},
     write::{self, Format, WriteError},
 };
@@ -16,10 +16,10 @@ use base::{
     record::{Profile, Record, Status},
     reference::sha256,
     spec::RunSpec,
-    submission::OURS,
+    submission::{Division, OURS},
 };
 use harness::{
-    case::{self, Case, RunError},
+    case::{self, Case, RunError, Tier},
     context::Context,
     outline::Sink,
     relation::Relation,
@@ -129,10 +129,28 @@ fn solve(
         "steps": counted(json!(cost.steps)),
         "interactions": counted(json!(cost.pair_interactions)),
     });
-    folder.write(RESULTS, &table.into_bytes())?;
+    let (name, table) = match series(case, &record)? {
+        Some(series) => (CURVE, series),
+        None => (RESULTS, table),
+    };
+    folder.write(name, &table.into_bytes())?;
     folder.write(METHOD, (serde_json::to_string_pretty(&method)? + "\n").as_bytes())?;
     folder.write(SYSTEM, (serde_json::to_string_pretty(&system)? + "\n").as_bytes())?;
-    Ok([RESULTS, METHOD, SYSTEM].map(String::from).into())
+    Ok([name, METHOD, SYSTEM].map(String::from).into())
+}
+
+/// The series from which a case measures more than from particles at its few times, if it has one.
+fn series(case: &dyn Case, record: &Record) -> Result<Option<CsvTable>, Failure> {
+    let curve = case.declaration(Tier::Quick).curve.filter(|curve| curve.coarsen.is_some());
+    let Some((name, columns)) = curve.map(|curve| curve.shown) else { return Ok(None) };
+    let Some(profile) = record.profiles.get(name) else { return Ok(None) };
+    let heads = profile.columns.iter().map(|column| format!("{}[{}]", column.name, column.unit));
+    let heads: Vec<String> = heads.collect();
+    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
+    for k in 0..record.column(name, columns[0]).len() {
+        table.numbers(&columns.iter().map(|of| record.column(name, of)[k]).collect::<Vec<_>>())?;
+    }
+    Ok(Some(table))
 }
 
 pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
@@ -159,9 +177,15 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     world.check_references(&[case])?;
     let mut entry = read(&arguments.folder, &arguments.map)?;
     let problem = problem(case, &entry, arguments)?;
-    entry.stand_for(case, &problem).map_err(|flaws| refused(&flaws))?;
-    check(&entry, &problem)?;
-    let record = measured(case, &entry, &problem.spec, &arguments.folder, world)?;
+    let coarse = entry.scene(case, &problem)?;
+    let scene = coarse.as_ref().unwrap_or(&problem);
+    entry.stand_for(case, scene).map_err(|flaws| refused(&flaws))?;
+    check(&entry, scene)?;
+    let mut record = measured(case, &entry, &scene.spec, &arguments.folder, world)?;
+    record.settings = problem.spec.settings.clone();
+    if entry.curve.is_some() && entry.method.division == Division::Closed {
+        record.cost.particles = problem.moving().len();
+    }
     if arguments.check {
         output::say("complete: every fact that a submission needs is there; nothing was recorded");
         return Ok(Exit::Pass);

@@ -56,6 +56,7 @@ fn profile() -> Curve {
             starts.iter().map(place).collect()
         },
         metrics: vec![L2, LINF, SHEAR_LOWER, SHEAR_UPPER, L2_WORST],
+        coarsen: None,
         shown: ("u@", &["y", "u", "u_exact"]),
     }
 }

@@ -45,7 +45,9 @@ pub fn table(tier: Tier) -> Table {
     let coarse = [4, 5, 7, 10].map(|n| (50.0, n, END, false));
     table.over(For::Ladder, &["interface-wall", BEST], [&quick, &coarse], flow);
     table.over(For::Ladder, &["modern", "consistent", SINGLE_SWEEP], [&[], &coarse], flow);
-    table.over(For::Ladder, &[BEST], [&[], &[(50.0, 20, END, false)]], flow);
+    // Means of the reattachment over 16 H/U_b differ by 0.007 H, so it is taken over 48.
+    let long = |s: &mut HillSettings, n| (s.re, s.n, s.end, s.average) = (50.0, n, 2.0 * END, 0.3);
+    table.over(For::Ladder, &[BEST], [&[], &[20]], long);
     // At ten spacings from the reference as well: the start must not matter.
     let full = [
         (10.0, 10, 15.0, false),
@@ -143,8 +145,9 @@ fn of_reference(gate: Gating, re: f64, n: usize) -> Vec<Gate> {
     let velocity = "The goal is 4 % of U_b at 10 spacings, 2 % at 20 and 1 % at 40: first order.";
     let force = "The force follows the velocity at the walls, so it has the same goal.";
     let places = "The goal is a tenth of H, half of it at 40 spacings, where the flow has not come to rest, \
-                  and 0.01 H of the reattachment at 20 spacings at Re 50, where it has. The reference is \
-                  known to 7e-4 H, and the measure is exact to 2e-3 H.";
+                  and 0.01 H of the reattachment at 20 spacings at Re 50, where it has, as a mean over 48 \
+                  H/U_b; means over 16 differ by 0.007 H. The reference is known to 7e-4 H, and the measure \
+                  is exact to 2e-3 H.";
     let mut gates = vec![
         gate(L2_U, Bound::Below(goal(n)), Evidence::Reference, velocity),
         gate(FORCE_ERROR, around(goal(n)), Evidence::Reference, force),

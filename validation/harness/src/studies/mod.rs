@@ -18,14 +18,21 @@ pub mod validation;
 pub use card::{Headline, card};
 pub use limit::of_theory as limit_of_theory;
 
-use crate::{declare::Declaration, pictures, runs::Runs, study::Study};
+use crate::{
+    declare::{Accuracy, Declaration},
+    pictures,
+    runs::Runs,
+    study::Study,
+};
 
 /// All studies of a declaration, in the order of the report.
 pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     let mut studies: Vec<Study> =
         declared.curves.iter().map(|curves| curves::study(curves, runs)).collect();
     studies.extend(declared.pictures.iter().map(|picture| pictures::study(picture, runs)));
-    studies.extend(declared.accuracy.iter().map(|accuracy| cost::study(accuracy, runs)));
+    let has_ladder = |of: &&Accuracy| of.ladders.iter().any(|ladder| ladder.levels.len() > 1);
+    let accuracy = declared.accuracy.iter().filter(has_ladder);
+    studies.extend(accuracy.map(|accuracy| cost::study(accuracy, runs)));
     if !declared.comparisons.is_empty() {
         studies.push(validation::study(case, &declared.comparisons, runs));
     }

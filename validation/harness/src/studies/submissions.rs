@@ -15,7 +15,7 @@ struct Mark<'a> {
     of: &'a Submission,
     /// Code, scheme and the variant of its problem; of ours the variant.
     name: String,
-    /// How many; 0 of a profile or a series.
+    /// How many; 0 of a profile or a series of the open division.
     particles: usize,
     /// When it was made together with others.
     session: Option<&'a str>,
@@ -59,7 +59,9 @@ fn better(marks: &[Mark]) -> Option<String> {
         let with = || ours.iter().filter(|own| own.session == peer.session);
         let equal = with().filter(|own| own.particles == peer.particles);
         let error = least(&mut equal.map(|own| own.error));
-        let who = format!("{} ({} particles, {})", peer.name, peer.particles, peer.of.division);
+        let many = Some(peer.particles).filter(|many| *many > 0);
+        let many = many.map_or(String::new(), |many| format!("{many} particles, "));
+        let who = format!("{} ({many}{})", peer.name, peer.of.division);
         if error.is_finite() && peer.error < error {
             let [its, best] = [peer.error, error].map(|error| percent(error, 2));
             found.push(format!("{who} has an error of {its}, the best of ours {best}"));
@@ -93,7 +95,10 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
         let plot = Plot::new(format!("{division} division"), x, y).legend(Legend::Outside);
         let series = |(k, all): (usize, &[&Mark])| {
             let points = all.iter().map(|mark| (mark.seconds, mark.error)).collect();
-            let labels = all.iter().map(|mark| mark.particles.to_string());
+            let labels = all.iter().map(|mark| match mark.particles {
+                0 => String::new(),
+                particles => particles.to_string(),
+            });
             let series = Series::line_markers(&all[0].name, points).cycle(k).labels(labels);
             if all[0].of.code == OURS { series.colour(Colour::BLACK) } else { series }
         };
@@ -161,7 +166,10 @@ fn table(declared: &Declaration, runs: &Runs) -> report::Table {
         .text("division", |(of, ..)| of.division.to_string())
         .text("code", |(of, ..)| of.to_string())
         .code("variant of the problem", |(_, run, _)| &run.record.variant)
-        .num(["particles", "1"], |(_, run, _)| Cell::count(run.record.cost.particles as u64))
+        .num(["particles", "1"], |(_, run, _)| match run.record.cost.particles {
+            0 => Cell::text("–"),
+            particles => Cell::count(particles as u64),
+        })
         .of(["error", "-"], |(.., error)| *error, |error| Cell::percent(error, 2))
         .of(["processor time", "s"], |(_, run, _)| run.record.cost.cpu_s, Cell::seconds)
         .text("gates", gates)

@@ -11,7 +11,7 @@ use base::{
 };
 use harness::{
     case::Tier,
-    declare::{Curve, Declaration, Sensitivity, Watched},
+    declare::{Accuracy, Curve, Declaration, Sensitivity, Watched},
     table::{Row, Table},
 };
 
@@ -20,21 +20,23 @@ use harness::{
 pub enum For {
     /// Frequency, mean and amplitude of the end.
     Whole,
+    /// The same under a tenth of the weight.
+    Light,
     /// The first swing.
     First,
     /// The same by the equations of the paper.
     Paper,
 }
-use For::{First, Paper, Whole};
+use For::{First, Light, Paper, Whole};
 
 /// Every run.
 pub fn table(tier: Tier) -> Table<CantileverSettings, For> {
-    // Short runs end after the first swing [s].
-    let short = |s: &mut CantileverSettings, gravity| (s.n, s.gravity, s.end) = (5, gravity, 0.75);
+    let short =
+        |s: &mut CantileverSettings, gravity| (s.n, s.gravity, s.end) = (5, gravity, FIRST_SWING);
     let layers = |s: &mut CantileverSettings, n| s.n = n;
     let mut table = Table::new(&CANTILEVER, tier);
     table.over(Whole, &[LAGRANGIAN], [&[], &[5, 10, 20]], layers);
-    table.over(Whole, &[LAGRANGIAN], [&[], &[0.2]], |s, gravity| s.gravity = gravity);
+    table.over(Light, &[LAGRANGIAN], [&[], &[0.2]], |s, gravity| s.gravity = gravity);
     table.over(Whole, &[NEO_HOOKEAN, SAINT_VENANT], [&[], &[10]], layers);
     table.over(First, &[LAGRANGIAN, NEO_HOOKEAN, SAINT_VENANT], [&[2.0]; 2], short);
     table.over(Paper, &["seed"], [&[], &[2.0]], short);
@@ -74,7 +76,7 @@ fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
     let energy = || gate(ENERGY_CHANGE, Bound::Within(-1e-6, 1e-6), Evidence::Theory, stored);
     let fall = || near(FIRST_LEAST_Y_ERROR, 0.01);
     match row.group {
-        Whole => vec![
+        Whole | Light => vec![
             near(FREQUENCY_ERROR, 0.005),
             near(AVERAGE_Y_ERROR, 0.01),
             near(HARMONIC_Y_ERROR, 0.01),
@@ -113,9 +115,16 @@ pub fn declaration(tier: Tier) -> Declaration {
     let run = CANTILEVER.spec(LAGRANGIAN, |s| s.n = 5);
     let sensitivity = Sensitivity::new(CANTILEVER.name, tier, [run], constants.map(Watched::new));
     let sensitivity = (tier == Tier::Full).then_some(sensitivity);
-    let curve = Some(path_of_end());
+    let level = |s: &CantileverSettings| (s.thickness / s.n as f64, format!("{} layers", s.n));
+    let accuracy = Accuracy {
+        about: "The first swing of a bar under its own weight, against finite elements.".into(),
+        spacing: "dx [m]",
+        ladders: vec![table(tier).ladder(&[Whole], LAGRANGIAN, level)],
+        ..Accuracy::new("cantilever", PATH_RMS, "rms distance of the end over its amplitude [-]")
+    };
+    let (accuracy, curve) = (vec![accuracy], Some(path_of_end()));
     let (stepwise, of_methods) = (STEPWISE, OF_METHODS);
-    Declaration { sensitivity, stepwise, of_methods, curve, ..Declaration::default() }
+    Declaration { accuracy, sensitivity, stepwise, of_methods, curve, ..Declaration::default() }
 }
 
 /// The path of the end: a bar of uniform strain, whose end is there, stands for it.
@@ -130,6 +139,7 @@ fn path_of_end() -> Curve {
             starts.iter().map(|from| [from + end * (from.x / length), Vector2::zeros()]).collect()
         },
         metrics: compared.chain([PATH_RMS]).collect(),
+        coarsen: Some(|settings| settings["n"] = 2.into()),
         shown: ("end", &["t", "x", "y"]),
     }
 }

@@ -70,6 +70,7 @@ fn path_and_extents() -> Curve {
             [put(left, -1.0), put(right, 1.0)].concat()
         },
         metrics: [&errors[..], &extents[..]].concat(),
+        coarsen: None,
         shown: ("series", &["t", "x_c", "v_c", "width", "height"]),
     }
 }

@@ -62,6 +62,7 @@ fn front() -> Curve {
             starts.iter().map(|start| [start + moved, Vector2::zeros()]).collect()
         },
         metrics: vec![Z, FRONT_AWAY, FRONT.rms, FRONT.rms_shifted, FRONT.shift],
+        coarsen: None,
         shown: ("series", &["t", "front"]),
     }
 }
