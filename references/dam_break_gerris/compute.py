@@ -10,17 +10,19 @@ import tables
 from tables import doubt, number
 
 LEVELS, COURANT = (4, 5, 6), 0.5
+ENDS = {4: 6.0, 5: 6.0, 6: 2.5}
+RUNS = (4, COURANT), (4, COURANT / 2), (5, COURANT), (6, COURANT)
 H, TIME, IMPULSE = "H", "(H/g)^(1/2)", "rho g H (H/g)^(1/2)"
 
 
 def frames(folder, level):
-    """Times, and water as rows from the floor and columns from the back wall."""
+    """Times, and water, velocity and pressure as rows from the floor and columns from the back wall."""
     dx = dam.BOX / 2**level
     for file in sorted(folder.glob("fields-*.txt")):
-        x, y, _, water, u, v, _ = np.loadtxt(file).T
+        x, y, _, water, u, v, p = np.loadtxt(file).T
         column, row = (np.rint((a + dam.BOX / 2) / dx - 0.5).astype(int) for a in (x, y))
-        found = np.zeros((3, dam.ROWS * 2**level, dam.COLUMNS * 2**level))
-        found[:, row, column] = np.clip(water, 0, 1), u, v
+        found = np.zeros((4, dam.ROWS * 2**level, dam.COLUMNS * 2**level))
+        found[:, row, column] = np.clip(water, 0, 1), u, v, p
         yield float(file.stem[7:]), *found
 
 
@@ -40,12 +42,16 @@ def history(folder, level):
     low = round(0.25 / dx)
     middles = (np.arange(dam.COLUMNS * 2**level) + 0.5) * dx
     rows = []
-    for t, water, u, v in frames(folder, level):
+    for t, water, u, v, p in frames(folder, level):
         near, depth = water[:low].sum(axis=0) * dx, water.sum(axis=0) * dx
         row = {"t": t, "front": max(last_at_least(line, 0.5, dx) for line in water[:low]),
                "front_depth_2": last_at_least(near, 0.02, dx), "front_depth_5": last_at_least(near, 0.05, dx),
                "kinetic": (water * (u * u + v * v)).sum() * dx * dx / dam.WIDTH}
         row |= {f"H{k + 1}": np.interp(place, middles, depth) for k, place in enumerate(dam.PROBES)}
+        density, height = water + (1 - water) * dam.AIR, (np.arange(len(water)) + 0.5)[:, None] * dx
+        row["momentum"] = (density * u).sum() * dx * dx
+        row["energy"] = (density * ((u * u + v * v) / 2 + height)).sum() * dx * dx
+        row["force"] = (1.5 * (p[:, 0] - p[:, -1]) - 0.5 * (p[:, 1] - p[:, -2])).sum() * dx
         rows.append(row)
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
@@ -103,6 +109,21 @@ def quantities(folder, level):
     return out
 
 
+def checks(folder):
+    """What is known exactly, as `dam_break_vof` has it: momentum and energy at t = 2."""
+    for level, courant in RUNS:
+        run = history(folder / f"{level}_{courant:g}", level)
+        part = run["t"] < 2.001
+        t, force = run["t"][part], run["force"][part]
+        force[0] = force[1]  # there is no pressure yet
+        impulse = np.trapezoid(force, t)
+        of = f"{dam.BOX / 2**level:.4f}", f"{courant:g}"
+        yield "momentum at t = 2 over impulse of the side walls, less 1", *of, number(
+            run["momentum"][part][-1] / impulse - 1), 0
+        yield "energy of water and air at t = 2 over that at the release", *of, number(
+            run["energy"][part][-1] / run["energy"][0]), 1
+
+
 def values(folder):
     coarse, middle, fine = (quantities(folder / f"{level}_{COURANT:g}", level) for level in LEVELS)
     half = quantities(folder / f"{LEVELS[0]}_{COURANT / 2:g}", LEVELS[0])
@@ -121,16 +142,20 @@ FIELDS = {"values": [
     ("uncertainty", "number", "see column unit", "finest mesh less the next, plus half_step less coarse"),
     *((name, "number", "see column unit", f"cells of {dam.BOX / 2**level:.4f} H")
       for name, level in zip(("coarse", "middle", "fine"), LEVELS, strict=True)),
-    ("half_step", "number", "see column unit", "on the coarse mesh at half the Courant number")]}
+    ("half_step", "number", "see column unit", "on the coarse mesh at half the Courant number")],
+    "checks": [
+        ("check", "string", "-", "as in the checks of dam_break_vof"), ("cell", "number", "H", "side of a cell"),
+        ("courant", "number", "-", "Courant number"), ("value", "number", "-", "as computed"),
+        ("expected", "number", "-", "exact value")]}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=Path, required=True, help="folder of raw results")
     folder = parser.parse_args().runs
-    for level, courant in ((4, COURANT), (4, COURANT / 2), (5, COURANT), (6, COURANT)):
+    for level, courant in RUNS:
         own = folder / f"{level}_{courant:g}"
         if not (own / "done").exists():
-            dam.run(own, level, courant)
+            dam.run(own, level, courant, ENDS[level])
             (own / "done").touch()
             print(own.name, flush=True)
-    tables.write(Path(__file__).parent, FIELDS, {"values": list(values(folder))})
+    tables.write(Path(__file__).parent, FIELDS, {"values": list(values(folder)), "checks": list(checks(folder))})

@@ -144,6 +144,35 @@ fn our_own_profile_or_path_is_measured_as_the_run_was() {
     }
 }
 
+/// Each time of a path placed all particles of the problem, so that a bar of 33 layers had too many rows.
+#[test]
+fn a_path_of_a_fine_bar_is_measured_in_a_coarse_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "export cantilever --variant lagrangian --set n=33 --out own";
+    let made = touchstone(folder.path(), line);
+    assert!(made.status.success(), "{}", said(&made));
+    let own = folder.path().join("own");
+    let row = |k: usize| {
+        let t = 0.01 * k as f64;
+        format!("{t},{},{}\n", -0.01 * (1.0 - (12.0 * t).cos()), -0.065 * (1.0 - (6.0 * t).cos()))
+    };
+    let rows: String = (0..=400).map(row).collect();
+    fs::write(own.join("curve.csv"), format!("t[s],x[m],y[m]\n{rows}")).unwrap();
+    for file in ["method.json", "system.json"] {
+        fs::copy(whole().join("whole").join(file), own.join(file)).unwrap();
+    }
+    let submitted = touchstone(folder.path(), "submit cantilever own --store store");
+    let file = fs::read_dir(folder.path().join("store")).ok().and_then(|mut all| all.next());
+    let file = file.unwrap_or_else(|| panic!("{}", said(&submitted))).unwrap();
+    let record = Record::from_json(&read(&file.path())).unwrap();
+    assert_eq!((&record.settings["n"], record.cost.particles), (&33.into(), 33 * 578));
+    let frequency = record.metrics["frequency"].value;
+    assert!((frequency - 6.0 / std::f64::consts::TAU).abs() < 1e-3, "{frequency}");
+    fs::write(own.join("curve.csv"), format!("t[s],x[m],y[m]\n{rows}4.0,0,0\n")).unwrap();
+    let words = said(&touchstone(folder.path(), "submit cantilever own --store store"));
+    assert!(words.contains("2 rows are at t = 4 s; expected 1"), "{words}");
+}
+
 /// A damaged curve is refused as particles are.
 #[test]
 fn a_damaged_curve_is_refused_with_file_line_and_column() {
