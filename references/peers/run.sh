@@ -138,6 +138,13 @@ if [ -n "${TRIXI:-}" ]; then
     for n in 5 9 17 33 65; do
         problem cantilever lagrangian-saint-venant n=$n csv trixi "$python" "$here/trixiparticles/run.py" "$TRIXI"
     done
+    tank="width=0.6 height=0.3 tank=1.61 rim=2 end=6"
+    for n in 30 60 120; do # 40, 80 and 400 rows of theirs
+        for scheme in edac wcsph; do
+            problem dam_break modern "n=$n $tank" csv "trixi-$scheme" \
+                "$python" "$here/trixiparticles/run.py" "$TRIXI" "$scheme"
+        done
+    done
 fi
 ( # The path of the end needs 400 frames.
     export FRAMES=400

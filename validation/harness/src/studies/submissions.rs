@@ -149,14 +149,16 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
 
 /// The runs of the closed division, then those of the open one, the best first.
 fn table(declared: &Declaration, runs: &Runs) -> report::Table {
-    type Row<'a> = (&'a Submission, &'a JudgedRun, f64);
+    type Row<'a> = (&'a Submission, &'a JudgedRun, f64, &'a str);
     let rows = runs.submissions().iter().filter_map(|run| {
-        let error = declared.accuracy.iter().find_map(|of| error_of(&of.error, &run.record));
-        Some((run.record.submission.as_deref()?, run, error.unwrap_or(f64::NAN)))
+        let mut all = declared.accuracy.iter();
+        let found = all.find_map(|of| Some((error_of(&of.error, &run.record)?, &*of.label)));
+        let (error, of) = found.unwrap_or((f64::NAN, ""));
+        Some((run.record.submission.as_deref()?, run, error, of))
     });
     let mut rows: Vec<Row> = rows.collect();
     rows.sort_by(|a, b| a.0.division.cmp(&b.0.division).then(a.2.total_cmp(&b.2)));
-    let gates = |(_, run, _): &Row| {
+    let gates = |(_, run, ..): &Row| {
         let (apply, others) = run.applicable();
         let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure()).count();
         let passed = apply.len() - failed;
@@ -165,15 +167,16 @@ fn table(declared: &Declaration, runs: &Runs) -> report::Table {
     Columns::<Row>::default()
         .text("division", |(of, ..)| of.division.to_string())
         .text("code", |(of, ..)| of.to_string())
-        .code("variant of the problem", |(_, run, _)| &run.record.variant)
-        .num(["particles", "1"], |(_, run, _)| match run.record.cost.particles {
+        .code("variant of the problem", |(_, run, ..)| &run.record.variant)
+        .num(["particles", "1"], |(_, run, ..)| match run.record.cost.particles {
             0 => Cell::text("–"),
             particles => Cell::count(particles as u64),
         })
-        .of(["error", "-"], |(.., error)| *error, |error| Cell::percent(error, 2))
-        .of(["processor time", "s"], |(_, run, _)| run.record.cost.cpu_s, Cell::seconds)
+        .of(["error", "-"], |(_, _, error, _)| *error, |error| Cell::percent(error, 2))
+        .text("which is the", |(.., of)| of.to_string())
+        .of(["processor time", "s"], |(_, run, ..)| run.record.cost.cpu_s, Cell::seconds)
         .text("gates", gates)
-        .text("ended", |(_, run, _)| run.record.status.to_string())
+        .text("ended", |(_, run, ..)| run.record.status.to_string())
         .table(
             "Closed division: our particles, spacing and support of the kernel. Open division: other \
              particles or another resolution, at a stated cost. In each the best first.",

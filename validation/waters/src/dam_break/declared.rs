@@ -42,7 +42,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         comparisons,
         curves: curves::curves(tier),
         budgets: Some(budgets(tier, &accuracy)),
-        accuracy: vec![accuracy],
+        accuracy: vec![accuracy, in_the_tank(tier)],
         limits: Some(limits(tier)),
         sensitivity: Some(sensitivity(tier)),
         costly: COSTLY,
@@ -62,7 +62,7 @@ fn front() -> Curve {
             starts.iter().map(|start| [start + moved, Vector2::zeros()]).collect()
         },
         metrics: vec![Z, FRONT_AWAY, FRONT.rms, FRONT.rms_shifted, FRONT.shift],
-        coarsen: None,
+        coarsen: Some(|settings| settings["n"] = 10.into()),
         shown: ("series", &["t", "front"]),
     }
 }
@@ -166,6 +166,20 @@ fn accuracy(tier: Tier) -> Accuracy {
             FRONT_AWAY.at(1),
             "error of the front at T = 1 [a]",
         )
+    }
+}
+
+/// The front of the column in the tank of Lobovsky et al.
+fn in_the_tank(tier: Tier) -> Accuracy {
+    let level = |s: &DamSettings| (1.0 / s.n as f64, format!("H/dx {}", s.n));
+    Accuracy {
+        about: "Front of the column in the tank at t = 2 √(H/g), less that of the same model by volume of \
+                fluid, which is known to 0.028 H."
+            .into(),
+        spacing: "dx/H [-]",
+        slope: Some(1.0),
+        ladders: vec![plan::table(tier).ladder(&[Group::Tank], "modern", level)],
+        ..Accuracy::new("dam-break-tank", FRONT_AWAY.at(2), "error of the front at t = 2 [H]")
     }
 }
 
