@@ -1,5 +1,7 @@
 //! Runs that other codes made of a case: how they were judged, and their errors over run time beside ours.
 
+use std::collections::BTreeSet;
+
 use base::submission::{Division, OURS, SESSION, Submission};
 use report::{Axis, Cell, Colour, Figure, Legend, Plot, Series, percent, seconds};
 
@@ -24,7 +26,8 @@ struct Mark<'a> {
     seconds: f64,
 }
 
-/// The submissions that have an error of this study.
+/// The submissions that have an error of this study; of the same method with as many particles the fastest, for
+/// one that goes on for longer has no other error.
 fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     let of = |run: &'a JudgedRun| {
         let (record, of) = (&run.record, run.record.submission.as_ref()?);
@@ -43,6 +46,8 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     };
     let mut marks: Vec<Mark> = runs.submissions().iter().filter_map(of).collect();
     marks.sort_by(|a, b| a.name.cmp(&b.name).then(a.seconds.total_cmp(&b.seconds)));
+    let mut seen = BTreeSet::new();
+    marks.retain(|mark| mark.particles == 0 || seen.insert((mark.name.clone(), mark.particles)));
     marks
 }
 
@@ -90,7 +95,8 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
         let is_of = |mark: &&Mark| mark.of.division == division || mark.of.code == OURS;
-        let shown: Vec<&Mark> = marks.iter().filter(is_of).collect();
+        let shown: Vec<&Mark> =
+            marks.iter().filter(|mark| mark.seconds.is_finite()).filter(is_of).collect();
         let (x, y) = (Axis::log("run time on one core [s]"), Axis::log(&accuracy.label));
         let plot = Plot::new(format!("{division} division"), x, y).legend(Legend::Outside);
         let series = |(k, all): (usize, &[&Mark])| {
@@ -106,7 +112,8 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
         layers.fold(plot, Plot::layer)
     };
     let has = |division: &Division| {
-        marks.iter().any(|mark| mark.of.code != OURS && mark.of.division == *division)
+        let is_of = |mark: &Mark| mark.of.code != OURS && mark.of.division == *division;
+        marks.iter().any(|mark| is_of(mark) && mark.seconds.is_finite())
     };
     let panels: Vec<Plot> =
         [Division::Closed, Division::Open].into_iter().filter(has).map(panel).collect();
