@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use base::functions::cos;
 use base::record::Record;
 use base::reference::Reference;
 use base::spec::RunSpec;
@@ -154,7 +155,8 @@ fn a_path_of_a_fine_bar_is_measured_in_a_coarse_scene() {
     let own = folder.path().join("own");
     let row = |k: usize| {
         let t = 0.01 * k as f64;
-        format!("{t},{},{}\n", -0.01 * (1.0 - (12.0 * t).cos()), -0.065 * (1.0 - (6.0 * t).cos()))
+        let [x, y] = [(0.01, 12.0), (0.065, 6.0)].map(|(size, rate)| size * (cos(rate * t) - 1.0));
+        format!("{t},{x},{y}\n")
     };
     let rows: String = (0..=400).map(row).collect();
     fs::write(own.join("curve.csv"), format!("t[s],x[m],y[m]\n{rows}")).unwrap();

@@ -171,7 +171,11 @@ fn table(declared: &Declaration, runs: &Runs) -> report::Table {
         let passed = apply.len() - failed;
         format!("{passed} pass, {failed} fail, {} not applicable", others.len())
     };
-    Columns::<Row>::default()
+    let mut columns = Columns::<Row>::default();
+    if rows.iter().any(|row| row.3 != rows[0].3) {
+        columns = columns.text("what the error is", |(.., of)| of.to_string());
+    }
+    columns
         .text("division", |(of, ..)| of.division.to_string())
         .text("code", |(of, ..)| of.to_string())
         .code("variant of the problem", |(_, run, ..)| &run.record.variant)
@@ -180,7 +184,6 @@ fn table(declared: &Declaration, runs: &Runs) -> report::Table {
             particles => Cell::count(particles as u64),
         })
         .of(["error", "-"], |(_, _, error, _)| *error, |error| Cell::percent(error, 2))
-        .text("which is the", |(.., of)| of.to_string())
         .of(["processor time", "s"], |(_, run, ..)| run.record.cost.cpu_s, Cell::seconds)
         .text("gates", gates)
         .text("ended", |(_, run, ..)| run.record.status.to_string())
