@@ -26,8 +26,8 @@ struct Mark<'a> {
     seconds: f64,
 }
 
-/// The submissions that have an error of this study; of the same method with as many particles the fastest, for
-/// one that goes on for longer has no other error.
+/// The submissions that have an error of this study; of the same method with as many particles the fastest,
+/// for one that goes on for longer has no other error.
 fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     let of = |run: &'a JudgedRun| {
         let (record, of) = (&run.record, run.record.submission.as_ref()?);
