@@ -139,10 +139,10 @@ if [ -n "${TRIXI:-}" ]; then
         problem cantilever lagrangian-saint-venant n=$n csv trixi "$python" "$here/trixiparticles/run.py" "$TRIXI"
     done
     tank="width=0.6 height=0.3 tank=1.61 rim=2 end=6"
-    for n in 30 60 120; do # 40, 80 and 400 rows of theirs
+    for rows in 40 80 400; do # of theirs
         for scheme in edac wcsph; do
-            problem dam_break modern "n=$n $tank" csv "trixi-$scheme" \
-                "$python" "$here/trixiparticles/run.py" "$TRIXI" "$scheme"
+            problem dam_break modern "n=30 $tank" csv "trixi-$scheme-$rows" \
+                "$python" "$here/trixiparticles/run.py" "$TRIXI" "$scheme" "$rows"
         done
     done
 fi

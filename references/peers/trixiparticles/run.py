@@ -1,4 +1,4 @@
-"""Hands in what the authors of TrixiParticles.jl committed: python run.py CHECKOUT [SCHEME]
+"""Hands in what the authors of TrixiParticles.jl committed: python run.py CHECKOUT [SCHEME ROWS]
 
 Their beam is the cantilever of Turek & Hron with the law of St. Venant and Kirchhoff, so the problem is that of the
 variant `lagrangian-saint-venant`; the file holds the path of the end. Their dam break is the column in the tank of
@@ -37,14 +37,14 @@ if len(sys.argv) == 2:
     scheme, settings = "total Lagrangian", {"layers": layers}
     changed = "the outermost particles are on the faces of the bar"
 else:
-    rows = {30: 40, 60: 80, 120: 400}[spec["n"]]  # of the height
-    found = read(f"dam_break_2d/validation_reference_{sys.argv[2]}_{rows}.json")
+    kind, rows = sys.argv[2], int(sys.argv[3])  # of the height
+    found = read(f"dam_break_2d/validation_reference_{kind}_{rows}.json")
     front = found["max_x_coord_fluid_1"]
     size = spec["height"] / 0.6  # of their column
     places = [size * (x + 0.3 / rows) for x in front["values"]]  # half a spacing before the particle
     times = size**0.5 * np.array(front["time"])
     write(["front"], problem.times, np.interp(problem.times, times, places).tolist())
-    scheme, settings = sys.argv[2].upper(), {"H/dx": rows}
+    scheme, settings = f"{kind.upper()}, H/dx = {rows}", {"H/dx": rows}
     changed = "sound speed 50 (g H)^(1/2); spray counts as front"
 meta = found["meta"]
 method = {"code": meta.get("simulation_info", meta)["solver_name"], "version": "commit a720b1d", "division": "open",

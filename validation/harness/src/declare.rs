@@ -66,7 +66,8 @@ pub struct Curve {
     pub place: Place,
     /// The metrics that follow from it, at whatever time; no other is measured of it.
     pub metrics: Vec<MetricKey>,
-    /// Makes the scene coarse in which it is measured, if its rows do not depend on the resolution.
+    /// Makes the scene coarse in which it is measured, if neither its rows nor its times depend on the
+    /// resolution. Then `export --solve` writes it in place of particles.
     pub coarsen: Option<fn(&mut Value)>,
     /// How the names of the profiles of a record begin that show it, and their columns.
     pub shown: (&'static str, &'static [&'static str]),

@@ -144,8 +144,9 @@ fn series(case: &dyn Case, record: &Record) -> Result<Option<CsvTable>, Failure>
     let curve = case.declaration(Tier::Quick).curve.filter(|curve| curve.coarsen.is_some());
     let Some((name, columns)) = curve.map(|curve| curve.shown) else { return Ok(None) };
     let Some(profile) = record.profiles.get(name) else { return Ok(None) };
-    let heads = profile.columns.iter().map(|column| format!("{}[{}]", column.name, column.unit));
-    let heads: Vec<String> = heads.collect();
+    let shown = profile.columns.iter().filter(|column| columns.contains(&&*column.name));
+    let heads: Vec<String> =
+        shown.map(|column| format!("{}[{}]", column.name, column.unit)).collect();
     let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
     for k in 0..record.column(name, columns[0]).len() {
         table.numbers(&columns.iter().map(|of| record.column(name, of)[k]).collect::<Vec<_>>())?;

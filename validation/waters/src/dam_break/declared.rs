@@ -62,7 +62,7 @@ fn front() -> Curve {
             starts.iter().map(|start| [start + moved, Vector2::zeros()]).collect()
         },
         metrics: vec![Z, FRONT_AWAY, FRONT.rms, FRONT.rms_shifted, FRONT.shift],
-        coarsen: Some(|settings| settings["n"] = 10.into()),
+        coarsen: None,
         shown: ("series", &["t", "front"]),
     }
 }
