@@ -1,6 +1,7 @@
 """Computes the tables of this folder: `python compute.py --runs RUNS`. README.md says what."""
 
 import argparse
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,7 @@ def last_at_least(values, level, dx):
     return dx * (k + 0.5 + (values[k] - level) / (values[k] - values[k + 1]))
 
 
+@cache
 def history(folder, level):
     dx = dam.BOX / 2**level
     low = round(0.25 / dx)

@@ -101,7 +101,7 @@ impl<P: Physics> Engine<P> {
     /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
     /// 0 for wall particles: walls are at rest, and images have the differences that follow.
     pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), Fault> {
-        // Here walls have another velocity.
+        // These velocities of wall particles are not those of the next refresh, so both fill all columns.
         self.still = None;
         self.fill(state)?;
         self.still = None;
@@ -332,7 +332,7 @@ impl<P: Physics> Engine<P> {
         let mut implied = std::mem::take(&mut self.extrapolated);
         implied.clear();
         implied.extend_from_slice(&state[walls]);
-        // What they extrapolated before is not what they have.
+        // The sums read what wall particles have, and their columns hold what was extrapolated last.
         for (column, own) in self.columns[fluid..].iter_mut().zip(&implied) {
             (column.velocity, column.common.density) = (own.velocity, own.density);
         }

@@ -49,7 +49,7 @@ pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Re
     let entry = Entry { method, digest, system, asked: None, results, curve: None };
     let flaws = entry.check(&problem);
     match flaws.is_empty() {
-        true => Ok(entry.measure(case, spec)?),
+        true => Ok(entry.measure(case, spec, &problem)?),
         false => Err(Refused::Flaws(flaws)),
     }
 }

@@ -249,8 +249,8 @@ impl Entry {
         Ok(())
     }
 
-    /// The problem in whose scene it is measured, if that is not the one that it solves: a series of one
-    /// point does not depend on the resolution, and a fine scene would take its memory once a time.
+    /// The problem in whose scene it is measured, if that is not the one that it solves. A series of one point
+    /// does not depend on the resolution, and all particles of a fine scene would be held for each of its times.
     ///
     /// # Errors
     /// As [`Problem::of`].
@@ -267,8 +267,9 @@ impl Entry {
         if self.curve.is_some() { Division::Closed } else { self.method.division }
     }
 
-    /// Leaves out what follows from particles, of a profile or series.
-    fn only_of_curve(&self, case: &dyn Case, record: &mut Record) {
+    /// Leaves out what follows from particles, of a profile or series. Their number is known in the closed
+    /// division, in which it is that of the problem.
+    fn only_of_curve(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
         let Some(curve) = case.declaration(Tier::Quick).curve.filter(|_| self.curve.is_some())
         else {
             return;
@@ -280,7 +281,11 @@ impl Entry {
         for profile in record.profiles.values_mut() {
             profile.columns.retain(|column| columns.contains(&&*column.name));
         }
-        (record.state, record.cost.particles) = (None, 0);
+        record.state = None;
+        record.cost.particles = match self.method.division {
+            Division::Closed => problem.moving().len(),
+            Division::Open => 0,
+        };
     }
 
     /// Everything that does not fit the problem.
@@ -402,11 +407,16 @@ impl Entry {
         Playback { frames, own }
     }
 
-    /// Measures the particles as those of a run of this spec. What they do not determine is absent.
+    /// Measures the particles in a scene as those of a run of the problem. What they do not determine is absent.
     ///
     /// # Errors
     /// If the case refuses the run, or a frame cannot be put in place of its particles.
-    pub fn measure(&self, case: &dyn Case, spec: &RunSpec) -> Result<Record, RunError> {
+    pub fn measure(
+        &self,
+        case: &dyn Case,
+        scene: &RunSpec,
+        problem: &Problem,
+    ) -> Result<Record, RunError> {
         let playback = self.playback();
         let context = Context {
             playback: Some(&playback),
@@ -414,10 +424,11 @@ impl Entry {
             allow_unstable: true,
             ..Context::default()
         };
-        let ours = RunSpec { measure: Measure::Headline, submission: None, ..spec.clone() };
+        let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
         let record = case.run(&ours, &context)?;
         let spec = RunSpec { submission: Some(Box::new(self.submission())), ..ours };
-        let mut record = record.of(&spec);
+        let settings = problem.spec.settings.clone();
+        let mut record = Record { settings, ..record.of(&spec) };
         let lacking: Vec<String> = record
             .metrics
             .iter()
@@ -434,7 +445,7 @@ impl Entry {
             *reason = "it needs the sums of this program's own terms".into();
         }
         record.numerics.clear();
-        self.only_of_curve(case, &mut record);
+        self.only_of_curve(case, problem, &mut record);
         if self.particles() == Division::Open {
             record.profiles.clear(); // those that follow rows of the problem's own particles
         }

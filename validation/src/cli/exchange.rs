@@ -16,7 +16,7 @@ use base::{
     record::{Profile, Record, Status},
     reference::sha256,
     spec::RunSpec,
-    submission::{Division, OURS},
+    submission::OURS,
 };
 use harness::{
     case::{self, Case, RunError, Tier},
@@ -182,11 +182,7 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let scene = coarse.as_ref().unwrap_or(&problem);
     entry.stand_for(case, scene).map_err(|flaws| refused(&flaws))?;
     check(&entry, scene)?;
-    let mut record = measured(case, &entry, &scene.spec, &arguments.folder, world)?;
-    record.settings = problem.spec.settings.clone();
-    if entry.curve.is_some() && entry.method.division == Division::Closed {
-        record.cost.particles = problem.moving().len();
-    }
+    let record = measured(case, &entry, [scene, &problem], &arguments.folder, world)?;
     if arguments.check {
         output::say("complete: every fact that a submission needs is there; nothing was recorded");
         return Ok(Exit::Pass);
@@ -304,12 +300,12 @@ fn problem(
 fn measured(
     case: &dyn Case,
     entry: &Entry,
-    spec: &RunSpec,
+    [scene, problem]: [&Problem; 2],
     folder: &Path,
     world: &World,
 ) -> Result<Record, Failure> {
     let mut record = entry
-        .measure(case, spec)
+        .measure(case, &scene.spec, problem)
         .map_err(|error| refused(&[Flaw::of(folder.display().to_string(), error.to_string())]))?;
     record.manifest.sources = (world.sources)(case.name());
     record.manifest.cpu = entry.system.machine.clone();

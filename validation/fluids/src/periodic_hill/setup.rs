@@ -117,7 +117,7 @@ impl Setup {
             for row in curve.rows_behind(dx, self.first, self.flow.support) {
                 particles.extend(row.particles(dx, 1.0, |_| Vector2::zeros()));
             }
-            // Particles in one list should see the same fluid.
+            // Eight in a row share a list, which is shorter where they stand behind the same fluid.
             particles[first..].sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
         }
         particles
