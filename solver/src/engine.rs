@@ -101,10 +101,7 @@ impl<P: Physics> Engine<P> {
     /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
     /// 0 for wall particles: walls are at rest, and images have the differences that follow.
     pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), Fault> {
-        // These velocities of wall particles are not those of the next refresh, so both fill all columns.
-        self.still = None;
         self.fill(state)?;
-        self.still = None;
         self.refresh_walls(state, 0.0);
         Ok(())
     }
@@ -293,7 +290,7 @@ impl<P: Physics> Engine<P> {
     fn fill(&mut self, state: &State<P>) -> Result<Extent, Fault> {
         self.data.enter(Phase::Refresh);
         let Self { terms, data, columns, extents, still, .. } = self;
-        let fluid = data.counts[0];
+        let [fluid, walls] = data.counts;
         let filled = if still.is_some() { fluid } else { state.len() };
         let count = filled.div_ceil(BLOCK);
         extents.resize(count + 1, Extent::NIL);
@@ -309,7 +306,8 @@ impl<P: Physics> Engine<P> {
             }
             *extent = data.extent(state, &data.neighbours.built_at[particles]);
         });
-        if P::Walls::EXTRAPOLATES && still.is_none() {
+        // Columns of interface particles, if there are any, are filled by nobody else.
+        if P::Walls::EXTRAPOLATES && fluid + walls == state.len() && still.is_none() {
             *still = Some(data.extent(&state[fluid..], &data.neighbours.built_at[fluid..]));
         }
         data.check(state, extents)
