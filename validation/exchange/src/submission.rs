@@ -249,8 +249,9 @@ impl Entry {
         Ok(())
     }
 
-    /// The problem in whose scene it is measured, if that is not the one that it solves. A series of one point
-    /// does not depend on the resolution, and all particles of a fine scene would be held for each of its times.
+    /// The problem in whose scene it is measured, if that is not the one that it solves. A series of one
+    /// point does not depend on the resolution, and all particles of a fine scene would be held for each of
+    /// its times.
     ///
     /// # Errors
     /// As [`Problem::of`].
@@ -407,7 +408,8 @@ impl Entry {
         Playback { frames, own }
     }
 
-    /// Measures the particles in a scene as those of a run of the problem. What they do not determine is absent.
+    /// Measures the particles in a scene as those of a run of the problem. What they do not determine is
+    /// absent.
     ///
     /// # Errors
     /// If the case refuses the run, or a frame cannot be put in place of its particles.
