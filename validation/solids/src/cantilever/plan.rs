@@ -117,8 +117,8 @@ pub fn declaration(tier: Tier) -> Declaration {
     let sensitivity = (tier == Tier::Full).then_some(sensitivity);
     let level = |s: &CantileverSettings| (s.thickness / s.n as f64, format!("{} layers", s.n));
     let accuracy = Accuracy {
-        about: "A bar under its own weight in its first swing, until 0.75 s, against finite elements. The runs \
-                go on until 4 s."
+        about: "A bar under its own weight in its first swing, until 0.75 s, against finite elements. The \
+                runs go on until 4 s."
             .into(),
         spacing: "dx [m]",
         ladders: vec![table(tier).ladder(&[Whole], LAGRANGIAN, level)],
