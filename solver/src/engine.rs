@@ -302,7 +302,7 @@ impl<P: Physics> Engine<P> {
             // A copy, which no write can change: what does not depend on the particle leaves the loop.
             let terms = &terms.clone();
             for ((column, evolved), fixed) in columns.iter_mut().zip(state).zip(fixed) {
-                *column = derive(terms, fixed, evolved);
+                derive(terms, fixed, evolved, column);
             }
             *extent = data.extent(state, &data.neighbours.built_at[particles]);
         });
@@ -347,7 +347,7 @@ impl<P: Physics> Engine<P> {
         let fixed = &self.data.fixed[fluid..];
         for ((column, implied), fixed) in self.columns[fluid..].iter_mut().zip(&implied).zip(fixed)
         {
-            *column = derive(&self.terms, fixed, implied);
+            derive(&self.terms, fixed, implied, column);
         }
         self.extrapolated = implied;
         let neighbours = &self.data.neighbours;
@@ -396,14 +396,20 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     fill_images::<P, T>(neighbours, 0, 1.0, columns);
 }
 
-/// The column of a particle.
+/// The column of a particle. Field by field: a column as a value is put together on the stack first, from where
+/// this processor loads what it has just stored, at up to 40 ns a particle.
 #[inline(always)]
-fn derive<X, T: Term<X>>(terms: &T, fixed: &Fixed, evolved: &Evolved<X>) -> Column<T::Derived> {
-    let Evolved { position, velocity, density, ref extra } = *evolved;
-    let mass = fixed.mass;
-    let common = Common { mass, density, volume: mass / density };
-    let derived = derived(terms, fixed.role, &common, extra);
-    Column { position, velocity, common, derived }
+fn derive<X, T: Term<X>>(
+    terms: &T,
+    fixed: &Fixed,
+    evolved: &Evolved<X>,
+    column: &mut Column<T::Derived>,
+) {
+    let (mass, density) = (fixed.mass, evolved.density);
+    column.common = Common { mass, density, volume: mass / density };
+    column.position = evolved.position;
+    column.velocity = evolved.velocity;
+    column.derived = derived(terms, fixed.role, &column.common, &evolved.extra);
 }
 
 /// The derived data of a particle in this role.
