@@ -35,8 +35,6 @@ pub struct Engine<P: Physics> {
     still: Option<Extent>,
     /// What wall particles extrapolate: empty where they do not.
     extrapolated: Vec<Evolved<P::Extra>>,
-    /// Columns with wall particles at their feet: empty where these have none.
-    on_feet: Vec<Column<Vector2<f64>>>,
     /// Inverses of moments: empty where no force needs them.
     inverses: Vec<Rate<Symmetric>>,
 }
@@ -58,7 +56,6 @@ impl<P: Physics> Engine<P> {
             extents: vec![],
             still: None,
             extrapolated: vec![],
-            on_feet: vec![],
             inverses: vec![],
         }
     }
@@ -121,7 +118,7 @@ impl<P: Physics> Engine<P> {
         &mut self,
         targets: &mut State<P>,
         part: &T,
-        select: impl Fn(&Derived<P>) -> T::Derived + Sync,
+        select: impl Fn(usize, &Derived<P>) -> T::Derived + Sync,
         update: impl Update<P::Extra>,
     ) {
         const { assert!(!T::NORMALISES, "moments are not summed for a part") };
@@ -202,7 +199,6 @@ impl<P: Physics> Engine<P> {
             + self.columns.capacity() * size_of::<Column<Derived<P>>>()
             + self.extents.capacity() * size_of::<Extent>()
             + self.extrapolated.capacity() * size_of::<Evolved<P::Extra>>()
-            + self.on_feet.capacity() * size_of::<Column<Vector2<f64>>>()
             + self.inverses.capacity() * size_of::<Rate<Symmetric>>()
     }
 
@@ -220,7 +216,7 @@ impl<P: Physics> Engine<P> {
     fn sweep<'a, T: Term<P::Extra>>(
         &'a self,
         terms: &'a T,
-        select: impl Fn(&Derived<P>) -> T::Derived + Sync,
+        select: impl Fn(usize, &Derived<P>) -> T::Derived + Sync,
         moving: bool,
     ) -> impl PairSweep<P::Extra> {
         Sweep { kernel: &self.kernel, terms, columns: &self.columns, select, moving }
@@ -251,26 +247,11 @@ impl<P: Physics> Engine<P> {
 
     fn sweep_walls(&self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.data.enter(Phase::Walls);
-        let sweep = self.sweep(&self.wall_terms, nothing(), false);
+        let (fluid, feet) = (self.data.counts[0], &self.data.neighbours.feet);
+        let foot =
+            |k: usize, _: &_| <P::Walls as Walls<P::Extra>>::foot(feet.get(k.wrapping_sub(fluid)));
+        let sweep = self.sweep(&self.wall_terms, foot, false);
         sweep::run(&sweep, &self.data.neighbours.wall_lists, targets, update);
-    }
-
-    /// The same at the feet of wall particles.
-    fn sweep_feet(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
-        self.data.enter(Phase::Walls);
-        let Self { kernel, wall_terms: terms, data, columns, on_feet, .. } = self;
-        on_feet.clear();
-        on_feet.extend(columns.iter().map(|column| {
-            let Column { position, velocity, common, .. } = *column;
-            Column { position, velocity, common, derived: Vector2::zeros() }
-        }));
-        for (column, foot) in on_feet[data.counts[0]..].iter_mut().zip(&data.neighbours.feet) {
-            column.position += foot;
-            column.derived = *foot;
-        }
-        let (columns, select) = (&on_feet[..], <P::Walls as Walls<P::Extra>>::foot);
-        let sweep = Sweep { kernel: &*kernel, terms: &*terms, columns, select, moving: false };
-        sweep::run(&sweep, &data.neighbours.wall_lists, targets, update);
     }
 
     /// Builds neighbour lists and images for particles at these places, and makes room for their columns.
@@ -334,15 +315,15 @@ impl<P: Physics> Engine<P> {
         for (column, own) in self.columns[fluid..].iter_mut().zip(&implied) {
             (column.velocity, column.common.density) = (own.velocity, own.density);
         }
+        // Until they are derived again, those with feet are there.
+        for (column, foot) in self.columns[fluid..].iter_mut().zip(&self.data.neighbours.feet) {
+            column.position += foot;
+        }
         let update = |_, target: &mut Evolved<P::Extra>, rate: &Rate<P::Extra>| {
             target.velocity += rate.velocity;
             target.density = rate.density;
         };
-        if P::Walls::FEET {
-            self.sweep_feet(&mut implied, &by_blocks(update));
-        } else {
-            self.sweep_walls(&mut implied, &by_blocks(update));
-        }
+        self.sweep_walls(&mut implied, &by_blocks(update));
         self.data.enter(Phase::Refresh);
         let fixed = &self.data.fixed[fluid..];
         for ((column, implied), fixed) in self.columns[fluid..].iter_mut().zip(&implied).zip(fixed)

@@ -74,7 +74,7 @@ where
                 let advanced = newer[i].velocity + rate * length;
                 older.velocity = advanced * last - older.velocity * before;
             };
-            engine.sweep_part(older, &stiff, |derived| derived.0.1, update);
+            engine.sweep_part(older, &stiff, |_, derived| derived.0.1, update);
             swap(older, newer);
         }
         let fluid = engine.data.fluid_count();

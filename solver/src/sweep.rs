@@ -83,23 +83,23 @@ pub(crate) fn fill<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists, rates: &
 // no scheme.
 
 /// Those of the forces.
-pub(crate) fn first<A: Copy, B>() -> impl Fn(&(A, B)) -> A {
-    |derived| derived.0
+pub(crate) fn first<A: Copy, B>() -> impl Fn(usize, &(A, B)) -> A {
+    |_, derived| derived.0
 }
 
 /// Those of the drift.
-pub(crate) fn second<A, B: Copy>() -> impl Fn(&(A, B)) -> B {
-    |derived| derived.1
+pub(crate) fn second<A, B: Copy>() -> impl Fn(usize, &(A, B)) -> B {
+    |_, derived| derived.1
 }
 
 /// All.
-pub(crate) fn whole<S: Copy>() -> impl Fn(&S) -> S {
-    |derived| *derived
+pub(crate) fn whole<S: Copy>() -> impl Fn(usize, &S) -> S {
+    |_, derived| *derived
 }
 
 /// None: zeros.
-pub(crate) fn nothing<S, T: Default>() -> impl Fn(&S) -> T {
-    |_| T::default()
+pub(crate) fn nothing<S, T: Default>() -> impl Fn(usize, &S) -> T {
+    |_, _| T::default()
 }
 
 /// A sum of terms over the columns.
@@ -107,7 +107,7 @@ pub(crate) struct Sweep<'a, K, T, S, C> {
     pub kernel: &'a Smoothing<K>,
     pub terms: &'a T,
     pub columns: &'a [Column<S>],
-    /// From the derived numbers of a column to those that these terms read.
+    /// From a column's number and its derived numbers to those that these terms read.
     pub select: C,
     /// Whether the particles move: dx/dt = v, to which terms may add.
     pub moving: bool,
@@ -118,7 +118,7 @@ where
     K: Kernel,
     T: Term<X>,
     S: Numbers,
-    C: Fn(&S) -> T::Derived + Sync,
+    C: Fn(usize, &S) -> T::Derived + Sync,
     X: Numbers,
 {
     fn rates(&self, block: &Block, list: usize, first: usize, rates: &mut [Rate<X>]) {
@@ -148,7 +148,7 @@ where
     K: Kernel,
     T: Term<X>,
     S: Numbers,
-    C: Fn(&S) -> T::Derived + Sync,
+    C: Fn(usize, &S) -> T::Derived + Sync,
     X: Numbers,
 {
     #[inline(always)]
@@ -160,10 +160,8 @@ where
         for (group, rates) in self.rates.chunks_mut(V::LANES).enumerate() {
             let start = group * V::LANES;
             let first = self.first + start;
-            let own = |lane: usize| match first + lane {
-                column if column < end => &columns[column],
-                _ => &columns[sentinel],
-            };
+            let number = |lane: usize| if first + lane < end { first + lane } else { sentinel };
+            let own = |lane: usize| &columns[number(lane)];
             let position = gather_vector::<V>(|lane| own(lane).position);
             let velocity = gather_vector::<V>(|lane| own(lane).velocity);
             let common = Common {
@@ -171,7 +169,7 @@ where
                 density: V::gather(|lane| own(lane).common.density),
                 volume: V::gather(|lane| own(lane).common.volume),
             };
-            let derived = T::Derived::gather::<V>(|lane| select(&own(lane).derived));
+            let derived = T::Derived::gather::<V>(|lane| select(number(lane), &own(lane).derived));
             let mut sum = T::Sum::default().spread::<V>();
             for &column in self.block.list((self.list + start) / GROUP) {
                 let other = &columns[column as usize];
@@ -187,12 +185,13 @@ where
                 let v = velocity - other.velocity.spread::<V>();
                 let (f, others) = (kernel.f(r2), other.common.spread::<V>());
                 let pair = Pair { r, r2, v, f, own: common, other: others, kernel };
-                terms.pair(&pair, [derived, select(&other.derived).spread::<V>()], &mut sum);
+                let of_other = select(column as usize, &other.derived).spread::<V>();
+                terms.pair(&pair, [derived, of_other], &mut sum);
             }
             for (lane, rate) in rates.iter_mut().enumerate() {
                 let own = &columns[first + lane];
                 let sum = T::Sum::lane::<V>(sum, lane);
-                terms.finish(&own.common, select(&own.derived), sum, rate);
+                terms.finish(&own.common, select(first + lane, &own.derived), sum, rate);
                 terms.place(own.position, rate);
             }
         }

@@ -59,8 +59,8 @@ pub trait WallVelocity: Copy + Send + Sync + 'static {
     type Sum: Numbers;
     /// Whether there are feet.
     const FEET: bool = false;
-    /// That of this vector.
-    fn foot(_: &Vector2<f64>) -> Self::Foot {
+    /// That of this vector, if the particle has one.
+    fn foot(_: Option<&Vector2<f64>>) -> Self::Foot {
         Self::Foot::default()
     }
     /// From a fluid particle to the wall particle \[m\], and W there.
@@ -125,8 +125,8 @@ impl WallVelocity for CurvedNoSlip {
     type Sum = (Symmetric, Vector2<f64>, f64, Vector2<f64>, Vector2<f64>, Vector2<f64>);
     const FEET: bool = true;
 
-    fn foot(foot: &Vector2<f64>) -> Vector2<f64> {
-        *foot
+    fn foot(foot: Option<&Vector2<f64>>) -> Vector2<f64> {
+        foot.copied().unwrap_or_default()
     }
     #[inline(always)]
     fn reach<V: Lane, K: Kernel>(pair: &Pair<V, K>, foot: Vector2<V>) -> (Vector2<V>, V) {
@@ -177,7 +177,7 @@ impl<X, E: EquationOfState, U: WallVelocity> Walls<X> for ExtrapolatingWall<E, U
     fn terms(&self) -> Self {
         *self
     }
-    fn foot(foot: &Vector2<f64>) -> U::Foot {
+    fn foot(foot: Option<&Vector2<f64>>) -> U::Foot {
         U::foot(foot)
     }
 }

@@ -28,8 +28,8 @@ pub trait Walls<X>: Clone + Send + Sync + 'static {
     /// Whether walls that extrapolate sum over the neighbours of the foot of each wall particle, the nearest
     /// point of the surface, in place of its own: [`crate::Scene::feet`].
     const FEET: bool = false;
-    /// What [`Walls::Terms`] read of the vector from a wall particle to its foot \[m\].
-    fn foot(_: &Vector2<f64>) -> <Self::Terms as Term<X>>::Derived {
+    /// What [`Walls::Terms`] read of the vector from a wall particle to its foot \[m\], if it has one.
+    fn foot(_: Option<&Vector2<f64>>) -> <Self::Terms as Term<X>>::Derived {
         Default::default()
     }
     /// The values of [`Walls::Terms`].
