@@ -248,6 +248,7 @@ impl<P: Physics> Engine<P> {
     fn sweep_walls(&self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.data.enter(Phase::Walls);
         let (fluid, feet) = (self.data.counts[0], &self.data.neighbours.feet);
+        // Fluid has numbers below those of walls, and images have numbers above, for which there are no feet.
         let foot =
             |k: usize, _: &_| <P::Walls as Walls<P::Extra>>::foot(feet.get(k.wrapping_sub(fluid)));
         let sweep = self.sweep(&self.wall_terms, foot, false);
@@ -377,8 +378,8 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     fill_images::<P, T>(neighbours, 0, 1.0, columns);
 }
 
-/// The column of a particle. Field by field: a column as a value is put together on the stack first, from where
-/// this processor loads what it has just stored, at up to 40 ns a particle.
+/// Writes the column of a particle, field by field: as a value it is put together on the stack first, from
+/// where the processor loads what it has just stored, which takes up to 40 ns a particle.
 #[inline(always)]
 fn derive<X, T: Term<X>>(
     terms: &T,
