@@ -12,7 +12,7 @@ use super::{
 };
 use crate::water;
 use base::{
-    record::Record,
+    record::{MetricName, Record},
     reference::{Reference as Package, ReferenceError, Table},
 };
 
@@ -245,6 +245,29 @@ fn noise(pressure: &[(f64, f64)], from: f64) -> f64 {
     (later.iter().map(square).sum::<f64>() / later.len() as f64).sqrt()
 }
 
+/// Why a metric of a time that a run does not reach is absent.
+const TOO_SHORT: &str = "the run ends before the times that this is of";
+
+/// Puts a metric whose value is of a time, if the run goes on until then: a curve is constant beyond its end,
+/// and an impulse would be of a part of its window. A time that is not a number never comes.
+fn put_if_reached(
+    record: &mut Record,
+    metric: impl Into<MetricName>,
+    [reached, time]: [f64; 2],
+    value: impl FnOnce() -> f64,
+) {
+    if time <= reached * (1.0 + 1e-9) {
+        record.put(metric, value());
+    } else {
+        record.leave_out(metric, TOO_SHORT);
+    }
+}
+
+/// The time of the last point of a curve, 0 if it has none.
+fn end_of(curve: &[(f64, f64)]) -> f64 {
+    curve.last().map_or(0.0, |(t, _)| *t)
+}
+
 /// rms of curves as they are and after their best common shift.
 fn put_distance(
     record: &mut Record,
@@ -254,6 +277,12 @@ fn put_distance(
     what: &str,
 ) {
     let count: f64 = pairs.iter().map(|(_, m)| m.len() as f64).sum();
+    if count == 0.0 {
+        for metric in [of.rms.of(what), of.rms_shifted.into(), of.shift.into()] {
+            record.leave_out(metric, TOO_SHORT);
+        }
+        return;
+    }
     let all = |shift: f64| (squares(pairs, shift) / count).sqrt();
     let shift = best_shift(pairs, range);
     record.put(of.rms.of(what), all(0.0));
@@ -282,15 +311,15 @@ fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
     let height_of = |unit| height(record, unit);
     let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
     let [measured_front, measured_height] = &*MARTIN_MOYCE;
-    let within = |measured: &Curve, computed: &Curve| {
-        until(measured, computed.last().map_or(0.0, |(t, _)| *t))
-    };
+    let within = |measured: &Curve, computed: &Curve| until(measured, end_of(computed));
+    let reached = end_of(&front);
     for t in FREE_TIMES {
-        record.put(FRONT_AWAY.at(t), value(&front, t) - value(&MODEL.free[0], t));
+        let away = || value(&front, t) - value(&MODEL.free[0], t);
+        put_if_reached(record, FRONT_AWAY.at(t), [reached, t], away);
     }
     record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL.free[1], s.end), 0.0));
     for (t, ..) in PEERS {
-        record.put(Z.at(t), value(&front, t));
+        put_if_reached(record, Z.at(t), [reached, t], || value(&front, t));
     }
     let measured = within(measured_front, &front);
     put_distance(record, FRONT, &[(front, measured)], 1.0, "Z at equal T");
@@ -302,8 +331,8 @@ fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
 
 fn with_lobovsky(s: &DamSettings, record: &mut Record) {
     let [front, from_wall] = [s.width, 0.0].map(|place| front_from(record, place));
-    let away = value(&from_wall, TANK_TIME) - value(&MODEL.front, TANK_TIME);
-    record.put(FRONT_AWAY.at(TANK_TIME), away);
+    let away = || value(&from_wall, TANK_TIME) - value(&MODEL.front, TANK_TIME);
+    put_if_reached(record, FRONT_AWAY.at(TANK_TIME), [end_of(&from_wall), TANK_TIME], away);
     let measured = until(&LOBOVSKY.front, s.end);
     put_distance(record, FRONT, &[(front, measured)], 0.6, "x of the tip from the gate/H");
     let pair = |k| (depth(record, k), LOBOVSKY.level(k, s.end));
@@ -316,18 +345,21 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
     let pressures = [0, 1, 2, 3].map(|k| pressure(record, k));
     let [ours, theirs, models] =
         [&pressures, &LOBOVSKY.pressure, &MODEL.pressure].map(|pressure| arrival(&pressure[0]));
-    record.put(ARRIVAL, ours);
+    let reached = end_of(&pressures[0]);
+    put_if_reached(record, ARRIVAL, [reached, ours], || ours);
     for (k, computed) in pressures.iter().enumerate() {
         for window in WINDOWS {
             let [a, b, c] =
                 [(computed, ours), (&LOBOVSKY.pressure[k], theirs), (&MODEL.pressure[k], models)]
                     .map(|(curve, from)| impulse(curve, from, window));
-            record.put(IMPULSE[k].at(window), a / b - 1.0);
-            record.put(IMPULSE_AWAY[k].at(window), a / c - 1.0);
+            let times = [reached, ours + window];
+            put_if_reached(record, IMPULSE[k].at(window), times, || a / b - 1.0);
+            put_if_reached(record, IMPULSE_AWAY[k].at(window), times, || a / c - 1.0);
         }
     }
     record.put(PEAK, pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max));
-    record.put(NOISE, noise(&pressures[1], ours + WINDOWS[0]));
+    let later = ours + WINDOWS[0];
+    put_if_reached(record, NOISE, [reached, later], || noise(&pressures[1], later));
 }
 
 #[cfg(test)]
@@ -337,7 +369,21 @@ mod tests {
         lobovsky,
         measure::{Gauge, Samples},
     };
-    use base::record::MetricName;
+
+    /// They had the value of the last sample, or of a part of a window, and NaN.
+    #[test]
+    fn what_a_short_run_does_not_reach_is_absent() {
+        let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
+        for (time, is_put) in [(2.0, true), (2.0 + 1e-10, true), (2.1, false), (f64::NAN, false)] {
+            record.metrics.clear();
+            record.absent.clear();
+            put_if_reached(&mut record, FRONT_AWAY.at(2), [2.0, time], || 1.0);
+            let found = [record.metrics.len(), record.absent.len()];
+            assert_eq!(found, if is_put { [1, 0] } else { [0, 1] }, "{time}");
+        }
+        put_distance(&mut record, FRONT, &[(vec![(0.0, 1.0)], vec![])], 1.0, "none");
+        assert!(record.metrics.is_empty() && record.absent.len() == 4, "{:?}", record.absent);
+    }
 
     #[test]
     fn a_curve_that_starts_late_is_found_shifted() {
