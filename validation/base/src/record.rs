@@ -490,6 +490,14 @@ impl Record {
         self.metrics.insert(name, Metric::new(value, key.unit, &formula));
     }
 
+    /// Puts a metric that has a value, else states why it has none.
+    pub fn put_or(&mut self, metric: impl Into<MetricName>, value: Option<f64>, reason: &str) {
+        match value {
+            Some(value) => self.put(metric, value),
+            None => self.leave_out(metric, reason),
+        }
+    }
+
     /// States why a metric is absent: this run gives it no meaning.
     pub fn leave_out(&mut self, metric: impl Into<MetricName>, reason: impl Into<String>) {
         self.absent.insert(metric.into().name, reason.into());

@@ -264,8 +264,10 @@ impl Motion {
         let span = (STATIONS[1] - STATIONS[0]) * s.length / s.wave();
         let lattice = SquareLattice::of::<CubicSpline>(s.h_over_dx, 0.01);
         let factor = lattice.gradient_factor();
-        record.put(TRAVEL_ERROR, (to - from) / span - 1.0);
-        record.put(TRAVEL_LATTICE_ERROR, (to - from) / span * factor - 1.0);
+        let time = Some((to - from) / span).filter(|time| time.is_finite());
+        let lacks = "the pulse has not passed both places at the end of the run";
+        record.put_or(TRAVEL_ERROR, time.map(|time| time - 1.0), lacks);
+        record.put_or(TRAVEL_LATTICE_ERROR, time.map(|time| time * factor - 1.0), lacks);
     }
 
     fn impact_metrics(&self, record: &mut Record) {
@@ -276,7 +278,7 @@ impl Motion {
         let time = (to - from) / (EXCHANGED[1] - EXCHANGED[0]);
         let last = self.series.last().copied().unwrap_or([f64::NAN; 4]);
         let least = self.series.iter().map(|row| row[2]).fold(f64::INFINITY, f64::min);
-        let mut put = |metric, value, lacks| solid::put_or(record, metric, value, lacks);
+        let mut put = |metric, value, lacks| record.put_or(metric, value, lacks);
         let lacks = "the left bar does not come to rest";
         put(STRESS_ERROR, self.stress.map(|stress| stress / exact.stress - 1.0), lacks);
         let (time, lacks) =

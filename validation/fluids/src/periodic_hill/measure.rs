@@ -225,14 +225,6 @@ pub fn mean_velocity(s: &dyn Stepper<()>, area: f64) -> f64 {
     s.fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
 }
 
-/// Puts a metric, or the reason why there is none.
-fn put(record: &mut Record, metric: MetricKey, value: Option<f64>, reason: &str) {
-    match value {
-        Some(value) => record.put(metric, value),
-        None => record.leave_out(metric, reason),
-    }
-}
-
 /// Metrics and profiles.
 pub fn measure(setup: &Setup, window: &Window, area: f64, record: &mut Record) {
     let (sections, wall) = (window.mean(&window.sections), window.mean(&window.wall));
@@ -241,17 +233,18 @@ pub fn measure(setup: &Setup, window: &Window, area: f64, record: &mut Record) {
     record.put(FORCE, force);
     let relative = |value: f64| (setup.flux() != 0.0).then_some(value);
     let none = "the flux wanted is 0, so no error relative to it exists";
-    put(record, FLUX, relative(flux / setup.flux() - 1.0), none);
-    put(record, SECTION_FLUX, relative(section_flux(setup, &sections)), none);
+    record.put_or(FLUX, relative(flux / setup.flux() - 1.0), none);
+    record.put_or(SECTION_FLUX, relative(section_flux(setup, &sections)), none);
     let drags = drags(setup, &wall);
     for (part, drag) in DRAGS.into_iter().zip(drags) {
         record.put(part, drag);
     }
-    record.put(DRAG_BALANCE, drags.iter().sum::<f64>() / (force * area) - 1.0);
+    let balance = (force != 0.0).then(|| drags.iter().sum::<f64>() / (force * area) - 1.0);
+    record.put_or(DRAG_BALANCE, balance, "no body force has acted yet");
     let [separation, reattachment] = bubble(&wall);
     let none = "no stretch of the hill has backward flow";
-    put(record, SEPARATION, separation, none);
-    put(record, REATTACHMENT, reattachment, none);
+    record.put_or(SEPARATION, separation, none);
+    record.put_or(REATTACHMENT, reattachment, none);
     compare(setup, &sections, record);
     let stations: Vec<_> =
         places(setup).iter().zip(&sections).map(|([x, y], [u, v])| [*x, *y, *u, *v]).collect();
@@ -316,9 +309,9 @@ fn compare(setup: &Setup, sections: &[[f64; 2]], record: &mut Record) {
     let force = gap(FORCE).zip(reference.number(FORCE)).map(|(gap, exact)| gap / exact);
     let (separation, reattachment) = (gap(SEPARATION), gap(REATTACHMENT));
     let none = "the run or the reference has no backward flow";
-    put(record, FORCE_ERROR, force, none);
-    put(record, SEPARATION_ERROR, separation, none);
-    put(record, REATTACHMENT_ERROR, reattachment, none);
+    record.put_or(FORCE_ERROR, force, none);
+    record.put_or(SEPARATION_ERROR, separation, none);
+    record.put_or(REATTACHMENT_ERROR, reattachment, none);
 }
 
 /// How far wall particles are from where they belong \[dx\]: over the places along floor and lid, the

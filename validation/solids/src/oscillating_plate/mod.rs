@@ -238,7 +238,7 @@ impl Watch for Tip {
         let error = record.value(PERIOD_ERROR).filter(|_| record.variant == LAGRANGIAN);
         let stiffness = || solid::lagrangian::bending(s.n, s.poisson);
         let bent = error.map(|error| (1.0 + error) * stiffness().sqrt() - 1.0);
-        solid::put_or(record, BENDING_PERIOD_ERROR, bent, "no error, or no theory of its layers");
+        record.put_or(BENDING_PERIOD_ERROR, bent, "no error, or no theory of its layers");
         let columns = [("t", "s"), ("along", "m"), ("tip", "m")];
         record.profiles.insert("tip".into(), Profile::of_rows(&columns, &path.0));
     }

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use solver::{EquationOfState, Flow as Going, Observer, Particle, Stepper, Symmetric};
 
 use super::{RingSettings, metrics::*, reference};
-use crate::solid::{Energy, Problem, SharedSettings, Watch, corners, largest, put_or};
+use crate::solid::{Energy, Problem, SharedSettings, Watch, corners, largest};
 use base::{
     functions::hypot,
     record::{MetricKey, Profile, Record, Status},
@@ -186,7 +186,7 @@ impl Series {
             (ENERGY_GAINED, highest / energy(first) - 1.0),
         ] {
             let moving = (speed > 0.0).then_some(value);
-            put_or(record, metric, moving, "the rings are at rest at the start");
+            record.put_or(metric, moving, "the rings are at rest at the start");
         }
         self.put_contact(last[2] / speed, record);
         let columns = [1, 2, 3, 4].map(|k| self.points(k));
@@ -200,14 +200,14 @@ impl Series {
         let parted = phases.last().filter(|last| last.is_over).map(|_| restitution);
         let never = phases.is_empty();
         let why = if never { "the rings never touch" } else { "the rings still touch at the end" };
-        put_or(record, RESTITUTION, parted, why);
+        record.put_or(RESTITUTION, parted, why);
         const METRICS: [MetricKey; 3] = [IMPULSE, T_IMPULSE_1, T_IMPULSE_99];
         for (k, Phase { impulse, times: [early, late], is_over }) in
             phases.into_iter().enumerate().take(2)
         {
             for (metric, value) in METRICS.into_iter().zip([impulse, early, late]) {
                 let why = "the phase lasts until the end of the run";
-                put_or(record, metric.at(phase(k)), is_over.then_some(value), why);
+                record.put_or(metric.at(phase(k)), is_over.then_some(value), why);
             }
         }
     }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use ::lagrangian::{Hencky, Law as _};
 
 use super::{LAGRANGIAN, PLANE, RingSettings, metrics::*};
-use crate::solid::{Quantities, largest, put_or, quantities, rows};
+use crate::solid::{Quantities, largest, quantities, rows};
 use base::{
     record::{MetricKey, Record},
     reference::{Reference as Package, Table},
@@ -78,7 +78,7 @@ pub fn compare(s: &RingSettings, phases: &[Phase], found: &Histories, record: &m
     for (quantity, error) in COMPARED {
         let pair = exact.number(quantity).zip(record.value(quantity));
         let value = pair.map(|([exact, _], found)| found / exact - 1.0);
-        put_or(record, error, value, "the run has no number to compare");
+        record.put_or(error, value, "the run has no number to compare");
     }
     exact.compare_phases(phases, record);
     exact.compare_histories(found, record);
@@ -184,7 +184,7 @@ impl Reference {
                 (CONTACT_END_ERROR, last.map(|found| found.times[1] - end)),
                 (IMPULSE_ERROR, same.map(|found| found.impulse / impulse - 1.0)),
             ] {
-                put_or(record, metric.at(phase(k)), error, UNLIKE);
+                record.put_or(metric.at(phase(k)), error, UNLIKE);
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use base::{
-    record::{MetricKey, MetricName, Record},
+    record::{MetricKey, Record},
     reference::{Reference, ReferenceError, Table},
 };
 use nalgebra::Vector2;
@@ -71,7 +71,7 @@ pub fn compare(
     for (quantity, error) in quantities {
         let exact = exact.and_then(|exact| exact.number(&String::from(*quantity)));
         let ratio = record.value(*quantity).zip(exact).map(|(found, exact)| found / exact - 1.0);
-        put_or(record, *error, ratio, lacks);
+        record.put_or(*error, ratio, lacks);
     }
     let is_whole =
         |exact: &&Elements| exact.path.end() > 0.0 && path.end() >= 0.99 * exact.path.end();
@@ -79,15 +79,7 @@ pub fn compare(
         let scale = exact.number(scale)?;
         Some(path.distance(&exact.path) / scale)
     });
-    put_or(record, rms, distance, lacks);
-}
-
-/// Puts a metric, or says why there is none.
-pub fn put_or(record: &mut Record, metric: impl Into<MetricName>, value: Option<f64>, why: &str) {
-    match value {
-        Some(value) => record.put(metric, value),
-        None => record.leave_out(metric, why),
-    }
+    record.put_or(rms, distance, lacks);
 }
 
 /// The path of a place: times \[s\], ascending, and its displacements \[m\].

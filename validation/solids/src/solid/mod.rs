@@ -15,7 +15,7 @@ pub mod tests;
 
 use nalgebra::Vector2;
 
-pub use elements::{Elements, Path, Quantities, compare, put_or, quantities, rows};
+pub use elements::{Elements, Path, Quantities, compare, quantities, rows};
 pub use energy::{Energy, angular_momentum, norm_squared};
 pub use material::{Material, limits};
 pub use method::{Bare, Clamp, HeavyRubber, Plain, Rubber};

@@ -256,11 +256,8 @@ fn put_if_reached(
     [reached, time]: [f64; 2],
     value: impl FnOnce() -> f64,
 ) {
-    if time <= reached * (1.0 + 1e-9) {
-        record.put(metric, value());
-    } else {
-        record.leave_out(metric, TOO_SHORT);
-    }
+    let is_reached = time <= reached * (1.0 + 1e-9);
+    record.put_or(metric, is_reached.then(value), TOO_SHORT);
 }
 
 /// The time of the last point of a curve, 0 if it has none.
