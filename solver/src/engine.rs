@@ -316,7 +316,7 @@ impl<P: Physics> Engine<P> {
         for (column, own) in self.columns[fluid..].iter_mut().zip(&implied) {
             (column.velocity, column.common.density) = (own.velocity, own.density);
         }
-        // Until they are derived again, those with feet are there.
+        // Sums are made at the foot of a wall particle, if it has one; its column is derived again below.
         for (column, foot) in self.columns[fluid..].iter_mut().zip(&self.data.neighbours.feet) {
             column.position += foot;
         }

@@ -63,17 +63,12 @@ pub fn run(
     if let Some(status) = search.ended {
         record.status = status;
     }
-    match &detected {
-        Some((error, failed)) => {
-            record.put(DETECTED, *error);
-            record.numerics.insert(GATES.into(), failed.join(" ").into());
-        }
-        None => record.leave_out(DETECTED, "no error that was tried fails a gate with both signs"),
+    if let Some((_, failed)) = &detected {
+        record.numerics.insert(GATES.into(), failed.join(" ").into());
     }
-    match undetected {
-        Some(error) => record.put(UNDETECTED, error),
-        None => record.leave_out(UNDETECTED, "every error that was tried fails a gate"),
-    }
+    let never = "no error that was tried fails a gate with both signs";
+    record.put_or(DETECTED, detected.map(|(error, _)| error), never);
+    record.put_or(UNDETECTED, undetected, "every error that was tried fails a gate");
     Ok(record)
 }
 
