@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use sha2::{Digest, Sha256};
+use hmac_sha256::Hash;
 
 /// What every result depends on.
 const SHARED: [&str; 6] =
@@ -37,7 +37,7 @@ fn main() {
 
 /// SHA-256 of compiler, profile and sources, 16 hexadecimal digits.
 fn digest(family: &str) -> String {
-    let mut hash = Sha256::new();
+    let mut hash = Hash::new();
     for variable in ["PROFILE", "OPT_LEVEL", "TARGET", "CARGO_CFG_TARGET_FEATURE"] {
         hash.update(std::env::var(variable).unwrap_or_default());
     }

@@ -73,7 +73,7 @@ impl<P: Physics> Engine<P> {
         let mut extent = self.fill(state)?;
         if self.data.progress.built_inside_a_step || self.data.is_stale_soon(extent) {
             self.data.sort(state);
-            self.build_lists(&mut state.iter().map(|e| e.position));
+            self.build_lists(&mut places(state));
             self.data.progress.built_inside_a_step = false;
             extent = self.fill(state)?;
         }
@@ -86,7 +86,7 @@ impl<P: Physics> Engine<P> {
     pub fn refresh(&mut self, state: &State<P>) -> Result<(), Fault> {
         let extent = self.fill(state)?;
         if self.data.is_stale(extent) {
-            self.build_lists(&mut state.iter().map(|e| e.position));
+            self.build_lists(&mut places(state));
             // Particles may have left the period by more than images make up for: wrap soon.
             self.data.progress.built_inside_a_step = true;
             self.fill(state)?;
@@ -335,6 +335,11 @@ impl<P: Physics> Engine<P> {
         let neighbours = &self.data.neighbours;
         fill_images::<P, (P::Forces, P::Drift)>(neighbours, fluid, motion, &mut self.columns);
     }
+}
+
+/// Where particles are: an iterator whose type depends on no scheme.
+pub(crate) fn places<X>(state: &[Evolved<X>]) -> impl Iterator<Item = Vector2<f64>> {
+    state.iter().map(|evolved| evolved.position)
 }
 
 /// Refills the images among these columns of the particles from `first` on; an image of an image belongs to

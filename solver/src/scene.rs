@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use crate::{
     domain::Domain,
-    engine::Engine,
+    engine::{Engine, places},
     integrator::Scheme,
     kernel::{Kernel, Smoothing},
     neighbours::Neighbours,
@@ -115,7 +115,7 @@ impl<S: Scheme> Scene<S> {
         let kernel = Smoothing::<S::Kernel>::new(h);
         let mut engine = Engine::new(kernel, (self.forces, self.drift), &self.walls, data);
         let state = std::mem::take(&mut engine.data.state);
-        engine.build_lists(&mut state.iter().map(|e| e.position));
+        engine.build_lists(&mut places(&state));
         engine.data.state = state;
         Ok(Simulation { engine, integrator: S::Integrator::default() })
     }

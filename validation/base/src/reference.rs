@@ -17,7 +17,6 @@ use std::fmt::Write;
 use std::sync::LazyLock;
 
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 use crate::pack;
@@ -536,7 +535,7 @@ fn check_cells(name: &str, path: &str, table: &Table) -> Result<(), ReferenceErr
 /// The SHA-256 digest in lowercase hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(64);
-    for byte in Sha256::digest(bytes) {
+    for byte in hmac_sha256::Hash::hash(bytes) {
         let _ = write!(text, "{byte:02x}");
     }
     text

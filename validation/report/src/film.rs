@@ -84,8 +84,8 @@ fn write(
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_palette(palette.colours.clone());
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Best);
-    encoder.set_filter(png::FilterType::NoFilter); // flat colours: every filter makes it larger
+    encoder.set_compression(png::Compression::High);
+    encoder.set_filter(png::Filter::NoFilter); // flat colours: every filter makes it larger
     if frames.len() > 1 {
         encoder.set_animated(frames.len() as u32, 0)?;
         encoder.set_frame_delay(milliseconds, 1000)?;
@@ -154,11 +154,11 @@ mod tests {
     #[test]
     fn a_film_is_read_back_frame_by_frame() {
         let film = Film::new("film", "", &[frame(1.0), frame(2.0), frame(3.0)], 80).unwrap();
-        let mut reader = png::Decoder::new(film.png.as_slice()).read_info().unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&film.png)).read_info().unwrap();
         assert_eq!(reader.info().animation_control().unwrap().num_frames, 3);
         let mut seen = Vec::new();
         for _ in 0..3 {
-            let mut pixels = vec![0; reader.output_buffer_size()];
+            let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
             reader.next_frame(&mut pixels).unwrap();
             seen.push(pixels);
         }

@@ -193,7 +193,7 @@ pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
         let mut encoder = png::Encoder::new(File::create(temporary)?, width, height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_compression(png::Compression::Fast);
-        encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+        encoder.set_filter(png::Filter::Adaptive);
         let mut writer = encoder.write_header()?;
         writer.write_image_data(&pixels)?;
         Ok(writer.finish()?)

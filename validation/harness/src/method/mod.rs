@@ -107,8 +107,7 @@ where
     S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
 {
     mutate(&mut parts);
-    let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
-    let feet = pairs.map(|(p, point)| point - p.position).collect();
+    let feet = feet(&parts);
     let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation, .. } = parts;
     let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
     let walls = S::Walls::new(&medium, mirrors);
@@ -121,6 +120,12 @@ where
         scene.parallel_from = usize::MAX;
     }
     scene
+}
+
+/// From each wall particle to the point of the surface that is nearest to it \[m\], if walls read that.
+fn feet<X>(parts: &Parts<X>) -> Vec<Vector2<f64>> {
+    let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
+    pairs.map(|(p, point)| point - p.position).collect()
 }
 
 /// h/dx and η²/h².
