@@ -8,8 +8,8 @@ use std::process::Command;
 use hmac_sha256::Hash;
 
 /// What every result depends on.
-const SHARED: [&str; 6] =
-    ["../solver", "base", "maths", "harness", "../references", "../Cargo.lock"];
+const SHARED: [&str; 7] =
+    ["../solver", "base", "maths", "harness", "schemes", "../references", "../Cargo.lock"];
 /// Crates with cases; a result depends on that of its case beside what is shared.
 const FAMILIES: [&str; 4] = ["fluids", "waters", "solids", "lattice"];
 

@@ -7,7 +7,7 @@
 //! the density keeps its bits.
 
 use base::record::{Record, Status};
-use fluids::channel::{ChannelSettings, Flow, Fluid, Setup, Stiff, TIMES, variants};
+use fluids::channel::{ChannelSettings, Flow, Setup, TIMES, variants};
 use harness::{
     composed::Composition,
     context::Context,
@@ -16,6 +16,7 @@ use harness::{
 };
 use maths::theory::time_step::Integrator;
 use nalgebra::DVector;
+use schemes::flow::{Fluid, OfChannels};
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, Integrator as _,
     InterfaceWall, Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline,
@@ -294,7 +295,7 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
     let (by, method) = match record.numerics[INTEGRATOR].as_str() {
         Some("leapfrog") => (Integrator::Leapfrog, plain()),
         Some("single-sweep") => (Integrator::SingleSweep, plain()),
-        Some("super-leapfrog") => (Integrator::SuperLeapfrog, Method::of::<Stiff<BodyForce>>()),
+        Some("super-leapfrog") => (Integrator::SuperLeapfrog, OfChannels::poiseuille().stiff),
         _ => (Integrator::PredictorCorrector, plain()),
     };
     let context = Context::of_rules();

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::tidy::root;
 
 /// A crate, its folder, and the crates of this project that it may know.
-const LAYERS: [(&str, &str, &[&str]); 15] = [
+const LAYERS: [(&str, &str, &[&str]); 16] = [
     ("lanes", "solver/lanes", &[]),
     ("solver", "solver", &["lanes"]),
     ("lagrangian", "solver/lagrangian", &["lanes", "solver"]),
@@ -17,27 +17,27 @@ const LAYERS: [(&str, &str, &[&str]); 15] = [
     ("maths", "validation/maths", &["solver", "lagrangian", "base"]),
     ("harness", "validation/harness", &["solver", "base", "report", "maths"]),
     ("exchange", "validation/exchange", &["solver", "base", "harness"]),
-    ("fluids", "validation/fluids", &["solver", "base", "report", "maths", "harness"]),
-    ("waters", "validation/waters", &["solver", "base", "report", "maths", "harness"]),
-    (
-        "solids",
-        "validation/solids",
-        &["solver", "lagrangian", "base", "report", "maths", "harness"],
-    ),
-    ("lattice", "validation/lattice", &["solver", "base", "report", "maths", "harness"]),
+    ("schemes", "validation/schemes", &["solver", "lagrangian", "base", "maths", "harness"]),
+    ("fluids", "validation/fluids", &OF_CASES),
+    ("waters", "validation/waters", &OF_CASES),
+    ("solids", "validation/solids", &OF_CASES),
+    ("lattice", "validation/lattice", &OF_CASES),
     ("validation", "validation/catalogue", &EVERY),
     ("touchstone", "validation", &WITH_VALIDATION),
     ("tests", "tests", &WITH_VALIDATION),
 ];
+const OF_CASES: [&str; 7] =
+    ["solver", "lagrangian", "base", "report", "maths", "harness", "schemes"];
 const EVERY: [&str; 9] =
     ["solver", "base", "report", "maths", "harness", "fluids", "waters", "solids", "lattice"];
-const WITH_VALIDATION: [&str; 11] = [
+const WITH_VALIDATION: [&str; 12] = [
     "solver",
     "base",
     "exchange",
     "report",
     "maths",
     "harness",
+    "schemes",
     "fluids",
     "waters",
     "solids",

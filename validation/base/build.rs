@@ -2,7 +2,9 @@
 //! the references.
 
 use std::process::Command;
-use std::{env, io, path::Path};
+use std::{env, fs, io, path::Path};
+
+use hmac_sha256::Hash;
 
 mod pack;
 
@@ -24,8 +26,32 @@ fn main() -> io::Result<()> {
             paths.extend(pack::entries(&folder)?);
         }
     }
-    paths.retain(|path| path.extension().is_some_and(|kind| kind == "csv" || kind == "json"));
-    pack::write("references", &paths)
+    let is = |path: &Path, kind| path.extension().is_some_and(|of| of == kind);
+    let mut packed = Vec::new();
+    for path in paths {
+        if is(&path, "json") || is(&path, "csv") && is_described(&path)? {
+            packed.push(path);
+        }
+    }
+    pack::write("references", &packed)
+}
+
+/// Whether a package describes this table. A hash that it does not state is refused: here, so that no run has
+/// to find out.
+fn is_described(table: &Path) -> io::Result<bool> {
+    let name = table.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let package = fs::read_to_string(table.with_file_name("datapackage.json"))?;
+    if !package.contains(&format!("\"{name}\"")) {
+        return Ok(false);
+    }
+    let hash = Hash::hash(&fs::read(table)?).map(|byte| format!("{byte:02x}")).concat();
+    if package.contains(&hash) {
+        return Ok(true);
+    }
+    let table = table.display();
+    let words =
+        format!("the hash of reference {table} is {hash}, which its package does not state");
+    Err(io::Error::other(words))
 }
 
 fn set(name: &str, value: Option<String>) {

@@ -14,7 +14,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use serde::Deserialize;
 use thiserror::Error;
@@ -221,23 +221,31 @@ impl Reference {
         EMBEDDED.keys().filter_map(|path| path.strip_suffix(PACKAGE)).collect()
     }
 
-    /// Checks and reads an embedded reference. One whose second code does not agree is refused.
-    pub fn load(name: &str) -> Result<Self, ReferenceError> {
-        let reference = Self::read(name)?;
-        reference.agreement()?;
-        Ok(reference)
+    /// An embedded reference, which is checked and read once. One whose second code does not agree is refused.
+    pub fn load(name: &str) -> Result<&'static Self, ReferenceError> {
+        static READ: LazyLock<BTreeMap<&str, OnceLock<Result<Reference, ReferenceError>>>> =
+            LazyLock::new(|| {
+                Reference::names().into_iter().map(|name| (name, OnceLock::new())).collect()
+            });
+        let read = || {
+            let reference = Self::read(name)?;
+            reference.agreement()?;
+            Ok(reference)
+        };
+        let once = READ.get(name).ok_or_else(|| unknown(name))?;
+        once.get_or_init(read).as_ref().map_err(Clone::clone)
     }
 
     fn read(name: &str) -> Result<Self, ReferenceError> {
         let Some(package) = EMBEDDED.get(&format!("{name}{PACKAGE}")) else {
-            let known = Self::names().join(", ");
-            return refused(format!("no reference is called {name:?}; there are {known}"));
+            return Err(unknown(name));
         };
         let of_name = |(path, text): (&'static String, &'static String)| {
             Some((path.strip_prefix(name)?.strip_prefix('/')?, text.as_str()))
         };
         let files: Vec<(&str, &str)> = EMBEDDED.iter().filter_map(of_name).collect();
-        Self::from_texts(name, package, &files)
+        // The build script has checked the hashes.
+        Self::of(name, described(name, package)?, &files)
     }
 
     /// Checks and reads a reference from the text of its description and of its tables by path.
@@ -246,12 +254,12 @@ impl Reference {
         package: &str,
         files: &[(&str, &str)],
     ) -> Result<Self, ReferenceError> {
-        let unreadable = |reason| {
-            let words =
-                format!("the datapackage.json of reference {name} cannot be read: {reason}");
-            ReferenceError(words)
-        };
-        let package: Package = serde_json::from_str(package).map_err(unreadable)?;
+        let package = described(name, package)?;
+        package.resources.iter().try_for_each(|resource| check_hash(name, resource, files))?;
+        Self::of(name, package, files)
+    }
+
+    fn of(name: &str, package: Package, files: &[(&str, &str)]) -> Result<Self, ReferenceError> {
         check_provenance(name, &package)?;
         let table = |resource| read_table(name, resource, files);
         let mut tables = package.resources.iter().map(table).collect::<Result<Vec<_>, _>>()?;
@@ -459,21 +467,54 @@ fn check_provenance(name: &str, package: &Package) -> Result<(), ReferenceError>
     Ok(())
 }
 
-/// Reads a table after checking its hash and its header.
+fn unknown(name: &str) -> ReferenceError {
+    let known = Reference::names().join(", ");
+    ReferenceError(format!("no reference is called {name:?}; there are {known}"))
+}
+
+/// A description from its text.
+fn described(name: &str, package: &str) -> Result<Package, ReferenceError> {
+    serde_json::from_str(package).map_err(|reason| {
+        let words = format!("the datapackage.json of reference {name} cannot be read: {reason}");
+        ReferenceError(words)
+    })
+}
+
+/// The text of a table.
+fn text_of<'a>(
+    file: &str,
+    resource: &Resource,
+    files: &[(&str, &'a str)],
+) -> Result<&'a str, ReferenceError> {
+    let text = files.iter().find(|(known, _)| *known == resource.path);
+    let missing = format!("the file {file}, which a reference describes, does not exist");
+    text.map_or_else(|| refused(missing), |(_, text)| Ok(*text))
+}
+
+fn check_hash(
+    name: &str,
+    resource: &Resource,
+    files: &[(&str, &str)],
+) -> Result<(), ReferenceError> {
+    let file = format!("{name}/{}", resource.path);
+    let text = text_of(&file, resource, files)?;
+    let (stated, found) = (&resource.hash, format!("sha256:{}", sha256(text.as_bytes())));
+    match *stated == found {
+        true => Ok(()),
+        false => refused(format!(
+            "the hash of reference {file} is {found}, but its package states {stated}"
+        )),
+    }
+}
+
+/// Reads a table after checking its header.
 fn read_table(
     name: &str,
     resource: &Resource,
     files: &[(&str, &str)],
 ) -> Result<Table, ReferenceError> {
     let file = format!("{name}/{}", resource.path);
-    let Some((_, text)) = files.iter().find(|(known, _)| *known == resource.path) else {
-        return refused(format!("the file {file}, which a reference describes, does not exist"));
-    };
-    let (stated, found) = (&resource.hash, format!("sha256:{}", sha256(text.as_bytes())));
-    if *stated != found {
-        let hash = format!("the hash of reference {file} is {found}");
-        return refused(format!("{hash}, but its package states {stated}"));
-    }
+    let text = text_of(&file, resource, files)?;
     let fields: Vec<&str> = resource.schema.fields.iter().map(|field| &*field.name).collect();
     let stated = fields.join(",");
     let differs = |found: String| {
@@ -668,7 +709,7 @@ mod tests {
 
     #[test]
     fn two_codes_must_agree_within_both_uncertainties() {
-        let mut hill = Reference::load("periodic_hill").unwrap();
+        let mut hill = Reference::read("periodic_hill").unwrap();
         let agreement = hill.agreement().unwrap().unwrap();
         assert!(agreement.numbers == 22 && agreement.worst <= 1.0, "{agreement:?}");
         let cell = |hill: &mut Reference, at: &str, text: &str| {

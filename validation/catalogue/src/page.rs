@@ -258,7 +258,7 @@ pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
 }
 
 fn references_section() -> Section {
-    type Row = (&'static str, Result<Reference, ReferenceError>);
+    type Row = (&'static str, Result<&'static Reference, ReferenceError>);
     let name = |(name, found): &Row| {
         let cell = Cell::text(format!("`{name}`"));
         if found.is_err() { cell.with(Status::Fail) } else { cell }
@@ -277,7 +277,7 @@ fn references_section() -> Section {
     let table = Columns::<Row>::default()
         .with(Column::text("reference"), name)
         .text("what", what)
-        .text("grade", |(_, found)| found.as_ref().map_or("–".into(), Reference::graded))
+        .text("grade", |(_, found)| found.as_ref().map_or("–".into(), |of| of.graded()))
         .text("licence", licences)
         .table(
             "Reference data, embedded with its provenance and checked by hash.",

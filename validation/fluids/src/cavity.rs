@@ -9,10 +9,10 @@ use harness::{
 use maths::metrics::norms::rms;
 use nalgebra::{SMatrix, SVector, Vector2};
 use report::ColourMap;
+use schemes::flow;
 use solver::*;
 
-use crate::channel::{Modern, Seed, Stabilised};
-use crate::unit_flow::{ConsistentDrift, Scales, UnitFlow, unit_settings};
+use crate::unit_flow::{Scales, UnitFlow, unit_settings};
 
 unit_settings! {
     /// Settings of the cavity. L = U = ρ = 1.
@@ -43,10 +43,6 @@ base::metrics! {
 }
 
 const NAME: &str = "cavity";
-type Walls = ExtrapolatingWall<Tait, NoSlip>;
-type Pairs = (Pressure<Tait>, Viscosity);
-type Carried = (Pressure<Tait>, Viscosity, ShiftAdvection);
-type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, ShiftAdvection);
 
 fn variants() -> Vec<Composition<Cavity>> {
     let seed = "the paper's, with interface and wall particles: are they enough for a moving lid?";
@@ -55,12 +51,11 @@ fn variants() -> Vec<Composition<Cavity>> {
     let consistent = "carried with sums that are exact for linear fields, as in the vortices";
     let strong: fn(&mut Cavity) = |s| s.shift = 3.0;
     let old: fn(&mut Cavity) = |s| (s.h_over_dx, s.eta2_over_h2, s.courant) = (1.2, 0.01, 0.25);
-    type Exact = Modern<Consistent, ConsistentDrift, Walls>;
     Variants::of(&Program { run, rules: |m, s| Ok(flow(s, m, &Context::of_rules())?.rules) })
-        .with("seed", seed, Method::of::<Seed<Pairs, Continuity, InterfaceWall>>(), old)
-        .with("modern", modern, Method::of::<Modern<Pairs, Stabilised, Walls>>(), |_| {})
-        .with("carried", carried, Method::of::<Modern<Carried, Stabilised, Walls>>(), strong)
-        .with(BEST, consistent, Method::of::<Exact>(), strong)
+        .with("seed", seed, flow::cavity_seed(), old)
+        .with("modern", modern, flow::cavity_modern(), |_| {})
+        .with("carried", carried, flow::cavity_carried(), strong)
+        .with(BEST, consistent, flow::cavity_consistent(), strong)
         .all
 }
 

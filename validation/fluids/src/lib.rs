@@ -1,6 +1,5 @@
 //! Viscous flows.
 
-pub mod bench;
 pub mod cavity;
 pub mod channel;
 pub mod manufactured;

@@ -17,12 +17,10 @@ use harness::{
 };
 use maths::{exact::Manufactured, metrics::norms::rms};
 use nalgebra::Vector2;
-use solver::{lane::Lane, particles::Common, terms::Pair, *};
+use schemes::flow;
+use solver::*;
 
-use crate::{
-    channel::{Modern, Seed, Stabilised},
-    unit_flow::{ConsistentDrift, Scales, UnitFlow, unit_settings},
-};
+use crate::unit_flow::{Scales, UnitFlow, unit_settings};
 
 unit_settings! {
     /// Settings of the manufactured flow. L = U = ρ = 1.
@@ -39,40 +37,6 @@ unit_settings! {
         c0: f64 ["U"] in 2.0..=1e4 = 100.0,
     }
 }
-
-/// The force of the flow.
-#[derive(Clone, Copy, Debug)]
-struct Source {
-    /// U²/L and νU/L², the scales of its parts \[m/s²\].
-    scales: Vector2<f64>,
-}
-
-/// The medium has the scales in place of a uniform body force, so that a deliberate error of the viscosity is
-/// none of the force.
-impl FromMedium for Source {
-    fn new(medium: &Medium) -> Self {
-        Self { scales: medium.acceleration }
-    }
-}
-
-impl<X> Term<X> for Source {
-    type Derived = ();
-    type Sum = ();
-
-    #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2], _: &mut ()) {}
-
-    #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), _: (), _: &mut Rate<X>) {}
-
-    fn place(&self, x: Vector2<f64>, rate: &mut Rate<X>) {
-        let (advection, viscous) = (Manufactured::advection(x), Manufactured::viscous(x));
-        rate.velocity += advection * self.scales.x + viscous * self.scales.y;
-    }
-}
-
-type Pairs = (Pressure<Tait>, Viscosity, Source);
-type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, Source, ShiftAdvection);
 
 /// As in the channels: h/dx 1.2, η² = 0.01 h², and a step short enough for the predictor-corrector.
 fn seed(s: &mut ManufacturedSettings) {
@@ -93,19 +57,13 @@ fn variants() -> Vec<Composition<ManufacturedSettings>> {
     let of_seed = "the paper's terms, kernel and predictor-corrector: what order have they?";
     let of_modern = "quintic spline, leapfrog, density diffusion, shifting: what order have they?";
     let of_consistent = "modern with sums that are exact for linear fields: what order have they?";
-    type Exact<W> = Modern<Consistent, ConsistentDrift, W>;
     Variants::of(&Program { run, rules })
-        .with(SEED[0], of_seed, Method::of::<Seed<Pairs, Continuity>>(), seed)
-        .with(SEED[1], of_seed, Method::of::<Seed<Pairs, Continuity, InterfaceWall>>(), seed)
-        .with(MODERN[0], of_modern, Method::of::<Modern<Pairs, Stabilised>>(), |_| {})
-        .with(
-            MODERN[1],
-            of_modern,
-            Method::of::<Modern<Pairs, Stabilised, InterfaceWall>>(),
-            |_| {},
-        )
-        .with(CONSISTENT[0], of_consistent, Method::of::<Exact<Ghosts>>(), strong)
-        .with(CONSISTENT[1], of_consistent, Method::of::<Exact<InterfaceWall>>(), strong)
+        .with(SEED[0], of_seed, flow::manufactured_seed(), seed)
+        .with(SEED[1], of_seed, flow::manufactured_seed_interface(), seed)
+        .with(MODERN[0], of_modern, flow::manufactured_modern(), |_| {})
+        .with(MODERN[1], of_modern, flow::manufactured_modern_interface(), |_| {})
+        .with(CONSISTENT[0], of_consistent, flow::manufactured_consistent(), strong)
+        .with(CONSISTENT[1], of_consistent, flow::manufactured_consistent_interface(), strong)
         .all
 }
 

@@ -17,9 +17,10 @@ use maths::{
 };
 use nalgebra::Vector2;
 use report::Axis;
+use schemes::flow;
 use solver::*;
 
-use crate::{channel::Modern, unit_flow::LIMIT_BOX};
+use crate::unit_flow::LIMIT_BOX;
 
 base::settings! {
     /// Settings of the flow between two cylinders, the inner one turning.
@@ -50,8 +51,6 @@ base::settings! {
         end: f64 ["d^2/nu"] in 1e-6..=1e4 = 1.0,
     }
 }
-
-type With<W> = Modern<(Pressure<Tait>, Viscosity), Continuity, W>;
 
 const NAME: &str = "taylor_couette";
 const INTERFACE: &str = "interface-wall";
@@ -175,13 +174,13 @@ fn variants() -> Vec<Composition<CylinderSettings>> {
         .with(
             INTERFACE,
             "interface and wall particles (section 4.2 of the paper) on and behind both cylinders",
-            Method::of::<With<InterfaceWall>>(),
+            flow::cylinders_interface(),
             |_| {},
         )
         .with(
             EXTRAPOLATING,
             "wall particles behind both cylinders that extrapolate velocity and pressure",
-            Method::of::<With<ExtrapolatingWall<Tait, NoSlip>>>(),
+            flow::cylinders_extrapolating(),
             |_| {},
         )
         .all
@@ -346,7 +345,7 @@ mod tests {
     /// Re = V d/nu, and a run ends at a multiple of d^2/nu.
     #[test]
     fn speed_radii_and_end_follow_from_the_settings() {
-        let method = Method::of::<With<InterfaceWall>>();
+        let method = flow::cylinders_interface();
         let settings = CylinderSettings { end: 0.5, ratio: 3.0, ..CylinderSettings::default() };
         let cylinders = Cylinders::new(&settings, &method, &Context::of_rules()).expect("a flow");
         assert_relative_eq!(cylinders.flow.speed, 0.5e-3, max_relative = 1e-12);

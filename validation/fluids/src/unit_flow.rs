@@ -2,7 +2,7 @@
 //! and the vortices have in common.
 
 use nalgebra::Vector2;
-use solver::{ConsistentContinuity, DensityDiffusion, Domain, Limits, Particle, Shifting, Tait};
+use solver::{Domain, Limits, Particle, Tait};
 
 use harness::{
     case::{Rules, RunError, Step},
@@ -10,9 +10,6 @@ use harness::{
     method::{Medium, Method, Parts},
     simulate,
 };
-
-/// What stabilises the modern variants, with a continuity that is exact for linear fields.
-pub type ConsistentDrift = (ConsistentContinuity, DensityDiffusion, Shifting);
 
 /// What a case adds to its settings.
 #[derive(Clone, Copy, Debug)]

@@ -16,9 +16,9 @@ use harness::{
     table::{Row, Table},
 };
 use nalgebra::Vector2;
-use solver::{CubicSpline, Domain, EquationOfState, Leapfrog, Particle, Tait, WendlandC2};
+use solver::{Domain, EquationOfState, Particle, Tait};
 
-use crate::{torus, wave::plain};
+use crate::torus;
 
 base::settings! {
     /// Settings of the experiments; each uses some of them.
@@ -93,7 +93,7 @@ const BULLET: &str = "bullet";
 
 fn variants() -> Vec<Composition<ExtremeSettings>> {
     const AT_REST: &[&str] = &["n", "h_over_dx", "steps", "dt", "background"];
-    let cubic = plain::<CubicSpline, Leapfrog>;
+    let cubic = schemes::lattice::cubic;
     let rest = "does round-off heat a lattice at rest? cubic spline";
     // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
     let pressed = "does it under pressure? Wendland function";
@@ -110,7 +110,7 @@ fn variants() -> Vec<Composition<ExtremeSettings>> {
             [PRESSED, pressed],
             AT_REST,
             |s| (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05),
-            (plain::<WendlandC2, Leapfrog>(), at_rest),
+            (schemes::lattice::wendland(), at_rest),
         ),
         variant([COINCIDENT, coincident], &["distance", "steps", "dt"], |_| (), (cubic(), stirred)),
         variant(

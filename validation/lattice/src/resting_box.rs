@@ -24,13 +24,9 @@ use harness::{
 };
 use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
-use solver::{
-    ArtificialViscosity, Compose, Continuity, CubicSpline, DensityDiffusion, EquationOfState, Flow,
-    Leapfrog, Limits, Observer, Open, PredictorCorrector, Pressure, QuinticSpline, SingleSweep,
-    Split, Stepper, SuperSteps, Tait, Viscosity, terms::Always,
-};
+use solver::{EquationOfState, Flow, Limits, Observer, Stepper, Tait};
 
-use crate::{torus, wave::plain};
+use crate::torus;
 
 base::settings! {
     /// Settings of a periodic lattice at rest with velocity noise; its side, its density and its sound
@@ -82,18 +78,6 @@ fn is_stable(record: &Record) -> bool {
     record.status == Status::Completed && record.value(GREW) == Some(0.0)
 }
 
-/// Viscosity by super-time-stepping.
-type Super =
-    Compose<CubicSpline, Split<Pressure<Tait>, Viscosity>, Continuity, Open, Leapfrog<SuperSteps>>;
-/// With artificial viscosity and density diffusion.
-type Damped = Compose<
-    CubicSpline,
-    (Pressure<Tait>, Viscosity, ArtificialViscosity<Tait, Always>),
-    (Continuity, DensityDiffusion),
-    Open,
-    Leapfrog,
->;
-
 const CUBIC: &str = "cubic-leapfrog";
 const MIDPOINT: &str = "cubic-pc";
 const SUPER: &str = "cubic-super";
@@ -104,12 +88,12 @@ const SINGLE: &str = "cubic-single-sweep";
 /// The method of a variant.
 fn method(variant: &str) -> Method {
     match variant {
-        MIDPOINT => plain::<CubicSpline, PredictorCorrector>(),
-        SINGLE => plain::<CubicSpline, SingleSweep>(),
-        SUPER => Method::of::<Super>(),
-        DAMPED => Method::of::<Damped>(),
-        QUINTIC => plain::<QuinticSpline, Leapfrog>(),
-        _ => plain::<CubicSpline, Leapfrog>(),
+        MIDPOINT => schemes::lattice::midpoint(),
+        SINGLE => schemes::lattice::single_sweep(),
+        SUPER => schemes::lattice::super_stepping(),
+        DAMPED => schemes::lattice::damped(),
+        QUINTIC => schemes::lattice::quintic(),
+        _ => schemes::lattice::cubic(),
     }
 }
 

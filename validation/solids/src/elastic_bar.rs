@@ -2,8 +2,7 @@
 
 use nalgebra::Vector2;
 use solver::{
-    CubicSpline, Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle, Stepper,
-    Symmetric,
+    CubicSpline, Domain, EquationOfState, Flow, Kernel, Observer, Particle, Stepper, Symmetric,
 };
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -58,7 +57,7 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
             = ((K + 4 mu/3)/rho)^(1/2). In one test a pulse runs through a bar. In the other two equal \
             bars meet at speeds V and -V: the contact bears rho c_p V (the jump conditions at finite V) \
             for 2 L/c_p, and then both have exchanged their velocities.",
-    variants: solid::variants::<_, Open>,
+    variants: || solid::variants(schemes::solid::free()),
     is_stable: composed::completed,
     declaration,
     plan: |tier| table(tier).plan(),
@@ -483,7 +482,7 @@ mod tests {
     use harness::{
         case::{Case, RunError},
         context::Context,
-        method::{Method, Parts},
+        method::Parts,
     };
 
     /// Motion that was written down, not stepped.
@@ -574,7 +573,7 @@ mod tests {
             p.extra.xx = -1000.0;
             p.velocity.x = if p.position.x < 0.0 { -0.2 } else { 0.5 };
         }
-        let (dx, method) = (s.dx(), Method::of::<solid::Bare<Open>>());
+        let (dx, method) = (s.dx(), schemes::solid::bare());
         let mut watch = s.watch(&particles, None);
         let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");

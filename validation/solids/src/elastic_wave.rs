@@ -6,12 +6,11 @@
 
 use nalgebra::Vector2;
 use solver::{
-    CubicSpline, Domain, EquationOfState, Flow, Kernel, Observer, Open, Particle, Stepper,
-    Symmetric,
+    CubicSpline, Domain, EquationOfState, Flow, Kernel, Observer, Particle, Stepper, Symmetric,
 };
 use std::f64::consts::TAU;
 
-use super::solid::{Bare, Material, limits};
+use super::solid::{Material, limits};
 use base::functions::{acos, cos, sin};
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -71,7 +70,7 @@ fn variants() -> Vec<Composition<WaveSettings>> {
         .with(
             CubicSpline::NAME,
             "equations (9) to (12), leapfrog, cubic spline: are both moduli those of the material?",
-            Method::of::<Bare<Open>>(),
+            schemes::solid::bare(),
             |_| {},
         )
         .all

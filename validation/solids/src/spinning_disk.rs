@@ -1,15 +1,12 @@
 //! A free elastic disk that spins: is a rotation a rotation to the method?
 
 use nalgebra::Vector2;
-use solver::{Flow, Observer, Open, Particle, PrincipalStress, Stepper, Symmetric};
+use solver::{Flow, Observer, Particle, Stepper, Symmetric};
 use std::f64::consts::{PI, TAU};
 
 use super::{
     causes::FREE_FACES,
-    solid::{
-        self, Energy, Problem, SharedSettings, Watch, angular_momentum, corrected::Corrected,
-        norm_squared,
-    },
+    solid::{self, Energy, Problem, SharedSettings, Watch, angular_momentum, norm_squared},
 };
 use base::{
     gate::{Bound, Evidence, Gate},
@@ -19,7 +16,6 @@ use harness::{
     case::Tier,
     composed::{self, Best, Composed, Composition, Variants},
     declare::{Accuracy, Budget, Budgets, Change, Declaration},
-    method::Method,
     simulate,
     table::{Row, Table},
 };
@@ -62,10 +58,10 @@ fn variants() -> Vec<Composition<DiskSettings>> {
         CORRECTED,
         "gradients that are exact for linear fields, the forces that are conjugate to them, artificial \
          viscosity and stress, leapfrog: does a rotation without strain keep a disk spinning?",
-        Method::of::<Corrected<PrincipalStress>>(),
+        schemes::solid::corrected(),
         |s| solid::leave_out(s, &["xsph"]),
     );
-    solid::variants::<_, Open>().into_iter().chain(corrected.all).collect()
+    solid::variants(schemes::solid::free()).into_iter().chain(corrected.all).collect()
 }
 
 /// The variant with corrected gradients.
@@ -383,7 +379,7 @@ mod tests {
     use harness::{
         case::{Case, RunError},
         context::Context,
-        method::{Method, Parts},
+        method::Parts,
     };
 
     /// c0 is 57.02 m/s, so 0.05 c0 is 2.851 m/s.
@@ -416,7 +412,7 @@ mod tests {
             .iter_mut()
             .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
         centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
-        let (dx, method) = (s.dx(), Method::of::<solid::Bare<Open>>());
+        let (dx, method) = (s.dx(), schemes::solid::bare());
         let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");
         let [inside, rim] = mistaken(&*simulation, 0.03);

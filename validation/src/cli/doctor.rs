@@ -7,8 +7,8 @@ use base::files::OutputFolder;
 use base::manifest::{Known, Manifest};
 use base::record::Cost;
 use base::reference::Reference;
-use fluids::bench;
 use harness::{case, context::Context, profile};
+use schemes::bench;
 use validation::cases;
 
 use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};

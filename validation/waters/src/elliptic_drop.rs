@@ -9,11 +9,12 @@ use harness::{
 use maths::exact::EllipticDrop as Exact;
 use nalgebra::Vector2;
 use report::ColourMap;
+use schemes::water::{self, WaterMethod};
 use solver::*;
 
 use super::{
     causes::SHORT_KERNEL,
-    water::{Ledger, Modern, Seed, WaterMethod, ledger, method},
+    water::{Ledger, ledger},
 };
 
 crate::water_settings! {
@@ -49,9 +50,6 @@ base::metrics! {
 /// Samples of a run.
 const SAMPLES: usize = 80;
 
-type Plain = Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
-type Free = Modern<(Continuity, DensityDiffusion), Open, Leapfrog, ArtificialViscosity<Tait>>;
-
 /// The strain moves rows apart to two spacings, and the Wendland kernel needs h/dx of 1.2 at least for
 /// its sums to be those of a continuum: 2.5 leaves 1.25 at the end.
 fn modern(s: &mut DropSettings) {
@@ -63,9 +61,9 @@ fn variants() -> Vec<Composition<DropSettings>> {
     let best = "Wendland C2, h/dx 2.5, leapfrog, density diffusion, little artificial viscosity";
     let plain = "modern without dissipation: (3), (5) and (7) alone";
     Variants::of(&Program { run, rules: |method, s| Ok(Drop::new(s, method).rules) })
-        .with("seed", seed, method::<Seed<Open>>(), |_| {})
-        .with("modern", best, method::<Free>(), modern)
-        .with("plain", plain, method::<Plain>(), modern)
+        .with("seed", seed, water::free_seed(), |_| {})
+        .with("modern", best, water::free(), modern)
+        .with("plain", plain, water::plain(), modern)
         .all
 }
 
@@ -359,7 +357,7 @@ mod tests {
 
     #[test]
     fn the_particles_of_the_start_are_the_exact_drop() {
-        let drop = Drop::new(&DropSettings::default(), &method::<Plain>());
+        let drop = Drop::new(&DropSettings::default(), &water::plain());
         let start = shape(drop.particles.iter().map(evolved));
         assert!(
             (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12
@@ -407,7 +405,7 @@ mod tests {
             let spec = ELLIPTIC_DROP.spec("modern", |s| (s.n, s.gravity) = (40, 1.0));
             serde_json::from_value(spec.settings).expect("settings")
         };
-        let method = method::<Free>();
+        let method = water::free();
         let (drop, rate) = (Drop::new(&settings, &method), settings.strain);
         let r = drop.exact.a / 2.0_f64.sqrt();
         let simulation = |[a, b]: [f64; 2], at: Vector2<f64>, v: Vector2<f64>| {

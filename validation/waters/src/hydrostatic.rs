@@ -10,12 +10,10 @@ use maths::{
     metrics::norms::{Scale, l2},
 };
 use nalgebra::Vector2;
+use schemes::water::WaterMethod;
 use solver::*;
 
-use crate::{
-    causes::MIRRORED_PRESSURE,
-    water::{self, Modern, Seed, WaterMethod, method},
-};
+use crate::{causes::MIRRORED_PRESSURE, water};
 
 base::settings! {
     /// Settings of water at rest in an open tank.
@@ -88,12 +86,11 @@ fn variants() -> Vec<Composition<HydrostaticSettings>> {
                 a hydrostatic column, leapfrog";
     let plain = "modern with the diffusion of Molteni and Colagrossi: does plain diffusion level out the \
                  column?";
-    type Plain = Modern<(Continuity, DensityDiffusion)>;
     Variants::of(&Program { run, rules: |m, s| Ok(Column::new(s, m, &Context::of_rules())?.rules) })
-        .with("seed", seed, method::<Seed<InterfaceWall>>(), |_| {})
-        .with("ghosts", "seed with ghosts for walls", method::<Seed<Ghosts>>(), |_| {})
-        .with("modern", best, method::<Modern>(), modern)
-        .with("extrapolating-molteni", plain, method::<Plain>(), modern)
+        .with("seed", seed, schemes::water::seed(), |_| {})
+        .with("ghosts", "seed with ghosts for walls", schemes::water::ghosts(), |_| {})
+        .with("modern", best, schemes::water::modern(), modern)
+        .with("extrapolating-molteni", plain, schemes::water::molteni(), modern)
         .all
 }
 
@@ -437,7 +434,7 @@ mod tests {
         let spec = HYDROSTATIC.spec("modern", |_| {});
         let settings: HydrostaticSettings =
             serde_json::from_value(spec.settings).expect("settings");
-        let (method, context) = (method::<Modern>(), Context::default());
+        let (method, context) = (schemes::water::modern(), Context::default());
         let column = Column::new(&settings, &method, &context).expect("sound settings");
         let (dx, g) = (column.medium.dx, settings.g);
         let water = || -> Vec<Particle> { column.water(method.first_row).collect() };

@@ -8,9 +8,10 @@ use harness::{
 use maths::metrics::norms::rms;
 use nalgebra::Vector2;
 use report::ColourMap;
+use schemes::water::WaterMethod;
 use solver::*;
 
-use super::water::{self, Diffusion, Modern, Seed, WaterMethod, method};
+use super::water;
 
 crate::water_settings! {
     /// Settings of still water over a wedge; its depth H is 1 m.
@@ -46,14 +47,13 @@ fn variants() -> Vec<Composition<Wedge>> {
                   pressure: do they bear water at corners too?";
     let interface =
         "modern with interface and wall particles: are the paper's walls enough for it?";
-    type Interface = Modern<(Continuity, Diffusion), InterfaceWall>;
     fn rule(s: &mut Wedge) {
         (s.alpha, s.courant) = (0.02, 0.8);
     }
     Variants::of(&Program { run, rules: |m, s| Ok(scene(s, m, &Context::of_rules())?.1) })
-        .with("seed", seed, method::<Seed<InterfaceWall>>(), |s| s.courant = 0.4)
-        .with("modern", modern, method::<Modern>(), rule)
-        .with("modern-interface", interface, method::<Interface>(), rule)
+        .with("seed", seed, schemes::water::seed(), |s| s.courant = 0.4)
+        .with("modern", modern, schemes::water::modern(), rule)
+        .with("modern-interface", interface, schemes::water::interface_wall(), rule)
         .all
 }
 

@@ -169,18 +169,15 @@ impl Observer<()> for Mode<'_> {
 mod tests {
     use harness::{context::Context, method::Method};
     use nalgebra::Vector2;
-    use solver::{Continuity, Role};
+    use solver::Role;
 
     use base::record::{MetricName, Record};
 
     use super::*;
-    use crate::channel::{
-        ChannelSettings, Flow,
-        variants::{Fluid, Seed},
-    };
+    use crate::channel::{ChannelSettings, Flow};
 
     fn method() -> Method {
-        Method::of::<Seed<Fluid<()>, Continuity>>()
+        schemes::flow::OfChannels::couette().seed
     }
 
     fn setup(flow: Flow) -> Setup {

@@ -16,7 +16,6 @@ use declaration::{declaration, is_stable, studies};
 pub use plan::{GHOSTS, ladder};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};
-pub use variants::{Drive, Fluid, Modern, Seed, Stabilised, Stiff};
 
 use harness::{
     composed::{Best, Composed, Program},

@@ -1,32 +1,15 @@
-//! The variants of the channel flows: one line of types each, and the settings that go with them.
+//! The variants of the channel flows: methods, and the settings that go with them.
 
 use harness::{
     composed::{Composition, Variants},
-    method::{FromMedium, Method},
+    method::Method,
 };
-use solver::*;
+use schemes::flow::{self, OfChannels};
 
 use super::{
     ChannelProgram, ChannelSettings,
     run::{COUETTE, POISEUILLE},
 };
-
-/// Forces of a channel flow: pressure, viscosity, and the driving force `B`, `()` for Couette flow.
-pub type Fluid<B, R = ()> = (Pressure<Tait, R>, Viscosity, B);
-/// The same with artificial viscosity.
-type Damped = (Pressure<Tait>, Viscosity, BodyForce, ArtificialViscosity<Tait>);
-/// The same with viscosity by super-time-stepping.
-pub type StiffFluid<B> = Split<(Pressure<Tait>, B), Viscosity>;
-/// What stabilises the modern variants.
-pub type Stabilised = (Continuity, DensityDiffusion, Shifting);
-
-// A channel flow stores x, v and ρ, shows its neighbours one number, p/ρ², and nothing else.
-const _: () = assert!(size_of::<<Fluid<()> as Term<()>>::Derived>() == 8);
-const _: () = assert!(size_of::<<Stabilised as Term<()>>::Derived>() == 0);
-
-/// What drives a channel flow: a plate, `()`, or a [`solver::BodyForce`].
-pub trait Drive: FromMedium + Term<()> {}
-impl<B: FromMedium + Term<()>> Drive for B {}
 
 /// Quintic spline, h = dx, η² a mere guard, long steps, c0 up to where sound costs no step.
 fn modern(s: &mut ChannelSettings) {
@@ -56,49 +39,42 @@ fn single_sweep(s: &mut ChannelSettings) {
     (s.courant, s.c0_viscous) = (s.courant / 8_f64.sqrt(), s.c0_viscous / 8_f64.sqrt());
 }
 
-/// The paper's: cubic spline and predictor-corrector.
-pub type Seed<F, D, W = Ghosts> = Compose<CubicSpline, F, D, W, PredictorCorrector>;
-/// Quintic spline, leapfrog and super-time-stepping of viscosity.
-pub type Stiff<B> = Compose<QuinticSpline, StiffFluid<B>, Stabilised, Ghosts, Leapfrog<SuperSteps>>;
-/// Quintic spline and, as a rule, leapfrog.
-pub type Modern<F, D, W = Ghosts, I = Leapfrog> = Compose<QuinticSpline, F, D, W, I>;
-
 type All<'a> = Variants<'a, ChannelSettings, Method>;
 
 /// The variants of Couette flow.
 pub fn of_couette() -> Vec<Composition<ChannelSettings>> {
-    both::<()>(&COUETTE).all
+    both(&COUETTE, OfChannels::couette()).all
 }
 
 /// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable.
 pub fn of_poiseuille() -> Vec<Composition<ChannelSettings>> {
-    let both = both::<BodyForce>(&POISEUILLE).with(
+    let both = both(&POISEUILLE, OfChannels::poiseuille()).with(
         "curved",
         "plain with ghosts that know the curvature of the velocity at the wall: is it their error?",
-        Method::of::<Modern<Fluid<BodyForce>, Continuity>>(),
+        flow::poiseuille(),
         curved,
     );
     cures(both).all
 }
 
-fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
+fn both(program: &ChannelProgram, methods: OfChannels) -> All<'_> {
     Variants::of(program)
         .with(
             "seed",
             "as in the paper: cubic spline, h/dx 1.2, eta^2 = 0.01 h^2, ghosts, predictor-corrector",
-            Method::of::<Seed<Fluid<B>, Continuity>>(),
+            methods.seed,
             |_| {},
         )
         .with(
             "interface-wall",
             "seed with interface and wall particles (section 4.2 of the paper): as good as ghosts?",
-            Method::of::<Seed<Fluid<B>, Continuity, InterfaceWall>>(),
+            methods.interface_wall,
             |_| {},
         )
         .with(
             "wendland-leapfrog",
             "Wendland C2, h/dx 2, small eta, leapfrog: is the error of another kernel cheaper?",
-            Method::of::<Compose<WendlandC2, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
+            methods.wendland,
             |s| {
                 modern(s);
                 (s.h_over_dx, s.viscous) = (2.0, 0.23);
@@ -107,31 +83,31 @@ fn both<B: Drive>(program: &ChannelProgram) -> All<'_> {
         .with(
             "plain",
             "quintic spline, h/dx 1, small eta, leapfrog: what is the error without stabilisers?",
-            Method::of::<Modern<Fluid<B>, Continuity>>(),
+            methods.plain,
             modern,
         )
         .with(
             "extrapolating-wall",
             "plain with walls that extrapolate (Adami, Hu & Adams 2012): are they better than ghosts?",
-            Method::of::<Modern<Fluid<B>, Continuity, ExtrapolatingWall<Tait, NoSlip>>>(),
+            methods.extrapolating,
             modern,
         )
         .with(
             "modern",
             "plain, curved ghosts, density diffusion and shifting: one rule for every Reynolds number?",
-            Method::of::<Modern<Fluid<B>, Stabilised>>(),
+            methods.modern,
             curved,
         )
         .with(
             "single-sweep",
             "modern with one pair sweep a step in place of two: is its error cheaper?",
-            Method::of::<Modern<Fluid<B>, Stabilised, Ghosts, SingleSweep>>(),
+            methods.single_sweep,
             single_sweep,
         )
         .with(
             "stiff",
             "modern with super-time-stepping: what does a step save that viscosity does not limit?",
-            Method::of::<Stiff<B>>(),
+            methods.stiff,
             stiff,
         )
 }
@@ -141,25 +117,25 @@ fn cures(all: All) -> All {
     all.with(
         "cure-stress",
         "seed with artificial stress, equations (18) and (19): does it cure the seed's instability?",
-        Method::of::<Seed<Fluid<BodyForce, ArtificialStress>, Continuity>>(),
+        flow::cure_stress(),
         |_| {},
     )
     .with(
         "cure-viscosity",
         "seed with artificial viscosity, equations (16) and (17): does it cure the seed's instability?",
-        Method::of::<Seed<Damped, Continuity>>(),
+        flow::cure_viscosity(),
         |_| {},
     )
     .with(
         "cure-xsph",
         "seed with XSPH, equation (22), epsilon 0.5: does it cure the seed's instability?",
-        Method::of::<Seed<Fluid<BodyForce>, (Continuity, Xsph)>>(),
+        flow::cure_xsph(),
         |_| {},
     )
     .with(
         "cure-shifting",
         "seed with particle shifting 0.5: does it cure the seed's instability?",
-        Method::of::<Seed<Fluid<BodyForce>, (Continuity, Shifting)>>(),
+        flow::cure_shifting(),
         |_| {},
     )
 }

@@ -1,38 +1,6 @@
 //! The force that holds the flux: a controller that acts between stretches of a few steps.
 
 use base::functions::exp;
-use nalgebra::Vector2;
-use solver::{BodyForce, Scheme, Simulation, Stepper};
-
-/// Forces with a body force that can be set.
-pub trait Driven {
-    /// The body force.
-    fn body_force(&mut self) -> &mut BodyForce;
-}
-
-impl<A, B> Driven for (A, B, BodyForce) {
-    fn body_force(&mut self) -> &mut BodyForce {
-        &mut self.2
-    }
-}
-
-impl<A, B, C> Driven for (A, B, BodyForce, C) {
-    fn body_force(&mut self) -> &mut BodyForce {
-        &mut self.2
-    }
-}
-
-/// A simulation with a body force that can be set.
-pub trait Driving: Stepper<()> {
-    /// Sets the body force \[m/s²\] along x.
-    fn drive(&mut self, force: f64);
-}
-
-impl<S: Scheme<Extra = (), Forces: Driven>> Driving for Simulation<S> {
-    fn drive(&mut self, force: f64) {
-        *self.terms_mut().0.body_force() = BodyForce(Vector2::new(force, 0.0));
-    }
-}
 
 /// f' = \[(u* − u)/T − u'\]/t, u the mean velocity along x over the fluid, u* the one wanted.
 ///

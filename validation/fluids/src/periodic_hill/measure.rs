@@ -369,17 +369,16 @@ mod tests {
     use maths::geometry::Hill;
     use solver::{QuinticSpline, Smoothing};
 
-    use crate::channel::Stabilised;
-    use crate::periodic_hill::{Carried, HillSettings, Quintic, method, setup::FLUX as BULK};
+    use crate::periodic_hill::{HillSettings, setup::FLUX as BULK};
     use base::functions::{cos, sin};
     use harness::context::Context;
     use std::f64::consts::TAU;
 
     /// The scene of some settings, its kernel, and the viscosity 1/50.
-    fn scene(set: fn(&mut HillSettings)) -> (Setup, Box<dyn super::super::Driving>) {
+    fn scene(set: fn(&mut HillSettings)) -> (Setup, Box<dyn schemes::hill::Driving>) {
         let mut settings = HillSettings::default();
         set(&mut settings);
-        let method = method::<Quintic<Carried, Stabilised>>();
+        let method = schemes::hill::carried();
         let setup = Setup::new(&settings, &method, &Context::default()).expect("sound settings");
         let simulation = (method.build)(setup.parts(&Context::default())).expect("a scene");
         (setup, simulation)
@@ -532,7 +531,7 @@ mod tests {
     #[test]
     fn the_mean_velocity_is_that_of_the_volumes() {
         let (setup, _) = scene(|_| {});
-        let method = method::<Quintic<Carried, Stabilised>>();
+        let method = schemes::hill::carried();
         let mut parts = setup.parts(&Context::default());
         for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
             p.velocity.x = 0.7 + 0.1 * (p.position.y - 1.0);
@@ -563,7 +562,7 @@ mod tests {
         // The crest 2 % of H too high, a fifth of a spacing.
         let [offset, _] = seen(&setup, &*scene(|s| s.crest = 1.02).1);
         assert!((offset - 0.2).abs() < 0.02, "{offset}");
-        let method = method::<Quintic<Carried, Stabilised>>();
+        let method = schemes::hill::carried();
         let mut parts = setup.parts(&Context::default());
         let fluid = parts.particles.iter_mut().filter(|p| p.role == Role::Fluid);
         for (p, y) in fluid.step_by(7).zip([setup.hill.lid() + 0.01, setup.hill.lid() - 0.01]) {

@@ -12,19 +12,11 @@ mod reference;
 mod run;
 mod setup;
 
-use harness::{
-    case::Case,
-    composed::*,
-    method::{self, Method, Standard},
-};
-use solver::*;
+use harness::{case::Case, composed::*};
+use schemes::hill;
 
-use crate::{
-    channel::{Modern, Stabilised},
-    unit_flow::{ConsistentDrift, unit_settings},
-};
+use crate::unit_flow::unit_settings;
 
-pub use control::{Driven, Driving};
 pub use setup::Setup;
 
 unit_settings! {
@@ -55,23 +47,6 @@ unit_settings! {
     }
 }
 
-/// A method whose force can be set.
-pub type HillMethod = Method<(), dyn Driving>;
-
-/// The method of a scheme.
-pub fn method<S: Standard<Extra = (), Forces: Driven>>() -> HillMethod {
-    Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
-}
-
-/// Wall particles have minus the mean velocity of the fluid in reach.
-type Mean = ExtrapolatingWall<Tait, NoSlip>;
-/// Wall particles know how the velocity bends across the wall.
-type Curved = ExtrapolatingWall<Tait, CurvedNoSlip>;
-type Pairs = (Pressure<Tait>, Viscosity, BodyForce);
-type Carried = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
-type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
-type Quintic<F, D, W = Curved, I = Leapfrog> = Modern<F, D, W, I>;
-
 /// The amplitude of the vortices' `strong`, for the same reason.
 fn strong(s: &mut HillSettings) {
     s.shift = 3.0;
@@ -82,32 +57,32 @@ fn variants() -> Vec<Composition<HillSettings>> {
         .with(
             "plain",
             "quintic spline, h/dx 1, leapfrog, extrapolating walls, no stabiliser: is one needed?",
-            method::<Quintic<Pairs, Continuity, Mean>>(),
+            hill::plain(),
             |_| {},
         )
         .with(
             "interface-wall",
             "modern with the paper's interface and wall particles (section 4.2): how good are they?",
-            method::<Quintic<Pairs, Stabilised, InterfaceWall>>(),
+            hill::interface_wall(),
             |_| {},
         )
         .with(
             "modern",
             "plain with density diffusion and shifting: does what suits channels suit curved walls?",
-            method::<Quintic<Pairs, Stabilised, Mean>>(),
+            hill::modern(),
             |_| {},
         )
         .with(
             "carried",
             "modern with stronger shifting that takes the velocity of the new place, and walls that know how \
              the velocity bends: the best",
-            method::<Quintic<Carried, Stabilised>>(),
+            hill::carried(),
             strong,
         )
         .with(
             SINGLE_SWEEP,
             "carried with one pair sweep a step in place of two: is its error cheaper?",
-            method::<Quintic<Carried, Stabilised, Curved, SingleSweep>>(),
+            hill::single_sweep(),
             |s| {
                 strong(s);
                 s.courant /= 8_f64.sqrt();
@@ -116,7 +91,7 @@ fn variants() -> Vec<Composition<HillSettings>> {
         .with(
             "consistent",
             "carried with sums that are exact for linear fields: are they worth more work for each pair?",
-            method::<Quintic<Consistent, ConsistentDrift>>(),
+            hill::consistent(),
             strong,
         )
         .all

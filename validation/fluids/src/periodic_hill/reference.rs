@@ -56,7 +56,7 @@ impl Reference {
             None => {
                 let package = Package::load("periodic_hill")?;
                 let known: Result<_, _> =
-                    REYNOLDS.into_iter().map(|re| Self::read(&package, re)).collect();
+                    REYNOLDS.into_iter().map(|re| Self::read(package, re)).collect();
                 let known = known?;
                 KNOWN.get_or_init(|| known)
             }

@@ -2,9 +2,10 @@
 
 use base::record::*;
 use harness::{case::RunError, composed::Program, context::Context, runner::Drive, simulate};
+use schemes::hill::{Driving, HillMethod};
 use solver::EquationOfState;
 
-use super::{HillMethod, HillSettings, NAME, Setup, control::*, measure::*};
+use super::{HillSettings, NAME, Setup, control::*, measure::*};
 
 /// Runs of the flow over hills.
 pub const PROGRAM: Program<HillSettings, HillMethod> =

@@ -3,10 +3,11 @@
 use harness::{case::RunError, context::Context, method::Parts};
 use maths::geometry::{Curve, Hill};
 use nalgebra::Vector2;
+use schemes::hill::HillMethod;
 use solver::{Domain, Particle, Role};
 
 use super::{
-    HillMethod, HillSettings,
+    HillSettings,
     reference::{KNOWN_SETTINGS, Reference},
 };
 use crate::unit_flow::{Scales, UnitFlow};

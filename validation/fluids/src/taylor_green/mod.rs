@@ -5,16 +5,10 @@ mod declaration;
 mod plan;
 mod run;
 
-use harness::{case::Case, composed::*, method::Method};
-use solver::{
-    ConsistentPressure, ConsistentViscosity, Continuity, Open, Pressure, ShiftAdvection, Tait,
-    Viscosity,
-};
+use harness::{case::Case, composed::*};
+use schemes::flow;
 
-use crate::{
-    channel::{Modern, Stabilised},
-    unit_flow::{ConsistentDrift, unit_settings},
-};
+use crate::unit_flow::unit_settings;
 
 unit_settings! {
     /// Settings of the vortices. L = U = ρ = 1.
@@ -38,11 +32,6 @@ unit_settings! {
     }
 }
 
-type Quintic<F, D> = Modern<F, D, Open>;
-type Pairs = (Pressure<Tait>, Viscosity);
-type Carried = (Pressure<Tait>, Viscosity, ShiftAdvection);
-type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, ShiftAdvection);
-
 /// Shifting of amplitude A = 3. A lattice that is squeezed to half along one axis and stretched along the
 /// other, as at a stagnation point within t = 0.11 L/U, crowds: shifting lets disorder grow there by a
 /// factor of exp(14 A n/50), which makes round-off visible in time from A = 2.5 on at 50 particles a
@@ -59,25 +48,25 @@ fn variants() -> Vec<Composition<VortexSettings>> {
         .with(
             "plain",
             "quintic spline, h/dx 1, leapfrog, no stabiliser: is one needed?",
-            Method::of::<Quintic<Pairs, Continuity>>(),
+            flow::vortices_plain(),
             |_| {},
         )
         .with(
             "modern",
             "plain with density diffusion and shifting: does what suits channels suit vortices?",
-            Method::of::<Quintic<Pairs, Stabilised>>(),
+            flow::vortices_modern(),
             |_| {},
         )
         .with(
             "carried",
             "modern with stronger shifting that takes the velocity of the new place: is that enough?",
-            Method::of::<Quintic<Carried, Stabilised>>(),
+            flow::vortices_carried(),
             strong,
         )
         .with(
             "consistent",
             "carried with sums that are exact for linear fields: the best",
-            Method::of::<Quintic<Consistent, ConsistentDrift>>(),
+            flow::vortices_consistent(),
             strong,
         )
         .all

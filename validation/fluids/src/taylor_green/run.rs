@@ -186,14 +186,12 @@ fn particles(setup: &Setup, simulation: &dyn Stepper<()>, record: &mut Record) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::channel::{Modern, Stabilised};
     use base::record::Record;
-    use solver::{Open, Pressure, Tait, Viscosity};
 
     fn setup() -> Setup {
-        type Plain = Modern<(Pressure<Tait>, Viscosity), Stabilised, Open>;
         let settings = VortexSettings { n: 40, ..VortexSettings::default() };
-        Setup::new(&settings, &Method::of::<Plain>(), &Context::of_rules()).expect("the defaults")
+        Setup::new(&settings, &schemes::flow::vortices_modern(), &Context::of_rules())
+            .expect("the defaults")
     }
 
     /// The record of particles that have the exact velocity times `1 + error`, a uniform velocity and the

@@ -16,11 +16,7 @@ mod tests;
 use std::rc::Rc;
 
 use harness::{composed::*, context::Context, declare::Declaration, method::*};
-use solver::{
-    Compose, ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity,
-    CubicSpline, Kernel, Leapfrog, Open, Pressure, QuinticSpline, Rate, Smoothing, Tait, Term,
-    Viscosity, WendlandC2, lane::Lane, particles::Common, terms::Pair,
-};
+use schemes::lattice;
 
 base::settings! {
     /// Settings of an operator on particles in a periodic square, whose side, density and sound speed are 1.
@@ -93,48 +89,9 @@ impl Subject {
     }
 }
 
-/// ρ ← Σ m W within a step: no scheme of this program has it, but those of other codes do.
-#[derive(Clone, Copy, Debug)]
-struct Summation<K> {
-    kernel: Smoothing<K>,
-    /// 1/dt \[1/s\].
-    rate: f64,
-}
-
-impl<K: Kernel> FromMedium for Summation<K> {
-    fn new(m: &Medium) -> Self {
-        Self { kernel: Smoothing::new(m.h), rate: 1.0 / run::step(m) }
-    }
-}
-
-impl<X, K: Kernel> Term<X> for Summation<K> {
-    type Derived = ();
-    type Sum = f64;
-
-    #[inline(always)]
-    fn pair<V: Lane, W: Kernel>(&self, pair: &Pair<V, W>, _: [(); 2], sum: &mut V) {
-        *sum += pair.other.mass * pair.w();
-    }
-
-    #[inline(always)]
-    fn finish(&self, own: &Common<f64>, _: (), sum: f64, rate: &mut Rate<X>) {
-        rate.density += (sum + own.mass * self.kernel.w(0.0) - own.density) * self.rate;
-    }
-}
-
-type Summing<K> = Compose<K, (), Summation<K>, Open, Leapfrog>;
-type Plain<K> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
-type Corrected<K> = Compose<
-    K,
-    (ConsistentPressure<Tait>, ConsistentViscosity),
-    ConsistentContinuity,
-    Open,
-    Leapfrog,
->;
-
-/// The operators of a kernel: its name, its type, and h/dx.
+/// The operators of a kernel: its name, its methods (sums, plain, corrected), and h/dx.
 macro_rules! subjects {
-    ($kernel:literal, $Kernel:ty, $ratio:literal) => {{
+    ($kernel:literal, $methods:expr, $ratio:literal) => {{
         const fn of(
             name: &'static str,
             operator: Operator,
@@ -145,11 +102,7 @@ macro_rules! subjects {
             let adjust = |s: &mut OperatorSettings| s.h_over_dx = $ratio;
             Subject { name, kernel, operator, is_corrected, adjust, method }
         }
-        let [sum, plain, corrected]: [fn() -> Method; 3] = [
-            Method::of::<Summing<$Kernel>>,
-            Method::of::<Plain<$Kernel>>,
-            Method::of::<Corrected<$Kernel>>,
-        ];
+        let [sum, plain, corrected]: [fn() -> Method; 3] = $methods;
         [
             of(concat!($kernel, "-density"), Operator::Density, false, sum),
             of(concat!($kernel, "-gradient"), Operator::Gradient, false, plain),
@@ -169,9 +122,13 @@ const CUBIC: &str = "cubic";
 
 /// All variants. h/dx is what variants of the cases of this program have with the kernel.
 static SUBJECTS: [[Subject; 7]; 3] = [
-    subjects!("quintic", QuinticSpline, 1.0),
-    subjects!("cubic", CubicSpline, 1.3),
-    subjects!("wendland", WendlandC2, 2.0),
+    subjects!("quintic", [lattice::quintic_sum, lattice::quintic, lattice::quintic_corrected], 1.0),
+    subjects!("cubic", [lattice::cubic_sum, lattice::cubic, lattice::cubic_corrected], 1.3),
+    subjects!(
+        "wendland",
+        [lattice::wendland_sum, lattice::wendland, lattice::wendland_corrected],
+        2.0
+    ),
 ];
 
 fn subjects() -> impl Iterator<Item = &'static Subject> {

@@ -10,6 +10,7 @@ use base::{
 use harness::{case::*, context::Context, method::*, simulate};
 use maths::theory::time_step;
 use nalgebra::Vector2;
+use schemes::lattice::summing_step;
 use solver::{Domain, EquationOfState, Particle, Stepper, Tait};
 
 use super::{OPERATORS, Operator, OperatorSettings, Subject};
@@ -24,9 +25,6 @@ base::metrics! {
 
 /// Wave number along each axis \[1/m\].
 const K: f64 = TAU;
-/// Time step \[h/c₀\]: so short that nothing changes by more than 1e-5 of itself, which is what the gates
-/// allow, and long enough for velocities and densities to change by more than their round-off.
-const STEP: f64 = 1e-6;
 /// Amplitude of the pressure \[ρ₀c₀²\]: a linear equation of state, as far as this can be told.
 const PRESSURE: f64 = 1e-6;
 /// Amplitude of the velocity \[c₀\].
@@ -35,11 +33,6 @@ const SPEED: f64 = 0.1;
 const DENSITY: f64 = 0.5;
 /// η² of (6) \[h²\]: a guard against 0/0 and no more.
 const ETA2: f64 = 1e-6;
-
-/// The time step \[s\].
-pub(super) fn step(m: &Medium) -> f64 {
-    STEP * m.h / m.eos.sound_speed
-}
 
 fn medium(method: &Method, s: &OperatorSettings) -> Medium {
     let dx = 1.0 / s.n as f64;
@@ -56,7 +49,7 @@ pub(super) fn rules(
 ) -> Result<Rules, RunError> {
     let medium = medium(method, s);
     let limits = method.limits([s.h_over_dx, ETA2], 32, &medium.waves(&method.uses));
-    let step = Step::given(step(&medium));
+    let step = Step::given(summing_step(&medium));
     let rules = Rules { step, limits, sound_speed: 1.0, end: step.dt * s.steps as f64 };
     simulate::check(method, &medium, &rules, (s.n * s.n) as f64, "n or steps", context)?;
     Ok(rules)

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use approx::assert_relative_eq;
 use base::mutation::{Constant, Mutation};
 use harness::case::Case;
+use solver::{QuinticSpline, Smoothing};
 
 use super::{
     run::{NOISE, SYMBOL_ERROR},

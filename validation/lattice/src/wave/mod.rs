@@ -22,11 +22,6 @@ use harness::{
     method::Method,
     table::{Row, Table},
 };
-use maths::theory::Stepping;
-use solver::{
-    Compose, Continuity, CubicSpline, DensityDiffusion, Integrator, Kernel, Leapfrog, Open,
-    PredictorCorrector, Pressure, QuinticSpline, Tait, Viscosity, WendlandC2,
-};
 
 base::settings! {
     /// Settings of one mode in a periodic square box.
@@ -158,38 +153,22 @@ const STEPWISE: &[MetricKey] = &[
     run::VISCOUS_FACTOR,
 ];
 
-/// The scheme of a wave: no more than the equations.
-type Scheme<K, I> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
-/// The same with density diffusion.
-type Diffusive = Compose<
-    CubicSpline,
-    (Pressure<Tait>, Viscosity),
-    (Continuity, DensityDiffusion),
-    Open,
-    Leapfrog,
->;
-
-/// The equations and nothing else.
-pub fn plain<K: Kernel, I: Stepping + Integrator<Scheme<K, ()>>>() -> Method {
-    Method::of::<Scheme<K, I>>()
-}
-
 fn variants(program: &Program<WaveSettings, Method>) -> Vec<Composition<WaveSettings>> {
     let of_kernel = "are the symbols those of this kernel? its plain equations with the leapfrog";
     Variants::of(program)
-        .with(CUBIC, of_kernel, plain::<CubicSpline, Leapfrog>(), |_| ())
+        .with(CUBIC, of_kernel, schemes::lattice::cubic(), |_| ())
         .with(
             MIDPOINT,
             "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog",
-            plain::<CubicSpline, PredictorCorrector>(),
+            schemes::lattice::midpoint(),
             |_| (),
         )
-        .with(QUINTIC, of_kernel, plain::<QuinticSpline, Leapfrog>(), |_| ())
-        .with(WENDLAND, of_kernel, plain::<WendlandC2, Leapfrog>(), |_| ())
+        .with(QUINTIC, of_kernel, schemes::lattice::quintic(), |_| ())
+        .with(WENDLAND, of_kernel, schemes::lattice::wendland(), |_| ())
         .with(
             DIFFUSIVE,
             "does density diffusion decay as its symbol says? else as cubic-leapfrog",
-            Method::of::<Diffusive>(),
+            schemes::lattice::diffusive(),
             |s| s.diffusion = 0.1,
         )
         .all

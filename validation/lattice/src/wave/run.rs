@@ -305,13 +305,12 @@ fn compare(
 
 #[cfg(test)]
 mod tests {
-    use super::{super::plain, *};
+    use super::*;
     use approx::assert_relative_eq;
-    use solver::{CubicSpline, Leapfrog};
 
     /// A damped wave and its method.
     fn wave(polarisation: Polarisation) -> (Wave, Method) {
-        let method = plain::<CubicSpline, Leapfrog>();
+        let method = schemes::lattice::cubic();
         let settings = WaveSettings { kx: 2, ky: 1, nu: 1e-3, ..WaveSettings::default() };
         let wave = Wave::new(polarisation, &settings, &method, &Context::of_rules());
         (wave.expect("a wave"), method)

@@ -10,3 +10,11 @@ pub use curve::{Curve, Row};
 pub use hill::Hill;
 pub use tank::Tank;
 pub use topology::{BOND, Bonds, Topology};
+
+use nalgebra::Vector2;
+
+/// The lower left and the upper right corner of the smallest box that holds these points.
+pub fn corners(points: impl IntoIterator<Item = Vector2<f64>>) -> [Vector2<f64>; 2] {
+    let nowhere = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
+    points.into_iter().fold(nowhere, |[low, high], x| [low.inf(&x), high.sup(&x)])
+}

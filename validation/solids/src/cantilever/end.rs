@@ -131,7 +131,6 @@ fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
 mod tests {
     use super::*;
     use crate::solid::Problem;
-    use ::lagrangian::Hencky;
     use approx::assert_relative_eq;
     use harness::{context::Context, method::Parts};
 
@@ -139,7 +138,7 @@ mod tests {
     #[test]
     fn the_end_is_half_a_spacing_beyond_the_last_column() {
         let s = CantileverSettings { n: 4, ..CantileverSettings::default() };
-        let method = lagrangian::heavy::<Hencky>();
+        let method = schemes::total::heavy_hencky();
         let (medium, domain) = (s.medium(&method, s.dx()), s.domain());
         let parts = Parts::new(medium, domain, s.particles(), &Context::default());
         let mut simulation = (method.build)(Parts { mirrors: s.held(), ..parts }).expect("a scene");

@@ -6,10 +6,10 @@ mod plan;
 
 use ::lagrangian::{Hencky, Law as _, NeoHookean, SaintVenantKirchhoff};
 use nalgebra::Vector2;
-use solver::{Particle, PlaneWall, PredictorCorrector, PrincipalStress, Role, Symmetric};
+use solver::{Particle, PlaneWall, Role, Symmetric};
 use std::f64::consts::TAU;
 
-use crate::solid::{self, Clamp, Elements, Energy, HeavyRubber, Problem, lagrangian};
+use crate::solid::{self, Elements, Energy, Problem, lagrangian};
 use base::{record::MetricKey, reference::Reference};
 use end::End;
 use harness::{
@@ -19,6 +19,7 @@ use harness::{
     method::Method,
 };
 use path::*;
+use schemes::total;
 
 crate::solid_settings! {
     /// Settings of a bar that is held at x = 0 and has weight from t = 0 on.
@@ -111,26 +112,26 @@ fn variants() -> Vec<Composition<CantileverSettings>> {
             "seed",
             "what the paper describes, with weight: predictor-corrector, artificial viscosity, artificial \
              stress in principal axes, XSPH",
-            Method::of::<HeavyRubber<PrincipalStress, PredictorCorrector<Symmetric>, Clamp>>(),
+            schemes::solid::heavy_seed(),
             |_| {},
         )
         .with(
             LAGRANGIAN,
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
              Hencky, velocity Verlet; nothing dissipates",
-            lagrangian::heavy::<Hencky>(),
+            total::heavy_hencky(),
             lagrangian::choose,
         )
         .with(
             NEO_HOOKEAN,
             "the same with the neo-Hookean stored energy: does the law matter?",
-            lagrangian::heavy::<NeoHookean>(),
+            total::heavy_neo_hookean(),
             lagrangian::choose,
         )
         .with(
             SAINT_VENANT,
             "the same with the stored energy of St. Venant and Kirchhoff, the law of the test CSM3",
-            lagrangian::heavy::<SaintVenantKirchhoff>(),
+            total::heavy_saint_venant_kirchhoff(),
             lagrangian::choose,
         )
         .all
@@ -152,7 +153,7 @@ fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
     let gravity = format!("{:?}", s.gravity);
     let of @ [law, gravity] = [("law", law), ("gravity", &*gravity)];
     let (package, middle) = (Reference::load("cantilever").ok()?, [law, gravity, ("layers", "")]);
-    let mut found = Elements::of(&package, [&middle, &of], ["x", "y"]).ok()?;
+    let mut found = Elements::of(package, [&middle, &of], ["x", "y"]).ok()?;
     // Later, bars of another period are wherever they are.
     found.path.0.retain(|row| row[0] <= FIRST_SWING);
     found.number("harmonic_y").is_some().then_some(found)

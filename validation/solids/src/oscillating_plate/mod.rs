@@ -4,12 +4,10 @@ mod plan;
 
 use ::lagrangian::{Hencky, Law as _};
 use nalgebra::Vector2;
-use solver::{Flow, Observer, Particle, PlaneWall, PrincipalStress, Role, Stepper, Symmetric};
+use solver::{Flow, Observer, Particle, PlaneWall, Role, Stepper, Symmetric};
 use std::f64::consts::TAU;
 
-use super::solid::{
-    self, Clamp, Elements, Energy, FIRST_MODE, Path, Plain, Problem, SharedSettings, Watch,
-};
+use super::solid::{self, Elements, Energy, FIRST_MODE, Path, Problem, SharedSettings, Watch};
 use base::{
     functions::{cos, cosh, sin, sinh},
     record::{Profile, Record},
@@ -62,10 +60,10 @@ fn variants() -> Vec<Composition<PlateSettings>> {
     let plain = Variants::of(&program).with(
         PLAIN,
         "the terms of `seed` without XSPH, stepped by the leapfrog: what do XSPH and the integrator do?",
-        Method::of::<Plain<PrincipalStress, Clamp>>(),
+        schemes::solid::clamped_plain(),
         |s| solid::leave_out(s, &["xsph"]),
     );
-    solid::variants::<_, Clamp>().into_iter().chain(plain.all).collect()
+    solid::variants(schemes::solid::clamped()).into_iter().chain(plain.all).collect()
 }
 
 base::metrics! {
@@ -275,7 +273,7 @@ fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
     let [n, x, y] = ["", "x_", "y_"].map(|axis| format!("{axis}{}", s.n));
     let rows: [&[_]; 2] = [&[law, ("layers", &n)], &[law]];
     let package = Reference::load("oscillating_plate").ok()?;
-    let mut found = Elements::of(&package, rows, [&x, &y]).ok()?;
+    let mut found = Elements::of(package, rows, [&x, &y]).ok()?;
     let end = found.number("passage_6").unwrap_or(0.0);
     found.path.0.retain(|row| row[0] <= end);
     Some(found)
@@ -325,7 +323,7 @@ mod tests {
         for p in particles.iter_mut().filter(|p| p.position.x > end - 1e-6) {
             p.position.y = 1.5 * p.position.y + 0.001;
         }
-        let (dx, method) = (s.dx(), Method::of::<solid::Bare<Clamp>>());
+        let (dx, method) = (s.dx(), schemes::solid::clamped_bare());
         let mut tip = s.watch(&particles, None);
         let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");

@@ -15,16 +15,9 @@ mod studies;
 mod tests;
 
 use base::record::{Record, Status};
-use harness::{
-    composed::{Best, Composed, Composition, Variants},
-    method::Method,
-};
-use solver::{
-    ComponentStress, Leapfrog, PredictorCorrector, PrincipalStress, SingleSweep, Symmetric,
-};
+use harness::composed::{Best, Composed, Composition, Variants};
 
-use crate::solid::{self, Problem, Rubber, corrected::Corrected, lagrangian as total};
-use ::lagrangian::Hencky;
+use crate::solid::{self, Problem, lagrangian as total};
 
 base::settings! {
     /// Settings of the collision of two rings; L is 1 m.
@@ -89,54 +82,54 @@ const LONG_STEPS: f64 = 0.8;
 const SINGLE_STEPS: f64 = 0.43;
 
 fn variants() -> Vec<Composition<RingSettings>> {
-    type Midpoint = PredictorCorrector<Symmetric>;
+    use schemes::solid::{componentwise, corrected, leapfrog, seed, single_sweep};
     Variants::of(&solid::program::<RingSettings>())
         .with(
             "seed",
             "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \
              stress in principal axes",
-            Method::of::<Rubber<PrincipalStress, Midpoint>>(),
+            seed(),
             |_| {},
         )
         .with(
             COMPONENTWISE,
             "the seed with artificial stress component by component, as the paper writes it: does the \
              answer depend on the axes?",
-            Method::of::<Rubber<ComponentStress, Midpoint>>(),
+            componentwise(),
             |_| {},
         )
         .with(
             "leapfrog",
             "the seed with the staggered leapfrog, one right-hand side a step, and longer steps: does that \
              change anything but the cost?",
-            Method::of::<Rubber<PrincipalStress, Leapfrog>>(),
+            leapfrog(),
             |s| s.courant = LONG_STEPS,
         )
         .with(
             "single-sweep",
             "leapfrog with one pair sweep a step in place of two: is its error cheaper?",
-            Method::of::<Rubber<PrincipalStress, SingleSweep>>(),
+            single_sweep(),
             |s| s.courant = SINGLE_STEPS,
         )
         .with(
             CORRECTED,
             "the terms of `leapfrog` without XSPH, with corrected gradients, and the forces that are \
              conjugate to them: what do uncorrected gradients at free faces do?",
-            Method::of::<Corrected<PrincipalStress>>(),
+            corrected(),
             |s| (s.courant, s.xsph) = (LONG_STEPS, 0.0),
         )
         .with(
             LAGRANGIAN,
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
              Hencky, contact between the rings, velocity Verlet; nothing dissipates",
-            total::method::<Hencky>(),
+            schemes::total::hencky(),
             choose,
         )
         .with(
             PLANE,
             "lagrangian with a rigid plane between the rings in place of contact between their faces: is \
              an error that of the contact?",
-            total::beside_a_plane::<Hencky>(),
+            schemes::total::divided_hencky(),
             choose,
         )
         .all

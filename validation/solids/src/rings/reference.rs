@@ -1,7 +1,5 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
-use std::sync::LazyLock;
-
 use ::lagrangian::{Hencky, Law as _};
 
 use super::{LAGRANGIAN, PLANE, RingSettings, metrics::*};
@@ -15,11 +13,8 @@ use maths::metrics::{history, norms::rms};
 /// The law of (10) to (12), as the tables name it.
 const JAUMANN: &str = "jaumann";
 
-/// Read and checked once: every run and every figure asks for it.
-static PACKAGE: LazyLock<Option<Package>> = LazyLock::new(|| Package::load("rubber_rings").ok());
-
 fn table(name: &str) -> Option<&'static Table> {
-    PACKAGE.as_ref()?.table(name).ok()
+    Package::load("rubber_rings").ok()?.table(name).ok()
 }
 
 /// What finite elements say of one law and speed.

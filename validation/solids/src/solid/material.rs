@@ -97,14 +97,12 @@ pub fn limits<D: ?Sized>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solid::Plain;
     use approx::assert_relative_eq;
-    use solver::PrincipalStress;
 
     /// Rings took α c0/c_p and bars α itself. The viscosity is α h c0, whatever c_p is.
     #[test]
     fn the_step_limit_has_the_viscosity_of_the_bulk_sound_speed() {
-        let method = Method::of::<Plain<PrincipalStress>>();
+        let method = schemes::solid::clamped_plain();
         let limit = |shear: f64, alpha: f64| {
             let material = Material { density: 1.0, bulk: 1.0, shear };
             let medium = Medium { alpha, ..material.medium(&method, [1.0, 1.5]) };

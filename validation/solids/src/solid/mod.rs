@@ -1,24 +1,22 @@
 //! What cases of the elastic solid have in common: material, methods, settings, energies, and the
 //! variants of a problem.
 
-pub mod corrected;
+#[cfg(test)]
+mod corrected;
 mod elements;
 mod energy;
 pub mod faces;
 pub mod lagrangian;
 mod material;
-mod method;
 mod plates;
 mod problem;
 #[cfg(test)]
 pub mod tests;
 
-use nalgebra::Vector2;
-
 pub use elements::{Elements, Path, Quantities, compare, quantities, rows};
 pub use energy::{Energy, angular_momentum, norm_squared};
 pub use material::{Material, limits};
-pub use method::{Bare, Clamp, HeavyRubber, Plain, Rubber};
+pub use maths::geometry::corners;
 pub use plates::{FIRST_MODE, clamp, thin_plate_period};
 pub use problem::{
     Problem, SharedSettings, Watch, check_length, digest, leave_out, program, variants,
@@ -28,12 +26,6 @@ pub use problem::{
 /// not pass.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
-}
-
-/// The lower left and the upper right corner of the smallest box that holds these points.
-pub fn corners(points: impl IntoIterator<Item = Vector2<f64>>) -> [Vector2<f64>; 2] {
-    let nowhere = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
-    points.into_iter().fold(nowhere, |[low, high], x| [low.inf(&x), high.sup(&x)])
 }
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its

@@ -1,13 +1,9 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
-use ::lagrangian::Hencky;
 use nalgebra::Vector2;
-use solver::{
-    Domain, EquationOfState, Observer, Particle, PlaneWall, PredictorCorrector, PrincipalStress,
-    Stepper, Symmetric, walls::Walls,
-};
+use solver::{Domain, EquationOfState, Observer, Particle, PlaneWall, Stepper, Symmetric};
 
-use super::{Bare, Energy, Material, Rubber, lagrangian, limits};
+use super::{Energy, Material, lagrangian, limits};
 use base::{
     record::{self, Record},
     settings::Settings,
@@ -17,7 +13,7 @@ use harness::{
     checkpoint::Observed,
     composed::{Composition, Program, Variants},
     context::Context,
-    method::{Boundary, Medium, Method, Parts},
+    method::{Medium, Method, Parts},
     outline::Sink,
     runner::{self, Drive},
     simulate,
@@ -114,28 +110,28 @@ pub fn program<P: Problem>() -> Program<P, Method<Symmetric>> {
     Program { run: run::<P>, rules: |method, s| Ok(rules(method, s)) }
 }
 
-/// The variants that every problem has; these walls hold the particles of those of the paper.
-pub fn variants<P: Problem, W: Walls<Symmetric> + Boundary>() -> Vec<Composition<P>> {
+/// The variants that every problem has; the methods: that of the paper, and its equations alone.
+pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Vec<Composition<P>> {
     Variants::of(&program())
         .with(
             "seed",
             "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
              principal axes, XSPH",
-            Method::of::<Rubber<PrincipalStress, PredictorCorrector<Symmetric>, W>>(),
+            seed,
             |_| {},
         )
         .with(
             "bare",
             "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what to \
              the terms that stabilise?",
-            Method::of::<Bare<W>>(),
+            bare,
             |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
         )
         .with(
             "lagrangian",
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
              Hencky, contact between bodies, velocity Verlet: what is left where nothing dissipates?",
-            lagrangian::method::<Hencky>(),
+            schemes::total::hencky(),
             lagrangian::choose,
         )
         .all

@@ -280,17 +280,14 @@ impl Gauge {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        dam_break::lobovsky,
-        water::{Modern, method},
-    };
+    use crate::dam_break::lobovsky;
     use harness::{context::Context, method::Parts};
     use maths::metrics::budget::Metered;
     use solver::{Particle, Smoothing, WendlandC2};
 
     /// A simulation of these particles in place of those of a dam break, without walls.
     fn simulation(dam: &Dam, particles: Vec<Particle>) -> Box<dyn Metered<()>> {
-        let (method, context) = (method::<Modern>(), Context::default());
+        let (method, context) = (schemes::water::modern(), Context::default());
         let parts = Parts { particles, ..dam.parts(&method, &context) };
         let mut simulation = (method.build)(parts).expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());

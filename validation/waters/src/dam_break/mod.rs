@@ -17,11 +17,9 @@ mod setup;
 mod studies;
 
 use harness::composed::{Best, Composed, Composition, Variants};
-use solver::*;
+use schemes::water;
 
 pub use setup::Dam;
-
-use crate::water::{Diffusion, Modern, Seed, method};
 
 crate::water_settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
@@ -74,16 +72,6 @@ fn modern(s: &mut DamSettings) {
     (s.alpha, s.courant) = (0.02, 1.0);
 }
 
-/// The seed's forces, for whose viscosity alone images have the velocity of those behind a no-slip wall.
-type Split = (Pressure<Tait, ArtificialStress>, NoSlipImages<ArtificialViscosity<Tait>>, BodyForce);
-/// The seed with them.
-type SeedSplit = Compose<CubicSpline, Split, (Continuity, Xsph), SlipGhosts, PredictorCorrector>;
-/// The drift of `modern`, and its walls.
-type Drift = (Continuity, Diffusion);
-type Walls = ExtrapolatingWall<Tait>;
-/// `modern` with artificial viscosity between water and walls too.
-type Sticking = Modern<Drift, Walls, Leapfrog, ArtificialViscosity<Tait>>;
-
 /// The variants, each with the question that it answers.
 fn variants() -> Vec<Composition<DamSettings>> {
     let paper = "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
@@ -103,13 +91,13 @@ fn variants() -> Vec<Composition<DamSettings>> {
                   error cheaper?";
     let slower = |s: &mut DamSettings| (s.alpha, s.courant) = (0.02, 0.28);
     Variants::of(&run::PROGRAM)
-        .with("seed", paper, method::<Seed<InterfaceWall>>(), seed)
-        .with("ghosts", ghosts, method::<Seed<Ghosts>>(), seed)
-        .with("modern", best, method::<Modern>(), modern)
-        .with("ghosts-slip", slip, method::<Seed<SlipGhosts>>(), seed)
-        .with("ghosts-split", split, method::<SeedSplit>(), seed)
-        .with("modern-sticking", sticking, method::<Sticking>(), modern)
-        .with("single-sweep", single, method::<Modern<Drift, Walls, SingleSweep>>(), slower)
+        .with("seed", paper, water::seed(), seed)
+        .with("ghosts", ghosts, water::ghosts(), seed)
+        .with("modern", best, water::modern(), modern)
+        .with("ghosts-slip", slip, water::slip_ghosts(), seed)
+        .with("ghosts-split", split, water::split_ghosts(), seed)
+        .with("modern-sticking", sticking, water::sticking(), modern)
+        .with("single-sweep", single, water::single_sweep(), slower)
         .all
 }
 

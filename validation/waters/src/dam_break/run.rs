@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemes::water::WaterMethod;
 use solver::{EquationOfState, Observer, Particle, Role, Stepper};
 
 use super::{
@@ -9,7 +10,7 @@ use super::{
     measure::{Gauge, Samples},
     metrics, reference,
 };
-use crate::water::{Ledger, WaterMethod, ledger};
+use crate::water::{Ledger, ledger};
 use base::record::{MetricKey, Profile, Record, Status};
 use harness::{
     case::RunError,

@@ -1,10 +1,11 @@
 //! From settings to a scene: spacing, time step, tank, column.
 
 use nalgebra::Vector2;
+use schemes::water::WaterMethod;
 use solver::{Domain, EquationOfState, Ghosts, Limits, Particle};
 
 use super::DamSettings;
-use crate::water::{self, WaterMethod};
+use crate::water::{self};
 use harness::{
     case::{Rules, RunError},
     context::Context,
@@ -134,20 +135,17 @@ impl Dam {
     /// The numbers of a run of `modern` with settings changed.
     pub fn changed(set: impl FnOnce(&mut DamSettings)) -> Result<Self, RunError> {
         let settings = super::DAM_BREAK.chosen("modern", set);
-        Self::new(&settings, &water::method::<water::Modern>(), &Context::default())
+        Self::new(&settings, &schemes::water::modern(), &Context::default())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use harness::case::Case;
-    use solver::{InterfaceWall, SlipGhosts};
 
     use super::*;
-    use crate::{
-        dam_break::{DAM_BREAK, lobovsky},
-        water::{Modern, Seed, method},
-    };
+    use crate::dam_break::{DAM_BREAK, lobovsky};
+    use schemes::water;
 
     /// Particles that sank through the floor were lost, which only the metric `outside` told.
     #[test]
@@ -155,8 +153,8 @@ mod tests {
         let refused = |variant, context: &Context| {
             let settings = DAM_BREAK.chosen(variant, |_| {});
             let built = match variant {
-                "ghosts" => Dam::new(&settings, &method::<Seed<Ghosts>>(), context),
-                _ => Dam::new(&settings, &method::<Seed<SlipGhosts>>(), context),
+                "ghosts" => Dam::new(&settings, &water::ghosts(), context),
+                _ => Dam::new(&settings, &water::slip_ghosts(), context),
             };
             built.err().map(|error| error.to_string())
         };
@@ -204,7 +202,7 @@ mod tests {
     #[test]
     fn a_step_far_beyond_the_limit_does_not_widen_the_lists_without_end() {
         let settings = DamSettings { dt: Some(167.0), ..DamSettings::default() };
-        let (method, context) = (method::<Modern>(), Context::of_rules());
+        let (method, context) = (water::modern(), Context::of_rules());
         let dam = Dam::new(&settings, &method, &context).unwrap();
         assert_eq!(dam.parts(&method, &context).skin, Some(dam.medium.h));
     }
@@ -224,7 +222,7 @@ mod tests {
         ));
         // Without viscosity the predictor-corrector has no stable step.
         let inviscid = DamSettings { alpha: 0.0, ..DamSettings::default() };
-        let seed = method::<Seed<InterfaceWall>>();
+        let seed = water::seed();
         let refused = Dam::new(&inviscid, &seed, &Context::default());
         assert!(matches!(refused, Err(RunError::TimeStep { .. })));
     }

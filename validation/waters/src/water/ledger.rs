@@ -122,8 +122,8 @@ impl Ledger {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::water::{Modern, method};
     use harness::{context::Context, method::Parts};
+    use schemes::water::modern;
     use solver::{Domain, Particle, Tait};
 
     /// Water of three particles that do not see each other, raised and moving.
@@ -132,14 +132,14 @@ mod tests {
         let particle = |k| Particle::fluid(place(k), v, 1000.0, 0.001 * (k + 1) as f64);
         let particles = (0..3).map(particle).collect();
         let parts = Parts::new(*medium, Domain::open(), particles, &Context::default());
-        let mut simulation = (method::<Modern>().build)(parts).expect("a scene");
+        let mut simulation = (modern().build)(parts).expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         simulation
     }
 
     #[test]
     fn momentum_that_no_force_explains_is_the_gap() {
-        let medium = method::<Modern>().medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
+        let medium = modern().medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
         let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
         // A free fall: gravity gives what the water has.
         let mut falling = particles(&medium, 0.0, Vector2::zeros());
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn energy_that_no_term_gave_is_the_gap_and_works_are_integrals_over_the_scale() {
-        let medium = method::<Modern>().medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
+        let medium = modern().medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
         let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
         let mut ledger = Ledger::new(&medium);
         // 6 kg/m: at rest; 0.2 m higher, 12 J/m; at 3 m/s, 27 J/m.

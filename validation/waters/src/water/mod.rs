@@ -1,57 +1,18 @@
-//! What cases of water with a free surface have in common: schemes, settings, the rule of the time step, and
-//! the particles of a tank's walls.
-//!
-//! A free surface is nothing to the method: density follows (3), which knows no surface, and there is
-//! neither Morris viscosity nor a search for the surface.
+//! What cases of water with a free surface have in common: settings, the rule of the time step, and the
+//! particles of a tank's walls.
 
 pub mod ledger;
 
 use base::record::Record;
 use harness::{
     limits::Limits,
-    method::{self, FirstRow, Medium, Method, Standard},
+    method::{FirstRow, Medium, Method},
 };
-use maths::{
-    exact,
-    geometry::Tank,
-    metrics::budget::{Metered, WaterDrift, WaterForces},
-};
+use maths::{exact, geometry::Tank};
 use nalgebra::Vector2;
-use solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, ExtrapolatingWall, FluidPairs, Leapfrog, PredictorCorrector, Pressure, Role,
-    Tait, WendlandC2, Xsph, terms::Hydrostatic,
-};
+use solver::Role;
 
 pub use ledger::Ledger;
-
-/// (14) with (7), (16), (17), and gravity; `R` is the artificial stress (18), (19).
-pub type Water<R = (), V = ArtificialViscosity<Tait>> = (Pressure<Tait, R>, V, BodyForce);
-/// What the paper describes.
-pub type Seed<W, I = PredictorCorrector> =
-    Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), W, I>;
-/// Density diffusion that leaves a column at rest alone.
-pub type Diffusion = DensityDiffusion<Hydrostatic>;
-/// The viscosity of water that slips along boundary particles: it leaves them out, because they stand still.
-pub type Slipping = FluidPairs<ArtificialViscosity<Tait>>;
-/// The best known settings.
-pub type Modern<
-    D = (Continuity, Diffusion),
-    W = ExtrapolatingWall<Tait>,
-    I = Leapfrog,
-    V = Slipping,
-> = Compose<WendlandC2, Water<(), V>, D, W, I>;
-
-/// A method whose simulations can say what each term does to the energy.
-pub type WaterMethod = Method<(), dyn Metered<()>>;
-
-/// The method of a scheme whose terms account for their energy.
-pub fn method<S>() -> WaterMethod
-where
-    S: Standard<Extra = (), Forces: WaterForces<()>, Drift: WaterDrift<()>>,
-{
-    Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
-}
 
 /// η²/h² of the lattice whose waves give the limit of the time step.
 const ETA2: f64 = 0.01;
@@ -144,7 +105,7 @@ macro_rules! water_settings {
             /// choose; `speed` is the largest speed expected \[m/s\], `end` the end \[s\].
             pub fn medium(
                 &self,
-                method: &$crate::water::WaterMethod,
+                method: &schemes::water::WaterMethod,
                 [dx, c0, gravity, speed, end]: [f64; 5],
             ) -> (harness::method::Medium, harness::case::Rules) {
                 let (h, eos) = (self.h_over_dx * dx, solver::Tait::new(self.rho, c0));

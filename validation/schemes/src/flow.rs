@@ -1,0 +1,161 @@
+//! Viscous flows: channels, cylinders, vortices, the cavity, and the manufactured flow.
+
+use harness::method::{FromMedium, Medium};
+use maths::exact::Manufactured;
+use nalgebra::Vector2;
+use solver::{lane::Lane, particles::Common, terms::Pair, *};
+
+use crate::{Method, methods, stepped};
+
+/// Forces of a channel flow: pressure, viscosity, and the driving force `B`, `()` for Couette flow.
+pub type Fluid<B, R = ()> = (Pressure<Tait, R>, Viscosity, B);
+/// What stabilises the modern variants.
+pub type Stabilised = (Continuity, DensityDiffusion, Shifting);
+/// The same with a continuity that is exact for linear fields.
+pub type ConsistentDrift = (ConsistentContinuity, DensityDiffusion, Shifting);
+/// The paper's: cubic spline and predictor-corrector.
+pub type Seed<F, D, W = Ghosts> = Compose<CubicSpline, F, D, W, PredictorCorrector>;
+/// Quintic spline and, as a rule, leapfrog.
+pub type Modern<F, D, W = Ghosts, I = Leapfrog> = Compose<QuinticSpline, F, D, W, I>;
+/// Quintic spline, leapfrog and super-time-stepping of viscosity.
+pub type Stiff<B> =
+    Modern<Split<(Pressure<Tait>, B), Viscosity>, Stabilised, Ghosts, Leapfrog<SuperSteps>>;
+
+type Pairs = (Pressure<Tait>, Viscosity);
+type Carried = (Pressure<Tait>, Viscosity, ShiftAdvection);
+type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, ShiftAdvection);
+/// Wall particles have minus the mean velocity of the fluid in reach.
+pub type Mean = ExtrapolatingWall<Tait, NoSlip>;
+
+// A channel flow stores x, v and ρ, shows its neighbours one number, p/ρ², and nothing else.
+const _: () = assert!(size_of::<<Fluid<()> as Term<()>>::Derived>() == 8);
+const _: () = assert!(size_of::<<Stabilised as Term<()>>::Derived>() == 0);
+
+/// The methods that Couette flow and Poiseuille flow have in common.
+pub struct OfChannels {
+    /// The paper's.
+    pub seed: Method,
+    /// The same with interface and wall particles.
+    pub interface_wall: Method,
+    /// Wendland's kernel and leapfrog.
+    pub wendland: Method,
+    /// Quintic spline and leapfrog.
+    pub plain: Method,
+    /// The same with walls that extrapolate.
+    pub extrapolating: Method,
+    /// `plain` with what stabilises.
+    pub modern: Method,
+    /// The same with one pair sweep a step.
+    pub single_sweep: Method,
+    /// `modern` with super-time-stepping.
+    pub stiff: Method,
+}
+
+impl OfChannels {
+    /// Those of a flow that a plate drives.
+    #[inline(never)]
+    pub fn couette() -> Self {
+        Self::of::<()>()
+    }
+
+    /// Those of a flow that a body force drives.
+    #[inline(never)]
+    pub fn poiseuille() -> Self {
+        Self::of::<BodyForce>()
+    }
+
+    fn of<B: FromMedium + Term<()>>() -> Self {
+        Self {
+            seed: Method::of::<Seed<Fluid<B>, Continuity>>(),
+            interface_wall: Method::of::<Seed<Fluid<B>, Continuity, InterfaceWall>>(),
+            wendland: Method::of::<Compose<WendlandC2, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
+            plain: Method::of::<Modern<Fluid<B>, Continuity>>(),
+            extrapolating: Method::of::<Modern<Fluid<B>, Continuity, Mean>>(),
+            modern: Method::of::<Modern<Fluid<B>, Stabilised>>(),
+            single_sweep: Method::of::<Modern<Fluid<B>, Stabilised, Ghosts, SingleSweep>>(),
+            stiff: Method::of::<Stiff<B>>(),
+        }
+    }
+}
+
+methods! { stepped => Method:
+    /// Poiseuille flow by `plain`.
+    poiseuille: Modern<Fluid<BodyForce>, Continuity>;
+    /// The seed's with artificial stress.
+    cure_stress: Seed<Fluid<BodyForce, ArtificialStress>, Continuity>;
+    /// The seed's with artificial viscosity.
+    cure_viscosity: Seed<(Pressure<Tait>, Viscosity, BodyForce, ArtificialViscosity<Tait>), Continuity>;
+    /// The seed's with XSPH.
+    cure_xsph: Seed<Fluid<BodyForce>, (Continuity, Xsph)>;
+    /// The seed's with shifting.
+    cure_shifting: Seed<Fluid<BodyForce>, (Continuity, Shifting)>;
+
+    /// Cylinders with interface and wall particles.
+    cylinders_interface: Modern<Pairs, Continuity, InterfaceWall>;
+    /// Cylinders with walls that extrapolate.
+    cylinders_extrapolating: Modern<Pairs, Continuity, Mean>;
+
+    /// The cavity by the paper's method.
+    cavity_seed: Seed<Pairs, Continuity, InterfaceWall>;
+    /// The cavity with walls that extrapolate, and what stabilises.
+    cavity_modern: Modern<Pairs, Stabilised, Mean>;
+    /// The same where shifting carries the velocity of the new place.
+    cavity_carried: Modern<Carried, Stabilised, Mean>;
+    /// The same with sums that are exact for linear fields.
+    cavity_consistent: Modern<Consistent, ConsistentDrift, Mean>;
+
+    /// Vortices without a stabiliser.
+    vortices_plain: Modern<Pairs, Continuity, Open>;
+    /// Vortices with what stabilises.
+    vortices_modern: Modern<Pairs, Stabilised, Open>;
+    /// The same where shifting carries the velocity of the new place.
+    vortices_carried: Modern<Carried, Stabilised, Open>;
+    /// The same with sums that are exact for linear fields.
+    vortices_consistent: Modern<Consistent, ConsistentDrift, Open>;
+
+    /// The manufactured flow by the paper's method, with ghosts.
+    manufactured_seed: Seed<Fluid<Source>, Continuity>;
+    /// The same with interface and wall particles.
+    manufactured_seed_interface: Seed<Fluid<Source>, Continuity, InterfaceWall>;
+    /// The manufactured flow with what stabilises, and ghosts.
+    manufactured_modern: Modern<Fluid<Source>, Stabilised>;
+    /// The same with interface and wall particles.
+    manufactured_modern_interface: Modern<Fluid<Source>, Stabilised, InterfaceWall>;
+    /// The manufactured flow with sums that are exact for linear fields, and ghosts.
+    manufactured_consistent: Modern<Exact, ConsistentDrift>;
+    /// The same with interface and wall particles.
+    manufactured_consistent_interface: Modern<Exact, ConsistentDrift, InterfaceWall>;
+}
+
+type Exact = (ConsistentPressure<Tait>, ConsistentViscosity, Source, ShiftAdvection);
+
+/// The force of the manufactured flow.
+#[derive(Clone, Copy, Debug)]
+pub struct Source {
+    /// U²/L and νU/L², the scales of its parts \[m/s²\].
+    scales: Vector2<f64>,
+}
+
+/// The medium has the scales in place of a uniform body force, so that a deliberate error of the viscosity is
+/// none of the force.
+impl FromMedium for Source {
+    fn new(medium: &Medium) -> Self {
+        Self { scales: medium.acceleration }
+    }
+}
+
+impl<X> Term<X> for Source {
+    type Derived = ();
+    type Sum = ();
+
+    #[inline(always)]
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2], _: &mut ()) {}
+
+    #[inline(always)]
+    fn finish(&self, _: &Common<f64>, _: (), _: (), _: &mut Rate<X>) {}
+
+    fn place(&self, x: Vector2<f64>, rate: &mut Rate<X>) {
+        let (advection, viscous) = (Manufactured::advection(x), Manufactured::viscous(x));
+        rate.velocity += advection * self.scales.x + viscous * self.scales.y;
+    }
+}

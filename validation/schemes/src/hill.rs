@@ -1,0 +1,69 @@
+//! The flow over hills, whose body force is set while it runs.
+
+use harness::method::{self, Standard};
+use nalgebra::Vector2;
+use solver::*;
+
+use crate::{
+    Method,
+    flow::{ConsistentDrift, Mean, Modern, Stabilised},
+    methods,
+};
+
+/// Forces with a body force that can be set.
+pub trait Driven {
+    /// The body force.
+    fn body_force(&mut self) -> &mut BodyForce;
+}
+
+impl<A, B> Driven for (A, B, BodyForce) {
+    fn body_force(&mut self) -> &mut BodyForce {
+        &mut self.2
+    }
+}
+
+impl<A, B, C> Driven for (A, B, BodyForce, C) {
+    fn body_force(&mut self) -> &mut BodyForce {
+        &mut self.2
+    }
+}
+
+/// A simulation with a body force that can be set.
+pub trait Driving: Stepper<()> {
+    /// Sets the body force \[m/s²\] along x.
+    fn drive(&mut self, force: f64);
+}
+
+impl<S: Scheme<Extra = (), Forces: Driven>> Driving for Simulation<S> {
+    fn drive(&mut self, force: f64) {
+        *self.terms_mut().0.body_force() = BodyForce(Vector2::new(force, 0.0));
+    }
+}
+
+/// A method whose force can be set.
+pub type HillMethod = Method<(), dyn Driving>;
+
+fn driven<S: Standard<Extra = (), Forces: Driven>>() -> HillMethod {
+    Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
+}
+
+type Pairs = (Pressure<Tait>, Viscosity, BodyForce);
+type Carried = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
+type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
+/// Wall particles know how the velocity bends across the wall.
+type Curved = ExtrapolatingWall<Tait, CurvedNoSlip>;
+
+methods! { driven => HillMethod:
+    /// Without a stabiliser.
+    plain: Modern<Pairs, Continuity, Mean>;
+    /// `modern` with interface and wall particles.
+    interface_wall: Modern<Pairs, Stabilised, InterfaceWall>;
+    /// With what stabilises.
+    modern: Modern<Pairs, Stabilised, Mean>;
+    /// Where shifting carries the velocity of the new place, and walls know how the velocity bends.
+    carried: Modern<Carried, Stabilised, Curved>;
+    /// The same with one pair sweep a step.
+    single_sweep: Modern<Carried, Stabilised, Curved, SingleSweep>;
+    /// `carried` with sums that are exact for linear fields.
+    consistent: Modern<Consistent, ConsistentDrift, Curved>;
+}

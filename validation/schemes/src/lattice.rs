@@ -1,0 +1,94 @@
+//! Waves, boxes at rest, extremes and operators on a lattice: no more than the equations.
+
+use harness::method::{FromMedium, Medium};
+use solver::{
+    lane::Lane,
+    particles::Common,
+    terms::{Always, Pair},
+    *,
+};
+
+use crate::{Method, methods, stepped};
+
+type Equations = (Pressure<Tait>, Viscosity);
+type Plain<K, I = Leapfrog> = Compose<K, Equations, Continuity, Open, I>;
+type Damped = (Pressure<Tait>, Viscosity, ArtificialViscosity<Tait, Always>);
+type Diffusive<F> = Compose<CubicSpline, F, (Continuity, DensityDiffusion), Open, Leapfrog>;
+/// Sums that are exact for linear fields.
+type Corrected<K> = Compose<
+    K,
+    (ConsistentPressure<Tait>, ConsistentViscosity),
+    ConsistentContinuity,
+    Open,
+    Leapfrog,
+>;
+type Summing<K> = Compose<K, (), Summation<K>, Open, Leapfrog>;
+
+methods! { stepped => Method:
+    /// The equations with the cubic spline and the leapfrog.
+    cubic: Plain<CubicSpline>;
+    /// The same with the predictor-corrector.
+    midpoint: Plain<CubicSpline, PredictorCorrector>;
+    /// The same with one pair sweep a step.
+    single_sweep: Plain<CubicSpline, SingleSweep>;
+    /// [`cubic`] with the quintic spline.
+    quintic: Plain<QuinticSpline>;
+    /// [`cubic`] with Wendland's function.
+    wendland: Plain<WendlandC2>;
+    /// [`cubic`] with density diffusion.
+    diffusive: Diffusive<Equations>;
+    /// The same with artificial viscosity on every pair.
+    damped: Diffusive<Damped>;
+    /// [`cubic`] with super-time-stepping.
+    super_stepping:
+        Compose<CubicSpline, Split<Pressure<Tait>, Viscosity>, Continuity, Open, Leapfrog<SuperSteps>>;
+
+    /// [`cubic`] with sums that are exact for linear fields.
+    cubic_corrected: Corrected<CubicSpline>;
+    /// [`quintic`] with them.
+    quintic_corrected: Corrected<QuinticSpline>;
+    /// [`wendland`] with them.
+    wendland_corrected: Corrected<WendlandC2>;
+    /// Densities that are sums of masses, with the cubic spline.
+    cubic_sum: Summing<CubicSpline>;
+    /// The same with the quintic spline.
+    quintic_sum: Summing<QuinticSpline>;
+    /// The same with Wendland's function.
+    wendland_sum: Summing<WendlandC2>;
+}
+
+/// ρ ← Σ m W within a step of [`summing_step`]: no scheme of this program has it, but those of other codes do.
+#[derive(Clone, Copy, Debug)]
+pub struct Summation<K> {
+    kernel: Smoothing<K>,
+    /// 1/dt \[1/s\].
+    rate: f64,
+}
+
+/// The time step with which operators are measured, 1e-6 h/c₀ \[s\]: so short that nothing changes by more
+/// than 1e-5 of itself, which is what the gates allow, and long enough for velocities and densities to change
+/// by more than their round-off.
+pub fn summing_step(medium: &Medium) -> f64 {
+    1e-6 * medium.h / medium.eos.sound_speed
+}
+
+impl<K: Kernel> FromMedium for Summation<K> {
+    fn new(m: &Medium) -> Self {
+        Self { kernel: Smoothing::new(m.h), rate: 1.0 / summing_step(m) }
+    }
+}
+
+impl<X, K: Kernel> Term<X> for Summation<K> {
+    type Derived = ();
+    type Sum = f64;
+
+    #[inline(always)]
+    fn pair<V: Lane, W: Kernel>(&self, pair: &Pair<V, W>, _: [(); 2], sum: &mut V) {
+        *sum += pair.other.mass * pair.w();
+    }
+
+    #[inline(always)]
+    fn finish(&self, own: &Common<f64>, _: (), sum: f64, rate: &mut Rate<X>) {
+        rate.density += (sum + own.mass * self.kernel.w(0.0) - own.density) * self.rate;
+    }
+}

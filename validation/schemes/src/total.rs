@@ -1,0 +1,182 @@
+//! Total Lagrangian solids, which have no scheme: bodies alone, with weight, and beside a plane.
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+use harness::method::{Medium, Parts, mutate};
+use lagrangian::{
+    BetweenFaces, Contact, Hencky, Law, Moduli, NeoHookean, RigidPlane, SaintVenantKirchhoff,
+    SolidScene, Weight,
+};
+use maths::{
+    geometry::corners,
+    theory::{
+        bending,
+        lagrangian::{HOURGLASS, fastest_of_block},
+    },
+};
+use nalgebra::Vector2;
+use solver::{
+    Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
+};
+
+use crate::methods;
+
+type Method = crate::Method<Symmetric>;
+
+/// h/dx: with a support of two spacings a particle sees the eight around it, the fewest with which all of its
+/// neighbours along both axes and diagonals count. Gradients at free surfaces are one-sided, and their error
+/// grows with the reach.
+pub const H_OVER_DX: f64 = 1.0;
+
+/// Densities over that without stress beyond which a run has diverged. Energy grows without bound as a body
+/// is compressed, so that no compression is wrong; but the frequencies of compressed matter grow as its
+/// density, and at five times the density no usual step is stable.
+const DENSITIES: [f64; 2] = [0.2, 5.0];
+
+/// What names the parts of the method.
+type Named = Compose<WendlandC2, (), (), Ghosts, Leapfrog, Symmetric>;
+
+methods! { bodies => Method:
+    /// Bodies with the stored energy of Hencky, and contact between them.
+    hencky: Hencky;
+}
+methods! { heavy => Method:
+    /// One body that has weight, with the stored energy of Hencky.
+    heavy_hencky: Hencky;
+    /// The same with that of a neo-Hookean solid.
+    heavy_neo_hookean: NeoHookean;
+    /// The same with that of Saint Venant and Kirchhoff.
+    heavy_saint_venant_kirchhoff: SaintVenantKirchhoff;
+}
+methods! { beside_a_plane => Method:
+    /// Two bodies with the stored energy of Hencky, and a rigid plane between them.
+    divided_hencky: Hencky;
+}
+
+/// The method with the stored energy `L`. Particles of the scene that are held are left out: the planes of
+/// its parts hold the body instead.
+fn bodies<L: Law>() -> Method {
+    named::<L>(|mut parts| {
+        mutate(&mut parts);
+        if parts.bodies.is_empty() {
+            return Ok(Box::new(scene(parts, ()).build::<WendlandC2, L>()?));
+        }
+        let contact = BetweenFaces::new(Contact::of(&moduli(&parts.medium)));
+        Ok(Box::new(scene(parts, contact).build::<WendlandC2, L>()?))
+    })
+}
+
+/// The same of one body that has weight: the acceleration of its medium.
+fn heavy<L: Law>() -> Method {
+    named::<L>(|mut parts| {
+        mutate(&mut parts);
+        let weight = Weight(parts.medium.acceleration);
+        Ok(Box::new(scene(parts, weight).build::<WendlandC2, L>()?))
+    })
+}
+
+/// The same of two bodies with a rigid plane at rest half-way between them, in place of contact between
+/// faces.
+fn beside_a_plane<L: Law>() -> Method {
+    named::<L>(|mut parts| {
+        mutate(&mut parts);
+        // Extents do not depend on the order of the particles.
+        let middle = |body: u32| {
+            let all = parts.particles.iter().zip(&parts.bodies).filter(|(_, of)| **of == body);
+            let [low, high] = corners(all.map(|(p, _)| p.position));
+            0.5 * (low + high)
+        };
+        let [left, right] = [middle(0), middle(1)];
+        let (point, normal) = (0.5 * (left + right), (right - left).normalize());
+        let plane = RigidPlane { point, normal, contact: Contact::of(&moduli(&parts.medium)) };
+        Ok(Box::new(scene(parts, plane).build::<WendlandC2, L>()?))
+    })
+}
+
+/// A simulation, or why there is none.
+type Built = Result<Box<dyn Stepper<Symmetric>>, SceneError>;
+
+/// The method with the stored energy `L` whose simulations this builds.
+fn named<L: Law>(build: fn(Parts<Symmetric>) -> Built) -> Method {
+    let mut method = Method::with::<Named>(build);
+    (method.integrator, method.walls) = ("velocity Verlet", "planes that hold");
+    method.law = Some(L::ENERGY);
+    method.limit = Some(step_limit);
+    method.uses.clear();
+    method
+}
+
+/// The bending stiffness of a plate of so many layers over that of an elastic plate, with what the method is
+/// used with: below 1, for a face takes its strain from a little inside.
+pub fn bending(layers: usize, poisson: f64) -> f64 {
+    bending::stiffness::<WendlandC2>(H_OVER_DX, layers, poisson)
+}
+
+fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
+    let Parts { medium, domain, particles, mirrors, bodies, limits, threads, .. } = parts;
+    let without_stress = |p: Particle<Symmetric>| Particle {
+        density: medium.density,
+        extra: Symmetric::default(),
+        ..p
+    };
+    let free = particles.into_iter().filter(|p| p.role == Role::Fluid).map(without_stress);
+    SolidScene {
+        h: medium.h,
+        domain,
+        particles: free.collect(),
+        bodies,
+        walls: Ghosts { walls: mirrors },
+        moduli: moduli(&medium),
+        hourglass: HOURGLASS,
+        loads,
+        limits: Limits { density: DENSITIES.map(|ratio| ratio * medium.density), ..limits },
+        parallel_from: if threads > 1 { 10_000 } else { usize::MAX },
+    }
+}
+
+fn moduli(medium: &Medium) -> Moduli {
+    let bulk = medium.density * medium.sound_speed * medium.sound_speed;
+    Moduli { bulk, shear: medium.shear_modulus }
+}
+
+/// The largest stable step of a body with faces and corners, without stress and without contact \[s\]: with
+/// Poisson's ratio 0.4 about 1.05 dx/c_p. Waves inside would allow 1.4 times as much.
+fn step_limit(medium: &Medium) -> f64 {
+    let moduli = moduli(medium);
+    let stiffness = stiffness([medium.h / medium.dx, moduli.longitudinal(), moduli.shear]);
+    2.0 * medium.dx * (medium.density / stiffness).sqrt()
+}
+
+/// What [`fastest_of_block`] finds for h/dx and moduli \[Pa\]. It takes as long as hundreds of steps of a
+/// small body, and runs of many settings ask for the same, so it is kept.
+fn stiffness(of: [f64; 3]) -> f64 {
+    static FOUND: Mutex<BTreeMap<[u64; 3], f64>> = Mutex::new(BTreeMap::new());
+    let (key, [h_over_dx, moduli @ ..]) = (of.map(f64::to_bits), of);
+    let found = || FOUND.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = found().get(&key) {
+        return *known;
+    }
+    let stiffness = fastest_of_block::<WendlandC2>(h_over_dx, moduli);
+    found().insert(key, stiffness);
+    stiffness
+}
+
+/// The same of bodies that press against each other with this pressure \[Pa\], from the limit of the
+/// compressed lattice.
+pub fn limit_in_contact(lattice: f64, medium: &Medium, pressure: f64) -> f64 {
+    let contact = BetweenFaces::new(Contact::of(&moduli(medium)));
+    contact.step_limit(lattice, medium.density, medium.dx, pressure)
+}
+
+/// Displaces the particles from their reference.
+pub fn displace(
+    simulation: &mut dyn Stepper<Symmetric>,
+    by: impl Fn(Vector2<f64>) -> Vector2<f64>,
+) {
+    let mut start = simulation.checkpoint();
+    for (_, particle) in &mut start.particles {
+        particle.position += by(particle.position);
+    }
+    let _is_of_the_same_scene = simulation.restore(&start);
+}

@@ -1,0 +1,61 @@
+//! Water with a free surface. To a method a free surface is nothing: density follows (3), which knows no
+//! surface, and there is neither Morris viscosity nor a search for the surface.
+
+use harness::method::{self, Standard};
+use maths::metrics::budget::{Metered, WaterDrift, WaterForces};
+use solver::{terms::Hydrostatic, *};
+
+use crate::{Method, methods};
+
+/// (14) with (7), (16), (17), and gravity; `R` is the artificial stress (18), (19).
+type Water<R = (), V = ArtificialViscosity<Tait>> = (Pressure<Tait, R>, V, BodyForce);
+/// What the paper describes.
+type Seed<W> =
+    Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), W, PredictorCorrector>;
+/// The seed's forces, for whose viscosity alone images have the velocity of those behind a no-slip wall.
+type Split = (Pressure<Tait, ArtificialStress>, NoSlipImages<ArtificialViscosity<Tait>>, BodyForce);
+/// Density diffusion that leaves a column at rest alone.
+type Diffusion = DensityDiffusion<Hydrostatic>;
+/// The viscosity of water that slips along boundary particles: it leaves them out, because they stand still.
+type Slipping = FluidPairs<ArtificialViscosity<Tait>>;
+type Walls = ExtrapolatingWall<Tait>;
+/// The best known settings.
+type Modern<D = (Continuity, Diffusion), W = Walls, I = Leapfrog, V = Slipping> =
+    Compose<WendlandC2, Water<(), V>, D, W, I>;
+
+/// A method whose simulations can say what each term does to the energy.
+pub type WaterMethod = Method<(), dyn Metered<()>>;
+
+fn metered<S>() -> WaterMethod
+where
+    S: Standard<Extra = (), Forces: WaterForces<()>, Drift: WaterDrift<()>>,
+{
+    Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
+}
+
+methods! { metered => WaterMethod:
+    /// The paper's, with interface and wall particles.
+    seed: Seed<InterfaceWall>;
+    /// The paper's, with ghosts.
+    ghosts: Seed<Ghosts>;
+    /// The paper's, with ghosts that keep the velocity along the wall.
+    slip_ghosts: Seed<SlipGhosts>;
+    /// The same with the opposite velocity for viscosity alone.
+    split_ghosts: Compose<CubicSpline, Split, (Continuity, Xsph), SlipGhosts, PredictorCorrector>;
+    /// The paper's without walls.
+    free_seed: Seed<Open>;
+    /// The best known.
+    modern: Modern;
+    /// The same with artificial viscosity between water and walls too.
+    sticking: Modern<(Continuity, Diffusion), Walls, Leapfrog, ArtificialViscosity<Tait>>;
+    /// `modern` with one pair sweep a step.
+    single_sweep: Modern<(Continuity, Diffusion), Walls, SingleSweep>;
+    /// `modern` with interface and wall particles.
+    interface_wall: Modern<(Continuity, Diffusion), InterfaceWall>;
+    /// `modern` with the density diffusion of Molteni and Colagrossi.
+    molteni: Modern<(Continuity, DensityDiffusion)>;
+    /// The same without walls.
+    free: Modern<(Continuity, DensityDiffusion), Open, Leapfrog, ArtificialViscosity<Tait>>;
+    /// (3), (5) and (7) alone, without walls.
+    plain: Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
+}
