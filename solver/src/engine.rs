@@ -184,8 +184,7 @@ impl<P: Physics> Engine<P> {
         if P::Walls::EXTRAPOLATES {
             return Vec::new();
         }
-        let sweep = self.sweep(&self.wall_terms, nothing(), false);
-        sweep::rates(&sweep, &self.data.neighbours.wall_lists)
+        sweep::rates(&self.wall_sweep(), &self.data.neighbours.wall_lists)
     }
 
     /// Particles and their images as pair sweeps read them, without the sentinel.
@@ -247,12 +246,16 @@ impl<P: Physics> Engine<P> {
 
     fn sweep_walls(&self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.data.enter(Phase::Walls);
+        sweep::run(&self.wall_sweep(), &self.data.neighbours.wall_lists, targets, update);
+    }
+
+    fn wall_sweep(&self) -> impl PairSweep<P::Extra> {
         let (fluid, feet) = (self.data.counts[0], &self.data.neighbours.feet);
         // Fluid has numbers below those of walls, and images have numbers above, for which there are no feet.
-        let foot =
-            |k: usize, _: &_| <P::Walls as Walls<P::Extra>>::foot(feet.get(k.wrapping_sub(fluid)));
-        let sweep = self.sweep(&self.wall_terms, foot, false);
-        sweep::run(&sweep, &self.data.neighbours.wall_lists, targets, update);
+        let foot = move |k: usize, _: &_| {
+            <P::Walls as Walls<P::Extra>>::foot(feet.get(k.wrapping_sub(fluid)))
+        };
+        self.sweep(&self.wall_terms, foot, false)
     }
 
     /// Builds neighbour lists and images for particles at these places, and makes room for their columns.

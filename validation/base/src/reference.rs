@@ -221,7 +221,7 @@ impl Reference {
         EMBEDDED.keys().filter_map(|path| path.strip_suffix(PACKAGE)).collect()
     }
 
-    /// An embedded reference, which is checked and read once. One whose second code does not agree is refused.
+    /// An embedded reference, checked and read once. One is refused whose second code does not agree.
     pub fn load(name: &str) -> Result<&'static Self, ReferenceError> {
         static READ: LazyLock<BTreeMap<&str, OnceLock<Result<Reference, ReferenceError>>>> =
             LazyLock::new(|| {

@@ -57,7 +57,8 @@ methods! { stepped => Method:
     wendland_sum: Summing<WendlandC2>;
 }
 
-/// ρ ← Σ m W within a step of [`summing_step`]: no scheme of this program has it, but those of other codes do.
+/// ρ ← Σ m W within a step of [`summing_step`]: no scheme of this program has it, but those of other codes
+/// do.
 #[derive(Clone, Copy, Debug)]
 pub struct Summation<K> {
     kernel: Smoothing<K>,
