@@ -20,20 +20,23 @@ fn main() -> io::Result<()> {
     }
     println!("cargo:rerun-if-changed=build.rs\ncargo:rerun-if-changed=pack.rs");
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../references");
-    let mut paths = Vec::new();
+    let is = |path: &Path, kind| path.extension().is_some_and(|of| of == kind);
+    let mut list = String::new();
     for folder in pack::entries(&root)? {
         if folder.join("datapackage.json").exists() {
-            paths.extend(pack::entries(&folder)?);
+            let mut packed = Vec::new();
+            for path in pack::entries(&folder)? {
+                if is(&path, "json") || is(&path, "csv") && is_described(&path)? {
+                    packed.push(path);
+                }
+            }
+            let name = folder.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+            pack::write(name, &packed)?;
+            list += &format!("({name:?}, include_bytes!({name:?})),\n");
         }
     }
-    let is = |path: &Path, kind| path.extension().is_some_and(|of| of == kind);
-    let mut packed = Vec::new();
-    for path in paths {
-        if is(&path, "json") || is(&path, "csv") && is_described(&path)? {
-            packed.push(path);
-        }
-    }
-    pack::write("references", &packed)
+    let out = env::var_os("OUT_DIR").unwrap_or_default();
+    fs::write(Path::new(&out).join("references.rs"), format!("&[\n{list}]"))
 }
 
 /// Whether a package describes this table. A hash that it does not state is refused: here, so that no run has

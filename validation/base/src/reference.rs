@@ -21,11 +21,8 @@ use thiserror::Error;
 
 use crate::pack;
 
-/// The tables and the descriptions of all packages by `FOLDER/FILE`.
-static EMBEDDED: LazyLock<BTreeMap<String, String>> =
-    LazyLock::new(|| pack::read(include_bytes!(concat!(env!("OUT_DIR"), "/references"))));
-/// Name of the file that describes a package.
-const PACKAGE: &str = "/datapackage.json";
+/// The packages by name: tables and description of each as the build script packed them.
+const EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/references.rs"));
 
 /// Why a reference was refused, in words.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -218,7 +215,7 @@ pub struct Table {
 impl Reference {
     /// The names of all references.
     pub fn names() -> Vec<&'static str> {
-        EMBEDDED.keys().filter_map(|path| path.strip_suffix(PACKAGE)).collect()
+        EMBEDDED.iter().map(|(name, _)| *name).collect()
     }
 
     /// An embedded reference, checked and read once. One is refused whose second code does not agree.
@@ -237,15 +234,15 @@ impl Reference {
     }
 
     fn read(name: &str) -> Result<Self, ReferenceError> {
-        let Some(package) = EMBEDDED.get(&format!("{name}{PACKAGE}")) else {
-            return Err(unknown(name));
-        };
-        let of_name = |(path, text): (&'static String, &'static String)| {
-            Some((path.strip_prefix(name)?.strip_prefix('/')?, text.as_str()))
-        };
-        let files: Vec<(&str, &str)> = EMBEDDED.iter().filter_map(of_name).collect();
+        let (_, packed) =
+            EMBEDDED.iter().find(|(known, _)| *known == name).ok_or_else(|| unknown(name))?;
+        let texts = pack::read(packed);
+        let file =
+            |(path, text)| Some((String::as_str(path).split_once('/')?.1, String::as_str(text)));
+        let files: Vec<(&str, &str)> = texts.iter().filter_map(file).collect();
+        let package = files.iter().find(|(path, _)| *path == "datapackage.json");
         // The build script has checked the hashes.
-        Self::of(name, described(name, package)?, &files)
+        Self::of(name, described(name, package.map_or("", |(_, text)| text))?, &files)
     }
 
     /// Checks and reads a reference from the text of its description and of its tables by path.
