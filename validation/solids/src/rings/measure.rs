@@ -217,7 +217,8 @@ impl Series {
     fn phases(&self) -> Vec<Phase> {
         let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
         let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
-        let least = TOUCH * forces.iter().copied().fold(0.0, f64::max);
+        let round_off = ROUND_OFF * self.settings.speed;
+        let least = (TOUCH * forces.iter().copied().fold(0.0, f64::max)).max(round_off);
         let mut spans: Vec<[usize; 2]> = Vec::new();
         for k in (0..forces.len()).filter(|&k| forces[k] > least) {
             match spans.last_mut() {
@@ -251,6 +252,8 @@ const SHARES: [f64; 2] = [0.01, 0.99];
 /// Force, over the largest, above which rings touch; pause that ends a phase \[L/c₀\].
 const TOUCH: f64 = 0.01;
 const PAUSE: f64 = 5.0;
+/// Force of round-off, over mass and speed of a ring \[c₀/L\].
+const ROUND_OFF: f64 = 1e-9;
 
 /// Largest distance of a particle from the mirror image of its partner.
 fn mirror_error(left: &[Solid], right: &[Solid]) -> f64 {
