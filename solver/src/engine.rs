@@ -404,7 +404,7 @@ fn derive<X, T: Term<X>>(
 
 /// The derived data of a particle in this role.
 #[inline(always)]
-fn derived<X, T: Term<X>>(terms: &T, role: Role, own: &Common<f64>, extra: &X) -> T::Derived {
+fn derived<X, T: Term<X>>(terms: &T, role: Role, own: &Common, extra: &X) -> T::Derived {
     let mut derived = terms.derived(own, extra);
     if role != Role::Fluid {
         T::on_boundary(&mut derived);

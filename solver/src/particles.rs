@@ -127,10 +127,10 @@ impl<X: Numbers> Evolved<X> {
     }
 }
 
-/// What every term may ask of a particle, `V` for one a lane or `f64` for one alone.
+/// What every term may ask of a particle, or of one a lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)] // mass and density side by side
-pub struct Common<V> {
+pub struct Common<V = f64> {
     /// Mass per unit depth \[kg/m\].
     pub mass: V,
     /// Density \[kg/m³\].
@@ -139,7 +139,7 @@ pub struct Common<V> {
     pub volume: V,
 }
 
-impl Common<f64> {
+impl Common {
     /// The same particle in every lane.
     #[inline(always)]
     pub fn spread<V: Lane>(self) -> Common<V> {
@@ -161,7 +161,7 @@ pub struct Column<S = ()> {
     /// Velocity \[m/s\].
     pub velocity: Vector2<f64>,
     /// Mass, density, volume.
-    pub common: Common<f64>,
+    pub common: Common,
     /// Derived numbers that terms ask for.
     pub derived: S,
 }

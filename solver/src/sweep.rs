@@ -188,9 +188,9 @@ where
                 }
                 let v = velocity - other.velocity.spread::<V>();
                 let (f, others) = (kernel.f(r2), other.common.spread::<V>());
-                let pair = Pair { r, r2, v, f, own: common, other: others, kernel };
-                let of_other = select(column as usize, &other.derived).spread::<V>();
-                terms.pair(&pair, [derived, of_other], &mut sum);
+                let derived = [derived, select(column as usize, &other.derived).spread::<V>()];
+                let pair = Pair { r, r2, v, f, own: common, other: others, derived, kernel };
+                terms.pair(&pair, &mut sum);
             }
             for (lane, rate) in rates.iter_mut().enumerate() {
                 let own = &columns[first + lane];
@@ -243,10 +243,10 @@ mod tests {
     impl Term<()> for Weights {
         type Derived = ();
         type Sum = f64;
-        fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut V) {
+        fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut V) {
             *sum += pair.w();
         }
-        fn finish(&self, _: &Common<f64>, _: (), sum: f64, rate: &mut Rate<()>) {
+        fn finish(&self, _: &Common, _: (), sum: f64, rate: &mut Rate<()>) {
             rate.density = sum;
         }
     }

@@ -6,7 +6,7 @@ use solver::{
     CauchyStress, Compose, ConjugateStress, ConsistentContinuity, ConsistentJaumannRate,
     CubicSpline, Domain, EquationOfState, Evolved, JaumannRate, Leapfrog, Linear, Open, Particle,
     PredictorCorrector, PrincipalStress, Rate, Role, Scene, Scheme, Simulation, Smoothing, Stepper,
-    Symmetric, lattice, terms::TensileStress, walls::Walls,
+    Symmetric, lattice, terms::Tensile, walls::Walls,
 };
 
 type Drift = (ConsistentContinuity, ConsistentJaumannRate);
@@ -293,7 +293,7 @@ fn only_conjugate_forces_have_moments() {
     let principal = <ConjugateStress<Linear, PrincipalStress> as Term<Symmetric>>::NORMALISES;
     let uncorrected = <(CauchyStress<Linear>, JaumannRate) as Term<Symmetric>>::NORMALISES;
     assert!(principal && !uncorrected);
-    fn bytes<R: TensileStress>() -> usize {
+    fn bytes<R: Tensile<Symmetric>>() -> usize {
         size_of::<<ConjugateStress<Linear, R> as Term<Symmetric>>::Derived>()
     }
     assert_eq!([bytes::<()>(), bytes::<PrincipalStress>()], [32, 56]);

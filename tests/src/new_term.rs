@@ -19,13 +19,13 @@ impl<X> Term<X> for CentralViscosity {
     type Sum = Vector2<f64>; // what a particle sums over its neighbours
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut Vector2<V>) {
         let along = pair.v_dot_r() / (pair.r2 + V::all(self.eta2));
         *sum += pair.r * (pair.other.volume * pair.f * along);
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: (), sum: Vector2<f64>, rate: &mut Rate<X>) {
         rate.velocity -= sum * (8.0 * self.nu); // minus: ∇ᵢWᵢⱼ = −F rᵢⱼ
     }
 }

@@ -19,7 +19,7 @@ use solver::{
     lattice,
     particles::{Column, Common},
     physics::Derived,
-    terms::{Pair, TensileStress},
+    terms::{Pair, Tensile},
 };
 use touchstone_tests::{Random, V2, open_rates, relative_sum};
 
@@ -92,7 +92,7 @@ fn torque(cloud: &[Solid], rates: &[Rate<Symmetric>]) -> f64 {
     relative_sum(cloud.iter().zip(rates).map(|(p, r)| p.mass * p.position.perp(&r.velocity)))
 }
 
-fn check_momentum<K: Kernel>(tensile: impl TensileStress) {
+fn check_momentum<K: Kernel>(tensile: impl Tensile<Symmetric>) {
     let name = std::any::type_name_of_val(&tensile);
     for seed in 0..5 {
         let mut cloud = cloud(seed, 0.1);
@@ -234,7 +234,7 @@ fn accelerations<K: Kernel>(cloud: &[Solid], tension: fn(Tensor) -> Tensor) -> V
     cloud.iter().enumerate().map(row).collect()
 }
 
-fn check_stress<K: Kernel>(tensile: impl TensileStress, tension: fn(Tensor) -> Tensor) {
+fn check_stress<K: Kernel>(tensile: impl Tensile<Symmetric>, tension: fn(Tensor) -> Tensor) {
     let cloud = cloud(7, 0.1);
     let rates = open_rates::<K, _, _, _>(H, &cloud, stress(tensile), ());
     let expected = accelerations::<K>(&cloud, tension);
@@ -384,8 +384,8 @@ struct Carousel {
 impl<X: Numbers> Term<X> for Carousel {
     type Derived = ();
     type Sum = ();
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2], _: &mut ()) {}
-    fn finish(&self, _: &Common<f64>, _: (), _: (), rate: &mut Rate<X>) {
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: &mut ()) {}
+    fn finish(&self, _: &Common, _: (), _: (), rate: &mut Rate<X>) {
         rate.velocity += Vector2::new(-rate.position.y, rate.position.x) * self.omega;
     }
 }
@@ -451,7 +451,7 @@ fn turned(p: Solid, turn: Rotation2<f64>) -> Solid {
 }
 
 /// Two discs of 147 particles that meet off-centre at 0.15 c each, after 100 steps.
-fn collision<T: TensileStress>(tensile: T, turn: Rotation2<f64>) -> Vec<Solid> {
+fn collision<T: Tensile<Symmetric>>(tensile: T, turn: Rotation2<f64>) -> Vec<Solid> {
     let centre = Vector2::new(7.6, 2.0);
     let disc: Vec<V2> =
         lattice(Vector2::repeat(-7.0), 1.0, 15, 15).filter(|x| x.norm() < 6.8).collect();
@@ -470,7 +470,7 @@ fn collision<T: TensileStress>(tensile: T, turn: Rotation2<f64>) -> Vec<Solid> {
 }
 
 /// Largest difference in spacings, c, ⁰ρ and K between a turned run and a run of the turned scene.
-fn frame_dependence<T: TensileStress>(tensile: T) -> f64 {
+fn frame_dependence<T: Tensile<Symmetric>>(tensile: T) -> f64 {
     let turn = rotation(PI / 6.0);
     let here = collision(tensile, Rotation2::identity());
     let there = collision(tensile, turn);

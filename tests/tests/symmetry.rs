@@ -122,7 +122,7 @@ impl<X, const KIND: char> Term<X> for Wrong<KIND> {
     type Derived = ();
     type Sum = Vector2<f64>;
 
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut Vector2<V>) {
         let (x, y, none) = (pair.r.x, pair.r.y, V::all(0.0));
         let force = match KIND {
             ANISOTROPIC => Vector2::new(x, none),
@@ -132,7 +132,7 @@ impl<X, const KIND: char> Term<X> for Wrong<KIND> {
         *sum += force * (pair.other.volume * pair.f);
     }
 
-    fn finish(&self, _: &Common<f64>, _: (), sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: (), sum: Vector2<f64>, rate: &mut Rate<X>) {
         rate.velocity += sum * self.size;
     }
 }

@@ -1,22 +1,24 @@
 use super::{In, Kernel, Lane, Numbers, Pair};
 
-/// What [`super::Pressure`] adds to the pair pressure where p < 0: nothing, or an artificial stress.
-pub trait Tensile: Copy + Send + Sync + 'static {
+/// What [`super::Pressure`] adds to the pair pressure, or [`super::CauchyStress`] to the pair stress, where
+/// the material is in tension: nothing, or an artificial stress Rᵢⱼ φᵢⱼⁿ with (21) Rᵢⱼ = Rᵢ + Rⱼ. `S` is
+/// `f64` for a pressure and [`super::Symmetric`] for a stress.
+pub trait Tensile<S: Numbers>: Copy + Send + Sync + 'static {
     /// Derived numbers of a particle.
     type Derived: Numbers;
-    /// From p/ρ² of a particle.
-    fn derived(&self, pressure_over_density_squared: f64) -> Self::Derived;
-    /// Rᵢⱼ φᵢⱼⁿ, in the unit of p/ρ².
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, derived: [In<Self::Derived, V>; 2]) -> V;
+    /// From p/ρ², σ/ρ² or σ of a particle; the result has the unit of that.
+    fn derived(&self, stress: S) -> Self::Derived;
+    /// Rᵢⱼ φᵢⱼⁿ, in the same unit.
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>) -> In<S, V>;
 }
 
-impl Tensile for () {
+impl<S: Numbers> Tensile<S> for () {
     type Derived = ();
     #[inline(always)]
-    fn derived(&self, _: f64) {}
+    fn derived(&self, _: S) {}
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2]) -> V {
-        V::all(0.0)
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>) -> In<S, V> {
+        S::default().spread::<V>()
     }
 }
 
@@ -38,7 +40,7 @@ impl ArtificialStress {
     }
 }
 
-impl Tensile for ArtificialStress {
+impl Tensile<f64> for ArtificialStress {
     type Derived = f64;
 
     #[inline(always)]
@@ -47,7 +49,8 @@ impl Tensile for ArtificialStress {
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, [own, other]: [V; 2]) -> V {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, f64>) -> V {
+        let [own, other] = pair.derived;
         let phi = pair.w() * V::all(self.inverse_w);
         (0..self.n).fold(own + other, |product, _| product * phi)
     }

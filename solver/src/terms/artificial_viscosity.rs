@@ -1,6 +1,6 @@
 use std::marker::PhantomData;
 
-use super::{Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Term, Vector2};
+use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// Which pairs artificial viscosity acts on.
 pub trait Switch: Copy + Send + Sync + 'static {
@@ -62,23 +62,19 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, _: &X) -> E::Sound {
+    fn derived(&self, own: &Common, _: &X) -> E::Sound {
         self.eos.sound(own.density)
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        [own, other]: [In<E::Sound, V>; 2],
-        sum: &mut Vector2<V>,
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut Vector2<V>) {
         let h = V::all(pair.kernel.h());
         let (distance2, density) =
             (pair.r2 + V::all(self.eta2), pair.own.density + pair.other.density);
         // One division for both quotients.
         let inverse = V::all(1.0) / (distance2 * density);
         let mu = h * S::admit(pair.v_dot_r()) * (density * inverse);
+        let [own, other] = pair.derived;
         let c = self.eos.speed_of(own) + self.eos.speed_of(other);
         // |μ|, not μ: for a pair that recedes under `Always`, +β μ² would push it on.
         let quadratic = V::all(-2.0 * self.beta) * mu.abs();
@@ -87,7 +83,7 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.velocity += sum;
     }
 }

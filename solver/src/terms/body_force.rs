@@ -9,10 +9,10 @@ impl<X> Term<X> for BodyForce {
     type Sum = ();
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2], _: &mut ()) {}
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: &mut ()) {}
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Derived, _: (), rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: Self::Derived, _: (), rate: &mut Rate<X>) {
         rate.velocity += self.0;
     }
 }

@@ -1,6 +1,4 @@
-use super::{
-    Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Symmetric, TensileStress, Term, Vector2,
-};
+use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Symmetric, Tensile, Term, Vector2};
 
 /// (9) dvᵢᵃ/dt = Σⱼ mⱼ (σᵢᵃᵇ/ρᵢ² + σⱼᵃᵇ/ρⱼ²) ∂Wᵢⱼ/∂xᵢᵇ \[m/s²\], (10) σᵃᵇ = −p δᵃᵇ + Sᵃᵇ, and the stress
 /// part of (15) with R ≠ ().
@@ -15,13 +13,13 @@ pub struct CauchyStress<E, R = ()> {
     pub tensile: R,
 }
 
-impl<E: EquationOfState, R: TensileStress> Term<Symmetric> for CauchyStress<E, R> {
+impl<E: EquationOfState, R: Tensile<Symmetric>> Term<Symmetric> for CauchyStress<E, R> {
     /// σ/ρ² \[m⁵/(kg s²)\] and what the artificial stress derives.
     type Derived = (Symmetric, R::Derived);
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, deviator: &Symmetric) -> Self::Derived {
+    fn derived(&self, own: &Common, deviator: &Symmetric) -> Self::Derived {
         let p = self.eos.pressure(own.density);
         let Symmetric { xx, yy, xy } = *deviator;
         let stress = Symmetric { xx: xx - p, yy: yy - p, xy } * (1.0 / (own.density * own.density));
@@ -29,24 +27,14 @@ impl<E: EquationOfState, R: TensileStress> Term<Symmetric> for CauchyStress<E, R
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        [own, other]: [In<Self::Derived, V>; 2],
-        sum: &mut Vector2<V>,
-    ) {
-        let stress = own.0 + other.0 + self.tensile.pair(pair, [own.1, other.1]);
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut Vector2<V>) {
+        let [own, other] = pair.derived;
+        let stress = own.0 + other.0 + self.tensile.pair(&pair.with([own.1, other.1]));
         *sum -= stress.times(pair.r) * (pair.other.mass * pair.f);
     }
 
     #[inline(always)]
-    fn finish(
-        &self,
-        _: &Common<f64>,
-        _: Self::Derived,
-        sum: Self::Sum,
-        rate: &mut Rate<Symmetric>,
-    ) {
+    fn finish(&self, _: &Common, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<Symmetric>) {
         rate.velocity += sum;
     }
 }

@@ -24,24 +24,19 @@ impl<X, E: EquationOfState> Term<X> for ConsistentPressure<E> {
     type Sum = (Vector2<f64>, Symmetric);
 
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, _: &X) -> f64 {
+    fn derived(&self, own: &Common, _: &X) -> f64 {
         self.eos.pressure(own.density)
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        [own, other]: [V; 2],
-        sum: &mut In<Self::Sum, V>,
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, f64>, sum: &mut In<Self::Sum, V>) {
         let (weight, moments) = weights(pair);
-        sum.0 += weight * (own - other);
+        sum.0 += weight * (pair.derived[0] - pair.derived[1]);
         sum.1 = sum.1 + moments;
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, _: f64, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common, _: f64, sum: Self::Sum, rate: &mut Rate<X>) {
         if let Some(inverse) = inverse(sum.1) {
             rate.velocity -= inverse.times(sum.0) / own.density;
         }
@@ -63,7 +58,7 @@ impl<X> Term<X> for ConsistentViscosity {
     type Sum = (Vector2<f64>, Vector2<f64>, Vector2<f64>, Vector2<f64>, Symmetric);
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut In<Self::Sum, V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut In<Self::Sum, V>) {
         let (weight, moments) = weights(pair);
         sum.0 += pair.v * (pair.other.volume * pair.f);
         sum.1 += weight;
@@ -73,7 +68,7 @@ impl<X> Term<X> for ConsistentViscosity {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
         let (laplacian, weight, along_x, along_y, moments) = sum;
         let trace = moments.xx + moments.yy;
         let place = inverse(moments).map_or(Vector2::zeros(), |inverse| inverse.times(weight));
@@ -94,7 +89,7 @@ impl<X> Term<X> for ConsistentContinuity {
     type Sum = (Vector2<f64>, Vector2<f64>, Symmetric);
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut In<Self::Sum, V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut In<Self::Sum, V>) {
         let (weight, moments) = weights(pair);
         sum.0 += pair.v * weight.x;
         sum.1 += pair.v * weight.y;
@@ -102,7 +97,7 @@ impl<X> Term<X> for ConsistentContinuity {
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
         if let Some(inverse) = inverse(sum.2) {
             // The diagonal of the gradient, whose columns before correction are the sums.
             let xx = sum.0.x * inverse.xx + sum.1.x * inverse.xy;

@@ -13,8 +13,8 @@
 //! neither a gradient nor a stress that acts.
 
 use super::{
-    Common, EquationOfState, In, JaumannRate, Kernel, Lane, Pair, Rate, Symmetric, TensileStress,
-    Term, Vector2,
+    Common, EquationOfState, In, JaumannRate, Kernel, Lane, Pair, Rate, Symmetric, Tensile, Term,
+    Vector2,
     moments::{inverse, weights},
 };
 
@@ -30,23 +30,18 @@ impl Term<Symmetric> for ConsistentJaumannRate {
     type Sum = (<JaumannRate as Term<Symmetric>>::Sum, Symmetric);
 
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, deviator: &Symmetric) -> Symmetric {
+    fn derived(&self, own: &Common, deviator: &Symmetric) -> Symmetric {
         self.0.derived(own, deviator)
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        derived: [Symmetric<V>; 2],
-        sum: &mut In<Self::Sum, V>,
-    ) {
-        self.0.pair(pair, derived, &mut sum.0);
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Symmetric>, sum: &mut In<Self::Sum, V>) {
+        self.0.pair(pair, &mut sum.0);
         sum.1 = sum.1 + weights(pair).1;
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, s: Symmetric, sum: Self::Sum, rate: &mut Rate<Symmetric>) {
+    fn finish(&self, own: &Common, s: Symmetric, sum: Self::Sum, rate: &mut Rate<Symmetric>) {
         let ((u, v), moments) = sum;
         if let Some(inverse) = inverse(moments) {
             self.0.finish(own, s, (inverse.times(u), inverse.times(v)), rate);
@@ -65,14 +60,14 @@ pub struct ConjugateStress<E, R = ()> {
     pub tensile: R,
 }
 
-impl<E: EquationOfState, R: TensileStress> Term<Symmetric> for ConjugateStress<E, R> {
+impl<E: EquationOfState, R: Tensile<Symmetric>> Term<Symmetric> for ConjugateStress<E, R> {
     /// The rows of σ M⁻¹ \[Pa\], and what the artificial stress derives from σ.
     type Derived = ((Vector2<f64>, Vector2<f64>), R::Derived);
     type Sum = Vector2<f64>;
     const NORMALISES: bool = true;
 
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, deviator: &Symmetric) -> Self::Derived {
+    fn derived(&self, own: &Common, deviator: &Symmetric) -> Self::Derived {
         let p = self.eos.pressure(own.density);
         let stress = Symmetric::new(deviator.xx - p, deviator.yy - p, deviator.xy);
         let rows = (Vector2::new(stress.xx, stress.xy), Vector2::new(stress.xy, stress.yy));
@@ -85,26 +80,16 @@ impl<E: EquationOfState, R: TensileStress> Term<Symmetric> for ConjugateStress<E
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        [(own, own_tension), (other, other_tension)]: [In<Self::Derived, V>; 2],
-        sum: &mut Vector2<V>,
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut Vector2<V>) {
+        let [(own, own_tension), (other, other_tension)] = pair.derived;
         let (r, x, y) = (pair.r, own.0 + other.0, own.1 + other.1);
         let stress = Vector2::new(x.x * r.x + x.y * r.y, y.x * r.x + y.y * r.y);
-        let tensile = self.tensile.pair(pair, [own_tension, other_tension]).times(r);
+        let tensile = self.tensile.pair(&pair.with([own_tension, other_tension])).times(r);
         *sum -= (stress + tensile) * (pair.other.volume * pair.f);
     }
 
     #[inline(always)]
-    fn finish(
-        &self,
-        own: &Common<f64>,
-        _: Self::Derived,
-        sum: Self::Sum,
-        rate: &mut Rate<Symmetric>,
-    ) {
+    fn finish(&self, own: &Common, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<Symmetric>) {
         rate.velocity += sum / own.density;
     }
 }

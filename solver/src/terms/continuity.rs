@@ -11,12 +11,12 @@ impl<X> Term<X> for Continuity {
     type Sum = f64;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut V) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut V) {
         *sum += pair.other.mass * pair.f * pair.v_dot_r();
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: f64, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: Self::Derived, sum: f64, rate: &mut Rate<X>) {
         rate.density -= sum;
     }
 }

@@ -1,4 +1,4 @@
-use super::{Common, In, Kernel, Lane, Numbers, Pair, Rate, Term, Vector2};
+use super::{Common, Kernel, Lane, Numbers, Pair, Rate, Term, Vector2};
 use crate::eos::Tait;
 
 /// The state that [`DensityDiffusion`] leaves alone: `()`, a uniform density, or [`Hydrostatic`].
@@ -8,11 +8,7 @@ pub trait Rest: Copy + Send + Sync + 'static {
     /// From the density of a particle \[kg/m³\].
     fn derived(&self, density: f64) -> Self::Derived;
     /// ρⱼ − ρᵢ beyond the difference at rest \[kg/m³\]; odd in the pair.
-    fn excess<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        derived: [In<Self::Derived, V>; 2],
-    ) -> V;
+    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>) -> V;
 }
 
 impl Rest for () {
@@ -20,7 +16,7 @@ impl Rest for () {
     #[inline(always)]
     fn derived(&self, _: f64) {}
     #[inline(always)]
-    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2]) -> V {
+    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>) -> V {
         pair.other.density - pair.own.density
     }
 }
@@ -47,8 +43,8 @@ impl Rest for Hydrostatic {
         self.eos.enthalpy(density)
     }
     #[inline(always)]
-    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, [own, other]: [V; 2]) -> V {
-        let Self { eos, gravity } = self;
+    fn excess<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, f64>) -> V {
+        let (Self { eos, gravity }, [own, other]) = (self, pair.derived);
         let fall = V::all(gravity.x) * pair.r.x + V::all(gravity.y) * pair.r.y;
         V::all(eos.density / (eos.sound_speed * eos.sound_speed)) * (other - own + fall)
     }
@@ -78,22 +74,17 @@ impl<X, R: Rest> Term<X> for DensityDiffusion<R> {
     type Sum = f64;
 
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, _: &X) -> R::Derived {
+    fn derived(&self, own: &Common, _: &X) -> R::Derived {
         self.rest.derived(own.density)
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        derived: [In<R::Derived, V>; 2],
-        sum: &mut V,
-    ) {
-        *sum += pair.other.volume * pair.f * self.rest.excess(pair, derived);
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut V) {
+        *sum += pair.other.volume * pair.f * self.rest.excess(pair);
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: f64, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: Self::Derived, sum: f64, rate: &mut Rate<X>) {
         rate.density += 2.0 * self.diffusivity * sum;
     }
 }

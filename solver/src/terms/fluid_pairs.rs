@@ -18,7 +18,7 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
         self.0.prepare(max_speed);
     }
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, extra: &X) -> Self::Derived {
+    fn derived(&self, own: &Common, extra: &X) -> Self::Derived {
         (self.0.derived(own, extra), 1.0)
     }
     #[inline(always)]
@@ -35,18 +35,14 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
         own.1 = 0.0;
     }
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        [own, other]: [In<Self::Derived, V>; 2],
-        sum: &mut In<Self::Sum, V>,
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut In<T::Sum, V>) {
+        let [own, other] = pair.derived;
         let Common { mass, density, volume } = pair.other;
         let seen = Common { mass: mass * other.1, density, volume: volume * other.1 };
-        self.0.pair(&Pair { other: seen, ..*pair }, [own.0, other.0], sum);
+        self.0.pair(&Pair { other: seen, ..pair.with([own.0, other.0]) }, sum);
     }
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: T::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common, derived: Self::Derived, sum: T::Sum, rate: &mut Rate<X>) {
         self.0.finish(own, derived.0, sum, rate);
     }
     #[inline(always)]

@@ -1,4 +1,4 @@
-use super::{Common, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
+use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 
 /// (11) dSᵃᵇ/dt = 2μ (εᵃᵇ − δᵃᵇ εᶜᶜ/3) + Sᵃᶜ Ωᵇᶜ + Ωᵃᶜ Sᶜᵇ \[Pa/s\], with ε and Ω the symmetric and the
 /// antisymmetric part of ∂ᵇvᵃ = Σⱼ (mⱼ/ρⱼ)(vⱼᵃ − vᵢᵃ) ∂Wᵢⱼ/∂xᵢᵇ.
@@ -17,24 +17,19 @@ impl Term<Symmetric> for JaumannRate {
     type Sum = (Vector2<f64>, Vector2<f64>);
 
     #[inline(always)]
-    fn derived(&self, _: &Common<f64>, deviator: &Symmetric) -> Symmetric {
+    fn derived(&self, _: &Common, deviator: &Symmetric) -> Symmetric {
         *deviator
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        _: [Symmetric<V>; 2],
-        sum: &mut (Vector2<V>, Vector2<V>),
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Symmetric>, sum: &mut In<Self::Sum, V>) {
         let gradient = pair.r * (pair.other.volume * pair.f);
         sum.0 += gradient * pair.v.x;
         sum.1 += gradient * pair.v.y;
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, s: Symmetric, (u, v): Self::Sum, rate: &mut Rate<Symmetric>) {
+    fn finish(&self, _: &Common, s: Symmetric, (u, v): Self::Sum, rate: &mut Rate<Symmetric>) {
         let (two_mu, mean) = (2.0 * self.shear_modulus, (u.x + v.y) / 3.0);
         let spin = 0.5 * (u.y - v.x);
         rate.extra.xx += two_mu * (u.x - mean) + 2.0 * spin * s.xy;

@@ -40,7 +40,7 @@ pub use shift_advection::ShiftAdvection;
 pub use shifting::Shifting;
 pub use split::Split;
 pub use tensile_stress::{
-    Axes, ComponentStress, Componentwise, InTension, Principal, PrincipalStress, TensileStress,
+    Axes, ComponentStress, Componentwise, InTension, Principal, PrincipalStress,
 };
 pub use viscosity::Viscosity;
 pub use xsph::Xsph;
@@ -56,8 +56,9 @@ use crate::{
     particles::{Common, Rate},
 };
 
-/// Particles i, one a lane, and a neighbour j of each, which in a pair sweep is the same for all.
-pub struct Pair<'k, V, K> {
+/// Particles i, one a lane, and a neighbour j of each, which in a pair sweep is the same for all, as a term sees
+/// them that derives `D`.
+pub struct Pair<'k, V: Lane, K, D: Numbers = ()> {
     /// rᵢⱼ = rᵢ − rⱼ \[m\].
     pub r: Vector2<V>,
     /// |rᵢⱼ|² \[m²\].
@@ -70,11 +71,20 @@ pub struct Pair<'k, V, K> {
     pub own: Common<V>,
     /// The neighbours j.
     pub other: Common<V>,
+    /// What the term derived of the particles i and of the neighbours j.
+    pub derived: [In<D, V>; 2],
     /// The kernel, for terms that need W itself.
     pub kernel: &'k Smoothing<K>,
 }
 
-impl<V: Lane, K: Kernel> Pair<'_, V, K> {
+impl<'k, V: Lane, K: Kernel, D: Numbers> Pair<'k, V, K, D> {
+    /// The same particles as a term sees them that derived these numbers of them.
+    #[inline(always)]
+    pub fn with<E: Numbers>(&self, derived: [In<E, V>; 2]) -> Pair<'k, V, K, E> {
+        let Self { r, r2, v, f, own, other, kernel, .. } = *self;
+        Pair { r, r2, v, f, own, other, derived, kernel }
+    }
+
     /// W(|rᵢⱼ|) \[1/m²\].
     #[inline(always)]
     pub fn w(&self) -> V {
@@ -103,7 +113,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     fn prepare(&mut self, _max_speed: f64) {}
     /// Computes the derived data [`Term::Derived`]. A term without any need not implement this.
     #[inline(always)]
-    fn derived(&self, _own: &Common<f64>, _extra: &X) -> Self::Derived {
+    fn derived(&self, _own: &Common, _extra: &X) -> Self::Derived {
         const { assert!(size_of::<Self::Derived>() == 0, "a term with derived numbers derives them") };
         Self::Derived::default()
     }
@@ -116,15 +126,14 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Tells the derived data of a particle the inverse of its [`moments`], once a state.
     #[inline(always)]
     fn normalise(_derived: &mut Self::Derived, _inverse: Symmetric) {}
-    /// Adds the contributions of the neighbours j of `pair` to the sums, given the derived data of i and j.
+    /// Adds the contributions of the neighbours j of `pair` to the sums.
     fn pair<V: Lane, K: Kernel>(
         &self,
-        pair: &Pair<V, K>,
-        derived: [In<Self::Derived, V>; 2],
+        pair: &Pair<V, K, Self::Derived>,
         sum: &mut In<Self::Sum, V>,
     );
     /// Adds the rates that follow from the sum to `rate`.
-    fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>);
+    fn finish(&self, own: &Common, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>);
     /// Adds the rates that depend on where a particle is \[m\], such as those of a force field.
     #[inline(always)]
     fn place(&self, _position: Vector2<f64>, _rate: &mut Rate<X>) {}
@@ -144,7 +153,7 @@ macro_rules! tuple_of_terms {
                 $(self.$index.prepare(max_speed);)*
             }
             #[inline(always)]
-            fn derived(&self, own: &Common<f64>, extra: &X) -> Self::Derived {
+            fn derived(&self, own: &Common, extra: &X) -> Self::Derived {
                 ($(self.$index.derived(own, extra),)*)
             }
             #[inline(always)]
@@ -162,14 +171,14 @@ macro_rules! tuple_of_terms {
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(
                 &self,
-                pair: &Pair<V, K>,
-                [own, other]: [In<Self::Derived, V>; 2],
+                pair: &Pair<V, K, Self::Derived>,
                 sum: &mut In<Self::Sum, V>,
             ) {
-                $(self.$index.pair(pair, [own.$index, other.$index], &mut sum.$index);)*
+                let [own, other] = pair.derived;
+                $(self.$index.pair(&pair.with([own.$index, other.$index]), &mut sum.$index);)*
             }
             #[inline(always)]
-            fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
+            fn finish(&self, own: &Common, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
                 $(self.$index.finish(own, derived.$index, sum.$index, rate);)*
             }
             #[inline(always)]
@@ -216,8 +225,8 @@ mod tests {
             let (mass, density) = (read(first), read(first + 1));
             Common { mass, density, volume: mass / density }
         };
-        let v = Vector2::new(read(2), read(3));
-        Pair { r, r2, v, f: kernel.f(r2), own: common(4), other: common(6), kernel }
+        let (v, [own, other]) = (Vector2::new(read(2), read(3)), [4, 6].map(common));
+        Pair { r, r2, v, f: kernel.f(r2), own, other, derived: [(); 2], kernel }
     }
 
     /// The sum of one pair, for a term that derives two numbers or fewer.
@@ -227,7 +236,7 @@ mod tests {
         derived: impl Fn(&Common<V>) -> In<T::Derived, V>,
     ) -> In<T::Sum, V> {
         let mut sum = T::Sum::default().spread::<V>();
-        term.pair(pair, [&pair.own, &pair.other].map(derived), &mut sum);
+        term.pair(&pair.with([&pair.own, &pair.other].map(derived)), &mut sum);
         sum
     }
 

@@ -2,14 +2,14 @@
 //! field f is ∇f = M⁻¹ Σⱼ Vⱼ (fᵢ − fⱼ) F rᵢⱼ with the moments M = Σⱼ Vⱼ rᵢⱼ ⊗ F rᵢⱼ of the particle's own
 //! neighbours, the unit matrix in the continuum (Bonet & Lok 1999).
 
-use super::{Common, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
+use super::{Common, Kernel, Lane, Numbers, Pair, Rate, Symmetric, Term, Vector2};
 
 /// Least determinant of the moments: 1 inside a body of particles, 0 on a line.
 const SINGULAR: f64 = 1e-3;
 
 /// Vⱼ F rᵢⱼ \[1/m\], and its share of the moments.
 #[inline(always)]
-pub fn weights<V: Lane, K: Kernel>(pair: &Pair<V, K>) -> (Vector2<V>, Symmetric<V>) {
+pub fn weights<V: Lane, K: Kernel, D: Numbers>(pair: &Pair<V, K, D>) -> (Vector2<V>, Symmetric<V>) {
     let weight = pair.r * (pair.other.volume * pair.f);
     let (xx, yy, xy) = (pair.r.x * weight.x, pair.r.y * weight.y, pair.r.x * weight.y);
     (weight, Symmetric { xx, yy, xy })
@@ -34,12 +34,12 @@ impl Term<Symmetric> for InverseMoments {
     type Sum = Symmetric;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Symmetric<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut Symmetric<V>) {
         *sum = *sum + weights(pair).1;
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), sum: Symmetric, rate: &mut Rate<Symmetric>) {
+    fn finish(&self, _: &Common, _: (), sum: Symmetric, rate: &mut Rate<Symmetric>) {
         rate.extra = inverse(sum).unwrap_or_default();
     }
 }

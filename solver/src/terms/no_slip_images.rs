@@ -14,7 +14,7 @@ impl<X, T: Term<X>> Term<X> for NoSlipImages<T> {
         self.0.prepare(max_speed);
     }
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, extra: &X) -> Self::Derived {
+    fn derived(&self, own: &Common, extra: &X) -> Self::Derived {
         const { assert!(!T::NORMALISES, "moments are not passed on") };
         (self.0.derived(own, extra), Vector2::zeros())
     }
@@ -27,16 +27,12 @@ impl<X, T: Term<X>> Term<X> for NoSlipImages<T> {
         T::on_boundary(&mut own.0);
     }
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        [own, other]: [In<Self::Derived, V>; 2],
-        sum: &mut In<Self::Sum, V>,
-    ) {
-        self.0.pair(&Pair { v: pair.v - other.1, ..*pair }, [own.0, other.0], sum);
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut In<T::Sum, V>) {
+        let [own, other] = pair.derived;
+        self.0.pair(&Pair { v: pair.v - other.1, ..pair.with([own.0, other.0]) }, sum);
     }
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, derived: Self::Derived, sum: T::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common, derived: Self::Derived, sum: T::Sum, rate: &mut Rate<X>) {
         self.0.finish(own, derived.0, sum, rate);
     }
     #[inline(always)]

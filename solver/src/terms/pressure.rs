@@ -1,4 +1,4 @@
-use super::{Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Tensile, Term, Vector2};
+use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Tensile, Term, Vector2};
 
 /// (5) Pᵢ = −Σⱼ mⱼ (pᵢ/ρᵢ² + pⱼ/ρⱼ²) ∇ᵢWᵢⱼ \[m/s²\], and (14) with R ≠ ().
 ///
@@ -19,30 +19,26 @@ impl<E> Pressure<E> {
     }
 }
 
-impl<X, E: EquationOfState, R: Tensile> Term<X> for Pressure<E, R> {
+impl<X, E: EquationOfState, R: Tensile<f64>> Term<X> for Pressure<E, R> {
     /// p/ρ² \[m⁵/(kg s²)\] and what the artificial stress derives.
     type Derived = (f64, R::Derived);
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn derived(&self, own: &Common<f64>, _: &X) -> Self::Derived {
+    fn derived(&self, own: &Common, _: &X) -> Self::Derived {
         let p = self.eos.pressure(own.density) / (own.density * own.density);
         (p, self.tensile.derived(p))
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        [own, other]: [In<Self::Derived, V>; 2],
-        sum: &mut Vector2<V>,
-    ) {
-        let stress = own.0 + other.0 + self.tensile.pair(pair, [own.1, other.1]);
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut Vector2<V>) {
+        let [own, other] = pair.derived;
+        let stress = own.0 + other.0 + self.tensile.pair(&pair.with([own.1, other.1]));
         *sum += pair.r * (pair.other.mass * pair.f * stress);
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.velocity += sum;
     }
 }

@@ -22,7 +22,7 @@ impl<X> Term<X> for ShiftAdvection {
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut In<Self::Sum, V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut In<Self::Sum, V>) {
         let (weight, moments) = weights(pair);
         sum.0 += self.0.push(pair);
         sum.1 += pair.v * weight.x;
@@ -31,7 +31,7 @@ impl<X> Term<X> for ShiftAdvection {
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: (), sum: Self::Sum, rate: &mut Rate<X>) {
         let (push, along_x, along_y, moments) = sum;
         if let Some(inverse) = inverse(moments) {
             let moved = inverse.times(self.0.velocity(push));

@@ -45,12 +45,12 @@ impl<X> Term<X> for Shifting {
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut Vector2<V>) {
         *sum += self.push(pair);
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.position += self.velocity(sum);
     }
 }

@@ -1,31 +1,6 @@
 use std::marker::PhantomData;
 
-use super::{In, Kernel, Lane, Numbers, Pair, Symmetric};
-
-/// What [`super::CauchyStress`] adds to the pair stress where the solid is in tension: nothing, or an
-/// artificial stress Rᵢⱼᵃᵇ φᵢⱼⁿ, (21) Rᵢⱼ = Rᵢ + Rⱼ.
-pub trait TensileStress: Copy + Send + Sync + 'static {
-    /// Derived numbers of a particle.
-    type Derived: Numbers;
-    /// From σ/ρ² of a particle, or from σ; the result has the unit of either.
-    fn derived(&self, stress_over_density_squared: Symmetric) -> Self::Derived;
-    /// Rᵢⱼ φᵢⱼⁿ, in the same unit.
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        derived: [In<Self::Derived, V>; 2],
-    ) -> Symmetric<V>;
-}
-
-impl TensileStress for () {
-    type Derived = ();
-    #[inline(always)]
-    fn derived(&self, _: Symmetric) {}
-    #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2]) -> Symmetric<V> {
-        Symmetric { xx: V::all(0.0), yy: V::all(0.0), xy: V::all(0.0) }
-    }
-}
+use super::{Kernel, Lane, Pair, Symmetric, Tensile};
 
 /// The part of a stress that pulls, in the axes in which (20) asks for tension.
 pub trait Axes: Copy + Send + Sync + 'static {
@@ -83,20 +58,17 @@ impl<A> InTension<A> {
     }
 }
 
-impl<A: Axes> TensileStress for InTension<A> {
+impl<A: Axes> Tensile<Symmetric> for InTension<A> {
     type Derived = Symmetric;
 
     #[inline(always)]
-    fn derived(&self, stress_over_density_squared: Symmetric) -> Symmetric {
-        A::tension(stress_over_density_squared) * -self.xi
+    fn derived(&self, stress: Symmetric) -> Symmetric {
+        A::tension(stress) * -self.xi
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K>,
-        [own, other]: [Symmetric<V>; 2],
-    ) -> Symmetric<V> {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Symmetric>) -> Symmetric<V> {
+        let [own, other] = pair.derived;
         let phi = pair.w() * V::all(self.inverse_w);
         (own + other) * (0..self.n).fold(V::all(1.0), |product, _| product * phi)
     }

@@ -17,13 +17,13 @@ impl<X> Term<X> for Viscosity {
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut Vector2<V>) {
         let weight = pair.other.volume * pair.f * (pair.r2 / (pair.r2 + V::all(self.eta2)));
         *sum += pair.v * weight;
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, _: Self::Derived, sum: Vector2<f64>, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common, _: Self::Derived, sum: Vector2<f64>, rate: &mut Rate<X>) {
         rate.velocity -= sum * (2.0 * self.mu / own.density);
     }
 }

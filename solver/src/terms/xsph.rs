@@ -14,12 +14,12 @@ impl<X> Term<X> for Xsph {
     type Sum = Vector2<f64>;
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, _: [(); 2], sum: &mut Vector2<V>) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut Vector2<V>) {
         *sum += pair.v * (pair.other.mass * pair.w() / (pair.own.density + pair.other.density));
     }
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
+    fn finish(&self, _: &Common, _: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>) {
         rate.position -= sum * (2.0 * self.epsilon);
     }
 }

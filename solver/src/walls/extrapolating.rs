@@ -65,16 +65,11 @@ pub trait WallVelocity: Copy + Send + Sync + 'static {
     }
     /// From a fluid particle to the wall particle \[m\], and W there.
     #[inline(always)]
-    fn reach<V: Lane, K: Kernel>(pair: &Pair<V, K>, _: In<Self::Foot, V>) -> (Vector2<V>, V) {
+    fn reach<V: Lane, K: Kernel>(pair: &Pair<V, K, Self::Foot>) -> (Vector2<V>, V) {
         (pair.r, pair.w())
     }
     /// Adds a fluid particle with `v` = u_wall − u_f, of weight `w` at the wall particle.
-    fn add<V: Lane, K: Kernel>(
-        pair: &Pair<V, K>,
-        foot: In<Self::Foot, V>,
-        w: V,
-        sum: &mut In<Self::Sum, V>,
-    );
+    fn add<V: Lane, K: Kernel>(pair: &Pair<V, K, Self::Foot>, w: V, sum: &mut In<Self::Sum, V>);
     /// u_w − u_wall \[m/s\] from the sum and Σ W.
     fn beyond(sum: Self::Sum, weight: f64) -> Vector2<f64>;
 }
@@ -83,7 +78,7 @@ impl WallVelocity for () {
     type Foot = ();
     type Sum = ();
     #[inline(always)]
-    fn add<V: Lane, K: Kernel>(_: &Pair<V, K>, (): (), _: V, (): &mut ()) {}
+    fn add<V: Lane, K: Kernel>(_: &Pair<V, K>, _: V, (): &mut ()) {}
     #[inline(always)]
     fn beyond(_: (), _: f64) -> Vector2<f64> {
         Vector2::zeros()
@@ -98,7 +93,7 @@ impl WallVelocity for NoSlip {
     type Foot = ();
     type Sum = Vector2<f64>;
     #[inline(always)]
-    fn add<V: Lane, K: Kernel>(pair: &Pair<V, K>, (): (), w: V, sum: &mut Vector2<V>) {
+    fn add<V: Lane, K: Kernel>(pair: &Pair<V, K>, w: V, sum: &mut Vector2<V>) {
         *sum += pair.v * w;
     }
     #[inline(always)]
@@ -129,18 +124,14 @@ impl WallVelocity for CurvedNoSlip {
         foot.copied().unwrap_or_default()
     }
     #[inline(always)]
-    fn reach<V: Lane, K: Kernel>(pair: &Pair<V, K>, foot: Vector2<V>) -> (Vector2<V>, V) {
-        let r = pair.r - foot;
+    fn reach<V: Lane, K: Kernel>(pair: &Pair<V, K, Self::Foot>) -> (Vector2<V>, V) {
+        let r = pair.r - pair.derived[0];
         (r, pair.kernel.w(r.x * r.x + r.y * r.y))
     }
     #[inline(always)]
-    fn add<V: Lane, K: Kernel>(
-        pair: &Pair<V, K>,
-        foot: Vector2<V>,
-        _: V,
-        sum: &mut In<Self::Sum, V>,
-    ) {
-        let (r, d2) = (pair.r, foot.x * foot.x + foot.y * foot.y);
+    fn add<V: Lane, K: Kernel>(pair: &Pair<V, K, Self::Foot>, _: V, sum: &mut In<Self::Sum, V>) {
+        let (r, foot) = (pair.r, pair.derived[0]);
+        let d2 = foot.x * foot.x + foot.y * foot.y;
         let away = V::all(0.0) - (r.x * foot.x + r.y * foot.y) / d2;
         let along = (r.y * foot.x - r.x * foot.y) / d2;
         let (bent, turned) = (away * away * V::all(0.5), along * away);
@@ -189,29 +180,28 @@ impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U>
     type Sum = (f64, f64, U::Sum);
 
     #[inline(always)]
-    fn derived(&self, _: &Common<f64>, _: &X) -> U::Foot {
+    fn derived(&self, _: &Common, _: &X) -> U::Foot {
         U::Foot::default()
     }
 
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(
         &self,
-        pair: &Pair<V, K>,
-        [foot, _]: [In<U::Foot, V>; 2],
+        pair: &Pair<V, K, U::Foot>,
         (weight, pressure, velocity): &mut In<Self::Sum, V>,
     ) {
-        let ((r, w), density) = (U::reach(pair, foot), pair.other.density);
+        let ((r, w), density) = (U::reach(pair), pair.other.density);
         let a = self.acceleration;
         let across = V::all(a.x) * r.x + V::all(a.y) * r.y;
         *weight += w;
         *pressure += (self.eos.pressure(density) + density * across) * w;
-        U::add(pair, foot, w, velocity);
+        U::add(pair, w, velocity);
     }
 
     #[inline(always)]
     fn finish(
         &self,
-        own: &Common<f64>,
+        own: &Common,
         _: U::Foot,
         (weight, pressure, velocity): Self::Sum,
         rate: &mut Rate<X>,

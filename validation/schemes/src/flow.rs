@@ -149,10 +149,10 @@ impl<X> Term<X> for Source {
     type Sum = ();
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: [(); 2], _: &mut ()) {}
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, _: &mut ()) {}
 
     #[inline(always)]
-    fn finish(&self, _: &Common<f64>, _: (), _: (), _: &mut Rate<X>) {}
+    fn finish(&self, _: &Common, _: (), _: (), _: &mut Rate<X>) {}
 
     fn place(&self, x: Vector2<f64>, rate: &mut Rate<X>) {
         let (advection, viscous) = (Manufactured::advection(x), Manufactured::viscous(x));

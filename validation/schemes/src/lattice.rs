@@ -84,12 +84,12 @@ impl<X, K: Kernel> Term<X> for Summation<K> {
     type Sum = f64;
 
     #[inline(always)]
-    fn pair<V: Lane, W: Kernel>(&self, pair: &Pair<V, W>, _: [(); 2], sum: &mut V) {
+    fn pair<V: Lane, W: Kernel>(&self, pair: &Pair<V, W>, sum: &mut V) {
         *sum += pair.other.mass * pair.w();
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common<f64>, _: (), sum: f64, rate: &mut Rate<X>) {
+    fn finish(&self, own: &Common, _: (), sum: f64, rate: &mut Rate<X>) {
         rate.density += (sum + own.mass * self.kernel.w(0.0) - own.density) * self.rate;
     }
 }

@@ -106,7 +106,7 @@ pub trait WaterForces<X>: Term<X> {
     /// Those of them that are sums over pairs.
     type Pairs: Term<X>;
     /// The artificial stress.
-    type Stress: Tensile;
+    type Stress: Tensile<f64>;
     /// The equation of state.
     type Eos: EquationOfState;
 
@@ -123,7 +123,7 @@ impl<X, E: EquationOfState, W: Switch> Viscous<X> for ArtificialViscosity<E, W> 
 impl<X, T: Viscous<X>> Viscous<X> for FluidPairs<T> where Self: Term<X> {}
 impl<X, T: Viscous<X>> Viscous<X> for NoSlipImages<T> where Self: Term<X> {}
 
-impl<X, E: EquationOfState, R: Tensile> WaterForces<X> for (Pressure<E, R>, BodyForce) {
+impl<X, E: EquationOfState, R: Tensile<f64>> WaterForces<X> for (Pressure<E, R>, BodyForce) {
     type Pairs = Pressure<E, R>;
     type Stress = R;
     type Eos = E;
@@ -136,7 +136,7 @@ impl<X, E: EquationOfState, R: Tensile> WaterForces<X> for (Pressure<E, R>, Body
     }
 }
 
-impl<X, E: EquationOfState, R: Tensile, V: Viscous<X>> WaterForces<X>
+impl<X, E: EquationOfState, R: Tensile<f64>, V: Viscous<X>> WaterForces<X>
     for (Pressure<E, R>, V, BodyForce)
 {
     type Pairs = (Pressure<E, R>, V);
