@@ -4,7 +4,6 @@ use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, Continuity, CubicSpline, DensityDiffusion, Kernel,
     Particle, Pressure, QuinticSpline, Rate, Smoothing, Tait, Term, Viscosity, WendlandC2, Xsph,
-    terms::{Always, Approaching},
 };
 use touchstone_tests::{Random, assert_small, open_rates, relative_sum};
 
@@ -52,8 +51,8 @@ fn check_momentum<K: Kernel>(name: &str, central: bool, forces: impl Term<()>) {
 }
 
 fn check_every_force<K: Kernel>() {
-    let damping = ArtificialViscosity::<_, Approaching>::new(0.3, 0.6, H, water());
-    let always = ArtificialViscosity::<_, Always>::new(0.3, 0.6, H, water());
+    let damping = ArtificialViscosity::<_, false>::new(0.3, 0.6, H, water());
+    let always = ArtificialViscosity::<_, true>::new(0.3, 0.6, H, water());
     check_momentum::<K>("pressure", true, Pressure::new(water()));
     check_momentum::<K>("artificial stress", true, stressed::<K>());
     check_momentum::<K>("artificial viscosity", true, damping);
@@ -121,9 +120,9 @@ fn check_dissipation(name: &str, forces: impl Term<()>) {
 fn viscous_terms_only_dissipate() {
     check_dissipation("viscosity", Viscosity { mu: 0.7, eta2: 0.01 * H * H });
     for beta in [0.0, 40.0] {
-        let approaching = ArtificialViscosity::<_, Approaching>::new(0.3, beta, H, water());
+        let approaching = ArtificialViscosity::<_, false>::new(0.3, beta, H, water());
         check_dissipation("artificial viscosity", approaching);
-        let always = ArtificialViscosity::<_, Always>::new(0.3, beta, H, water());
+        let always = ArtificialViscosity::<_, true>::new(0.3, beta, H, water());
         check_dissipation("artificial viscosity, always", always);
     }
 }

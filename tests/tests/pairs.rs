@@ -6,7 +6,6 @@ use nalgebra::Vector2;
 use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, CubicSpline, DensityDiffusion,
     Particle, Pressure, Rate, Shifting, Tait, Term, Viscosity, Xsph,
-    terms::{Always, Approaching},
 };
 use touchstone_tests::{Random, V2, assert_small, open_rates};
 
@@ -138,7 +137,7 @@ fn pi(i: &Particle, j: &Particle, r: V2, v: V2, [z1, z2]: [f64; 2]) -> f64 {
 #[test]
 fn artificial_viscosity_is_equations_16_and_17() {
     let z = [0.4, 0.9];
-    let term = ArtificialViscosity::<_, Approaching>::new(z[0], z[1], H, eos());
+    let term = ArtificialViscosity::<_, false>::new(z[0], z[1], H, eos());
     check(term, (), |i, j, r, v| {
         let stress = if v.dot(&r) < 0.0 { pi(i, j, r, v, z) } else { 0.0 };
         acceleration(-grad_w(r) * (j.mass * stress))
@@ -148,7 +147,7 @@ fn artificial_viscosity_is_equations_16_and_17() {
 #[test]
 fn artificial_viscosity_of_every_pair_is_odd_in_the_velocity() {
     let z = [0.4, 0.9];
-    let term = ArtificialViscosity::<_, Always>::new(z[0], z[1], H, eos());
+    let term = ArtificialViscosity::<_, true>::new(z[0], z[1], H, eos());
     check(term, (), |i, j, r, v| {
         let sign = if v.dot(&r) < 0.0 { 1.0 } else { -1.0 };
         acceleration(-grad_w(r) * (j.mass * sign * pi(i, j, r, v * sign, z)))

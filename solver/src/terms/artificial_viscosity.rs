@@ -1,43 +1,15 @@
-use std::marker::PhantomData;
-
 use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Term, Vector2};
-
-/// Which pairs artificial viscosity acts on.
-pub trait Switch: Copy + Send + Sync + 'static {
-    /// vᵢⱼ·rᵢⱼ, or 0 where the pair is left alone.
-    fn admit<V: Lane>(vr: V) -> V;
-}
-
-/// The seed's switch (17): pairs that approach, vᵢⱼ·rᵢⱼ < 0.
-#[derive(Clone, Copy, Debug)]
-pub struct Approaching;
-
-/// Every pair: odd in v, and with β = 0 linear, so that its symbol and its time-step limit are exact.
-#[derive(Clone, Copy, Debug)]
-pub struct Always;
-
-impl Switch for Approaching {
-    #[inline(always)]
-    fn admit<V: Lane>(vr: V) -> V {
-        -(-vr).positive()
-    }
-}
-
-impl Switch for Always {
-    #[inline(always)]
-    fn admit<V: Lane>(vr: V) -> V {
-        vr
-    }
-}
 
 /// −Σⱼ mⱼ Πᵢⱼ ∇ᵢWᵢⱼ \[m/s²\] of (14), (15), with
 ///
 /// (16) Πᵢⱼ = −ζ₁ (cᵢ+cⱼ)(hᵢ+hⱼ)/\[2(ρᵢ+ρⱼ)\] ψᵢⱼ + ζ₂ (hᵢ+hⱼ)²/\[2(ρᵢ+ρⱼ)\] ψᵢⱼ²,
 /// (17) ψᵢⱼ = vᵢⱼ·rᵢⱼ/(dᵢⱼ² + η²) where vᵢⱼ·rᵢⱼ < 0, else 0; η² = 0.01 h² (inferred).
 ///
-/// Identical to Monaghan's form with α = ζ₁, β = ζ₂. Central, so it conserves angular momentum.
+/// Identical to Monaghan's form with α = ζ₁, β = ζ₂. Central, so it conserves angular momentum. With `ALWAYS` ψ
+/// is not 0 where particles recede from each other: odd in v, and with β = 0 linear, so that its symbol and its
+/// time-step limit are exact.
 #[derive(Clone, Copy, Debug)]
-pub struct ArtificialViscosity<E, S = Approaching> {
+pub struct ArtificialViscosity<E, const ALWAYS: bool = false> {
     /// ζ₁ = α \[-\].
     pub alpha: f64,
     /// ζ₂ = β \[-\].
@@ -46,18 +18,16 @@ pub struct ArtificialViscosity<E, S = Approaching> {
     pub eta2: f64,
     /// Gives c(ρ).
     pub eos: E,
-    /// The pairs it acts on.
-    pub switch: PhantomData<S>,
 }
 
-impl<E, S> ArtificialViscosity<E, S> {
+impl<E, const ALWAYS: bool> ArtificialViscosity<E, ALWAYS> {
     /// α, β, the smoothing length \[m\] for η² = 0.01 h², and the equation of state.
     pub fn new(alpha: f64, beta: f64, h: f64, eos: E) -> Self {
-        Self { alpha, beta, eta2: 0.01 * h * h, eos, switch: PhantomData }
+        Self { alpha, beta, eta2: 0.01 * h * h, eos }
     }
 }
 
-impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
+impl<X, E: EquationOfState, const ALWAYS: bool> Term<X> for ArtificialViscosity<E, ALWAYS> {
     type Derived = E::Sound;
     type Sum = Vector2<f64>;
 
@@ -73,10 +43,12 @@ impl<X, E: EquationOfState, S: Switch> Term<X> for ArtificialViscosity<E, S> {
             (pair.r2 + V::all(self.eta2), pair.own.density + pair.other.density);
         // One division for both quotients.
         let inverse = V::all(1.0) / (distance2 * density);
-        let mu = h * S::admit(pair.v_dot_r()) * (density * inverse);
+        let approach = pair.v_dot_r();
+        let approach = if ALWAYS { approach } else { -(-approach).positive() };
+        let mu = h * approach * (density * inverse);
         let [own, other] = pair.derived;
         let c = self.eos.speed_of(own) + self.eos.speed_of(other);
-        // |μ|, not μ: for a pair that recedes under `Always`, +β μ² would push it on.
+        // |μ|, not μ: for a pair that recedes, +β μ² would push it on.
         let quadratic = V::all(-2.0 * self.beta) * mu.abs();
         let pi = mu * (quadratic - V::all(self.alpha) * c) * (distance2 * inverse);
         *sum += pair.r * (pair.other.mass * pair.f * pi);

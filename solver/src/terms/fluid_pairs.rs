@@ -56,8 +56,7 @@ mod tests {
     use super::*;
     use crate::{
         ArtificialViscosity, Compose, Continuity, Domain, ExtrapolatingWall, InterfaceWall,
-        Leapfrog, Particle, Pressure, Role, Scene, Stepper, Tait, WendlandC2, terms::Approaching,
-        walls::Walls,
+        Leapfrog, Particle, Pressure, Role, Scene, Stepper, Tait, WendlandC2, walls::Walls,
     };
 
     type Method<W> = Compose<WendlandC2, Pressure<Tait>, Continuity, W, Leapfrog>;
@@ -67,7 +66,7 @@ mod tests {
     /// Rows of fluid, the lowest half a spacing above the floor.
     const ROWS: usize = 6;
 
-    fn viscosity() -> ArtificialViscosity<Tait, Approaching> {
+    fn viscosity() -> ArtificialViscosity<Tait> {
         ArtificialViscosity::new(0.3, 0.7, 1.5 * DX, EOS)
     }
 

@@ -25,7 +25,7 @@ mod viscosity;
 mod xsph;
 
 pub use artificial_stress::{ArtificialStress, Tensile};
-pub use artificial_viscosity::{Always, Approaching, ArtificialViscosity, Switch};
+pub use artificial_viscosity::ArtificialViscosity;
 pub use body_force::BodyForce;
 pub use cauchy_stress::CauchyStress;
 pub use consistent_fluid::{ConsistentContinuity, ConsistentPressure, ConsistentViscosity};
@@ -285,8 +285,8 @@ mod tests {
         check_vector::<V, K>(Pressure::new(eos));
         check_vector::<V, K>(Pressure { eos, tensile: ArtificialStress::new(0.3, 4, w) });
         check_vector::<V, K>(Viscosity { mu: 0.3, eta2 });
-        check_vector::<V, K>(ArtificialViscosity::<_, Approaching>::new(0.3, 0.7, 0.35, eos));
-        check_vector::<V, K>(ArtificialViscosity::<_, Always>::new(0.3, 0.7, 0.35, eos));
+        check_vector::<V, K>(ArtificialViscosity::<_, false>::new(0.3, 0.7, 0.35, eos));
+        check_vector::<V, K>(ArtificialViscosity::<_, true>::new(0.3, 0.7, 0.35, eos));
         check_vector::<V, K>(Xsph { epsilon: 0.5 });
         check_vector::<V, K>(Shifting::new(0.5, 0.35, w));
         check_number::<V, K>(Continuity);

@@ -1,18 +1,13 @@
 //! Waves, boxes at rest, extremes and operators on a lattice: no more than the equations.
 
 use harness::method::{FromMedium, Medium};
-use solver::{
-    lane::Lane,
-    particles::Common,
-    terms::{Always, Pair},
-    *,
-};
+use solver::{lane::Lane, particles::Common, terms::Pair, *};
 
 use crate::{Method, methods, stepped};
 
 type Equations = (Pressure<Tait>, Viscosity);
 type Plain<K, I = Leapfrog> = Compose<K, Equations, Continuity, Open, I>;
-type Damped = (Pressure<Tait>, Viscosity, ArtificialViscosity<Tait, Always>);
+type Damped = (Pressure<Tait>, Viscosity, ArtificialViscosity<Tait, true>);
 type Diffusive<F> = Compose<CubicSpline, F, (Continuity, DensityDiffusion), Open, Leapfrog>;
 /// Sums that are exact for linear fields.
 type Corrected<K> = Compose<

@@ -6,7 +6,7 @@ use solver::{
     Continuity, CurvedNoSlip, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts,
     InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall, Pressure,
     ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
-    terms::{Axes, Hydrostatic, InTension, Switch},
+    terms::{Axes, Hydrostatic, InTension},
 };
 
 use crate::medium::{Knob, Medium};
@@ -49,7 +49,7 @@ from_medium! {
     BodyForce [] () = |m| BodyForce(m.acceleration);
     ArtificialStress [] (Xi, Exponent) = |m| Self::new(m.xi, m.exponent, m.w_at_spacing);
     InTension<A> [A: Axes] (Xi, Exponent) = |m| Self::new(m.xi, m.exponent, m.w_at_spacing);
-    ArtificialViscosity<E, S> [E: FromMedium + Copy, S: Switch] (Alpha, Beta) =
+    ArtificialViscosity<E, ALL> [E: FromMedium + Copy, const ALL: bool] (Alpha, Beta) =
         |m| Self::new(m.alpha, m.beta, m.h, E::new(m));
     Xsph [] (Xsph) = |m| Xsph { epsilon: m.xsph };
     DensityDiffusion [] (Diffusion) = |m| Self::new(m.diffusivity());

@@ -16,7 +16,7 @@ use nalgebra::Vector2;
 use solver::{
     ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
     FluidPairs, NoSlipImages, Numbers, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
-    terms::{Rest, Switch, Tensile},
+    terms::{Rest, Tensile},
 };
 
 /// ∂E/∂y · ẏ of a particle with this mass \[kg/m\], state and rate \[W/m\]; dx/dt is without v.
@@ -119,7 +119,7 @@ pub trait WaterForces<X>: Term<X> {
 /// Artificial viscosity.
 pub trait Viscous<X>: Term<X> {}
 
-impl<X, E: EquationOfState, W: Switch> Viscous<X> for ArtificialViscosity<E, W> {}
+impl<X, E: EquationOfState, const ALL: bool> Viscous<X> for ArtificialViscosity<E, ALL> {}
 impl<X, T: Viscous<X>> Viscous<X> for FluidPairs<T> where Self: Term<X> {}
 impl<X, T: Viscous<X>> Viscous<X> for NoSlipImages<T> where Self: Term<X> {}
 
