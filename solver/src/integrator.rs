@@ -1,13 +1,17 @@
 //! Time integration. A physics together with an integrator is a scheme.
 
+use std::mem::swap;
+
+use nalgebra::Vector2;
+
 use crate::{
     engine::Engine,
     kernel::Kernel,
     numbers::Numbers,
-    particle_data::Fault,
+    particle_data::{Fault, Past},
     particles::{Evolved, Rate},
     physics::{Compose, Physics, State},
-    terms::Term,
+    terms::{Split, Term},
     walls::Walls,
 };
 
@@ -181,6 +185,150 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
 
     fn bytes(&self) -> usize {
         self.kick.bytes()
+    }
+}
+
+/// Makes [`Leapfrog`] advance the velocities with the stiff force of [`Split`] integrated by the
+/// Runge-Kutta-Legendre method of second order, RKL2 (Meyer, Balsara & Aslam 2014): vⁿ⁻½ is advanced over
+/// dt by dv/dt = T(v) + E, where the other forces E are constant and the particles stay at xⁿ.
+///
+/// It is of second order in dt for the stiff force as well, and has no splitting error in a steady state. A
+/// kick of s stages is stable up to (s² + s − 2)/4 steps of forward Euler, and no wave changes its sign
+/// there. s is the least odd number, from 3 on, that allows the step (for an even s the stiffest wave would
+/// not decay at the limit). So the stiff force limits no step, but costs s − 1 pair sweeps in addition to
+/// the two of the leapfrog.
+#[derive(Debug, Default)]
+pub struct SuperSteps<X = ()> {
+    /// dv/dt by all forces at the start of a kick, and v less its value there in two successive stages.
+    stages: [Vec<Evolved<X>>; 3],
+}
+
+/// The number of stages of a step that is so many times as long as the explicit limit: at most 999, so that a
+/// step beyond 249,749 limits is not stable instead of never ending.
+pub fn stages(ratio: f64) -> u32 {
+    let least = 0.5 * ((9.0 + 16.0 * ratio).sqrt() - 1.0);
+    // A rounding error must not add two stages.
+    (least * (1.0 - 1e-12)).ceil().clamp(3.0, 999.0) as u32 | 1
+}
+
+/// b of stage j.
+fn weight(j: u32) -> f64 {
+    let j = f64::from(j.max(2));
+    0.5 * (j * j + j - 2.0) / (j * j + j)
+}
+
+impl<P, E, T> Kick<P> for SuperSteps<P::Extra>
+where
+    P: Physics<Forces = Split<E, T>>,
+    E: Term<P::Extra>,
+    T: Term<P::Extra>,
+{
+    const NAME: &'static str = "super-leapfrog";
+    const ORDER: [u32; 2] = [2, 2];
+
+    fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
+        let Split(_, stiff, limit) = engine.terms.0.clone();
+        let count = stages(dt[0] / limit);
+        let s = f64::from(count);
+        let length = 4.0 * dt[0] / (s * s + s - 2.0);
+        for stage in &mut self.stages {
+            let at_rest = |e: &Evolved<_>| Evolved { velocity: Vector2::zeros(), ..*e };
+            stage.clear();
+            stage.extend(state.iter().map(at_rest));
+        }
+        let [start, older, newer] = &mut self.stages;
+        engine.sweep_forces(start, |_, start, rate| start.velocity = rate.velocity);
+        for (newer, start) in newer.iter_mut().zip(&*start) {
+            newer.velocity = start.velocity * (weight(1) * length);
+        }
+        for j in 2..=count {
+            let share = |back: u32| weight(j) / (weight(j - back) * f64::from(j));
+            let (last, before) = (f64::from(2 * j - 1) * share(1), f64::from(j - 1) * share(2));
+            engine.refresh_differences(newer)?;
+            let update = |i: usize, older: &mut Evolved<_>, rate: &Rate<_>| {
+                let rate = rate.velocity + start[i].velocity * weight(j - 1);
+                let advanced = newer[i].velocity + rate * length;
+                older.velocity = advanced * last - older.velocity * before;
+            };
+            engine.sweep_part(older, &stiff, |_, derived| derived.0.1, update);
+            swap(older, newer);
+        }
+        let fluid = engine.data.fluid_count();
+        for (evolved, difference) in state[..fluid].iter_mut().zip(&*newer) {
+            evolved.velocity += difference.velocity;
+            evolved.position += evolved.velocity * dt[1];
+        }
+        Ok(())
+    }
+
+    fn bytes(&self) -> usize {
+        self.stages.iter().map(Vec::capacity).sum::<usize>() * size_of::<Evolved<P::Extra>>()
+    }
+}
+
+/// Forces and drift from one pair sweep at (xⁿ, vⁿ⁻½, ρ̃ⁿ): with a the forces and D the drift of it,
+///
+/// ρⁿ = ρⁿ⁻¹ + dt Dⁿ, ρ̃ⁿ⁺¹ = ρⁿ + dt (2 Dⁿ − Dⁿ⁻¹), vⁿ⁺½ = vⁿ⁻½ + dt a, xⁿ⁺¹ = xⁿ + dt vⁿ⁺½,
+///
+/// and the same for what terms integrate of their own. The density ρ̃ from which forces follow is
+/// extrapolated, because the drift of a step becomes known only in the sweep of the next one. At the end of a
+/// step it is replaced, so that no error of extrapolation accumulates.
+///
+/// A step costs about 0.7 of that of [`Leapfrog`], which sweeps twice. Viscous forces have the same
+/// limit. Sound has about a third of it: stable up to ω dt = 1/√2, where the leapfrog is up to 2; below, it
+/// is damped by (ω dt)⁴/2 a step. Of first order in dt, because Dⁿ has positions half a step later than its
+/// velocities.
+#[derive(Debug, Default)]
+pub struct SingleSweep;
+
+impl<P: Physics> Integrator<P> for SingleSweep {
+    const NAME: &'static str = "single-sweep";
+    const ORDER: [u32; 2] = [1, 1];
+
+    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+        engine.data.stagger(state);
+        engine.begin(state)?;
+        let (lag, half, fluid) = (engine.data.lag, 0.5 * dt, engine.data.fluid_count());
+        let (kick, known) = (lag + half, 2.0 * lag);
+        if known == 0.0 {
+            let start = |e: &Evolved<P::Extra>| Past {
+                drifted: (e.density, e.extra),
+                rate: Default::default(),
+            };
+            let swept = engine.swept();
+            engine.data.past.clear();
+            engine.data.past.extend(state[..swept].iter().map(start));
+        }
+        engine.sweep_all(state, |i, evolved, rate| {
+            if i < fluid {
+                // Beyond v, which the sweep has added as it was before.
+                let shift = rate.position - evolved.velocity;
+                evolved.kick(kick, rate);
+                evolved.position += (evolved.velocity + shift) * dt;
+            }
+            (evolved.density, evolved.extra) = (rate.density, rate.extra);
+        });
+        // A rate is that of the middle of the last step; it is extrapolated to the middle of this one.
+        let ahead = if known > 0.0 { kick / known } else { 0.0 };
+        for (evolved, past) in state.iter_mut().zip(&mut engine.data.past) {
+            let rate = (evolved.density, evolved.extra);
+            past.drifted = past.drifted.advanced(known, rate);
+            let next = past.drifted.advanced(dt * (1.0 + ahead), rate);
+            (evolved.density, evolved.extra) = next.advanced(-dt * ahead, past.rate);
+            past.rate = rate;
+        }
+        engine.data.lag = half;
+        Ok(())
+    }
+
+    fn synchronise(&mut self, engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
+        if engine.data.is_staggered() {
+            engine.begin(state)?;
+            engine.data.hold(state);
+            let lag = engine.data.lag;
+            engine.sweep_forces(state, |_, evolved, rate| evolved.kick(lag, rate));
+        }
+        Ok(())
     }
 }
 

@@ -19,8 +19,7 @@
 //!
 //! ```text
 //! lane, numbers, kernel, eos, domain <- particles <- terms <- walls <- neighbours
-//!     <- physics, sweep, particle_data <- engine <- integrator
-//!     <- super_steps, single_sweep, simulation <- scene
+//!     <- physics, sweep, particle_data <- engine <- integrator <- simulation <- scene
 //! ```
 //!
 //! The crate does no I/O and contains no reference data. After [`Scene::build`] it returns no error; a
@@ -39,8 +38,6 @@ pub mod particles;
 pub mod physics;
 pub mod scene;
 pub mod simulation;
-mod single_sweep;
-pub mod super_steps;
 mod sweep;
 pub mod terms;
 pub mod walls;
@@ -48,7 +45,9 @@ pub mod walls;
 pub use domain::Domain;
 pub use engine::Engine;
 pub use eos::{EquationOfState, Linear, Tait};
-pub use integrator::{Euler, ForwardKick, Integrator, Leapfrog, PredictorCorrector, Scheme};
+pub use integrator::{
+    Euler, ForwardKick, Integrator, Leapfrog, PredictorCorrector, Scheme, SingleSweep, SuperSteps,
+};
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
 pub use lanes as lane;
 pub use neighbours::GROUP;
@@ -60,8 +59,6 @@ pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};
-pub use single_sweep::SingleSweep;
-pub use super_steps::SuperSteps;
 pub use terms::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
     ConjugateStress, ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure,

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Ghosts, Leapfrog,
     NoSlip, Observer, Open, Outcome, Particle, PlaneWall, Pressure, Role, Scene, Simulation, Split,
-    Stepper, SuperSteps, Tait, Viscosity, lattice, super_steps::stages, walls::Walls,
+    Stepper, SuperSteps, Tait, Viscosity, integrator::stages, lattice, walls::Walls,
 };
 
 type Others = (Pressure<Tait>, BodyForce);

@@ -20,7 +20,7 @@ use schemes::flow::{Fluid, OfChannels};
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, Integrator as _,
     InterfaceWall, Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline,
-    Simulation, SingleSweep, Stepper, Tait, WendlandC2, super_steps::stages, walls::Walls,
+    Simulation, SingleSweep, Stepper, Tait, WendlandC2, integrator::stages, walls::Walls,
 };
 use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
 

@@ -24,7 +24,7 @@ pub fn factor(stages: u32, z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use solver::super_steps::stages;
+    use solver::integrator::stages;
 
     /// The polynomial at many z up to the limit of s stages.
     fn sampled(s: u32) -> Vec<f64> {

@@ -17,7 +17,7 @@ use super::{
 };
 use base::functions::{ln, modulus};
 use nalgebra::{Complex, Matrix3, SMatrix, Vector2};
-use solver::super_steps::stages;
+use solver::integrator::stages;
 
 /// The fluid that the limits are for. All numbers must be finite and not negative, `h` and `c0`
 /// positive.
