@@ -23,8 +23,6 @@ pub type Stepped = Result<(), Fault>;
 pub trait Integrator<P: Physics>: Default + Send + Sync + 'static {
     /// Its name in settings and reports.
     const NAME: &'static str;
-    /// Order in dt for forces that do not depend on the velocity, and for forces that do.
-    const ORDER: [u32; 2];
 
     /// Advances the state by dt \[s\].
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped;
@@ -71,7 +69,7 @@ pub type PhysicsOf<S> = Compose<
 >;
 
 /// The predictor-corrector of the paper, taken to be the explicit midpoint rule (inferred; the paper does
-/// not specify it): y' = yⁿ + dt/2 f(yⁿ), yⁿ⁺¹ = yⁿ + dt f(y').
+/// not specify it): y' = yⁿ + dt/2 f(yⁿ), yⁿ⁺¹ = yⁿ + dt f(y'). Of second order in dt.
 ///
 /// Two right-hand sides per step. Weakly unstable for undamped sound: the amplitude grows by a factor of
 /// about 1 + (ω dt)⁴/8 per step.
@@ -82,7 +80,6 @@ pub struct PredictorCorrector<X = ()> {
 
 impl<P: Physics> Integrator<P> for PredictorCorrector<P::Extra> {
     const NAME: &'static str = "predictor-corrector";
-    const ORDER: [u32; 2] = [2, 2];
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.begin(state)?;
@@ -118,8 +115,6 @@ pub struct Leapfrog<K = ForwardKick> {
 pub trait Kick<P: Physics>: Default + Send + Sync + 'static {
     /// Name of the leapfrog that has it.
     const NAME: &'static str;
-    /// Order in dt of that leapfrog, as [`Integrator::ORDER`].
-    const ORDER: [u32; 2];
 
     /// Advances the velocities of fluid particles by the first of these times \[s\], and then moves the
     /// particles with them for the second.
@@ -137,7 +132,6 @@ pub struct ForwardKick;
 
 impl<P: Physics> Kick<P> for ForwardKick {
     const NAME: &'static str = "leapfrog";
-    const ORDER: [u32; 2] = [2, 1];
 
     fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
         engine.sweep_forces(state, |_, evolved, rate| {
@@ -150,7 +144,6 @@ impl<P: Physics> Kick<P> for ForwardKick {
 
 impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
     const NAME: &'static str = K::NAME;
-    const ORDER: [u32; 2] = K::ORDER;
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.data.stagger(state);
@@ -224,7 +217,6 @@ where
     T: Term<P::Extra>,
 {
     const NAME: &'static str = "super-leapfrog";
-    const ORDER: [u32; 2] = [2, 2];
 
     fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
         let Split(_, stiff, limit) = engine.terms.0.clone();
@@ -283,7 +275,6 @@ pub struct SingleSweep;
 
 impl<P: Physics> Integrator<P> for SingleSweep {
     const NAME: &'static str = "single-sweep";
-    const ORDER: [u32; 2] = [1, 1];
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.data.stagger(state);
@@ -338,7 +329,6 @@ pub struct Euler;
 
 impl<P: Physics> Integrator<P> for Euler {
     const NAME: &'static str = "euler";
-    const ORDER: [u32; 2] = [1, 1];
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.begin(state)?;

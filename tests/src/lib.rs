@@ -85,7 +85,6 @@ pub struct RateInstead;
 
 impl<P: Physics> Integrator<P> for RateInstead {
     const NAME: &'static str = "rate";
-    const ORDER: [u32; 2] = [0, 0];
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, _: f64) -> Stepped {
         engine.begin(state)?;

@@ -40,33 +40,34 @@ fn orders<I: Integrator<Scheme<()>>>(mu: f64) -> [f64; 2] {
     [log2(e1 / e2), log2(e2 / e3)]
 }
 
-fn check_order<I: Integrator<Scheme<()>>>() {
-    for (mu, declared) in [0.0, 0.02].into_iter().zip(I::ORDER) {
+/// For forces that do not depend on the velocity, and for forces that do.
+fn check_order<I: Integrator<Scheme<()>>>(expected: [f64; 2]) {
+    for (mu, expected) in [0.0, 0.02].into_iter().zip(expected) {
         for order in orders::<I>(mu) {
-            let apart = (order - f64::from(declared)).abs();
+            let apart = (order - expected).abs();
             assert!(apart < 0.15, "{}, mu = {mu}: order {order:.3}", I::NAME);
         }
     }
 }
 
 #[test]
-fn predictor_corrector_has_the_order_it_declares() {
-    check_order::<PredictorCorrector>();
+fn predictor_corrector_has_its_order() {
+    check_order::<PredictorCorrector>([2.0, 2.0]);
 }
 
 #[test]
-fn leapfrog_has_the_order_it_declares() {
-    check_order::<Leapfrog>();
+fn leapfrog_has_its_order() {
+    check_order::<Leapfrog>([2.0, 1.0]);
 }
 
 #[test]
-fn the_single_sweep_has_the_order_it_declares() {
-    check_order::<SingleSweep>();
+fn the_single_sweep_has_its_order() {
+    check_order::<SingleSweep>([1.0, 1.0]);
 }
 
 #[test]
-fn euler_has_the_order_it_declares() {
-    check_order::<Euler>();
+fn euler_has_its_order() {
+    check_order::<Euler>([1.0, 1.0]);
 }
 
 /// Error of going there and back.

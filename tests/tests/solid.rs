@@ -409,7 +409,7 @@ fn turned_once<I: Integrator<Turning<()>>>(steps: u32) -> Tensor {
 
 /// Objectivity. The lattice sees G₁ ω in place of ω, so that S turns by 2π G₁ a revolution; how far
 /// the computed one is from there falls with dt at the order of the integrator.
-fn check_turning<I: Integrator<Turning<()>>>() {
+fn check_turning<I: Integrator<Turning<()>>>(expected: f64) {
     let factor = SquareLattice::of::<QuinticSpline>(RATIO, 0.0).gradient_factor();
     let turn = rotation(2.0 * PI * factor);
     let exact = turn * matrix(START) * turn.inverse();
@@ -422,7 +422,7 @@ fn check_turning<I: Integrator<Turning<()>>>() {
     );
     for pair in errors.windows(2) {
         let order = log2(pair[0] / pair[1]);
-        let apart = (order - f64::from(I::ORDER[1])).abs();
+        let apart = (order - expected).abs();
         assert!(apart < 0.15, "{}: order {order:.3} of {errors:?}", I::NAME);
     }
     let lattice = (exact - matrix(START)).norm() / exact.norm();
@@ -431,9 +431,9 @@ fn check_turning<I: Integrator<Turning<()>>>() {
 
 #[test]
 fn the_stress_of_a_turning_patch_turns_with_it() {
-    check_turning::<PredictorCorrector<Symmetric>>();
-    check_turning::<Leapfrog>();
-    check_turning::<Euler>();
+    check_turning::<PredictorCorrector<Symmetric>>(2.0);
+    check_turning::<Leapfrog>(1.0);
+    check_turning::<Euler>(1.0);
 }
 
 type Rings<T> = Compose<

@@ -56,7 +56,6 @@ pub struct Rebuilding {
 
 impl<P: Physics> Integrator<P> for Rebuilding {
     const NAME: &'static str = "rebuilding";
-    const ORDER: [u32; 2] = [0, 0];
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         self.is_away = !self.is_away;
