@@ -27,7 +27,8 @@ pub struct Engine<P: Physics> {
     pub(crate) terms: (P::Forces, P::Drift),
     wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
     pub(crate) data: ParticleData<P::Extra>,
-    columns: Vec<Column<Derived<P>>>,
+    /// Of the particles, of their images, and the sentinel.
+    pub(crate) columns: Vec<Column<Derived<P>>>,
     /// What was found in each block while filling columns, and of what was not filled.
     extents: Vec<Extent>,
     /// What was found of particles that need not be filled again until lists are built: those of walls that
@@ -185,11 +186,6 @@ impl<P: Physics> Engine<P> {
             return Vec::new();
         }
         sweep::rates(&self.wall_sweep(), &self.data.neighbours.wall_lists)
-    }
-
-    /// Particles and their images as pair sweeps read them, without the sentinel.
-    pub(crate) fn columns(&self) -> &[Column<Derived<P>>] {
-        &self.columns[..self.columns.len() - 1]
     }
 
     /// Memory held \[bytes\].

@@ -336,7 +336,7 @@ impl<X: Numbers> ParticleData<X> {
         self.watch = watch;
     }
 
-    /// Everything that is needed to continue from here.
+    /// Everything that is needed to continue from here with bitwise equal results.
     pub fn checkpoint(&self) -> Checkpoint<X> {
         let mut particles: Vec<_> = self.stored().collect();
         for ((_, particle), velocity) in particles.iter_mut().zip(&self.held) {

@@ -80,10 +80,8 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     /// If `until` is earlier than the present time or not finite, or if `dt_max` is not above 0 or is so
     /// small that the number of steps is 10¹⁵ or more: the run would never end.
     fn advance(&mut self, until: f64, dt_max: f64, observer: &mut dyn Observer<X>) -> Outcome;
-    /// Everything that is needed to continue from here with bitwise equal results.
-    fn checkpoint(&self) -> Checkpoint<X>;
-    /// Goes back or on to a checkpoint of a simulation of the same scene: its particles replace the present
-    /// ones, and what follows has the bits of that simulation.
+    /// Goes back or on to a [`ParticleData::checkpoint`] of a simulation of the same scene: its particles
+    /// replace the present ones, and what follows has the bits of that simulation.
     ///
     /// # Errors
     /// What is wrong with a checkpoint that no simulation can have made; then nothing has changed.
@@ -98,8 +96,10 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     /// not include v.
     fn total_rates(&self) -> Vec<Rate<X>>;
     /// Rates of each particle of [`ParticleData::walls`] by the terms of the walls, likewise after
-    /// [`Stepper::advance`] reached a time; empty if the walls extrapolate.
-    fn wall_rates(&self) -> Vec<Rate<X>>;
+    /// [`Stepper::advance`] reached a time; empty if they have none, or extrapolate.
+    fn wall_rates(&self) -> Vec<Rate<X>> {
+        Vec::new()
+    }
     /// Memory that the simulation occupies \[bytes\].
     fn bytes(&self) -> usize;
     /// Tells this watch of the phases of steps from now on; `None` tells nobody.
@@ -185,9 +185,6 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     }
     fn show(&self, observer: &mut dyn Observer<S::Extra>) {
         observer.after_step(self);
-    }
-    fn checkpoint(&self) -> Checkpoint<S::Extra> {
-        self.engine.data.checkpoint()
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
         from.check()?;
@@ -289,6 +286,7 @@ impl<S: Scheme> Simulation<S> {
     /// The derived data of particles and of their images, as pair sweeps read them, after
     /// [`Stepper::advance`].
     pub fn columns(&self) -> &[Column<Derived<S>>] {
-        self.engine.columns()
+        let columns = &self.engine.columns;
+        &columns[..columns.len() - 1]
     }
 }

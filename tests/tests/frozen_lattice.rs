@@ -18,9 +18,9 @@ use maths::theory::time_step::Integrator;
 use nalgebra::DVector;
 use schemes::flow::{Fluid, OfChannels};
 use solver::{
-    BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, Integrator as _,
-    InterfaceWall, Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline,
-    Simulation, SingleSweep, Stepper, Tait, WendlandC2, integrator::stages, walls::Walls,
+    BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, InterfaceWall,
+    Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline, Simulation, SingleSweep,
+    Stepper, Tait, WendlandC2, integrator::stages, walls::Walls,
 };
 use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
 

@@ -174,9 +174,6 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
     fn show(&self, observer: &mut dyn Observer<Symmetric>) {
         observer.after_step(self);
     }
-    fn checkpoint(&self) -> Checkpoint<Symmetric> {
-        self.data.checkpoint()
-    }
     fn restore(&mut self, from: &Checkpoint<Symmetric>) -> Result<(), &'static str> {
         self.data.resume(from)?;
         self.evaluate();
@@ -203,9 +200,6 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
     fn total_rates(&self) -> Vec<Rate<Symmetric>> {
         let rate = |a: &Vector2<f64>| Rate { velocity: *a, ..Rate::default() };
         self.accelerations.iter().map(rate).collect()
-    }
-    fn wall_rates(&self) -> Vec<Rate<Symmetric>> {
-        Vec::new()
     }
     fn bytes(&self) -> usize {
         self.data.bytes()
