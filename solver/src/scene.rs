@@ -161,10 +161,13 @@ fn by_role<X: Copy>(all: &[Particle<X>]) -> Vec<(u32, Particle<X>)> {
 type Checked = Result<(), SceneError>;
 
 /// A condition on a quantity: whether it is met, the quantity, its value, and what is allowed.
-type Condition<'a> = (bool, &'static str, f64, &'a str);
+pub type Condition<'a> = (bool, &'static str, f64, &'a str);
 
 /// Refuses the first quantity that does not meet its condition.
-fn require<const N: usize>(of: Part, all: [Condition; N]) -> Checked {
+///
+/// # Errors
+/// What the quantity belongs to, its value, and what is allowed.
+pub fn require<const N: usize>(of: Part, all: [Condition; N]) -> Result<(), SceneError> {
     let Some((_, quantity, value, allowed)) = all.into_iter().find(|(is_met, ..)| !is_met) else {
         return Ok(());
     };

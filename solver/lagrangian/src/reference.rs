@@ -3,7 +3,11 @@
 
 use lanes::LANES;
 use nalgebra::{Matrix2, Vector2};
-use solver::{Kernel, ParticleData, SceneError, Smoothing, Symmetric, scene::Part, walls::Map};
+use solver::{
+    Kernel, ParticleData, SceneError, Smoothing, Symmetric,
+    scene::{Part, require},
+    walls::Map,
+};
 
 /// Least determinant of the moments over the volume: 1 inside a body, 0 where neighbours lie on a line.
 const SINGULAR: f64 = 1e-3;
@@ -125,21 +129,11 @@ impl Reference {
         }
         self.starts.push(self.fours.len() as u32);
         let determinant = moments.determinant() / (volume * volume);
-        match moments.try_inverse() {
-            Some(inverse) if determinant > SINGULAR => self.inverse.push(inverse),
-            _ => {
-                let quantity = "determinant of the moments of its neighbourhood";
-                let allowed =
-                    format!("above {SINGULAR}: neighbours on both axes within the support");
-                return Err(SceneError {
-                    of: Part::Particle(i),
-                    quantity,
-                    value: determinant,
-                    allowed,
-                });
-            }
-        }
-        Ok(())
+        let inverse = moments.try_inverse().filter(|_| determinant > SINGULAR);
+        self.inverse.extend(inverse);
+        let quantity = "determinant of the moments of its neighbourhood";
+        let allowed = format!("above {SINGULAR}: neighbours on both axes within the support");
+        require(Part::Particle(i), [(inverse.is_some(), quantity, determinant, &allowed)])
     }
 
     /// Σ V F X² of each particle, the mean of both axes.

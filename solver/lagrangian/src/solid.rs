@@ -7,7 +7,7 @@ use solver::{
     PhaseWatch, Potential, Rate, Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
     integrator::Stepped,
     particles::{Column, Common},
-    scene::Part,
+    scene::{Part, require},
     simulation::{self, Steps},
     walls::Walls,
 };
@@ -77,25 +77,20 @@ fn check(
     bodies: &[u32],
     [bulk, shear, hourglass]: [f64; 3],
 ) -> Result<(), SceneError> {
-    let refuse = |of, quantity, value, allowed: &str| {
-        Err(SceneError { of, quantity, value, allowed: allowed.into() })
-    };
-    if let Some(k) = particles.iter().position(|p| p.role != Role::Fluid) {
-        return refuse(Part::Particle(k), "number of its role", 1.0, "0: it moves");
+    for (k, particle) in particles.iter().enumerate() {
+        let moves = particle.role == Role::Fluid;
+        require(Part::Particle(k), [(moves, "number of its role", 1.0, "0: it moves")])?;
     }
-    if !bodies.is_empty() && bodies.len() != particles.len() {
-        let count = bodies.len() as f64;
-        return refuse(Part::Scene, "number of body numbers", count, "0, or that of particles");
-    }
-    for (name, value) in [("bulk modulus in Pa", bulk), ("shear modulus in Pa", shear)] {
-        if !(value >= 0.0 && value.is_finite()) {
-            return refuse(Part::Scene, name, value, "finite and at least 0");
-        }
-    }
-    if !(hourglass >= 0.0 && hourglass.is_finite()) {
-        return refuse(Part::Scene, "hourglass strength", hourglass, "finite and at least 0");
-    }
-    Ok(())
+    let (count, has_all) = (bodies.len(), bodies.len() == particles.len());
+    let is_sound = |value: f64| value >= 0.0 && value.is_finite();
+    let allowed = "finite and at least 0";
+    let all = [
+        (count == 0 || has_all, "number of body numbers", count as f64, "0, or that of particles"),
+        (is_sound(bulk), "bulk modulus in Pa", bulk, allowed),
+        (is_sound(shear), "shear modulus in Pa", shear, allowed),
+        (is_sound(hourglass), "hourglass strength", hourglass, allowed),
+    ];
+    require(Part::Scene, all)
 }
 
 /// Elastic solids that move: kernel `K`, stored energy `L`, loads `C`. It dereferences to [`ParticleData`],
