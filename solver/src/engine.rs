@@ -12,7 +12,7 @@ use crate::{
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
     sweep::{self, BlockUpdate, PairSweep, Sweep, first, nothing, second, whole},
-    terms::{Term, moments::InverseMoments},
+    terms::{News, Term, moments::InverseMoments},
     walls::Walls,
 };
 
@@ -356,7 +356,7 @@ fn fill_images<P: Physics, T: Term<P::Extra>>(
             let (map, source) = (&neighbours.maps[image.map as usize], &columns[source]);
             let mut image = map.apply(source, P::Walls::SLIPS, motion);
             let no_slip = map.apply(source, false, motion).velocity;
-            T::no_slip(&mut image.derived, no_slip - image.velocity);
+            T::tell(&mut image.derived, News::NoSlip(no_slip - image.velocity));
             columns[real + k] = image;
         }
     }
@@ -377,7 +377,7 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
         sweep::fill(&sweep, lists, &mut inverses[lists.of.clone()]);
     }
     for (column, inverse) in columns.iter_mut().zip(inverses) {
-        T::normalise(&mut column.derived, inverse.extra);
+        T::tell(&mut column.derived, News::Inverse(inverse.extra));
     }
     fill_images::<P, T>(neighbours, 0, 1.0, columns);
 }
@@ -403,7 +403,7 @@ fn derive<X, T: Term<X>>(
 fn derived<X, T: Term<X>>(terms: &T, role: Role, own: &Common, extra: &X) -> T::Derived {
     let mut derived = terms.derived(own, extra);
     if role != Role::Fluid {
-        T::on_boundary(&mut derived);
+        T::tell(&mut derived, News::OnBoundary);
     }
     derived
 }

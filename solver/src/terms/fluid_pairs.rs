@@ -1,4 +1,4 @@
-use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
+use super::{Common, In, Kernel, Lane, News, Pair, Rate, Term, Vector2};
 
 /// A term without its pairs with boundary particles, [`crate::Role::Wall`] and [`crate::Role::Interface`].
 ///
@@ -22,17 +22,11 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
         (self.0.derived(own, extra), 1.0)
     }
     #[inline(always)]
-    fn no_slip(image: &mut Self::Derived, difference: Vector2<f64>) {
-        T::no_slip(&mut image.0, difference);
-    }
-    #[inline(always)]
-    fn normalise(derived: &mut Self::Derived, inverse: Symmetric) {
-        T::normalise(&mut derived.0, inverse);
-    }
-    #[inline(always)]
-    fn on_boundary(own: &mut Self::Derived) {
-        T::on_boundary(&mut own.0);
-        own.1 = 0.0;
+    fn tell(derived: &mut Self::Derived, news: News) {
+        T::tell(&mut derived.0, news);
+        if matches!(news, News::OnBoundary) {
+            derived.1 = 0.0;
+        }
     }
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut In<T::Sum, V>) {

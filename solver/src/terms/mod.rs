@@ -98,6 +98,17 @@ impl<'k, V: Lane, K: Kernel, D: Numbers> Pair<'k, V, K, D> {
     }
 }
 
+/// What the derived data of a column are told after they were derived.
+#[derive(Clone, Copy, Debug)]
+pub enum News {
+    /// That they are those of a boundary particle.
+    OnBoundary,
+    /// How the velocity of an image would differ behind a no-slip wall \[m/s\].
+    NoSlip(Vector2<f64>),
+    /// The inverse of the [`moments`] of the particle, once a state.
+    Inverse(Symmetric),
+}
+
 /// One term of the equations. `X` holds the extra fields that a particle integrates besides x, v and ρ.
 pub trait Term<X>: Clone + Send + Sync + 'static {
     /// The derived data of a particle that its neighbours read for this term.
@@ -106,7 +117,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     type Sum: Numbers;
     /// Whether this is the empty tuple, so that no pair sweep is needed.
     const IS_EMPTY: bool = false;
-    /// Whether [`Term::normalise`] does anything, for which each sweep of forces needs one of moments before.
+    /// Whether [`News::Inverse`] is read, for which each sweep of forces needs one of moments before.
     const NORMALISES: bool = false;
 
     /// Receives the largest speed of the scene \[m/s\], before each step.
@@ -117,15 +128,9 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
         const { assert!(size_of::<Self::Derived>() == 0, "a term with derived numbers derives them") };
         Self::Derived::default()
     }
-    /// Tells the derived data of an image how its velocity would differ behind a no-slip wall \[m/s\].
+    /// Takes note of news in the derived data.
     #[inline(always)]
-    fn no_slip(_image: &mut Self::Derived, _difference: Vector2<f64>) {}
-    /// Tells the derived data of a boundary particle that it is one.
-    #[inline(always)]
-    fn on_boundary(_own: &mut Self::Derived) {}
-    /// Tells the derived data of a particle the inverse of its [`moments`], once a state.
-    #[inline(always)]
-    fn normalise(_derived: &mut Self::Derived, _inverse: Symmetric) {}
+    fn tell(_derived: &mut Self::Derived, _news: News) {}
     /// Adds the contributions of the neighbours j of `pair` to the sums.
     fn pair<V: Lane, K: Kernel>(
         &self,
@@ -157,16 +162,8 @@ macro_rules! tuple_of_terms {
                 ($(self.$index.derived(own, extra),)*)
             }
             #[inline(always)]
-            fn no_slip(image: &mut Self::Derived, difference: Vector2<f64>) {
-                $($member::no_slip(&mut image.$index, difference);)*
-            }
-            #[inline(always)]
-            fn on_boundary(own: &mut Self::Derived) {
-                $($member::on_boundary(&mut own.$index);)*
-            }
-            #[inline(always)]
-            fn normalise(derived: &mut Self::Derived, inverse: Symmetric) {
-                $($member::normalise(&mut derived.$index, inverse);)*
+            fn tell(derived: &mut Self::Derived, news: News) {
+                $($member::tell(&mut derived.$index, news);)*
             }
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(

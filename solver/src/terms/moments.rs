@@ -25,7 +25,7 @@ pub fn inverse(moments: Symmetric) -> Option<Symmetric> {
 }
 
 /// M⁻¹ in the place of the rate of extra fields, 0 where there are too few neighbours: what
-/// [`Term::normalise`] receives.
+/// [`super::News::Inverse`] holds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct InverseMoments;
 

@@ -1,4 +1,4 @@
-use super::{Common, In, Kernel, Lane, Pair, Rate, Term, Vector2};
+use super::{Common, In, Kernel, Lane, News, Pair, Rate, Term, Vector2};
 
 /// A term for which the images behind walls along which the fluid slips ([`crate::SlipGhosts`]) have the
 /// velocity of those behind no-slip walls ([`crate::Ghosts`]). Each column carries the difference of the two
@@ -19,12 +19,11 @@ impl<X, T: Term<X>> Term<X> for NoSlipImages<T> {
         (self.0.derived(own, extra), Vector2::zeros())
     }
     #[inline(always)]
-    fn no_slip(image: &mut Self::Derived, difference: Vector2<f64>) {
-        image.1 += difference;
-    }
-    #[inline(always)]
-    fn on_boundary(own: &mut Self::Derived) {
-        T::on_boundary(&mut own.0);
+    fn tell(derived: &mut Self::Derived, news: News) {
+        match news {
+            News::NoSlip(difference) => derived.1 += difference,
+            _ => T::tell(&mut derived.0, news),
+        }
     }
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut In<T::Sum, V>) {
