@@ -59,14 +59,5 @@ pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};
-pub use terms::{
-    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ComponentStress,
-    ConjugateStress, ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure,
-    ConsistentViscosity, Continuity, DensityDiffusion, FluidPairs, Hydrostatic, JaumannRate,
-    NoSlipImages, Pressure, PrincipalStress, ShiftAdvection, Shifting, Split, Term, Viscosity,
-    Xsph,
-};
-pub use walls::{
-    CurvedNoSlip, ExtrapolatingWall, Ghosts, InterfaceWall, Mirrors, NoSlip, Open, PlaneWall,
-    SlipGhosts,
-};
+pub use terms::*;
+pub use walls::*;
