@@ -84,10 +84,6 @@ impl<S: Scheme> Scene<S> {
         drift: S::Drift,
         walls: S::Walls,
     ) -> Self {
-        let (skin, skin_share, limits) = (0.4 * h, 0.5, Limits::default());
-        // For fewer particles, distributing the work is assumed to cost more than it saves; not measured.
-        let parallel_from = 10_000;
-        let feet = Vec::new();
         Self {
             h,
             domain,
@@ -95,11 +91,12 @@ impl<S: Scheme> Scene<S> {
             forces,
             drift,
             walls,
-            feet,
-            skin,
-            skin_share,
-            limits,
-            parallel_from,
+            feet: Vec::new(),
+            skin: 0.4 * h,
+            skin_share: 0.5,
+            limits: Limits::default(),
+            // For fewer particles, distributing the work is assumed to cost more than it saves; not measured.
+            parallel_from: 10_000,
         }
     }
 

@@ -97,7 +97,8 @@ fn check<K: Kernel>() {
     let pressures: Vec<f64> =
         walls.iter().filter_map(|w| Some(formula::<K>(w, &fluid)?.0)).collect();
     let floor = pressures.iter().fold(0.0, |sum, p| sum + p) / pressures.len() as f64;
-    let clipped = shown::<K, ()>(&all, ExtrapolatingWall::new(water(), GRAVITY).not_below(floor));
+    let wall = ExtrapolatingWall::new(water(), GRAVITY);
+    let clipped = shown::<K, ()>(&all, ExtrapolatingWall { least_pressure: floor, ..wall });
     let (mut below, mut alone) = (0, 0);
     for (k, wall) in walls.iter().enumerate() {
         let k = fluid.len() + k;

@@ -43,11 +43,6 @@ impl<E, U: Default> ExtrapolatingWall<E, U> {
     pub fn new(eos: E, acceleration: Vector2<f64>) -> Self {
         Self { eos, acceleration, least_pressure: f64::NEG_INFINITY, velocity: U::default() }
     }
-
-    /// The same wall with pressures not below this \[Pa\].
-    pub fn not_below(self, least_pressure: f64) -> Self {
-        Self { least_pressure, ..self }
-    }
 }
 
 /// What an [`ExtrapolatingWall`] does about the velocity: `()`, nothing, or [`NoSlip`], or [`CurvedNoSlip`].

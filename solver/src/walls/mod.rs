@@ -5,15 +5,13 @@
 mod extrapolating;
 mod ghosts;
 mod image;
-mod interface;
 
 pub use extrapolating::{CurvedNoSlip, ExtrapolatingWall, NoSlip, WallVelocity};
 pub use ghosts::{Ghosts, Mirrors, PlaneWall, SlipGhosts};
 pub(crate) use ghosts::{RIGHT_ANGLE, corners};
 pub use image::Map;
-pub use interface::InterfaceWall;
 
-use crate::terms::Term;
+use crate::terms::{Continuity, Term};
 use nalgebra::Vector2;
 
 /// How a scene treats its walls.
@@ -49,4 +47,18 @@ pub struct Open;
 impl<X> Walls<X> for Open {
     type Terms = ();
     fn terms(&self) {}
+}
+
+/// Walls represented by boundary particles (section 4.2 of the paper), which do not move: a layer of
+/// [`crate::Role::Interface`] on the surface, with constant density and pressure, and layers of
+/// [`crate::Role::Wall`] behind it, whose density and pressure evolve by (3) and (7). All carry the velocity of
+/// the wall.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct InterfaceWall;
+
+impl<X> Walls<X> for InterfaceWall {
+    type Terms = Continuity;
+    fn terms(&self) -> Continuity {
+        Continuity
+    }
 }

@@ -227,7 +227,7 @@ impl Boundary for ExtrapolatingWall<Tait> {
     const NAME: &'static str = "extrapolating-wall";
     const FIRST_ROW: FirstRow = FirstRow::Behind;
     fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
-        Self::new(medium.eos, medium.wall_acceleration).not_below(0.0)
+        Self { least_pressure: 0.0, ..Self::new(medium.eos, medium.wall_acceleration) }
     }
     fn uses() -> Vec<Knob> {
         vec![Knob::WallGravity]
