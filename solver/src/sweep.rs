@@ -27,16 +27,8 @@ const BUFFER: usize = 64;
 #[repr(align(64))]
 struct Aligned<T>(T);
 
-/// What takes lane k out of its own reach: the square of a distance beyond every support in that lane \[m²\].
-const APART: [[f64; GROUP]; GROUP] = {
-    let mut apart = [[0.0; GROUP]; GROUP];
-    let mut k = 0;
-    while k < GROUP {
-        apart[k][k] = 1e200;
-        k += 1;
-    }
-    apart
-};
+/// The square of a distance beyond every support \[m²\].
+const APART: f64 = 1e200;
 
 /// What becomes of some particles: the number of the first, the particles, and their rates.
 pub(crate) type BlockUpdate<'a, X> = dyn Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync + 'a;
@@ -179,9 +171,10 @@ where
                 let other = &columns[column as usize];
                 let r = position - other.position.spread::<V>();
                 let mut r2 = r.x * r.x + r.y * r.y;
-                // Members stand first in a list, so that this is predicted.
-                if let Some(apart) = APART.get((column as usize).wrapping_sub(first)) {
-                    r2 += V::gather(|lane| apart[lane]);
+                // A particle is out of its own reach. Members stand first in a list: this is predicted.
+                let member = (column as usize).wrapping_sub(first);
+                if member < GROUP {
+                    r2 += V::gather(|lane| if lane == member { APART } else { 0.0 });
                 }
                 if r2.bits_below(support2) == 0 {
                     continue;
