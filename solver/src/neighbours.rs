@@ -446,7 +446,6 @@ impl OnLanes for FillLists<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lanes::on_registers;
     use simba::simd::WideF64x4;
 
     /// Splitmix64: the same points on every machine.
@@ -616,9 +615,7 @@ mod tests {
             let of_block =
                 |block| FillLists { neighbours: &neighbours, block, of: of.clone(), up_to };
             of_block(&mut portable).run::<WideF64x4>();
-            if let Some(work) = on_registers(of_block(&mut widest)) {
-                work.run::<WideF64x4>();
-            }
+            on_widest(of_block(&mut widest));
             let [built] = built else { panic!("one block") };
             for block in [portable, widest] {
                 assert_eq!(block.columns, built.columns);

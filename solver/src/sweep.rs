@@ -201,7 +201,6 @@ mod tests {
     use crate::{
         Continuity, Domain, Pressure, QuinticSpline, Tait, Viscosity, neighbours::Neighbours,
     };
-    use lanes::on_registers;
     use simba::simd::WideF64x4;
 
     const DX: f64 = 0.1;
@@ -284,9 +283,7 @@ mod tests {
         }
         for (b, rates) in widest.chunks_mut(BLOCK).enumerate() {
             let (sweep, block, first) = (&sweep, &neighbours.lists.blocks[b], b * BLOCK);
-            if let Some(work) = on_registers(Particles { sweep, block, list: 0, first, rates }) {
-                work.run::<WideF64x4>();
-            }
+            on_widest(Particles { sweep, block, list: 0, first, rates });
         }
         assert!(neighbours.lists.blocks.len() > 1);
         let bits =

@@ -81,7 +81,8 @@ pub trait OnLanes {
 /// loop, which tests count.
 #[inline(never)]
 pub fn on_widest(work: impl OnLanes) {
-    let Some(work) = on_registers(work) else { return };
+    #[cfg(target_arch = "x86_64")]
+    let Some(work) = registers::run(work) else { return };
     work.run::<WideF64x4>();
 }
 
@@ -91,15 +92,6 @@ pub fn on_four(work: impl OnLanes) {
     #[cfg(target_arch = "x86_64")]
     let Some(work) = registers::run_four(work) else { return };
     work.run::<WideF64x4>();
-}
-
-/// Runs the loop on registers for eight numbers or four, in any build; gives it back where the processor has
-/// none.
-pub fn on_registers<W: OnLanes>(work: W) -> Option<W> {
-    #[cfg(target_arch = "x86_64")]
-    return registers::run(work);
-    #[cfg(not(target_arch = "x86_64"))]
-    Some(work)
 }
 
 /// Implements [`Lane`], inlined always: what each operation is for the type.

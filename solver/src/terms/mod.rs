@@ -199,7 +199,7 @@ tuple_of_terms!(Split<A, B>: A 0, B 1);
 mod tests {
     use super::*;
     use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2};
-    use lanes::{OnLanes, on_registers};
+    use lanes::{OnLanes, on_widest};
     use simba::simd::WideF64x4;
 
     /// Up to eight neighbours, number k of field f; one is at the same place as the particle.
@@ -309,6 +309,6 @@ mod tests {
     #[test]
     fn lanes_have_the_bits_of_scalars() {
         check_every_kernel::<WideF64x4>();
-        on_registers(EveryKernel);
+        on_widest(EveryKernel);
     }
 }
