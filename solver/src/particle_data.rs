@@ -201,7 +201,8 @@ pub struct ParticleData<X = ()> {
     pub(crate) past: Vec<Past<X>>,
     /// Memory of the columns that a pair sweep reads \[bytes\].
     pub column_bytes: usize,
-    pub(crate) watch: Option<PhaseWatch>,
+    /// Who is told of phases.
+    pub watch: Option<PhaseWatch>,
 }
 
 impl<X: Numbers> ParticleData<X> {
@@ -329,11 +330,6 @@ impl<X: Numbers> ParticleData<X> {
     pub fn check_bounds(&self) -> Result<(), Fault> {
         let extent = self.extent(&self.state, &self.neighbours.built_at);
         self.check(&self.state, &[extent]).map(|_| ())
-    }
-
-    /// Tells this watch of phases from now on; `None` tells nobody.
-    pub fn set_watch(&mut self, watch: Option<PhaseWatch>) {
-        self.watch = watch;
     }
 
     /// Everything that is needed to continue from here with bitwise equal results.

@@ -44,7 +44,7 @@ impl Loaded<'_> {
     }
 }
 
-/// A load, `()` if there is none. A tuple of two is both.
+/// A load, `()` if there is none.
 pub trait Load: Clone + Send + Sync + 'static {
     /// Adds the accelerations \[m/s²\] that follow.
     fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]);
@@ -56,16 +56,6 @@ impl Load for () {
     fn push(&self, _: &Loaded, _: &mut [Vector2<f64>]) {}
     fn energy(&self, _: &Loaded) -> f64 {
         0.0
-    }
-}
-
-impl<A: Load, B: Load> Load for (A, B) {
-    fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) {
-        self.0.push(on, accelerations);
-        self.1.push(on, accelerations);
-    }
-    fn energy(&self, on: &Loaded) -> f64 {
-        self.0.energy(on) + self.1.energy(on)
     }
 }
 

@@ -97,7 +97,8 @@ fn check(
 /// whose densities and extra fields (the deviator of the Cauchy stress) follow from the positions.
 pub struct Solid<K, L, C> {
     data: ParticleData<Symmetric>,
-    body: Body<L>,
+    /// The body: its reference, and its deformation.
+    pub body: Body<L>,
     kernel: Smoothing<K>,
     loads: C,
     sizes: Vec<f64>,
@@ -132,11 +133,6 @@ impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
         let Self { body, sizes, bodies, faces, domain, .. } = self;
         let (masses, reference) = (&body.reference.masses, &body.reference.places);
         Loaded { state: self.data.fluid_state(), masses, sizes, reference, bodies, faces, domain }
-    }
-
-    /// The body: its reference, and its deformation.
-    pub fn body(&self) -> &Body<L> {
-        &self.body
     }
 }
 
@@ -205,7 +201,7 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
             + size_of_val(&self.accelerations[..])
     }
     fn watch(&mut self, watch: Option<PhaseWatch>) {
-        self.data.set_watch(watch);
+        self.data.watch = watch;
     }
     fn potential(&self) -> Option<Potential> {
         let on = self.loaded();

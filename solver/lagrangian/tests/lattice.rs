@@ -47,7 +47,7 @@ fn stiffness<L: Law>(k: Vector2<f64>, along: Vector2<f64>) -> f64 {
     let mut solid = torus::<L>();
     let wave = |x: Vector2<f64>| along * (1e-7 * libm::cos(k.dot(&x) + 0.3));
     put(&mut solid, |_, x| x + wave(x), |_| Vector2::zeros());
-    let places = solid.body().reference.places.clone();
+    let places = solid.body.reference.places.clone();
     let (mut sum, mut norm, mut off) = (0.0, 0.0, 0.0_f64);
     for ((_, _, _, force), place) in forces(&solid).iter().zip(places) {
         let wave = wave(place);
