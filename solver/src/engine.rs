@@ -25,42 +25,22 @@ pub struct Engine<P: Physics> {
     pub(crate) kernel: Smoothing<P::Kernel>,
     /// Of the forces, and of the drift.
     pub(crate) terms: (P::Forces, P::Drift),
-    wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
+    pub(crate) wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
     pub(crate) data: ParticleData<P::Extra>,
     /// Of the particles, of their images, and the sentinel.
     pub(crate) columns: Vec<Column<Derived<P>>>,
     /// What was found in each block while filling columns, and of what was not filled.
-    extents: Vec<Extent>,
+    pub(crate) extents: Vec<Extent>,
     /// What was found of particles that need not be filled again until lists are built: those of walls that
     /// extrapolate, which do not move.
-    still: Option<Extent>,
+    pub(crate) still: Option<Extent>,
     /// What wall particles extrapolate: empty where they do not.
-    extrapolated: Vec<Evolved<P::Extra>>,
+    pub(crate) extrapolated: Vec<Evolved<P::Extra>>,
     /// Inverses of moments: empty where no force needs them.
-    inverses: Vec<Rate<Symmetric>>,
+    pub(crate) inverses: Vec<Rate<Symmetric>>,
 }
 
 impl<P: Physics> Engine<P> {
-    /// An engine without columns.
-    pub(crate) fn new(
-        kernel: Smoothing<P::Kernel>,
-        terms: (P::Forces, P::Drift),
-        walls: &P::Walls,
-        data: ParticleData<P::Extra>,
-    ) -> Self {
-        Self {
-            kernel,
-            terms,
-            wall_terms: walls.terms(),
-            data,
-            columns: vec![],
-            extents: vec![],
-            still: None,
-            extrapolated: vec![],
-            inverses: vec![],
-        }
-    }
-
     /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
     /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
     /// that is derived from the state.

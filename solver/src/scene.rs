@@ -109,9 +109,18 @@ impl<S: Scheme> Scene<S> {
         check_feet(S::Walls::FEET, &self.feet, data.counts[1])?;
         data.neighbours.feet = self.feet;
         data.parallel = self.particles.len() >= self.parallel_from;
-        let kernel = Smoothing::<S::Kernel>::new(h);
-        let mut engine = Engine::new(kernel, (self.forces, self.drift), &self.walls, data);
-        let state = std::mem::take(&mut engine.data.state);
+        let state = std::mem::take(&mut data.state);
+        let mut engine = Engine {
+            kernel: Smoothing::new(h),
+            terms: (self.forces, self.drift),
+            wall_terms: self.walls.terms(),
+            data,
+            columns: vec![],
+            extents: vec![],
+            still: None,
+            extrapolated: vec![],
+            inverses: vec![],
+        };
         engine.build_lists(&mut places(&state));
         engine.data.state = state;
         Ok(Simulation { engine, integrator: S::Integrator::default() })
@@ -141,18 +150,14 @@ fn ready<X: Numbers>(
     let half_period = 0.5 * domain.period.iter().flatten().fold(f64::MAX.sqrt(), |a, b| a.min(*b));
     let neighbours = Neighbours::new([support * h, skin, spacing], domain, mirrors);
     let mut data = ParticleData { neighbours, limits, ..Default::default() };
-    data.put(&by_role(particles));
+    let mut stored: Vec<_> = (0..).zip(particles.iter().copied()).collect();
+    stored.sort_by_key(|(_, particle)| particle.role);
+    data.put(&stored);
     [data.slack, data.reach2] = [skin_share * skin, half_period * half_period];
     let mut state = std::mem::take(&mut data.state);
     data.sort(&mut state);
     data.state = state;
     Ok(data)
-}
-
-/// The particles in the order of their storage at the start (by role), with their numbers in the scene.
-fn by_role<X: Copy>(all: &[Particle<X>]) -> Vec<(u32, Particle<X>)> {
-    let of = |role| (0..).zip(all.iter().copied()).filter(move |(_, p)| p.role == role);
-    [Role::Fluid, Role::Wall, Role::Interface].into_iter().flat_map(of).collect()
 }
 
 type Checked = Result<(), SceneError>;
