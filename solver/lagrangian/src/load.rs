@@ -2,27 +2,17 @@
 //! Each derives from an energy.
 
 use nalgebra::Vector2;
-use solver::{Domain, Evolved, Smoothing, Symmetric, WendlandC2};
+use solver::{Evolved, Smoothing, Symmetric, WendlandC2};
 
-use crate::law::Moduli;
+use crate::{law::Moduli, reference::Reference};
 
 /// Particles as loads see them.
 #[derive(Clone, Copy, Debug)]
 pub struct Loaded<'a> {
     /// Where they are.
     pub state: &'a [Evolved<Symmetric>],
-    /// Their masses \[kg/m\].
-    pub masses: &'a [f64],
-    /// Their sizes, the roots of their reference volumes \[m\].
-    pub sizes: &'a [f64],
-    /// Where they are without stress \[m\].
-    pub reference: &'a [Vector2<f64>],
-    /// The number of the body of each, from 0.
-    pub bodies: &'a [u32],
-    /// Those at the faces of bodies.
-    pub faces: &'a [u32],
-    /// Periodic or open.
-    pub domain: &'a Domain,
+    /// Where they are without stress, and what does not change.
+    pub reference: &'a Reference,
 }
 
 impl Loaded<'_> {
@@ -30,7 +20,7 @@ impl Loaded<'_> {
     fn between(&self, i: usize, j: usize, place: impl Fn(usize) -> Vector2<f64>) -> Vector2<f64> {
         let mut r = place(i) - place(j);
         for axis in 0..2 {
-            if let Some(period) = self.domain.period[axis] {
+            if let Some(period) = self.reference.domain.period[axis] {
                 r[axis] -= period * (r[axis] / period).round();
             }
         }
@@ -39,8 +29,9 @@ impl Loaded<'_> {
 
     /// Whether two particles are of different bodies, or farther apart than this in the reference \[m\].
     fn are_apart(&self, i: usize, j: usize, distance: f64) -> bool {
-        self.bodies[i] != self.bodies[j]
-            || self.between(i, j, |k| self.reference[k]).norm_squared() >= distance * distance
+        let Reference { bodies, places, .. } = self.reference;
+        bodies[i] != bodies[j]
+            || self.between(i, j, |k| places[k]).norm_squared() >= distance * distance
     }
 }
 
@@ -70,7 +61,7 @@ impl Load for Weight {
     fn energy(&self, on: &Loaded) -> f64 {
         let of =
             |(evolved, mass): (&Evolved<Symmetric>, &f64)| -mass * self.0.dot(&evolved.position);
-        on.state.iter().zip(on.masses).map(of).fold(0.0, |sum, one| sum + one)
+        on.state.iter().zip(&on.reference.masses).map(of).fold(0.0, |sum, one| sum + one)
     }
 }
 
@@ -117,7 +108,7 @@ impl RigidPlane {
             let out = normal * (reference - point).dot(&normal).signum();
             (out, 0.5 * size, (at.position - point).dot(&out))
         };
-        on.state.iter().zip(on.sizes).zip(on.reference).map(of)
+        on.state.iter().zip(&on.reference.sizes).zip(&on.reference.places).map(of)
     }
 
     /// 2 k (t − d) t/d \[N/m\].
@@ -135,7 +126,7 @@ impl RigidPlane {
 
 impl Load for RigidPlane {
     fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) {
-        let pushed = accelerations.iter_mut().zip(on.masses).zip(self.distances(on));
+        let pushed = accelerations.iter_mut().zip(&on.reference.masses).zip(self.distances(on));
         for ((acceleration, mass), (out, touch, distance)) in pushed {
             *acceleration += out * (self.force(touch, distance) / mass);
         }
@@ -241,12 +232,13 @@ impl BetweenFaces {
 
     /// All that see each other, in an order that depends on the state alone.
     fn seen(&self, on: &Loaded) -> Vec<Seen> {
-        let axis = usize::from(on.domain.period[0].is_some());
-        let reach = REACH * on.sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let Reference { domain, sizes, faces, .. } = on.reference;
+        let axis = usize::from(domain.period[0].is_some());
+        let reach = REACH * sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
         // Where the other axis is periodic, a copy may be near although the particle is not.
-        let aside = if on.domain.period[1 - axis].is_some() { f64::INFINITY } else { reach };
+        let aside = if domain.period[1 - axis].is_some() { f64::INFINITY } else { reach };
         let place = |i: &u32| (on.state[*i as usize].position, *i as usize);
-        let mut sorted: Vec<(Vector2<f64>, usize)> = on.faces.iter().map(place).collect();
+        let mut sorted: Vec<(Vector2<f64>, usize)> = faces.iter().map(place).collect();
         sorted.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
         let mut seen = Vec::new();
         for (k, &(x, i)) in sorted.iter().enumerate() {
@@ -257,7 +249,7 @@ impl BetweenFaces {
                     continue;
                 }
                 let apart = on.between(i, j, |k| on.state[k].position);
-                let size = 0.5 * (on.sizes[i] + on.sizes[j]);
+                let size = 0.5 * (sizes[i] + sizes[j]);
                 let most = REACH * size;
                 if apart.norm_squared() < most * most && on.are_apart(i, j, 2.0 * most) {
                     seen.push(Seen { who: [i, j], apart, size });
@@ -268,12 +260,12 @@ impl BetweenFaces {
     }
 
     /// e of every particle.
-    fn excess(&self, on: &Loaded, seen: &[Seen]) -> Vec<f64> {
-        let mut excess = vec![-1.0; on.sizes.len()];
+    fn excess(&self, sizes: &[f64], seen: &[Seen]) -> Vec<f64> {
+        let mut excess = vec![-1.0; sizes.len()];
         for Seen { who: [i, j], apart, size } in seen {
             let weight = self.kernel.w(apart.norm_squared() / (size * size)) / (self.row[0] * size);
-            excess[*i] += on.sizes[*j] * weight;
-            excess[*j] += on.sizes[*i] * weight;
+            excess[*i] += sizes[*j] * weight;
+            excess[*j] += sizes[*i] * weight;
         }
         excess
     }
@@ -287,28 +279,30 @@ impl BetweenFaces {
 
 impl Load for BetweenFaces {
     fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) {
+        let Reference { sizes, masses, .. } = on.reference;
         let seen = self.seen(on);
-        let excess = self.excess(on, &seen);
+        let excess = self.excess(sizes, &seen);
         let slope = |k: usize| {
             let e = excess[k].max(0.0);
-            self.scale(on.sizes[k]) * (e + 0.5 * e * e)
+            self.scale(sizes[k]) * (e + 0.5 * e * e)
         };
         for Seen { who: [i, j], apart, size } in seen {
-            let both = slope(i) * on.sizes[j] + slope(j) * on.sizes[i];
+            let both = slope(i) * sizes[j] + slope(j) * sizes[i];
             if both > 0.0 {
                 let steep = self.kernel.f(apart.norm_squared() / (size * size)) / self.row[0];
                 let force = apart * (both * steep / (size * size * size));
-                accelerations[i] += force / on.masses[i];
-                accelerations[j] -= force / on.masses[j];
+                accelerations[i] += force / masses[i];
+                accelerations[j] -= force / masses[j];
             }
         }
     }
     fn energy(&self, on: &Loaded) -> f64 {
-        let excess = self.excess(on, &self.seen(on));
+        let sizes = &on.reference.sizes;
+        let excess = self.excess(sizes, &self.seen(on));
         let of = |(e, size): (&f64, &f64)| {
             let e = e.max(0.0);
             self.scale(*size) * e * e * (0.5 + e / 6.0)
         };
-        excess.iter().zip(on.sizes).map(of).fold(0.0, |sum, one| sum + one)
+        excess.iter().zip(sizes).map(of).fold(0.0, |sum, one| sum + one)
     }
 }

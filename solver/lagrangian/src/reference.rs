@@ -4,7 +4,7 @@
 use lanes::LANES;
 use nalgebra::{Matrix2, Vector2};
 use solver::{
-    Kernel, ParticleData, SceneError, Smoothing, Symmetric,
+    Domain, Kernel, ParticleData, SceneError, Smoothing, Symmetric,
     scene::{Part, require},
     walls::Map,
 };
@@ -62,6 +62,14 @@ pub struct Reference {
     pub volumes: Vec<f64>,
     /// Masses of the particles \[kg/m\].
     pub masses: Vec<f64>,
+    /// Sizes of the particles, the roots of their volumes \[m\].
+    pub sizes: Vec<f64>,
+    /// The number of the body of each particle, from 0.
+    pub bodies: Vec<u32>,
+    /// The particles at the faces of bodies.
+    pub faces: Vec<u32>,
+    /// Periodic or open.
+    pub domain: Domain,
     /// M⁻¹ of the particles \[1/m²\].
     pub inverse: Vec<Matrix2<f64>>,
     /// The images.
@@ -77,15 +85,17 @@ impl Reference {
     pub fn new<K: Kernel>(
         data: &ParticleData<Symmetric>,
         kernel: &Smoothing<K>,
-        bodies: &[u32],
+        bodies: Vec<u32>,
+        domain: Domain,
         slips: bool,
     ) -> Result<Self, SceneError> {
-        let mut this = Self { starts: vec![0], ..Self::default() };
+        let mut this = Self { bodies, domain, starts: vec![0], ..Self::default() };
         let mut particle: Vec<usize> = (0..data.fluid_count()).collect();
         for (mass, evolved) in data.fluid() {
             this.places.push(evolved.position);
             this.masses.push(mass);
             this.volumes.push(mass / evolved.density);
+            this.sizes.push((mass / evolved.density).sqrt());
         }
         for (source, map) in data.images() {
             this.places.push(map.place(this.places[source]));
@@ -94,12 +104,13 @@ impl Reference {
         }
         for (i, list) in data.lists().enumerate() {
             let is_near = |&j: &usize| {
-                bodies.get(particle[j]) == bodies.get(i)
+                this.bodies[particle[j]] == this.bodies[i]
                     && kernel.f((this.places[j] - this.places[i]).norm_squared()) > 0.0
             };
             let near: Vec<usize> = list.filter(is_near).collect();
             this.add(kernel, i, &near, &particle)?;
         }
+        this.faces = this.find_faces();
         Ok(this)
     }
 
@@ -151,7 +162,7 @@ impl Reference {
 
     /// The particles at faces, which lack a sixth of that or more. At a straight face about a third is
     /// missing, inside of a disordered body some per cent.
-    pub fn faces(&self) -> Vec<u32> {
+    fn find_faces(&self) -> Vec<u32> {
         let least = 5.0 / 6.0 * self.gradient_factor();
         (0..).zip(self.factors()).filter(|(_, factor)| *factor < least).map(|(k, _)| k).collect()
     }
@@ -172,6 +183,9 @@ impl Reference {
         size_of_val(&self.places[..])
             + size_of_val(&self.volumes[..])
             + size_of_val(&self.masses[..])
+            + size_of_val(&self.sizes[..])
+            + size_of_val(&self.bodies[..])
+            + size_of_val(&self.faces[..])
             + size_of_val(&self.inverse[..])
             + size_of_val(&self.images[..])
             + size_of_val(&self.starts[..])

@@ -60,13 +60,10 @@ impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
         let of = |(id, _): &(u32, _)| bodies.get(*id as usize).copied().unwrap_or(0);
         let bodies: Vec<u32> = data.checkpoint().particles.iter().map(of).collect();
         let kernel = Smoothing::<K>::new(h);
-        let reference = Reference::new(&data, &kernel, &bodies, W::SLIPS)?;
-        let sizes = reference.volumes.iter().map(|volume| volume.sqrt()).collect();
         let accelerations = vec![Vector2::zeros(); bodies.len()];
+        let reference = Reference::new(&data, &kernel, bodies, domain, W::SLIPS)?;
         let body = Body::new(reference, moduli, self.hourglass, parallel);
-        let faces = body.reference.faces();
-        let mut solid =
-            Solid { data, body, kernel, loads, sizes, bodies, faces, domain, accelerations };
+        let mut solid = Solid { data, body, kernel, loads, accelerations };
         solid.evaluate();
         Ok(solid)
     }
@@ -101,10 +98,6 @@ pub struct Solid<K, L, C> {
     pub body: Body<L>,
     kernel: Smoothing<K>,
     loads: C,
-    sizes: Vec<f64>,
-    bodies: Vec<u32>,
-    faces: Vec<u32>,
-    domain: Domain,
     accelerations: Vec<Vector2<f64>>,
 }
 
@@ -122,17 +115,9 @@ impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
         self.data.enter(Phase::Forces);
         self.body.deform(self.data.fluid_mut(), &mut self.accelerations);
         self.data.enter(Phase::Walls);
-        let mut accelerations = std::mem::take(&mut self.accelerations);
-        self.loads.push(&self.loaded(), &mut accelerations);
-        self.accelerations = accelerations;
+        let on = Loaded { state: self.data.fluid_state(), reference: &self.body.reference };
+        self.loads.push(&on, &mut self.accelerations);
         self.data.enter(Phase::Rest);
-    }
-
-    /// The particles as loads see them.
-    fn loaded(&self) -> Loaded<'_> {
-        let Self { body, sizes, bodies, faces, domain, .. } = self;
-        let (masses, reference) = (&body.reference.masses, &body.reference.places);
-        Loaded { state: self.data.fluid_state(), masses, sizes, reference, bodies, faces, domain }
     }
 }
 
@@ -193,18 +178,13 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
         self.accelerations.iter().map(rate).collect()
     }
     fn bytes(&self) -> usize {
-        self.data.bytes()
-            + self.body.bytes()
-            + size_of_val(&self.sizes[..])
-            + size_of_val(&self.bodies[..])
-            + size_of_val(&self.faces[..])
-            + size_of_val(&self.accelerations[..])
+        self.data.bytes() + self.body.bytes() + size_of_val(&self.accelerations[..])
     }
     fn watch(&mut self, watch: Option<PhaseWatch>) {
         self.data.watch = watch;
     }
     fn potential(&self) -> Option<Potential> {
-        let on = self.loaded();
+        let on = Loaded { state: self.data.fluid_state(), reference: &self.body.reference };
         Some(Potential { loads: self.loads.energy(&on), ..self.body.potential() })
     }
 }
