@@ -2,10 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use base::{
-    gate::{Cause, Purpose, Verdict},
-    spec::Task,
-};
+use base::{gate::Cause, spec::Task};
 use harness::{
     case::{self, Planned},
     runs::{Judged, JudgedRun},
@@ -25,9 +22,7 @@ pub fn section(suite: &Suite) -> Section {
     let mut causes: BTreeMap<Option<&Cause>, Vec<Found>> = BTreeMap::new();
     for results in &suite.cases {
         for (of, judged) in results.judged() {
-            if let (Verdict::Limitation(_), Purpose::Limitation(known)) =
-                (&judged.judgement.verdict, &judged.gate.purpose)
-            {
+            if let Some(known) = judged.limitation() {
                 let found = Found { results, of, judged };
                 causes.entry(known.cause.as_ref()).or_default().push(found);
             }

@@ -1,7 +1,7 @@
 //! The report: from a judged suite to one page.
 
 use base::{
-    gate::{Purpose, Verdict},
+    gate::Verdict,
     manifest::{Known, Manifest},
     record::Record,
     reference::{Reference, ReferenceError},
@@ -16,8 +16,7 @@ use harness::{
     suite::{CaseResults, Of, Suite},
 };
 use report::{
-    Block, Card, Cell, Column, Counts, Explorer, GateRow, Page, Section, Status, Table, VERDICTS,
-    counted,
+    Block, Card, Cell, Column, Counts, Explorer, GateRow, Page, Section, Table, VERDICTS, counted,
 };
 
 use crate::{cases, limitations, stiffness, time};
@@ -160,9 +159,7 @@ const READING: [&str; 2] = [
 fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Notes<'a>) -> GateRow {
     let Judged { gate, judgement, .. } = judged;
     let mut reasons = vec![notes.number(&gate.because)];
-    if let (Verdict::Limitation(_), Purpose::Limitation(known)) =
-        (&judgement.verdict, &gate.purpose)
-    {
+    if let Some(known) = judged.limitation() {
         let cause = known.cause.as_ref().map(|cause| &*cause.what);
         reasons.extend(cause.into_iter().chain([&*known.reason]).map(|text| notes.number(text)));
     }
@@ -175,7 +172,7 @@ fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Not
     };
     GateRow {
         id: gate.id.clone(),
-        status: judged.status(),
+        status: judgement.verdict,
         of,
         value: judgement.value.map_or(Cell::text("not measured"), measured),
         bound: gate.bounds(),
@@ -208,7 +205,7 @@ fn anchor(study: &Study) -> String {
 }
 
 fn study_section(study: &Study) -> Section {
-    let counts = Counts::of(study.judged.iter().map(Judged::status));
+    let counts = Counts::of(study.judged.iter().map(|judged| judged.judgement.verdict));
     let mut section = Section::new(anchor(study), &study.title);
     section.status = counts.worst();
     if !study.judged.is_empty() {
@@ -261,7 +258,7 @@ fn references_section() -> Section {
     type Row = (&'static str, Result<&'static Reference, ReferenceError>);
     let name = |(name, found): &Row| {
         let cell = Cell::text(format!("`{name}`"));
-        if found.is_err() { cell.with(Status::Fail) } else { cell }
+        if found.is_err() { cell.with(Verdict::Fail) } else { cell }
     };
     let what = |(_, found): &Row| match found {
         Ok(reference) => reference.package.title.clone(),

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
 use base::{
-    gate::{Gate, Judgement, Verdict},
+    gate::{Gate, Judgement, Known, Purpose, Verdict},
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
@@ -71,15 +71,20 @@ impl Judged {
         Self { gate, judgement, unit }
     }
 
-    /// How the verdict is shown.
-    pub fn status(&self) -> report::Status {
-        use report::Status;
-        match self.judgement.verdict {
-            Verdict::Pass => Status::Pass,
-            Verdict::Fail => Status::Fail,
-            Verdict::Limitation(_) => Status::Limitation,
-            Verdict::ExpectedFailure => Status::ExpectedFailure,
+    /// The limitation, if it is the verdict.
+    pub fn limitation(&self) -> Option<&Known> {
+        match &self.gate.purpose {
+            Purpose::Limitation(known) if self.judgement.verdict == Verdict::Limitation => {
+                Some(known)
+            }
+            _ => None,
         }
+    }
+
+    /// The verdict in words, with the reason of a limitation.
+    pub fn words(&self) -> String {
+        let reason = self.limitation().map(|known| format!(": {}", known.reason));
+        self.judgement.verdict.to_string() + &reason.unwrap_or_default()
     }
 }
 
@@ -175,10 +180,10 @@ mod tests {
         let planned = Planned::new(spec).judged(["there", "missing"].map(gate).to_vec());
         let run = JudgedRun::new(planned, record);
         let found: Vec<_> =
-            run.judged.iter().map(|j| (&*j.gate.metric, &j.judgement.verdict, &j.unit)).collect();
+            run.judged.iter().map(|j| (&*j.gate.metric, j.judgement.verdict, &j.unit)).collect();
         let unit = Some("m".to_string());
         let expected =
-            [("there", &Verdict::Pass, &unit), ("missing", &Verdict::Fail, &None::<String>)];
+            [("there", Verdict::Pass, &unit), ("missing", Verdict::Fail, &None::<String>)];
         assert_eq!(found, expected);
     }
 

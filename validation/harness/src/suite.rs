@@ -35,7 +35,7 @@ pub struct CaseResults {
 impl CaseResults {
     /// How its gates ended.
     pub fn counts(&self) -> Counts {
-        Counts::of(self.judged().map(|(_, judged)| judged.status()))
+        Counts::of(self.judged().map(|(_, judged)| judged.judgement.verdict))
     }
 
     /// Every judgement on the case, with the run that was judged, or the study.
@@ -86,7 +86,10 @@ impl Suite {
 
     /// How all gates ended, and how many simulations diverged.
     pub fn counts(&self) -> Counts {
-        Counts { diverged: self.diverged(), ..Counts::of(self.judged().map(Judged::status)) }
+        Counts {
+            diverged: self.diverged(),
+            ..Counts::of(self.judged().map(|judged| judged.judgement.verdict))
+        }
     }
 }
 

@@ -4,9 +4,10 @@
 
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 
+use base::gate::Verdict;
 use report::{
     Axis, Block, Card, Cell, ColourMap, Column, Counts, Explorer, Figure, Film, GateRow, Layer,
-    Page, ParticleMap, Plot, Section, Series, Status, Table, VERDICTS, check_page,
+    Page, ParticleMap, Plot, Section, Series, Table, VERDICTS, check_page,
 };
 use std::error::Error;
 use std::path::PathBuf;
@@ -43,7 +44,7 @@ fn table() -> Table {
             Cell::status(status),
         ]
     };
-    let rows = Status::ALL.into_iter().enumerate();
+    let rows = Verdict::ALL.into_iter().enumerate();
     rows.fold(Table::new("Gates of this *demo*.", columns), |table, (k, status)| {
         table.row(row(k, status))
     })
@@ -55,7 +56,7 @@ fn explorer() -> Explorer {
         let case = ["curves", "maps"][k % 2];
         GateRow {
             id: format!("{case}.gate{k}"),
-            status: if k.is_multiple_of(5) { Status::Limitation } else { Status::Pass },
+            status: if k.is_multiple_of(5) { Verdict::Limitation } else { Verdict::Pass },
             of: format!("`seed` n={k}"),
             value: Cell::num(k as f64, 2),
             bound: "at most 30".into(),
@@ -85,11 +86,11 @@ fn page() -> Result<Page, String> {
         title: "Curves".into(),
         picture: Some(Figure { id: "small".into(), ..figure() }),
         facts: vec![("Error:".into(), "**1.2 %** in 3 s".into())],
-        counts: Counts::of([Status::Pass, Status::Limitation]),
+        counts: Counts::of([Verdict::Pass, Verdict::Limitation]),
         limitations: vec!["It is made up.".into()],
     };
     let curves = Section::new("curves", "Curves")
-        .status(Status::Fail)
+        .status(Verdict::Fail)
         .prose(
             "See [the figure](#figure) and [Morris et al.](https://doi.org/10.1006/jcph.1997.5776). \
              Run `touchstone report`.",
@@ -100,7 +101,7 @@ fn page() -> Result<Page, String> {
     Ok(Page {
         title: "Demo of the report".into(),
         lead: vec!["Every block once, from made-up data. **Not a result.**".into()],
-        counts: Counts::of(Status::ALL),
+        counts: Counts::of(Verdict::ALL),
         cards: vec![card],
         notes: vec!["A note below the cards.".into()],
         sections: vec![

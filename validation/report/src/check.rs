@@ -109,8 +109,9 @@ mod tests {
     use super::*;
     use crate::{
         Axis, Block, Card, Cell, Column, Counts, Explorer, Figure, GateRow, Page, Plot, Section,
-        Series, Status, Table, VERDICTS,
+        Series, Table, VERDICTS,
     };
+    use base::gate::Verdict;
 
     fn x() -> Axis {
         Axis::linear("x [m]")
@@ -120,24 +121,24 @@ mod tests {
         let plot = Plot::new("p < q & r", Axis::linear("x [m]"), Axis::log("y [\"1\"]"))
             .layer(Series::line_markers("<&>", vec![(0.0, 1.0), (1.0, 2.0)]));
         let table = Table::new("Errors", vec![Column::text("a"), Column::num("b", "m/s")])
-            .row(vec![Cell::text("`<code>`"), Cell::sci(f64::NAN, 2).with(Status::Fail)]);
+            .row(vec![Cell::text("`<code>`"), Cell::sci(f64::NAN, 2).with(Verdict::Fail)]);
         let details = vec![table.clone().into()];
         let section = Section::new("one", "One & *two*")
             .prose("See [the figure](#fig) & more.")
             .block(Figure::new("fig", "A caption with `code`.").panel(plot))
             .block(Block::Details { summary: "more".into(), blocks: details })
-            .child(Section::new("two", "Two").status(Status::Pass).block(table));
+            .child(Section::new("two", "Two").status(Verdict::Pass).block(table));
         let card = Card {
             id: "one".into(),
             title: "One & *two*".into(),
             picture: Some(Figure::new("small", "").panel(Plot::new("", x(), x()))),
             facts: vec![("error".into(), "**1 %**".into())],
-            counts: Counts::of([Status::Limitation]),
+            counts: Counts::of([Verdict::Limitation]),
             limitations: vec!["It is < 2.".into()],
         };
         let gate = GateRow {
             id: "one.a&b".into(),
-            status: Status::Limitation,
+            status: Verdict::Limitation,
             of: "`seed`".into(),
             value: Cell::num(0.5, 2),
             bound: "at most 0.4".into(),
@@ -151,7 +152,7 @@ mod tests {
         Page {
             title: "A & B".into(),
             lead: vec!["Lead.".into()],
-            counts: Counts::of([Status::Pass]),
+            counts: Counts::of([Verdict::Pass]),
             cards: vec![card],
             notes: vec!["Note.".into()],
             sections: vec![section, Section::new("three", "Three").block(outcome), verdicts],

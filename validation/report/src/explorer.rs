@@ -1,7 +1,8 @@
 //! The table of all verdicts, which the page's script searches, filters and sorts.
 
 use super::inline::inline;
-use super::table::{Cell, Column, Status};
+use super::table::{Cell, Column, class};
+use base::gate::Verdict;
 use maud::{Markup, html};
 
 /// All verdicts of a page.
@@ -19,7 +20,7 @@ pub struct GateRow {
     /// Name, also its anchor; what stands before the first dot names the case.
     pub id: String,
     /// How it ended.
-    pub status: Status,
+    pub status: Verdict,
     /// The run or the study that it judges; inline markup.
     pub of: String,
     /// The number that is judged.
@@ -77,7 +78,7 @@ impl GateRow {
     fn markup(&self) -> Markup {
         let reasons: Vec<String> = self.reasons.iter().map(usize::to_string).collect();
         html! {
-            tr id=(self.id) data-status=(self.status.class()) {
+            tr id=(self.id) data-status=(class(self.status)) {
                 (Cell::status(self.status).html(false))
                 td { (self.id) }
                 td { (inline(&self.of)) }
@@ -99,7 +100,7 @@ mod tests {
     fn a_gate_can_be_linked_and_names_its_reasons() {
         let row = GateRow {
             id: "couette.a<b".into(),
-            status: Status::Limitation,
+            status: Verdict::Limitation,
             of: "`seed`".into(),
             value: Cell::num(0.5, 2),
             bound: "at most 0.4".into(),

@@ -46,5 +46,5 @@ pub use film::Film;
 pub use number::{counted, exact, percent, sci, seconds, sig};
 pub use page::{Block, Page, Section};
 pub use render::{png, svg};
-pub use table::{Cell, Column, Status, Table, first_sentence};
+pub use table::{Cell, Column, Table, first_sentence};
 pub use ticks::Scale;

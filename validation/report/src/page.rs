@@ -9,8 +9,8 @@ use super::font;
 use super::inline::inline;
 use super::picture::{drawing, image};
 use super::render;
-use super::table::{Status, Table, first_sentence};
-use base::{files, text::base64};
+use super::table::{Table, class, first_sentence, mark};
+use base::{files, gate::Verdict, text::base64};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
 use std::io;
@@ -46,7 +46,7 @@ pub struct Section {
     /// Heading; inline markup.
     pub title: String,
     /// Marks the entry in the table of contents.
-    pub status: Option<Status>,
+    pub status: Option<Verdict>,
     /// Content in order.
     pub blocks: Vec<Block>,
     /// Sections one level down.
@@ -60,7 +60,7 @@ impl Section {
     }
 
     /// Sets the mark.
-    pub fn status(self, status: Status) -> Self {
+    pub fn status(self, status: Verdict) -> Self {
         Self { status: Some(status), ..self }
     }
 
@@ -233,7 +233,7 @@ fn contents(sections: &[Section]) -> Markup {
             @for section in sections {
                 li {
                     @if let Some(s) = section.status {
-                        span class=(format!("mark {}", s.class())) title=(s.name()) { (s.mark()) }
+                        span class=(format!("mark {}", class(s))) title=(s.name()) { (mark(s)) }
                         " "
                     }
                     a href=(format!("#{}", section.id)) { (inline(&section.title)) }

@@ -2,51 +2,24 @@
 
 use super::inline::inline;
 use super::number;
+use base::gate::Verdict;
 use maud::{Markup, PreEscaped, html};
 
-/// What a value means for the verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Status {
-    /// Judged and inside its bound.
-    Pass,
-    /// Outside its bound, as it should be.
-    ExpectedFailure,
-    /// Outside its bound for a known reason, and inside the bound of that reason.
-    Limitation,
-    /// Judged and outside its bound.
-    Fail,
+/// A verdict as a class of the style sheet.
+pub(super) fn class(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::ExpectedFailure => "expected",
+        other => other.name(),
+    }
 }
 
-impl Status {
-    /// Every status, mildest first.
-    pub const ALL: [Self; 4] = [Self::Pass, Self::ExpectedFailure, Self::Limitation, Self::Fail];
-
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Limitation => "limitation",
-            Self::ExpectedFailure => "expected failure",
-            Self::Fail => "fail",
-        }
-    }
-
-    /// As a class of the style sheet.
-    pub(super) fn class(self) -> &'static str {
-        match self {
-            Self::ExpectedFailure => "expected",
-            other => other.name(),
-        }
-    }
-
-    /// A mark that needs no colour.
-    pub(super) fn mark(self) -> &'static str {
-        match self {
-            Self::Pass => "✓",
-            Self::Limitation => "△",
-            Self::ExpectedFailure => "⊘",
-            Self::Fail => "✗",
-        }
+/// The mark of a verdict, which needs no colour.
+pub(super) fn mark(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "✓",
+        Verdict::Limitation => "△",
+        Verdict::ExpectedFailure => "⊘",
+        Verdict::Fail => "✗",
     }
 }
 
@@ -58,7 +31,7 @@ pub struct Cell {
     /// Sorts the column; without it the text does.
     pub value: Option<f64>,
     /// Colours the cell.
-    pub status: Option<Status>,
+    pub status: Option<Verdict>,
 }
 
 impl Cell {
@@ -103,12 +76,12 @@ impl Cell {
     }
 
     /// A verdict in words.
-    pub fn status(status: Status) -> Self {
+    pub fn status(status: Verdict) -> Self {
         Self::text(status.name()).with(status)
     }
 
     /// The same cell with a verdict.
-    pub fn with(self, status: Status) -> Self {
+    pub fn with(self, status: Verdict) -> Self {
         Self { status: Some(status), ..self }
     }
 
@@ -120,14 +93,14 @@ impl Cell {
         // What a column is sorted by: six digits. The style sheet shows a cell that has it as a number.
         let six = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
         let value: Option<f64> = self.value.filter(|value| value.is_finite()).map(six);
-        let class = match (self.status, numeric && value.is_none()) {
-            (Some(s), true) => format!("number {}", s.class()),
-            (Some(s), false) => s.class().into(),
+        let classes = match (self.status, numeric && value.is_none()) {
+            (Some(s), true) => format!("number {}", class(s)),
+            (Some(s), false) => class(s).into(),
             (None, true) => "number".into(),
             (None, false) => String::new(),
         };
         html! {
-            td class=[Some(class).filter(|c| !c.is_empty())]
+            td class=[Some(classes).filter(|c| !c.is_empty())]
                 data-v=[value] {
                 (inline(&self.text))
             }
@@ -234,7 +207,7 @@ impl Table {
     fn row_markup(&self, row: &[Cell]) -> Markup {
         let worst = row.iter().filter_map(|c| c.status).max();
         html! {
-            tr data-status=[worst.map(Status::class)] {
+            tr data-status=[worst.map(class)] {
                 @for (i, column) in self.columns.iter().enumerate() {
                     @match row.get(i) {
                         Some(cell) => (cell.html(column.numeric)),
@@ -274,7 +247,7 @@ mod tests {
     #[test]
     fn cells_carry_value_and_verdict() {
         let table = Table::new("Errors", vec![Column::text("case"), Column::num("L2", "1")])
-            .row(vec![Cell::text("a < b"), Cell::sci(1.2e-4, 2).with(Status::Fail)])
+            .row(vec![Cell::text("a < b"), Cell::sci(1.2e-4, 2).with(Verdict::Fail)])
             .row(vec![Cell::text("short"), Cell::sci(0.123456789, 2)])
             .row(vec![Cell::text("none"), Cell::text("–")]);
         let html = table.markup("Table").into_string();

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use base::gate::Verdict;
 use base::spec::Measure;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use harness::{case, relation::Relation};
-use serde::{Deserialize, Serialize};
 
 /// Measures how wrong a particle method (SPH) is, what smaller errors cost, and when it breaks.
 #[derive(Debug, Parser)]
@@ -495,37 +495,23 @@ pub struct Explain {
     #[arg(required_unless_present = "status")]
     pub gate: Option<String>,
     /// List the gates with this verdict in the last report, one per line
-    #[arg(long, value_enum, value_name = "VERDICT")]
-    pub status: Option<Status>,
+    #[arg(long, value_name = "VERDICT", value_parser = verdict())]
+    pub status: Option<Verdict>,
     /// Folder of the last report, which gives the verdicts and the gates of studies
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub reports: PathBuf,
 }
 
 /// A verdict by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Status {
-    /// Inside its bound
-    Pass,
-    /// Outside its bounds, not finite, missing, or of a run that ended early
-    Fail,
-    /// Outside its bound and inside that of its known limitation
-    Limitation,
-    /// A control that lies outside its bound, as it must
-    ExpectedFailure,
-}
-
-impl Status {
-    /// That of a verdict.
-    pub fn of(verdict: &Verdict) -> Self {
-        match verdict {
-            Verdict::Pass => Status::Pass,
-            Verdict::Fail => Status::Fail,
-            Verdict::Limitation(_) => Status::Limitation,
-            Verdict::ExpectedFailure => Status::ExpectedFailure,
-        }
-    }
+fn verdict() -> impl TypedValueParser<Value = Verdict> {
+    let names = [
+        ("pass", "Inside its bound"),
+        ("fail", "Outside its bounds, not finite, missing, or of a run that ended early"),
+        ("limitation", "Outside its bound and inside that of its known limitation"),
+        ("expected-failure", "A control that lies outside its bound, as it must"),
+    ];
+    let names = names.map(|(name, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(names).try_map(|name| serde_json::from_value(name.into()))
 }
 
 #[derive(Debug, Args)]

@@ -193,7 +193,7 @@ fn of_verdicts(old: &BTreeMap<String, Judged>, new: &BTreeMap<String, Judged>) -
         |value: Option<f64>| value.map_or("not measured".to_string(), |v| format!("{v:?}"));
     for (id, was) in old {
         let Some(is) = new.get(id) else {
-            add(Kind::GateGone, id, was.judgement.verdict.to_string());
+            add(Kind::GateGone, id, was.words());
             continue;
         };
         let [from, to] = [&was.judgement, &is.judgement];
@@ -202,10 +202,10 @@ fn of_verdicts(old: &BTreeMap<String, Judged>, new: &BTreeMap<String, Judged>) -
             add(
                 Kind::NewFailure,
                 id,
-                format!("{}; {values}; bound {}", from.verdict, is.gate.bounds()),
+                format!("{}; {values}; bound {}", was.words(), is.gate.bounds()),
             );
-        } else if kind_of(&from.verdict) != kind_of(&to.verdict) {
-            add(Kind::Verdict, id, format!("{} to {}; {values}", from.verdict, to.verdict));
+        } else if from.verdict != to.verdict {
+            add(Kind::Verdict, id, format!("{} to {}; {values}", was.words(), is.words()));
         } else if has_moved(is.gate.bound.scale(), from.value, to.value) {
             add(Kind::Value, id, values);
         }
@@ -213,14 +213,9 @@ fn of_verdicts(old: &BTreeMap<String, Judged>, new: &BTreeMap<String, Judged>) -
     for (id, is) in new.iter().filter(|(id, _)| !old.contains_key(*id)) {
         let kind =
             if is.judgement.verdict == Verdict::Fail { Kind::NewFailure } else { Kind::GateNew };
-        add(kind, id, format!("{}; {}", is.judgement.verdict, number(is.judgement.value)));
+        add(kind, id, format!("{}; {}", is.words(), number(is.judgement.value)));
     }
     changes
-}
-
-/// The verdict without its reason.
-fn kind_of(verdict: &Verdict) -> std::mem::Discriminant<Verdict> {
-    std::mem::discriminant(verdict)
 }
 
 /// Is the difference more than the resolution of a value of this scale? What is not a number is equal to

@@ -13,6 +13,7 @@ use ::exchange::{
 };
 use base::{
     files::{self, CsvTable, OutputFolder},
+    gate::Verdict,
     record::{Profile, Record, Status},
     reference::sha256,
     spec::RunSpec,
@@ -326,7 +327,7 @@ fn show(case: &dyn Case, run: &JudgedRun, all: bool) -> Result<(), Failure> {
     let shown: Vec<_> = apply
         .iter()
         .copied()
-        .filter(|judged| all || judged.status() != ::report::Status::Pass)
+        .filter(|judged| all || judged.judgement.verdict != Verdict::Pass)
         .collect();
     let mut text = if shown.is_empty() { String::new() } else { judged::table(shown) + "\n" };
     if !others.is_empty() {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use ::report;
-use base::gate::{Cause, Evidence, Gate, Purpose};
+use base::gate::{Cause, Evidence, Gate, Purpose, Verdict};
 use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
@@ -17,8 +17,7 @@ use harness::suite::{self, Of};
 use validation::cases;
 
 use super::{
-    Exit, Failure, Outcome, World,
-    arguments::{self, Status},
+    Exit, Failure, Outcome, World, arguments,
     judged::{self, Verdicts, tier_name},
     output,
 };
@@ -165,13 +164,13 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
 }
 
 /// Those of the gates that have this verdict, one per line; limitations by cause.
-pub fn listed(gates: Vec<&Judged>, status: Status) -> String {
-    let has = |judged: &&Judged| Status::of(&judged.judgement.verdict) == status;
+pub fn listed(gates: Vec<&Judged>, verdict: Verdict) -> String {
+    let has = |judged: &&Judged| judged.judgement.verdict == verdict;
     let chosen: Vec<&Judged> = gates.into_iter().filter(has).collect();
     if chosen.is_empty() {
         return "no gate has this verdict\n".into();
     }
-    if status == Status::Limitation { by_cause(&chosen) } else { table(&chosen) }
+    if verdict == Verdict::Limitation { by_cause(&chosen) } else { table(&chosen) }
 }
 
 fn table(gates: &[&Judged]) -> String {
@@ -246,9 +245,8 @@ fn words(known: &Known) -> String {
 }
 
 fn last_words(judged: &Judged) -> String {
-    let Judged { judgement, .. } = judged;
-    let value = judgement.value.map_or("not measured".into(), |value| report::sig(value, 5));
-    format!("{value}: {}", judgement.verdict)
+    let value = judged.judgement.value.map_or("not measured".into(), |value| report::sig(value, 5));
+    format!("{value}: {}", judged.words())
 }
 
 fn evidence(gate: &Gate) -> String {

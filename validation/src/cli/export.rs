@@ -55,7 +55,7 @@ fn junit(suite: &Suite) -> String {
         );
         for judged in all {
             let (gate, judgement) = (&judged.gate, &judged.judgement);
-            let message = format!("{} {}; {}", value(judgement), gate.bounds(), judgement.verdict);
+            let message = format!("{} {}; {}", value(judgement), gate.bounds(), judged.words());
             let body = match judgement.verdict {
                 Verdict::Pass => String::new(),
                 Verdict::Fail => format!(
@@ -82,7 +82,7 @@ fn markdown(suite: &Suite) -> String {
         suite.judged().filter(|j| j.judgement.verdict != Verdict::Pass).collect();
     rows.sort_by_key(|j| !j.judgement.verdict.is_failure());
     for judged in rows {
-        let verdict = judged.judgement.verdict.to_string().replace('|', "\\|");
+        let verdict = judged.words().replace('|', "\\|");
         let (id, bound) = (&judged.gate.id, judged.gate.bounds());
         text += &format!("| {verdict} | `{id}` | {} | {bound} |\n", value(&judged.judgement));
     }

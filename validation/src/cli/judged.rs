@@ -16,24 +16,24 @@ use harness::study::Study;
 use harness::suite::Suite;
 use serde::{Deserialize, Serialize};
 
-use super::arguments::Status;
 use super::{Failure, output};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
 pub fn table<'a>(all: impl IntoIterator<Item = &'a Judged>) -> String {
     let mut judged: Vec<&Judged> = all.into_iter().collect();
-    judged.sort_by_key(|judged| judged.status());
+    judged.sort_by_key(|judged| judged.judgement.verdict);
     let mut notes = Notes::default();
-    let mut word = |verdict: &'a Verdict| {
-        let Verdict::Limitation(reason) = verdict else { return verdict.to_string() };
-        format!("known limitation [{}]", notes.number(reason))
+    let mut words = |judged: &'a Judged| match judged.limitation() {
+        Some(known) => format!("known limitation [{}]", notes.number(&known.reason)),
+        None => judged.words(),
     };
     let rows: Vec<Vec<String>> = judged
         .into_iter()
-        .map(|Judged { gate, judgement, .. }| {
+        .map(|judged| {
+            let Judged { gate, judgement, .. } = judged;
             let number = |number: Option<f64>| number.map(|number| report::sig(number, 4));
             vec![
-                word(&judgement.verdict),
+                words(judged),
                 gate.id.clone(),
                 number(judgement.value).unwrap_or("-".into()),
                 gate.bounds(),
@@ -151,12 +151,11 @@ struct Entry {
     even_if_diverged: bool,
     value: Option<Number>,
     margin: Option<Number>,
-    verdict: Status,
+    verdict: Verdict,
 }
 
 impl From<Judged> for Entry {
     fn from(judged: Judged) -> Self {
-        let status = Status::of(&judged.judgement.verdict);
         let Judged { gate, judgement, unit } = judged;
         let control = gate.purpose == Purpose::ExpectFailure;
         let (known, reason, cause) = match gate.purpose {
@@ -180,28 +179,24 @@ impl From<Judged> for Entry {
             even_if_diverged: gate.even_if_diverged,
             value: judgement.value.map(Number),
             margin: judgement.margin.map(Number),
-            verdict: status,
+            verdict: judgement.verdict,
         }
     }
 }
 
 impl From<Entry> for Judged {
     fn from(entry: Entry) -> Self {
-        let reason = entry.reason.unwrap_or_default();
-        let verdict = match entry.verdict {
-            Status::Pass => Verdict::Pass,
-            Status::Fail => Verdict::Fail,
-            Status::Limitation => Verdict::Limitation(reason.clone()),
-            Status::ExpectedFailure => Verdict::ExpectedFailure,
-        };
         let purpose = match entry.known {
-            Some(bound) => Purpose::Limitation(Known { bound, reason, cause: entry.cause }),
+            Some(bound) => {
+                let reason = entry.reason.unwrap_or_default();
+                Purpose::Limitation(Known { bound, reason, cause: entry.cause })
+            }
             None if entry.control => Purpose::ExpectFailure,
             None => Purpose::Judge,
         };
         let [value, margin] = [entry.value, entry.margin].map(|number| number.map(|n| n.0));
         let gate = Gate {
-            id: entry.gate.clone(),
+            id: entry.gate,
             metric: entry.metric,
             bound: entry.bound,
             evidence: entry.evidence,
@@ -210,7 +205,7 @@ impl From<Entry> for Judged {
             may_end_early: entry.may_end_early,
             even_if_diverged: entry.even_if_diverged,
         };
-        let judgement = Judgement { id: entry.gate, verdict, value, margin };
+        let judgement = Judgement { verdict: entry.verdict, value, margin };
         Judged { gate, judgement, unit: entry.unit }
     }
 }
@@ -268,7 +263,7 @@ impl Verdicts {
 fn counts(suite: &Suite) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
     for judged in suite.judged() {
-        *counts.entry(judged.status().name().to_string()).or_default() += 1;
+        *counts.entry(judged.judgement.verdict.name().to_string()).or_default() += 1;
     }
     counts
 }

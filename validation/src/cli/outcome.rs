@@ -59,17 +59,14 @@ fn bound(verdicts: &[Judged], metric: &str) -> String {
             .into();
     };
     let margin = judgement.margin.map(|m| format!(", {} of it left", report::percent(m, 2)));
-    let verdict = match &judgement.verdict {
-        Verdict::Limitation(_) => "known limitation".to_string(),
-        other => other.to_string(),
-    };
-    format!("{}: {verdict}{} ({})", gate.bounds(), margin.unwrap_or_default(), gate.id)
+    let (verdict, margin) = (judgement.verdict, margin.unwrap_or_default());
+    format!("{}: {verdict}{margin} ({})", gate.bounds(), gate.id)
 }
 
 fn gates(verdicts: &[Judged]) -> String {
     match verdicts.is_empty() {
         true => String::new(),
-        false => Counts::of(verdicts.iter().map(Judged::status)).headline(),
+        false => Counts::of(verdicts.iter().map(|judged| judged.judgement.verdict)).headline(),
     }
 }
 
@@ -82,9 +79,8 @@ fn next(
     verdicts: &[Judged],
 ) -> String {
     let name = case.name();
-    let worst = summary::worst(verdicts.iter()).filter(|judged| {
-        matches!(judged.judgement.verdict, Verdict::Fail | Verdict::Limitation(_))
-    });
+    let worst = summary::worst(verdicts.iter())
+        .filter(|judged| matches!(judged.judgement.verdict, Verdict::Fail | Verdict::Limitation));
     match (worst, &record.status) {
         (Some(judged), _) => format!("touchstone explain {}", judged.gate.id),
         (None, Status::Diverged { .. }) if declared.limits.is_some() => {

@@ -10,10 +10,10 @@ use std::sync::{
 };
 use std::time::{Duration, SystemTime};
 
-use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series, Status as Verdict};
+use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
 use base::{
     files::{self, Cell, CsvTable, FileError, OutputFolder},
-    gate::Gate,
+    gate::{Gate, Verdict},
     record::{NOT_ASKED, Profile, Record, Status},
     spec::RunSpec,
 };
@@ -124,7 +124,7 @@ fn carry_out(
     // What was computed is not lost with a file that cannot be written: then the record is printed, and where
     // that is refused, too, its numbers are told.
     let shown: Vec<&Judged> =
-        verdicts.iter().filter(|j| arguments.all || j.status() != Verdict::Pass).collect();
+        verdicts.iter().filter(|j| arguments.all || j.judgement.verdict != Verdict::Pass).collect();
     let mut table = if shown.is_empty() { String::new() } else { judged::table(shown) + "\n" };
     if !unasked.is_empty() {
         let count = unasked.len();

@@ -1,11 +1,12 @@
 //! What a suite comes to, as a person reads it in one screen: a line a case, then what needs attention.
 
 use ::report;
+use base::gate::Verdict;
 use harness::{
     runs::Judged,
     suite::{CaseResults, Suite},
 };
-use report::{Counts, Status};
+use report::Counts;
 
 use super::{explain, output};
 
@@ -32,8 +33,9 @@ pub fn summary(suite: &Suite) -> String {
              share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
     text += &failures(suite);
     let counts = suite.counts();
-    let limited = Counts { limitation: counts.limitation, ..Counts::default() };
-    if counts.limitation > 0 {
+    let limited = counts.count(Verdict::Limitation);
+    if limited > 0 {
+        let limited = Counts::of(std::iter::repeat_n(Verdict::Limitation, limited));
         text += &format!(
             "\n{}; `touchstone explain --status limitation` lists what limits them, by cause.\n",
             limited.headline()
@@ -47,8 +49,8 @@ pub fn summary(suite: &Suite) -> String {
 fn row(results: &CaseResults) -> Vec<String> {
     let counts = results.counts();
     let mut row = vec![results.case.name().to_string()];
-    let by_verdict = [counts.fail, counts.limitation, counts.expected_failure, counts.pass];
-    row.extend(by_verdict.map(|count| count.to_string()));
+    let columns = [Verdict::Fail, Verdict::Limitation, Verdict::ExpectedFailure, Verdict::Pass];
+    row.extend(columns.map(|verdict| counts.count(verdict).to_string()));
     row.extend(match results.headlines.first() {
         Some(best) => [
             best.error().unwrap_or_else(|_| "none".into()),
@@ -67,10 +69,10 @@ fn row(results: &CaseResults) -> Vec<String> {
 /// The judgement that is closest to failing: of the worst verdict and, among equals, of the least margin. A
 /// control that fails as it must has none.
 pub fn worst<'a>(all: impl Iterator<Item = &'a Judged>) -> Option<&'a Judged> {
-    let rank = |judged: &Judged| match judged.status() {
-        Status::Fail => 0,
-        Status::Limitation => 1,
-        Status::Pass | Status::ExpectedFailure => 2,
+    let rank = |judged: &Judged| match judged.judgement.verdict {
+        Verdict::Fail => 0,
+        Verdict::Limitation => 1,
+        Verdict::Pass | Verdict::ExpectedFailure => 2,
     };
     let margin = |judged: &Judged| judged.judgement.margin.unwrap_or(f64::INFINITY);
     all.min_by(|a, b| rank(a).cmp(&rank(b)).then_with(|| margin(a).total_cmp(&margin(b))))
@@ -78,7 +80,7 @@ pub fn worst<'a>(all: impl Iterator<Item = &'a Judged>) -> Option<&'a Judged> {
 
 fn failures(suite: &Suite) -> String {
     let of_case = |results| {
-        let judged = CaseResults::judged(results).filter(|(_, j)| j.status() == Status::Fail);
+        let judged = CaseResults::judged(results).filter(|(_, j)| j.judgement.verdict.is_failure());
         judged.map(move |(of, judged)| (results.case, of, judged))
     };
     let all: Vec<_> = suite.cases.iter().flat_map(of_case).collect();

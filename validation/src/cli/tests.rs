@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ::report::check_page;
 use base::{
     files::OutputFolder,
-    gate::{Bound, Cause, Evidence, Gate},
+    gate::{Bound, Cause, Evidence, Gate, Verdict},
     record::{MetricKey, Record, Status},
     reference::Reference,
     settings::Field,
@@ -641,8 +641,7 @@ fn limitations_are_listed_by_cause_those_of_most_gates_first() {
     let causes = [("One.", "Mend one."), ("Two.", "Mend two.")];
     let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend));
     let all = [limited("a", &one), limited("b", &two), limited("c", &two)];
-    let status = super::arguments::Status::Limitation;
-    let text = super::explain::listed(all.iter().collect(), status);
+    let text = super::explain::listed(all.iter().collect(), Verdict::Limitation);
     let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
     assert!(at("Two. What would remove it: Mend two.") < at("    b"));
     assert!(at("    b") < at("    c") && at("    c") < at("One."), "{text}");

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use base::{
-    gate::{Purpose, Verdict},
     record::{Record, Status},
     spec::RunSpec,
 };
@@ -36,7 +35,7 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
         title: card.title.into(),
         picture: picture(card.picture, studies),
         facts,
-        counts: Counts::of(judged.iter().map(|judged| judged.status())),
+        counts: Counts::of(judged.iter().map(|judged| judged.judgement.verdict)),
         limitations: main_limitations(&judged),
     })
 }
@@ -164,10 +163,7 @@ fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
 fn main_limitations(judged: &[&Judged]) -> Vec<String> {
     let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
     for judged in judged {
-        if let (Verdict::Limitation(_), Purpose::Limitation(known)) =
-            (&judged.judgement.verdict, &judged.gate.purpose)
-            && let Some(cause) = &known.cause
-        {
+        if let Some(cause) = judged.limitation().and_then(|known| known.cause.as_ref()) {
             *causes.entry(&cause.what).or_default() += 1;
         }
     }

@@ -92,7 +92,7 @@ mod tests {
         let verdicts: Vec<(&str, Verdict)> = study
             .judged
             .iter()
-            .map(|judged| (judged.gate.id.as_str(), judged.judgement.verdict.clone()))
+            .map(|judged| (judged.gate.id.as_str(), judged.judgement.verdict))
             .collect();
         // The second was not made, so its gates fail.
         assert_eq!(
