@@ -6,10 +6,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use crate::{
-    record::{Cost, Record, Status},
-    vtk::Collection,
-};
+use crate::record::{Cost, Record, Status};
 
 /// The bytes are not those of a value of the type that is read.
 #[derive(Debug, Error)]
@@ -100,7 +97,7 @@ macro_rules! documents {
     )+};
 }
 
-documents! { Record Cost Status Collection }
+documents! { Record Cost Status }
 
 impl<T: Bits> Bits for Vec<T> {
     fn write_to(&self, to: &mut Vec<u8>) {

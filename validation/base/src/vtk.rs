@@ -7,171 +7,99 @@
 //! and a state that diverged is worth inspecting.
 //!
 //! ```
-//! use base::vtk::{Collection, Particles};
-//! let positions = [[0.0, 0.0], [1.0, 0.5]];
-//! let file = Particles::new(0.25, &positions)?
-//!     .scalar("p", &[1.0, 2.0])?
-//!     .vector("v", &[[0.1, 0.0], [0.2, 0.0]])?
-//!     .to_xml();
-//! let mut collection = Collection::default();
-//! collection.push(0.25, "particles_0001.vtp");
-//! # assert!(file.contains("<Verts>") && collection.to_xml().contains("timestep=\"0.25\""));
-//! # Ok::<(), base::vtk::VtkError>(())
+//! use base::{record::Profile, vtk};
+//! let place = Profile::default().with("x", "m", vec![0.0, 1.0]).with("y", "m", vec![0.0, 0.5]);
+//! let velocity = place.with("u", "m/s", vec![0.1, 0.2]).with("v", "m/s", vec![0.0; 2]);
+//! let file = vtk::particles(0.25, &velocity.with("p", "Pa", vec![1.0, 2.0]))?;
+//! let collection = vtk::collection(&[(0.25, "particles_0001.vtp".into())]);
+//! # assert!(file.contains("<Verts>") && collection.contains("timestep=\"0.25\""));
+//! # Ok::<(), vtk::VtkError>(())
 //! ```
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::text::{base64, escaped};
+use crate::{
+    record::Profile,
+    text::{base64, escaped},
+};
 
 /// Why particles cannot be written, in words.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{0}")]
 pub struct VtkError(String);
 
-/// Particles at one time, with their fields.
-#[derive(Debug, Clone)]
-pub struct Particles {
-    time: f64,
-    points: Vec<[f64; 3]>,
-    arrays: Vec<Array>,
+/// Two columns as vectors in the plane z = 0.
+fn vectors(columns: &Profile, names: [&str; 2]) -> Vec<[f64; 3]> {
+    let [x, y] = names.map(|name| columns.column(name));
+    x.iter().zip(y).map(|(x, y)| [*x, *y, 0.0]).collect()
 }
 
-#[derive(Debug, Clone)]
-struct Array {
-    name: String,
-    components: usize,
-    values: Vec<f64>,
-}
-
-impl Particles {
-    /// Particles at their positions: arrays of two numbers or nalgebra's `Vector2`.
-    pub fn new<P: Copy + Into<[f64; 2]>>(time: f64, positions: &[P]) -> Result<Self, VtkError> {
-        let points: Vec<[f64; 3]> = positions.iter().map(|position| lift(*position)).collect();
-        for (particle, [x, y, _]) in points.iter().copied().enumerate() {
-            if !(x.is_finite() && y.is_finite()) {
-                let place = format!("particle {particle} is at ({x}, {y})");
-                return Err(VtkError(format!("{place}, which is not finite")));
-            }
-        }
-        Ok(Particles { time, points, arrays: Vec::new() })
+/// The text of a `.vtp` file: particles at one time. Of their columns, `x` and `y` are the places, `u` and `v`
+/// the array `velocity`, and each other is an array of its own.
+///
+/// # Errors
+/// If a place is not finite, an array has another length, or two have one name.
+pub fn particles(time: f64, columns: &Profile) -> Result<String, VtkError> {
+    let [points, velocities] = [["x", "y"], ["u", "v"]].map(|names| vectors(columns, names));
+    let is_lost = |[x, y, _]: &[f64; 3]| !(x.is_finite() && y.is_finite());
+    if let Some(particle) = points.iter().position(is_lost) {
+        let [x, y, _] = points[particle];
+        let place = format!("particle {particle} is at ({x}, {y})");
+        return Err(VtkError(format!("{place}, which is not finite")));
     }
-
-    /// Adds a field with one number a particle.
-    pub fn scalar(self, name: &str, values: &[f64]) -> Result<Self, VtkError> {
-        self.array(name, 1, values.len(), values.to_vec())
-    }
-
-    /// Adds a field with a plane vector a particle.
-    pub fn vector<P: Copy + Into<[f64; 2]>>(
-        self,
-        name: &str,
-        values: &[P],
-    ) -> Result<Self, VtkError> {
-        let lifted = values.iter().flat_map(|value| lift(*value)).collect();
-        self.array(name, 3, values.len(), lifted)
-    }
-
-    /// Adds a field with three numbers a particle, such as a symmetric stress.
-    pub fn triple(self, name: &str, values: &[[f64; 3]]) -> Result<Self, VtkError> {
-        self.array(name, 3, values.len(), values.as_flattened().to_vec())
-    }
-
-    fn array(
-        mut self,
-        name: &str,
-        components: usize,
-        found: usize,
-        values: Vec<f64>,
-    ) -> Result<Self, VtkError> {
-        let expected = self.points.len();
-        if found != expected {
-            let words = format!("array {name} has {found} values for {expected} particles");
+    let count = points.len();
+    let mut xml = String::from(concat!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" ",
+        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n"
+    ));
+    let one_tuple = "Name=\"TimeValue\" NumberOfTuples=\"1\"";
+    data_array(&mut xml, "Float64", one_tuple, &floats(&[time]));
+    let _ = write!(
+        xml,
+        "</FieldData>\n<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\" \
+         NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData>\n"
+    );
+    let others = columns.columns.iter().filter(|c| !["x", "y", "u", "v"].contains(&&*c.name));
+    let others = others.map(|column| (&*column.name, 1, &*column.values));
+    let mut names = BTreeSet::new();
+    for (name, components, values) in
+        [("velocity", 3, velocities.as_flattened())].into_iter().chain(others)
+    {
+        let found = values.len() / components;
+        if found != count {
+            let words = format!("array {name} has {found} values for {count} particles");
             return Err(VtkError(words));
         }
-        if self.arrays.iter().any(|known| known.name == name) {
+        if !names.insert(name) {
             return Err(VtkError(format!("there are two arrays called {name}")));
         }
-        self.arrays.push(Array { name: name.into(), components, values });
-        Ok(self)
+        let attributes = format!("Name=\"{}\" NumberOfComponents=\"{components}\"", escaped(name));
+        data_array(&mut xml, "Float64", &attributes, &floats(values));
     }
-
-    /// The text of a `.vtp` file.
-    pub fn to_xml(&self) -> String {
-        let count = self.points.len();
-        let mut xml = String::from(concat!(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" ",
-            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n"
-        ));
-        let one_tuple = "Name=\"TimeValue\" NumberOfTuples=\"1\"";
-        data_array(&mut xml, "Float64", one_tuple, &floats(&[self.time]));
-        let _ = write!(
-            xml,
-            "</FieldData>\n<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\" \
-             NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData>\n"
-        );
-        for Array { name, components, values } in &self.arrays {
-            let attributes =
-                format!("Name=\"{}\" NumberOfComponents=\"{components}\"", escaped(name));
-            data_array(&mut xml, "Float64", &attributes, &floats(values));
-        }
-        xml.push_str("</PointData>\n<Points>\n");
-        let attributes = "Name=\"Points\" NumberOfComponents=\"3\"";
-        data_array(&mut xml, "Float64", attributes, &floats(self.points.as_flattened()));
-        xml.push_str("</Points>\n<Verts>\n");
-        data_array(&mut xml, "Int64", "Name=\"connectivity\"", &integers(0..count));
-        data_array(&mut xml, "Int64", "Name=\"offsets\"", &integers(1..count + 1));
-        xml.push_str("</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n");
-        xml
-    }
+    xml.push_str("</PointData>\n<Points>\n");
+    let attributes = "Name=\"Points\" NumberOfComponents=\"3\"";
+    data_array(&mut xml, "Float64", attributes, &floats(points.as_flattened()));
+    xml.push_str("</Points>\n<Verts>\n");
+    data_array(&mut xml, "Int64", "Name=\"connectivity\"", &integers(0..count));
+    data_array(&mut xml, "Int64", "Name=\"offsets\"", &integers(1..count + 1));
+    xml.push_str("</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+    Ok(xml)
 }
 
-/// The files of a run by time: the text of a `.pvd` file.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Collection {
-    files: Vec<(f64, String)>,
-}
-
-impl Collection {
-    /// Adds a file, by its path relative to the collection.
-    pub fn push(&mut self, time: f64, file: &str) {
-        self.files.push((time, file.into()));
+/// The text of a `.pvd` file: the files of a run by time, with their paths relative to it.
+pub fn collection(files: &[(f64, String)]) -> String {
+    let mut xml = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
+    );
+    for (time, file) in files {
+        let file = escaped(file);
+        let _ = writeln!(xml, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>");
     }
-
-    /// Forgets the files of which this is false.
-    pub fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
-        self.files.retain(|(_, file)| is_there(file));
-    }
-
-    /// Number of files.
-    pub fn len(&self) -> usize {
-        self.files.len()
-    }
-
-    /// Is there no file yet?
-    pub fn is_empty(&self) -> bool {
-        self.files.is_empty()
-    }
-
-    /// The text of the `.pvd` file; write it again after every added file.
-    pub fn to_xml(&self) -> String {
-        let mut xml = String::from(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
-        );
-        for (time, file) in &self.files {
-            let file = escaped(file);
-            let _ = writeln!(xml, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>");
-        }
-        xml.push_str("</Collection>\n</VTKFile>\n");
-        xml
-    }
-}
-
-fn lift(plane: impl Into<[f64; 2]>) -> [f64; 3] {
-    let [x, y] = plane.into();
-    [x, y, 0.0]
+    xml.push_str("</Collection>\n</VTKFile>\n");
+    xml
 }
 
 fn floats(values: &[f64]) -> Vec<u8> {
@@ -195,8 +123,6 @@ fn data_array(xml: &mut String, kind: &str, attributes: &str, bytes: &[u8]) {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector2;
-
     use super::*;
     use crate::text::from_base64;
 
@@ -225,21 +151,24 @@ mod tests {
         data.to_vec()
     }
 
+    fn placed(x: &[f64], y: &[f64]) -> Profile {
+        let place = Profile::default().with("x", "m", x.to_vec()).with("y", "m", y.to_vec());
+        place.with("u", "m/s", x.to_vec()).with("v", "m/s", y.to_vec())
+    }
+
     #[test]
     fn a_file_is_well_formed_and_its_counts_agree() {
-        let positions = [Vector2::new(0.1, 0.2), Vector2::new(0.3, 0.4), Vector2::new(0.5, 0.6)];
-        let particles = Particles::new(0.5, &positions).unwrap();
-        let particles = particles.scalar("p & <q>", &[1.0, f64::NAN, 3.0]).unwrap();
-        let xml = particles.vector("v", &positions).unwrap().triple("S", &[[1.0; 3]; 3]).unwrap();
-        let xml = xml.to_xml();
+        let columns = placed(&[0.1, 0.3, 0.5], &[0.2, 0.4, 0.6]);
+        let columns = columns.with("p & <q>", "Pa", vec![1.0, f64::NAN, 3.0]);
+        let xml = particles(0.5, &columns).unwrap();
         let tags = tags(&xml);
-        assert_eq!(tags.iter().filter(|tag| tag.starts_with("DataArray")).count(), 7);
+        assert_eq!(tags.iter().filter(|tag| tag.starts_with("DataArray")).count(), 6);
         assert!(xml.contains("NumberOfPoints=\"3\" NumberOfVerts=\"3\""));
         assert!(xml.contains("Name=\"p &amp; &lt;q&gt;\""));
         assert_eq!(array(&xml, "TimeValue"), 0.5_f64.to_le_bytes());
         let flat = floats(&[0.1, 0.2, 0.0, 0.3, 0.4, 0.0, 0.5, 0.6, 0.0]);
         assert_eq!(array(&xml, "Points"), flat);
-        assert_eq!(array(&xml, "v"), flat);
+        assert_eq!(array(&xml, "velocity"), flat);
         assert_eq!(array(&xml, "connectivity"), integers([0, 1, 2].into_iter()));
         assert_eq!(array(&xml, "offsets"), integers([1, 2, 3].into_iter()));
         assert_eq!(array(&xml, "p &amp; &lt;q&gt;").len(), 24);
@@ -247,28 +176,26 @@ mod tests {
 
     #[test]
     fn no_particles_are_a_file_too() {
-        let xml = Particles::new::<[f64; 2]>(0.0, &[]).unwrap().scalar("p", &[]).unwrap().to_xml();
+        let xml = particles(0.0, &Profile::default().with("p", "Pa", Vec::new())).unwrap();
         tags(&xml);
         assert!(array(&xml, "connectivity").is_empty());
     }
 
     #[test]
     fn what_does_not_fit_is_refused_with_its_name() {
-        let particles = Particles::new(0.0, &[[0.0, 0.0], [1.0, 0.0]]).unwrap();
-        let error = particles.clone().scalar("rho", &[1.0]).unwrap_err().to_string();
+        let refused = |columns: Profile| particles(0.0, &columns).unwrap_err().to_string();
+        let two = || placed(&[0.0, 1.0], &[0.0, 0.0]);
+        let error = refused(two().with("rho", "kg/m^3", vec![1.0]));
         assert_eq!(error, "array rho has 1 values for 2 particles");
-        let twice = particles.scalar("rho", &[1.0; 2]).unwrap().scalar("rho", &[1.0; 2]);
-        assert_eq!(twice.unwrap_err().to_string(), "there are two arrays called rho");
-        let error = Particles::new(0.0, &[[0.0, f64::NAN]]).unwrap_err().to_string();
+        let twice = two().with("rho", "-", vec![1.0; 2]).with("rho", "-", vec![1.0; 2]);
+        assert_eq!(refused(twice), "there are two arrays called rho");
+        let error = refused(placed(&[0.0], &[f64::NAN]));
         assert_eq!(error, "particle 0 is at (0, NaN), which is not finite");
     }
 
     #[test]
     fn a_collection_lists_its_files_in_order() {
-        let mut collection = Collection::default();
-        collection.push(0.0, "a.vtp");
-        collection.push(1e-9, "b&c.vtp");
-        let xml = collection.to_xml();
+        let xml = collection(&[(0.0, "a.vtp".into()), (1e-9, "b&c.vtp".into())]);
         let tags = tags(&xml);
         assert_eq!(tags[3], "DataSet timestep=\"0.0\" part=\"0\" file=\"a.vtp\"/");
         assert_eq!(tags[4], "DataSet timestep=\"1e-9\" part=\"0\" file=\"b&amp;c.vtp\"/");

@@ -14,7 +14,6 @@ use base::{
     bits::{Bits, OtherBits},
     files::FileError,
     record::{Cost, Record, Status},
-    vtk::Collection,
 };
 use nalgebra::Vector2;
 use solver::{Checkpoint, Numbers, Particle, Past, Progress, Role, Stepper, Symmetric, Work};
@@ -137,8 +136,8 @@ pub(crate) struct Stage {
     pub reached: usize,
     /// What it took so far.
     pub cost: Cost,
-    /// The frames of it, and how many were tried.
-    pub frames: Option<(Collection, usize)>,
+    /// The frames of it by time \[s\], and how many were tried.
+    pub frames: Option<(Vec<(f64, String)>, usize)>,
     /// How it ended, if it did.
     pub ended: Option<Status>,
 }

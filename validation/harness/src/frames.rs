@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use base::{
     files::{FileError, OutputFolder},
     record::Profile,
-    vtk::{Collection, Particles, VtkError},
+    vtk::{self, VtkError},
 };
 use solver::{Numbers, Particle, Stepper, Symmetric};
 
@@ -19,7 +19,8 @@ pub struct Frames<'a> {
     pressure: &'a dyn Fn(f64) -> f64,
     end: f64,
     count: usize,
-    written: Collection,
+    /// Names by time \[s\].
+    written: Vec<(f64, String)>,
     /// Those whose time has come, whether or not they could be written.
     come: usize,
 }
@@ -35,19 +36,18 @@ impl<'a> Frames<'a> {
         pressure: &'a dyn Fn(f64) -> f64,
     ) -> Result<Self, FileError> {
         let folder = OutputFolder::create(folder)?;
-        let (written, count) = (Collection::default(), (*count).max(1));
-        Ok(Self { folder, pressure, end, count, written, come: 0 })
+        Ok(Self { folder, pressure, end, count: (*count).max(1), written: Vec::new(), come: 0 })
     }
 
-    /// The frames so far, and how many were tried.
-    pub fn written(&self) -> (Collection, usize) {
+    /// The frames so far by time \[s\], and how many were tried.
+    pub fn written(&self) -> (Vec<(f64, String)>, usize) {
         (self.written.clone(), self.come)
     }
 
     /// Goes on after these frames of an earlier run, of which some may have been removed. One whose time had
     /// come when that run was interrupted may be still to be written.
-    pub fn go_on(&mut self, (mut written, come): (Collection, usize)) {
-        written.retain(|name| self.folder.path().join(name).is_file());
+    pub fn go_on(&mut self, (mut written, come): (Vec<(f64, String)>, usize)) {
+        written.retain(|(_, name)| self.folder.path().join(name).is_file());
         (self.written, self.come) = (written, come);
     }
 
@@ -67,10 +67,11 @@ impl<'a> Frames<'a> {
     ) -> Result<(), FrameError> {
         let name = format!("particles_{:04}.vtp", self.come);
         self.come += 1;
-        let frame = vtp(simulation.time(), &columns(&simulation.particles(), self.pressure))?;
-        self.folder.write(&name, frame.to_xml().as_bytes())?;
-        self.written.push(simulation.time(), &name);
-        self.folder.write("particles.pvd", self.written.to_xml().as_bytes())?;
+        let columns = columns(&simulation.particles(), self.pressure);
+        let frame = vtk::particles(simulation.time(), &columns)?;
+        self.folder.write(&name, frame.as_bytes())?;
+        self.written.push((simulation.time(), name));
+        self.folder.write("particles.pvd", vtk::collection(&self.written).as_bytes())?;
         Ok(())
     }
 }
@@ -85,16 +86,6 @@ fn stress<X: Numbers>(particles: &[Particle<X>]) -> Option<Vec<[f64; 3]>> {
         extra.downcast_ref::<Symmetric>().map(|s| [s.xx, s.yy, s.xy])
     };
     particles.iter().map(stress).collect()
-}
-
-/// A frame of these columns.
-fn vtp(time: f64, columns: &Profile) -> Result<Particles, VtkError> {
-    let pairs = |[x, y]: [&str; 2]| -> Vec<[f64; 2]> {
-        columns.column(x).iter().zip(columns.column(y)).map(|(x, y)| [*x, *y]).collect()
-    };
-    let frame = Particles::new(time, &pairs(["x", "y"]))?.vector("velocity", &pairs(["u", "v"]))?;
-    let mut others = columns.columns.iter().filter(|c| !["x", "y", "u", "v"].contains(&&*c.name));
-    others.try_fold(frame, |frame, column| frame.scalar(&column.name, &column.values))
 }
 
 /// All fields of the particles at one time, as columns. A particle keeps its number through a run.
