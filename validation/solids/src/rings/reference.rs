@@ -3,7 +3,7 @@
 use ::lagrangian::{Hencky, Law as _};
 
 use super::{LAGRANGIAN, PLANE, RingSettings, metrics::*};
-use crate::solid::{Quantities, largest, quantities, rows};
+use crate::solid::{Quantities, largest, quantities};
 use base::{
     record::{MetricKey, Record},
     reference::{Reference as Package, Table},
@@ -43,7 +43,7 @@ pub fn outlines(speed: f64, time: f64) -> Option<Vec<Vec<(f64, f64)>>> {
     let (t, x, y) = (t?, x?, y?);
     let face = |name: &str| {
         let of = [("law", JAUMANN), ("speed", &speed.to_string()), ("face", name)];
-        let rows = rows(table, &of).ok()?.into_iter().filter(|&k| (t[k] - time).abs() < 1e-9);
+        let rows = table.rows_of(&of).ok()?.into_iter().filter(|&k| (t[k] - time).abs() < 1e-9);
         let half: Vec<(f64, f64)> = rows.map(|k| (x[k], y[k])).collect();
         let mirrored = half.iter().rev().map(|(x, y)| (*x, -y));
         Some(half.iter().copied().chain(mirrored).collect::<Vec<_>>())
@@ -94,7 +94,7 @@ impl Reference {
         let of = [("law", law), ("speed", &*speed)];
         let column = |table: &Table, name: &str, of: &[(&str, &str)]| -> Option<Vec<f64>> {
             let values = table.numbers(name).ok()?;
-            Some(rows(table, of).ok()?.into_iter().map(|k| values[k]).collect())
+            Some(table.rows_of(of).ok()?.into_iter().map(|k| values[k]).collect())
         };
         let series = |name: &str| column(table("series")?, name, &of);
         let phases = |name: &str| {

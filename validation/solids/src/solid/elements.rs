@@ -11,16 +11,6 @@ use nalgebra::Vector2;
 /// Columns of a table with the texts that rows have in them.
 type Texts<'a> = &'a [(&'a str, &'a str)];
 
-/// The rows of a table that have these texts.
-pub fn rows(table: &Table, of: Texts) -> Result<Vec<usize>, ReferenceError> {
-    let mut rows: Vec<usize> = (0..table.len()).collect();
-    for (column, text) in of {
-        let texts = table.texts(column)?;
-        rows.retain(|row| texts[*row] == *text);
-    }
-    Ok(rows)
-}
-
 /// Quantities by name, each with its uncertainty.
 pub type Quantities = BTreeMap<String, [f64; 2]>;
 
@@ -29,7 +19,7 @@ pub fn quantities(summary: &Table, of: Texts) -> Result<Quantities, ReferenceErr
     let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
     let spread = summary.numbers("uncertainty")?;
     let quantity = |row: usize| (names[row].to_string(), [values[row], spread[row]]);
-    Ok(rows(summary, of)?.into_iter().map(quantity).collect())
+    Ok(summary.rows_of(of)?.into_iter().map(quantity).collect())
 }
 
 /// Finite elements of one place.
@@ -49,7 +39,7 @@ impl Elements {
         let quantities = quantities(package.table("summary")?, summary)?;
         let table = package.table("series")?;
         let [t, x, y] = [table.numbers("t")?, table.numbers(x)?, table.numbers(y)?];
-        let path = rows(table, series)?.into_iter().map(|row| [t[row], x[row], y[row]]);
+        let path = table.rows_of(series)?.into_iter().map(|row| [t[row], x[row], y[row]]);
         Ok(Self { quantities, path: Path(path.collect()) })
     }
 

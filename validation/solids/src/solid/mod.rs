@@ -13,7 +13,7 @@ mod problem;
 #[cfg(test)]
 pub mod tests;
 
-pub use elements::{Elements, Path, Quantities, compare, quantities, rows};
+pub use elements::{Elements, Path, Quantities, compare, quantities};
 pub use energy::{Energy, angular_momentum, norm_squared};
 pub use material::{Material, limits};
 pub use maths::geometry::corners;
