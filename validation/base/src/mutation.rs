@@ -92,33 +92,16 @@ impl Constant {
         if self.is_physical() { 0.03 } else { 0.1 }
     }
 
-    /// The name in gates.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Viscosity => "viscosity",
-            Self::BodyForce => "body_force",
-            Self::WallSpeed => "wall_speed",
-            Self::Speed => "speed",
-            Self::SoundSpeed => "sound_speed",
-            Self::Density => "density",
-            Self::ShearModulus => "shear_modulus",
-            Self::Height => "height",
-            Self::Normalisation => "normalisation",
-            Self::SmoothingLength => "smoothing_length",
-            Self::TimeStep => "time_step",
-            Self::ArtificialViscosity => "artificial_viscosity",
-            Self::ArtificialStress => "artificial_stress",
-            Self::Xsph => "xsph",
-            Self::DensityDiffusion => "density_diffusion",
-            Self::Shifting => "shifting",
-            Self::ListLifetime => "list_lifetime",
-        }
+    /// The name in words.
+    pub fn words(self) -> String {
+        self.to_string().replace('_', " ")
     }
 }
 
+/// The name in gates and documents.
 impl fmt::Display for Constant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.name().replace('_', " "))
+        self.serialize(f)
     }
 }
 
@@ -143,7 +126,7 @@ mod tests {
         for constant in [Constant::Viscosity, Constant::Height, Constant::Xsph, Constant::Shifting]
         {
             let text = serde_json::to_value(constant).unwrap();
-            assert_eq!(text, constant.name());
+            assert_eq!(text, constant.to_string());
         }
         assert!(Constant::Height.is_physical() && !Constant::Normalisation.is_physical());
     }

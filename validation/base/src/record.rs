@@ -27,7 +27,7 @@ use crate::manifest::Manifest;
 use crate::mutation::{Disorder, Mutation};
 use crate::reference::sha256;
 use crate::settings::Settings;
-use crate::spec::{Keep, Measure, RunKey, RunSpec, Task};
+use crate::spec::{Keep, Measure, RunKey, RunSpec, Task, is_default};
 use crate::submission::Submission;
 
 /// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
@@ -136,10 +136,6 @@ pub struct Record {
     pub state: Option<String>,
     /// program, compiler, machine
     pub manifest: Manifest,
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }
 
 /// How a run ended.

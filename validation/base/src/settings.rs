@@ -141,19 +141,22 @@ pub trait Settings:
     /// All settings in the order of declaration.
     const FIELDS: &'static [Field];
 
-    /// The value of a setting, `None` if there is no such setting.
-    fn get(&self, key: &str) -> Option<Value>;
+    /// Every setting with its value, for tables.
+    fn entries(&self) -> Vec<(&'static Field, Value)>;
 
     /// Sets one setting from text; on error nothing changes.
     fn set(&mut self, key: &str, text: &str) -> Result<(), SettingError>;
 
-    /// Checks every range again, for a struct whose public fields were written directly.
-    fn validate(&self) -> Result<(), SettingError>;
+    /// The value of a setting, `None` if there is no such setting.
+    fn get(&self, key: &str) -> Option<Value> {
+        self.entries().into_iter().find(|(field, _)| field.name == key).map(|(_, value)| value)
+    }
 
-    /// Every setting with its value, for tables.
-    fn entries(&self) -> Vec<(&'static Field, Value)> {
-        let value = |field: &'static Field| self.get(field.name).map(|value| (field, value));
-        Self::FIELDS.iter().filter_map(value).collect()
+    /// Checks every range again, for a struct whose public fields were written directly.
+    fn validate(&self) -> Result<(), SettingError> {
+        let mut copy = self.clone();
+        let mut entries = self.entries().into_iter();
+        entries.try_for_each(|(field, value)| copy.set(field.name, &value.to_string()))
     }
 }
 
@@ -222,13 +225,8 @@ pub trait SettingType: Copy {
     /// The value without its type.
     fn value(self) -> Value;
 
-    /// Is it finite, if it is a real number at all?
-    fn is_finite(self) -> bool {
-        true
-    }
-
-    /// Is it inside the range? Always, if there is nothing to compare.
-    fn is_within(self, range: &Option<std::ops::RangeInclusive<Self::Limit>>) -> bool;
+    /// What is compared with the limits, if there is anything to compare.
+    fn limited(self) -> Option<Self::Limit>;
 }
 
 /// Refuses a value that is not finite or outside the range.
@@ -238,10 +236,12 @@ pub fn check<T: SettingType>(
     field: &Field,
 ) -> Result<T, SettingError> {
     let text = value.value().to_string();
-    match value.is_within(&range) {
-        _ if !value.is_finite() => Err(not_finite(&text, field)),
-        true => Ok(value),
-        false => Err(out_of_range(&text, field)),
+    match value.limited().zip(range) {
+        _ if matches!(value.value(), Value::Real(real) if !real.is_finite()) => {
+            Err(not_finite(&text, field))
+        }
+        Some((number, range)) if !range.contains(&number) => Err(out_of_range(&text, field)),
+        _ => Ok(value),
     }
 }
 
@@ -269,12 +269,8 @@ impl SettingType for f64 {
         Value::Real(self)
     }
 
-    fn is_finite(self) -> bool {
-        f64::is_finite(self)
-    }
-
-    fn is_within(self, range: &Option<std::ops::RangeInclusive<f64>>) -> bool {
-        range.as_ref().is_none_or(|range| range.contains(&self))
+    fn limited(self) -> Option<f64> {
+        Some(self)
     }
 }
 
@@ -290,17 +286,13 @@ impl SettingType for Option<f64> {
         self.map_or(Value::Auto(Auto::Auto), Value::Real)
     }
 
-    fn is_finite(self) -> bool {
-        self.is_none_or(f64::is_finite)
-    }
-
-    fn is_within(self, range: &Option<std::ops::RangeInclusive<f64>>) -> bool {
-        self.is_none_or(|value| value.is_within(range))
+    fn limited(self) -> Option<f64> {
+        self
     }
 }
 
-impl SettingType for u64 {
-    type Limit = u64;
+impl SettingType for usize {
+    type Limit = usize;
     const KIND: Kind = Kind::Count;
 
     /// Whole numbers, also written as `2e3`; what is a number but not a count is out of range.
@@ -310,7 +302,7 @@ impl SettingType for u64 {
             return Ok(count);
         }
         match text.parse::<f64>() {
-            Ok(real) if (0.0..=EXACT).contains(&real) && real.fract() == 0.0 => Ok(real as u64),
+            Ok(real) if (0.0..=EXACT).contains(&real) && real.fract() == 0.0 => Ok(real as usize),
             Ok(real) if real.is_finite() && real.fract() == 0.0 => Err(out_of_range(text, field)),
             Ok(real) if !real.is_finite() => Err(not_finite(text, field)),
             _ => Err(unreadable(text, field)),
@@ -318,29 +310,11 @@ impl SettingType for u64 {
     }
 
     fn value(self) -> Value {
-        Value::Count(self)
-    }
-
-    fn is_within(self, range: &Option<std::ops::RangeInclusive<u64>>) -> bool {
-        range.as_ref().is_none_or(|range| range.contains(&self))
-    }
-}
-
-impl SettingType for usize {
-    type Limit = usize;
-    const KIND: Kind = Kind::Count;
-
-    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
-        let count = u64::read(text, field)?;
-        usize::try_from(count).map_err(|_| out_of_range(text, field))
-    }
-
-    fn value(self) -> Value {
         Value::Count(self as u64)
     }
 
-    fn is_within(self, range: &Option<std::ops::RangeInclusive<usize>>) -> bool {
-        range.as_ref().is_none_or(|range| range.contains(&self))
+    fn limited(self) -> Option<usize> {
+        Some(self)
     }
 }
 
@@ -356,8 +330,8 @@ impl SettingType for bool {
         Value::Flag(self)
     }
 
-    fn is_within(self, _: &Option<std::ops::RangeInclusive<bool>>) -> bool {
-        true
+    fn limited(self) -> Option<bool> {
+        None
     }
 }
 
@@ -379,7 +353,7 @@ pub fn deserialize<'de, S: Settings, D: Deserializer<'de>>(from: D) -> Result<S,
 /// Declares a settings struct; see the module [`settings`](mod@crate::settings) for an example.
 ///
 /// `name: type ["unit"] in low..=high = default`, with literals as limits and
-/// `f64`, `Option<f64>`, `usize`, `u64` as types; `name: bool = default` has no unit nor range.
+/// `f64`, `Option<f64>`, `usize` as types; `name: bool = default` has no unit nor range.
 #[macro_export]
 macro_rules! settings {
     (
@@ -423,43 +397,25 @@ macro_rules! settings {
                 )
             }),+];
 
-            fn get(&self, key: &str) -> Option<$crate::settings::Value> {
-                match key {
-                    $(stringify!($name) => {
-                        Some($crate::settings::SettingType::value(self.$name))
-                    })+
-                    _ => None,
-                }
+            fn entries(&self) -> Vec<(&'static $crate::settings::Field, $crate::settings::Value)> {
+                let values = [$($crate::settings::SettingType::value(self.$name)),+];
+                Self::FIELDS.iter().zip(values).collect()
             }
 
             fn set(&mut self, key: &str, text: &str) -> Result<(), $crate::settings::SettingError> {
                 use $crate::settings::{SettingType, check, unknown};
-                let unknown = || unknown(Self::FIELDS, key);
-                let field = Self::FIELDS.iter().find(|field| field.name == key).ok_or_else(unknown)?;
-                match key {
-                    $(stringify!($name) => {
+                match Self::FIELDS.iter().find(|field| field.name == key) {
+                    $(Some(field) if key == stringify!($name) => {
                         #[allow(unused_mut, unused_assignments)]
                         let mut range = None;
                         $(range = Some($low..=$high);)?
                         self.$name = check(<$kind as SettingType>::read(text, field)?, range, field)?;
                     })+
-                    _ => return Err(unknown()),
+                    _ => return Err(unknown(Self::FIELDS, key)),
                 }
                 Ok(())
             }
 
-            fn validate(&self) -> Result<(), $crate::settings::SettingError> {
-                let mut fields = Self::FIELDS.iter();
-                $({
-                    #[allow(unused_mut, unused_assignments)]
-                    let mut range = None;
-                    $(range = Some($low..=$high);)?
-                    if let Some(field) = fields.next() {
-                        $crate::settings::check(self.$name, range, field)?;
-                    }
-                })+
-                Ok(())
-            }
         }
 
         impl $crate::settings::serde::Serialize for $Struct {
@@ -499,7 +455,7 @@ mod tests {
             /// rows of particles
             rows: usize ["-"] in 4..=2000 = 20,
             /// seed of the perturbation
-            seed: u64 ["-"] in 0..=4294967295 = 7,
+            seed: usize ["-"] in 0..=4294967295 = 7,
             /// speed of sound
             c0: Option<f64> ["m/s"] in 1e-9..=1e5 = None,
             /// shift of the lower plate

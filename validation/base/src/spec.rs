@@ -27,7 +27,7 @@ use crate::{
 };
 
 /// One run, resolved: no default is left to be filled in.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunSpec {
     /// name of the case
@@ -40,13 +40,13 @@ pub struct RunSpec {
     #[serde(deserialize_with = "settings")]
     pub settings: Value,
     /// one simulation, or a bisection of many
-    #[serde(default, skip_serializing_if = "Task::is_simulation")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub task: Task,
     /// run even with a time step beyond the theoretical limit
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub allow_unstable: bool,
     /// what the record keeps beside metrics and curves
-    #[serde(default, skip_serializing_if = "Keep::is_nothing")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub keep: Keep,
     /// a deliberate error of the scene
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -58,8 +58,13 @@ pub struct RunSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub submission: Option<Box<Submission>>,
     /// how much is measured, which is no part of the key
-    #[serde(default, skip_serializing_if = "Measure::is_headline")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub measure: Measure,
+}
+
+/// Whether a field is left out of a document.
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// Longest name of a case or of a variant.
@@ -131,12 +136,6 @@ pub enum Measure {
     All,
 }
 
-impl Measure {
-    fn is_headline(&self) -> bool {
-        *self == Measure::Headline
-    }
-}
-
 /// What is done with the settings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -179,12 +178,6 @@ pub struct EndAfter {
     pub unit: f64,
 }
 
-impl Task {
-    fn is_simulation(&self) -> bool {
-        *self == Task::Simulate
-    }
-}
-
 /// What a record keeps beside metrics and curves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -195,12 +188,6 @@ pub struct Keep {
     /// so many pictures at equal intervals from the start, in place of those that the case chooses
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pictures: Option<usize>,
-}
-
-impl Keep {
-    fn is_nothing(&self) -> bool {
-        *self == Keep::default()
-    }
 }
 
 /// Names a run: 16 hexadecimal digits.
@@ -216,18 +203,7 @@ impl fmt::Display for RunKey {
 impl RunSpec {
     /// One simulation that keeps metrics and curves.
     pub fn new(case: &str, variant: &str, settings: Value) -> Self {
-        Self {
-            case: case.to_string(),
-            variant: variant.to_string(),
-            settings,
-            task: Task::Simulate,
-            allow_unstable: false,
-            keep: Keep::default(),
-            mutation: None,
-            disorder: None,
-            submission: None,
-            measure: Measure::default(),
-        }
+        Self { case: case.to_string(), variant: variant.to_string(), settings, ..Self::default() }
     }
 
     /// The same, whatever its time step.

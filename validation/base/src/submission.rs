@@ -40,10 +40,7 @@ pub enum Division {
 
 impl fmt::Display for Division {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Division::Closed => "closed",
-            Division::Open => "open",
-        })
+        self.serialize(f)
     }
 }
 

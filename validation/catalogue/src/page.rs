@@ -247,9 +247,11 @@ pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
     match &spec.task {
         Task::Simulate => {}
         Task::Bisect(bisect) => words.push(format!("(bisects {})", bisect.setting)),
-        Task::Detect(detect) => words.push(format!("(smallest detected error of {})", detect.of)),
+        Task::Detect(detect) => {
+            words.push(format!("(smallest detected error of {})", detect.of.words()))
+        }
     }
-    words.extend(spec.mutation.map(|m| format!("({} × {})", m.of, m.factor)));
+    words.extend(spec.mutation.map(|m| format!("({} × {})", m.of.words(), m.factor)));
     words.extend(spec.disorder.map(|d| format!("(disorder {} dx, seed {})", d.most, d.seed)));
     words.join(" ")
 }

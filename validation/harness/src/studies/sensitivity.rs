@@ -77,7 +77,7 @@ pub fn study(sensitivity: &Sensitivity, runs: &Runs) -> Study {
         error => percent(error),
     };
     let table = Columns::<Row>::default()
-        .text("constant", |row| row.watched.constant.to_string())
+        .text("constant", |row| row.watched.constant.words())
         .num(["must be detected", "-"], move |row| percent(row.watched.constant.allowed()))
         .num(["detected from", "-"], error)
         .num(["not detected", "-"], move |row| row.undetected.map_or(Cell::text("–"), percent))
@@ -123,7 +123,7 @@ fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> 
 
 /// The gate on the number of gates that detect a gross fault.
 fn fault_gate(sensitivity: &Sensitivity, of: Constant, factor: f64) -> Gate {
-    let id = format!("{}.detects.{}_x_{factor}", sensitivity.case, of.name());
+    let id = format!("{}.detects.{}_x_{factor}", sensitivity.case, of);
     let because = "a wrong sign, a missing term, and a constant that is wrong by a factor are faults of the \
                    program, which some gate must detect";
     Gate::new(id, "gates that fail", Bound::Above(1.0), Evidence::Theory, because)
@@ -131,7 +131,7 @@ fn fault_gate(sensitivity: &Sensitivity, of: Constant, factor: f64) -> Gate {
 
 /// The gate on the smallest error that is detected.
 fn gate(sensitivity: &Sensitivity, watched: &Watched) -> Gate {
-    let id = format!("{}.detects.{}", sensitivity.case, watched.constant.name());
+    let id = format!("{}.detects.{}", sensitivity.case, watched.constant);
     let because = match watched.constant.is_physical() {
         true => "a result with a physical constant that is wrong by 3 % is wrong",
         false => "an ingredient of the method that is wrong by 10 % is a fault of the program",
