@@ -159,7 +159,6 @@ impl Temporary {
         let no_name = || io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name");
         let name = path.file_name().ok_or_else(no_name)?.to_string_lossy();
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        // The end of the name stays: some writers choose the format by it.
         let suffix = format!("-{name}");
         let mut names = Builder::new();
         names.prefix(PREFIX).suffix(&suffix).rand_bytes(RANDOM);
@@ -173,10 +172,6 @@ impl Temporary {
         let _registered = Registered(path.to_path_buf());
         Ok((Temporary { path, _registered }, file))
     }
-
-    fn rename(self, path: &Path) -> io::Result<()> {
-        self.path.persist(path).map_err(|refused| refused.error)
-    }
 }
 
 /// Writes a file so that `path` holds either its old content or all of `bytes`, at any moment.
@@ -185,29 +180,13 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
         let (temporary, mut file) = Temporary::beside(path)?;
         file.write_all(bytes)?;
         file.sync_all()?;
-        temporary.rename(path)?;
+        temporary.path.persist(path)?;
         if let Some(Ok(folder)) = path.parent().map(File::open) {
             let _ = folder.sync_all(); // makes the rename last; not every system can
         }
         Ok(())
     };
     write().map_err(|reason| FileError::File { path: path.into(), reason })
-}
-
-/// Lets `write` fill a temporary file by its name, which then becomes `path`: for writers that open
-/// files themselves.
-pub fn write_atomically_by<E: Into<io::Error>>(
-    path: &Path,
-    write: impl FnOnce(&Path) -> Result<(), E>,
-) -> Result<(), FileError> {
-    let written = || -> io::Result<()> {
-        let (temporary, file) = Temporary::beside(path)?;
-        drop(file);
-        write(&temporary.path).map_err(E::into)?;
-        File::open(&temporary.path)?.sync_all()?;
-        temporary.rename(path)
-    };
-    written().map_err(|reason| FileError::File { path: path.into(), reason })
 }
 
 /// Writes a probe into a folder, which is removed again.
@@ -403,28 +382,24 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("record.json");
         let [old, new] = [b'o', b'n'].map(|byte| vec![byte; 1 << 22]);
-        let by_name: fn(&Path, &[u8]) -> Result<(), FileError> =
-            |path, bytes| write_atomically_by(path, |temporary| fs::write(temporary, bytes));
-        for replace in [write_atomically, by_name] {
-            fs::write(&path, &old).unwrap();
-            let mut reader = File::open(&path).unwrap();
-            let mut read = vec![0; 1 << 10];
-            reader.read_exact(&mut read).unwrap();
-            let is_written = std::sync::atomic::AtomicBool::new(false);
-            std::thread::scope(|scope| {
-                scope.spawn(|| {
-                    replace(&path, &new).unwrap();
-                    is_written.store(true, std::sync::atomic::Ordering::Relaxed);
-                });
-                while !is_written.load(std::sync::atomic::Ordering::Relaxed) {
-                    let found = fs::read(&path).unwrap();
-                    assert!(found == old || found == new, "{} bytes are half a file", found.len());
-                }
+        fs::write(&path, &old).unwrap();
+        let mut reader = File::open(&path).unwrap();
+        let mut read = vec![0; 1 << 10];
+        reader.read_exact(&mut read).unwrap();
+        let is_written = std::sync::atomic::AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                write_atomically(&path, &new).unwrap();
+                is_written.store(true, std::sync::atomic::Ordering::Relaxed);
             });
-            reader.read_to_end(&mut read).unwrap();
-            assert!(read == old, "the old file was changed while it was read");
-            assert!(fs::read(&path).unwrap() == new && names(folder.path()) == ["record.json"]);
-        }
+            while !is_written.load(std::sync::atomic::Ordering::Relaxed) {
+                let found = fs::read(&path).unwrap();
+                assert!(found == old || found == new, "{} bytes are half a file", found.len());
+            }
+        });
+        reader.read_to_end(&mut read).unwrap();
+        assert!(read == old, "the old file was changed while it was read");
+        assert!(fs::read(&path).unwrap() == new && names(folder.path()) == ["record.json"]);
     }
 
     #[test]
@@ -549,7 +524,7 @@ mod tests {
         assert_eq!(names(folder.path()).len(), 1);
         assert_eq!(remove_all(&mut unfinished()), 1);
         assert!(names(folder.path()).is_empty());
-        assert!(temporary.rename(&path).is_err(), "a write under way cannot finish");
+        assert!(temporary.path.persist(&path).is_err(), "a write under way cannot finish");
         assert!(names(folder.path()).is_empty());
         assert_eq!(remove_all(&mut unfinished()), 0);
     }

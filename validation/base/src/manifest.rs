@@ -9,7 +9,7 @@ use std::thread;
 use serde::{Deserialize, Serialize};
 
 /// Program, compiler and machine of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
     /// version of touchstone
@@ -69,7 +69,7 @@ pub fn tell_source(source: Source) {
 }
 
 /// An answer that may be missing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Known {
     /// yes
@@ -77,6 +77,7 @@ pub enum Known {
     /// no
     No,
     /// there was no git, or no repository
+    #[default]
     Unknown,
 }
 

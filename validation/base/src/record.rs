@@ -86,7 +86,7 @@ fn unsealed(text: &str) -> Option<String> {
 }
 
 /// Everything about one run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
     /// version of the document
@@ -139,10 +139,11 @@ pub struct Record {
 }
 
 /// How a run ended.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Status {
     /// to its end
+    #[default]
     Completed,
     /// a field of a particle became too large or not finite
     Diverged {
@@ -277,15 +278,9 @@ macro_rules! metrics {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MetricName {
     key: MetricKey,
-    name: String,
-    what: String,
-}
-
-impl MetricName {
     /// The name, as gates state it.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
+    pub name: String,
+    what: String,
 }
 
 impl From<MetricKey> for MetricName {
@@ -457,20 +452,9 @@ impl Record {
             case: case.into(),
             variant: variant.into(),
             settings,
-            task: Task::Simulate,
-            allow_unstable: false,
-            keep: Keep::default(),
-            mutation: None,
-            disorder: None,
-            submission: None,
-            status: Status::Completed,
-            metrics: BTreeMap::new(),
-            absent: BTreeMap::new(),
             cost: Cost { threads, ..Cost::default() },
-            numerics: BTreeMap::new(),
-            profiles: BTreeMap::new(),
-            state: None,
             manifest: Manifest::of_this_process(threads),
+            ..Record::default()
         }
     }
 
@@ -512,7 +496,7 @@ impl Record {
 
     /// A metric's value, `None` if it was not measured.
     pub fn value(&self, metric: impl Into<MetricName>) -> Option<f64> {
-        self.metric(metric.into().name())
+        self.metric(&metric.into().name)
     }
 
     /// The values of a column of a profile, none if there is no such profile or column.

@@ -12,7 +12,7 @@ use super::raster::Raster;
 use super::svg::{self, Svg};
 use base::files;
 use plotters::prelude::BitMapBackend;
-use std::{fs::File, io, path::Path};
+use std::{io, path::Path};
 
 /// Drawn pixels per pixel of a PNG.
 const SUPERSAMPLE: u32 = 3;
@@ -189,16 +189,15 @@ fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
 /// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
 pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
     let (pixels, width, height) = pixels(figure, DENSITY).map_err(io::Error::other)?;
-    let write = |temporary: &Path| -> io::Result<()> {
-        let mut encoder = png::Encoder::new(File::create(temporary)?, width, height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_compression(png::Compression::Fast);
-        encoder.set_filter(png::Filter::Adaptive);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&pixels)?;
-        Ok(writer.finish()?)
-    };
-    files::write_atomically_by(path, write).map_err(io::Error::other)
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&pixels)?;
+    writer.finish()?;
+    files::write_atomically(path, &bytes).map_err(io::Error::other)
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ fn error(declared: &Declaration, record: &Record, verdicts: &[Judged]) -> (Strin
         && let Ok(error) = Headline::of(card, record).error()
     {
         let words = format!("{error}, {}, against {}", card.error, card.against);
-        return (words, card.metric.name().to_string());
+        return (words, card.metric.name.clone());
     }
     let first = verdicts.iter().find(|judged| judged.judgement.value.is_some());
     let found = first.and_then(|judged| record.metrics.get_key_value(&judged.gate.metric));

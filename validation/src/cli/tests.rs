@@ -669,7 +669,7 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
             assert!(text.contains(part), "{part}: {text}");
         }
     };
-    let metric = card.metric.name();
+    let metric = &card.metric.name;
     let finer = "next   touchstone run couette --variant plain --set rows=40";
     has(&end(vec![of(metric, 0.0246)]), &["error  1.2 %", "at most 0.0246: pass, 50", finer]);
     has(&end(vec![of(metric, 0.01)]), &["fail", "next   touchstone explain couette.staged"]);

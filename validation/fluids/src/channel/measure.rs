@@ -196,7 +196,7 @@ mod tests {
     }
 
     fn assert_near(record: &Record, metric: MetricName, exact: f64, tolerance: f64) {
-        let (name, found) = (metric.name().to_string(), record.value(metric).expect("measured"));
+        let (name, found) = (metric.name.clone(), record.value(metric).expect("measured"));
         assert!((found - exact).abs() < tolerance, "{name}: {found} is not {exact}");
     }
 

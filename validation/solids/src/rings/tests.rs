@@ -45,8 +45,8 @@ fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record
 
 fn value(record: &Record, metric: impl Into<MetricName>) -> f64 {
     let metric = metric.into();
-    let value = record.metric(metric.name());
-    value.unwrap_or_else(|| panic!("{} is absent: {:?}", metric.name(), record.absent))
+    let value = record.metric(&metric.name);
+    value.unwrap_or_else(|| panic!("{} is absent: {:?}", metric.name, record.absent))
 }
 
 /// Two phases of constant force, from 20 to 40 and from 60 to 100 L/c0; flattest at 70 L/c0.
@@ -117,9 +117,7 @@ fn rings_that_still_touch_at_the_end_have_no_restitution() {
     assert!(record.value(IMPULSE.at(phase(0))).is_some());
     for metric in [IMPULSE, T_IMPULSE_1, T_IMPULSE_99] {
         let metric = metric.at(phase(1));
-        assert!(
-            record.metric(metric.name()).is_none() && record.absent.contains_key(metric.name())
-        );
+        assert!(record.metric(&metric.name).is_none() && record.absent.contains_key(&metric.name));
     }
     let never = measured(&RingSettings { end: 15.0, ..settings() }, two_phases);
     assert_eq!(never.absent["restitution"], "the rings never touch");
@@ -166,7 +164,7 @@ fn a_run_that_is_finite_elements_has_no_distance_from_them() {
         }
         for (metric, most) in small {
             let error = value(&record, metric.clone());
-            assert!(error.abs() <= most, "{} at {speed}: {error}", metric.name());
+            assert!(error.abs() <= most, "{} at {speed}: {error}", metric.name);
         }
     }
 }

@@ -136,7 +136,7 @@ fn gates(row: &Row) -> Vec<Gate> {
         Group::Ladder | Group::Ablation | Group::Ensemble => Vec::new(),
     };
     let known = known(row);
-    let limited = |gate: Gate| match known.iter().find(|known| known.0.name() == gate.metric) {
+    let limited = |gate: Gate| match known.iter().find(|known| known.0.name == gate.metric) {
         Some((_, to, (cause, reason))) => {
             let bound = widened(gate.bound, *to);
             gate.with_limitation(bound, *reason).because_of(cause)
