@@ -1,6 +1,7 @@
 //! An axis, and the mapping of its values to the unit interval.
 
-use super::ticks::{Scale, Ticks, ticks};
+use super::font::{self, TICK_EM};
+use super::ticks::{Scale, Ticks, ticks, with_exponent};
 
 /// One axis of a plot.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +73,25 @@ fn padded_log((lo, hi): (f64, f64)) -> (f64, f64) {
     ((lo * 10f64.powf(-pad)).max(f64::MIN_POSITIVE), (hi * 10f64.powf(pad)).min(f64::MAX))
 }
 
+/// A mapping with its ticks and its label.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Ruler {
+    pub mapping: Mapping,
+    /// Labelled ticks: place on the unit interval, label.
+    pub major: Vec<(f64, String)>,
+    /// Places of unlabelled ticks.
+    pub minor: Vec<f64>,
+    /// Quantity and unit, with the power of ten that the labels of the ticks leave out.
+    pub label: String,
+}
+
+impl Ruler {
+    /// Width of the widest tick label \[CSS pixels\].
+    pub fn width(&self) -> f64 {
+        font::widest(self.major.iter().map(|(_, label)| label), TICK_EM)
+    }
+}
+
 /// Maps values between two ends to the unit interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Mapping {
@@ -81,9 +101,13 @@ pub(super) struct Mapping {
 }
 
 impl Mapping {
-    /// The ticks of the axis, at most about `count` of them labelled.
-    pub fn ticks(&self, count: usize) -> Ticks {
-        ticks(self.scale, self.lo, self.hi, count)
+    /// With at most about `count` labelled ticks.
+    pub fn ruler(self, count: usize, label: &str) -> Ruler {
+        let Ticks { major, minor, exponent } = ticks(self.scale, self.lo, self.hi, count);
+        let major = major.into_iter().filter_map(|(v, label)| Some((self.unit(v)?, label)));
+        let minor = minor.into_iter().filter_map(|v| self.unit(v));
+        let label = with_exponent(label, exponent);
+        Ruler { mapping: self, major: major.collect(), minor: minor.collect(), label }
     }
 
     /// 0 at the low end, 1 at the high end, beyond them outside; `None` for what has no place.
@@ -116,7 +140,7 @@ mod tests {
             for axis in [Axis::linear("x"), Axis::log("x")] {
                 let m = axis.mapping(data.iter().copied());
                 assert!(m.lo < m.hi && m.lo.is_finite() && m.hi.is_finite(), "{data:?} {m:?}");
-                assert!(m.ticks(5).major.len() < 50);
+                assert!(m.ruler(5, "").major.len() < 50);
             }
         }
     }

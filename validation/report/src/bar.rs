@@ -1,10 +1,10 @@
 //! Colour bars: which value has which colour.
 
-use super::axis::{Axis, Mapping};
+use super::axis::{Axis, Ruler};
 use super::canvas::{Align, Canvas, Rect, Type};
 use super::colour::{Colour, ColourMap};
-use super::frame::{TICK_EM, fit, widest_label};
-use super::ticks::{Ticks, with_exponent};
+use super::font::TICK_EM;
+use super::frame::fit;
 
 const GAP: f64 = 12.0;
 const WIDTH: f64 = 13.0;
@@ -15,9 +15,7 @@ pub(super) const STEPS: usize = 32;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Bar {
     map: ColourMap,
-    label: String,
-    values: Mapping,
-    ticks: Ticks,
+    values: Ruler,
     /// Whether the ends were given, not taken from the data.
     is_fixed: bool,
     /// Whether the figure draws it for all panels.
@@ -42,21 +40,20 @@ impl Bar {
         });
         let axis = Axis::linear("");
         let axis = if lo < hi { axis.range(lo, hi) } else { axis };
-        let values = axis.mapping([lo, hi].into_iter());
-        let ticks = values.ticks((height / 36.0) as usize);
-        let is_fixed = given.is_some();
-        Self { map, label: label.into(), values, ticks, is_fixed, is_shared: false }
+        let mapping = axis.mapping([lo, hi].into_iter());
+        let values = mapping.ruler((height / 36.0) as usize, label);
+        Self { map, values, is_fixed: given.is_some(), is_shared: false }
     }
 
     /// Whether one bar may stand for this and another, because both have the same given ends.
     pub fn is_as(&self, other: &Self) -> bool {
-        let said = |bar: &Self| (bar.map, bar.values, bar.label.clone());
+        let said = |bar: &Self| (bar.map, bar.values.mapping, bar.values.label.clone());
         self.is_fixed && other.is_fixed && said(self) == said(other)
     }
 
     /// Which of the colours a value has.
     pub fn step(&self, value: f64) -> Option<usize> {
-        Some(((self.values.unit(value)? * STEPS as f64) as usize).min(STEPS - 1))
+        Some(((self.values.mapping.unit(value)? * STEPS as f64) as usize).min(STEPS - 1))
     }
 
     pub fn colour(&self, step: usize) -> Colour {
@@ -65,8 +62,8 @@ impl Bar {
 
     /// Room for the bar.
     pub fn width(&self) -> f64 {
-        let bar = GAP + WIDTH + 8.0 + widest_label(&self.ticks);
-        bar + if self.label.is_empty() { 6.0 } else { 26.0 }
+        let bar = GAP + WIDTH + 8.0 + self.values.width();
+        bar + if self.values.label.is_empty() { 6.0 } else { 26.0 }
     }
 
     /// Draws the bar right of an area.
@@ -78,19 +75,16 @@ impl Bar {
             canvas.line(from, bar.at((0.5, 1.0)), self.colour(step), WIDTH);
         }
         canvas.frame(bar, Colour::BLACK, 1.0);
-        let ticks = self.ticks.major.iter();
-        let ticks: Vec<_> = ticks
-            .filter_map(|(v, label)| Some((bar.at((1.0, self.values.unit(*v)?)), label)))
-            .collect();
-        for ((x, y), _) in &ticks {
-            canvas.line((*x, *y), (x + 4.0, *y), Colour::BLACK, 1.0);
+        let Ruler { major, label, .. } = &self.values;
+        for (x, y) in major.iter().map(|(unit, _)| bar.at((1.0, *unit))) {
+            canvas.line((x, y), (x + 4.0, y), Colour::BLACK, 1.0);
         }
-        for ((x, y), label) in &ticks {
-            canvas.text(label, (x + 7.0, *y), Type::new(TICK_EM, Align::Start));
+        for (unit, label) in major {
+            let (x, y) = bar.at((1.0, *unit));
+            canvas.text(label, (x + 7.0, y), Type::new(TICK_EM, Align::Start));
         }
-        let label = with_exponent(&self.label, self.ticks.exponent);
-        let em = fit(&label, 12.0, area.height + 20.0);
-        let x = bar.right() + 20.0 + widest_label(&self.ticks);
-        canvas.text(&label, (x, bar.at((0.0, 0.5)).1), Type::new(em, Align::Middle).upright());
+        let em = fit(label, 12.0, area.height + 20.0);
+        let x = bar.right() + 20.0 + self.values.width();
+        canvas.text(label, (x, bar.at((0.0, 0.5)).1), Type::new(em, Align::Middle).upright());
     }
 }

@@ -2,14 +2,12 @@
 
 use super::bar::Bar;
 use super::canvas::Canvas;
-use super::frame::Margins;
+use super::frame::Room;
 use super::legend::Entry;
 
 /// A panel with everything decided but its place.
 pub(super) trait Drawn {
-    /// Width and height of what its axes enclose.
-    fn size(&self) -> (f64, f64);
-    fn margins(&self) -> Margins;
+    fn room(&self) -> Room;
     /// Draws the panel; the upper left corner of its axes is the canvas's.
     fn draw(&self, canvas: &mut Canvas);
     /// The entries of its legend, if that is drawn.

@@ -16,6 +16,9 @@ pub(super) const HEIGHT_PER_EM: f64 = (1901.0 + 483.0) / 2048.0;
 /// Height of a digit over the em.
 pub(super) const DIGIT_HEIGHT: f64 = 1493.0 / 2048.0;
 
+/// Em of tick labels, in CSS pixels.
+pub(super) const TICK_EM: f64 = 11.0;
+
 /// Which end of a text sits at its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Align {
@@ -58,6 +61,11 @@ pub(super) fn desc(size: f64) -> FontDesc<'static> {
         REGISTERED.get_or_init(|| register_font(FAMILY, FontStyle::Normal, BYTES).is_ok());
     assert!(registered, "the embedded font is a valid TrueType file");
     FontDesc::new(FontFamily::Name(FAMILY), size, FontStyle::Normal)
+}
+
+/// Width of the widest of these texts, 0 if there is none.
+pub(super) fn widest<'a>(texts: impl Iterator<Item = &'a String>, em: f64) -> f64 {
+    texts.map(|text| width(text, em)).fold(0.0, f64::max)
 }
 
 /// Width of a text whose em is `em`.

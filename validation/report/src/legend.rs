@@ -11,7 +11,7 @@ pub(super) struct Look {
     pub colour: Colour,
     pub line: Option<Dash>,
     pub width: f64,
-    pub marker: Option<(Shape, f64)>,
+    pub marker: Option<Shape>,
     pub open: bool,
 }
 
@@ -38,6 +38,8 @@ impl Entry {
     }
 }
 
+/// Diameter of a marker in CSS pixels.
+pub(super) const MARKER: f64 = 6.5;
 const EM: f64 = 11.0;
 const ROW: f64 = 17.0;
 const PADDING: f64 = 7.0;
@@ -51,8 +53,7 @@ pub(super) fn size(entries: &[Entry]) -> (f64, f64) {
 
 /// Width of an entry with the gap to the next column.
 fn column(entries: &[Entry]) -> f64 {
-    let widest = entries.iter().map(|e| font::width(&e.name, EM)).fold(0.0, f64::max);
-    SAMPLE + 7.0 + widest + PADDING
+    SAMPLE + 7.0 + font::widest(entries.iter().map(|entry| &entry.name), EM) + PADDING
 }
 
 /// Rows of the entries in as many columns as fit side by side.
@@ -104,8 +105,8 @@ fn sample(canvas: &mut Canvas, look: Look, (x, y): Point) {
     if let Some(dash) = look.line {
         canvas.dashed(&[(x, y), (x + SAMPLE, y)], look.colour, look.width, dash);
     }
-    if let Some((shape, diameter)) = look.marker {
-        canvas.markers(&[(x + 0.5 * SAMPLE, y)], shape, diameter, look.colour, look.open);
+    if let Some(shape) = look.marker {
+        canvas.markers(&[(x + 0.5 * SAMPLE, y)], shape, MARKER, look.colour, look.open);
     }
 }
 

@@ -1,29 +1,24 @@
 //! Particle maps and category maps.
 
-use super::axis::{Axis, Mapping};
+use super::axis::Axis;
 use super::bar::{Bar, STEPS};
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::drawn::Drawn;
 use super::figure::{CategoryMap, Dash, ParticleMap, Shape};
-use super::font;
-use super::frame::{Margins, TICK_EM, Texts, axes, fit, labels, margins, widest_label};
+use super::font::{self, TICK_EM};
+use super::frame::{Frame, Room, Texts, fit, labels, room};
 use super::geometry::{clip_line, thin};
 use super::legend::{self, Entry, Sample};
-use super::ticks::{Scale, Ticks, with_exponent};
+use super::ticks::Scale;
 
 /// A particle map with its scales decided.
 pub(super) struct Particles<'a> {
     map: &'a ParticleMap,
-    area: Rect,
-    x: Mapping,
-    y: Mapping,
-    x_ticks: Ticks,
-    y_ticks: Ticks,
+    frame: Frame<'a>,
     bar: Bar,
     /// Radius of a dot in CSS pixels.
     radius: f64,
-    note: String,
 }
 
 impl<'a> Particles<'a> {
@@ -42,54 +37,38 @@ impl<'a> Particles<'a> {
         let area = Rect::of((pixels * width, pixels * height));
         let lost = map.points.iter().filter(|p| !(p.0 + p.1 + p.2).is_finite()).count();
         let data = map.points.iter().map(|p| p.2);
+        let frame = Frame {
+            area,
+            x: x.ruler((area.width / 60.0) as usize, &map.x.label),
+            y: y.ruler((area.height / 42.0) as usize, &map.y.label),
+            title: &map.title,
+            note: if lost > 0 { format!("{lost} not finite") } else { String::new() },
+        };
         Self {
             map,
-            area,
-            x_ticks: x.ticks((area.width / 60.0) as usize),
-            y_ticks: y.ticks((area.height / 42.0) as usize),
-            x,
-            y,
+            frame,
             bar: Bar::new(map.map, &map.label, map.values, data, area.height),
             radius: (0.5 * map.diameter * pixels).clamp(0.8, 9.0),
-            note: if lost > 0 { format!("{lost} not finite") } else { String::new() },
         }
-    }
-
-    fn with_texts<R>(&self, then: impl FnOnce(&Texts) -> R) -> R {
-        then(&Texts {
-            title: &self.map.title,
-            note: &self.note,
-            x: &with_exponent(&self.map.x.label, self.x_ticks.exponent),
-            y: &with_exponent(&self.map.y.label, self.y_ticks.exponent),
-        })
-    }
-
-    fn place(&self, (x, y): (f64, f64)) -> Option<Point> {
-        Some(self.area.at((self.x.unit(x)?, self.y.unit(y)?)))
     }
 }
 
 impl Drawn for Particles<'_> {
-    fn size(&self) -> (f64, f64) {
-        (self.area.width, self.area.height)
-    }
-
     fn bar(&mut self) -> Option<&mut Bar> {
         Some(&mut self.bar)
     }
 
-    fn margins(&self) -> Margins {
-        let around = self.with_texts(|texts| margins(texts, widest_label(&self.y_ticks)));
-        Margins { right: if self.bar.is_shared { 14.0 } else { self.bar.width() }, ..around }
+    fn room(&self) -> Room {
+        self.frame.room(if self.bar.is_shared { 14.0 } else { self.bar.width() })
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        axes(canvas, self.area, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
-        self.with_texts(|texts| labels(canvas, self.area, texts, widest_label(&self.y_ticks)));
+        let area = self.frame.area;
+        self.frame.draw(canvas);
         // Dots of one colour after each other, for they are one element of an SVG.
         let mut dots = vec![Vec::new(); STEPS];
         for &(x, y, value) in &self.map.points {
-            let Some(at) = self.place((x, y)).filter(|at| self.area.contains(*at)) else {
+            let Some(at) = self.frame.place((x, y)).filter(|at| area.contains(*at)) else {
                 continue;
             };
             match self.bar.step(value) {
@@ -104,15 +83,15 @@ impl Drawn for Particles<'_> {
             dots.into_iter().for_each(|at| canvas.disc(at, self.radius, self.bar.colour(step)));
         }
         for line in &self.map.lines {
-            let points: Vec<_> = line.points.iter().filter_map(|p| self.place(*p)).collect();
+            let points: Vec<_> = line.points.iter().filter_map(|p| self.frame.place(*p)).collect();
             let (colour, dash) = (line.colour.unwrap_or(Colour::BLACK), line.line);
-            for piece in clip_line(&thin(&points), self.area) {
+            for piece in clip_line(&thin(&points), area) {
                 canvas.dashed(&piece, colour, line.width, dash.unwrap_or(Dash::Solid));
             }
         }
-        canvas.frame(self.area, Colour::BLACK, 1.0);
+        canvas.frame(area, Colour::BLACK, 1.0);
         if !self.bar.is_shared {
-            self.bar.draw(canvas, self.area);
+            self.bar.draw(canvas, area);
         }
     }
 }
@@ -123,7 +102,7 @@ const NAMES: f64 = 18.0;
 /// A category map with its legend.
 pub(super) struct Categories<'a> {
     map: &'a CategoryMap,
-    size: (f64, f64),
+    area: Rect,
     entries: Vec<Entry>,
 }
 
@@ -133,7 +112,7 @@ impl<'a> Categories<'a> {
             name: name.clone(),
             sample: Sample::Patch(*colour),
         };
-        Self { map, size, entries: map.categories.iter().map(entry).collect() }
+        Self { map, area: Rect::of(size), entries: map.categories.iter().map(entry).collect() }
     }
 
     fn texts(&self) -> Texts<'_> {
@@ -155,10 +134,6 @@ impl<'a> Categories<'a> {
 }
 
 impl Drawn for Categories<'_> {
-    fn size(&self) -> (f64, f64) {
-        self.size
-    }
-
     fn legend(&self) -> &[Entry] {
         &self.entries
     }
@@ -167,22 +142,16 @@ impl Drawn for Categories<'_> {
         self.entries.clear();
     }
 
-    fn margins(&self) -> Margins {
+    fn room(&self) -> Room {
         let label = if self.map.x_label.is_empty() { 4.0 } else { 22.0 };
-        Margins {
-            right: if self.entries.is_empty() {
-                14.0
-            } else {
-                legend::size(&self.entries).0 + 14.0
-            },
-            bottom: NAMES + label,
-            ..margins(&self.texts(), widest(&self.map.y))
-        }
+        let legend = if self.entries.is_empty() { 0.0 } else { legend::size(&self.entries).0 };
+        let around = room(self.area, &self.texts(), font::widest(self.map.y.iter(), TICK_EM));
+        Room { right: legend + 14.0, bottom: NAMES + label, ..around }
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        let (map, area) = (self.map, Rect::of(self.size));
-        labels(canvas, area, &self.texts(), widest(&map.y));
+        let Self { map, area, .. } = self;
+        labels(canvas, *area, &self.texts(), font::widest(map.y.iter(), TICK_EM));
         let width = area.width / map.x.len().max(1) as f64;
         let height = area.height / map.y.len().max(1) as f64;
         for (column, name) in map.x.iter().enumerate() {
@@ -205,8 +174,4 @@ impl Drawn for Categories<'_> {
         canvas.text(&map.x_label, below, Type::new(em, Align::Middle));
         legend::draw(canvas, &self.entries, (area.right() + 8.0, area.top - 4.0), false);
     }
-}
-
-fn widest(names: &[String]) -> f64 {
-    names.iter().map(|name| font::width(name, TICK_EM)).fold(0.0, f64::max)
 }

@@ -1,20 +1,18 @@
 //! Layout and drawing of one plot over two axes.
 
-use super::axis::Mapping;
+use super::axis::{Mapping, Ruler};
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::drawn::Drawn;
 use super::figure::{Layer, Legend, Plot, Series, Shape};
-use super::font;
-use super::frame::{Margins, TICK_EM, Texts, axes, labels, margins, widest_label};
+use super::font::{self, TICK_EM};
+use super::frame::{Frame, Room};
 use super::geometry::{clip_line, clip_polygon, runs, sample_rect, sample_segment, thin};
-use super::legend::{self, Entry, Look, Sample};
-use super::ticks::{Ticks, minus, with_exponent};
+use super::legend::{self, Entry, Look, MARKER, Sample};
+use super::ticks::minus;
 
 const SLOPE_EM: f64 = 10.5;
 const MARK_EM: f64 = 9.0;
-/// Diameter of a marker in CSS pixels.
-const MARKER: f64 = 6.5;
 /// How many points of lines, which lie a few pixels apart, the label of a point may hide.
 const MARK_HIDES: usize = 2;
 /// Opacity of bands.
@@ -23,19 +21,13 @@ const BAND: f64 = 0.22;
 /// A plot with everything decided but its place: all points count from the upper left corner of the axes.
 pub(super) struct Prepared<'a> {
     plot: &'a Plot,
-    /// What the axes enclose.
-    area: Rect,
-    x: Mapping,
-    y: Mapping,
-    x_ticks: Ticks,
-    y_ticks: Ticks,
+    frame: Frame<'a>,
     series: Vec<(&'a Series, Look)>,
     /// Orders, and the corners of their triangles.
     slopes: Vec<(f64, [Point; 3])>,
     marks: Vec<Mark<'a>>,
     entries: Vec<Entry>,
     legend: Legend,
-    note: String,
 }
 
 /// The label of a point, which starts in the middle of the left side of its room.
@@ -50,45 +42,32 @@ impl<'a> Prepared<'a> {
         let (xs, ys) = extent(plot);
         let (x, y) = (plot.x.mapping(xs.into_iter()), plot.y.mapping(ys.into_iter()));
         let series = with_looks(&plot.layers);
-        let area = Rect::of(size);
+        let frame = Frame {
+            area: Rect::of(size),
+            x: x_ruler(x, size.0, &plot.x.label),
+            y: y.ruler((size.1 / 42.0) as usize, &plot.y.label),
+            title: &plot.title,
+            note: String::new(),
+        };
         let mut this = Self {
             plot,
-            area,
-            x_ticks: x_ticks(&x, size.0),
-            y_ticks: y.ticks((size.1 / 42.0) as usize),
-            x,
-            y,
+            frame,
             entries: entries(plot, &series),
             series,
             slopes: Vec::new(),
             marks: Vec::new(),
             legend: plot.legend,
-            note: String::new(),
         };
-        this.note = this.dropped();
+        this.frame.note = this.dropped();
         let mut obstacles = this.obstacles();
         this.place_slopes(&mut obstacles);
         this.place_marks(&mut obstacles);
         if this.entries.is_empty() {
             this.legend = Legend::Hidden;
         } else if this.legend == Legend::Auto {
-            this.legend = legend::place(&this.entries, this.area, &obstacles);
+            this.legend = legend::place(&this.entries, this.frame.area, &obstacles);
         }
         this
-    }
-
-    fn with_texts<R>(&self, then: impl FnOnce(&Texts) -> R) -> R {
-        then(&Texts {
-            title: &self.plot.title,
-            note: &self.note,
-            x: &with_exponent(&self.plot.x.label, self.x_ticks.exponent),
-            y: &with_exponent(&self.plot.y.label, self.y_ticks.exponent),
-        })
-    }
-
-    /// Where a point lies.
-    fn place(&self, (x, y): (f64, f64)) -> Option<Point> {
-        Some(self.area.at((self.x.unit(x)?, self.y.unit(y)?)))
     }
 
     /// What could not be drawn, in words.
@@ -96,10 +75,10 @@ impl<'a> Prepared<'a> {
         let (mut infinite, mut nonpositive, mut off) = (0, 0, 0);
         for (series, _) in &self.series {
             for &(x, y) in &series.points {
-                match self.place((x, y)) {
+                match self.frame.place((x, y)) {
                     _ if !(x.is_finite() && y.is_finite()) => infinite += 1,
                     None => nonpositive += 1,
-                    Some(p) if series.marked && !self.area.grown(0.5).contains(p) => off += 1,
+                    Some(p) if series.marked && !self.frame.area.grown(0.5).contains(p) => off += 1,
                     Some(_) => {}
                 }
             }
@@ -115,7 +94,7 @@ impl<'a> Prepared<'a> {
         let mut all = Vec::new();
         for (series, _) in &self.series {
             let mut segments = self.bars(series);
-            for run in runs(&series.points, |p| self.place(p)) {
+            for run in runs(&series.points, |p| self.frame.place(p)) {
                 all.extend_from_slice(&run);
                 let r = if series.marked { 0.5 * MARKER } else { 0.0 };
                 let around = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)];
@@ -124,7 +103,7 @@ impl<'a> Prepared<'a> {
                     segments.extend(run.windows(2).map(|pair| (pair[0], pair[1])));
                 }
             }
-            for (a, b) in segments.into_iter().filter_map(|(a, b)| self.area.clip(a, b)) {
+            for (a, b) in segments.into_iter().filter_map(|(a, b)| self.frame.area.clip(a, b)) {
                 sample_segment(&mut all, a, b);
             }
         }
@@ -147,10 +126,11 @@ impl<'a> Prepared<'a> {
 
     /// The free place closest to the data.
     fn free_triangle(&self, order: f64, factor: f64, data: &[Point]) -> Option<[Point; 3]> {
-        let (x, y, area) = (self.x.lo, self.y.lo, self.area);
-        let a = self.place((x, y)).filter(|_| order.is_finite())?;
-        let b = self.place((x * factor, y))?;
-        let c = self.place((x * factor, y * factor.powf(order)))?;
+        let Frame { x, y, area, .. } = &self.frame;
+        let (x, y) = (x.mapping.lo, y.mapping.lo);
+        let a = self.frame.place((x, y)).filter(|_| order.is_finite())?;
+        let b = self.frame.place((x * factor, y))?;
+        let c = self.frame.place((x * factor, y * factor.powf(order)))?;
         let steps = |length: f64| (0..(length / 6.0) as i32).map(|i| 6.0 * f64::from(i));
         let moved = |dx: f64, dy: f64| {
             [a, b, c].map(|p| (p.0 - a.0 + area.left + dx, p.1 - a.1 + area.top + dy))
@@ -173,7 +153,7 @@ impl<'a> Prepared<'a> {
     /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
     fn place_marks(&mut self, obstacles: &mut Vec<Point>) {
         let markers: Vec<Point> = (self.series.iter().filter(|(series, _)| series.marked))
-            .flat_map(|(series, _)| series.points.iter().filter_map(|p| self.place(*p)))
+            .flat_map(|(series, _)| series.points.iter().filter_map(|p| self.frame.place(*p)))
             .collect();
         let points = self.series.iter().flat_map(|(series, look)| {
             let last = series.labels.len().saturating_sub(1);
@@ -184,7 +164,7 @@ impl<'a> Prepared<'a> {
         points.sort_by_key(|(is_between, ..)| *is_between);
         let mut found: Vec<(Point, Mark)> = Vec::new();
         for (_, point, text, colour) in points {
-            let Some(at) = self.place(point) else { continue };
+            let Some(at) = self.frame.place(point) else { continue };
             let is_same = |(other, mark): &(Point, Mark)| {
                 mark.text == *text && (other.0 - at.0).hypot(other.1 - at.1) < 6.0
             };
@@ -194,7 +174,7 @@ impl<'a> Prepared<'a> {
             let hidden = |room: &Rect| {
                 let hides = markers.iter().any(|p| room.grown(3.5).contains(*p));
                 let lines = obstacles.iter().filter(|&&p| room.contains(p)).count();
-                (self.area.encloses(room) && !hides && lines <= MARK_HIDES).then_some(lines)
+                (self.frame.area.encloses(room) && !hides && lines <= MARK_HIDES).then_some(lines)
             };
             let rooms = mark_rooms(at, font::width(text, MARK_EM)).into_iter();
             let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
@@ -209,20 +189,23 @@ impl<'a> Prepared<'a> {
     /// Error bars of a series; an end without a place on a logarithmic axis goes off the low side.
     fn bars(&self, series: &Series) -> Vec<(Point, Point)> {
         let bar = |(&(x, y), &(lo, hi)): (&(f64, f64), &(f64, f64))| {
-            let low = self.x.unit(lo).or((lo <= 0.0).then_some(-1.0))?;
-            let (_, y) = self.place((x, y))?;
-            let at = |unit: f64| (unit * self.area.width, y);
-            Some((at(low), at(self.x.unit(hi)?)))
+            let x_axis = &self.frame.x.mapping;
+            let low = x_axis.unit(lo).or((lo <= 0.0).then_some(-1.0))?;
+            let (_, y) = self.frame.place((x, y))?;
+            let at = |unit: f64| (unit * self.frame.area.width, y);
+            Some((at(low), at(x_axis.unit(hi)?)))
         };
         series.points.iter().zip(&series.x_bars).filter_map(bar).collect()
     }
 
     fn draw_band(&self, canvas: &mut Canvas, points: &[(f64, f64, f64)], colour: Colour) {
-        let ends = |(x, lower, upper)| Some((self.place((x, lower))?, self.place((x, upper))?));
+        let ends = |(x, lower, upper)| {
+            Some((self.frame.place((x, lower))?, self.frame.place((x, upper))?))
+        };
         for run in runs(points, ends) {
             let (lower, upper): (Vec<Point>, Vec<Point>) = run.into_iter().unzip();
             let outline: Vec<Point> = lower.into_iter().chain(upper.into_iter().rev()).collect();
-            let clipped = clip_polygon(&outline, self.area);
+            let clipped = clip_polygon(&outline, self.frame.area);
             if outline.len() > 2 && clipped.len() > 2 {
                 canvas.polygon(&thin(&clipped), colour.tint(BAND));
             }
@@ -231,33 +214,30 @@ impl<'a> Prepared<'a> {
 
     fn draw_series(&self, canvas: &mut Canvas, series: &Series, look: Look) {
         for (a, b) in self.bars(series) {
-            if let Some((p, q)) = self.area.clip(a, b) {
+            if let Some((p, q)) = self.frame.area.clip(a, b) {
                 canvas.line(p, q, look.colour, 1.0);
             }
-            for (x, y) in [a, b].into_iter().filter(|&p| self.area.contains(p)) {
+            for (x, y) in [a, b].into_iter().filter(|&p| self.frame.area.contains(p)) {
                 canvas.line((x, y - 3.5), (x, y + 3.5), look.colour, 1.0);
             }
         }
         if let Some(dash) = look.line {
-            for run in runs(&series.points, |p| self.place(p)) {
-                for piece in clip_line(&thin(&run), self.area) {
+            for run in runs(&series.points, |p| self.frame.place(p)) {
+                for piece in clip_line(&thin(&run), self.frame.area) {
                     canvas.dashed(&piece, look.colour, look.width, dash);
                 }
             }
         }
-        if let Some((shape, size)) = look.marker {
-            let places = series.points.iter().filter_map(|&p| self.place(p));
-            let places: Vec<Point> = places.filter(|p| self.area.grown(0.5).contains(*p)).collect();
-            canvas.markers(&places, shape, size, look.colour, look.open);
+        if let Some(shape) = look.marker {
+            let places = series.points.iter().filter_map(|&p| self.frame.place(p));
+            let places: Vec<Point> =
+                places.filter(|p| self.frame.area.grown(0.5).contains(*p)).collect();
+            canvas.markers(&places, shape, MARKER, look.colour, look.open);
         }
     }
 }
 
 impl Drawn for Prepared<'_> {
-    fn size(&self) -> (f64, f64) {
-        (self.area.width, self.area.height)
-    }
-
     fn legend(&self) -> &[Entry] {
         if self.legend == Legend::Hidden { &[] } else { &self.entries }
     }
@@ -266,15 +246,14 @@ impl Drawn for Prepared<'_> {
         self.legend = Legend::Hidden;
     }
 
-    fn margins(&self) -> Margins {
-        let overhang =
-            self.x_ticks.major.last().map_or(0.0, |(_, l)| font::width(l, TICK_EM) / 2.0);
+    fn room(&self) -> Room {
+        let last = self.frame.x.major.last();
+        let overhang = last.map_or(0.0, |(_, label)| font::width(label, TICK_EM) / 2.0);
         let outside = match self.legend {
             Legend::Outside => legend::size(&self.entries).0 + 12.0,
             _ => 0.0,
         };
-        let around = self.with_texts(|texts| margins(texts, widest_label(&self.y_ticks)));
-        Margins { right: (overhang + 2.0).max(10.0).max(outside), ..around }
+        self.frame.room((overhang + 2.0).max(10.0).max(outside))
     }
 
     fn draw(&self, canvas: &mut Canvas) {
@@ -284,21 +263,20 @@ impl Drawn for Prepared<'_> {
                 self.draw_band(canvas, points, *colour);
             }
         }
-        axes(canvas, self.area, (&self.x, &self.x_ticks), (&self.y, &self.y_ticks));
-        self.with_texts(|texts| labels(canvas, self.area, texts, widest_label(&self.y_ticks)));
+        self.frame.draw(canvas);
         for (series, look) in &self.series {
             self.draw_series(canvas, series, *look);
         }
         for (order, corners) in &self.slopes {
-            draw_slope(canvas, self.area, *order, *corners);
+            draw_slope(canvas, self.frame.area, *order, *corners);
         }
         for mark in &self.marks {
             let at = mark.room.at((0.0, 0.5));
             canvas.text(mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
         }
-        canvas.frame(self.area, Colour::BLACK, 1.0);
+        canvas.frame(self.frame.area, Colour::BLACK, 1.0);
         if self.legend != Legend::Hidden {
-            let rect = legend::rect(&self.entries, self.area, self.legend);
+            let rect = legend::rect(&self.entries, self.frame.area, self.legend);
             let boxed = self.legend != Legend::Outside;
             legend::draw(canvas, &self.entries, (rect.left, rect.top), boxed);
         }
@@ -328,18 +306,17 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
     (xs, ys)
 }
 
-/// Ticks of the x axis, as many as have room for their labels.
-fn x_ticks(mapping: &Mapping, width: f64) -> Ticks {
-    let overlap = |t: &Ticks| {
-        t.major.windows(2).any(|pair| {
-            let at = |v: f64| mapping.unit(v).unwrap_or(0.0) * width;
-            let half = |l: &str| 0.5 * font::width(l, TICK_EM);
-            at(pair[1].0) - half(&pair[1].1) < at(pair[0].0) + half(&pair[0].1) + 7.0
+/// The x axis with as many ticks as have room for their labels.
+fn x_ruler(mapping: Mapping, width: f64, label: &str) -> Ruler {
+    let overlap = |ruler: &Ruler| {
+        ruler.major.windows(2).any(|pair| {
+            let half = |label: &str| 0.5 * font::width(label, TICK_EM);
+            pair[1].0 * width - half(&pair[1].1) < pair[0].0 * width + half(&pair[0].1) + 7.0
         })
     };
     let most = ((width / 52.0) as usize).max(3);
-    let found = (2..=most).rev().map(|n| mapping.ticks(n)).find(|t| !overlap(t));
-    found.unwrap_or_else(|| mapping.ticks(2))
+    let found = (2..=most).rev().map(|count| mapping.ruler(count, label)).find(|r| !overlap(r));
+    found.unwrap_or_else(|| mapping.ruler(2, label))
 }
 
 /// The series with their colours and shapes, the next of the palette where they name none.
@@ -351,7 +328,7 @@ fn with_looks(layers: &[Layer]) -> Vec<(&Series, Look)> {
     let (mut colours, mut shapes) = ((0..).map(Colour::cycle), (0..).map(Shape::cycle));
     let look = |s: &Series| {
         let colour = s.colour.or_else(|| colours.next()).unwrap_or(Colour::BLACK);
-        let mut shape = || s.shape.or_else(|| shapes.next()).map(|shape| (shape, MARKER));
+        let mut shape = || s.shape.or_else(|| shapes.next());
         let marker = if s.marked { shape() } else { None };
         Look { colour, line: s.line, width: s.width, marker, open: s.open }
     };

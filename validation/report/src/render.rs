@@ -5,6 +5,7 @@ use super::canvas::{Canvas, Rect};
 use super::colour::Colour;
 use super::drawn::Drawn;
 use super::figure::{Figure, Panel};
+use super::frame::Room;
 use super::legend::{self, Entry};
 use super::maps::{Categories, Particles};
 use super::plot::Prepared;
@@ -76,39 +77,27 @@ fn layout(figure: &Figure) -> Layout<'_> {
         panels.iter_mut().for_each(|panel| panel.hide_legend());
     }
     let bar = shared_bar(&mut panels);
-    let margins: Vec<_> = panels.iter().map(|panel| panel.margins()).collect();
-    let sizes: Vec<_> = panels.iter().map(|panel| panel.size()).collect();
-    let rows = panels.len().div_ceil(columns);
-    let most = |of: &dyn Fn(usize) -> f64, pick: &dyn Fn(usize) -> bool| {
-        (0..panels.len()).filter(|&i| pick(i)).map(of).fold(0.0, f64::max)
-    };
+    let rooms: Vec<Room> = panels.iter().map(|panel| panel.room()).collect();
     // Left margin, inner width and right margin of each column; the same downwards for each row.
-    let across = (0..columns).map(|c| {
-        let here = |i: usize| i % columns == c;
-        [
-            most(&|i| margins[i].left, &here),
-            most(&|i| sizes[i].0, &here),
-            most(&|i| margins[i].right, &here),
-        ]
-    });
-    let down = (0..rows).map(|r| {
-        let here = |i: usize| i / columns == r;
-        [
-            most(&|i| margins[i].top, &here),
-            most(&|i| sizes[i].1, &here),
-            most(&|i| margins[i].bottom, &here),
-        ]
-    });
-    let (lefts, right) = starts(across, EDGE);
-    let (tops, bottom) = starts(down, EDGE);
-    let rects: Vec<_> = (0..panels.len())
-        .map(|i| Rect {
-            left: lefts[i % columns],
-            top: tops[i / columns],
-            width: sizes[i].0,
-            height: sizes[i].1,
-        })
-        .collect();
+    let mut across = vec![[0.0_f64; 3]; columns];
+    let mut down = vec![[0.0_f64; 3]; panels.len().div_ceil(columns)];
+    for (i, room) in rooms.iter().enumerate() {
+        let widths = [room.left, room.width, room.right];
+        let heights = [room.top, room.height, room.bottom];
+        for k in 0..3 {
+            across[i % columns][k] = across[i % columns][k].max(widths[k]);
+            down[i / columns][k] = down[i / columns][k].max(heights[k]);
+        }
+    }
+    let (lefts, right) = starts(across);
+    let (tops, bottom) = starts(down);
+    let place = |(i, Room { width, height, .. }): (usize, Room)| Rect {
+        left: lefts[i % columns],
+        top: tops[i / columns],
+        width,
+        height,
+    };
+    let rects: Vec<Rect> = rooms.into_iter().enumerate().map(place).collect();
     let width = (right + bar.as_ref().map_or(0.0, Bar::width)).max(120.0).ceil();
     let bar = bar.and_then(|bar| {
         let (first, last) = (rects.first()?, rects.last()?);
@@ -120,9 +109,9 @@ fn layout(figure: &Figure) -> Layout<'_> {
 }
 
 /// Where the inner part of each slot starts, and where all end.
-fn starts(slots: impl Iterator<Item = [f64; 3]>, first: f64) -> (Vec<f64>, f64) {
-    let mut at = first;
-    let starts = slots.map(|[before, inner, after]| {
+fn starts(slots: Vec<[f64; 3]>) -> (Vec<f64>, f64) {
+    let mut at = EDGE;
+    let starts = slots.into_iter().map(|[before, inner, after]| {
         let start = at + before;
         at = start + inner + after;
         start
