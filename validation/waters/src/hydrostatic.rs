@@ -5,10 +5,7 @@ use base::{gate::*, mutation::Constant, random::Random, record::*};
 use harness::{
     case::*, composed::*, context::Context, declare::*, method::*, runner::Drive, simulate, table,
 };
-use maths::{
-    exact, geometry,
-    metrics::norms::{Scale, l2},
-};
+use maths::{exact, geometry, metrics::norms::l2};
 use nalgebra::Vector2;
 use schemes::water::WaterMethod;
 use solver::*;
@@ -264,7 +261,6 @@ impl<'a> History<'a> {
         let (s, medium, tank) = (&column.settings, &column.medium, &column.tank);
         let pressure: Vec<f64> = water.iter().map(|p| medium.eos.pressure(p.density)).collect();
         let exact: Vec<f64> = water.iter().map(|p| column.exact_pressure(p)).collect();
-        let error = Scale::rms(&exact).and_then(|scale| l2(&pressure, &exact, scale));
         let [low, high] = ends(column, &water);
         let (mass, kinetic) = water.iter().fold((0.0, 0.0), |(mass, kinetic), p| {
             (mass + p.mass, kinetic + 0.5 * p.mass * p.velocity.norm_squared())
@@ -276,7 +272,7 @@ impl<'a> History<'a> {
         self.outside = self.outside.max(water.iter().filter(is_outside).count() as f64);
         self.rows.push([
             simulation.time() / column.period,
-            error.unwrap_or(f64::NAN),
+            l2(&pressure, &exact),
             (high - self.start[1]) / s.depth,
             (low - self.start[0]) / medium.dx,
             kinetic / (mass * s.g * s.depth),
