@@ -24,13 +24,6 @@ pub struct Energy {
     pub compression: f64,
 }
 
-impl Energy {
-    /// All of it.
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.potential + self.compression
-    }
-}
-
 impl Water {
     /// e(ρ) = ∫ p/ρ² dρ from ⁰ρ \[J/kg\]: with x = ρ/⁰ρ and K of (8),
     /// (K/⁰ρ) \[(x^(γ−1) − 1)/(γ−1) + 1/x − 1\] + (⁰p/⁰ρ) (1 − 1/x).
