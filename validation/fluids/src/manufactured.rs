@@ -15,7 +15,7 @@ use harness::{
     study::Study,
     table,
 };
-use maths::{exact::Manufactured, metrics::norms::rms};
+use maths::{exact::manufactured, metrics::norms::rms};
 use nalgebra::Vector2;
 use schemes::flow;
 use solver::*;
@@ -119,7 +119,7 @@ fn particles(m: &Method, flow: &UnitFlow) -> Vec<Particle> {
     let count = (1.0 / dx).round() as usize;
     let row = |y: f64, role: Role| {
         let of = move |x| {
-            let density = eos.density(nu * Manufactured::pressure(x));
+            let density = eos.density(nu * manufactured::pressure(x));
             Particle::fluid(x, Vector2::zeros(), density, dx * dx).with_role(role)
         };
         solver::lattice(Vector2::new(0.5 * dx, y), dx, count, 1).map(of)
@@ -157,10 +157,10 @@ fn run(
 
 fn measure(Medium { eos, nu, .. }: &Medium, particles: &[Particle], record: &mut Record) {
     let fluid = || particles.iter().filter(|p| p.role == Role::Fluid);
-    let exact = |p: &Particle| Manufactured::velocity(p.position);
+    let exact = |p: &Particle| manufactured::velocity(p.position);
     let difference = rms(fluid().map(|p| (p.velocity - exact(p)).norm()));
     record.put(L2, difference / rms(fluid().map(|p| exact(p).norm())));
-    let pressure = |p: &Particle| nu * Manufactured::pressure(p.position);
+    let pressure = |p: &Particle| nu * manufactured::pressure(p.position);
     let off: Vec<f64> = fluid().map(|p| eos.pressure(p.density) - pressure(p)).collect();
     let mean = off.iter().fold(0.0, |sum, p| sum + p) / off.len() as f64;
     record.put(PRESSURE_L2, rms(off.iter().map(|p| p - mean)) / rms(fluid().map(pressure)));

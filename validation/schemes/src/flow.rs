@@ -1,7 +1,7 @@
 //! Viscous flows: channels, cylinders, vortices, the cavity, and the manufactured flow.
 
 use harness::method::{FromMedium, Medium};
-use maths::exact::Manufactured;
+use maths::exact::manufactured;
 use nalgebra::Vector2;
 use solver::{lane::Lane, particles::Common, terms::Pair, *};
 
@@ -155,7 +155,7 @@ impl<X> Term<X> for Source {
     fn finish(&self, _: &Common, _: (), _: (), _: &mut Rate<X>) {}
 
     fn place(&self, x: Vector2<f64>, rate: &mut Rate<X>) {
-        let (advection, viscous) = (Manufactured::advection(x), Manufactured::viscous(x));
+        let (advection, viscous) = (manufactured::advection(x), manufactured::viscous(x));
         rate.velocity += advection * self.scales.x + viscous * self.scales.y;
     }
 }

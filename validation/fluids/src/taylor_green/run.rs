@@ -41,7 +41,7 @@ impl Setup {
     fn new(s: &VortexSettings, method: &Method, context: &Context) -> Result<Self, RunError> {
         let flow =
             s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt }, context)?;
-        let exact = TaylorGreen { speed: 1.0, length: 1.0, nu: flow.medium.nu, rho: 1.0 };
+        let exact = TaylorGreen { nu: flow.medium.nu };
         Ok(Self { settings: s.clone(), exact, flow })
     }
 

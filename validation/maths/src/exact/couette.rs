@@ -6,7 +6,7 @@
 //! an image sum, u/V₀ = Σ_{m≥0} erfc((2m+1-η)/(2√τ)) - erfc((2m+1+η)/(2√τ))
 //! (after Carslaw & Jaeger, Conduction of Heat in Solids).
 
-use super::{IMAGES_BELOW, terms_for};
+use super::{IMAGES_BELOW, alternating, terms_for};
 use base::functions::{erfc, exp, exp_m1, sin};
 use std::f64::consts::PI;
 
@@ -32,13 +32,8 @@ impl Couette {
     /// series. At t ≤ 0 only the plate itself moves.
     pub fn velocity(&self, y: f64, t: f64) -> f64 {
         match self.tau(t) {
-            tau if tau <= 0.0 => {
-                if y >= self.l {
-                    self.v0
-                } else {
-                    0.0
-                }
-            }
+            tau if tau <= 0.0 && y >= self.l => self.v0,
+            tau if tau <= 0.0 => 0.0,
             tau if tau < IMAGES_BELOW => self.velocity_by_images(y, t),
             _ => self.velocity_by_series(y, t, self.terms(t)),
         }
@@ -82,11 +77,6 @@ impl Couette {
         }
         self.v0 * sum
     }
-}
-
-/// (-1)ⁿ.
-fn alternating(n: usize) -> f64 {
-    if n.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 #[cfg(test)]

@@ -1,16 +1,13 @@
 //! A column of Tait fluid at rest under gravity: dp/dy = −ρ g with (7).
 
 use base::functions::powf;
+use solver::Tait;
 
 /// A column, compressed by its own weight.
 #[derive(Clone, Copy, Debug)]
 pub struct Hydrostatic {
-    /// Density at the surface ⁰ρ, where p = 0 \[kg/m³\].
-    pub density: f64,
-    /// Sound speed at the surface ⁰c \[m/s\].
-    pub sound_speed: f64,
-    /// Exponent γ > 1.
-    pub gamma: f64,
+    /// Equation of state (7), with γ > 1; density ⁰ρ and sound speed ⁰c are those of the surface, where p = 0.
+    pub eos: Tait,
     /// Gravity g \[m/s²\].
     pub gravity: f64,
 }
@@ -18,23 +15,26 @@ pub struct Hydrostatic {
 impl Hydrostatic {
     /// ρ/⁰ρ to the power γ − 1, 1 + (γ−1) g d/⁰c² at the depth d \[m\], negative above the surface.
     fn power(&self, depth: f64) -> f64 {
-        1.0 + (self.gamma - 1.0) * self.gravity * depth / (self.sound_speed * self.sound_speed)
+        let Tait { sound_speed, gamma, .. } = self.eos;
+        1.0 + f64::from(gamma - 1) * self.gravity * depth / (sound_speed * sound_speed)
     }
 
     /// ρ at a depth \[m\], ⁰ρ \[1 + (γ−1) g d/⁰c²\]^(1/(γ−1)).
     pub fn density(&self, depth: f64) -> f64 {
-        self.density * powf(self.power(depth), 1.0 / (self.gamma - 1.0))
+        self.eos.density * powf(self.power(depth), 1.0 / f64::from(self.eos.gamma - 1))
     }
 
     /// p at a depth \[m\], (⁰ρ ⁰c²/γ) {\[1 + (γ−1) g d/⁰c²\]^(γ/(γ−1)) − 1} \[Pa\].
     pub fn pressure(&self, depth: f64) -> f64 {
-        let stiffness = self.density * self.sound_speed * self.sound_speed / self.gamma;
-        stiffness * (powf(self.power(depth), self.gamma / (self.gamma - 1.0)) - 1.0)
+        let Tait { density, sound_speed, gamma, .. } = self.eos;
+        let gamma = f64::from(gamma);
+        let stiffness = density * sound_speed * sound_speed / gamma;
+        stiffness * (powf(self.power(depth), gamma / (gamma - 1.0)) - 1.0)
     }
 
     /// Sound speed at a depth \[m\], ⁰c \[1 + (γ−1) g d/⁰c²\]^(1/2) \[m/s\].
     pub fn sound_speed(&self, depth: f64) -> f64 {
-        self.sound_speed * self.power(depth).sqrt()
+        self.eos.sound_speed * self.power(depth).sqrt()
     }
 }
 
@@ -42,14 +42,14 @@ impl Hydrostatic {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use solver::{EquationOfState, Tait};
+    use solver::EquationOfState;
 
     #[test]
     fn the_column_is_in_equilibrium_and_obeys_the_equation_of_state() {
         for compressibility in [1e-4_f64, 1e-2, 0.1, 1.0] {
             let sound_speed = (9.81 / compressibility).sqrt();
-            let column = Hydrostatic { density: 1000.0, sound_speed, gamma: 7.0, gravity: 9.81 };
             let eos = Tait::new(1000.0, sound_speed);
+            let column = Hydrostatic { eos, gravity: 9.81 };
             assert_eq!((column.pressure(0.0), column.density(0.0)), (0.0, 1000.0));
             for depth in [-0.02, 0.1, 0.5, 1.0] {
                 let (p, rho) = (column.pressure(depth), column.density(depth));

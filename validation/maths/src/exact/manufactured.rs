@@ -1,45 +1,41 @@
 //! A manufactured flow between two walls: steady, by a force that depends on the place.
+//!
+//! u = U (½ sin 2πy cos 2πx, sin² πy sin 2πx), p = 2 ρνU/L sin⁴ πy cos² 2πx between the walls y = 0 and
+//! y = L, with x and y in units of L.
+//!
+//! u is 0 at the walls, has no divergence, and p is constant along streamlines and has no gradient at the
+//! walls. So the flow satisfies the equations of a weakly compressible fluid, whatever its sound speed, with
+//! the force f = (u·∇)u + ∇p/ρ − ν∇²u and no source of mass.
 
 use base::functions::{cos, sin};
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector2;
 
-/// u = U (½ sin 2πy cos 2πx, sin² πy sin 2πx), p = 2 ρνU/L sin⁴ πy cos² 2πx between the walls y = 0 and
-/// y = L, with x and y in units of L.
-///
-/// u is 0 at the walls, has no divergence, and p is constant along streamlines and has no gradient at the
-/// walls. So the flow satisfies the equations of a weakly compressible fluid, whatever its sound speed, with
-/// the force f = (u·∇)u + ∇p/ρ − ν∇²u and no source of mass.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Manufactured;
+/// u \[U\].
+pub fn velocity(x: Vector2<f64>) -> Vector2<f64> {
+    let ([s, c], [sx, cx]) = waves(x);
+    Vector2::new(s * c * cx, s * s * sx)
+}
 
-impl Manufactured {
-    /// u \[U\].
-    pub fn velocity(x: Vector2<f64>) -> Vector2<f64> {
-        let ([s, c], [sx, cx]) = waves(x);
-        Vector2::new(s * c * cx, s * s * sx)
-    }
+/// p \[ρνU/L\].
+pub fn pressure(x: Vector2<f64>) -> f64 {
+    let ([s, _], [_, cx]) = waves(x);
+    2.0 * s.powi(4) * cx * cx
+}
 
-    /// p \[ρνU/L\].
-    pub fn pressure(x: Vector2<f64>) -> f64 {
-        let ([s, _], [_, cx]) = waves(x);
-        2.0 * s.powi(4) * cx * cx
-    }
+/// (u·∇)u \[U²/L\].
+pub fn advection(x: Vector2<f64>) -> Vector2<f64> {
+    let ([s, c], [sx, cx]) = waves(x);
+    Vector2::new(-sx * cx, 2.0 * s * c) * (PI * s * s)
+}
 
-    /// (u·∇)u \[U²/L\].
-    pub fn advection(x: Vector2<f64>) -> Vector2<f64> {
-        let ([s, c], [sx, cx]) = waves(x);
-        Vector2::new(-sx * cx, 2.0 * s * c) * (PI * s * s)
-    }
-
-    /// ∇p/ρ − ν∇²u \[νU/L²\].
-    pub fn viscous(x: Vector2<f64>) -> Vector2<f64> {
-        let ([s, c], [sx, cx]) = waves(x);
-        let pressure = Vector2::new(-s * sx * cx, c * cx * cx) * (8.0 * PI * s.powi(3));
-        let laplacian = Vector2::new(-4.0 * s * c * cx, (1.0 - 4.0 * s * s) * sx);
-        pressure - laplacian * (2.0 * PI * PI)
-    }
+/// ∇p/ρ − ν∇²u \[νU/L²\].
+pub fn viscous(x: Vector2<f64>) -> Vector2<f64> {
+    let ([s, c], [sx, cx]) = waves(x);
+    let pressure = Vector2::new(-s * sx * cx, c * cx * cx) * (8.0 * PI * s.powi(3));
+    let laplacian = Vector2::new(-4.0 * s * c * cx, (1.0 - 4.0 * s * s) * sx);
+    pressure - laplacian * (2.0 * PI * PI)
 }
 
 /// Sine and cosine of πy and of 2πx.
@@ -71,14 +67,13 @@ mod tests {
     #[test]
     fn it_satisfies_the_equations_with_its_force() {
         for x in AT.map(Vector2::from) {
-            let parts = [0, 1].map(|k| differences(&|x| Manufactured::velocity(x)[k], x));
-            let (pressure, u) =
-                (differences(&Manufactured::pressure, x).0, Manufactured::velocity(x));
+            let parts = [0, 1].map(|k| differences(&|x| velocity(x)[k], x));
+            let (pressure, u) = (differences(&super::pressure, x).0, velocity(x));
             let divergence = parts[0].0.x + parts[1].0.y;
             assert!(divergence.abs() < 1e-7 && u.dot(&pressure).abs() < 1e-6);
             for (k, (gradient, laplacian)) in parts.into_iter().enumerate() {
-                let advection = u.dot(&gradient) - Manufactured::advection(x)[k];
-                let viscous = pressure[k] - laplacian - Manufactured::viscous(x)[k];
+                let advection = u.dot(&gradient) - super::advection(x)[k];
+                let viscous = pressure[k] - laplacian - super::viscous(x)[k];
                 assert!(
                     advection.abs() < 1e-7 && viscous.abs() < 1e-5,
                     "{advection:e} {viscous:e}"
@@ -92,8 +87,8 @@ mod tests {
         for x in [0.0, 0.3, 0.77] {
             for y in [0.0, 1.0] {
                 let at = Vector2::new(x, y);
-                assert!(Manufactured::velocity(at).norm() < 1e-15);
-                assert!(differences(&Manufactured::pressure, at).0.norm() < 1e-9);
+                assert!(velocity(at).norm() < 1e-15);
+                assert!(differences(&pressure, at).0.norm() < 1e-9);
             }
         }
     }

@@ -12,7 +12,6 @@ pub mod taylor_green;
 pub use couette::Couette;
 pub use elliptic_drop::EllipticDrop;
 pub use hydrostatic::Hydrostatic;
-pub use manufactured::Manufactured;
 pub use poiseuille::Poiseuille;
 pub use taylor_couette::TaylorCouette;
 pub use taylor_green::TaylorGreen;
@@ -39,4 +38,9 @@ fn terms_for(tail: impl Fn(f64) -> f64) -> usize {
         if enough(middle) { high = middle } else { low = middle }
     }
     high
+}
+
+/// (-1)ⁿ.
+fn alternating(n: usize) -> f64 {
+    if n.is_multiple_of(2) { 1.0 } else { -1.0 }
 }

@@ -6,7 +6,7 @@
 //! and, as an image sum, u/V = 8τ (1 - 4 Σ_{n≥0} (-1)ⁿ [i²erfc((n+η)/(2√τ)) +
 //! i²erfc((n+1-η)/(2√τ))]) (after Carslaw & Jaeger).
 
-use super::{IMAGES_BELOW, terms_for};
+use super::{IMAGES_BELOW, alternating, terms_for};
 use base::functions::{erfc, exp, exp_m1, sin};
 use std::f64::consts::PI;
 
@@ -82,8 +82,7 @@ impl Poiseuille {
         let mut sum = 0.0;
         for n in (0..images).rev() {
             let m = n as f64;
-            let sign = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
-            sum += sign * (i2erfc((m + eta) / width) + i2erfc((m + 1.0 - eta) / width));
+            sum += alternating(n) * (i2erfc((m + eta) / width) + i2erfc((m + 1.0 - eta) / width));
         }
         8.0 * self.v * tau * (1.0 - 4.0 * sum)
     }

@@ -299,8 +299,10 @@ mod tests {
     fn rows_along_the_hill_leave_no_gap_and_do_not_overlap() {
         let hill = Hill::new(1.0).expect("a sound reference");
         for dx in [0.1, 0.05] {
-            check(&format!("dx {dx}"), &hill.lower(dx), dx);
-            let lid = hill.upper(dx).row(0.5 * dx, dx);
+            let floor = Curve::new(|x| Point::new(x, hill.wall(x)), [0.0, hill.period()], dx);
+            check(&format!("dx {dx}"), &floor, dx);
+            let lid = Curve::new(|x| Point::new(x, hill.lid()), [hill.period(), 0.0], dx);
+            let lid = lid.row(0.5 * dx, dx);
             assert!(lid.points.iter().all(|p| (p.y - hill.lid() - 0.5 * dx).abs() < 1e-12));
         }
     }

@@ -1,8 +1,5 @@
 //! The periodic hill: a curved lower wall, convex at the crest and concave at the foot, and a flat lid.
 
-use nalgebra::Vector2;
-
-use super::Curve;
 use base::reference::{Reference, ReferenceError};
 
 /// The height for which the pieces are tabulated \[mm\].
@@ -56,16 +53,6 @@ impl Hill {
         // The pieces end at the foot, and the clips of the table are those of every height.
         let y = piece.map_or(0.0, |piece| piece.at(from_crest));
         y.clamp(0.0, TABULATED) / TABULATED * self.height
-    }
-
-    /// The lower wall for particles at the distance `dx` \[m\], fluid above it.
-    pub fn lower(&self, dx: f64) -> Curve {
-        Curve::new(|x| Vector2::new(x, self.wall(x)), [0.0, self.period()], dx)
-    }
-
-    /// The lid for particles at the distance `dx` \[m\], fluid below it.
-    pub fn upper(&self, dx: f64) -> Curve {
-        Curve::new(|x| Vector2::new(x, self.lid()), [self.period(), 0.0], dx)
     }
 }
 

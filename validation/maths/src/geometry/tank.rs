@@ -1,7 +1,7 @@
 //! An open rectangular tank: a bottom, two sides, and no lid.
 
 use nalgebra::Vector2;
-use solver::{PlaneWall, lattice};
+use solver::{PlaneWall, Role, lattice};
 
 /// The inside of a tank, from its lower left corner at the origin.
 ///
@@ -17,15 +17,6 @@ pub struct Tank {
     pub dx: f64,
 }
 
-/// Particles of the walls of a [`Tank`].
-#[derive(Clone, Debug, Default)]
-pub struct TankWalls {
-    /// On the surface.
-    pub interface: Vec<Vector2<f64>>,
-    /// Behind it.
-    pub wall: Vec<Vector2<f64>>,
-}
-
 impl Tank {
     /// Width of the inside \[m\].
     pub fn width(&self) -> f64 {
@@ -33,10 +24,10 @@ impl Tank {
     }
 
     /// For [`solver::InterfaceWall`]: interface particles on bottom and sides, up to the rim, and wall
-    /// particles behind them, out to the `support` \[m\]. The fluid's first row is at dx, see
-    /// [`Tank`].
-    pub fn interface_walls(&self, support: f64) -> TankWalls {
-        let mut walls = TankWalls::default();
+    /// particles behind them, out to the `support` \[m\], which come last. The fluid's first row is at dx,
+    /// see [`Tank`].
+    pub fn interface_walls(&self, support: f64) -> Vec<(Vector2<f64>, Role)> {
+        let (mut walls, mut behind_them) = (Vec::new(), Vec::new());
         let behind = (support / self.dx - 1e-9).floor() as i32;
         let (columns, rows) = (self.columns as i32, self.rows as i32);
         for (i, j) in
@@ -47,11 +38,12 @@ impl Tank {
             let is_surface = is_inside && (i == 0 || i == columns || j == 0);
             let point = Vector2::new(f64::from(i), f64::from(j)) * self.dx;
             if is_surface {
-                walls.interface.push(point);
+                walls.push((point, Role::Interface));
             } else if !is_inside {
-                walls.wall.push(point);
+                behind_them.push((point, Role::Wall));
             }
         }
+        walls.append(&mut behind_them);
         walls
     }
 
@@ -99,14 +91,18 @@ mod tests {
             check(&TANK.rows_behind(support), 0.5, [behind, 9, 7]);
         }
         let walls = TANK.interface_walls(0.3);
-        let all = [walls.interface.clone(), walls.wall].concat();
         // Water from column 1 to 8 and row 1 up; the walls reach the rim at row 7, behind it row -2.
-        let moved: Vec<_> = all.iter().map(|p| p - Vector2::repeat(TANK.dx)).collect();
+        let moved: Vec<_> = walls.iter().map(|(p, _)| p - Vector2::repeat(TANK.dx)).collect();
         check(&moved, 0.0, [3, 8, 7]);
-        assert_eq!(walls.interface.len(), 10 + 2 * 7);
+        let (surface, behind) = walls.split_at(10 + 2 * 7);
         let width = TANK.width();
         let on_wall = |p: &Vector2<f64>| p.x == 0.0 || (p.x - width).abs() < 1e-12 || p.y == 0.0;
-        assert!(walls.interface.iter().all(|p| on_wall(p) && p.y >= 0.0));
+        assert!(
+            surface
+                .iter()
+                .all(|(p, role)| { *role == Role::Interface && on_wall(p) && p.y >= 0.0 })
+        );
+        assert!(behind.iter().all(|(_, role)| *role == Role::Wall));
     }
 
     #[test]

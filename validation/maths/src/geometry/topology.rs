@@ -20,6 +20,8 @@
 use nalgebra::Vector2;
 use std::f64::consts::PI;
 
+use super::corners;
+
 type Point = Vector2<f64>;
 
 /// Particles that are no farther apart hold together \[dx\].
@@ -155,7 +157,7 @@ impl Joined {
 fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
     // So that the intervals of a line are nearly in order.
     piece.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
-    let mut background = Background::default();
+    let mut background = Background { joined: Joined::new(OUTSIDE + 1), area: vec![0.0] };
     let everything = (f64::NEG_INFINITY, f64::INFINITY, OUTSIDE);
     let mut above = vec![everything];
     for mut line in scan_lines(piece, 0.5 * BOND * dx, LINE * dx) {
@@ -194,9 +196,8 @@ fn put_in_order(line: &mut [(f64, f64)]) {
 
 /// The intervals \[m\] that discs leave on lines a `step` \[m\] apart.
 fn scan_lines(piece: &[Point], radius: f64, step: f64) -> Vec<Vec<(f64, f64)>> {
-    let ys = || piece.iter().map(|p| p.y);
-    let low = ys().fold(f64::INFINITY, f64::min) - radius;
-    let high = ys().fold(f64::NEG_INFINITY, f64::max) + radius;
+    let [low, high] = corners(piece.iter().copied()).map(|corner| corner.y);
+    let (low, high) = (low - radius, high + radius);
     // A piece holds together, so that this is at most its number of particles times 2 radius/step.
     let most = piece.len() as f64 * (2.0 * radius / step) + 1.0;
     let count = ((high - low) / step).clamp(0.0, most) as usize;
@@ -227,12 +228,6 @@ struct Background {
     joined: Joined,
     /// \[m²\].
     area: Vec<f64>,
-}
-
-impl Default for Background {
-    fn default() -> Self {
-        Self { joined: Joined::new(OUTSIDE + 1), area: vec![0.0] }
-    }
 }
 
 impl Background {

@@ -15,7 +15,7 @@
 use base::functions::sin;
 use nalgebra::{Matrix2, Vector2};
 use solver::kernel::{Kernel, Smoothing};
-use std::f64::consts::PI;
+use std::{f64::consts::PI, iter::Sum};
 
 /// A lattice point other than the origin, in units of dx.
 struct Site {
@@ -62,17 +62,12 @@ impl SquareLattice {
         Self { correction: 1.0 / self.gradient_factor(), ..self }
     }
 
-    /// h/dx.
-    pub fn h_over_dx(&self) -> f64 {
-        self.h
-    }
-
     /// The number of neighbours, without the particle itself.
     pub fn neighbours(&self) -> usize {
         self.sites.len()
     }
 
-    fn sum(&self, term: impl Fn(&Site) -> f64) -> f64 {
+    fn sum<T: Sum>(&self, term: impl Fn(&Site) -> T) -> T {
         self.sites.iter().map(term).sum()
     }
 
@@ -83,10 +78,7 @@ impl SquareLattice {
 
     /// g(k) h at phase θ = k dx \[rad\].
     pub fn gradient(&self, theta: Vector2<f64>) -> Vector2<f64> {
-        let mut sum = Vector2::zeros();
-        for s in &self.sites {
-            sum += s.r * (s.vf * sin(theta.dot(&s.r)));
-        }
+        let sum: Vector2<f64> = self.sum(|s| s.r * (s.vf * sin(theta.dot(&s.r))));
         sum * (self.h * self.correction)
     }
 
@@ -102,11 +94,10 @@ impl SquareLattice {
 
     /// P(k) h² at phase θ = k dx \[rad\]; symmetric, positive semi-definite.
     pub fn artificial(&self, theta: Vector2<f64>) -> Matrix2<f64> {
-        let mut sum = Matrix2::zeros();
-        for s in &self.sites {
+        let sum: Matrix2<f64> = self.sum(|s| {
             let factor = s.vf * s.guard / s.r.norm_squared() * one_minus_cos(theta.dot(&s.r));
-            sum += s.r * s.r.transpose() * factor;
-        }
+            s.r * s.r.transpose() * factor
+        });
         sum * (self.h * self.h)
     }
 

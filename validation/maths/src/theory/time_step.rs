@@ -194,22 +194,20 @@ impl Mode {
 
     /// The same, or any longer step if it is longer than this.
     fn limit_below(&self, integrator: Integrator, longest: f64) -> f64 {
-        if integrator == Integrator::Leapfrog {
-            return 2.0 / self.stiffness().symmetric_eigenvalues().max();
-        }
-        if integrator == Integrator::SuperLeapfrog {
-            return self.limit_of_super_steps(longest);
-        }
-        if integrator == Integrator::SingleSweep {
-            return self.limit_of_single_sweep(longest);
-        }
         let limit = |s: Complex<f64>| match modulus(s) {
             0.0 => f64::INFINITY,
             _ if s.re >= 0.0 => 0.0,
             size if integrator == Integrator::Euler => -2.0 * s.re / (size * size),
             size => midpoint_root(-s.re / size) / size,
         };
-        self.eigenvalues().map(limit).into_iter().fold(f64::INFINITY, f64::min)
+        match integrator {
+            Integrator::Leapfrog => 2.0 / self.stiffness().symmetric_eigenvalues().max(),
+            Integrator::SuperLeapfrog => self.limit_of_super_steps(longest),
+            Integrator::SingleSweep => self.limit_of_single_sweep(longest),
+            Integrator::Euler | Integrator::PredictorCorrector => {
+                self.eigenvalues().map(limit).into_iter().fold(f64::INFINITY, f64::min)
+            }
+        }
     }
 
     fn limit_of_super_steps(&self, longest: f64) -> f64 {

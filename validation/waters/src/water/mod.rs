@@ -31,25 +31,17 @@ pub fn limits<D: ?Sized>(
 
 /// Water of a medium at rest under its gravity.
 pub fn at_rest(medium: &Medium) -> exact::Hydrostatic {
-    exact::Hydrostatic {
-        density: medium.eos.density,
-        sound_speed: medium.eos.sound_speed,
-        gamma: f64::from(medium.eos.gamma),
-        gravity: -medium.acceleration.y,
-    }
+    exact::Hydrostatic { eos: medium.eos, gravity: -medium.acceleration.y }
 }
 
 /// Places and roles of the particles of a tank's walls, out to the support \[m\].
 pub fn wall_particles(walls: FirstRow, tank: &Tank, support: f64) -> Vec<(Vector2<f64>, Role)> {
-    let of =
-        |places: Vec<Vector2<f64>>, role: Role| places.into_iter().map(move |place| (place, role));
     match walls {
         FirstRow::Nowhere => Vec::new(),
-        FirstRow::OnSurface => {
-            let rows = tank.interface_walls(support);
-            of(rows.interface, Role::Interface).chain(of(rows.wall, Role::Wall)).collect()
+        FirstRow::OnSurface => tank.interface_walls(support),
+        FirstRow::Behind => {
+            tank.rows_behind(support).into_iter().map(|place| (place, Role::Wall)).collect()
         }
-        FirstRow::Behind => of(tank.rows_behind(support), Role::Wall).collect(),
     }
 }
 
