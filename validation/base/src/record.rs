@@ -483,9 +483,9 @@ impl Record {
         self.absent.insert(metric.into().name, reason.into());
     }
 
-    /// Takes out every metric whose name is to go, and states why it is absent.
-    pub fn take_out(&mut self, is_to_go: impl Fn(&str) -> bool, reason: &str) {
-        let taken = self.metrics.extract_if(.., |name, _| is_to_go(name));
+    /// Takes out every metric that is to go, and states why it is absent.
+    pub fn take_out(&mut self, is_to_go: impl Fn(&str, &Metric) -> bool, reason: &str) {
+        let taken = self.metrics.extract_if(.., |name, metric| is_to_go(name, metric));
         self.absent.extend(taken.map(|(name, _)| (name, reason.to_string())));
     }
 

@@ -9,7 +9,7 @@ use ::exchange::{
     problem::{Asked, Problem, Sealed},
     read::{COLUMNS, RESULTS, curve::CURVE},
     submission::{self, Entry, METHOD, SYSTEM},
-    write::{self, Format, WriteError},
+    write::{self, WriteError},
 };
 use base::{
     files::{self, CsvTable, OutputFolder},
@@ -51,7 +51,7 @@ pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Outcome {
     let spec = case::spec(case, variant, &arguments.set)?;
     let problem = Problem::seen(case, spec, arguments.relation)?;
     let folder = OutputFolder::create(&arguments.out)?;
-    let mut names = write::write(&problem, format(arguments.format), &folder)?;
+    let mut names = written(&problem, arguments.format, &folder)?;
     if arguments.solve {
         names.extend(solve(case, &problem, &folder, world)?);
     }
@@ -59,13 +59,19 @@ pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Outcome {
     Ok(Exit::Pass)
 }
 
-fn format(format: arguments::Format) -> Format {
-    match format {
-        arguments::Format::Csv => Format::Csv,
-        arguments::Format::Vtu => Format::Vtu,
-        arguments::Format::Lammps => Format::Lammps,
-        arguments::Format::Pysph => Format::Pysph,
-    }
+/// Writes the problem in a format; the names of the files.
+fn written(
+    problem: &Problem,
+    format: arguments::Format,
+    folder: &OutputFolder,
+) -> Result<Vec<String>, WriteError> {
+    let own = match format {
+        arguments::Format::Csv => Vec::new(),
+        arguments::Format::Vtu => write::vtu(problem),
+        arguments::Format::Lammps => write::lammps(problem)?,
+        arguments::Format::Pysph => write::pysph(problem)?,
+    };
+    write::write(problem, own, folder)
 }
 
 /// Makes the run and writes it as another code would: an example of a submission.
@@ -166,7 +172,7 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
     let mut problem = Problem::of(case, case::spec(case, variant, &set)?)?;
     problem.sealed = Some(sealed);
     let folder = OutputFolder::create(&arguments.out)?;
-    let mut names = write::write(&problem, format(arguments.format), &folder)?;
+    let mut names = written(&problem, arguments.format, &folder)?;
     folder.write(METHOD, text.as_bytes())?;
     names.push(METHOD.into());
     output::print(&format!("{}\n", set.join(" ")))?;

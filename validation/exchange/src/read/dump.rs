@@ -53,8 +53,9 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
                         "there is no ITEM: TIME before the atoms; write it by dump_modify time yes";
                     return Err(flaw(line, what.into()));
                 };
+                // The time is none of the columns.
                 let heads: Vec<&str> = item.split_whitespace().skip(1).collect();
-                let places = places(file, line as u64 + 1, &heads, &renamed, &COLUMNS, &["t"])?;
+                let places = places(file, line as u64 + 1, &heads, &renamed, &COLUMNS[1..])?;
                 let Some(atoms) = count.take() else {
                     return Err(flaw(
                         line,

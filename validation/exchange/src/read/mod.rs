@@ -93,24 +93,22 @@ const ENDINGS: [&str; 6] = ["dump", "npz", "vtu", "vtp", "h5", "hdf5"];
 /// Every flaw that was found, at least one.
 pub fn read(folder: &Path, renamed: &Renamed) -> Result<Results, Vec<Flaw>> {
     let mut names = Vec::new();
+    let refused = |what: String| vec![Flaw::of(folder.display().to_string(), what)];
     let entries = std::fs::read_dir(folder);
-    let entries = entries.map_err(|reason| {
-        vec![Flaw::of(folder.display().to_string(), format!("cannot be read: {reason}"))]
-    })?;
+    let entries = entries.map_err(|reason| refused(format!("cannot be read: {reason}")))?;
     for entry in entries.flatten() {
         names.extend(entry.file_name().into_string().ok().filter(|name| is_of_results(name)));
     }
     names.sort_by_key(|name| (number_in(name), name.clone()));
     if names.is_empty() {
-        let what =
-            format!("there are no results; expected {RESULTS} or *.{}", ENDINGS.join(", *."));
-        return Err(vec![Flaw::of(folder.display().to_string(), what)]);
+        let endings = ENDINGS.join(", *.");
+        return Err(refused(format!("there are no results; expected {RESULTS} or *.{endings}")));
     }
     let mut kinds: Vec<&str> = names.iter().map(|name| ending(name)).collect();
     kinds.dedup();
     if kinds.len() > 1 {
         let what = format!("results in several formats ({}); leave one", kinds.join(", "));
-        return Err(vec![Flaw::of(folder.display().to_string(), what)]);
+        return Err(refused(what));
     }
     let (mut all, mut flaws) = (Vec::new(), Vec::new());
     for name in names {
@@ -167,20 +165,6 @@ fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<F
     }
 }
 
-/// The name of ours that a column has, and the unit that it states.
-fn ours<'a>(
-    head: &'a str,
-    renamed: &'a Renamed,
-    columns: &[Head],
-) -> (Option<&'static str>, Option<&'a str>) {
-    let (name, unit) = match head.trim().split_once('[') {
-        Some((name, unit)) => (name.trim(), Some(unit.trim_end().trim_end_matches(']'))),
-        None => (head.trim(), None),
-    };
-    let name = renamed.get(name).map_or(name, String::as_str);
-    (columns.iter().map(|(ours, ..)| *ours).find(|ours| *ours == name), unit)
-}
-
 /// Where each column of ours is among these heads.
 ///
 /// # Errors
@@ -191,15 +175,16 @@ fn places(
     heads: &[&str],
     renamed: &Renamed,
     columns: &[Head],
-    given: &[&str],
 ) -> Result<Vec<(&'static str, usize)>, Vec<Flaw>> {
     let (mut found, mut flaws) = (Vec::<(&'static str, usize)>::new(), Vec::new());
     for (place, head) in heads.iter().enumerate() {
-        let (Some(name), unit) = ours(head, renamed, columns) else { continue };
-        if given.contains(&name) {
-            continue; // the file states it elsewhere
-        }
-        let expected = columns.iter().find(|(ours, ..)| *ours == name).map_or("-", |c| c.1);
+        let (theirs, unit) = match head.trim().split_once('[') {
+            Some((name, unit)) => (name.trim(), Some(unit.trim_end().trim_end_matches(']'))),
+            None => (head.trim(), None),
+        };
+        let ours = renamed.get(theirs).map_or(theirs, String::as_str);
+        let column = columns.iter().copied().find(|(name, ..)| *name == ours);
+        let Some((name, expected, _)) = column else { continue };
         if let Some(unit) = unit.filter(|unit| *unit != expected) {
             let what = format!("its unit is {unit}; expected {expected}");
             flaws.push(Flaw::of(file, what).at(line).in_column(name));
@@ -210,8 +195,7 @@ fn places(
         found.push((name, place));
     }
     for (name, unit, may_lack) in columns.iter().copied() {
-        let is_there = given.contains(&name) || found.iter().any(|(known, _)| *known == name);
-        if !is_there && !may_lack {
+        if !may_lack && !found.iter().any(|(known, _)| *known == name) {
             let what = format!(
                 "it is missing; expected a column {name} in {unit}, or --map {name}=NAME; the columns are {}",
                 heads.join(", ")
@@ -233,7 +217,7 @@ fn of_arrays(
 ) -> Result<Rows, Vec<Flaw>> {
     let flaw = |name: &str, what: String| vec![Flaw::of(file, what).in_column(name)];
     let mut columns = BTreeMap::new();
-    for (name, place) in places(file, 1, heads, renamed, &COLUMNS, &[])? {
+    for (name, place) in places(file, 1, heads, renamed, &COLUMNS)? {
         columns.insert(name, array(place).map_err(|what| flaw(name, what))?);
     }
     let rows = columns.get("x").map_or(0, Vec::len);
@@ -265,46 +249,35 @@ impl Rows {
         self.columns.get("x").map_or(0, Vec::len)
     }
 
-    fn value(&self, name: &str, k: usize) -> Option<f64> {
-        self.columns.get(name).and_then(|column| column.get(k)).copied()
-    }
-
     /// A row, or what is wrong with it.
     fn row(&self, k: usize) -> Result<Row, Flaw> {
-        let flaw = |name: &str, what: String| {
-            Flaw::of(&self.file, what).at(self.first_line + k as u64).in_column(name)
-        };
-        let finite = |name: &'static str| {
-            let value = self.value(name, k).unwrap_or(f64::NAN);
-            match value.is_finite() {
-                true => Ok(value),
-                false => Err(flaw(name, format!("it is {value}; expected a finite number"))),
+        let checked = |name: &str, is_right: fn(f64) -> bool, expected: &str| {
+            let column = self.columns.get(name).and_then(|column| column.get(k)).copied();
+            match column.filter(|value| !is_right(*value)) {
+                Some(wrong) => {
+                    let what = format!("it is {wrong}; expected {expected}");
+                    Err(Flaw::of(&self.file, what).at(self.first_line + k as u64).in_column(name))
+                }
+                None => Ok(column),
             }
         };
-        let positive = |name: &'static str| match self.value(name, k) {
-            Some(value) if value.is_finite() && value > 0.0 => Ok(Some(value)),
-            Some(value) => {
-                Err(flaw(name, format!("it is {value}; expected a finite number above 0")))
-            }
-            None => Ok(None),
+        let finite = |name| {
+            checked(name, f64::is_finite, "a finite number").map(|value| value.unwrap_or(f64::NAN))
         };
-        let role = match self.value("role", k) {
-            Some(value) if role(value).is_none() => {
-                Err(flaw("role", format!("it is {value}; expected 0, 1 or 2")))
-            }
-            role => Ok(role),
-        };
+        let is_positive = |value: f64| value.is_finite() && value > 0.0;
+        let positive = |name| checked(name, is_positive, "a finite number above 0");
         let id = finite("id")?;
-        if id < 0.0 || id.fract() != 0.0 || id > f64::from(u32::MAX) {
-            return Err(flaw("id", format!("it is {id}; expected a whole number, not below 0")));
-        }
+        let is_id = |id: f64| (0.0..=f64::from(u32::MAX)).contains(&id) && id.fract() == 0.0;
+        checked("id", is_id, "a whole number, not below 0")?;
         let placed = Placed {
             id: id as u32,
             position: Vector2::new(finite("x")?, finite("y")?),
             velocity: Vector2::new(finite("u")?, finite("v")?),
             density: positive("density")?,
         };
-        Ok(Row { time: finite("t")?, placed, mass: positive("mass")?, role: role? })
+        let (time, mass) = (finite("t")?, positive("mass")?);
+        let role = checked("role", |value| role(value).is_some(), "0, 1 or 2")?;
+        Ok(Row { time, placed, mass, role })
     }
 }
 

@@ -19,7 +19,7 @@ pub fn rows(
     let heads = reader.headers().map_err(unread)?.clone();
     // Of a byte order mark, which some programs put before a table, nothing is said.
     let heads: Vec<&str> = heads.iter().map(|head| head.trim_start_matches('\u{feff}')).collect();
-    let places = places(file, 1, &heads, renamed, columns, &[])?;
+    let places = places(file, 1, &heads, renamed, columns)?;
     let mut columns: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
     let mut flaws = Vec::new();
     for record in reader.records() {
