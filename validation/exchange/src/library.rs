@@ -21,23 +21,12 @@ pub trait Solver {
     fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System;
 }
 
-/// Why there is no record of a solver.
-#[derive(Debug, thiserror::Error)]
-pub enum Refused {
-    /// The case refuses the run.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// What the solver told does not fit the problem.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-    Flaws(Vec<Flaw>),
-}
-
 /// The record of a solver for a run of a case. Put into [`harness::make::Made::submissions`] it has a section
 /// of the report.
 ///
 /// # Errors
-/// If the case refuses the run, or what the solver told does not fit it.
-pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Record, Refused> {
+/// If the case refuses the run, or what the solver told does not fit it: each flaw in a line.
+pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Record, RunError> {
     let problem = Problem::of(case, spec.clone())?;
     let mut results = Results::default();
     let system = solver.solve(&problem, &mut |time, particles| {
@@ -47,9 +36,9 @@ pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Re
     let method = solver.method();
     let digest = sha256(format!("{method:?}").as_bytes());
     let entry = Entry { method, digest, system, asked: None, results, curve: None };
-    let flaws = entry.check(&problem);
+    let flaws: Vec<String> = entry.check(&problem).iter().map(Flaw::to_string).collect();
     match flaws.is_empty() {
-        true => Ok(entry.measure(case, spec, &problem)?),
-        false => Err(Refused::Flaws(flaws)),
+        true => entry.measure(case, spec, &problem),
+        false => Err(RunError::Playback(flaws.join("\n"))),
     }
 }

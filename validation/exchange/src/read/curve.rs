@@ -2,17 +2,16 @@
 //! particles of the problem are put where the case says that they stand for it, and measured as always; what
 //! the curve does not determine is left out of the record by name.
 
+use std::iter::once;
+
 use harness::{
     declare::Curve,
     playback::{self, Frame, Placed},
 };
 use nalgebra::Vector2;
 
-use super::{MOST_FLAWS, MOST_ROWS, Renamed, Results, table};
+use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Results, table};
 use crate::{flaw::Flaw, problem::Problem};
-
-/// A column of the table.
-type Named = (&'static str, Vec<f64>);
 
 /// Name of the table.
 pub const CURVE: &str = "curve.csv";
@@ -27,16 +26,18 @@ pub fn frames(
     renamed: &Renamed,
     problem: &Problem,
 ) -> Result<Results, Vec<Flaw>> {
-    let (named, first_line) = read(curve, text, renamed)?;
-    let ((_, times), values) = (&named[0], &named[1..]);
-    let (ascending, first) = &values[0];
-    let line = |k: usize| first_line + k as u64;
+    let columns = curve.columns.iter().map(|(name, unit)| (*name, *unit, false));
+    let columns: Vec<Head> = once(("t", "s", false)).chain(columns).collect();
+    let rows = table::rows(CURVE, text, renamed, &columns)?;
+    if rows.columns.is_empty() {
+        return Err(vec![Flaw::of(CURVE, "it has no rows; expected one a point and time")]);
+    }
+    let (times, ascending) = (&rows.columns["t"], curve.columns[0].0);
+    let first = &rows.columns[ascending];
+    let line = |k: usize| rows.first_line + k as u64;
     let (settings, mut flaws) = (&problem.spec.settings, Vec::new());
-    for (name, column) in &named {
-        for (k, value) in column.iter().enumerate().filter(|(_, value)| !value.is_finite()) {
-            let what = format!("it is {value}; expected a finite number");
-            flaws.push(Flaw::of(CURVE, what).at(line(k)).in_column(*name));
-        }
+    for (name, ..) in &columns {
+        flaws.extend((0..times.len()).filter_map(|k| rows.finite(name, k).err()));
     }
     let particles = &problem.outline.particles;
     let (x, y, moving) = (particles.column("x"), particles.column("y"), problem.moving());
@@ -68,7 +69,7 @@ pub fn frames(
         if !flaws.is_empty() || time == 0.0 && !problem.outline.times.contains(&0.0) {
             continue;
         }
-        let row = |k: usize| values.iter().map(|(_, column)| column[k]).collect();
+        let row = |k: usize| curve.columns.iter().map(|(name, _)| rows.columns[name][k]).collect();
         let at: Vec<Vec<f64>> = (start..k).map(row).collect();
         let placed = moving.iter().zip((curve.place)(settings, &at, &from));
         let placed = placed.map(|(id, [position, velocity])| Placed {
@@ -84,19 +85,6 @@ pub fn frames(
         hold(&mut results, &problem.outline.times);
     }
     if flaws.is_empty() { Ok(results) } else { Err(flaws) }
-}
-
-/// Names and values of its columns, the time first, and the line of its first row.
-fn read(curve: &Curve, text: &str, renamed: &Renamed) -> Result<(Vec<Named>, u64), Vec<Flaw>> {
-    let columns = curve.columns.iter().map(|(name, unit)| (*name, *unit, false));
-    let columns: Vec<_> = [("t", "s", false)].into_iter().chain(columns).collect();
-    let rows = table::rows(CURVE, text, renamed, &columns)?;
-    let named = |&(name, ..): &(&'static str, _, _)| Some((name, rows.columns.get(name)?.clone()));
-    let named: Vec<Named> = columns.iter().filter_map(named).collect();
-    if named.len() < columns.len() {
-        return Err(vec![Flaw::of(CURVE, "it has no rows; expected one a point and time")]);
-    }
-    Ok((named, rows.first_line))
 }
 
 /// A series is sampled at intervals, and its last row counts until the end if that comes before the next one.

@@ -57,10 +57,8 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
                 let heads: Vec<&str> = item.split_whitespace().skip(1).collect();
                 let places = places(file, line as u64 + 1, &heads, &renamed, &COLUMNS[1..])?;
                 let Some(atoms) = count.take() else {
-                    return Err(flaw(
-                        line,
-                        "there is no ITEM: NUMBER OF ATOMS before the atoms".into(),
-                    ));
+                    let what = "there is no ITEM: NUMBER OF ATOMS before the atoms";
+                    return Err(flaw(line, what.into()));
                 };
                 let (first_line, width) = (line as u64 + 2, heads.len());
                 all.push(snapshot(file, (time, atoms, first_line), (&places, width), &mut lines)?);
@@ -71,12 +69,11 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
             other => return Err(flaw(line, format!("ITEM: {other} is not known"))),
         }
     }
-    match all.is_empty() {
-        true => {
-            Err(vec![Flaw::of(file, "it has no snapshot; expected ITEM: ATOMS after ITEM: TIME")])
-        }
-        false => Ok(all),
+    if all.is_empty() {
+        let what = "it has no snapshot; expected ITEM: ATOMS after ITEM: TIME";
+        return Err(vec![Flaw::of(file, what)]);
     }
+    Ok(all)
 }
 
 /// The atoms of one snapshot.

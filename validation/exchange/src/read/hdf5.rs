@@ -26,10 +26,8 @@ pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Vec<Rows>, Vec
     }
     groups.sort_by_key(|group| (number_in(group.name()), group.name().to_string()));
     if groups.is_empty() {
-        return Err(vec![Flaw::of(
-            file,
-            "it has neither datasets nor groups; expected a column each",
-        )]);
+        let what = "it has neither datasets nor groups; expected a column each";
+        return Err(vec![Flaw::of(file, what)]);
     }
     let mut all = Vec::new();
     for group in groups {

@@ -249,26 +249,36 @@ impl Rows {
         self.columns.get("x").map_or(0, Vec::len)
     }
 
+    /// The value of a column in row k, if the column is there; a flaw unless it is right.
+    fn checked(
+        &self,
+        name: &str,
+        k: usize,
+        is_right: fn(f64) -> bool,
+        expected: &str,
+    ) -> Result<Option<f64>, Flaw> {
+        let value = self.columns.get(name).and_then(|column| column.get(k)).copied();
+        match value.filter(|value| !is_right(*value)) {
+            Some(wrong) => {
+                let what = format!("it is {wrong}; expected {expected}");
+                Err(Flaw::of(&self.file, what).at(self.first_line + k as u64).in_column(name))
+            }
+            None => Ok(value),
+        }
+    }
+
+    fn finite(&self, name: &str, k: usize) -> Result<Option<f64>, Flaw> {
+        self.checked(name, k, f64::is_finite, "a finite number")
+    }
+
     /// A row, or what is wrong with it.
     fn row(&self, k: usize) -> Result<Row, Flaw> {
-        let checked = |name: &str, is_right: fn(f64) -> bool, expected: &str| {
-            let column = self.columns.get(name).and_then(|column| column.get(k)).copied();
-            match column.filter(|value| !is_right(*value)) {
-                Some(wrong) => {
-                    let what = format!("it is {wrong}; expected {expected}");
-                    Err(Flaw::of(&self.file, what).at(self.first_line + k as u64).in_column(name))
-                }
-                None => Ok(column),
-            }
-        };
-        let finite = |name| {
-            checked(name, f64::is_finite, "a finite number").map(|value| value.unwrap_or(f64::NAN))
-        };
+        let finite = |name| self.finite(name, k).map(|value| value.unwrap_or(f64::NAN));
         let is_positive = |value: f64| value.is_finite() && value > 0.0;
-        let positive = |name| checked(name, is_positive, "a finite number above 0");
+        let positive = |name| self.checked(name, k, is_positive, "a finite number above 0");
         let id = finite("id")?;
         let is_id = |id: f64| (0.0..=f64::from(u32::MAX)).contains(&id) && id.fract() == 0.0;
-        checked("id", is_id, "a whole number, not below 0")?;
+        self.checked("id", k, is_id, "a whole number, not below 0")?;
         let placed = Placed {
             id: id as u32,
             position: Vector2::new(finite("x")?, finite("y")?),
@@ -276,7 +286,7 @@ impl Rows {
             density: positive("density")?,
         };
         let (time, mass) = (finite("t")?, positive("mass")?);
-        let role = checked("role", |value| role(value).is_some(), "0, 1 or 2")?;
+        let role = self.checked("role", k, |value| role(value).is_some(), "0, 1 or 2")?;
         Ok(Row { time, placed, mass, role })
     }
 }
