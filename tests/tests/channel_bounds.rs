@@ -17,7 +17,7 @@ fn model<K: Kernel>(
 ) -> RowModel {
     let (wall_velocity, force) = match flow {
         Flow::Couette => ([0.0, 1.0], 0.0),
-        Flow::Poiseuille => ([0.0; 2], POISEUILLE.force()),
+        Flow::Poiseuille => ([0.0; 2], 8.0), // F = 8νV/L²
     };
     let section = Channel { rows, width: 1.0, nu: 1.0, wall_velocity, force, wall_rule, alignment };
     section.reduce::<K>(h_over_dx, 1e-6).expect("a wide channel")

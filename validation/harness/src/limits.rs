@@ -1,7 +1,7 @@
 //! What limits the time step of a run: the limit of each mechanism of its scene alone, and of all waves of
 //! the lattice together.
 
-use maths::theory::time_step::{self, Integrator, Mode, SeparateLimits};
+use maths::theory::time_step::{self, Integrator, Mode};
 
 /// What limits a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,14 +71,14 @@ impl Limits {
 
     /// Those of the waves of a lattice.
     pub fn of(modes: &[Mode], integrator: Integrator) -> Self {
-        let of = SeparateLimits::of(modes);
+        let alone = |rate: fn(&Mode) -> f64| time_step::limit_alone(modes, rate);
         let together = time_step::time_step_limit(modes, integrator);
         let explicit = modes.iter().map(|mode| mode.explicit).fold(f64::INFINITY, f64::min);
         Self { together, explicit, integrator, ..Self::REFUSED }
-            .with(Mechanism::Waves, of.acoustic)
-            .with(Mechanism::Viscosity, of.viscous)
-            .with(Mechanism::ArtificialViscosity, of.artificial_viscosity)
-            .with(Mechanism::Diffusion, of.density_diffusion)
+            .with(Mechanism::Waves, alone(|mode| mode.omega))
+            .with(Mechanism::Viscosity, alone(|mode| mode.viscous))
+            .with(Mechanism::ArtificialViscosity, alone(Mode::artificial))
+            .with(Mechanism::Diffusion, alone(|mode| mode.density))
     }
 
     /// Those of a leapfrog whose elastic waves have this limit \[s\], and which damps nothing.

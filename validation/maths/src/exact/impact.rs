@@ -7,6 +7,8 @@
 
 use base::functions::ln_1p;
 
+use crate::halved;
+
 /// What follows from moduli, density and speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
@@ -21,11 +23,7 @@ impl Impact {
     /// V \[m/s\], above 0.
     pub fn new(bulk: f64, shear: f64, density: f64, v: f64) -> Self {
         let excess = |e: f64| stress(bulk, shear, e) * e - density * v * v; // J = 1 − e
-        let (mut low, mut high) = (0.0, 0.999);
-        for _ in 0..200 {
-            let middle = 0.5 * (low + high);
-            if excess(middle) < 0.0 { low = middle } else { high = middle }
-        }
+        let [low, high] = halved([0.0, 0.999], 200, |e| excess(e) < 0.0);
         let e = 0.5 * (low + high);
         Self { stress: stress(bulk, shear, e), speed: v / e }
     }

@@ -15,6 +15,7 @@ use super::{
     lattice::{SquareLattice, wave_vectors},
     super_steps,
 };
+use crate::halved;
 use base::functions::{ln, modulus};
 use nalgebra::{Complex, Matrix3, SMatrix, Vector2};
 use solver::integrator::stages;
@@ -84,31 +85,13 @@ pub struct Mode {
     pub explicit: f64,
 }
 
-/// The limit of each mechanism acting alone \[s\], 2 over the largest of its rates; infinite for what is
+/// The limit of a mechanism acting alone \[s\], 2 over the largest of its rates in `modes`; infinite for what is
 /// absent. The smallest is up to 28 % above the limit of all of them together, [`time_step_limit`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeparateLimits {
-    /// 2/ω_max, leapfrog only: alone, sound grows at any dt under the other two.
-    pub acoustic: f64,
-    /// 2/(ν λ_max), every integrator but super-time-stepping.
-    pub viscous: f64,
-    /// 2/(α c₀ h P_max), every integrator.
-    pub artificial_viscosity: f64,
-    /// 2/(δ h c₀ λ₀_max), every integrator.
-    pub density_diffusion: f64,
-}
-
-impl SeparateLimits {
-    /// Those of `modes`.
-    pub fn of(modes: &[Mode]) -> Self {
-        let limit = |rate: fn(&Mode) -> f64| 2.0 / modes.iter().map(rate).fold(0.0, f64::max);
-        Self {
-            acoustic: limit(|mode| mode.omega),
-            viscous: limit(|mode| mode.viscous),
-            artificial_viscosity: limit(Mode::artificial),
-            density_diffusion: limit(|mode| mode.density),
-        }
-    }
+///
+/// That of sound, 2/ω_max, is one of the leapfrog only: alone, sound grows at any dt under Euler and the
+/// predictor-corrector. That of viscosity, 2/(ν λ_max), is one of every integrator but super-time-stepping.
+pub fn limit_alone(modes: &[Mode], rate: fn(&Mode) -> f64) -> f64 {
+    2.0 / modes.iter().map(rate).fold(0.0, f64::max)
 }
 
 /// The largest eigenvalue of a viscous term may be this much above that of the lattice: displacements by a
@@ -142,6 +125,9 @@ pub fn growth_per_step(modes: &[Mode], integrator: Integrator, dt: f64) -> f64 {
 /// viscosity.
 const SEARCHED: i32 = 500;
 
+/// How often the interval between a step that is stable and one that is not is halved.
+const HALVED: usize = 40;
+
 /// Steps in which the limit of the single sweep is searched.
 const SEARCHED_SINGLY: u16 = 20;
 
@@ -168,7 +154,7 @@ impl Mode {
     }
 
     /// The larger eigenvalue of α c₀ h P(k), the part of Γ that is not Morris' viscosity \[1/s\].
-    fn artificial(&self) -> f64 {
+    pub fn artificial(&self) -> f64 {
         let Self { longitudinal, coupling, transverse, viscous, .. } = *self;
         let (mean, half) = (0.5 * (longitudinal + transverse), 0.5 * (longitudinal - transverse));
         // Without artificial viscosity a difference of equal numbers, which is 0.
@@ -222,7 +208,7 @@ impl Mode {
         let searched = (0..SEARCHED).map(|k| shortest * 1.01_f64.powi(k));
         let mut within = searched.take_while(|dt| *dt < 1.01 * longest);
         let found = within.find(|dt| !is_stable(*dt));
-        found.map_or(f64::INFINITY, |dt| last_stable([dt / 1.01, dt], is_stable))
+        found.map_or(f64::INFINITY, |dt| halved([dt / 1.01, dt], HALVED, is_stable)[0])
     }
 
     fn limit_of_single_sweep(&self, longest: f64) -> f64 {
@@ -233,7 +219,7 @@ impl Mode {
             (1..=SEARCHED_SINGLY).map(|k| far * f64::from(k) / f64::from(SEARCHED_SINGLY));
         let found = searched.find(|dt| !is_stable(*dt));
         let before = |dt: f64| dt - far / f64::from(SEARCHED_SINGLY);
-        found.map_or(longest, |dt| last_stable([before(dt), dt], is_stable))
+        found.map_or(longest, |dt| halved([before(dt), dt], HALVED, is_stable)[0])
     }
 
     /// ln of the spectral radius of one step.
@@ -332,15 +318,6 @@ impl Mode {
     }
 }
 
-/// The last stable step between one that is stable and a longer one that is not.
-fn last_stable([mut low, mut high]: [f64; 2], is_stable: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..40 {
-        let middle = 0.5 * (low + high);
-        if is_stable(middle) { low = middle } else { high = middle }
-    }
-    low
-}
-
 /// ln of the spectral radius, from the 2⁴⁰th power; of one below `enough` a bound that is below it as well.
 fn growth_of(mut step: SMatrix<f64, 5, 5>, enough: f64) -> f64 {
     let (mut growth, mut share) = (0.0, 1.0);
@@ -368,12 +345,8 @@ fn rows_of(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
 /// rule in direction c = -Re s/|s|. The cubic rises with τ (its derivative has discriminant
 /// 4c² - 6c² < 0), from -2c at 0 to at least 3/4 at 3.
 fn midpoint_root(c: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 3.0);
-    for _ in 0..60 {
-        let tau = 0.5 * (low + high);
-        let growing = ((0.25 * tau - c) * tau + 2.0 * c * c) * tau > 2.0 * c;
-        if growing { high = tau } else { low = tau }
-    }
+    let is_growing = |tau: f64| ((0.25 * tau - c) * tau + 2.0 * c * c) * tau > 2.0 * c;
+    let [low, high] = halved([0.0, 3.0], 60, |tau| !is_growing(tau));
     0.5 * (low + high)
 }
 
@@ -386,6 +359,8 @@ mod tests {
 
     const WATER: Medium = Medium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
     use Integrator::{Euler, Leapfrog, PredictorCorrector, SingleSweep};
+
+    type Rate = fn(&Mode) -> f64;
 
     fn oscillator(omega: f64, gamma: f64) -> Mode {
         let along = Vector2::x();
@@ -425,10 +400,11 @@ mod tests {
     fn separate_limits_match_the_design_table() {
         fn check<K: Kernel>(ratio: f64, printed: [&str; 2]) {
             let lattice = SquareLattice::of::<K>(ratio, 0.01);
-            let limits = SeparateLimits::of(&modes(&lattice, 120, &Medium { nu: 1.0, ..WATER }));
+            let modes = modes(&lattice, 120, &Medium { nu: 1.0, ..WATER });
             let row = format!("{} {ratio}", K::NAME);
-            assert_rounds_to(&row, &printed, &[limits.acoustic, limits.viscous]);
-            assert_eq!(limits.artificial_viscosity, f64::INFINITY);
+            let limits: [Rate; 2] = [|mode| mode.omega, |mode| mode.viscous];
+            assert_rounds_to(&row, &printed, &limits.map(|rate| limit_alone(&modes, rate)));
+            assert_eq!(limit_alone(&modes, Mode::artificial), f64::INFINITY);
         }
         check::<CubicSpline>(1.2, ["1.867", "0.352"]);
         check::<CubicSpline>(1.3, ["1.868", "0.353"]);
@@ -464,8 +440,9 @@ mod tests {
     fn dissipation_limits_match_the_design_text() {
         let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
         let medium = Medium { alpha: 1.0, delta: 1.0, ..WATER };
-        let limits = SeparateLimits::of(&modes(&lattice, 120, &medium));
-        let computed = [limits.artificial_viscosity, limits.density_diffusion];
+        let modes = modes(&lattice, 120, &medium);
+        let limits: [Rate; 2] = [Mode::artificial, |mode| mode.density];
+        let computed = limits.map(|rate| limit_alone(&modes, rate));
         assert_rounds_to("R4, R5", &["1.03", "0.347"], &computed);
     }
 
@@ -501,8 +478,9 @@ mod tests {
         let excess = [3.0, 5.3, 10.0, 30.0, 100.0].map(|x: f64| {
             let medium = Medium { nu: 1.0 / x, ..WATER };
             let modes = modes(&lattice, 80, &medium);
-            let (alone, together) = (SeparateLimits::of(&modes), time_step_limit(&modes, Leapfrog));
-            alone.acoustic.min(alone.viscous) / together - 1.0
+            let alone = |rate: Rate| limit_alone(&modes, rate);
+            let together = time_step_limit(&modes, Leapfrog);
+            alone(|mode| mode.omega).min(alone(|mode| mode.viscous)) / together - 1.0
         });
         assert_rounds_to("excess", &["0.00", "0.28", "0.13", "0.04", "0.01"], &excess);
     }
