@@ -140,16 +140,10 @@ fn document<T: DeserializeOwned>(
 /// Everything that is missing or wrong.
 pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     let mut flaws = Vec::new();
-    let method = document::<Method>(
-        folder,
-        METHOD,
-        "code, version, scheme, division (closed or open), settings (an object) and changed",
-    );
-    let system = document::<System>(
-        folder,
-        SYSTEM,
-        "machine, threads, seconds, steps and interactions, each a number or \"unknown\"",
-    );
+    let what = "code, version, scheme, division (closed or open), settings (an object) and changed";
+    let method = document::<Method>(folder, METHOD, what);
+    let what = "machine, threads, seconds, steps and interactions, each a number or \"unknown\"";
+    let system = document::<System>(folder, SYSTEM, what);
     let asked = asked(folder);
     let path = folder.join(CURVE);
     let text = path.exists().then(|| files::read_text(&path, read::MOST_BYTES));

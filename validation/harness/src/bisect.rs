@@ -152,10 +152,11 @@ pub struct Growth {
     seen: u64,
     /// Sums over the second and the last quarter.
     quarters: [f64; 2],
-    beyond_doubt: bool,
+    /// Is there no need to go on?
+    pub beyond_doubt: bool,
 }
 
-base::bits! { Growth { start, steps, seen, quarters, beyond_doubt } }
+crate::observed! { Growth: changes(seen, quarters, beyond_doubt), parts(), stays(start, steps) }
 
 impl Growth {
     /// Watches `steps` steps from an energy of `start` > 0.

@@ -24,7 +24,7 @@ use harness::{
 };
 use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
-use solver::{EquationOfState, Flow, Limits, Observer, Stepper, Tait};
+use solver::{EquationOfState, Flow, Limits, Stepper, Tait};
 
 use crate::torus;
 
@@ -98,40 +98,20 @@ fn method(variant: &str) -> Method {
 }
 
 fn variants() -> Vec<Composition<BoxSettings>> {
+    let cubic =
+        "what sound and viscosity allow together: the kernel and the viscous term of the seed";
+    let midpoint = "what the predictor-corrector allows, which amplifies sound that nothing damps";
+    let super_stepping = "what is left of the limit of viscosity by super-time-stepping";
+    let damped = "what artificial viscosity and density diffusion take from the step";
+    let single = "what one pair sweep a step allows, in place of the leapfrog's two";
+    let quintic = "does theory hold for a kernel of wider support?";
     Variants::of(&Program { run, rules })
-        .with(
-            CUBIC,
-            "what sound and viscosity allow together: the kernel and the viscous term of the seed",
-            method(CUBIC),
-            |_| (),
-        )
-        .with(
-            MIDPOINT,
-            "what the predictor-corrector allows, which amplifies sound that nothing damps",
-            method(MIDPOINT),
-            |_| (),
-        )
-        .with(
-            SUPER,
-            "what is left of the limit of viscosity by super-time-stepping",
-            method(SUPER),
-            |_| (),
-        )
-        .with(
-            DAMPED,
-            "what artificial viscosity and density diffusion take from the step",
-            method(DAMPED),
-            |_| (),
-        )
-        .with(
-            SINGLE,
-            "what one pair sweep a step allows, in place of the leapfrog's two",
-            method(SINGLE),
-            |_| (),
-        )
-        .with(QUINTIC, "does theory hold for a kernel of wider support?", method(QUINTIC), |s| {
-            s.h_over_dx = 1.0
-        })
+        .with(CUBIC, cubic, method(CUBIC), |_| ())
+        .with(MIDPOINT, midpoint, method(MIDPOINT), |_| ())
+        .with(SUPER, super_stepping, method(SUPER), |_| ())
+        .with(DAMPED, damped, method(DAMPED), |_| ())
+        .with(SINGLE, single, method(SINGLE), |_| ())
+        .with(QUINTIC, quintic, method(QUINTIC), |s| s.h_over_dx = 1.0)
         .all
 }
 
@@ -190,14 +170,6 @@ fn parts(method: &Method, s: &BoxSettings) -> Parts {
     Parts { limits, ..torus((1.0, s.n), medium, &Context::default(), velocity) }
 }
 
-/// Watches the energy, and ends the run if it grew beyond doubt.
-struct Watch {
-    growth: Growth,
-    stopped: bool,
-}
-
-harness::observed! { Watch: changes(growth, stopped), parts(), stays() }
-
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
 fn energy(simulation: &dyn Stepper<()>) -> f64 {
     let of = |(mass, e): (f64, &solver::Evolved<()>)| {
@@ -206,11 +178,9 @@ fn energy(simulation: &dyn Stepper<()>) -> f64 {
     simulation.fluid().map(of).sum()
 }
 
-impl Observer<()> for Watch {
-    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
-        self.stopped = self.growth.see(energy(simulation));
-        if self.stopped { Flow::Stop } else { Flow::Continue }
-    }
+/// Watches the energy, and ends the run if it grew beyond doubt.
+fn watch(growth: &mut Growth, simulation: &dyn Stepper<()>) -> Flow {
+    if growth.see(energy(simulation)) { Flow::Stop } else { Flow::Continue }
 }
 
 /// One run of the case.
@@ -225,11 +195,10 @@ fn run(
     let (dt, end) = (rules.dt(), [rules.end]);
     let mut simulation = (method.build)(parts(method, s))?;
     let start = energy(&*simulation);
-    let growth = Growth::new(start, s.steps as u64);
-    let mut watch = Watch { growth, stopped: false };
+    let mut growth = Growth::new(start, s.steps as u64);
     let pressure = |density| Tait::new(1.0, 1.0).pressure(density);
-    let (status, cost) = Drive::new(&mut *simulation, dt, &end, &pressure, &mut watch)
-        .after_step("energy", &Watch::after_step)
+    let (status, cost) = Drive::new(&mut *simulation, dt, &end, &pressure, &mut growth)
+        .after_step("energy", &watch)
         .run(context)?;
     let numbers = [
         ("h/dx", s.h_over_dx),
@@ -240,12 +209,12 @@ fn run(
     ];
     let (name, serial) = ((RESTING_BOX.name, variant), Context::default());
     let mut record = simulate::begin(name, s, method, &numbers, &serial);
-    let grew = matches!(status, Status::Diverged { .. }) || watch.growth.grew();
+    let grew = matches!(status, Status::Diverged { .. }) || growth.grew();
     record.put(GREW, f64::from(u8::from(grew)));
     record.put(ENERGY, energy(&*simulation) / start);
     record.state = Some(simulate::state(&simulation.particles()));
     // A run that is over early because its energy grew beyond doubt is complete.
-    record.status = if watch.stopped { Status::Completed } else { status };
+    record.status = if growth.beyond_doubt { Status::Completed } else { status };
     record.cost = cost;
     Ok(record)
 }

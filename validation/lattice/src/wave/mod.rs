@@ -155,22 +155,15 @@ const STEPWISE: &[MetricKey] = &[
 
 fn variants(program: &Program<WaveSettings, Method>) -> Vec<Composition<WaveSettings>> {
     let of_kernel = "are the symbols those of this kernel? its plain equations with the leapfrog";
+    let of_step =
+        "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog";
+    let of_diffusion = "does density diffusion decay as its symbol says? else as cubic-leapfrog";
     Variants::of(program)
         .with(CUBIC, of_kernel, schemes::lattice::cubic(), |_| ())
-        .with(
-            MIDPOINT,
-            "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog",
-            schemes::lattice::midpoint(),
-            |_| (),
-        )
+        .with(MIDPOINT, of_step, schemes::lattice::midpoint(), |_| ())
         .with(QUINTIC, of_kernel, schemes::lattice::quintic(), |_| ())
         .with(WENDLAND, of_kernel, schemes::lattice::wendland(), |_| ())
-        .with(
-            DIFFUSIVE,
-            "does density diffusion decay as its symbol says? else as cubic-leapfrog",
-            schemes::lattice::diffusive(),
-            |s| s.diffusion = 0.1,
-        )
+        .with(DIFFUSIVE, of_diffusion, schemes::lattice::diffusive(), |s| s.diffusion = 0.1)
         .all
 }
 

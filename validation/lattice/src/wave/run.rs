@@ -14,7 +14,7 @@ use harness::{
     runner::{self, Drive},
     simulate,
 };
-use maths::theory::time_step;
+use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
 use solver::{EquationOfState, Flow, Observer, Stepper, Tait};
 
@@ -32,16 +32,10 @@ pub(super) struct Wave {
     polarisation: Polarisation,
     /// Phase from one particle to the next.
     theta: Vector2<f64>,
-    /// Unit vector along the gradient symbol.
-    along: Vector2<f64>,
     /// What terms are made from.
     medium: Medium,
-    /// Frequency and damping that theory gives to sound.
-    sound: DampedMode,
-    /// Damping that theory gives to shear \[1/s\].
-    shear: f64,
-    /// Decay that theory gives to density by itself \[1/s\].
-    diffusion: f64,
+    /// What theory gives to sound, to shear, and to density by itself.
+    mode: Mode,
     /// A time step of which a whole number ends the run, the leapfrog's limits of it, sound speed, end.
     rules: Rules,
 }
@@ -96,12 +90,11 @@ impl Wave {
         let waves =
             time_step::Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
         let mode = method.mode(lattice, theta, &waves);
-        let sound = DampedMode { omega: mode.omega, gamma: mode.longitudinal };
         let step = Step::courant(s.courant, h, [sound_speed, 0.0]).viscous(s.viscous, h, s.nu);
         // The predictor-corrector amplifies sound at every dt, which is part of what is compared.
         let theory = time_step::Integrator::Leapfrog;
         let limits = Limits::of(&method.modes(lattice, s.n, &waves), theory);
-        let period = std::f64::consts::TAU / sound.omega;
+        let period = std::f64::consts::TAU / mode.omega;
         let time = match polarisation {
             Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,
             _ => period,
@@ -114,17 +107,7 @@ impl Wave {
             simulate::size(method, &medium, [steps, (s.n * s.n) as f64]).sampled_at_every_step();
         runner::check_size(size, "span, dt, courant, viscous, nu or n", context)?;
         rules.step.dt = end / steps;
-        Ok(Self {
-            settings: s.clone(),
-            polarisation,
-            theta,
-            along: mode.along,
-            medium,
-            sound,
-            shear: mode.transverse,
-            diffusion: mode.density,
-            rules,
-        })
+        Ok(Self { settings: s.clone(), polarisation, theta, medium, mode, rules })
     }
 
     /// Phase of each label, in the order of the scene.
@@ -134,14 +117,14 @@ impl Wave {
     }
 
     fn across(&self) -> Vector2<f64> {
-        Vector2::new(-self.along.y, self.along.x)
+        Vector2::new(-self.mode.along.y, self.mode.along.x)
     }
 
     /// The scene: a cosine of velocity at uniform density.
     fn parts(&self, context: &Context) -> Parts {
         let (s, Medium { dx, sound_speed, .. }) = (&self.settings, self.medium);
         let direction = match self.polarisation {
-            Polarisation::Sound => self.along,
+            Polarisation::Sound => self.mode.along,
             Polarisation::Shear => self.across(),
         };
         let mut random = Random::new(1);
@@ -156,17 +139,18 @@ impl Wave {
     /// What theory gives for the amplitudes after each of `steps` steps, exactly.
     fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<[f64; 3]> {
         let (a, dt) = (self.settings.amplitude, self.rules.dt());
-        let m = fit::step(&self.sound, self.diffusion, integrator, dt);
-        let factor = fit::shear_step(self.shear, integrator, dt);
+        let Mode { omega, longitudinal: gamma, transverse, density, .. } = self.mode;
+        let m = fit::step(&DampedMode { omega, gamma }, density, integrator, dt);
+        let shear_mode = DampedMode { omega: 0.0, gamma: transverse };
+        let factor = fit::step(&shear_mode, 0.0, integrator, dt).m22;
         let (mut y, mut shear) = match self.polarisation {
             Polarisation::Sound => (Vector2::new(0.0, a), 0.0),
             Polarisation::Shear => (Vector2::zeros(), a),
         };
         if integrator == time_step::Integrator::Leapfrog {
             // The first kick is half a one: back to where a whole one would start.
-            let DampedMode { omega, gamma } = self.sound;
             y.y = (y.y * (1.0 - 0.5 * gamma * dt) - omega * dt * y.x) / (1.0 - gamma * dt);
-            shear *= (1.0 - 0.5 * self.shear * dt) / (1.0 - self.shear * dt);
+            shear *= (1.0 - 0.5 * transverse * dt) / (1.0 - transverse * dt);
         }
         let advance = |_| {
             (y, shear) = (m * y, factor * shear);
@@ -187,12 +171,12 @@ impl<'a> Projection<'a> {
 
 impl Observer<()> for Projection<'_> {
     fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
-        let Wave { along, medium: Medium { density, sound_speed, .. }, .. } = self.wave;
+        let Wave { mode, medium: Medium { density, sound_speed, .. }, .. } = self.wave;
         let across = self.wave.across();
         let mut sums = [0.0; 3];
         for (particle, [cos, sin]) in simulation.particles().iter().zip(&self.basis) {
             sums[0] -= (particle.density / density - 1.0) * sin;
-            sums[1] += particle.velocity.dot(along) / sound_speed * cos;
+            sums[1] += particle.velocity.dot(&mode.along) / sound_speed * cos;
             sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
         }
         self.series.push(sums);
@@ -237,7 +221,7 @@ pub(super) fn run(
         ("c0 [m/s]", sound_speed),
         ("c0 h/nu", sound_speed * h / s.nu),
         (PLANNED_DT, wave.rules.dt()),
-        ("omega dt", wave.sound.omega * wave.rules.dt()),
+        ("omega dt", wave.mode.omega * wave.rules.dt()),
     ];
     let mut record = simulate::begin((case, variant), s, method, &numbers, context);
     let Projection { series, momentum, .. } = projection;
@@ -278,18 +262,19 @@ fn compare(
     if wave.polarisation == Polarisation::Sound {
         let nothing = DampedMode { omega: f64::NAN, gamma: f64::NAN };
         let found = fit::mode_of(series, integrator, wave.rules.dt()).unwrap_or(nothing);
-        let expected = wave.sound;
-        let scale = if expected.gamma > 0.0 { expected.gamma } else { expected.omega };
-        let error = relative(found.omega, expected.omega, expected.omega);
+        let Mode { omega, longitudinal: gamma, .. } = wave.mode;
+        let scale = if gamma > 0.0 { gamma } else { omega };
+        let error = relative(found.omega, omega, omega);
         record.put(FREQUENCY_ERROR, error);
-        record.put(DECAY_ERROR, relative(found.gamma, expected.gamma, scale));
+        record.put(DECAY_ERROR, relative(found.gamma, gamma, scale));
         let sound = wave.medium.sound_speed * wave.theta.norm() * wave.settings.n as f64
             / wave.settings.length;
         record.put(SOUND_FACTOR, found.omega / sound);
     } else {
         let found = fit::decay_of(series, integrator, wave.rules.dt()).unwrap_or(f64::NAN);
-        let scale = if wave.shear > 0.0 { wave.shear } else { wave.sound.omega };
-        record.put(SHEAR_DECAY_ERROR, relative(found, wave.shear, scale));
+        let Mode { transverse, omega, .. } = wave.mode;
+        let scale = if transverse > 0.0 { transverse } else { omega };
+        record.put(SHEAR_DECAY_ERROR, relative(found, transverse, scale));
         let k = wave.theta.norm() * wave.settings.n as f64 / wave.settings.length;
         record.put(VISCOUS_FACTOR, found / (wave.settings.nu * k * k));
     }
@@ -325,7 +310,7 @@ mod tests {
         let Medium { density, sound_speed, .. } = wave.medium;
         for (particle, phase) in parts.particles.iter_mut().zip(wave.phases()) {
             particle.density = density * (1.0 - 0.003 * sin(phase));
-            let own = wave.along * (0.02 * cos(phase)) - wave.across() * (0.005 * cos(phase));
+            let own = wave.mode.along * (0.02 * cos(phase)) - wave.across() * (0.005 * cos(phase));
             particle.velocity = own * sound_speed + Vector2::new(0.3, -0.1);
         }
         let momentum: Vector2<f64> = parts.particles.iter().map(|p| p.velocity * p.mass).sum();
@@ -352,7 +337,8 @@ mod tests {
         let record = || Record::new("c", "v", serde_json::json!({}), 1);
         let (wave, _) = wave(Polarisation::Sound);
         let mut other = wave.clone();
-        (other.sound.omega, other.sound.gamma) = (1.01 * wave.sound.omega, 0.97 * wave.sound.gamma);
+        let Mode { omega, longitudinal, .. } = wave.mode;
+        (other.mode.omega, other.mode.longitudinal) = (1.01 * omega, 0.97 * longitudinal);
         let mut found = record();
         compare(&wave, leapfrog, &other.predicted(leapfrog, 50), &mut found);
         assert_relative_eq!(value(&found, FREQUENCY_ERROR), 0.01, max_relative = 1e-6);
@@ -361,7 +347,7 @@ mod tests {
         let k = std::f64::consts::TAU * 5.0_f64.sqrt() / s.length;
         assert_relative_eq!(
             value(&found, SOUND_FACTOR),
-            other.sound.omega / (c * k),
+            other.mode.omega / (c * k),
             max_relative = 1e-8
         );
 
@@ -376,11 +362,11 @@ mod tests {
 
         let (wave, _) = self::wave(Polarisation::Shear);
         let mut other = wave.clone();
-        other.shear = 1.02 * wave.shear;
+        other.mode.transverse = 1.02 * wave.mode.transverse;
         let mut found = record();
         compare(&wave, leapfrog, &other.predicted(leapfrog, 50), &mut found);
         assert_relative_eq!(value(&found, SHEAR_DECAY_ERROR), 0.02, max_relative = 1e-6);
-        let viscous = other.shear / (1e-3 * k * k);
+        let viscous = other.mode.transverse / (1e-3 * k * k);
         assert_relative_eq!(value(&found, VISCOUS_FACTOR), viscous, max_relative = 1e-8);
     }
 }
