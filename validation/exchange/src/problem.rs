@@ -214,13 +214,8 @@ impl Problem {
     pub fn page(&self) -> String {
         let Outline { medium: m, times, .. } = &self.outline;
         let quantity = |(name, value): (&String, &Value)| {
-            let text = |value: &Value| value.as_str().map_or(value.to_string(), String::from);
-            format!(
-                "| {} | {} | {} |\n",
-                name.replace('_', " "),
-                text(&value["value"]),
-                text(&value["unit"])
-            )
+            let unit = value["unit"].as_str().unwrap_or_default();
+            format!("| {} | {} | {unit} |\n", name.replace('_', " "), value["value"])
         };
         let material = material(m, self.is_solid());
         let material: String = material.as_object().into_iter().flatten().map(quantity).collect();

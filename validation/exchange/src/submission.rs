@@ -13,7 +13,7 @@ use base::{
 use harness::{
     case::{Case, RunError, Tier},
     context::Context,
-    playback::{self, Frame, Own, Playback},
+    playback::{self, Frame, Playback},
     suite,
 };
 use serde::{Deserialize, de::DeserializeOwned};
@@ -364,7 +364,7 @@ impl Entry {
         if ids.iter().enumerate().any(|(k, id)| *id as usize != k) {
             flaw("id", "ids of the first frame are not 0, 1, 2 and so on, each once");
         }
-        if own.iter().any(|(mass, _)| mass.is_none()) {
+        if own.iter().any(|own| own.mass.is_nan()) {
             flaw("mass", "it is missing; in the open division each particle states its mass");
         }
         if frames.first().is_some_and(|frame| frame.time != 0.0) {
@@ -383,23 +383,12 @@ impl Entry {
 
     /// The frames, with the particles of the code itself in the open division.
     fn playback(&self) -> Playback<'_> {
-        let Results { frames, own, .. } = &self.results;
-        let own = match (self.particles(), frames.first()) {
-            (Division::Open, Some(first)) => {
-                let start = first.particles.iter().zip(own);
-                let mut own: Vec<Own> = start
-                    .map(|(start, (mass, role))| Own {
-                        role: role.and_then(harness::outline::role).unwrap_or(solver::Role::Fluid),
-                        mass: mass.unwrap_or(0.0),
-                        start: *start,
-                    })
-                    .collect();
-                own.sort_by_key(|own| own.start.id);
-                own
-            }
-            _ => Vec::new(),
+        let mut own = match self.particles() {
+            Division::Open => self.results.own.clone(),
+            Division::Closed => Vec::new(),
         };
-        Playback { frames, own }
+        own.sort_by_key(|own| own.start.id);
+        Playback { frames: &self.results.frames, own }
     }
 
     /// Measures the particles in a scene as those of a run of the problem. What they do not determine is

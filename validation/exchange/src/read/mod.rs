@@ -19,9 +19,10 @@ use std::path::Path;
 use base::files;
 use harness::{
     outline::role,
-    playback::{Frame, Placed},
+    playback::{Frame, Own, Placed},
 };
 use nalgebra::Vector2;
+use solver::Role;
 
 use crate::flaw::Flaw;
 
@@ -67,9 +68,7 @@ pub struct Rows {
 /// A row of results.
 struct Row {
     time: f64,
-    placed: Placed,
-    mass: Option<f64>,
-    role: Option<f64>,
+    own: Own,
 }
 
 /// Particles at times as they were read.
@@ -77,8 +76,8 @@ struct Row {
 pub struct Results {
     /// Frames, ascending in time.
     pub frames: Vec<Frame>,
-    /// Mass and role of the particles of the first frame, where files have them.
-    pub own: Vec<(Option<f64>, Option<f64>)>,
+    /// The particles of the first frame: of fluid where files have no role, and NaN where they have no mass.
+    pub own: Vec<Own>,
     /// The file of each frame, and the line of its first row where it has lines.
     pub places: Vec<(String, u64)>,
 }
@@ -279,15 +278,16 @@ impl Rows {
         let id = finite("id")?;
         let is_id = |id: f64| (0.0..=f64::from(u32::MAX)).contains(&id) && id.fract() == 0.0;
         self.checked("id", k, is_id, "a whole number, not below 0")?;
-        let placed = Placed {
+        let start = Placed {
             id: id as u32,
             position: Vector2::new(finite("x")?, finite("y")?),
             velocity: Vector2::new(finite("u")?, finite("v")?),
             density: positive("density")?,
         };
-        let (time, mass) = (finite("t")?, positive("mass")?);
-        let role = self.checked("role", k, |value| role(value).is_some(), "0, 1 or 2")?;
-        Ok(Row { time, placed, mass, role })
+        let (time, mass) = (finite("t")?, positive("mass")?.unwrap_or(f64::NAN));
+        let number = self.checked("role", k, |value| role(value).is_some(), "0, 1 or 2")?;
+        let role = number.and_then(role).unwrap_or(Role::Fluid);
+        Ok(Row { time, own: Own { role, mass, start } })
     }
 }
 
@@ -304,7 +304,7 @@ fn frames(all: &[Rows]) -> Result<Results, Vec<Flaw>> {
                 return Err(flaws);
             }
             let line = rows.first_line + k as u64;
-            let Row { time, placed, mass, role } = match rows.row(k) {
+            let Row { time, own } = match rows.row(k) {
                 Ok(row) => row,
                 Err(flaw) => {
                     flaws.push(flaw);
@@ -322,10 +322,10 @@ fn frames(all: &[Rows]) -> Result<Results, Vec<Flaw>> {
                 results.places.push((rows.file.clone(), line));
             }
             if results.frames.len() == 1 {
-                results.own.push((mass, role));
+                results.own.push(own);
             }
             if let Some(frame) = results.frames.last_mut() {
-                frame.particles.push(placed);
+                frame.particles.push(own.start);
             }
         }
     }

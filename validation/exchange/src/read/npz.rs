@@ -49,12 +49,9 @@ fn numbers(array: impl Read) -> Result<Vec<f64>, String> {
     let sizes = shape.unwrap_or_default().split(',').filter(|size| !size.trim().is_empty());
     let mut count = sizes.map(|size| size.trim().parse::<usize>().ok());
     let count = count.try_fold(1_usize, |all, size| all.checked_mul(size?));
+    let (found, said) = (values.len(), shape.unwrap_or_default());
     match count {
-        Some(count) if count == values.len() => Ok(values),
-        _ => Err(format!(
-            "it has {} numbers; its head says ({})",
-            values.len(),
-            shape.unwrap_or_default()
-        )),
+        Some(count) if count == found => Ok(values),
+        _ => Err(format!("it has {found} numbers; its head says ({said})")),
     }
 }

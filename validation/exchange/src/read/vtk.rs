@@ -74,10 +74,11 @@ fn values(root: Node, node: Node) -> Result<Vec<f64>, String> {
             if numbers.len() > MOST_NUMBERS { Err(too_long()) } else { Ok(numbers) }
         }
         Some("binary") => {
-            let wide = root.attribute("header_type") == Some("UInt64");
+            let is_wide = root.attribute("header_type") == Some("UInt64");
+            let width = if is_wide { 8 } else { 4 };
             let bytes = match root.attribute("compressor") {
-                None => plain(text.trim(), if wide { 8 } else { 4 })?,
-                Some("vtkZLibDataCompressor") => compressed(text.trim(), if wide { 8 } else { 4 })?,
+                None => plain(text.trim(), width)?,
+                Some("vtkZLibDataCompressor") => compressed(text.trim(), width)?,
                 Some(other) => {
                     return Err(format!("it is compressed by {other}; expected zlib or nothing"));
                 }
@@ -103,10 +104,10 @@ fn plain(text: &str, width: usize) -> Result<Vec<u8>, String> {
     let count = number(&bytes, 0, width)?;
     match bytes.get(width..).filter(|rest| rest.len() == count) {
         Some(rest) => Ok(rest.to_vec()),
-        None => Err(format!(
-            "it has {} bytes; its head says {count}",
-            bytes.len().saturating_sub(width)
-        )),
+        None => {
+            let found = bytes.len().saturating_sub(width);
+            Err(format!("it has {found} bytes; its head says {count}"))
+        }
     }
 }
 
@@ -134,11 +135,9 @@ fn compressed(text: &str, width: usize) -> Result<Vec<u8>, String> {
         // One byte more than was announced is enough to see that the head is wrong.
         let mut reader = flate2::read::ZlibDecoder::new(block).take(expected as u64 + 1);
         reader.read_to_end(&mut all).map_err(|error| error.to_string())?;
-        if all.len() - before != expected {
-            return Err(format!(
-                "a block has {} bytes; its head says {expected}",
-                all.len() - before
-            ));
+        let found = all.len() - before;
+        if found != expected {
+            return Err(format!("a block has {found} bytes; its head says {expected}"));
         }
         at = end;
     }

@@ -4,11 +4,10 @@
 pub mod bending;
 pub mod lagrangian;
 pub mod lattice;
-mod stepping;
 pub mod super_steps;
 pub mod time_step;
 
-pub use stepping::Stepping;
+pub use time_step::Stepping;
 
 #[cfg(test)]
 mod tests;

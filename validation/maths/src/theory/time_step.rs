@@ -18,7 +18,7 @@ use super::{
 use crate::halved;
 use base::functions::{ln, modulus};
 use nalgebra::{Complex, Matrix3, SMatrix, Vector2};
-use solver::integrator::stages;
+use solver::{Euler, Leapfrog, PredictorCorrector, SingleSweep, SuperSteps, integrator::stages};
 
 /// The fluid that the limits are for. All numbers must be finite and not negative, `h` and `c0`
 /// positive.
@@ -61,6 +61,32 @@ impl Integrator {
             Self::SuperLeapfrog => 1.0 + f64::from(stages(ratio)),
         }
     }
+}
+
+/// An integrator that has a theory of its time step.
+pub trait Stepping {
+    /// Which theory.
+    const THEORY: Integrator;
+}
+
+impl<X> Stepping for PredictorCorrector<X> {
+    const THEORY: Integrator = Integrator::PredictorCorrector;
+}
+
+impl Stepping for Leapfrog {
+    const THEORY: Integrator = Integrator::Leapfrog;
+}
+
+impl<X> Stepping for Leapfrog<SuperSteps<X>> {
+    const THEORY: Integrator = Integrator::SuperLeapfrog;
+}
+
+impl Stepping for SingleSweep {
+    const THEORY: Integrator = Integrator::SingleSweep;
+}
+
+impl Stepping for Euler {
+    const THEORY: Integrator = Integrator::Euler;
 }
 
 /// One wave: the coefficients of its equations, resolved along and across ĝ.
