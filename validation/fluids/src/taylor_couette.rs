@@ -169,19 +169,13 @@ fn measure(flow: &TaylorCouette, particles: &[Particle], record: &mut Record) {
 }
 
 fn variants() -> Vec<Composition<CylinderSettings>> {
+    let interface =
+        "interface and wall particles (section 4.2 of the paper) on and behind both cylinders";
+    let extrapolating =
+        "wall particles behind both cylinders that extrapolate velocity and pressure";
     Variants::of(&PROGRAM)
-        .with(
-            INTERFACE,
-            "interface and wall particles (section 4.2 of the paper) on and behind both cylinders",
-            flow::cylinders_interface(),
-            |_| {},
-        )
-        .with(
-            EXTRAPOLATING,
-            "wall particles behind both cylinders that extrapolate velocity and pressure",
-            flow::cylinders_extrapolating(),
-            |_| {},
-        )
+        .with(INTERFACE, interface, flow::cylinders_interface(), |_| {})
+        .with(EXTRAPOLATING, extrapolating, flow::cylinders_extrapolating(), |_| {})
         .all
 }
 

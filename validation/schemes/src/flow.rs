@@ -79,8 +79,6 @@ impl OfChannels {
 }
 
 methods! { stepped => Method:
-    /// Poiseuille flow by `plain`.
-    poiseuille: Modern<Fluid<BodyForce>, Continuity>;
     /// The seed's with artificial stress.
     cure_stress: Seed<Fluid<BodyForce, ArtificialStress>, Continuity>;
     /// The seed's with artificial viscosity.

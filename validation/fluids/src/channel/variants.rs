@@ -17,7 +17,13 @@ fn modern(s: &mut ChannelSettings) {
     (s.courant, s.viscous, s.c0_viscous) = (1.0, 0.4, 2.2);
 }
 
-/// The same with ghosts that know the curvature of the velocity at the wall.
+/// The same with the reach of Wendland's kernel and the viscous number that suits it.
+fn wendland(s: &mut ChannelSettings) {
+    modern(s);
+    (s.h_over_dx, s.viscous) = (2.0, 0.23);
+}
+
+/// `modern` with ghosts that know the curvature of the velocity at the wall.
 fn curved(s: &mut ChannelSettings) {
     modern(s);
     s.wall_curvature = true;
@@ -46,96 +52,49 @@ pub fn of_couette() -> Vec<Composition<ChannelSettings>> {
     both(&COUETTE, OfChannels::couette()).all
 }
 
-/// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable.
+/// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable: the paper's method
+/// with one thing against its instability each.
 pub fn of_poiseuille() -> Vec<Composition<ChannelSettings>> {
-    let both = both(&POISEUILLE, OfChannels::poiseuille()).with(
-        "curved",
-        "plain with ghosts that know the curvature of the velocity at the wall: is it their error?",
-        flow::poiseuille(),
-        curved,
-    );
-    cures(both).all
+    let bent =
+        "plain with ghosts that know the curvature of the velocity at the wall: is it their error?";
+    let stress = "seed with artificial stress, equations (18) and (19): does it cure the seed's \
+                  instability?";
+    let viscosity = "seed with artificial viscosity, equations (16) and (17): does it cure the seed's \
+                     instability?";
+    let xsph = "seed with XSPH, equation (22), epsilon 0.5: does it cure the seed's instability?";
+    let shifting = "seed with particle shifting 0.5: does it cure the seed's instability?";
+    both(&POISEUILLE, OfChannels::poiseuille())
+        .with("curved", bent, OfChannels::poiseuille().plain, curved)
+        .with("cure-stress", stress, flow::cure_stress(), |_| {})
+        .with("cure-viscosity", viscosity, flow::cure_viscosity(), |_| {})
+        .with("cure-xsph", xsph, flow::cure_xsph(), |_| {})
+        .with("cure-shifting", shifting, flow::cure_shifting(), |_| {})
+        .all
 }
 
 fn both(program: &ChannelProgram, methods: OfChannels) -> All<'_> {
+    let seed =
+        "as in the paper: cubic spline, h/dx 1.2, eta^2 = 0.01 h^2, ghosts, predictor-corrector";
+    let interface =
+        "seed with interface and wall particles (section 4.2 of the paper): as good as ghosts?";
+    let kernel =
+        "Wendland C2, h/dx 2, small eta, leapfrog: is the error of another kernel cheaper?";
+    let plain =
+        "quintic spline, h/dx 1, small eta, leapfrog: what is the error without stabilisers?";
+    let extrapolating =
+        "plain with walls that extrapolate (Adami, Hu & Adams 2012): are they better than ghosts?";
+    let best =
+        "plain, curved ghosts, density diffusion and shifting: one rule for every Reynolds number?";
+    let single = "modern with one pair sweep a step in place of two: is its error cheaper?";
+    let steps =
+        "modern with super-time-stepping: what does a step save that viscosity does not limit?";
     Variants::of(program)
-        .with(
-            "seed",
-            "as in the paper: cubic spline, h/dx 1.2, eta^2 = 0.01 h^2, ghosts, predictor-corrector",
-            methods.seed,
-            |_| {},
-        )
-        .with(
-            "interface-wall",
-            "seed with interface and wall particles (section 4.2 of the paper): as good as ghosts?",
-            methods.interface_wall,
-            |_| {},
-        )
-        .with(
-            "wendland-leapfrog",
-            "Wendland C2, h/dx 2, small eta, leapfrog: is the error of another kernel cheaper?",
-            methods.wendland,
-            |s| {
-                modern(s);
-                (s.h_over_dx, s.viscous) = (2.0, 0.23);
-            },
-        )
-        .with(
-            "plain",
-            "quintic spline, h/dx 1, small eta, leapfrog: what is the error without stabilisers?",
-            methods.plain,
-            modern,
-        )
-        .with(
-            "extrapolating-wall",
-            "plain with walls that extrapolate (Adami, Hu & Adams 2012): are they better than ghosts?",
-            methods.extrapolating,
-            modern,
-        )
-        .with(
-            "modern",
-            "plain, curved ghosts, density diffusion and shifting: one rule for every Reynolds number?",
-            methods.modern,
-            curved,
-        )
-        .with(
-            "single-sweep",
-            "modern with one pair sweep a step in place of two: is its error cheaper?",
-            methods.single_sweep,
-            single_sweep,
-        )
-        .with(
-            "stiff",
-            "modern with super-time-stepping: what does a step save that viscosity does not limit?",
-            methods.stiff,
-            stiff,
-        )
-}
-
-/// The seed's method with one thing against its instability: does it cure it?
-fn cures(all: All) -> All {
-    all.with(
-        "cure-stress",
-        "seed with artificial stress, equations (18) and (19): does it cure the seed's instability?",
-        flow::cure_stress(),
-        |_| {},
-    )
-    .with(
-        "cure-viscosity",
-        "seed with artificial viscosity, equations (16) and (17): does it cure the seed's instability?",
-        flow::cure_viscosity(),
-        |_| {},
-    )
-    .with(
-        "cure-xsph",
-        "seed with XSPH, equation (22), epsilon 0.5: does it cure the seed's instability?",
-        flow::cure_xsph(),
-        |_| {},
-    )
-    .with(
-        "cure-shifting",
-        "seed with particle shifting 0.5: does it cure the seed's instability?",
-        flow::cure_shifting(),
-        |_| {},
-    )
+        .with("seed", seed, methods.seed, |_| {})
+        .with("interface-wall", interface, methods.interface_wall, |_| {})
+        .with("wendland-leapfrog", kernel, methods.wendland, wendland)
+        .with("plain", plain, methods.plain, modern)
+        .with("extrapolating-wall", extrapolating, methods.extrapolating, modern)
+        .with("modern", best, methods.modern, curved)
+        .with("single-sweep", single, methods.single_sweep, single_sweep)
+        .with("stiff", steps, methods.stiff, stiff)
 }

@@ -52,48 +52,30 @@ fn strong(s: &mut HillSettings) {
     s.shift = 3.0;
 }
 
+/// The same, in the same share of the limit of its step.
+fn single_sweep(s: &mut HillSettings) {
+    strong(s);
+    s.courant /= 8_f64.sqrt();
+}
+
 fn variants() -> Vec<Composition<HillSettings>> {
+    let plain =
+        "quintic spline, h/dx 1, leapfrog, extrapolating walls, no stabiliser: is one needed?";
+    let interface =
+        "modern with the paper's interface and wall particles (section 4.2): how good are they?";
+    let modern =
+        "plain with density diffusion and shifting: does what suits channels suit curved walls?";
+    let carried = "modern with stronger shifting that takes the velocity of the new place, and walls that know \
+                   how the velocity bends: the best";
+    let single = "carried with one pair sweep a step in place of two: is its error cheaper?";
+    let consistent = "carried with sums that are exact for linear fields: are they worth more work for each pair?";
     Variants::of(&run::PROGRAM)
-        .with(
-            "plain",
-            "quintic spline, h/dx 1, leapfrog, extrapolating walls, no stabiliser: is one needed?",
-            hill::plain(),
-            |_| {},
-        )
-        .with(
-            "interface-wall",
-            "modern with the paper's interface and wall particles (section 4.2): how good are they?",
-            hill::interface_wall(),
-            |_| {},
-        )
-        .with(
-            "modern",
-            "plain with density diffusion and shifting: does what suits channels suit curved walls?",
-            hill::modern(),
-            |_| {},
-        )
-        .with(
-            "carried",
-            "modern with stronger shifting that takes the velocity of the new place, and walls that know how \
-             the velocity bends: the best",
-            hill::carried(),
-            strong,
-        )
-        .with(
-            SINGLE_SWEEP,
-            "carried with one pair sweep a step in place of two: is its error cheaper?",
-            hill::single_sweep(),
-            |s| {
-                strong(s);
-                s.courant /= 8_f64.sqrt();
-            },
-        )
-        .with(
-            "consistent",
-            "carried with sums that are exact for linear fields: are they worth more work for each pair?",
-            hill::consistent(),
-            strong,
-        )
+        .with("plain", plain, hill::plain(), |_| {})
+        .with("interface-wall", interface, hill::interface_wall(), |_| {})
+        .with("modern", modern, hill::modern(), |_| {})
+        .with(BEST, carried, hill::carried(), strong)
+        .with(SINGLE_SWEEP, single, hill::single_sweep(), single_sweep)
+        .with("consistent", consistent, hill::consistent(), strong)
         .all
 }
 

@@ -44,31 +44,17 @@ fn strong(s: &mut VortexSettings) {
 }
 
 fn variants() -> Vec<Composition<VortexSettings>> {
+    let plain = "quintic spline, h/dx 1, leapfrog, no stabiliser: is one needed?";
+    let modern =
+        "plain with density diffusion and shifting: does what suits channels suit vortices?";
+    let carried =
+        "modern with stronger shifting that takes the velocity of the new place: is that enough?";
+    let consistent = "carried with sums that are exact for linear fields: the best";
     Variants::of(&run::PROGRAM)
-        .with(
-            "plain",
-            "quintic spline, h/dx 1, leapfrog, no stabiliser: is one needed?",
-            flow::vortices_plain(),
-            |_| {},
-        )
-        .with(
-            "modern",
-            "plain with density diffusion and shifting: does what suits channels suit vortices?",
-            flow::vortices_modern(),
-            |_| {},
-        )
-        .with(
-            "carried",
-            "modern with stronger shifting that takes the velocity of the new place: is that enough?",
-            flow::vortices_carried(),
-            strong,
-        )
-        .with(
-            "consistent",
-            "carried with sums that are exact for linear fields: the best",
-            flow::vortices_consistent(),
-            strong,
-        )
+        .with("plain", plain, flow::vortices_plain(), |_| {})
+        .with("modern", modern, flow::vortices_modern(), |_| {})
+        .with("carried", carried, flow::vortices_carried(), strong)
+        .with(BEST, consistent, flow::vortices_consistent(), strong)
         .all
 }
 
