@@ -165,8 +165,8 @@ fn check_steps<S: Standard<Extra = ()>>(settings: &ChannelSettings, flow: Flow) 
     let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
     for tau in [0.005, 0.02, 0.1, 0.5, 2.0] {
         let until = setup.time(tau);
-        assert_eq!(simulation.advance(until, setup.dt(), &mut ()), Outcome::Reached);
-        let (steps, dt) = division(until - before, setup.dt());
+        assert_eq!(simulation.advance(until, setup.rules.dt(), &mut ()), Outcome::Reached);
+        let (steps, dt) = division(until - before, setup.rules.dt());
         assert_eq!(simulation.dt(), dt, "{name}");
         let by = (method.theory, setup.medium.explicit_limit());
         let u = stepped(&model, by, &mut lagging, dt, steps);
@@ -226,7 +226,7 @@ fn extrapolated<S: Standard<Extra = ()>>(
 ) -> Vec<(f64, f64)> {
     let (method, setup) = setup::<S>(settings, flow);
     // A whole number of steps at the coarsest level: the next ones halve it exactly.
-    let (_, dt) = division(setup.time(tau), setup.dt());
+    let (_, dt) = division(setup.time(tau), setup.rules.dt());
     let run = |finer: f64| {
         let mut simulation = simulation::<S>(&method, &setup);
         let outcome = simulation.advance(setup.time(tau), dt / finer, &mut ());
@@ -305,7 +305,7 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
     let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
     for tau in TIMES.into_iter().filter(|tau| *tau <= settings.end) {
         let span = setup.time(tau) - before;
-        let (steps, dt) = division(span, setup.dt().min(span / settings.least_steps as f64));
+        let (steps, dt) = division(span, setup.rules.dt().min(span / settings.least_steps as f64));
         let by = (by, setup.medium.explicit_limit());
         let u = stepped(&model, by, &mut lagging, dt, steps);
         before = setup.time(tau);

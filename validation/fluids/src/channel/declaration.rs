@@ -4,7 +4,7 @@
 //! hypotheses on waves and instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
 
 use super::{
-    Channel, ChannelSettings, ChannelTable, Flow, For, maps,
+    ChannelSettings, ChannelTable, Flow, For, maps,
     measure::*,
     plan::{self, ladder},
     stiff, waves,
@@ -15,27 +15,20 @@ use harness::{
 };
 use nalgebra::Vector2;
 use report::{Axis, Cell};
-use serde_json::Value;
 
 /// What a flow declares.
-pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
-    let table = plan::table(channel, tier);
-    let at_half = at_half(channel.flow, &table);
-    let comparisons = comparisons(channel, &at_half);
-    let (card, budgets) = (card(channel, &at_half), budgets(channel, &at_half, tier));
-    let maps = match channel.flow {
-        Flow::Couette => Vec::new(),
-        Flow::Poiseuille => maps::declared(&table),
-    };
+pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
+    let table = plan::table(flow, tier);
+    let at_half = at_half(flow, &table);
     Declaration {
-        card: Some(card),
-        curves: vec![curves(channel)],
+        card: Some(card(flow, &at_half)),
+        curves: vec![curves(flow)],
+        comparisons: comparisons(flow, &at_half),
+        budgets: Some(budgets(flow, &at_half, tier)),
         accuracy: vec![at_half],
-        comparisons,
-        budgets: Some(budgets),
-        limits: Some(limits(channel, tier)),
-        maps,
-        sensitivity: Some(sensitivity(channel, tier)),
+        limits: Some(limits(flow, tier)),
+        maps: maps::declared(&table),
+        sensitivity: Some(sensitivity(flow, tier)),
         curve: Some(profile()),
         ..Declaration::default()
     }
@@ -43,10 +36,9 @@ pub fn declaration(channel: Channel, tier: Tier) -> Declaration {
 
 /// The velocities of rows across the channel: each row of particles stands for one.
 fn profile() -> Curve {
-    let rows = |settings: &Value| settings["rows"].as_u64().unwrap_or_default() as usize;
     Curve {
         columns: &[("y", "m"), ("u", "m/s")],
-        rows,
+        rows: |settings| settings["rows"].as_u64().unwrap_or_default() as usize,
         place: |settings, at, starts| {
             let width = settings["width"].as_f64().unwrap_or(f64::NAN);
             let place = |start: &Vector2<f64>| {
@@ -62,9 +54,9 @@ fn profile() -> Curve {
 }
 
 /// The best variant and the paper's over their ladders.
-fn comparisons(Channel { case, .. }: Channel, accuracy: &Accuracy) -> Vec<Comparison> {
+fn comparisons(flow: Flow, accuracy: &Accuracy) -> Vec<Comparison> {
     let exact = (0.0, "exact: the series has the same inputs, and is summed to round-off");
-    let compared = |ladder: &&Ladder| [case.best.variant, "seed"].contains(&ladder.variant);
+    let compared = |ladder: &&Ladder| [flow.case().best.variant, "seed"].contains(&ladder.variant);
     let of = |ladder| {
         let what = "velocity from νt/L² = 0.1 on, rms";
         Comparison::new(what, "the exact series", L2_WORST, ladder, exact)
@@ -73,7 +65,7 @@ fn comparisons(Channel { case, .. }: Channel, accuracy: &Accuracy) -> Vec<Compar
 }
 
 /// What the report says first of the flow.
-fn card(Channel { flow, case }: Channel, accuracy: &Accuracy) -> Card {
+fn card(flow: Flow, accuracy: &Accuracy) -> Card {
     let tau = flow.compared_at();
     let (title, picture) = match flow {
         Flow::Couette => ("Couette flow, Re 0.5", "couette-profiles"),
@@ -84,7 +76,7 @@ fn card(Channel { flow, case }: Channel, accuracy: &Accuracy) -> Card {
         picture: (picture, 0),
         error: format!("velocity at νt/L² = {tau}, relative L2 norm"),
         metric: L2.at(tau),
-        runs: accuracy.finest(&[case.best.variant, "seed"]),
+        runs: accuracy.finest(&[flow.case().best.variant, "seed"]),
         against: "the exact series",
         uncertainty: None,
         reach: ("re", "Re", ""),
@@ -112,15 +104,14 @@ fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
         about: "Runs at Re 0.5 to νt/L² = 1.".into(),
         spacing: "Δx/L [-]",
         ladders: ladder(flow).map(of).into(),
-        ..Accuracy::new(flow.name(), L2.at(tau), &label)
+        ..Accuracy::new(flow.case().name, L2.at(tau), &label)
     }
 }
 
 /// Times that fit into a figure.
 const SHOWN: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 1.0];
 
-fn curves(channel: Channel) -> Curves {
-    let flow = channel.flow;
+fn curves(flow: Flow) -> Curves {
     let best = if flow == Flow::Couette { "plain" } else { "curved" };
     let exact = |tau: f64| {
         let points =
@@ -131,12 +122,12 @@ fn curves(channel: Channel) -> Curves {
         title: variant.into(),
         x: Axis::linear("u/V [-]"),
         y: Axis::linear("y/L [-]"),
-        lines: lines(channel, variant),
+        lines: lines(flow, variant),
         references: SHOWN.map(exact).into(),
         symbols: true,
     };
     Curves {
-        id: format!("{}-profiles", flow.name()),
+        id: format!("{}-profiles", flow.case().name),
         title: "Velocity profiles".into(),
         caption: format!(
             "Velocity u along the channel at five times, Re 0.5, 20 rows of particles, for variants `seed` \
@@ -148,10 +139,10 @@ fn curves(channel: Channel) -> Curves {
 }
 
 /// u/V across the channel at the times of the figure.
-fn lines(channel: Channel, variant: &str) -> Vec<CurveOf> {
+fn lines(flow: Flow, variant: &str) -> Vec<CurveOf> {
     let line = |tau: f64| CurveOf {
         name: format!("νt/L² = {tau}"),
-        spec: channel.case.spec(variant, |s| s.rows = 20),
+        spec: flow.case().spec(variant, |s| s.rows = 20),
         points: Box::new(move |record: &Record| {
             let settings: ChannelSettings = record.settings_as();
             let [u, y] = ["u", "y"].map(|name| record.column(&profile_at(tau), name));
@@ -162,18 +153,19 @@ fn lines(channel: Channel, variant: &str) -> Vec<CurveOf> {
     SHOWN.map(line).into()
 }
 
-fn budgets(channel: Channel, accuracy: &Accuracy, tier: Tier) -> Budgets {
-    let variants: &[&str] = match (tier, channel.flow) {
+fn budgets(flow: Flow, accuracy: &Accuracy, tier: Tier) -> Budgets {
+    let variants: &[&str] = match (tier, flow) {
         (Tier::Quick, _) => &["seed"],
         (_, Flow::Couette) => &["seed", "plain"],
         (_, Flow::Poiseuille) => &["seed", "plain", "curved"],
     };
-    let of = |variant: &&'static str| Budget { variant, changes: changes(channel, variant, tier) };
+    let of = |variant: &&'static str| Budget { variant, changes: changes(flow, variant, tier) };
     let about = "Runs have 20 rows and Re 0.5.".into();
     Budgets { about, ..Budgets::of(accuracy, variants.iter().map(of).collect()) }
 }
 
-fn changes(Channel { flow, case }: Channel, variant: &'static str, tier: Tier) -> Vec<Change> {
+fn changes(flow: Flow, variant: &'static str, tier: Tier) -> Vec<Change> {
+    let case = flow.case();
     let spec = |set: &dyn Fn(&mut ChannelSettings)| case.spec(variant, set);
     // Of a variant that has no rules every run is refused, and its record says why.
     let rules = case.rules(&spec(&|_| ())).unwrap_or(Rules::REFUSED);
@@ -222,8 +214,8 @@ pub fn is_stable(record: &Record) -> bool {
 
 /// The step limits of a flow: of Couette flow all in the full tier, of Poiseuille flow the paper's and what
 /// Couette flow does not have.
-fn limits(channel: Channel, tier: Tier) -> StepLimits {
-    let variants = match (channel.flow, tier) {
+fn limits(flow: Flow, tier: Tier) -> StepLimits {
+    let variants = match (flow, tier) {
         (Flow::Couette, Tier::Quick) => vec!["seed", "modern"],
         (Flow::Couette, _) => ladder(Flow::Couette).into(),
         (Flow::Poiseuille, Tier::Quick) => vec!["seed"],
@@ -235,13 +227,13 @@ fn limits(channel: Channel, tier: Tier) -> StepLimits {
          or if its cross-flow or error exceeds V. Theory is that of the periodic lattice with sound, \
          viscosity and other damping, without walls, motion and stabilisers."
     );
-    let of = variants.into_iter().map(|variant| limit(channel, variant));
-    StepLimits::new(channel.case.name, &about, of)
+    let of = variants.into_iter().map(|variant| limit(flow, variant));
+    StepLimits::new(flow.case().name, &about, of)
 }
 
-fn limit(Channel { flow, case }: Channel, variant: &'static str) -> StepLimit {
-    let spec = case.spec(variant, |s| s.jitter = DISORDER).allow_unstable();
-    let rules = case.rules(&spec).unwrap_or(Rules::REFUSED);
+fn limit(flow: Flow, variant: &'static str) -> StepLimit {
+    let spec = flow.case().spec(variant, |s| s.jitter = DISORDER).allow_unstable();
+    let rules = flow.case().rules(&spec).unwrap_or(Rules::REFUSED);
     // Not `dt_limit`, in the last bit: bisections begin where they always have.
     let theory = rules.dt() / (rules.dt() / rules.dt_limit());
     let unit = ChannelSettings::default().unit_of_time();
@@ -271,7 +263,6 @@ fn limit(Channel { flow, case }: Channel, variant: &'static str) -> StepLimit {
     }
 }
 
-const STRESS: &str = "No gate judges a stress in Pa. Beyond 30 % the density ends the run.";
 const SOUND: &str =
     "At Mach 0.1 compressibility changes the velocity by less than the spacing does.";
 const ORDER: &str =
@@ -282,16 +273,13 @@ const LISTS: &str = "A list that is kept 30 % too long still holds every neighbo
                      before a particle has crossed half of the skin.";
 
 /// The runs with the most gates, one without and one with density diffusion and shifting.
-fn sensitivity(channel: Channel, tier: Tier) -> Sensitivity {
-    let Channel { flow, case } = channel;
-    let drive = match flow {
-        Flow::Couette => Constant::WallSpeed,
-        Flow::Poiseuille => Constant::BodyForce,
-    };
-    let reach = Constant::SmoothingLength;
-    let reach = match flow {
-        Flow::Couette => Watched::new(reach),
-        Flow::Poiseuille => Watched::blind_up_to(reach, 0.2, REACH, &WIDE_BOUNDS),
+fn sensitivity(flow: Flow, tier: Tier) -> Sensitivity {
+    let (case, reach) = (flow.case(), Constant::SmoothingLength);
+    let (drive, reach) = match flow {
+        Flow::Couette => (Constant::WallSpeed, Watched::new(reach)),
+        Flow::Poiseuille => {
+            (Constant::BodyForce, Watched::blind_up_to(reach, 0.2, REACH, &WIDE_BOUNDS))
+        }
     };
     let watched = [
         Watched::new(drive).quick().faults(&[-1.0, 0.5]),
@@ -312,8 +300,8 @@ fn sensitivity(channel: Channel, tier: Tier) -> Sensitivity {
 }
 
 /// The studies of a flow.
-pub fn studies(channel: Channel, tier: Tier, runs: &Runs) -> Vec<Study> {
-    let (flow, table) = (channel.flow, &plan::table(channel, tier));
+pub fn studies(flow: Flow, tier: Tier, runs: &Runs) -> Vec<Study> {
+    let (flow, table) = (flow, &plan::table(flow, tier));
     let mut studies = vec![reynolds(flow, table, runs), stiff::study(flow, table, runs)];
     if flow == Flow::Poiseuille {
         studies.extend([waves::study(table, runs), maps::study(table, runs)]);
@@ -336,7 +324,7 @@ fn reynolds(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
         .ended()
         .steps()
         .table(caption, runs.records(table.specs(For::Reynolds)));
-    let id = format!("{}-reynolds", flow.name());
+    let id = format!("{}-reynolds", flow.case().name);
     Study::new(&id, "One rule for every Reynolds number").block(shown)
 }
 
@@ -347,8 +335,7 @@ mod tests {
     /// The gates of a variant whose default settings were refused were not there at all.
     #[test]
     fn a_variant_that_is_refused_keeps_its_gates() {
-        let channel = Channel { flow: Flow::Couette, case: &super::super::COUETTE };
-        let refused = limit(channel, "no such variant");
+        let refused = limit(Flow::Couette, "no such variant");
         assert_eq!(refused.of_default[0].id, "stability.default.no such variant.stable");
         assert!(refused.of_default[0].judge(None).verdict.is_failure());
     }

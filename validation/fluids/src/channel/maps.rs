@@ -56,7 +56,7 @@ pub fn runs(table: &mut ChannelTable) {
     }
 }
 
-/// The maps as they are declared; the quick tier has no cures.
+/// The maps as they are declared: Couette flow has none, and the quick tier no cures.
 pub fn declared(table: &ChannelTable) -> Vec<Map> {
     let over_sound = MapPanel::over("", &reynolds(table), &SOUND, |re, sound| {
         of_sound(table, re, sound).collect()
@@ -68,11 +68,10 @@ pub fn declared(table: &ChannelTable) -> Vec<Map> {
     });
     let (sound, cures) = ("sound speed c0/V [-], of `seed`", "what is changed of `seed`");
     let title = "Outcomes over Reynolds number and sound speed";
-    let mut maps = vec![map("poiseuille-map", title, sound, over_sound)];
-    if table.of(For::Cures).next().is_some() {
-        maps.push(map("poiseuille-cures", "What cures the instability", cures, over_cures));
-    }
-    maps
+    let over_sound = map("poiseuille-map", title, sound, over_sound);
+    let over_cures = map("poiseuille-cures", "What cures the instability", cures, over_cures);
+    let maps = [(For::Map, over_sound), (For::Cures, over_cures)].into_iter();
+    maps.filter(|(group, _)| table.of(*group).next().is_some()).map(|(_, map)| map).collect()
 }
 
 /// Those of a tier.

@@ -188,7 +188,7 @@ mod tests {
         let mut fluid = setup.rows(0.5 * setup.medium.dx, 20);
         let t = setup.time(tau);
         fluid.iter_mut().for_each(|p| p.velocity.x = velocity(p.position.y, t));
-        let mut record = Record::new(setup.flow.name(), "seed", serde_json::Value::Null, 1);
+        let mut record = Record::new(setup.flow.case().name, "seed", serde_json::Value::Null, 1);
         compare(setup, &fluid, tau, &mut record);
         record
     }

@@ -52,18 +52,6 @@ pub enum For {
 /// The runs of a flow.
 pub type ChannelTable = Table<ChannelSettings, For>;
 
-/// A flow and its case.
-#[derive(Clone, Copy)]
-pub struct Channel {
-    /// What drives it.
-    pub flow: Flow,
-    /// The case.
-    pub case: &'static ChannelCase,
-}
-
-const OF_PLATE: Channel = Channel { flow: Flow::Couette, case: &COUETTE };
-const OF_FORCE: Channel = Channel { flow: Flow::Poiseuille, case: &POISEUILLE };
-
 /// Case 1, start-up Couette flow (the paper's figure 1).
 pub static COUETTE: ChannelCase = ChannelCase {
     name: "couette",
@@ -79,9 +67,9 @@ pub static COUETTE: ChannelCase = ChannelCase {
             pressure and cross-flow are exactly zero.",
     variants: variants::of_couette,
     is_stable,
-    declaration: |tier| declaration(OF_PLATE, tier),
-    plan: |tier| plan::plan(OF_PLATE, tier),
-    studies: |tier, runs| studies(OF_PLATE, tier, runs),
+    declaration: |tier| declaration(Flow::Couette, tier),
+    plan: |tier| plan::plan(Flow::Couette, tier),
+    studies: |tier, runs| studies(Flow::Couette, tier, runs),
 };
 
 /// Case 2, start-up Poiseuille flow (the paper's figure 2).
@@ -99,7 +87,7 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
             exact velocity is a Fourier series; pressure and cross-flow are exactly zero.",
     variants: variants::of_poiseuille,
     is_stable,
-    declaration: |tier| declaration(OF_FORCE, tier),
-    plan: |tier| plan::plan(OF_FORCE, tier),
-    studies: |tier, runs| studies(OF_FORCE, tier, runs),
+    declaration: |tier| declaration(Flow::Poiseuille, tier),
+    plan: |tier| plan::plan(Flow::Poiseuille, tier),
+    studies: |tier, runs| studies(Flow::Poiseuille, tier, runs),
 };

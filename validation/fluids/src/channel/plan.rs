@@ -1,9 +1,6 @@
 //! The runs of the channel flows, stated once, and their gates.
 
-use super::{
-    Channel, ChannelCase, ChannelSettings, ChannelTable, Flow, For, TIMES, maps, measure::*, stiff,
-    waves,
-};
+use super::{ChannelSettings, ChannelTable, Flow, For, TIMES, maps, measure::*, stiff, waves};
 use base::{gate::*, record::MetricName};
 use harness::{
     case::{Planned, Tier},
@@ -45,8 +42,8 @@ pub const GHOSTS: [(Flow, usize, [f64; 2]); 5] = [
 ];
 
 /// All runs of a flow with their gates, beside those of budgets, step limits and sensitivity.
-pub fn table(Channel { flow, case }: Channel, tier: Tier) -> ChannelTable {
-    let mut table = Table::new(case, tier);
+pub fn table(flow: Flow, tier: Tier) -> ChannelTable {
+    let mut table = Table::new(flow.case(), tier);
     let rows = |s: &mut ChannelSettings, rows: usize| s.rows = rows;
     let levels: &[usize] = &[8, 10, 14, 20, 40, 80];
     table.over(For::Ladder, &ladder(flow), [&levels[..4], levels], rows);
@@ -69,36 +66,36 @@ pub fn table(Channel { flow, case }: Channel, tier: Tier) -> ChannelTable {
             _ => {}
         }
     }
-    table.judge(|row| gates(flow, case, row));
+    table.judge(|row| gates(flow, row));
     table
 }
 
 /// The plan: the runs that are not of a ladder, which the declaration has.
-pub fn plan(channel: Channel, tier: Tier) -> Vec<Planned> {
-    let mut table = table(channel, tier);
+pub fn plan(flow: Flow, tier: Tier) -> Vec<Planned> {
+    let mut table = table(flow, tier);
     table.rows.retain(|row| row.group != For::Ladder);
     table.plan()
 }
 
 /// The gates of a run.
-fn gates(flow: Flow, case: &ChannelCase, row: &Row<ChannelSettings, For>) -> Vec<Gate> {
+fn gates(flow: Flow, row: &Row<ChannelSettings, For>) -> Vec<Gate> {
     let (s, variant) = (&row.settings, row.variant);
     match row.group {
-        For::Ladder => of_ladder(flow, case, variant, s.rows),
+        For::Ladder => of_ladder(flow, variant, s.rows),
         For::Reynolds if s.re <= 500.0 => {
             let because = "One rule for the settings must hold at every Reynolds number of the list, with \
                            an error of at most 1 %.";
             let (run, bound) = (format!("{variant}.re{}", s.re), Bound::Below(0.01));
-            vec![case.gate(run, L2_WORST, bound, Evidence::Analytic, because)]
+            vec![flow.case().gate(run, L2_WORST, bound, Evidence::Analytic, because)]
         }
         _ => Vec::new(),
     }
 }
 
 /// The gates of a run of the ladder of a variant.
-fn of_ladder(flow: Flow, case: &ChannelCase, variant: &str, rows: usize) -> Vec<Gate> {
+fn of_ladder(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
     let gate = |metric: MetricName, bound, evidence, because: &str| {
-        case.gate(format!("{variant}.{rows}"), metric, bound, evidence, because)
+        flow.case().gate(format!("{variant}.{rows}"), metric, bound, evidence, because)
     };
     let error = |metric: MetricName, most, because: &str| {
         gate(metric, Bound::Below(most), Evidence::Analytic, because)

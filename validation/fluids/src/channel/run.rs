@@ -12,18 +12,14 @@ use super::{
 /// Runs of the flow that a plate drives.
 pub const COUETTE: ChannelProgram = Program {
     run: |method, variant, s, context| run(Flow::Couette, method, variant, s, context),
-    rules: |method, s| rules(Flow::Couette, method, s),
+    rules: |method, s| Ok(Setup::new(Flow::Couette, s, method, &Context::of_rules())?.rules),
 };
 
 /// Runs of the flow that a body force drives.
 pub const POISEUILLE: ChannelProgram = Program {
     run: |method, variant, s, context| run(Flow::Poiseuille, method, variant, s, context),
-    rules: |method, s| rules(Flow::Poiseuille, method, s),
+    rules: |method, s| Ok(Setup::new(Flow::Poiseuille, s, method, &Context::of_rules())?.rules),
 };
-
-fn rules(flow: Flow, method: &Method, settings: &ChannelSettings) -> Result<Rules, RunError> {
-    Ok(Setup::new(flow, settings, method, &Context::of_rules())?.rules)
-}
 
 fn run(
     flow: Flow,
@@ -38,7 +34,7 @@ fn run(
     let c0 = eos.sound_speed;
     let own = [("V [m/s]", setup.v), ("c0/V", c0 / setup.v), ("c0 h/nu", c0 * h / s.nu)];
     let numbers = [&setup.rules.numbers([s.h_over_dx, dx])[..], &own].concat();
-    let mut record = simulate::begin((flow.name(), variant), s, method, &numbers, context);
+    let mut record = simulate::begin((flow.case().name, variant), s, method, &numbers, context);
     record.numerics.insert("columns".into(), setup.columns.into());
     let compared = s.compared();
     let times: Vec<f64> = compared.iter().map(|tau| setup.time(*tau)).collect();
@@ -49,14 +45,15 @@ fn run(
         all
     };
     let mut seen = (&mut mode, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, setup.dt(), &times, &pressure, &mut seen)
-        .at_least(s.least_steps)
-        .sweeps(setup.rules.sweeps())
-        .after_step("pressure mode", &|(mode, _), simulation| mode.after_step(simulation))
-        .at("profiles and errors", &|(_, record), simulation, k| {
-            measure::compare(setup, &fluid(simulation.particles()), compared[k], record);
-        })
-        .run(context)?;
+    let (status, cost) =
+        Drive::new(&mut *simulation, setup.rules.dt(), &times, &pressure, &mut seen)
+            .at_least(s.least_steps)
+            .sweeps(setup.rules.sweeps())
+            .after_step("pressure mode", &|(mode, _), simulation| mode.after_step(simulation))
+            .at("profiles and errors", &|(_, record), simulation, k| {
+                measure::compare(setup, &fluid(simulation.particles()), compared[k], record);
+            })
+            .run(context)?;
     (record.status, record.cost) = (status, cost);
     let all = simulation.particles();
     record.state = Some(simulate::state(&all));

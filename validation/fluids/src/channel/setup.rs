@@ -6,7 +6,9 @@ use maths::exact::{couette::Couette, poiseuille::Poiseuille};
 use nalgebra::Vector2;
 use solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
 
-use super::ChannelSettings;
+use crate::unit_flow::LIMIT_BOX;
+
+use super::{COUETTE, ChannelCase, ChannelSettings, POISEUILLE};
 
 /// What drives the fluid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,11 +20,11 @@ pub enum Flow {
 }
 
 impl Flow {
-    /// Name of its case.
-    pub fn name(self) -> &'static str {
+    /// Its case.
+    pub fn case(self) -> &'static ChannelCase {
         match self {
-            Flow::Couette => "couette",
-            Flow::Poiseuille => "poiseuille",
+            Flow::Couette => &COUETTE,
+            Flow::Poiseuille => &POISEUILLE,
         }
     }
 
@@ -83,12 +85,12 @@ impl Setup {
         let fewest = (2.0 * method.support * s.h_over_dx - 1e-9).floor() as usize + 1;
         let columns = if s.columns == 0 { fewest } else { s.columns };
         let sound_speed = s.c0.unwrap_or_else(|| sound_speed(s, v, force, h));
-        let eos = Tait {
-            density: s.rho,
-            sound_speed,
-            gamma: s.gamma as i32,
-            background: s.background * s.rho * sound_speed * sound_speed,
-        };
+        if sound_speed > MOST_SOUND {
+            let (what, setting) = ("the sound speed", "c0, re, nu or width");
+            return Err(RunError::TooMuch { what, value: sound_speed, most: MOST_SOUND, setting });
+        }
+        let background = s.background * s.rho * sound_speed * sound_speed;
+        let eos = Tait { gamma: s.gamma as i32, background, ..Tait::new(s.rho, sound_speed) };
         let along = Vector2::new(force, 0.0);
         let medium = Medium {
             nu: s.nu,
@@ -111,24 +113,9 @@ impl Setup {
         let step = stable.forced(0.25, h, force).or_given(s.dt);
         let (limits, end) = (limits.moving(h, v, force), s.end * s.unit_of_time());
         let rules = Rules { step, limits, sound_speed, end };
-        let setup = Self { settings: s.clone(), flow, v, force, medium, columns, rules };
-        setup.check(method, context)?;
-        Ok(setup)
-    }
-
-    fn check(&self, method: &Method, context: &Context) -> Result<(), RunError> {
-        let Rules { sound_speed: value, .. } = self.rules;
-        if value > MOST_SOUND {
-            let (what, setting) = ("the sound speed", "c0, re, nu or width");
-            return Err(RunError::TooMuch { what, value, most: MOST_SOUND, setting });
-        }
-        let particles = self.settings.rows as f64 * self.columns as f64;
-        simulate::check(method, &self.medium, &self.rules, particles, DECISIVE, context)
-    }
-
-    /// Time step \[s\].
-    pub fn dt(&self) -> f64 {
-        self.rules.dt()
+        let particles = s.rows as f64 * columns as f64;
+        simulate::check(method, &medium, &rules, particles, DECISIVE, context)?;
+        Ok(Self { settings: s.clone(), flow, v, force, medium, columns, rules })
     }
 
     /// The scene.
@@ -142,28 +129,38 @@ impl Setup {
             // Gaussian tails must not put a particle behind a wall.
             p.position.y = p.position.y.clamp(0.1 * dx, s.width - 0.1 * dx);
         }
+        let length = self.columns as f64 * dx;
         // Half a period at most; one that is shorter than two supports is refused by the scene itself.
-        let skin = (s.skin * h).min(self.length() - method.support * h).max(0.0);
+        let skin = (s.skin * h).min(length - method.support * h).max(0.0);
         // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
         let speed = 2.0 * (eos.sound_speed + self.v);
         Parts {
             mirrors: self.mirrors(),
             skin: Some(skin),
             limits: Limits { density: [0.7 * s.rho, 1.3 * s.rho], speed },
-            ..Parts::new(self.medium, Domain::channel(self.length()), particles, context)
+            ..Parts::new(self.medium, Domain::channel(length), particles, context)
         }
     }
 
-    /// Fluid, then wall particles. Rows of the fluid at (j + 1/2) dx, mirrored by the walls into themselves,
-    /// or at j dx between interface rows on the plates, which are rows of the same lattice.
+    /// Fluid, then both plates. Rows of the fluid at (j + 1/2) dx, mirrored by the walls into themselves, or at
+    /// j dx between interface rows on the plates, which are rows of the same lattice. Rows of plates out to the
+    /// support, all with the velocity of the plate.
     fn particles(&self, method: &Method) -> Vec<Particle> {
-        let (dx, rows) = (self.medium.dx, self.settings.rows);
-        let (mut particles, behind) = match method.first_row {
+        let (dx, rows, width) = (self.medium.dx, self.settings.rows, self.settings.width);
+        let (mut particles, first) = match method.first_row {
             FirstRow::Nowhere => return self.rows(0.5 * dx, rows),
             FirstRow::OnSurface => (self.rows(dx, rows - 1), 0.0),
             FirstRow::Behind => (self.rows(0.5 * dx, rows), 0.5),
         };
-        particles.extend(self.wall_rows(behind, method.support * self.medium.h));
+        let last = (method.support * self.medium.h / dx - first - 1e-9).floor() as usize;
+        for (y, outwards, speed) in [(0.0, -1.0, 0.0), (width, 1.0, self.plate_speed())] {
+            for behind in (0..=last).map(|k| first + k as f64) {
+                let role = if behind == 0.0 { Role::Interface } else { Role::Wall };
+                let velocity = Vector2::new(speed, 0.0);
+                let row = self.rows(y + outwards * behind * dx, 1).into_iter();
+                particles.extend(row.map(|p| Particle { velocity, ..p }.with_role(role)));
+            }
+        }
         particles
     }
 
@@ -185,11 +182,6 @@ impl Setup {
         tau * (self.settings.width * self.settings.width / self.settings.nu)
     }
 
-    /// Length of the channel section \[m\].
-    pub fn length(&self) -> f64 {
-        self.columns as f64 * self.medium.dx
-    }
-
     /// Speed of the upper plate \[m/s\].
     pub fn plate_speed(&self) -> f64 {
         if self.flow == Flow::Couette { self.v } else { 0.0 }
@@ -197,12 +189,7 @@ impl Setup {
 
     /// The exact velocity \[m/s\] at height y \[m\] and time t \[s\].
     pub fn exact(&self, y: f64, t: f64) -> f64 {
-        self.exact_with_viscosity(y, t, self.settings.nu)
-    }
-
-    /// The exact velocity \[m/s\] of a fluid of viscosity `nu` \[m²/s\] under the same force.
-    pub fn exact_with_viscosity(&self, y: f64, t: f64, nu: f64) -> f64 {
-        let l = self.settings.width;
+        let (l, nu) = (self.settings.width, self.settings.nu);
         let v = match self.flow {
             Flow::Couette => self.v,
             Flow::Poiseuille => self.force * l * l / (8.0 * nu),
@@ -217,35 +204,10 @@ impl Setup {
             .map(|x| Particle::fluid(x, Vector2::zeros(), self.settings.rho, dx * dx))
             .collect()
     }
-
-    /// Particles of both plates: rows out to the support, the first one `first` dx behind the surface,
-    /// all with the velocity of the plate. On the surface, at 0, they are of the interface.
-    fn wall_rows(&self, first: f64, support: f64) -> Vec<Particle> {
-        let dx = self.medium.dx;
-        let last = (support / dx - first - 1e-9).floor() as usize;
-        let mut particles = Vec::new();
-        for (y, outwards, speed) in
-            [(0.0, -1.0, 0.0), (self.settings.width, 1.0, self.plate_speed())]
-        {
-            for behind in (0..=last).map(|k| first + k as f64) {
-                let role = if behind == 0.0 { Role::Interface } else { Role::Wall };
-                let velocity = Vector2::new(speed, 0.0);
-                let row = self.rows(y + outwards * behind * dx, 1).into_iter();
-                particles.extend(row.map(|p| Particle { velocity, ..p }.with_role(role)));
-            }
-        }
-        particles
-    }
 }
-
-/// Particles of the box whose waves give the limit of dt: even, so that it has the stiffest ones.
-const LIMIT_BOX: usize = 32;
 
 /// Morris' rule (Morris, Fox & Zhu 1997), and not below `c0_viscous` ν/h.
 fn sound_speed(s: &ChannelSettings, v: f64, force: f64, h: f64) -> f64 {
-    let inertial = v * v;
-    let viscous = s.nu * v / s.width;
-    let forced = force * s.width;
-    let morris = (inertial.max(viscous).max(forced) / s.density_variation).sqrt();
-    morris.max(s.c0_viscous * s.nu / h)
+    let driven = (v * v).max(s.nu * v / s.width).max(force * s.width);
+    (driven / s.density_variation).sqrt().max(s.c0_viscous * s.nu / h)
 }

@@ -37,7 +37,7 @@ fn share(pair: &Pair) -> f64 {
 /// The gates of one pair.
 fn gates(flow: Flow, pair: &Pair) -> Vec<(Gate, f64)> {
     let ChannelSettings { rows, re, .. } = *pair.0;
-    let id = |what: &str| format!("{}.stiff.{rows}.re{re}.{what}", flow.name());
+    let id = |what: &str| format!("{}.stiff.{rows}.re{re}.{what}", flow.case().name);
     let [modern, error] = errors(pair, flow);
     let is_poiseuille = flow == Flow::Poiseuille;
     let spacing = if is_poiseuille && modern.is_finite() { modern } else { 0.0 };
@@ -79,7 +79,8 @@ pub fn study(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
         .num(["error, stiff", "-"], error(1))
         .num(["pairs, modern/stiff", "-"], |pair| Cell::num(1.0 / share(pair), 3))
         .table(caption, &found);
-    let (id, title) = (format!("{}-stiff", flow.name()), "Steps that viscosity does not limit");
+    let (id, title) =
+        (format!("{}-stiff", flow.case().name), "Steps that viscosity does not limit");
     let judged = found.iter().flat_map(|pair| gates(flow, pair));
     judged
         .fold(Study::new(&id, title).block(shown), |study, (gate, value)| study.judge(gate, value))

@@ -232,7 +232,6 @@ fn limit(variant: &'static str, n: usize) -> StepLimit {
 
 const BOUNDS: &str = "The error of the method at ten spacings a hill takes up most of the bounds.";
 const CONTROLLED: &str = "A controller sets the force, whatever force it begins with.";
-const STRESS: &str = "No gate judges a stress in Pa. Beyond 30 % the density ends the run.";
 const SOUND: &str = "Compressibility changes the velocity by less than the spacing does.";
 const REACH: &str =
     "Sums hold for any reach, whose error is inside the bounds at ten spacings a hill.";

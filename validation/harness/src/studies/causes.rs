@@ -27,6 +27,9 @@ pub static SAFETY_MARGIN: Cause = Cause::new(
 pub const STEP: &str =
     "The time step contributes far less to the error than the spacing, as the error budget shows.";
 
+/// Why no gate detects an error of the density.
+pub const STRESS: &str = "No gate judges a stress in Pa. Beyond 30 % the density ends the run.";
+
 /// The term does its work with another strength too.
 pub static ENOUGH_OR_IDLE: Cause = Cause::new(
     "Terms that keep particles evenly spread or together have little effect in some flows, or suffice when \
