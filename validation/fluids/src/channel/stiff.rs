@@ -16,29 +16,14 @@ static SOUND: Cause = Cause::new(
     "A sound speed chosen by the pressure of the flow, which is 0 here, and not by its force.",
 );
 
-/// The runs of `modern` and of `stiff` at one Reynolds number and number of rows.
-type Pair<'a> = (&'a ChannelSettings, [Option<&'a Record>; 2]);
-
-/// A number of both; NaN for a run that is not there.
-fn both((_, records): &Pair, number: impl Fn(&Record) -> f64) -> [f64; 2] {
-    records.map(|record| record.map_or(f64::NAN, &number))
-}
-
-fn errors(pair: &Pair, flow: Flow) -> [f64; 2] {
-    both(pair, |record| record.value(L2.at(flow.compared_at())).unwrap_or(f64::NAN))
-}
-
-/// Pair interactions of `stiff` over those of `modern`.
-fn share(pair: &Pair) -> f64 {
-    let [modern, stiff] = both(pair, |record| record.cost.pair_interactions as f64);
-    stiff / modern
-}
+/// The settings of a run of `modern` and of one of `stiff`, the error of both, and the pair interactions of
+/// `stiff` over those of `modern`; NaN without a run.
+type Pair<'a> = (&'a ChannelSettings, [f64; 2], f64);
 
 /// The gates of one pair.
-fn gates(flow: Flow, pair: &Pair) -> Vec<(Gate, f64)> {
-    let ChannelSettings { rows, re, .. } = *pair.0;
+fn gates(flow: Flow, (settings, [modern, error], share): Pair) -> [(Gate, f64); 2] {
+    let ChannelSettings { rows, re, .. } = *settings;
     let id = |what: &str| format!("{}.stiff.{rows}.re{re}.{what}", flow.case().name);
-    let [modern, error] = errors(pair, flow);
     let is_poiseuille = flow == Flow::Poiseuille;
     let spacing = if is_poiseuille && modern.is_finite() { modern } else { 0.0 };
     let because = "The bound is 0.1 %, or in Poiseuille flow where the spacing allows no less the error of \
@@ -56,7 +41,7 @@ fn gates(flow: Flow, pair: &Pair) -> Vec<(Gate, f64)> {
                      the bound adds 5 % for pairs at the edge of the kernel.";
         pairs = pairs.with_limitation(Bound::Below(1.05 / 3.7), known).because_of(&SOUND);
     }
-    vec![(l2, error), (pairs, share(pair))]
+    [(l2, error), (pairs, share)]
 }
 
 /// The study.
@@ -69,19 +54,24 @@ pub fn study(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
     let of = |variant| table.of(For::Stiff).filter(move |row| row.variant == variant);
     let found: Vec<Pair> = of("modern")
         .zip(of("stiff"))
-        .map(|(a, b)| (&a.settings, [a, b].map(|row| runs.record(&row.run.spec))))
+        .map(|(modern, stiff)| {
+            let records = [modern, stiff].map(|row| runs.record(&row.run.spec));
+            let error = |record: &Record| record.value(L2.at(flow.compared_at()));
+            let pairs = |record: &Record| record.cost.pair_interactions as f64;
+            let errors = records.map(|record| record.and_then(error).unwrap_or(f64::NAN));
+            let pairs = records.map(|record| record.map_or(f64::NAN, pairs));
+            (&modern.settings, errors, pairs[1] / pairs[0])
+        })
         .collect();
-    let error = move |k: usize| move |pair: &Pair| Cell::percent(errors(pair, flow)[k], 3);
     let shown = Columns::<Pair>::default()
-        .num(["rows", "1"], |(s, _)| Cell::count(s.rows as u64))
-        .num(["Re", "-"], |(s, _)| Cell::exact(s.re))
-        .num(["error, modern", "-"], error(0))
-        .num(["error, stiff", "-"], error(1))
-        .num(["pairs, modern/stiff", "-"], |pair| Cell::num(1.0 / share(pair), 3))
+        .num(["rows", "1"], |(s, ..)| Cell::count(s.rows as u64))
+        .num(["Re", "-"], |(s, ..)| Cell::exact(s.re))
+        .num(["error, modern", "-"], |(_, errors, _)| Cell::percent(errors[0], 3))
+        .num(["error, stiff", "-"], |(_, errors, _)| Cell::percent(errors[1], 3))
+        .num(["pairs, modern/stiff", "-"], |(.., share)| Cell::num(1.0 / share, 3))
         .table(caption, &found);
-    let (id, title) =
-        (format!("{}-stiff", flow.case().name), "Steps that viscosity does not limit");
-    let judged = found.iter().flat_map(|pair| gates(flow, pair));
-    judged
-        .fold(Study::new(&id, title).block(shown), |study, (gate, value)| study.judge(gate, value))
+    let id = format!("{}-stiff", flow.case().name);
+    let study = Study::new(&id, "Steps that viscosity does not limit").block(shown);
+    let judged = found.into_iter().flat_map(|pair| gates(flow, pair));
+    judged.fold(study, |study, (gate, value)| study.judge(gate, value))
 }
