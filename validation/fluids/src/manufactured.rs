@@ -2,18 +2,10 @@
 //! combination of terms, walls and integrator has an order of accuracy. L = U = ρ = 1.
 
 use base::{gate::*, record::*};
+use harness::orders::{self, Line, Refinement};
 use harness::{
-    case::*,
-    composed::*,
-    context::Context,
-    convergence::Level,
-    declare::Declaration,
-    method::*,
-    orders::{self, Line, Refinement},
-    runs::Runs,
-    simulate,
-    study::Study,
-    table,
+    case::*, composed::*, context::Context, convergence::Level, declare::Declaration, method::*,
+    runs::Runs, simulate, study::Study, table,
 };
 use maths::{exact::manufactured, metrics::norms::rms};
 use nalgebra::Vector2;

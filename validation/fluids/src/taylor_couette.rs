@@ -1,20 +1,11 @@
 //! Steady flow between two cylinders, the inner one turning: exact, with one convex and one concave wall.
 
 use base::{gate::*, record::*};
-use harness::{
-    case::*,
-    composed::*,
-    context::Context,
-    declare::*,
-    method::*,
-    simulate,
-    table::{Row, Table},
-};
-use maths::{
-    exact::TaylorCouette,
-    geometry::{Curve, Row as Particles},
-    metrics::norms::l2,
-};
+use harness::table::{Row, Table};
+use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate};
+use maths::exact::TaylorCouette;
+use maths::geometry::{Curve, Row as Particles};
+use maths::metrics::norms::l2;
 use nalgebra::Vector2;
 use report::Axis;
 use schemes::flow;

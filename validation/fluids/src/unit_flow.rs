@@ -4,12 +4,7 @@
 use nalgebra::Vector2;
 use solver::{Domain, Limits, Particle, Tait};
 
-use harness::{
-    case::{Rules, RunError, Step},
-    context::Context,
-    method::{Medium, Method, Parts},
-    simulate,
-};
+use harness::{case::*, context::Context, method::*, simulate};
 
 /// What a case adds to its settings.
 #[derive(Clone, Copy, Debug)]

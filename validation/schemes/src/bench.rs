@@ -9,11 +9,7 @@ use base::functions::sin;
 use std::time::Instant;
 
 use nalgebra::Vector2;
-use solver::{
-    Compose, Continuity, CubicSpline, Domain, Engine, Euler, Integrator, Open, Outcome, Particle,
-    Physics, Pressure, Scene, SceneError, Scheme, Simulation, Stepper, Tait, Viscosity,
-    integrator::Stepped, lattice, physics::State,
-};
+use solver::{integrator::Stepped, physics::State, *};
 
 /// The scheme whose right-hand side is measured.
 pub type Fluid<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;

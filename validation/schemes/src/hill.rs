@@ -4,11 +4,8 @@ use harness::method::{self, Standard};
 use nalgebra::Vector2;
 use solver::*;
 
-use crate::{
-    Method,
-    flow::{ConsistentDrift, Mean, Modern, Stabilised},
-    methods,
-};
+use crate::flow::{ConsistentDrift, Mean, Modern, Stabilised};
+use crate::{Method, methods};
 
 /// Forces with a body force that can be set.
 pub trait Driven {

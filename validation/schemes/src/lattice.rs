@@ -1,7 +1,8 @@
 //! Waves, boxes at rest, extremes and operators on a lattice: no more than the equations.
 
 use harness::method::{FromMedium, Medium};
-use solver::{lane::Lane, particles::Common, terms::Pair, *};
+use solver::terms::Pair;
+use solver::{lane::Lane, particles::Common, *};
 
 use crate::{Method, methods, stepped};
 

@@ -8,13 +8,9 @@ use lagrangian::{
     BetweenFaces, Contact, Hencky, Law, Moduli, NeoHookean, RigidPlane, SaintVenantKirchhoff,
     SolidScene, Weight,
 };
-use maths::{
-    geometry::corners,
-    theory::{
-        bending,
-        lagrangian::{HOURGLASS, fastest_of_block},
-    },
-};
+use maths::geometry::corners;
+use maths::theory::bending;
+use maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
 use nalgebra::Vector2;
 use solver::{
     Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,

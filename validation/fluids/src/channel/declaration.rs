@@ -4,10 +4,7 @@
 //! hypotheses on waves and instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
 
 use super::{
-    ChannelSettings, ChannelTable, Flow, For, maps,
-    measure::*,
-    plan::{self, ladder},
-    stiff, waves,
+    ChannelSettings, ChannelTable, Flow, For, ladder, maps, measure::*, plan, stiff, waves,
 };
 use base::{gate::*, mutation::Constant, record::*, spec::*};
 use harness::{

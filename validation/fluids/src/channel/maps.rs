@@ -5,16 +5,8 @@
 
 use std::cmp::Ordering;
 
-use base::{
-    gate::*,
-    record::{Record, Status},
-    spec::RunSpec,
-};
-use harness::{
-    declare::{Map, MapPanel},
-    runs::Runs,
-    study::Study,
-};
+use base::{gate::*, record::*, spec::RunSpec};
+use harness::{declare::*, runs::Runs, study::Study};
 use report::{Colour, percent, sig};
 
 use super::{ChannelSettings, ChannelTable, For, measure::L2_WORST};

@@ -17,11 +17,7 @@ pub use plan::{GHOSTS, ladder};
 pub use settings::ChannelSettings;
 pub use setup::{Flow, Setup};
 
-use harness::{
-    composed::{Best, Composed, Program},
-    method::Method,
-    table::Table,
-};
+use harness::{composed::*, method::Method, table::Table};
 
 /// νt/L² at which profiles are compared.
 pub const TIMES: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5];

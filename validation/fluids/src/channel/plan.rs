@@ -2,10 +2,8 @@
 
 use super::{ChannelSettings, ChannelTable, Flow, For, TIMES, maps, measure::*, stiff, waves};
 use base::{gate::*, record::MetricName};
-use harness::{
-    case::{Planned, Tier},
-    table::{Row, Table},
-};
+use harness::case::{Planned, Tier};
+use harness::table::{Row, Table};
 
 /// Variants whose error is drawn against their cost. In Couette flow, without a body force, `curved` would be
 /// `plain`.

@@ -4,10 +4,8 @@ use base::record::{Record, Status};
 use harness::{case::*, composed::Program, context::Context, method::*, runner::Drive, simulate};
 use solver::{EquationOfState, Observer, Particle, Role};
 
-use super::{
-    ChannelProgram, ChannelSettings, Flow, Setup,
-    measure::{self, MODE, Mode},
-};
+use super::measure::{self, MODE, Mode};
+use super::{ChannelProgram, ChannelSettings, Flow, Setup};
 
 /// Runs of the flow that a plate drives.
 pub const COUETTE: ChannelProgram = Program {

@@ -1,15 +1,9 @@
 //! The variants of the channel flows: methods, and the settings that go with them.
 
-use harness::{
-    composed::{Composition, Variants},
-    method::Method,
-};
+use harness::{composed::*, method::Method};
 use schemes::flow::{self, OfChannels};
 
-use super::{
-    ChannelProgram, ChannelSettings,
-    run::{COUETTE, POISEUILLE},
-};
+use super::{ChannelProgram, ChannelSettings, run::*};
 
 /// Quintic spline, h = dx, η² a mere guard, long steps, c0 up to where sound costs no step.
 fn modern(s: &mut ChannelSettings) {

@@ -4,18 +4,8 @@
 
 use nalgebra::Vector2;
 
-use super::{
-    BEST, CASE, HillSettings, NAME, SINGLE_SWEEP,
-    measure::*,
-    plan::{END, For, Row, Table, flow, name, shown, table},
-    reference::{REYNOLDS, Reference, floor, reference},
-};
-use base::{
-    gate::*,
-    mutation::Constant,
-    record::{Record, Status},
-    reference::Reference as Data,
-};
+use super::{BEST, CASE, HillSettings, NAME, SINGLE_SWEEP, measure::*, plan::*, reference::*};
+use base::{gate::*, mutation::Constant, record::*, reference::Reference as Data};
 use harness::{
     case::*, columns::Columns, declare::*, pictures, runs::Runs, studies::causes::*, study::Study,
 };

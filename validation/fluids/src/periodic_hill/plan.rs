@@ -2,10 +2,8 @@
 
 use super::{BEST, CASE, HillSettings, SINGLE_SWEEP, measure::*};
 use base::{gate::*, record::MetricKey};
-use harness::{
-    case::{Planned, Tier},
-    table,
-};
+use harness::case::{Planned, Tier};
+use harness::table;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,10 +5,8 @@ use std::sync::OnceLock;
 use nalgebra::Vector2;
 
 use super::HillSettings;
-use base::{
-    record::MetricKey,
-    reference::{Reference as Package, ReferenceError},
-};
+use base::record::MetricKey;
+use base::reference::{Reference as Package, ReferenceError};
 use maths::{geometry::Hill, metrics::norms::rms};
 
 /// Reynolds numbers that have a reference.

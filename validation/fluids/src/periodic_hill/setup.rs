@@ -6,10 +6,7 @@ use nalgebra::Vector2;
 use schemes::hill::HillMethod;
 use solver::{Domain, Particle, Role};
 
-use super::{
-    HillSettings,
-    reference::{KNOWN_SETTINGS, Reference},
-};
+use super::{HillSettings, reference::*};
 use crate::unit_flow::{Scales, UnitFlow};
 
 /// Gap over the crest of the reference \[H\]: with U_b = 1 the flux per depth.

@@ -1,11 +1,7 @@
 //! What the studies that every case has are made of: error through time, order, error against run time,
 //! error budget; and what only the vortices have to say: pictures, all runs.
 
-use super::{
-    BEST, CASE, NAME, VortexSettings,
-    plan::{DISTURBED, For, LADDER, Row, Table, is_pictured, most_error, table, usual},
-    run::*,
-};
+use super::{BEST, CASE, NAME, VortexSettings, plan::*, run::*};
 use base::{functions::log10, gate::*, record::Record};
 use harness::{case::Tier, columns::Columns, declare::*, pictures, runs::Runs, study::Study};
 use report::{Axis, Cell, ColourMap, Figure, ParticleMap};

@@ -2,10 +2,8 @@
 
 use super::{BEST, CASE, VortexSettings, run::*};
 use base::{gate::*, record::MetricKey};
-use harness::{
-    case::{Planned, Tier},
-    table,
-};
+use harness::case::{Planned, Tier};
+use harness::table;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,10 +5,7 @@ use solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
 use crate::unit_flow::{Scales, UnitFlow};
-use base::{
-    random::Random,
-    record::{Profile, Record, Status},
-};
+use base::{random::Random, record::*};
 use harness::{
     case::RunError, composed::Program, context::Context, method::Method, pictures, runner::Drive,
     simulate,
