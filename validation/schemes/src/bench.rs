@@ -38,11 +38,6 @@ pub fn scene<I: Integrator<Fluid<()>>>(side: usize, parallel: bool) -> Scene<Flu
     scene
 }
 
-/// Distance that makes lists stale in a scene of that many particles a side: a third of h.
-pub fn stale_distance(side: usize) -> f64 {
-    0.4 / side as f64
-}
-
 /// Moves all particles to and fro and starts a step: sorts them and builds their lists. The "time
 /// step" is the distance, which must be more than half a skin.
 #[derive(Debug, Default)]
@@ -103,7 +98,7 @@ pub fn speed(side: usize, parallel: bool, budget: f64) -> Result<Speed, SceneErr
     let neighbours = work.pair_interactions as f64 / work.right_hand_sides as f64;
     let bytes = simulation.bytes() / particles;
     let mut simulation = scene::<Rebuilding>(side, parallel).build()?;
-    let distance = stale_distance(side);
+    let distance = 0.4 / side as f64; // a third of h: lists are stale
     let list_rate = particles as f64 / seconds_per_step(&mut simulation, distance, 0.3 * budget);
     Ok(Speed { particles, rate, neighbours, bytes, list_rate })
 }

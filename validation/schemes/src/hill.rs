@@ -7,44 +7,29 @@ use solver::*;
 use crate::flow::{ConsistentDrift, Mean, Modern, Stabilised};
 use crate::{Method, methods};
 
-/// Forces with a body force that can be set.
-pub trait Driven {
-    /// The body force.
-    fn body_force(&mut self) -> &mut BodyForce;
-}
-
-impl<A, B> Driven for (A, B, BodyForce) {
-    fn body_force(&mut self) -> &mut BodyForce {
-        &mut self.2
-    }
-}
-
-impl<A, B, C> Driven for (A, B, BodyForce, C) {
-    fn body_force(&mut self) -> &mut BodyForce {
-        &mut self.2
-    }
-}
-
 /// A simulation with a body force that can be set.
 pub trait Driving: Stepper<()> {
     /// Sets the body force \[m/s²\] along x.
     fn drive(&mut self, force: f64);
 }
 
-impl<S: Scheme<Extra = (), Forces: Driven>> Driving for Simulation<S> {
+impl<S: Scheme<Extra = (), Forces = (A, B, BodyForce, C)>, A, B, C> Driving for Simulation<S> {
     fn drive(&mut self, force: f64) {
-        *self.terms_mut().0.body_force() = BodyForce(Vector2::new(force, 0.0));
+        self.terms_mut().0.2 = BodyForce(Vector2::new(force, 0.0));
     }
 }
 
 /// A method whose force can be set.
 pub type HillMethod = Method<(), dyn Driving>;
 
-fn driven<S: Standard<Extra = (), Forces: Driven>>() -> HillMethod {
+fn driven<S: Standard<Extra = ()>>() -> HillMethod
+where
+    Simulation<S>: Driving,
+{
     Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
 }
 
-type Pairs = (Pressure<Tait>, Viscosity, BodyForce);
+type Pairs = (Pressure<Tait>, Viscosity, BodyForce, ());
 type Carried = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
 /// Wall particles know how the velocity bends across the wall.

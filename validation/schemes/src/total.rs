@@ -4,17 +4,12 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use harness::method::{Medium, Parts, mutate};
-use lagrangian::{
-    BetweenFaces, Contact, Hencky, Law, Moduli, NeoHookean, RigidPlane, SaintVenantKirchhoff,
-    SolidScene, Weight,
-};
+use lagrangian::*;
 use maths::geometry::corners;
 use maths::theory::bending;
 use maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
 use nalgebra::Vector2;
-use solver::{
-    Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
-};
+use solver::*;
 
 use crate::methods;
 
