@@ -5,7 +5,7 @@
 use nalgebra::Vector2;
 
 use super::{BEST, CASE, HillSettings, NAME, SINGLE_SWEEP, measure::*, plan::*, reference::*};
-use base::{gate::*, mutation::Constant, record::*, reference::Reference as Data};
+use base::{gate::*, mutation::Constant, record::*};
 use harness::{
     case::*, columns::Columns, declare::*, pictures, runs::Runs, studies::causes::*, study::Study,
 };
@@ -32,18 +32,16 @@ pub fn declaration(tier: Tier) -> Declaration {
 fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes (`references/periodic_hill`)";
     let re = if tier == Tier::Quick { 10.0_f64 } else { 50.0 };
-    let of =
-        |name| Data::summarised("periodic_hill", &[("re", &re.to_string()), ("quantity", name)]);
     let profiles = reference(re).map_or(f64::NAN, |reference| reference.uncertainty);
-    let [force, force_uncertainty] = of("force");
+    let [force, force_uncertainty] = summary(re, "force");
     let mut all = vec![
         ("u, rms [U_b]", L2_U, profiles),
         ("v, rms [U_b]", L2_V, profiles),
         ("driving force", FORCE_ERROR, force_uncertainty / force),
     ];
     if re > 10.0 {
-        all.push(("separation [H]", SEPARATION_ERROR, of("separation")[1]));
-        all.push(("reattachment [H]", REATTACHMENT_ERROR, of("reattachment")[1]));
+        all.push(("separation [H]", SEPARATION_ERROR, summary(re, "separation")[1]));
+        all.push(("reattachment [H]", REATTACHMENT_ERROR, summary(re, "reattachment")[1]));
     }
     let ladder =
         accuracy.ladders.iter().filter(|of| [BEST, "interface-wall"].contains(&of.variant));

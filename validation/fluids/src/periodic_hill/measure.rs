@@ -6,6 +6,7 @@ use solver::{EquationOfState, Particle, Role, Stepper};
 use super::{Setup, reference::KNOWN_SETTINGS};
 use base::functions::hypot;
 use base::record::{MetricKey, Profile, Record};
+use harness::pictures;
 use maths::metrics::norms::rms;
 
 /// Points across a section.
@@ -88,58 +89,56 @@ impl<'a> Field<'a> {
         })
     }
 
-    /// u, v, p at a place.
-    fn at(&self, x: f64, y: f64) -> [f64; 3] {
-        let reach = self.reach;
-        let (mut moments, mut sums) = (Matrix3::zeros(), [Vector3::zeros(); 3]);
-        for p in self.near(x, y) {
-            let r = Vector2::new(p[0] - x, p[1] - y);
+    /// What values of the particles in reach of a place have there: they are fitted to a basis, of which the
+    /// first member counts, with the weights V W. The basis is a function of a particle and of its distance.
+    fn fit<const N: usize>(
+        &self,
+        place: Vector2<f64>,
+        basis: impl Fn(&[f64; 6], Vector2<f64>) -> Vector3<f64>,
+        values: impl Fn(&[f64; 6]) -> [f64; N],
+    ) -> [f64; N] {
+        let (mut moments, mut sums) = (Matrix3::zeros(), [Vector3::zeros(); N]);
+        for p in self.near(place.x, place.y) {
+            let r = Vector2::new(p[0] - place.x, p[1] - place.y);
             let r2 = r.norm_squared();
-            if r2 >= reach * reach {
-                continue;
-            }
-            let weight = p[2] * (self.weight)(r2);
-            if weight > 0.0 {
-                let basis = Vector3::new(1.0, r.x / reach, r.y / reach);
-                moments += Matrix3::from_fn(|i, j| basis[i] * basis[j] * weight);
-                for (sum, value) in sums.iter_mut().zip(&p[3..]) {
+            if r2 < self.reach * self.reach {
+                let (weight, basis) = (p[2] * (self.weight)(r2), basis(p, r));
+                moments += basis * basis.transpose() * weight;
+                for (sum, value) in sums.iter_mut().zip(values(p)) {
                     *sum += basis * (weight * value);
                 }
             }
         }
         match moments.try_inverse() {
             Some(inverse) => sums.map(|sum| inverse.row(0).transpose().dot(&sum)),
-            None => [f64::NAN; 3],
+            None => [f64::NAN; N],
         }
+    }
+
+    /// u, v, p at a place.
+    fn at(&self, x: f64, y: f64) -> [f64; 3] {
+        let linear = |_: &_, r: Vector2<f64>| Vector3::new(1.0, r.x / self.reach, r.y / self.reach);
+        self.fit(Vector2::new(x, y), linear, |p| [p[3], p[4], p[5]])
     }
 
     /// The derivative along `g` of the velocity in the direction `along` at a point of a wall, of which a
     /// point is `g` above (negative behind) and where the velocity is 0: g (a + b s + c g), s being the
-    /// distance along x, is fitted to the fluid particles in reach with the weights V W, and a is the
-    /// derivative. Every smooth field that is 0 on the wall is g times a smooth one, so what the fit leaves
-    /// out is of second order in the reach, whatever the shape of the wall.
+    /// distance along x, is fitted to the fluid particles in reach, and a is the derivative. Every smooth
+    /// field that is 0 on the wall is g times a smooth one, so what the fit leaves out is of second order in
+    /// the reach, whatever the shape of the wall.
     fn slope_at(
         &self,
         place: Vector2<f64>,
         g: impl Fn(&[f64; 6]) -> f64,
         along: Vector2<f64>,
     ) -> f64 {
-        let reach = self.reach;
-        let (mut moments, mut sums) = (Matrix3::zeros(), Vector3::zeros());
-        for p in self.near(place.x, place.y) {
-            let r = Vector2::new(p[0] - place.x, p[1] - place.y);
-            let (r2, g) = (r.norm_squared(), g(p) / reach);
-            if r2 < reach * reach && g > 0.0 {
-                let weight = p[2] * (self.weight)(r2);
-                let basis = Vector3::new(g, g * r.x / reach, g * g);
-                moments += basis * basis.transpose() * weight;
-                sums += basis * (weight * Vector2::new(p[3], p[4]).dot(&along));
-            }
-        }
-        match moments.try_inverse() {
-            Some(inverse) => inverse.row(0).transpose().dot(&sums) / reach,
-            None => f64::NAN,
-        }
+        // Particles behind the wall have no part in it.
+        let basis = |p: &_, r: Vector2<f64>| {
+            let g = (g(p) / self.reach).max(0.0);
+            Vector3::new(g, g * r.x / self.reach, g * g)
+        };
+        let [slope] = self.fit(place, basis, |p| [Vector2::new(p[3], p[4]).dot(&along)]);
+        slope / self.reach
     }
 }
 
@@ -350,15 +349,14 @@ fn behind_floor(setup: &Setup, place: Vector2<f64>) -> f64 {
 pub fn particles(setup: &Setup, s: &dyn Stepper<()>, is_kept: bool, record: &mut Record) {
     let all = s.particles();
     record.put(WALL_OFFSET, wall_offset(setup, &all));
-    let fluid = all.iter().filter(|p| p.role == Role::Fluid);
-    let row =
-        |p: &Particle| [p.position.x.rem_euclid(setup.hill.period()), p.position.y, p.velocity.x];
-    let rows: Vec<[f64; 3]> = fluid.map(row).collect();
-    let is_outside = |[x, y, _]: &&[f64; 3]| !(setup.floor(*x)..=setup.hill.lid()).contains(y);
-    record.put(OUTSIDE, rows.iter().filter(is_outside).count() as f64);
+    let period = setup.hill.period();
+    let place =
+        |p: &Particle| (Vector2::new(p.position.x.rem_euclid(period), p.position.y), p.velocity.x);
+    let fluid: Vec<_> = all.iter().filter(|p| p.role == Role::Fluid).map(place).collect();
+    let is_outside = |x: &Vector2<f64>| !(setup.floor(x.x)..=setup.hill.lid()).contains(&x.y);
+    record.put(OUTSIDE, fluid.iter().filter(|(x, _)| is_outside(x)).count() as f64);
     if is_kept {
-        let columns = [("x", "H"), ("y", "H"), ("u", "U_b")];
-        record.profiles.insert("particles".into(), Profile::of_rows(&columns, &rows));
+        pictures::keep(record, "H", ("u", "U_b"), fluid.into_iter());
     }
 }
 

@@ -1,6 +1,6 @@
 //! The finite-element flow of this Reynolds number, and its field between the stations.
 
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 use nalgebra::Vector2;
 
@@ -15,7 +15,8 @@ pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];
 pub const KNOWN_SETTINGS: &str = "re = 10, 50 or 100, crest = 1 and flux = 1";
 
 /// Read and checked once: 25 000 rows, which every run, every plan and every figure asks for.
-static KNOWN: OnceLock<Vec<Reference>> = OnceLock::new();
+static KNOWN: LazyLock<Result<Vec<Reference>, ReferenceError>> =
+    LazyLock::new(|| REYNOLDS.into_iter().map(Reference::read).collect());
 
 /// A profile across one section.
 #[derive(Clone, Debug)]
@@ -39,8 +40,7 @@ pub struct Reference {
     pub wall: Vec<[f64; 3]>,
     /// The line between bubble and stream \[H\]; empty where the flow does not separate.
     pub line: Vec<(f64, f64)>,
-    /// Name and value.
-    numbers: Vec<(String, f64)>,
+    re: f64,
     /// Root mean square of the uncertainty of u over all points of the profiles \[U_b\].
     pub uncertainty: f64,
 }
@@ -49,28 +49,15 @@ impl Reference {
     /// The reference of these settings; `None` where nothing was computed for their geometry, their flux or
     /// their Reynolds number.
     pub fn of(settings: &HillSettings) -> Result<Option<&'static Self>, ReferenceError> {
-        let known = match KNOWN.get() {
-            Some(known) => known,
-            None => {
-                let package = Package::load("periodic_hill")?;
-                let known: Result<_, _> =
-                    REYNOLDS.into_iter().map(|re| Self::read(package, re)).collect();
-                let known = known?;
-                KNOWN.get_or_init(|| known)
-            }
-        };
+        let known = KNOWN.as_ref().map_err(Clone::clone)?;
         let place = REYNOLDS.iter().position(|re| *re == settings.re);
         let is_known = (settings.crest, settings.flux) == (1.0, 1.0);
         Ok(place.filter(|_| is_known).map(|place| &known[place]))
     }
 
     /// What the package has of a Reynolds number.
-    fn read(package: &Package, re: f64) -> Result<Self, ReferenceError> {
-        let summary = package.table("summary")?;
-        let (of, names) = (summary.numbers("re")?, summary.texts("quantity")?);
-        let values = summary.numbers("value")?;
-        let own = (0..of.len()).filter(|&k| of[k] == re);
-        let numbers = own.map(|k| (names[k].to_string(), values[k])).collect();
+    fn read(re: f64) -> Result<Self, ReferenceError> {
+        let package = Package::load("periodic_hill")?;
         let wall = rows(package, "wall", re, ["x", "hill_shear", "lid_shear"])?;
         let line = rows(package, "line", re, ["x", "y"])?;
         let profiles = rows(package, "profiles", re, ["x", "y", "u", "v"])?;
@@ -84,15 +71,14 @@ impl Reference {
             starts: stations(&starts),
             wall,
             line: line.into_iter().map(|[x, y]| (x, y)).collect(),
-            numbers,
+            re,
             uncertainty: rms(uncertainty.into_iter().map(|[u]| u)),
         })
     }
 
     /// What the summary has for a metric.
     pub fn number(&self, metric: MetricKey) -> Option<f64> {
-        let name = String::from(metric);
-        self.numbers.iter().find(|(n, _)| *n == name).map(|(_, value)| *value)
+        Some(summary(self.re, &String::from(metric))[0]).filter(|value| value.is_finite())
     }
 
     /// The velocity at x, at the share s of a section `gap` \[H\] high: a start that is near the flow, within
@@ -151,6 +137,11 @@ fn stations(rows: &[[f64; 4]]) -> Vec<Station> {
 /// fail: there is no need to say it once more.
 pub fn reference(re: f64) -> Option<&'static Reference> {
     Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
+}
+
+/// Value and uncertainty of a quantity of the summary at this Reynolds number; NaN if it has none.
+pub fn summary(re: f64, quantity: &str) -> [f64; 2] {
+    Package::summarised("periodic_hill", &[("re", &re.to_string()), ("quantity", quantity)])
 }
 
 /// The floor as a line.
