@@ -64,7 +64,7 @@ pub static COUETTE: ChannelCase = ChannelCase {
     variants: variants::of_couette,
     is_stable,
     declaration: |tier| declaration(Flow::Couette, tier),
-    plan: |tier| plan::plan(Flow::Couette, tier),
+    plan: |tier| plan::table(Flow::Couette, tier).plan(),
     studies: |tier, runs| studies(Flow::Couette, tier, runs),
 };
 
@@ -84,6 +84,6 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
     variants: variants::of_poiseuille,
     is_stable,
     declaration: |tier| declaration(Flow::Poiseuille, tier),
-    plan: |tier| plan::plan(Flow::Poiseuille, tier),
+    plan: |tier| plan::table(Flow::Poiseuille, tier).plan(),
     studies: |tier, runs| studies(Flow::Poiseuille, tier, runs),
 };

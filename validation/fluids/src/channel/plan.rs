@@ -2,7 +2,7 @@
 
 use super::{ChannelSettings, ChannelTable, Flow, For, TIMES, maps, measure::*, stiff, waves};
 use base::{gate::*, record::MetricName};
-use harness::case::{Planned, Tier};
+use harness::case::Tier;
 use harness::table::{Row, Table};
 
 /// Variants whose error is drawn against their cost. In Couette flow, without a body force, `curved` would be
@@ -42,9 +42,6 @@ pub const GHOSTS: [(Flow, usize, [f64; 2]); 5] = [
 /// All runs of a flow with their gates, beside those of budgets, step limits and sensitivity.
 pub fn table(flow: Flow, tier: Tier) -> ChannelTable {
     let mut table = Table::new(flow.case(), tier);
-    let rows = |s: &mut ChannelSettings, rows: usize| s.rows = rows;
-    let levels: &[usize] = &[8, 10, 14, 20, 40, 80];
-    table.over(For::Ladder, &ladder(flow), [&levels[..4], levels], rows);
     // Couette flow has no force that disorders rows, so that the lower Reynolds numbers are enough.
     let full = if flow == Flow::Couette { 7 } else { 10 };
     let reynolds = [&REYNOLDS[..5], &REYNOLDS[..full]];
@@ -57,6 +54,8 @@ pub fn table(flow: Flow, tier: Tier) -> ChannelTable {
         waves::runs(&mut table);
         maps::runs(&mut table);
     }
+    let levels: &[usize] = &[8, 10, 14, 20, 40, 80];
+    table.over(For::Ladder, &ladder(flow), [&levels[..4], levels], |s, rows| s.rows = rows);
     for row in &mut table.rows {
         match row.group {
             For::Reynolds => row.run.seconds = row.settings.re / 30.0,
@@ -66,13 +65,6 @@ pub fn table(flow: Flow, tier: Tier) -> ChannelTable {
     }
     table.judge(|row| gates(flow, row));
     table
-}
-
-/// The plan: the runs that are not of a ladder, which the declaration has.
-pub fn plan(flow: Flow, tier: Tier) -> Vec<Planned> {
-    let mut table = table(flow, tier);
-    table.rows.retain(|row| row.group != For::Ladder);
-    table.plan()
 }
 
 /// The gates of a run.

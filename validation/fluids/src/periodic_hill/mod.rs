@@ -103,7 +103,7 @@ static CASE: Composed<HillSettings> = Composed {
     variants,
     is_stable: declaration::is_stable,
     declaration: declaration::declaration,
-    plan: plan::plan,
+    plan: |tier| plan::table(tier).plan(),
     studies: declaration::studies,
 };
 

@@ -2,8 +2,7 @@
 
 use super::{BEST, CASE, HillSettings, SINGLE_SWEEP, measure::*};
 use base::{gate::*, record::MetricKey};
-use harness::case::{Planned, Tier};
-use harness::table;
+use harness::{case::Tier, table};
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +37,7 @@ pub fn flow(s: &mut HillSettings, flow: Flow) {
     (s.re, s.n, s.end, s.from_reference) = flow;
 }
 
-/// The runs of a tier. The quick tier has its ladder at Re 10, where the decay is the fastest.
+/// The judged runs of a tier. The quick tier has its ladder at Re 10, where the decay is the fastest.
 pub fn table(tier: Tier) -> Table {
     let mut table = Table::new(&CASE, tier);
     let quick = [4, 5, 7].map(|n| (10.0, n, 10.0, false));
@@ -73,6 +72,7 @@ pub fn table(tier: Tier) -> Table {
             run.spec = run.spec.clone().keep_particles();
         }
     }
+    table.judge(gates);
     table
 }
 
@@ -89,13 +89,6 @@ pub fn shown(table: &Table, re: f64) -> Vec<&Row> {
 pub fn name(row: &Row) -> String {
     let start = if row.settings.from_reference { "the reference" } else { "rest" };
     format!("H/dx = {}, from {start}", row.settings.n)
-}
-
-/// The judged runs of a tier.
-pub fn plan(tier: Tier) -> Vec<Planned> {
-    let mut table = table(tier);
-    table.judge(gates);
-    table.plan()
 }
 
 fn gates(row: &Row) -> Vec<Gate> {

@@ -79,7 +79,7 @@ static CASE: Composed<VortexSettings> = Composed {
     variants,
     is_stable: completed,
     declaration: declaration::declaration,
-    plan: plan::plan,
+    plan: |tier| plan::table(tier).plan(),
     studies: declaration::studies,
 };
 

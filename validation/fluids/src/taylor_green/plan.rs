@@ -2,8 +2,7 @@
 
 use super::{BEST, CASE, VortexSettings, run::*};
 use base::{gate::*, record::MetricKey};
-use harness::case::{Planned, Tier};
-use harness::table;
+use harness::{case::Tier, table};
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +37,7 @@ pub fn most_error(n: usize) -> f64 {
     }
 }
 
-/// The runs of a tier.
+/// The judged runs of a tier.
 pub fn table(tier: Tier) -> Table {
     let mut table = Table::new(&CASE, tier);
     let start = |perturb| move |s: &mut VortexSettings, n| (s.n, s.perturb) = (n, perturb);
@@ -56,6 +55,7 @@ pub fn table(tier: Tier) -> Table {
             row.run.spec = row.run.spec.clone().keep_particles();
         }
     }
+    table.judge(gates);
     table
 }
 
@@ -69,13 +69,6 @@ pub fn is_pictured(row: &Row) -> bool {
 pub fn usual<'a>(table: &'a Table, variant: &str, n: usize) -> Option<&'a Row> {
     let mut rows = table.of(For::Ladder).chain(table.of(For::Control));
     rows.find(|row| row.variant == variant && row.settings.n == n)
-}
-
-/// The judged runs of a tier.
-pub fn plan(tier: Tier) -> Vec<Planned> {
-    let mut table = table(tier);
-    table.judge(gates);
-    table.plan()
 }
 
 fn gates(row: &Row) -> Vec<Gate> {
