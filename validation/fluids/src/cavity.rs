@@ -306,17 +306,13 @@ fn declaration(tier: Tier) -> Declaration {
     };
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
     let caption = "Particles of `consistent` at the end, finest spacing, coloured by speed.";
-    let texts = ["cavity-picture", "The cavity", caption];
+    let (texts, size) = (["cavity-picture", "The cavity", caption], [300.0, 270.0]);
     let panel = |r: &Row| (format!("Re {}", r.group), 1.0 / r.settings.n as f64);
+    let picture = table.picture(texts, ("speed [U]", ColourMap::Sequential), size, panel);
     let speed = Watched::new(Constant::WallSpeed).quick().faults(&[-1.0, 0.5]);
     Declaration {
         curves: vec![curves(&table)],
-        pictures: vec![table.picture(
-            texts,
-            ("speed [U]", ColourMap::Sequential),
-            [300.0, 270.0],
-            panel,
-        )],
+        pictures: vec![picture],
         accuracy: accuracy.filter(|of| !of.ladders[0].levels.is_empty()).collect(),
         sensitivity: Some(Sensitivity::new(NAME, tier, [CASE.spec(BEST, |s| s.n = 16)], [speed])),
         ..Declaration::default()

@@ -7,7 +7,6 @@ use maths::exact::TaylorCouette;
 use maths::geometry::{Curve, Row as Particles};
 use maths::metrics::norms::l2;
 use nalgebra::Vector2;
-use report::Axis;
 use schemes::flow;
 use solver::*;
 
@@ -232,26 +231,21 @@ fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
                    which carry the velocity of the wall, are of first order, and walls that extrapolate \
                    linearly of second. A tolerance of 0.3 tells one from the other, whatever the number of \
                    levels, but not an order that falls slowly.";
+    let level =
+        |s: &CylinderSettings| (1.0 / s.layers as f64, format!("{} spacings across", s.layers));
     let ladder = |(variant, expected): (&'static str, f64)| {
-        let order = Gate::new(
-            format!("{NAME}.{variant}.order"),
-            "order",
-            Bound::Within(expected - 0.3, expected + 0.3),
-            Evidence::Theory,
-            because,
-        );
-        let level =
-            |s: &CylinderSettings| (1.0 / s.layers as f64, format!("{} spacings across", s.layers));
+        let bound = Bound::Within(expected - 0.3, expected + 0.3);
+        let id = format!("{NAME}.{variant}.order");
+        let order = Gate::new(id, "order", bound, Evidence::Theory, because);
         Ladder { order: Some(order), ..table.ladder(&[()], variant, level) }
     };
-    let label = "relative L2 error of the velocity [-]";
+    let about = "Flow between cylinders, steady after t = d²/ν, at Re = V d/ν = 0.5; the gap d equals the \
+                 inner radius.";
     Accuracy {
-        about: "Flow between cylinders, steady after t = d²/ν, at Re = V d/ν = 0.5; the gap d equals the \
-                inner radius."
-            .into(),
+        about: about.into(),
         spacing: "dx/d [-]",
         ladders: [(INTERFACE, 1.0), (EXTRAPOLATING, 2.0)].map(ladder).into(),
-        ..Accuracy::new("taylor-couette", L2, label)
+        ..Accuracy::new("taylor-couette", L2, "relative L2 error of the velocity [-]")
     }
 }
 
@@ -277,14 +271,10 @@ fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
         let r = flow.inner + (flow.outer - flow.inner) * f64::from(k) / 100.0;
         (r, flow.velocity(r))
     };
-    let panel = CurvePanel {
-        title: String::new(),
-        x: Axis::linear("r/inner radius [-]"),
-        y: Axis::linear("u/V [-]"),
-        lines: table.rows.iter().filter(|row| row.settings.layers == finest).map(line).collect(),
-        references: vec![("exact".into(), (0..=100).map(exact).collect())],
-        symbols: true,
-    };
+    let lines = table.rows.iter().filter(|row| row.settings.layers == finest).map(line).collect();
+    let (axes, exact) = (["r/inner radius [-]", "u/V [-]"], (0..=100).map(exact).collect());
+    let panel = CurvePanel::linear("", axes, lines, ("exact", exact));
+    let panel = CurvePanel { symbols: true, ..panel };
     let (id, title) = ("taylor-couette-profiles".into(), "Velocity between the cylinders".into());
     Curves { id, title, caption, columns: 1, panels: vec![panel] }
 }

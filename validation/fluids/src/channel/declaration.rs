@@ -82,14 +82,10 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
 
 /// The ladders at Re 0.5.
 fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
-    let order = Gate::new(
-        "poiseuille.plain.order",
-        "order",
-        Bound::Within(1.8, 2.2),
-        Evidence::Theory,
-        "Mirrored walls and the kernel are of second order. Levels whose error is near what the \
-                  lattice leaves at any spacing are not in the fit.",
-    );
+    let because = "Mirrored walls and the kernel are of second order. Levels whose error is near what the \
+                   lattice leaves at any spacing are not in the fit.";
+    let (id, bound) = ("poiseuille.plain.order", Bound::Within(1.8, 2.2));
+    let order = Gate::new(id, "order", bound, Evidence::Theory, because);
     let level = |s: &ChannelSettings| (1.0 / s.rows as f64, format!("{} rows", s.rows));
     let of = |variant| Ladder {
         order: ((flow, variant) == (Flow::Poiseuille, "plain")).then(|| order.clone()),

@@ -190,16 +190,12 @@ pub fn study(table: &ChannelTable, runs: &Runs) -> Study {
     let row = |re| (re, SOUND.map(|sound| starts(re, sound)));
     let found: Vec<(f64, [Starts; 3])> = reynolds(table).into_iter().map(row).collect();
     let first = found.iter().find(|(_, [_, usual, _])| usual.mostly_fails());
-    let gate = Gate::new(
-        "poiseuille.map.first-failing-re",
-        "first_failing_re",
-        Bound::Within(2.2, 14.0),
-        Evidence::Regression,
-        "H4: with the settings of `seed` and c0 = 10 V, every start holds at Re 1 and fails at Re 5, where \
-         only a perfect lattice holds (error 0.99 %, but 5.6 % with a disorder of 1e-6 dx). The ends of \
-         the bound are the geometric means of 1 and 5 and of 10 and 20, so no outcome of the map lies at \
-         an end.",
-    );
+    let because = "H4: with the settings of `seed` and c0 = 10 V, every start holds at Re 1 and fails at \
+                   Re 5, where only a perfect lattice holds (error 0.99 %, but 5.6 % with a disorder of \
+                   1e-6 dx). The ends of the bound are the geometric means of 1 and 5 and of 10 and 20, so \
+                   no outcome of the map lies at an end.";
+    let (id, bound) = ("poiseuille.map.first-failing-re", Bound::Within(2.2, 14.0));
+    let gate = Gate::new(id, "first_failing_re", bound, Evidence::Regression, because);
     let failed = |k: usize| found.iter().map(|(_, starts)| starts[k].failed()).sum::<usize>();
     let [low, usual, high] = [0, 1, 2].map(failed);
     let all: usize = found.iter().map(|(_, [_, usual, _])| usual.0.len()).sum();

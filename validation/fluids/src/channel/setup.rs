@@ -142,9 +142,9 @@ impl Setup {
         }
     }
 
-    /// Fluid, then both plates. Rows of the fluid at (j + 1/2) dx, mirrored by the walls into themselves, or at
-    /// j dx between interface rows on the plates, which are rows of the same lattice. Rows of plates out to the
-    /// support, all with the velocity of the plate.
+    /// Fluid, then both plates. Rows of the fluid at (j + 1/2) dx, mirrored by the walls into themselves, or
+    /// at j dx between interface rows on the plates, which are rows of the same lattice. Rows of plates reach
+    /// out to the support, all with the velocity of the plate.
     fn particles(&self, method: &Method) -> Vec<Particle> {
         let (dx, rows, width) = (self.medium.dx, self.settings.rows, self.settings.width);
         let (mut particles, first) = match method.first_row {

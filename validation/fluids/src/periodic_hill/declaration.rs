@@ -82,13 +82,9 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let ladders = variants.into_iter();
     let mut ladders: Vec<_> = ladders.map(|of| table.ladder(&[For::Ladder], of, level)).collect();
     for ladder in ladders.iter_mut().filter(|of| of.variant == BEST && tier == Tier::Full) {
-        ladder.order = Some(Gate::new(
-            format!("{NAME}.{BEST}.50.order"),
-            "order",
-            Bound::Above(1.0),
-            Evidence::Theory,
-            "Walls are of first order on disordered particles, sums of second.",
-        ));
+        let because = "Walls are of first order on disordered particles, sums of second.";
+        let (id, bound) = (format!("{NAME}.{BEST}.50.order"), Bound::Above(1.0));
+        ladder.order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
     }
     Accuracy {
         about: about.into(),

@@ -65,10 +65,11 @@ fn variants() -> Vec<Composition<HillSettings>> {
         "modern with the paper's interface and wall particles (section 4.2): how good are they?";
     let modern =
         "plain with density diffusion and shifting: does what suits channels suit curved walls?";
-    let carried = "modern with stronger shifting that takes the velocity of the new place, and walls that know \
-                   how the velocity bends: the best";
+    let carried = "modern with stronger shifting that takes the velocity of the new place, and walls that \
+                   know how the velocity bends: the best";
     let single = "carried with one pair sweep a step in place of two: is its error cheaper?";
-    let consistent = "carried with sums that are exact for linear fields: are they worth more work for each pair?";
+    let consistent = "carried with sums that are exact for linear fields: are they worth more work for each \
+                      pair?";
     Variants::of(&run::PROGRAM)
         .with("plain", plain, hill::plain(), |_| {})
         .with("interface-wall", interface, hill::interface_wall(), |_| {})

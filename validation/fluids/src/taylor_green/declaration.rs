@@ -12,22 +12,17 @@ pub fn declaration(tier: Tier) -> Declaration {
     let level = |s: &VortexSettings| (1.0 / s.n as f64, format!("{0} x {0}", s.n));
     let mut ladders = LADDER.map(|variant| table.ladder(&[For::Ladder], variant, level));
     for ladder in ladders.iter_mut().filter(|of| of.variant == BEST && tier == Tier::Full) {
-        ladder.order = Some(Gate::new(
-            format!("{NAME}.{BEST}.{DISTURBED}.order"),
-            "order",
-            Bound::Within(1.6, 2.3),
-            Evidence::Regression,
-            "The bound is what this program computed before, 1.95, with 0.3 either way. Errors of \
-                      the sums fall as h^2, but those of the sound speed and the time step fall otherwise \
-                      and partly cancel them, so theory gives no order at these spacings.",
-        ));
+        let because = "The bound is what this program computed before, 1.95, with 0.3 either way. Errors of \
+                       the sums fall as h^2, but those of the sound speed and the time step fall otherwise \
+                       and partly cancel them, so theory gives no order at these spacings.";
+        let (id, bound) = (format!("{NAME}.{BEST}.{DISTURBED}.order"), Bound::Within(1.6, 2.3));
+        ladder.order = Some(Gate::new(id, "order", bound, Evidence::Regression, because));
     }
-    let error = L2;
     let accuracy = Accuracy {
         about: "Taylor-Green vortices at Re 100 from the disturbed lattice, at t = 2 L/U.".into(),
         spacing: "dx/L [-]",
         ladders: ladders.into(),
-        ..Accuracy::new("taylor-green", error, "relative L2 error of the velocity [-]")
+        ..Accuracy::new("taylor-green", L2, "relative L2 error of the velocity [-]")
     };
     Declaration {
         curves: vec![histories(&table)],
