@@ -1,7 +1,7 @@
 //! One run of the vortices: scene, stepping, record.
 
 use nalgebra::Vector2;
-use solver::{Domain, EquationOfState, Particle, Stepper};
+use solver::{Domain, EquationOfState, Particle};
 
 use super::VortexSettings;
 use crate::unit_flow::{Scales, UnitFlow};
@@ -58,14 +58,28 @@ impl Setup {
 
     /// Relative L2 error of the velocity vector.
     fn error(&self, time: f64, particles: &[Particle]) -> f64 {
-        let (mut difference, mut scale) = (0.0, 0.0);
-        for p in particles {
+        relative(particles.iter().map(|p| {
             let exact = self.exact.velocity(p.position, time);
-            difference += (p.velocity - exact).norm_squared();
-            scale += exact.norm_squared();
-        }
-        (difference / scale).sqrt()
+            [(p.velocity - exact).norm_squared(), exact.norm_squared()]
+        }))
     }
+
+    /// Relative L2 error of the pressure, whose mean is free.
+    fn pressure_error(&self, time: f64, particles: &[Particle]) -> f64 {
+        let eos = self.flow.medium.eos;
+        let pressure = |p: &Particle| eos.pressure(p.density) - eos.background;
+        let mean = particles.iter().map(pressure).sum::<f64>() / particles.len() as f64;
+        relative(particles.iter().map(|p| {
+            let exact = self.exact.pressure(p.position, time);
+            [(pressure(p) - mean - exact).powi(2), exact.powi(2)]
+        }))
+    }
+}
+
+/// (Σ a/Σ b)^(1/2) of squares of differences and of exact values.
+fn relative(squares: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let [difference, scale] = squares.fold([0.0; 2], |[a, b], [d, e]| [a + d, b + e]);
+    (difference / scale).sqrt()
 }
 
 /// Exact speed over that of the start below which no error is relative to it: 1 %, what compressibility at
@@ -105,7 +119,12 @@ fn run(
     if record.status == Status::Completed {
         measure(&setup, [&start, &end], &series, &mut record);
         if context.keep_particles {
-            particles(&setup, &*simulation, &mut record);
+            let (time, scale) = (simulation.time(), setup.exact.decay(simulation.time()));
+            let all = end.iter().map(|p| {
+                let error = (p.velocity - setup.exact.velocity(p.position, time)).norm() / scale;
+                (p.position.map(|x| x.rem_euclid(1.0)), error)
+            });
+            pictures::keep(&mut record, "L", ("error", "U exp(bt)"), all);
         }
     }
     let columns = [("t", "L/U"), ("error", "-")];
@@ -141,21 +160,7 @@ fn measure(
     record.put(L2, error);
     let energy = end.iter().map(|p| 0.5 * p.mass * p.velocity.norm_squared()).sum::<f64>();
     record.put(ENERGY, energy / setup.exact.kinetic_energy(time) - 1.0);
-    record.put(PRESSURE_L2, pressure_error(setup, end, time));
-}
-
-/// Relative L2 error of the pressure, whose mean is free.
-fn pressure_error(setup: &Setup, particles: &[Particle], time: f64) -> f64 {
-    let eos = setup.flow.medium.eos;
-    let pressure = |p: &Particle| eos.pressure(p.density) - eos.background;
-    let mean = particles.iter().map(pressure).sum::<f64>() / particles.len() as f64;
-    let (mut difference, mut scale) = (0.0, 0.0);
-    for p in particles {
-        let exact = setup.exact.pressure(p.position, time);
-        difference += (pressure(p) - mean - exact).powi(2);
-        scale += exact.powi(2);
-    }
-    (difference / scale).sqrt()
+    record.put(PRESSURE_L2, setup.pressure_error(time, end));
 }
 
 /// The least distance of two particles, those across an edge left out \[m\].
@@ -168,16 +173,6 @@ fn nearest(particles: &[Particle]) -> f64 {
         least = ahead.map(|b| (b - a).norm()).fold(least, f64::min);
     }
     least
-}
-
-/// The particles themselves: x, y, error.
-fn particles(setup: &Setup, simulation: &dyn Stepper<()>, record: &mut Record) {
-    let (t, scale) = (simulation.time(), setup.exact.decay(simulation.time()));
-    let all = simulation.particles().into_iter().map(|p| {
-        let error = (p.velocity - setup.exact.velocity(p.position, t)).norm() / scale;
-        (p.position.map(|x| x.rem_euclid(1.0)), error)
-    });
-    pictures::keep(record, "L", ("error", "U exp(bt)"), all);
 }
 
 #[cfg(test)]
