@@ -135,14 +135,12 @@ fn run(
 }
 
 fn measure(flow: &TaylorCouette, particles: &[Particle], record: &mut Record) {
-    let mut fluid: Vec<[f64; 3]> = particles
-        .iter()
-        .filter(|p| p.role == Role::Fluid)
-        .map(|p| {
-            let (x, v, r) = (p.position, p.velocity, p.position.norm());
-            [r, x.perp(&v) / r, x.dot(&v) / r]
-        })
-        .collect();
+    let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
+    let polar = |p: &Particle| {
+        let (x, v, r) = (p.position, p.velocity, p.position.norm());
+        [r, x.perp(&v) / r, x.dot(&v) / r]
+    };
+    let mut fluid: Vec<[f64; 3]> = fluid.map(polar).collect();
     fluid.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let around: Vec<f64> = fluid.iter().map(|f| f[1]).collect();
     let exact: Vec<f64> = fluid.iter().map(|f| flow.velocity(f[0])).collect();

@@ -104,6 +104,7 @@ fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
 /// Times that fit into a figure.
 const SHOWN: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 1.0];
 
+/// u/V across the channel.
 fn curves(flow: Flow) -> Curves {
     let best = if flow == Flow::Couette { "plain" } else { "curved" };
     let exact = |tau: f64| {
@@ -111,11 +112,21 @@ fn curves(flow: Flow) -> Curves {
             (0..=100).map(|k| f64::from(k) / 100.0).map(|y| (flow.exact(y, tau, [1.0; 3]), y));
         (String::new(), points.collect())
     };
+    let line = |variant: &str, tau: f64| CurveOf {
+        name: format!("νt/L² = {tau}"),
+        spec: flow.case().spec(variant, |s| s.rows = 20),
+        points: Box::new(move |record: &Record| {
+            let settings: ChannelSettings = record.settings_as();
+            let [u, y] = ["u", "y"].map(|name| record.column(&profile_at(tau), name));
+            let point = |(u, y): (&f64, &f64)| (u / settings.speed(), y / settings.width);
+            u.iter().zip(y).map(point).collect()
+        }),
+    };
     let panel = |variant: &str| CurvePanel {
         title: variant.into(),
         x: Axis::linear("u/V [-]"),
         y: Axis::linear("y/L [-]"),
-        lines: lines(flow, variant),
+        lines: SHOWN.map(|tau| line(variant, tau)).into(),
         references: SHOWN.map(exact).into(),
         symbols: true,
     };
@@ -129,21 +140,6 @@ fn curves(flow: Flow) -> Curves {
         columns: 2,
         panels: vec![panel("seed"), panel(best)],
     }
-}
-
-/// u/V across the channel at the times of the figure.
-fn lines(flow: Flow, variant: &str) -> Vec<CurveOf> {
-    let line = |tau: f64| CurveOf {
-        name: format!("νt/L² = {tau}"),
-        spec: flow.case().spec(variant, |s| s.rows = 20),
-        points: Box::new(move |record: &Record| {
-            let settings: ChannelSettings = record.settings_as();
-            let [u, y] = ["u", "y"].map(|name| record.column(&profile_at(tau), name));
-            let point = |(u, y): (&f64, &f64)| (u / settings.speed(), y / settings.width);
-            u.iter().zip(y).map(point).collect()
-        }),
-    };
-    SHOWN.map(line).into()
 }
 
 fn budgets(flow: Flow, accuracy: &Accuracy, tier: Tier) -> Budgets {
@@ -294,7 +290,7 @@ fn sensitivity(flow: Flow, tier: Tier) -> Sensitivity {
 
 /// The studies of a flow.
 pub fn studies(flow: Flow, tier: Tier, runs: &Runs) -> Vec<Study> {
-    let (flow, table) = (flow, &plan::table(flow, tier));
+    let table = &plan::table(flow, tier);
     let mut studies = vec![reynolds(flow, table, runs), stiff::study(flow, table, runs)];
     if flow == Flow::Poiseuille {
         studies.extend([waves::study(table, runs), maps::study(table, runs)]);

@@ -18,23 +18,10 @@ const ENTRY: f64 = 0.5;
 /// Samples of the field in the last part of the run, as far as the controller looks that often.
 const SAMPLES: f64 = 40.0;
 
-/// Times at equal intervals.
-struct Schedule {
-    next: f64,
-    every: f64,
-}
-
-base::bits! { Schedule { next, every } }
-
-impl Schedule {
-    /// Has the next time come?
-    fn has_come(&mut self, time: f64) -> bool {
-        let has_come = time >= self.next - 1e-9;
-        if has_come {
-            self.next = self.every * ((time + 1e-9) / self.every + 1.0).floor();
-        }
-        has_come
-    }
+/// Is a look the first in an interval of the length `every`, if looks are a stretch apart?
+fn is_first([time, stretch]: [f64; 2], every: f64) -> bool {
+    let interval = |time: f64| ((time + 1e-9) / every).floor();
+    time < 1.5 * stretch || interval(time) > interval(time - stretch)
 }
 
 /// Is a time in the last part of a run, which has this length?
@@ -48,14 +35,12 @@ struct Monitor<'a> {
     area: f64,
     controller: Controller,
     window: Window,
-    entry: Schedule,
-    sample: Schedule,
     /// t, force, flux, kinetic energy.
     series: Vec<[f64; 4]>,
 }
 
 harness::observed! {
-    Monitor<'_>: changes(controller, window, entry, sample, series), parts(), stays(setup, area)
+    Monitor<'_>: changes(controller, window, series), parts(), stays(setup, area)
 }
 
 impl Monitor<'_> {
@@ -64,16 +49,16 @@ impl Monitor<'_> {
         let (setup, time, force) = (self.setup, simulation.time(), self.controller.force);
         let mean = mean_velocity(simulation, self.area);
         let flux = mean * self.area / setup.hill.period();
-        let (is_due, s) = (self.sample.has_come(time), &setup.settings);
-        if is_last(time, s.end, s.average * s.end) {
+        let HillSettings { end, average, .. } = setup.settings;
+        if is_last(time, end, average * end) {
             self.window.forces.push([force, flux]);
-            if is_due {
+            if is_first([time, stretch], average * end / SAMPLES) {
                 self.window.sample(setup, simulation);
             }
         }
         self.controller.look(mean, stretch);
         simulation.drive(self.controller.force);
-        if self.entry.has_come(time) {
+        if is_first([time, stretch], ENTRY) {
             self.series.push([time, force, flux, kinetic_energy(simulation)]);
         }
     }
@@ -104,9 +89,7 @@ fn run(
     let controller = Controller { wanted, response: s.response, force: s.force, last };
     let start = [0.0, s.force, last * area / setup.hill.period(), kinetic_energy(&*simulation)];
     let (window, series) = (Window::default(), vec![start]);
-    let entry = Schedule { next: 0.0, every: ENTRY };
-    let sample = Schedule { next: 0.0, every: s.average * s.end / SAMPLES };
-    let mut monitor = Monitor { setup, area, controller, window, entry, sample, series };
+    let mut monitor = Monitor { setup, area, controller, window, series };
     let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, &pressure, &mut monitor)
@@ -139,9 +122,8 @@ mod tests {
         let is_last = |time| is_last(time, 40.0, 8.0);
         assert!(![0.0, 16.1, 31.9].into_iter().any(is_last));
         assert!([32.0, 32.1, 40.0].into_iter().all(is_last));
-        let mut schedule = Schedule { next: 0.0, every: 0.5 };
         let looks = (1..=1000).map(|k| f64::from(k) * 0.01);
-        let times: Vec<f64> = looks.filter(|time| schedule.has_come(*time)).collect();
+        let times: Vec<f64> = looks.filter(|time| is_first([*time, 0.01], 0.5)).collect();
         let exact = (0..=20).map(|k| 0.5 * f64::from(k)).map(|t| t.max(0.01));
         assert!(times.len() == 21 && times.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-9));
     }
