@@ -1,7 +1,7 @@
 //! The runs of the case and their gates.
 
 use super::{BEST, CASE, HillSettings, SINGLE_SWEEP, measure::*};
-use base::{gate::*, record::MetricKey};
+use base::gate::*;
 use harness::{case::Tier, table};
 
 /// What a run is for.
@@ -99,25 +99,23 @@ fn gates(row: &Row) -> Vec<Gate> {
         _ => "",
     };
     let run = format!("{more}{}.{re}.{n}", row.variant);
-    let gate = |metric: MetricKey, bound: Bound, evidence: Evidence, because: &str| {
-        CASE.gate(&run, metric, bound, evidence, because)
-    };
     let inside = "No particle passes a wall.";
-    let outside = gate(OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, inside);
+    let outside = CASE.gate(&run, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, inside);
     match row.group {
         For::Control => {
             let because = "Control: without density diffusion and shifting the run diverges.";
-            let control = gate(L2_U, Bound::Below(goal(n)), Evidence::Reference, because);
+            let control =
+                CASE.gate(&run, L2_U, Bound::Below(goal(n)), Evidence::Reference, because);
             vec![control.expected_to_fail().may_end_early()]
         }
         For::Fast => {
             let because = "The run reached its end, with a force against a drag, when first tried.";
-            vec![outside, gate(FORCE, Bound::Above(0.0), Evidence::Regression, because)]
+            vec![outside, CASE.gate(&run, FORCE, Bound::Above(0.0), Evidence::Regression, because)]
         }
         // Below ten spacings the bubble has two rows: shown for the order, held to nothing.
         For::Ladder | For::Figures | For::Long if row.variant == BEST && n >= 10 => {
             let rested = row.group == For::Long;
-            [vec![outside], of_reference(&gate, re, n, rested), balances(&gate, n)].concat()
+            [vec![outside], of_reference(&run, re, n, rested), balances(&run, n)].concat()
         }
         _ => vec![outside],
     }
@@ -132,11 +130,8 @@ fn goal(n: usize) -> f64 {
     }
 }
 
-/// Makes a gate of a run.
-type Gating<'a> = &'a dyn Fn(MetricKey, Bound, Evidence, &str) -> Gate;
-
 /// How near to finite elements the best variant must be.
-fn of_reference(gate: Gating, re: f64, n: usize, rested: bool) -> Vec<Gate> {
+fn of_reference(run: &str, re: f64, n: usize, rested: bool) -> Vec<Gate> {
     let around = |most: f64| Bound::Within(-most, most);
     let reach = if n >= 40 { 0.05 } else { 0.1 };
     let velocity = "The goal is 4 % of U_b at 10 spacings, 2 % at 20 and 1 % at 40: first order.";
@@ -146,19 +141,19 @@ fn of_reference(gate: Gating, re: f64, n: usize, rested: bool) -> Vec<Gate> {
                   H/U_b; means over 16 differ by 0.007 H. The reference is known to 7e-4 H, and the measure \
                   is exact to 2e-3 H.";
     let mut gates = vec![
-        gate(L2_U, Bound::Below(goal(n)), Evidence::Reference, velocity),
-        gate(FORCE_ERROR, around(goal(n)), Evidence::Reference, force),
+        CASE.gate(run, L2_U, Bound::Below(goal(n)), Evidence::Reference, velocity),
+        CASE.gate(run, FORCE_ERROR, around(goal(n)), Evidence::Reference, force),
     ];
     if re > 10.0 {
         let most = if rested { 0.01 } else { reach };
-        gates.push(gate(REATTACHMENT_ERROR, around(most), Evidence::Reference, places));
-        gates.push(gate(SEPARATION_ERROR, around(reach), Evidence::Reference, places));
+        gates.push(CASE.gate(run, REATTACHMENT_ERROR, around(most), Evidence::Reference, places));
+        gates.push(CASE.gate(run, SEPARATION_ERROR, around(reach), Evidence::Reference, places));
     }
     gates
 }
 
 /// What holds whatever the flow is: walls in place, mass, momentum, steadiness.
-fn balances(gate: Gating, n: usize) -> Vec<Gate> {
+fn balances(run: &str, n: usize) -> Vec<Gate> {
     let (section, drag) = if n >= 20 { (0.005, 0.01) } else { (0.012, 0.04) };
     let walls = "Rows follow the wall to a hundredth of a spacing, less closely at the kink of the crest. A \
                  hill 2 % too high is off by a fifth of one at ten, which the velocity does not show.";
@@ -169,9 +164,9 @@ fn balances(gate: Gating, n: usize) -> Vec<Gate> {
     let drags = "In steady flow the walls take what the force gives: to 1 %, and at ten spacings four times \
                  that, because the slope at the wall is found to second order.";
     vec![
-        gate(WALL_OFFSET, Bound::Below(0.05), Evidence::Invariant, walls),
-        gate(SECTION_FLUX, Bound::Below(section), Evidence::Invariant, sections),
-        gate(FLUX, Bound::Within(-1e-3, 1e-3), Evidence::Invariant, flux),
-        gate(DRAG_BALANCE, Bound::Within(-drag, drag), Evidence::Invariant, drags),
+        CASE.gate(run, WALL_OFFSET, Bound::Below(0.05), Evidence::Invariant, walls),
+        CASE.gate(run, SECTION_FLUX, Bound::Below(section), Evidence::Invariant, sections),
+        CASE.gate(run, FLUX, Bound::Within(-1e-3, 1e-3), Evidence::Invariant, flux),
+        CASE.gate(run, DRAG_BALANCE, Bound::Within(-drag, drag), Evidence::Invariant, drags),
     ]
 }

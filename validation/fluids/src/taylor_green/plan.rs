@@ -1,7 +1,7 @@
 //! The runs of the case and their gates.
 
 use super::{BEST, CASE, VortexSettings, run::*};
-use base::{gate::*, record::MetricKey};
+use base::gate::*;
 use harness::{case::Tier, table};
 
 /// What a run is for.
@@ -74,26 +74,24 @@ pub fn usual<'a>(table: &'a Table, variant: &str, n: usize) -> Option<&'a Row> {
 fn gates(row: &Row) -> Vec<Gate> {
     let (variant, n, perturb) = (row.variant, row.settings.n, row.settings.perturb);
     let run = format!("{variant}.{n}.{perturb}");
-    let gate = |metric: MetricKey, bound: Bound, evidence: Evidence, because: &str| {
-        CASE.gate(&run, metric, bound, evidence, because)
-    };
     let pairs = "Forces of pairs are opposite and shifting changes no velocity, but for round-off.";
-    let conserved = gate(MOMENTUM_ADDED, Bound::Below(1e-12), Evidence::Invariant, pairs);
+    let conserved =
+        CASE.gate(&run, MOMENTUM_ADDED, Bound::Below(1e-12), Evidence::Invariant, pairs);
     match row.group {
         For::Far => Vec::new(),
         For::Control => {
             let because = "Control: without shifting, strings and voids form.";
-            let control = gate(L2, Bound::Below(0.02), Evidence::Analytic, because);
+            let control = CASE.gate(&run, L2, Bound::Below(0.02), Evidence::Analytic, because);
             vec![conserved, control.expected_to_fail()]
         }
-        _ if variant == BEST => of_best(&gate, n),
+        _ if variant == BEST => of_best(&run, n),
         _ if variant == "modern" => vec![conserved],
         _ => Vec::new(),
     }
 }
 
 /// The gates of the best variant.
-fn of_best(gate: &dyn Fn(MetricKey, Bound, Evidence, &str) -> Gate, n: usize) -> Vec<Gate> {
+fn of_best(run: &str, n: usize) -> Vec<Gate> {
     let goal = "The best of the codes measured has 2.2 % at 50 x 50 and 1.5 % at 100 x 100. The goal is a \
                 smaller error from either start, of second order below 50 x 50.";
     let energy = "At the end e^-3.2 of the energy is left, so 1 % of it is 0.3 % of the viscosity.";
@@ -101,12 +99,12 @@ fn of_best(gate: &dyn Fn(MetricKey, Bound, Evidence, &str) -> Gate, n: usize) ->
     let drift =
         "Terms that are exact for linear fields may add what their error of about 1 % adds.";
     let mut gates = vec![
-        gate(L2, Bound::Below(most_error(n)), Evidence::Analytic, goal),
-        gate(NEAREST, Bound::Above(0.5), Evidence::Invariant, apart),
-        gate(MOMENTUM_ADDED, Bound::Below(0.01), Evidence::Invariant, drift),
+        CASE.gate(run, L2, Bound::Below(most_error(n)), Evidence::Analytic, goal),
+        CASE.gate(run, NEAREST, Bound::Above(0.5), Evidence::Invariant, apart),
+        CASE.gate(run, MOMENTUM_ADDED, Bound::Below(0.01), Evidence::Invariant, drift),
     ];
     if n >= 50 {
-        gates.push(gate(ENERGY, Bound::Within(-0.01, 0.01), Evidence::Analytic, energy));
+        gates.push(CASE.gate(run, ENERGY, Bound::Within(-0.01, 0.01), Evidence::Analytic, energy));
     }
     gates
 }
