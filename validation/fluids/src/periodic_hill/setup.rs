@@ -106,7 +106,12 @@ impl Setup {
             for k in lowest..count as usize {
                 let y = floor + (k as f64 + self.first) * spacing;
                 let place = Vector2::new(x, y);
-                let velocity = self.start(place, (y - floor) / gap, gap);
+                let velocity = match self.reference {
+                    Some(reference) if self.settings.from_reference => {
+                        reference.velocity(x, (y - floor) / gap, gap)
+                    }
+                    _ => Vector2::zeros(),
+                };
                 particles.push(Particle::fluid(place, velocity, 1.0, width * spacing));
             }
         }
@@ -126,14 +131,6 @@ impl Setup {
         let (dx, period, lid) = (self.flow.medium.dx, self.hill.period(), self.hill.lid());
         let floor = Curve::new(|x| Vector2::new(x, self.floor(x)), [0.0, period], dx);
         [floor, Curve::new(|x| Vector2::new(x, lid), [period, 0.0], dx)]
-    }
-
-    /// The velocity at the start \[m/s\], s the height over that of the section, which is `gap`.
-    fn start(&self, place: Vector2<f64>, s: f64, gap: f64) -> Vector2<f64> {
-        match self.reference {
-            Some(reference) if self.settings.from_reference => reference.velocity(place.x, s, gap),
-            _ => Vector2::zeros(),
-        }
     }
 }
 
