@@ -110,67 +110,50 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     let starts = Starts::of(records);
     match (starts.failed(), starts.median()) {
         (_, None) => (3, "refused".into()),
-        (0, Some(median @ Outcome::Reached(error))) => (usize::from(error > 0.01), median.text()),
+        (0, Some((error, text))) => (usize::from(*error > 0.01), text.clone()),
         (failed, Some(_)) if failed < starts.0.len() => {
             (2, format!("{failed} of {} fail", starts.0.len()))
         }
-        (_, Some(median)) => (3, median.text()),
+        (_, Some((_, text))) => (3, text.clone()),
     }
 }
 
-/// How one run ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Outcome {
-    /// νt/L² of the divergence.
-    Diverged(f64),
-    /// Worst relative L2 error of a run that reached its end.
-    Reached(f64),
+/// How one run ended: how bad that is, and in words. An error is as bad as it is large, and a divergence is
+/// worse, the earlier it came.
+type Ended = (f64, String);
+
+/// It diverged at this νt/L².
+fn diverged(time: f64) -> Ended {
+    (1e6 - time, format!("t = {}", sig(time, 2)))
 }
 
-impl Outcome {
-    /// Diverged, or wrong at the end.
-    fn fails(&self) -> bool {
-        !matches!(self, Self::Reached(error) if *error <= 0.05)
-    }
-
-    /// Larger is worse: an error is worse than a lesser one, and a divergence, the earlier it came.
-    fn badness(self) -> f64 {
-        match self {
-            Self::Diverged(time) => 1e6 - time,
-            Self::Reached(error) => error.min(1e3), // NaN too
-        }
-    }
-
-    /// `0.54 %`, or `t = 0.55` for νt/L² of the divergence.
-    fn text(self) -> String {
-        match self {
-            Self::Diverged(time) => format!("t = {}", sig(time, 2)),
-            Self::Reached(error) => percent(error, 2),
-        }
-    }
+/// It reached its end with this worst relative L2 error.
+fn reached(error: f64) -> Ended {
+    (error.min(1e3), percent(error, 2)) // NaN too
 }
 
-/// The outcomes of one cell, worst first, without runs that were refused.
-struct Starts(Vec<Outcome>);
+/// How the runs of one cell ended, worst first, without runs that were refused.
+struct Starts(Vec<Ended>);
 
 impl Starts {
     fn of(records: &[&Record]) -> Self {
         let ended = records.iter().filter_map(|record| match record.status {
             // L²/ν is 1 s in these channels.
-            Status::Diverged { time, .. } => Some(Outcome::Diverged(time)),
+            Status::Diverged { time, .. } => Some(diverged(time)),
             Status::Refused { .. } => None,
-            _ => Some(Outcome::Reached(record.value(L2_WORST).unwrap_or(f64::NAN))),
+            _ => Some(reached(record.value(L2_WORST).unwrap_or(f64::NAN))),
         });
         Self::new(ended.collect())
     }
 
-    fn new(mut outcomes: Vec<Outcome>) -> Self {
-        outcomes.sort_by(|a, b| b.badness().total_cmp(&a.badness()));
-        Self(outcomes)
+    fn new(mut ended: Vec<Ended>) -> Self {
+        ended.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Self(ended)
     }
 
+    /// How many diverged, or were wrong at the end.
     fn failed(&self) -> usize {
-        self.0.iter().filter(|outcome| outcome.fails()).count()
+        self.0.iter().filter(|(badness, _)| *badness > 0.05).count()
     }
 
     /// Did more than half fail? A setting that is refused from every start fails too.
@@ -178,9 +161,9 @@ impl Starts {
         self.0.is_empty() || 2 * self.failed() > self.0.len()
     }
 
-    /// The middle outcome.
-    fn median(&self) -> Option<Outcome> {
-        self.0.get(self.0.len().saturating_sub(1) / 2).copied()
+    /// The middle one.
+    fn median(&self) -> Option<&Ended> {
+        self.0.get(self.0.len().saturating_sub(1) / 2)
     }
 }
 
@@ -225,20 +208,20 @@ fn h5_verdict(low: usize, high: usize) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Outcome::{Diverged, Reached};
 
     #[test]
     fn the_median_and_the_count_of_failures_use_one_criterion() {
-        let starts = Starts::new(vec![Reached(0.004), Diverged(0.7), Reached(0.08)]);
-        assert_eq!((starts.failed(), starts.median()), (2, Some(Reached(0.08))));
+        let starts = Starts::new(vec![reached(0.004), diverged(0.7), reached(0.08)]);
+        assert_eq!((starts.failed(), starts.median()), (2, Some(&reached(0.08))));
         assert!(starts.mostly_fails());
-        let starts = Starts::new(vec![Reached(0.004), Diverged(0.7), Diverged(0.5)]);
-        assert_eq!((starts.failed(), starts.median()), (2, Some(Diverged(0.7))));
-        assert_eq!(starts.median().map(Outcome::text), Some("t = 0.70".into()));
-        assert!(!Starts::new(vec![Reached(0.01), Reached(0.01), Diverged(0.5)]).mostly_fails());
-        assert!(Reached(f64::NAN).fails() && Starts::new(Vec::new()).mostly_fails());
-        let wrong = Starts::new(vec![Reached(0.2), Reached(f64::NAN), Reached(0.01)]);
-        assert_eq!((wrong.failed(), wrong.median()), (2, Some(Reached(0.2))));
+        let starts = Starts::new(vec![reached(0.004), diverged(0.7), diverged(0.5)]);
+        assert_eq!((starts.failed(), starts.median()), (2, Some(&diverged(0.7))));
+        assert_eq!(starts.median().map(|(_, text)| text.as_str()), Some("t = 0.70"));
+        assert!(!Starts::new(vec![reached(0.01), reached(0.01), diverged(0.5)]).mostly_fails());
+        let not_measured = Starts::new(vec![reached(f64::NAN)]);
+        assert!(not_measured.failed() == 1 && Starts::new(Vec::new()).mostly_fails());
+        let wrong = Starts::new(vec![reached(0.2), reached(f64::NAN), reached(0.01)]);
+        assert_eq!((wrong.failed(), wrong.median()), (2, Some(&reached(0.2))));
     }
 
     #[test]
