@@ -16,7 +16,7 @@ use harness::{
 };
 use maths::theory::time_step::Integrator;
 use nalgebra::DVector;
-use schemes::flow::{Fluid, OfChannels};
+use schemes::flow::{self, Fluid};
 use solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, InterfaceWall,
     Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline, Simulation, SingleSweep,
@@ -296,7 +296,7 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
     let (by, method) = match record.numerics[INTEGRATOR].as_str() {
         Some("leapfrog") => (Integrator::Leapfrog, plain()),
         Some("single-sweep") => (Integrator::SingleSweep, plain()),
-        Some("super-leapfrog") => (Integrator::SuperLeapfrog, OfChannels::poiseuille().stiff),
+        Some("super-leapfrog") => (Integrator::SuperLeapfrog, flow::poiseuille().stiff),
         _ => (Integrator::PredictorCorrector, plain()),
     };
     let context = Context::of_rules();

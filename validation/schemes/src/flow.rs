@@ -51,33 +51,25 @@ pub struct OfChannels {
     pub stiff: Method,
 }
 
-impl OfChannels {
-    /// Those of a flow that a plate drives.
-    #[inline(never)]
-    pub fn couette() -> Self {
-        Self::of::<()>()
-    }
-
-    /// Those of a flow that a body force drives.
-    #[inline(never)]
-    pub fn poiseuille() -> Self {
-        Self::of::<BodyForce>()
-    }
-
-    fn of<B: FromMedium + Term<()>>() -> Self {
-        Self {
-            seed: Method::of::<Seed<Fluid<B>, Continuity>>(),
-            interface_wall: Method::of::<Seed<Fluid<B>, Continuity, InterfaceWall>>(),
-            wendland: Method::of::<Compose<WendlandC2, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
-            plain: Method::of::<Modern<Fluid<B>, Continuity>>(),
-            extrapolating: Method::of::<Modern<Fluid<B>, Continuity, Mean>>(),
-            modern: Method::of::<Modern<Fluid<B>, Stabilised>>(),
-            single_sweep: Method::of::<Modern<Fluid<B>, Stabilised, Ghosts, SingleSweep>>(),
-            stiff: Method::of::<Stiff<B>>(),
-        }
+fn of_channels<B: FromMedium + Term<()>>() -> OfChannels {
+    OfChannels {
+        seed: Method::of::<Seed<Fluid<B>, Continuity>>(),
+        interface_wall: Method::of::<Seed<Fluid<B>, Continuity, InterfaceWall>>(),
+        wendland: Method::of::<Compose<WendlandC2, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
+        plain: Method::of::<Modern<Fluid<B>, Continuity>>(),
+        extrapolating: Method::of::<Modern<Fluid<B>, Continuity, Mean>>(),
+        modern: Method::of::<Modern<Fluid<B>, Stabilised>>(),
+        single_sweep: Method::of::<Modern<Fluid<B>, Stabilised, Ghosts, SingleSweep>>(),
+        stiff: Method::of::<Stiff<B>>(),
     }
 }
 
+methods! { of_channels => OfChannels:
+    /// Those of a flow that a plate drives.
+    couette: ();
+    /// Those of a flow that a body force drives.
+    poiseuille: BodyForce;
+}
 methods! { stepped => Method:
     /// The seed's with artificial stress.
     cure_stress: Seed<Fluid<BodyForce, ArtificialStress>, Continuity>;

@@ -1,6 +1,6 @@
 //! What is measured in a channel flow, each norm with its formula.
 
-use solver::{EquationOfState, Flow as Going, Observer, Particle, Stepper};
+use solver::{EquationOfState, Flow as Going, Particle, Stepper};
 
 use super::Setup;
 use base::functions::cos;
@@ -145,10 +145,9 @@ impl<'a> Mode<'a> {
         let rows: Vec<[f64; 2]> = all.filter(|[t, _]| *t >= -WINDOW).collect();
         Some(Profile::of_rows(&[("t", "L/c0"), ("amplitude", "rho V^2")], &rows))
     }
-}
 
-impl Observer<()> for Mode<'_> {
-    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Going {
+    /// Adds the mode after a step.
+    pub fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Going {
         let Setup { settings: s, medium, v, .. } = self.setup;
         if s.watch_mode {
             let (mut mode, mut count) = (0.0, 0.0);
@@ -175,7 +174,7 @@ mod tests {
     use crate::channel::{ChannelSettings, Flow};
 
     fn method() -> Method {
-        schemes::flow::OfChannels::couette().seed
+        schemes::flow::couette().seed
     }
 
     fn setup(flow: Flow) -> Setup {

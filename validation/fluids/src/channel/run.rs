@@ -2,7 +2,7 @@
 
 use base::record::{Record, Status};
 use harness::{case::*, composed::Program, context::Context, method::*, runner::Drive, simulate};
-use solver::{EquationOfState, Observer, Particle, Role};
+use solver::{EquationOfState, Particle, Role};
 
 use super::measure::{self, MODE, Mode};
 use super::{ChannelProgram, ChannelSettings, Flow, Setup};

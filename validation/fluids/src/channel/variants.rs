@@ -43,7 +43,7 @@ type All<'a> = Variants<'a, ChannelSettings, Method>;
 
 /// The variants of Couette flow.
 pub fn of_couette() -> Vec<Composition<ChannelSettings>> {
-    both(&COUETTE, OfChannels::couette()).all
+    both(&COUETTE, flow::couette()).all
 }
 
 /// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable: the paper's method
@@ -57,8 +57,8 @@ pub fn of_poiseuille() -> Vec<Composition<ChannelSettings>> {
                      instability?";
     let xsph = "seed with XSPH, equation (22), epsilon 0.5: does it cure the seed's instability?";
     let shifting = "seed with particle shifting 0.5: does it cure the seed's instability?";
-    both(&POISEUILLE, OfChannels::poiseuille())
-        .with("curved", bent, OfChannels::poiseuille().plain, curved)
+    both(&POISEUILLE, flow::poiseuille())
+        .with("curved", bent, flow::poiseuille().plain, curved)
         .with("cure-stress", stress, flow::cure_stress(), |_| {})
         .with("cure-viscosity", viscosity, flow::cure_viscosity(), |_| {})
         .with("cure-xsph", xsph, flow::cure_xsph(), |_| {})

@@ -242,7 +242,8 @@ fn sensitivity(tier: Tier, table: &Table) -> Sensitivity {
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    vec![pictures(tier, runs), starts(all(runs), tier, runs)]
+    let table = &table(tier);
+    vec![pictures(table, runs), starts(all(runs), table, runs)]
 }
 
 /// Every run.
@@ -272,12 +273,11 @@ fn all(runs: &Runs) -> Study {
 }
 
 /// Runs from rest and from the reference, ten spacings a hill: only the full tier has both.
-fn starts(study: Study, tier: Tier, runs: &Runs) -> Study {
+fn starts(study: Study, table: &Table, runs: &Runs) -> Study {
     let because =
         "Both starts lead to the same steady flow, but for what disorder leaves in averages.";
-    let table = table(tier);
     REYNOLDS.into_iter().fold(study, |study, re| {
-        let rows = shown(&table, re).into_iter().filter(|row| row.settings.n == 10);
+        let rows = shown(table, re).into_iter().filter(|row| row.settings.n == 10);
         let [rest, other] = rows.collect::<Vec<_>>()[..] else { return study };
         let u = |row: &Row| Some(runs.completed(&row.run.spec)?.column("stations", "u"));
         let both = u(rest).zip(u(other));
@@ -289,12 +289,11 @@ fn starts(study: Study, tier: Tier, runs: &Runs) -> Study {
 }
 
 /// Particles by their velocity.
-fn pictures(tier: Tier, runs: &Runs) -> Study {
-    let table = table(tier);
+fn pictures(table: &Table, runs: &Runs) -> Study {
     let caption = "Particles of the finest run of variant `carried`, by their velocity u along the channel. \
                    A line encloses the fluid that circulates in finite elements (none at Re 10).";
     let shown = REYNOLDS.into_iter().filter_map(|re| {
-        let (row, reference) = (*shown(&table, re).last()?, reference(re)?);
+        let (row, reference) = (*shown(table, re).last()?, reference(re)?);
         Some((row, reference, runs.completed(&row.run.spec)?))
     });
     let shown: Vec<_> = shown.collect();
