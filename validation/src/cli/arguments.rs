@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use base::gate::Verdict;
-use base::spec::Measure;
+use base::{gate::Verdict, spec::Measure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use harness::{case, relation::Relation};
+use clap::{Args, Parser, Subcommand};
+use exchange::write::Format;
+use harness::{case::Tier, relation::Relation};
 
 /// Measures how wrong a particle method (SPH) is, what smaller errors cost, and when it breaks.
 #[derive(Debug, Parser)]
@@ -79,54 +79,33 @@ fn threads() -> clap::builder::RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS))
 }
 
-/// The options of `run` that apply to a single run and are refused with `--specs`.
-const OF_ONE_RUN: [&str; 13] = [
-    "case",
-    "variant",
-    "set",
-    "rows",
-    "out",
-    "overwrite",
-    "vtk",
-    "json",
-    "all",
-    "profile",
-    "allow_unstable",
-    "checkpoint_every",
-    "resume",
-];
+/// The name of a value, the value, and what help says of it.
+type Named<T> = (&'static str, T, &'static str);
 
-/// The options of `run` that a checkpoint holds.
-const OF_A_CHECKPOINT: [&str; 10] = [
-    "case",
-    "variant",
-    "set",
-    "rows",
-    "metrics",
-    "out",
-    "overwrite",
-    "vtk",
-    "allow_unstable",
-    "allow_long",
-];
+/// One of these values, by its name.
+fn one_of<T: Copy + Send + Sync>(all: &'static [Named<T>]) -> impl TypedValueParser<Value = T> {
+    let possible = all.iter().map(|(name, _, help)| PossibleValue::new(*name).help(*help));
+    PossibleValuesParser::new(possible).map(|given| {
+        let (_, value, _) = all.iter().find(|(name, ..)| *name == given).expect("a possible value");
+        *value
+    })
+}
 
 /// How much is measured of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Metrics {
-    /// What costs little beside the time steps
-    Headline,
-    /// Also what takes pair sweeps of its own, such as the energy that each term of the equations adds
-    All,
-}
+const METRICS: [Named<Measure>; 2] = [
+    ("headline", Measure::Headline, "What costs little beside the time steps"),
+    (
+        "all",
+        Measure::All,
+        "Also what takes pair sweeps of its own, such as the energy that each term of the equations adds",
+    ),
+];
 
-impl From<Metrics> for Measure {
-    fn from(metrics: Metrics) -> Self {
-        match metrics {
-            Metrics::Headline => Measure::Headline,
-            Metrics::All => Measure::All,
-        }
-    }
-}
+/// The options of `run` that apply to a single run and are refused with `--specs`.
+const OF_ONE_RUN: &str = "case variant set rows out overwrite vtk json all profile allow_unstable checkpoint_every resume";
+/// The options of `run` that a checkpoint holds.
+const OF_A_CHECKPOINT: &str =
+    "case variant set rows metrics out overwrite vtk allow_unstable allow_long";
 
 #[derive(Debug, Args)]
 pub struct Run {
@@ -143,8 +122,8 @@ pub struct Run {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rows: Option<String>,
     /// How much is measured; with --specs, at least so much of each run
-    #[arg(long, value_enum, value_name = "WHICH", default_value = "headline")]
-    pub metrics: Metrics,
+    #[arg(long, value_name = "WHICH", value_parser = one_of(&METRICS), default_value = "headline")]
+    pub metrics: Measure,
     /// Write record.json, the curves of the record (series.csv and others) and profile.csv into this folder:
     /// the velocity across a channel, with profile.png, or all fields of the particles at the end; without
     /// --out and --vtk no file is written
@@ -182,10 +161,10 @@ pub struct Run {
     pub checkpoint_every: Option<u32>,
     /// Go on with the run whose checkpoint is in this folder, with the options of that run: its record is the
     /// one that the run would have had without the interruption, but for its wall times
-    #[arg(long, value_name = "DIR", conflicts_with_all = OF_A_CHECKPOINT)]
+    #[arg(long, value_name = "DIR", conflicts_with_all = OF_A_CHECKPOINT.split(' '))]
     pub resume: Option<PathBuf>,
     /// Make the runs of this file of JSON lines, as `touchstone plan` prints them; `-` is standard input
-    #[arg(long, value_name = "FILE", requires = "store", conflicts_with_all = OF_ONE_RUN)]
+    #[arg(long, value_name = "FILE", requires = "store", conflicts_with_all = OF_ONE_RUN.split(' '))]
     pub specs: Option<PathBuf>,
     /// Folder for the records of --specs; a run whose record is there already is not made again
     #[arg(long, value_name = "DIR", requires = "specs")]
@@ -211,32 +190,22 @@ fn lines(text: &str) -> Result<Range<usize>, String> {
 }
 
 /// How much to run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Tier {
-    /// About half a minute on two cores
-    Quick,
-    /// About twenty minutes
-    Full,
-    /// About nine hours on one core, for clusters: finer ladders, more starts, all that gates detect
-    Deep,
-}
-
-impl From<Tier> for case::Tier {
-    fn from(tier: Tier) -> Self {
-        match tier {
-            Tier::Quick => case::Tier::Quick,
-            Tier::Full => case::Tier::Full,
-            Tier::Deep => case::Tier::Deep,
-        }
-    }
-}
+const TIERS: [Named<Tier>; 3] = [
+    ("quick", Tier::Quick, "About half a minute on two cores"),
+    ("full", Tier::Full, "About twenty minutes"),
+    (
+        "deep",
+        Tier::Deep,
+        "About nine hours on one core, for clusters: finer ladders, more starts, all that gates detect",
+    ),
+];
 
 #[derive(Debug, Args)]
 pub struct Plan {
     /// Names of the cases; by default all
     pub cases: Vec<String>,
     /// How much to plan
-    #[arg(long, value_enum, default_value = "quick")]
+    #[arg(long, value_parser = one_of(&TIERS), default_value = "quick")]
     pub tier: Tier,
     /// In place of a tier: every combination of these values (repeatable), as in
     /// `--set re=0.5,1,2 --set rows=10,20`
@@ -252,17 +221,12 @@ pub struct Plan {
 }
 
 /// For whom a problem is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// Tables of comma-separated values
-    Csv,
-    /// Also an unstructured grid of ParaView
-    Vtu,
-    /// Also a data file and an input script of LAMMPS
-    Lammps,
-    /// Also a Python script that runs PySPH
-    Pysph,
-}
+const FORMATS: [Named<Format>; 4] = [
+    ("csv", Format::Csv, "Tables of comma-separated values"),
+    ("vtu", Format::Vtu, "Also an unstructured grid of ParaView"),
+    ("lammps", Format::Lammps, "Also a data file and an input script of LAMMPS"),
+    ("pysph", Format::Pysph, "Also a Python script that runs PySPH"),
+];
 
 #[derive(Debug, Args)]
 pub struct WriteProblem {
@@ -275,7 +239,7 @@ pub struct WriteProblem {
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// What is written beside problem.json, README.md and particles.csv
-    #[arg(long, value_enum, default_value = "csv")]
+    #[arg(long, value_parser = one_of(&FORMATS), default_value = "csv")]
     pub format: Format,
     /// The folder
     #[arg(long, value_name = "DIR")]
@@ -325,7 +289,7 @@ pub struct Challenge {
     #[arg(long, value_name = "FILE")]
     pub method: PathBuf,
     /// What is written beside problem.json, README.md, particles.csv and method.json
-    #[arg(long, value_enum, default_value = "csv")]
+    #[arg(long, value_parser = one_of(&FORMATS), default_value = "csv")]
     pub format: Format,
     /// The folder
     #[arg(long, value_name = "DIR")]
@@ -397,7 +361,7 @@ pub struct Judged {
     /// Names of the cases; by default all cases, and the studies that belong to no case
     pub cases: Vec<String>,
     /// The tier whose plan is judged
-    #[arg(long, value_enum, default_value = "quick")]
+    #[arg(long, value_parser = one_of(&TIERS), default_value = "quick")]
     pub tier: Tier,
     #[command(flatten)]
     pub export: Export,
@@ -438,7 +402,7 @@ pub struct Judge {
 #[derive(Debug, Args)]
 pub struct Report {
     /// How much to run
-    #[arg(long, value_enum, default_value = "quick")]
+    #[arg(long, value_parser = one_of(&TIERS), default_value = "quick")]
     pub tier: Tier,
     /// Folder for the report
     #[arg(long, value_name = "DIR", default_value = "reports")]
@@ -476,7 +440,7 @@ pub struct Stability {
     /// Names of the cases; by default all that declare limits of the time step
     pub cases: Vec<String>,
     /// How many variants to examine
-    #[arg(long, value_enum, default_value = "quick")]
+    #[arg(long, value_parser = one_of(&TIERS), default_value = "quick")]
     pub tier: Tier,
     /// Make no run: print for every variant which mechanism limits its step by theory, at default settings
     #[arg(long, conflicts_with_all = ["tier", "threads"])]
@@ -495,7 +459,7 @@ pub struct Explain {
     #[arg(required_unless_present = "status")]
     pub gate: Option<String>,
     /// List the gates with this verdict in the last report, one per line
-    #[arg(long, value_name = "VERDICT", value_parser = verdict())]
+    #[arg(long, value_name = "VERDICT", value_parser = one_of(&VERDICTS))]
     pub status: Option<Verdict>,
     /// Folder of the last report, which gives the verdicts and the gates of studies
     #[arg(long, value_name = "DIR", default_value = "reports")]
@@ -503,16 +467,24 @@ pub struct Explain {
 }
 
 /// A verdict by name.
-fn verdict() -> impl TypedValueParser<Value = Verdict> {
-    let names = [
-        ("pass", "Inside its bound"),
-        ("fail", "Outside its bounds, not finite, missing, or of a run that ended early"),
-        ("limitation", "Outside its bound and inside that of its known limitation"),
-        ("expected-failure", "A control that lies outside its bound, as it must"),
-    ];
-    let names = names.map(|(name, help)| PossibleValue::new(name).help(help));
-    PossibleValuesParser::new(names).try_map(|name| serde_json::from_value(name.into()))
-}
+const VERDICTS: [Named<Verdict>; 4] = [
+    ("pass", Verdict::Pass, "Inside its bound"),
+    (
+        "fail",
+        Verdict::Fail,
+        "Outside its bounds, not finite, missing, or of a run that ended early",
+    ),
+    (
+        "limitation",
+        Verdict::Limitation,
+        "Outside its bound and inside that of its known limitation",
+    ),
+    (
+        "expected-failure",
+        Verdict::ExpectedFailure,
+        "A control that lies outside its bound, as it must",
+    ),
+];
 
 #[derive(Debug, Args)]
 pub struct Doctor {

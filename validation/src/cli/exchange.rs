@@ -51,27 +51,12 @@ pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Outcome {
     let spec = case::spec(case, variant, &arguments.set)?;
     let problem = Problem::seen(case, spec, arguments.relation)?;
     let folder = OutputFolder::create(&arguments.out)?;
-    let mut names = written(&problem, arguments.format, &folder)?;
+    let mut names = write::write(&problem, arguments.format, &folder)?;
     if arguments.solve {
         names.extend(solve(case, &problem, &folder, world)?);
     }
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
     Ok(Exit::Pass)
-}
-
-/// Writes the problem in a format; the names of the files.
-fn written(
-    problem: &Problem,
-    format: arguments::Format,
-    folder: &OutputFolder,
-) -> Result<Vec<String>, WriteError> {
-    let own = match format {
-        arguments::Format::Csv => Vec::new(),
-        arguments::Format::Vtu => write::vtu(problem),
-        arguments::Format::Lammps => write::lammps(problem)?,
-        arguments::Format::Pysph => write::pysph(problem)?,
-    };
-    write::write(problem, own, folder)
 }
 
 /// Makes the run and writes it as another code would: an example of a submission.
@@ -172,7 +157,7 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
     let mut problem = Problem::of(case, case::spec(case, variant, &set)?)?;
     problem.sealed = Some(sealed);
     let folder = OutputFolder::create(&arguments.out)?;
-    let mut names = written(&problem, arguments.format, &folder)?;
+    let mut names = write::write(&problem, arguments.format, &folder)?;
     folder.write(METHOD, text.as_bytes())?;
     names.push(METHOD.into());
     output::print(&format!("{}\n", set.join(" ")))?;

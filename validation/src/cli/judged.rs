@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use ::report;
 use base::files;
 use base::gate::{Bound, Cause, Evidence, Gate, Judgement, Known, Purpose, Verdict};
 use base::number::Number;

@@ -15,8 +15,7 @@ use super::{
 pub fn plan(arguments: &arguments::Plan, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
     let specs = if arguments.set.is_empty() && arguments.variant.is_empty() {
-        let tier = arguments.tier.into();
-        let of_case = |case: &&'static dyn Case| plan::of_case(*case, tier);
+        let of_case = |case: &&'static dyn Case| plan::of_case(*case, arguments.tier);
         cases.iter().flat_map(of_case).map(|planned| planned.spec).collect()
     } else {
         let [case] = cases[..] else {
@@ -27,7 +26,7 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Outcome {
         sweep(case, &arguments.variant, &arguments.set, world)?
     };
     let lines: Vec<String> = specs.iter().map(|spec: &RunSpec| spec.canonical() + "\n").collect();
-    if arguments.estimates.is_some() || arguments.tier == arguments::Tier::Deep {
+    if arguments.estimates.is_some() || arguments.tier == Tier::Deep {
         estimate(specs, arguments, world)?;
     }
     output::print(&lines.concat())?;

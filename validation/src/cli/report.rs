@@ -25,7 +25,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
     export::check(&arguments.export)?;
     let folder = OutputFolder::create(&arguments.out)?;
-    let (tier, mut listed, mut lacking) = (arguments.tier.into(), String::new(), None);
+    let (tier, mut listed, mut lacking) = (arguments.tier, String::new(), None);
     let suite = match &arguments.store {
         Some(store) if arguments.partial => {
             let any_build = arguments.reuse.any_build;

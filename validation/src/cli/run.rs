@@ -67,7 +67,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
     let mut spec = case::spec(case, variant, &set(arguments)?)?;
     spec.allow_unstable = arguments.allow_unstable;
-    spec.measure = arguments.metrics.into();
+    spec.measure = arguments.metrics;
     if arguments.checkpoint_every.is_some() && arguments.out.is_none() {
         return Err(Failure::usage(
             "--checkpoint-every needs --out DIR, the folder that the checkpoints are written into",

@@ -113,7 +113,7 @@ fn planned(
         }
     }
     for Planned { spec, .. } in &mut planned {
-        spec.measure = spec.measure.max(arguments.metrics.into());
+        spec.measure = spec.measure.max(arguments.metrics);
     }
     if let Some(key) = &arguments.only {
         planned.retain(|planned| planned.spec.key().to_string() == *key);

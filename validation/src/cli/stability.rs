@@ -30,7 +30,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     }
     let mut declared = Vec::new();
     for case in cases {
-        let limits = case.declaration(arguments.tier.into()).limits;
+        let limits = case.declaration(arguments.tier).limits;
         if limits.is_none() && !arguments.cases.is_empty() {
             let words = format!("{} declares no largest stable time step", case.name());
             return Err(Failure::usage(words));
@@ -43,8 +43,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         planned: Planned::new(limit.spec.clone()),
     };
     let jobs: Vec<Job> = declared.iter().map(job).collect();
-    let mut made =
-        world.make(&jobs, world.making(arguments.tier.into()), arguments.threads, None)?;
+    let mut made = world.make(&jobs, world.making(arguments.tier), arguments.threads, None)?;
     if made.interrupted {
         return Err(Failure::interrupted("no limit was determined; the same command begins again"));
     }

@@ -24,14 +24,14 @@ use super::{
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
     let arguments::Verify { of, store, reuse, threads } = arguments;
     show(of, world, |cases| {
-        let plans = plans(cases, of.tier.into(), world)?;
-        run(plans, of.tier.into(), &Store::open(store)?, *reuse, *threads, None, world)
+        let plans = plans(cases, of.tier, world)?;
+        run(plans, of.tier, &Store::open(store)?, *reuse, *threads, None, world)
     })
 }
 
 pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
     let arguments::Judge { of, store, any_build } = arguments;
-    show(of, world, |cases| of_store(cases, of.tier.into(), store, *any_build, world))
+    show(of, world, |cases| of_store(cases, of.tier, store, *any_build, world))
 }
 
 /// The results on standard output; how they came about on standard error.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use harness::outline::Outline;
 
-use super::{Files, WriteError, check_fluid};
+use super::{WriteError, check_fluid};
 use crate::problem::Problem;
 
 /// Boxes of open axes reach so many spacings beyond the particles.
@@ -15,11 +15,7 @@ const MARGIN: f64 = 50.0;
 /// velocity.
 const COURANT: f64 = 0.15;
 
-/// LAMMPS with its package SPH: a data file and an input script.
-///
-/// # Errors
-/// If LAMMPS cannot run the problem.
-pub fn lammps(problem: &Problem) -> Result<Files, WriteError> {
+pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteError> {
     check_fluid("LAMMPS", problem)?;
     let (data, script) = (data(&problem.outline), script(problem));
     Ok(vec![("data.lmp", data), ("in.lmp", script), ("run_lammps.py", RUN.to_string())])
@@ -44,9 +40,11 @@ fn ends(outline: &Outline, axis: usize) -> ([f64; 2], char) {
         let low = outline.domain.low[axis];
         return ([low, low + period], 'p');
     }
-    let places = outline.particles.column(["x", "y"][axis]).iter().copied();
-    let low = places.clone().fold(f64::INFINITY, f64::min);
-    let high = places.fold(f64::NEG_INFINITY, f64::max);
+    let places = outline.particles.column(["x", "y"][axis]);
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &place in places {
+        (low, high) = (low.min(place), high.max(place));
+    }
     let margin = MARGIN * outline.medium.dx;
     ([low - margin, high + margin], 's') // the box follows the particles
 }

@@ -3,9 +3,6 @@
 mod lammps;
 mod vtu;
 
-pub use lammps::lammps;
-pub use vtu::vtu;
-
 use base::files::{CsvTable, FileError, OutputFolder};
 use serde_json::Error as JsonError;
 use thiserror::Error;
@@ -19,8 +16,18 @@ use crate::problem::{PARTICLES, PROBLEM, Problem};
 /// compressible scheme is for free surfaces, too.
 const PYSPH: &str = include_str!("run_pysph.py");
 
-/// What a format has beside the tables: names and texts of files.
-pub type Files = Vec<(&'static str, String)>;
+/// For whom a problem is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Tables alone.
+    Csv,
+    /// ParaView's unstructured grid.
+    Vtu,
+    /// LAMMPS with its package SPH: a data file and an input script.
+    Lammps,
+    /// PySPH: a script of Python.
+    Pysph,
+}
 
 /// Why a problem was not written.
 #[derive(Debug, Error)]
@@ -45,24 +52,24 @@ pub enum WriteError {
     },
 }
 
-/// PySPH: a script of Python.
+/// Writes the problem; the names of the files.
 ///
 /// # Errors
-/// If PySPH cannot run the problem.
-pub fn pysph(problem: &Problem) -> Result<Files, WriteError> {
-    check_fluid("PySPH", problem)?;
-    Ok(vec![("run_pysph.py", PYSPH.to_string())])
-}
-
-/// Writes the problem as tables, with the files of a format; the names of all.
-///
-/// # Errors
-/// If a file cannot be written.
+/// If the code of the format cannot run it, or a file cannot be written.
 pub fn write(
     problem: &Problem,
-    own: Files,
+    format: Format,
     folder: &OutputFolder,
 ) -> Result<Vec<String>, WriteError> {
+    let own: Vec<(&str, String)> = match format {
+        Format::Csv => Vec::new(),
+        Format::Vtu => vec![("particles.vtu", vtu::particles(problem))],
+        Format::Lammps => lammps::files(problem)?,
+        Format::Pysph => {
+            check_fluid("PySPH", problem)?;
+            vec![("run_pysph.py", PYSPH.to_string())]
+        }
+    };
     let document = serde_json::to_string_pretty(&problem.to_json())? + "\n";
     let mut files: Vec<(&str, Vec<u8>)> = vec![
         (PARTICLES, particles(problem)?),

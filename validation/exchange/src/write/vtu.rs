@@ -2,11 +2,9 @@
 
 use std::fmt::Write;
 
-use super::Files;
 use crate::problem::Problem;
 
-/// ParaView's unstructured grid.
-pub fn vtu(problem: &Problem) -> Files {
+pub fn particles(problem: &Problem) -> String {
     let particles = &problem.outline.particles;
     let count = particles.column("id").len();
     let mut xml = format!(
@@ -38,6 +36,5 @@ pub fn vtu(problem: &Problem) -> Files {
     array(&mut xml, "Int64", "connectivity", 1, &whole(0..count));
     array(&mut xml, "Int64", "offsets", 1, &whole(1..count + 1));
     array(&mut xml, "UInt8", "types", 1, &vec!["1".to_string(); count]);
-    xml += "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-    vec![("particles.vtu", xml)]
+    xml + "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
 }
