@@ -20,9 +20,7 @@ fn main() {
     let is_dirty = changes.map(|changes| if changes.is_empty() { "no" } else { "yes" });
     set("COMMIT", commit);
     set("DIRTY", is_dirty.map(String::from));
-    for family in FAMILIES {
-        set(&format!("SOURCES_{}", family.to_uppercase()), Some(digest(family)));
-    }
+    set("SOURCES", Some(FAMILIES.map(|family| format!("{family}={}", digest(family))).join(" ")));
     for watched in ["HEAD", "refs", "packed-refs", "index"] {
         if let Some(path) = git(&["rev-parse", "--git-path", watched])
             && Path::new(&path).exists()

@@ -102,7 +102,8 @@ const METRICS: [Named<Measure>; 2] = [
 ];
 
 /// The options of `run` that apply to a single run and are refused with `--specs`.
-const OF_ONE_RUN: &str = "case variant set rows out overwrite vtk json all profile allow_unstable checkpoint_every resume";
+const OF_ONE_RUN: &str = "case variant set rows out overwrite vtk json all profile \
+     allow_unstable checkpoint_every resume";
 /// The options of `run` that a checkpoint holds.
 const OF_A_CHECKPOINT: &str =
     "case variant set rows metrics out overwrite vtk allow_unstable allow_long";

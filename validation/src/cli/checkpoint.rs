@@ -27,8 +27,8 @@ pub struct Asked {
     pub spec: RunSpec,
     /// Digest of the sources of the program.
     pub sources: String,
-    /// Wall time between checkpoints \[s\].
-    pub every: u32,
+    /// Wall time between checkpoints \[s\], if there are any.
+    pub every: Option<u32>,
     /// Number of frames for ParaView.
     pub vtk: Option<u16>,
     /// May the run be long?
@@ -130,7 +130,7 @@ mod tests {
     fn asked() -> Asked {
         let settings = serde_json::json!({"rows": 20, "text": "two\nlines"});
         let spec = RunSpec::new("couette", "seed", settings);
-        Asked { spec, sources: "abc".into(), every: 60, vtk: Some(4), allow_long: false }
+        Asked { spec, sources: "abc".into(), every: Some(60), vtk: Some(4), allow_long: false }
     }
 
     fn parsed(bytes: &[u8]) -> Result<(Asked, Vec<Vec<u8>>), String> {

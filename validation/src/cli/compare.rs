@@ -141,16 +141,12 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
     changes.sort_by_key(|change| change.kind);
     let count = |of: fn(Kind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
     let (losses, failures) = (count(Kind::is_loss), count(|kind| kind == Kind::NewFailure));
-    if arguments.json {
-        let all: Vec<Value> = changes
-            .iter()
-            .map(|c| json!({"kind": c.kind.name(), "name": c.name, "change": c.words}))
-            .collect();
-        let all = json!({"new_failures": failures, "losses": losses, "changes": all});
-        output::print_whole(&format!("{all:#}\n"))?;
-    } else {
-        output::print(&in_words(&changes, &before, &after))?;
-    }
+    let json = || {
+        let change = |c: &Change| json!({"kind": c.kind.name(), "name": c.name, "change": c.words});
+        let all: Value = changes.iter().map(change).collect();
+        json!({"new_failures": failures, "losses": losses, "changes": all})
+    };
+    output::answer(arguments.json, json, || in_words(&changes, &before, &after))?;
     Ok(if losses > 0 { Exit::GateFailed } else { Exit::Pass })
 }
 

@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use ::report;
 use base::files::OutputFolder;
 use base::manifest::{Known, Manifest};
 use base::record::Cost;
@@ -18,18 +17,18 @@ pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
     output::print(&about(&manifest))?;
     let (mut is_sound, mut can_write) = (true, true);
     for (what, check) in [
-        ("references", references as fn(&arguments::Doctor, &World) -> Result<String, String>),
+        ("references", references as fn(&arguments::Doctor, &World) -> Result<String, Failure>),
         ("writing", writing),
         ("self-check", self_check),
     ] {
         let (mark, words) = match check(arguments, world) {
             Ok(words) => ("ok  ", words),
-            Err(words) => {
+            Err(Failure { reason, .. }) => {
                 match what {
                     "writing" => can_write = false, // a folder of yours is no bug of ours
                     _ => is_sound = false,
                 }
-                ("FAIL", words)
+                ("FAIL", reason)
             }
         };
         output::print(&format!("{what:<11} {mark} {words}\n"))?;
@@ -56,7 +55,7 @@ fn about(manifest: &Manifest) -> String {
         Known::Unknown => ", perhaps with changes",
     };
     let advice = if profile == "release" { "" } else { " (cargo build --release is faster)" };
-    let rows: [(&str, String); 6] = [
+    let rows = [
         ("touchstone", format!("{touchstone}, commit {commit}{dirty}")),
         ("compiler", rustc.clone()),
         ("build", format!("{profile}, opt-level {opt_level}{advice}")),
@@ -64,24 +63,22 @@ fn about(manifest: &Manifest) -> String {
         ("processor", format!("{}, {}", manifest.cpu, manifest.cpu_features.join(" "))),
         ("threads", format!("{} of {} cores", manifest.threads, manifest.cores)),
     ];
-    let words = |words: &str| output::wrap(words, 100, "            ").trim_start().to_string();
-    rows.iter().map(|(head, text)| format!("{head:<12}{}", words(text))).collect()
+    rows.iter().map(|(head, text)| output::hanging(head, 12, text)).collect()
 }
 
 /// Every embedded reference, read and checked against its hash.
-fn references(_: &arguments::Doctor, _: &World) -> Result<String, String> {
+fn references(_: &arguments::Doctor, _: &World) -> Result<String, Failure> {
     let mut texts = Vec::new();
     for name in Reference::names() {
-        let reference = Reference::load(name).map_err(|error| error.to_string())?;
-        for resource in &reference.package.resources {
+        for resource in &Reference::load(name)?.package.resources {
             texts.push(format!("\n                 {name}/{} {}", resource.path, resource.hash));
         }
     }
     Ok(format!("{} tables as described{}", texts.len(), texts.concat()))
 }
 
-fn writing(arguments: &arguments::Doctor, _: &World) -> Result<String, String> {
-    OutputFolder::check(&arguments.out).map_err(|error| error.to_string())?;
+fn writing(arguments: &arguments::Doctor, _: &World) -> Result<String, Failure> {
+    OutputFolder::check(&arguments.out)?;
     Ok(format!("into {}", arguments.out.display()))
 }
 
@@ -89,16 +86,13 @@ fn writing(arguments: &arguments::Doctor, _: &World) -> Result<String, String> {
 const BOUND: f64 = 0.02;
 
 /// A small Couette flow against its series, twice: right, and the same bits.
-fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, String> {
+fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, Failure> {
     let start = Instant::now();
     let set = ["rows=10".to_string(), "end=0.1".to_string()];
-    let case = cases::find("couette").map_err(|error| error.to_string())?;
-    let spec = case::spec(case, "seed", &set).map_err(|error| error.to_string())?;
-    let run = || {
-        let context = Context { interrupt: Some(world.interrupt), ..Context::default() };
-        case.run(&spec, &context).map_err(|error| error.to_string())
-    };
-    let (first, second) = (run()?, run()?);
+    let case = cases::find("couette")?;
+    let spec = case::spec(case, "seed", &set)?;
+    let context = Context { interrupt: Some(world.interrupt), ..Context::default() };
+    let (first, second) = (case.run(&spec, &context)?, case.run(&spec, &context)?);
     let error = first.metric("l2@0.1").unwrap_or(f64::NAN);
     let took = report::seconds(start.elapsed().as_secs_f64());
     let words = format!(
@@ -109,8 +103,8 @@ fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, String> {
     );
     match (error <= BOUND, first.state.is_some() && first.state == second.state) {
         (true, true) => Ok(words),
-        (true, false) => Err(format!("two equal runs differ in their bits; {words}")),
-        (false, _) => Err(words),
+        (true, false) => Err(Failure::bug(format!("two equal runs differ in their bits; {words}"))),
+        (false, _) => Err(Failure::bug(words)),
     }
 }
 
@@ -147,7 +141,7 @@ fn bench(world: &World) -> Result<(), Failure> {
     let on_all = format!("{all} threads: M rhs/s");
     let heads =
         ["particles", "in list", "B each", "1 thread: M rhs/s", "M lists/s", &on_all, "M lists/s"];
-    output::print(&output::table(&heads[..if all > 1 { 7 } else { 5 }], &rows))?;
+    output::print(&output::table(&heads[..if all > 1 { 7 } else { 5 }], rows))?;
     on_threads(Some(1), || whole_runs(world))
 }
 
@@ -191,7 +185,7 @@ fn whole_runs(world: &World) -> Result<(), Failure> {
          and\nobserving: nanoseconds of wall time a fluid particle and time step; pair sweeps: their share \
          of the\nstepping; M rhs/s: million particle right-hand sides a second of stepping. `touchstone run \
          CASE --profile`\nshows all parts.\n\n{}",
-        output::table(&heads, &rows)
+        output::table(&heads, rows)
     ))
 }
 

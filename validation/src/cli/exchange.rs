@@ -9,11 +9,10 @@ use ::exchange::{
     problem::{Asked, Problem, Sealed},
     read::{COLUMNS, RESULTS, curve::CURVE},
     submission::{self, Entry, METHOD, SYSTEM},
-    write::{self, WriteError},
+    write,
 };
 use base::{
     files::{self, CsvTable, OutputFolder},
-    gate::Verdict,
     record::{Profile, Record, Status},
     reference::sha256,
     spec::RunSpec,
@@ -24,7 +23,7 @@ use harness::{
     context::Context,
     outline::Sink,
     relation::Relation,
-    runs::JudgedRun,
+    runs::Judged,
     store::Store,
     suite, symmetry,
 };
@@ -36,16 +35,10 @@ use super::{
     output,
 };
 
-impl From<WriteError> for Failure {
-    fn from(error: WriteError) -> Self {
-        Failure::usage(error)
-    }
-}
-
 /// More than this is no description of a method \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;
 
-pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Outcome {
+pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Result<(), Failure> {
     let case = cases::find_in(world.cases, &arguments.case)?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
     let spec = case::spec(case, variant, &arguments.set)?;
@@ -56,7 +49,7 @@ pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Outcome {
         names.extend(solve(case, &problem, &folder, world)?);
     }
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
-    Ok(Exit::Pass)
+    Ok(())
 }
 
 /// Makes the run and writes it as another code would: an example of a submission.
@@ -72,16 +65,15 @@ fn solve(
         written.clone().map(|(name, unit, _)| format!("{name}[{unit}]")).collect();
     let columns: Vec<&str> = written.map(|(name, ..)| *name).skip(1).collect();
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    let table = Mutex::new((CsvTable::new(&heads)?, Ok(()), f64::NAN));
+    let rows = Mutex::new(Vec::<Vec<f64>>::new());
     let tell = |time: f64, particles: Profile| {
-        let mut table = table.lock().unwrap_or_else(PoisonError::into_inner);
-        if std::mem::replace(&mut table.2, time) == time {
+        let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
+        if rows.last().is_some_and(|row| row[0] == time) {
             return; // stated twice
         }
         for k in 0..particles.column("id").len() {
             let row = columns.iter().map(|name| particles.column(name)[k]);
-            let written = table.0.numbers(&std::iter::once(time).chain(row).collect::<Vec<_>>());
-            table.1 = std::mem::replace(&mut table.1, Ok(())).and(written);
+            rows.push(std::iter::once(time).chain(row).collect());
         }
     };
     let context = Context {
@@ -94,16 +86,14 @@ fn solve(
     let record = match case.run(&problem.spec, &context) {
         // Nothing was measured of what an observer sees, and nothing was counted.
         Err(RunError::Outlined) => {
-            let RunSpec { case, variant, settings, .. } = problem.spec.clone();
-            Record::new(&case, &variant, settings, 1)
+            let RunSpec { variant, settings, .. } = &problem.spec;
+            Record::new(case.name(), variant, settings.clone(), 1)
         }
         made => made?,
     };
     if world.is_interrupted() || matches!(record.status, Status::Interrupted { .. }) {
         return Err(Failure::interrupted("the problem is written, its results are not"));
     }
-    let (table, written, _) = table.into_inner().unwrap_or_else(PoisonError::into_inner);
-    written?;
     let method = json!({
         "code": OURS,
         "version": env!("CARGO_PKG_VERSION"),
@@ -123,11 +113,17 @@ fn solve(
     });
     let (name, table) = match series(case, &record)? {
         Some(series) => (CURVE, series),
-        None => (RESULTS, table),
+        None => {
+            let mut table = CsvTable::new(&heads)?;
+            for row in rows.into_inner().unwrap_or_else(PoisonError::into_inner) {
+                table.numbers(&row)?;
+            }
+            (RESULTS, table)
+        }
     };
     folder.write(name, &table.into_bytes())?;
-    folder.write(METHOD, (serde_json::to_string_pretty(&method)? + "\n").as_bytes())?;
-    folder.write(SYSTEM, (serde_json::to_string_pretty(&system)? + "\n").as_bytes())?;
+    folder.write(METHOD, format!("{method:#}\n").as_bytes())?;
+    folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
     Ok([name, METHOD, SYSTEM].map(String::from).into())
 }
 
@@ -146,7 +142,7 @@ fn series(case: &dyn Case, record: &Record) -> Result<Option<CsvTable>, Failure>
     Ok(Some(table))
 }
 
-pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
+pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), Failure> {
     let case = cases::find_in(world.cases, &arguments.case)?;
     let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
     let text = files::read_text(&arguments.method, MOST_BYTES).map_err(|reason| {
@@ -162,7 +158,7 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Outcome {
     names.push(METHOD.into());
     output::print(&format!("{}\n", set.join(" ")))?;
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
-    Ok(Exit::Pass)
+    Ok(())
 }
 
 pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
@@ -174,19 +170,27 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let scene = coarse.as_ref().unwrap_or(&problem);
     entry.stand_for(case, scene).map_err(|flaws| refused(&flaws))?;
     check(&entry, scene)?;
-    let record = measured(case, &entry, [scene, &problem], &arguments.folder, world)?;
-    if arguments.check {
+    let mut record = entry.measure(case, &scene.spec, &problem).map_err(|error| {
+        refused(&[Flaw::of(arguments.folder.display().to_string(), error.to_string())])
+    })?;
+    record.manifest.sources = (world.sources)(case.name());
+    record.manifest.cpu = entry.system.machine.clone();
+    let Some(store) = arguments.store.as_ref().filter(|_| !arguments.check) else {
         output::say("complete: every fact that a submission needs is there; nothing was recorded");
         return Ok(Exit::Pass);
-    }
-    let Some(store) = &arguments.store else {
-        return Err(Failure::usage("--store DIR names the folder of its record"));
     };
     let path = Store::open(store)?.write(&record)?;
     let run = suite::submitted(case, record);
-    show(case, &run, arguments.all)?;
+    let (apply, others) = run.applicable();
+    let judged: Vec<Judged> = apply.into_iter().cloned().collect();
+    let mut text = judged::shown(&judged, arguments.all);
+    if !others.is_empty() {
+        let rows = others.iter().map(|(id, why)| vec![id.to_string(), why.to_string()]);
+        text += &(output::table(&["not applicable", "because"], rows) + "\n");
+    }
+    output::print(&(text + &outcome(case, &run.planned.spec, &run.record, &judged)))?;
     output::say(&path.display().to_string());
-    let fails = run.applicable().0.iter().any(|judged| judged.judgement.verdict.is_failure());
+    let fails = judged.iter().any(|judged| judged.judgement.verdict.is_failure());
     Ok(if fails { Exit::GateFailed } else { Exit::Pass })
 }
 
@@ -206,18 +210,16 @@ fn check(entry: &Entry, problem: &Problem) -> Result<(), Failure> {
 fn spec_of(case: &dyn Case, asked: &Asked) -> Result<RunSpec, Failure> {
     let RunSpec { case: name, variant, settings, measure, .. } = asked.spec.clone();
     let plain = RunSpec { measure, ..RunSpec::new(&name, &variant, settings) };
-    let words = match () {
-        () if name != case.name() => {
-            format!("problem.json is of the case {name}, not of {}", case.name())
-        }
-        () if plain != asked.spec => {
-            "problem.json asks for more than a run of a variant with settings; \
-                                      expected the document as it was exported"
-                .into()
-        }
-        () => return Ok(case::resolved(case, plain)?),
-    };
-    Err(Failure::usage(words))
+    if name != case.name() {
+        let words = format!("problem.json is of the case {name}, not of {}", case.name());
+        return Err(Failure::usage(words));
+    }
+    if plain != asked.spec {
+        let words = "problem.json asks for more than a run of a variant with settings; expected the \
+                     document as it was exported";
+        return Err(Failure::usage(words));
+    }
+    Ok(case::resolved(case, plain)?)
 }
 
 pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
@@ -288,22 +290,6 @@ fn problem(
     Ok(Problem::of(case, spec)?)
 }
 
-/// The record of the submission.
-fn measured(
-    case: &dyn Case,
-    entry: &Entry,
-    [scene, problem]: [&Problem; 2],
-    folder: &Path,
-    world: &World,
-) -> Result<Record, Failure> {
-    let mut record = entry
-        .measure(case, &scene.spec, problem)
-        .map_err(|error| refused(&[Flaw::of(folder.display().to_string(), error.to_string())]))?;
-    record.manifest.sources = (world.sources)(case.name());
-    record.manifest.cpu = entry.system.machine.clone();
-    Ok(record)
-}
-
 /// All flaws as the reason why nothing is judged.
 fn refused(flaws: &[Flaw]) -> Failure {
     let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
@@ -311,22 +297,4 @@ fn refused(flaws: &[Flaw]) -> Failure {
         "the submission is refused, and nothing is judged:\n{}",
         lines.join("\n")
     ))
-}
-
-fn show(case: &dyn Case, run: &JudgedRun, all: bool) -> Result<(), Failure> {
-    let (apply, others) = run.applicable();
-    let shown: Vec<_> = apply
-        .iter()
-        .copied()
-        .filter(|judged| all || judged.judgement.verdict != Verdict::Pass)
-        .collect();
-    let mut text = if shown.is_empty() { String::new() } else { judged::table(shown) + "\n" };
-    if !others.is_empty() {
-        let rows: Vec<Vec<String>> =
-            others.iter().map(|(id, why)| vec![id.to_string(), why.to_string()]).collect();
-        text += &(output::table(&["not applicable", "because"], &rows) + "\n");
-    }
-    let judged: Vec<_> = apply.into_iter().cloned().collect();
-    text += &outcome(case, &run.planned.spec, &run.record, &judged);
-    output::print(&text)
 }

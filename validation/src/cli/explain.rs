@@ -17,7 +17,7 @@ use harness::suite::{self, Of};
 use validation::cases;
 
 use super::{
-    Exit, Failure, Outcome, World, arguments,
+    Failure, World, arguments, export,
     judged::{self, Verdicts, tier_name},
     output,
 };
@@ -31,42 +31,40 @@ struct Known {
     status: Option<record::Status>,
 }
 
-pub fn explain(arguments: &arguments::Explain, world: &World) -> Outcome {
+impl Known {
+    /// Not judged yet.
+    fn new(gate: Gate, on: String) -> Self {
+        Self { gate, tiers: Vec::new(), on, last: None, status: None }
+    }
+}
+
+pub fn explain(arguments: &arguments::Explain, world: &World) -> Result<(), Failure> {
     let asked = arguments.gate.as_deref().unwrap_or_default();
     let verdicts = last_verdicts(&arguments.reports, asked, world)?;
     if let Some(status) = arguments.status {
         let Some(verdicts) = verdicts else {
-            let words = format!(
+            return Err(Failure::usage(format!(
                 "{} holds no verdicts; touchstone verify or touchstone report makes them",
                 arguments.reports.display()
-            );
-            return Err(Failure::usage(words));
+            )));
         };
         let begins = |judged: &&Judged| judged.gate.id.starts_with(asked);
         let of_name: Vec<&Judged> = verdicts.judged().filter(begins).collect();
         if of_name.is_empty() {
             return Err(unknown(asked, &all(world, Some(&verdicts))));
         }
-        output::print(&listed(of_name, status))?;
-        return Ok(Exit::Pass);
+        return output::print(&listed(of_name, status));
     }
     let gates = all(world, verdicts.as_ref());
     let mut chosen: Vec<&Known> = gates.iter().filter(|known| known.gate.id == asked).collect();
     if chosen.is_empty() {
         chosen.extend(gates.iter().filter(|known| known.gate.id.starts_with(asked)));
     }
-    match chosen.as_slice() {
-        [] => Err(unknown(asked, &gates)),
-        [known] => {
-            output::print(&words(known))?;
-            Ok(Exit::Pass)
-        }
-        several => {
-            let all: Vec<String> = several.iter().map(|known| words(known)).collect();
-            output::print(&all.join("\n"))?;
-            Ok(Exit::Pass)
-        }
+    if chosen.is_empty() {
+        return Err(unknown(asked, &gates));
     }
+    let texts: Vec<String> = chosen.into_iter().map(words).collect();
+    output::print(&texts.join("\n"))
 }
 
 /// The verdicts of the last report or, without one, those on the records that `verify` keeps: of the cases
@@ -76,30 +74,18 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
     if let Ok(verdicts) = serde_json::from_str(&text) {
         return Ok(Some(verdicts)); // of another version: none
     }
+    let is_asked =
+        |case: &&'static dyn Case| case.name().starts_with(asked) || asked.starts_with(case.name());
+    let cases: Vec<&'static dyn Case> = world.cases.iter().copied().filter(is_asked).collect();
+    let mut plans = suite::plans(&cases, Tier::Quick);
     let store = Store::to_read(&reports.join("records"));
-    let mut all: Option<Verdicts> = None;
-    for case in world.cases {
-        let name = case.name();
-        if !(name.starts_with(asked) || asked.starts_with(name)) {
-            continue;
-        }
-        let plans = suite::plans(&[*case], Tier::Quick);
-        let Stored { made, missing, .. } = world.stored(&plans, &store, false);
-        if made.interrupted {
-            return Err(Failure::interrupted("no gate is shown"));
-        }
-        if missing.is_empty() {
-            let of_case = Verdicts::of(&suite::judge(plans, Tier::Quick, made));
-            match &mut all {
-                None => all = Some(of_case),
-                Some(all) => {
-                    all.runs.extend(of_case.runs);
-                    all.studies.extend(of_case.studies);
-                }
-            }
-        }
+    let Stored { made, missing, .. } = world.stored(&plans, &store, false);
+    if made.interrupted {
+        return Err(Failure::interrupted("no gate is shown"));
     }
-    Ok(all)
+    plans.retain(|(case, _)| missing.iter().all(|job| job.case.name() != case.name()));
+    let is_complete = !plans.is_empty();
+    Ok(is_complete.then(|| Verdicts::of(&suite::judge(plans, Tier::Quick, made))))
 }
 
 /// A judgement, with all that is known of its gate.
@@ -108,8 +94,7 @@ pub fn in_full(case: &dyn Case, of: Of, judged: &Judged) -> String {
         Of::Run(run) => (command(case, &run.planned.spec), Some(run.record.status.clone())),
         Of::Study(study) => (of_study(&study.title, case.name()), None),
     };
-    let gate = judged.gate.clone();
-    words(&Known { gate, tiers: Vec::new(), on, last: Some(judged.clone()), status })
+    words(&Known { last: Some(judged.clone()), status, ..Known::new(judged.gate.clone(), on) })
 }
 
 /// The command that makes a run.
@@ -131,13 +116,10 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
                 for gate in planned.gates {
                     match gates.iter_mut().find(|known| known.gate.id == gate.id) {
                         Some(known) => known.tiers.push(tier_name(tier)),
-                        None => gates.push(Known {
-                            gate,
-                            tiers: vec![tier_name(tier)],
-                            on: on.clone(),
-                            last: None,
-                            status: None,
-                        }),
+                        None => {
+                            let tiers = vec![tier_name(tier)];
+                            gates.push(Known { tiers, ..Known::new(gate, on.clone()) });
+                        }
                     }
                 }
             }
@@ -153,11 +135,8 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     for study in verdicts.iter().flat_map(|verdicts| &verdicts.studies) {
         let on = of_study(&study.title, &study.case);
         gates.extend(study.judged.iter().map(|judged| Known {
-            gate: judged.gate.clone(),
-            tiers: Vec::new(),
-            on: on.clone(),
             last: Some(judged.clone()),
-            status: None,
+            ..Known::new(judged.gate.clone(), on.clone())
         }));
     }
     gates
@@ -178,7 +157,7 @@ fn table(gates: &[&Judged]) -> String {
         let value = judged.judgement.value.map_or("-".into(), |value| report::sig(value, 5));
         vec![judged.gate.id.clone(), value, judged.gate.bounds()]
     };
-    output::table(&["gate", "value", "bound"], &gates.iter().map(row).collect::<Vec<_>>())
+    output::table(&["gate", "value", "bound"], gates.iter().map(row))
 }
 
 /// Each cause, that of most gates first, with what would remove it and its gates.
@@ -199,7 +178,7 @@ fn by_cause(gates: &[&Judged]) -> String {
                 "Gates with a cause of their own, which `touchstone explain GATE` states:".into()
             }
         };
-        text += &output::wrap(&words, 100, "");
+        text += &output::wrap(&words, "");
         text += &table(&gates).lines().map(|line| format!("    {line}\n")).collect::<String>();
         text.push('\n');
     }
@@ -225,6 +204,8 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
 
 fn words(known: &Known) -> String {
     let Known { gate, on, last, .. } = known;
+    let judged_as =
+        |judged: &Judged| format!("{}: {}", export::value(&judged.judgement), judged.words());
     let lines = [
         ("checks", format!("metric {}", gate.metric)),
         ("bound", gate.bound.to_string()),
@@ -233,20 +214,14 @@ fn words(known: &Known) -> String {
         ("purpose", purpose(&gate.purpose)),
         ("judged on", on.clone()),
         ("in tiers", known.tiers.join(", ")),
-        ("last", last.as_ref().map(last_words).unwrap_or_default()),
+        ("last", last.as_ref().map(judged_as).unwrap_or_default()),
         ("that run", known.status.as_ref().map(ToString::to_string).unwrap_or_default()),
     ];
     let mut text = format!("{}\n", gate.id);
     for (head, words) in lines.iter().filter(|(_, words)| !words.is_empty()) {
-        let body = output::wrap(words, 100, "             ");
-        text += &format!("  {head:<11}{}", body.trim_start());
+        text += &output::hanging(&format!("  {head}"), 13, words);
     }
     text
-}
-
-fn last_words(judged: &Judged) -> String {
-    let value = judged.judgement.value.map_or("not measured".into(), |value| report::sig(value, 5));
-    format!("{value}: {}", judged.words())
 }
 
 fn evidence(gate: &Gate) -> String {

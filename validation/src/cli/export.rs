@@ -1,6 +1,5 @@
 //! Verdicts for other programs: JUnit XML and Markdown.
 
-use ::report;
 use base::{
     files::write_atomically,
     gate::{Judgement, Verdict},
@@ -35,7 +34,8 @@ pub fn write(suite: &Suite, export: &arguments::Export) -> Result<(), Failure> {
     Ok(written?)
 }
 
-fn value(judgement: &Judgement) -> String {
+/// The number that was judged, for people.
+pub fn value(judgement: &Judgement) -> String {
     judgement.value.map_or("not measured".into(), |value| report::sig(value, 5))
 }
 

@@ -26,26 +26,31 @@ pub fn table<'a>(all: impl IntoIterator<Item = &'a Judged>) -> String {
         Some(known) => format!("known limitation [{}]", notes.number(&known.reason)),
         None => judged.words(),
     };
-    let rows: Vec<Vec<String>> = judged
-        .into_iter()
-        .map(|judged| {
-            let Judged { gate, judgement, .. } = judged;
-            let number = |number: Option<f64>| number.map(|number| report::sig(number, 4));
-            vec![
-                words(judged),
-                gate.id.clone(),
-                number(judgement.value).unwrap_or("-".into()),
-                gate.bounds(),
-                number(judgement.margin).unwrap_or("-".into()),
-            ]
-        })
-        .collect();
-    let mut text = output::table(&["verdict", "gate", "value", "bound", "margin"], &rows);
+    let number = |number: Option<f64>| number.map_or("-".into(), |number| report::sig(number, 4));
+    let row = |judged: &'a Judged| {
+        let Judged { gate, judgement, .. } = judged;
+        vec![
+            words(judged),
+            gate.id.clone(),
+            number(judgement.value),
+            gate.bounds(),
+            number(judgement.margin),
+        ]
+    };
+    let heads = ["verdict", "gate", "value", "bound", "margin"];
+    let mut text = output::table(&heads, judged.into_iter().map(row));
     for (k, reason) in notes.all() {
-        let head = format!("[{k}]");
-        text += &format!("{head:<5}{}", output::wrap(reason, 100, "     ").trim_start());
+        text += &output::hanging(&format!("[{k}]"), 5, reason);
     }
     text
+}
+
+/// The table of those that did not pass, or of all, and an empty line; nothing if there are none.
+pub fn shown<'a>(judged: impl IntoIterator<Item = &'a Judged>, all: bool) -> String {
+    let judged =
+        judged.into_iter().filter(|judged| all || judged.judgement.verdict != Verdict::Pass);
+    let judged: Vec<&Judged> = judged.collect();
+    if judged.is_empty() { String::new() } else { table(judged) + "\n" }
 }
 
 /// Name of the file of the verdicts in the folder of a report.

@@ -1,10 +1,11 @@
 //! `list`: cases, variants and settings.
 
-use harness::case::{Best, Case};
+use base::settings::Field;
+use harness::case::{Best, Case, Variant};
 use serde_json::{Value, json};
 use validation::cases;
 
-use super::{Exit, Outcome, World, arguments, output};
+use super::{Failure, World, arguments, output};
 
 /// The variant that runs unless another one is named: the best one of the case, if that is known.
 pub fn default_variant(case: &dyn Case) -> &'static str {
@@ -12,27 +13,13 @@ pub fn default_variant(case: &dyn Case) -> &'static str {
     case.best().map_or_else(first, |best| best.variant)
 }
 
-pub fn list(arguments: &arguments::List, world: &World) -> Outcome {
-    let text = match &arguments.case {
-        None if arguments.json => {
-            pretty(&Value::Array(world.cases.iter().map(|case| json(*case)).collect()))
-        }
-        None => overview(world),
-        Some(name) => {
-            let case = cases::find_in(world.cases, name)?;
-            if arguments.json { pretty(&json(case)) } else { details(case) }
-        }
+pub fn list(arguments: &arguments::List, world: &World) -> Result<(), Failure> {
+    let Some(name) = &arguments.case else {
+        let all = || world.cases.iter().map(|case| json(*case)).collect();
+        return output::answer(arguments.json, all, || overview(world));
     };
-    if arguments.json {
-        output::print_whole(&text)?;
-    } else {
-        output::print(&text)?;
-    }
-    Ok(Exit::Pass)
-}
-
-fn pretty(value: &Value) -> String {
-    format!("{value:#}\n")
+    let case = cases::find_in(world.cases, name)?;
+    output::answer(arguments.json, || json(case), || details(case))
 }
 
 /// A line a case: the problem, and the variants for it; then why each is the best.
@@ -41,15 +28,14 @@ fn overview(world: &World) -> String {
         let papers = case.best().and_then(|best| best.papers).unwrap_or_default();
         [case.name(), case.problem(), default_variant(*case), papers].map(String::from).to_vec()
     };
-    let rows: Vec<Vec<String>> = world.cases.iter().map(row).collect();
     let heads = ["case", "problem", "best variant", "the paper's"];
     let reason = |case: &&dyn Case| {
         let Best { variant, because, .. } = case.best()?;
         let words = format!("{} {variant}: {because}", case.name());
-        Some(output::wrap(&words, 100, "    ").trim_start().to_string())
+        Some(format!("  {}", output::wrap(&words, "    ").trim_start()))
     };
-    let reasons: String = world.cases.iter().filter_map(reason).map(|r| format!("  {r}")).collect();
-    output::table(&heads, &rows)
+    let reasons: String = world.cases.iter().filter_map(reason).collect();
+    output::table(&heads, world.cases.iter().map(row))
         + "\nThe best variant runs unless another one is named. It is the best because\n"
         + &reasons
         + "\n`touchstone list CASE` shows all variants and settings of a case, `touchstone run CASE` \
@@ -67,29 +53,25 @@ fn marks(case: &dyn Case, variant: &str) -> &'static str {
 }
 
 fn details(case: &dyn Case) -> String {
-    let mut text = format!("{}\n{}\n", case.name(), output::wrap(case.about(), 100, "    "));
+    let mut text = format!("{}\n{}\n", case.name(), output::wrap(case.about(), "    "));
     text += "variants\n";
     for variant in case.variants() {
         let marks = marks(case, variant.name);
         text += &format!("  {:<18} {}{marks}\n", variant.name, variant.about);
         let differs = differences(case, variant.name).join(" ");
         if !differs.is_empty() {
-            text += &output::wrap(&differs, 100, &" ".repeat(21));
+            text += &output::wrap(&differs, &" ".repeat(21));
         }
     }
     if let Some(best) = case.best() {
         let reason = format!("`{}` is the best: {}", best.variant, best.because);
-        text += &output::wrap(&reason, 100, "  ");
+        text += &output::wrap(&reason, "  ");
     }
-    let fields: Vec<Vec<String>> = case
-        .fields()
-        .iter()
-        .map(|field| {
-            let default = field.default().to_string();
-            vec![field.name.into(), default, field.range.into(), field.doc.into()]
-        })
-        .collect();
-    text + "\n" + &output::table(&["settings", "default", "range [unit]", ""], &fields)
+    let row = |field: &Field| {
+        vec![field.name.into(), field.default().to_string(), field.range.into(), field.doc.into()]
+    };
+    let heads = ["settings", "default", "range [unit]", ""];
+    text + "\n" + &output::table(&heads, case.fields().iter().map(row))
 }
 
 /// Settings in which a variant differs from the defaults, as `key=value`.
@@ -101,31 +83,20 @@ fn differences(case: &dyn Case, variant: &str) -> Vec<String> {
     };
     let differs = |(name, value): &(&String, &Value)| default(name).as_ref() != Some(*value);
     let text = |(name, value): (&String, &Value)| format!("{name}={value}");
-    settings
-        .as_object()
-        .map(|all| all.iter().filter(differs).map(text).collect())
-        .unwrap_or_default()
+    settings.as_object().into_iter().flatten().filter(differs).map(text).collect()
 }
 
 fn json(case: &dyn Case) -> Value {
-    let variants: Vec<Value> = case
-        .variants()
-        .iter()
-        .map(|variant| {
-            let settings = case.settings(variant.name, &[]).unwrap_or_default();
-            json!({"name": variant.name, "about": variant.about, "settings": settings})
+    let variant = |variant: &Variant| {
+        let settings = case.settings(variant.name, &[]).unwrap_or_default();
+        json!({"name": variant.name, "about": variant.about, "settings": settings})
+    };
+    let setting = |field: &Field| {
+        json!({
+            "name": field.name, "unit": field.unit, "doc": field.doc,
+            "kind": field.kind.to_string(), "range": field.range, "default": field.default(),
         })
-        .collect();
-    let settings: Vec<Value> = case
-        .fields()
-        .iter()
-        .map(|field| {
-            json!({
-                "name": field.name, "unit": field.unit, "doc": field.doc,
-                "kind": field.kind.to_string(), "range": field.range, "default": field.default(),
-            })
-        })
-        .collect();
+    };
     let best = case.best();
     json!({
         "name": case.name(), "problem": case.problem(), "about": case.about(),
@@ -133,6 +104,7 @@ fn json(case: &dyn Case) -> Value {
         "best_variant": best.map(|best| best.variant),
         "best_because": best.map(|best| best.because),
         "papers_variant": best.and_then(|best| best.papers),
-        "variants": variants, "settings": settings,
+        "variants": case.variants().iter().map(variant).collect::<Value>(),
+        "settings": case.fields().iter().map(setting).collect::<Value>(),
     })
 }

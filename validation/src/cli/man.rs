@@ -4,19 +4,15 @@ use base::files::OutputFolder;
 use clap::CommandFactory;
 use clap_mangen::Man;
 
-use super::{
-    Exit, Failure, Outcome,
-    arguments::{self, Arguments},
-    output,
-};
+use super::arguments::{self, Arguments};
+use super::{Failure, output};
 
 /// Prints the page of the program, or writes it and those of all commands into a folder.
-pub fn man(arguments: &arguments::Man) -> Outcome {
+pub fn man(arguments: &arguments::Man) -> Result<(), Failure> {
     let mut program = Arguments::command();
     program.build(); // gives each command its full name
     let Some(path) = &arguments.dir else {
-        output::print(&String::from_utf8_lossy(&page(&Man::new(program))?))?;
-        return Ok(Exit::Pass);
+        return output::print(&String::from_utf8_lossy(&page(&Man::new(program))?));
     };
     let folder = OutputFolder::create(path)?;
     let commands = program.get_subcommands().filter(|command| command.get_name() != "help");
@@ -26,7 +22,7 @@ pub fn man(arguments: &arguments::Man) -> Outcome {
         folder.write(&man.get_filename(), &page(man)?)?;
     }
     output::say(&format!("{} pages in {}", pages.len(), path.display()));
-    Ok(Exit::Pass)
+    Ok(())
 }
 
 fn page(man: &Man) -> Result<Vec<u8>, Failure> {

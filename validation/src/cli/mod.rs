@@ -15,7 +15,6 @@ mod arguments;
 mod checkpoint;
 mod compare;
 mod doctor;
-mod estimate;
 mod exchange;
 mod explain;
 mod export;
@@ -42,9 +41,7 @@ mod verify;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use base::files::FileError;
 use base::manifest::{Known, Source, UNKNOWN, tell_source};
-use base::record::RecordError;
 use base::reference::{Reference, ReferenceError};
 use base::spec::RunKey;
 use clap::{CommandFactory, Parser};
@@ -97,33 +94,10 @@ impl Failure {
     }
 }
 
-impl From<RunError> for Failure {
-    fn from(error: RunError) -> Self {
+/// An error of a layer below is one of the request, unless its place makes it a bug.
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
         Failure::usage(error)
-    }
-}
-
-impl From<FileError> for Failure {
-    fn from(error: FileError) -> Self {
-        Failure::usage(error)
-    }
-}
-
-impl From<StoreError> for Failure {
-    fn from(error: StoreError) -> Self {
-        Failure::usage(error)
-    }
-}
-
-impl From<RecordError> for Failure {
-    fn from(error: RecordError) -> Self {
-        Failure::bug(error)
-    }
-}
-
-impl From<serde_json::Error> for Failure {
-    fn from(error: serde_json::Error) -> Self {
-        Failure::bug(error)
     }
 }
 
@@ -136,9 +110,6 @@ type Early<'a> = dyn Fn(Made) -> Option<String> + Sync + 'a;
 /// A reference that is not as it was described, and the names of the cases that are compared with it.
 type WrongReference = (ReferenceError, &'static [&'static str]);
 
-/// Whether one of these cases, or none in particular, is asked for.
-type AreAsked<'a> = dyn Fn(&[&str]) -> bool + 'a;
-
 /// What commands work on.
 #[derive(Clone, Copy)]
 pub struct World {
@@ -146,8 +117,8 @@ pub struct World {
     cases: &'static [&'static dyn Case],
     /// Digest of the sources that decide what a case computes.
     sources: fn(&str) -> String,
-    /// The references whose cases are asked for that are not as they were described.
-    references: fn(&AreAsked<'_>) -> Vec<WrongReference>,
+    /// The references of these cases, and those of none, that are not as they were described.
+    references: fn(&[&str]) -> Vec<WrongReference>,
     /// Set to stop.
     interrupt: &'static AtomicBool,
 }
@@ -197,7 +168,7 @@ impl World {
         });
         let made = on_threads(threads, || {
             let mut stored = make::stored(jobs, &making);
-            estimate::estimate(&mut stored.missing, &making);
+            plan::estimate(&mut stored.missing, &making);
             let finished = finished.as_ref().map(|finished| finished as _);
             Ok(make::make(stored, &Making { progress: Some(&show), finished, ..making }))
         });
@@ -209,21 +180,17 @@ impl World {
 
     /// Refuses to run or judge cases by a reference that was changed, or to show one that no case uses.
     fn check_references(&self, cases: &[&'static dyn Case]) -> Result<(), Failure> {
-        let are_asked = |users: &[&str]| {
-            users.is_empty() || cases.iter().any(|case| users.contains(&case.name()))
-        };
+        let names: Vec<&str> = cases.iter().map(|case| case.name()).collect();
         let word = |(error, users): WrongReference| match users {
             [] => error.to_string(),
             _ => format!("{error}; it judges {}", users.join(" and ")),
         };
-        let words: Vec<String> = (self.references)(&are_asked).into_iter().map(word).collect();
-        match words.is_empty() {
-            true => Ok(()),
-            false => {
-                let reason = format!("nothing is judged: {}", words.join("\n"));
-                Err(Failure { exit: Exit::GateFailed, reason })
-            }
+        let words: Vec<String> = (self.references)(&names).into_iter().map(word).collect();
+        if words.is_empty() {
+            return Ok(());
         }
+        let reason = format!("nothing is judged: {}", words.join("\n"));
+        Err(Failure { exit: Exit::GateFailed, reason })
     }
 
     fn is_interrupted(&self) -> bool {
@@ -274,21 +241,18 @@ const SOURCE: Source = Source {
 
 /// The digest of the sources of the family that a case belongs to.
 fn sources(case: &str) -> String {
-    let digest = match cases::family(case) {
-        Some("fluids") => env!("TOUCHSTONE_SOURCES_FLUIDS"),
-        Some("waters") => env!("TOUCHSTONE_SOURCES_WATERS"),
-        Some("solids") => env!("TOUCHSTONE_SOURCES_SOLIDS"),
-        Some("lattice") => env!("TOUCHSTONE_SOURCES_LATTICE"),
-        _ => UNKNOWN,
-    };
-    digest.into()
+    let family = cases::family(case).unwrap_or_default();
+    let digests = env!("TOUCHSTONE_SOURCES").split(' ').filter_map(|of| of.split_once('='));
+    let digest = digests.into_iter().find(|(name, _)| *name == family);
+    digest.map_or(UNKNOWN, |(_, digest)| digest).into()
 }
 
-/// The embedded references whose cases are asked for that are not as they were described.
-fn references(are_asked: &AreAsked<'_>) -> Vec<WrongReference> {
+/// The embedded references of these cases, and those of none, that are not as they were described.
+fn references(cases: &[&str]) -> Vec<WrongReference> {
     let names = Reference::names().into_iter().map(|name| (name, cases::users(name)));
     // To read all takes as long as half of a small run.
-    let asked = names.filter(|(_, users)| are_asked(users));
+    let asked = names
+        .filter(|(_, users)| users.is_empty() || users.iter().any(|user| cases.contains(user)));
     asked.filter_map(|(name, users)| Some((Reference::load(name).err()?, users))).collect()
 }
 
@@ -342,33 +306,33 @@ fn conclude(command: impl FnOnce() -> Outcome) -> Exit {
 }
 
 fn dispatch(command: &Command, world: &World) -> Outcome {
+    let done = |()| Exit::Pass;
     match command {
-        Command::List(arguments) => list::list(arguments, world),
+        Command::List(arguments) => list::list(arguments, world).map(done),
         Command::Run(arguments) => run::run(arguments, world),
-        Command::Plan(arguments) => plan::plan(arguments, world),
+        Command::Plan(arguments) => plan::plan(arguments, world).map(done),
         Command::Verify(arguments) => verify::verify(arguments, world),
         Command::Judge(arguments) => verify::judge(arguments, world),
         Command::Report(arguments) => report::report(arguments, world),
-        Command::Export(arguments) => exchange::export(arguments, world),
-        Command::Challenge(arguments) => exchange::challenge(arguments, world),
+        Command::Export(arguments) => exchange::export(arguments, world).map(done),
+        Command::Challenge(arguments) => exchange::challenge(arguments, world).map(done),
         Command::Submit(arguments) => exchange::submit(arguments, world),
         Command::Symmetry(arguments) => symmetry::symmetry(arguments, world),
         Command::Relate(arguments) => exchange::relate(arguments, world),
         Command::Compare(arguments) => compare::compare(arguments, world),
         Command::Stability(arguments) => stability::stability(arguments, world),
-        Command::Explain(arguments) => explain::explain(arguments, world),
+        Command::Explain(arguments) => explain::explain(arguments, world).map(done),
         Command::Doctor(arguments) => doctor::doctor(arguments, world),
-        Command::Completions(arguments) => completions(arguments),
-        Command::Man(arguments) => man::man(arguments),
+        Command::Completions(arguments) => completions(arguments).map(done),
+        Command::Man(arguments) => man::man(arguments).map(done),
     }
 }
 
 /// The script of a shell, on standard output.
-fn completions(arguments: &arguments::Completions) -> Outcome {
+fn completions(arguments: &arguments::Completions) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::command(), "touchstone", &mut script);
-    output::print(&String::from_utf8_lossy(&script))?;
-    Ok(Exit::Pass)
+    output::print(&String::from_utf8_lossy(&script))
 }
 
 /// What to ask rayon for where no number of threads is given: 0, which is one a core or what
@@ -393,5 +357,5 @@ fn on_threads<T: Send>(
 ) -> Result<T, Failure> {
     let threads = threads.map_or_else(default_threads, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(Failure::usage)?.install(work)
+    pool?.install(work)
 }

@@ -1,7 +1,6 @@
 //! How `run` ends, for a person who reads ten seconds: the headline error, its bound, its cost, and a command
 //! to go on with.
 
-use ::report;
 use base::{
     gate::Verdict,
     record::{Record, Status},
@@ -28,10 +27,8 @@ pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Jud
         ("cost", Headline::new(record, None).cost()),
         ("next", next(case, &declared, spec, record, verdicts)),
     ];
-    let line = |(head, words): &(&str, String)| {
-        format!("{head:<7}{}", output::wrap(words, 100, "       ").trim_start())
-    };
-    lines.iter().filter(|(_, words)| !words.is_empty()).map(line).collect()
+    let told = lines.iter().filter(|(_, words)| !words.is_empty());
+    told.map(|(head, words)| output::hanging(head, 7, words)).collect()
 }
 
 /// The error that the card of the case shows, if the run has it, and otherwise the first number that is

@@ -3,6 +3,8 @@
 use std::io::{self, ErrorKind, Write};
 use std::panic::PanicHookInfo;
 
+use serde_json::Value;
+
 use super::Failure;
 
 /// Before the words of a bug.
@@ -39,6 +41,15 @@ pub fn print_whole(document: &str) -> Result<(), Failure> {
     write(document).map_err(|error| refused(&error))
 }
 
+/// The answer to a question, for a program as JSON or for a person.
+pub fn answer(
+    as_json: bool,
+    json: impl FnOnce() -> Value,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    if as_json { print_whole(&format!("{:#}\n", json())) } else { print(&text()) }
+}
+
 fn write(text: &str) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush())
@@ -57,7 +68,8 @@ pub fn report_bug(info: &PanicHookInfo) {
 }
 
 /// Rows under their heads, columns two spaces apart; a column of numbers stands on the right.
-pub fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
+pub fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let rows: Vec<Vec<String>> = rows.into_iter().collect();
     let width = |text: &str| text.chars().count();
     let cells = |k: usize| rows.iter().filter_map(move |row| row.get(k)).map(String::as_str);
     let widths: Vec<usize> = (0..heads.len())
@@ -73,7 +85,7 @@ pub fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
         .collect();
     let mut text = String::new();
     let heads: Vec<String> = heads.iter().map(ToString::to_string).collect();
-    for row in std::iter::once(&heads).chain(rows) {
+    for row in std::iter::once(&heads).chain(&rows) {
         let mut line = String::new();
         for (k, cell) in row.iter().enumerate() {
             let padding = " ".repeat(widths[k].saturating_sub(width(cell)));
@@ -86,16 +98,24 @@ pub fn table(heads: &[&str], rows: &[Vec<String>]) -> String {
     text
 }
 
-/// Text in lines of at most so many characters, each after `indent`.
-pub fn wrap(text: &str, columns: usize, indent: &str) -> String {
+/// Longest line of text.
+const COLUMNS: usize = 100;
+
+/// Text in lines, each after `indent`.
+pub fn wrap(text: &str, indent: &str) -> String {
     let (mut lines, mut line) = (Vec::new(), String::new());
     for word in text.split_whitespace() {
         let length = indent.chars().count() + line.chars().count() + 1 + word.chars().count();
-        if !line.is_empty() && length > columns {
+        if !line.is_empty() && length > COLUMNS {
             lines.push(std::mem::take(&mut line));
         }
         line += &format!("{}{word}", if line.is_empty() { "" } else { " " });
     }
     lines.push(line);
     lines.iter().map(|line| format!("{indent}{line}\n")).collect()
+}
+
+/// Text in lines after a head, of which those after the first begin so many characters from the left.
+pub fn hanging(head: &str, width: usize, text: &str) -> String {
+    format!("{head:<width$}{}", wrap(text, &" ".repeat(width)).trim_start())
 }

@@ -44,8 +44,8 @@ pub fn tables(cost: &Cost, breakdown: &Breakdown) -> String {
     format!(
         "\nWhere the time went, in wall seconds ({threads}); ns: nanoseconds a fluid particle and time \
          step\n\n{}\n{}",
-        output::table(&["part", "time", "share", "ns", "times"], &rows),
-        output::table(&["work and data", ""], &counts)
+        output::table(&["part", "time", "share", "ns", "times"], rows),
+        output::table(&["work and data", ""], counts)
     )
 }
 

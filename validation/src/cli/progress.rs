@@ -4,7 +4,6 @@ use std::io::{self, IsTerminal};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use ::report;
 use harness::{context::Progress, make::Done};
 use indicatif::{ProgressBar, ProgressStyle};
 

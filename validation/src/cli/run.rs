@@ -4,18 +4,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{
-    Mutex, MutexGuard, Once, PoisonError,
-    atomic::{AtomicUsize, Ordering},
-};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, Once, PoisonError};
 use std::time::{Duration, SystemTime};
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
 use base::{
     files::{self, Cell, CsvTable, FileError, OutputFolder},
-    gate::{Gate, Verdict},
+    gate::Gate,
     record::{NOT_ASKED, Profile, Record, Status},
-    spec::RunSpec,
 };
 use harness::{
     case::{self, Case, RunError},
@@ -32,7 +29,7 @@ use validation::cases;
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
-    checkpoint::{self, CHECKPOINT},
+    checkpoint::{self, Asked, CHECKPOINT},
     interrupt::Hold,
     judged,
     list::default_variant,
@@ -44,23 +41,16 @@ use super::{
 };
 
 pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
-    if let Some(file) = &arguments.specs {
-        return specs::run(file, arguments, world);
+    if let (Some(file), Some(store)) = (&arguments.specs, &arguments.store) {
+        return specs::run(file, store, arguments, world);
     }
     if let Some(path) = &arguments.resume {
         let (asked, earlier) = checkpoint::read(path, world.sources)?;
         let case = cases::find_in(world.cases, &asked.spec.case)?;
         world.check_references(&[case])?;
         let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
-        let order = Order {
-            case,
-            spec: asked.spec,
-            vtk: asked.vtk,
-            allow_long: asked.allow_long,
-            every: Some(arguments.checkpoint_every.unwrap_or(asked.every)),
-            earlier,
-        };
-        return carry_out(order, Some(folder), arguments, world);
+        let asked = Asked { every: arguments.checkpoint_every.or(asked.every), ..asked };
+        return carry_out(case, asked, earlier, Some(folder), arguments, world);
     }
     let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
     world.check_references(&[case])?;
@@ -74,36 +64,24 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         ));
     }
     let folder = Folder::of(arguments, case.name(), variant)?;
+    let sources = (world.sources)(case.name());
     let &arguments::Run { vtk, allow_long, checkpoint_every: every, .. } = arguments;
-    let order = Order { case, spec, vtk, allow_long, every, earlier: Vec::new() };
-    carry_out(order, folder, arguments, world)
+    let asked = Asked { spec, sources, every, vtk, allow_long };
+    carry_out(case, asked, Vec::new(), folder, arguments, world)
 }
 
-/// A run that was asked for.
-struct Order {
-    case: &'static dyn Case,
-    spec: RunSpec,
-    /// Number of frames for ParaView.
-    vtk: Option<u16>,
-    allow_long: bool,
-    /// Wall time between checkpoints \[s\], if there are any.
-    every: Option<u32>,
-    /// The simulations of the checkpoint that it goes on from.
-    earlier: Vec<Vec<u8>>,
-}
-
-/// Computes, writes and judges.
+/// Computes, writes and judges what was asked for; it goes on from the simulations of a checkpoint.
 fn carry_out(
-    order: Order,
+    case: &dyn Case,
+    asked: Asked,
+    earlier: Vec<Vec<u8>>,
     folder: Option<Folder>,
     arguments: &arguments::Run,
     world: &World,
 ) -> Outcome {
-    let (case, spec, vtk) = (order.case, order.spec.clone(), order.vtk);
-    let good = folder.as_ref().and_then(Folder::checkpointed);
-    let lost = Lost { good: Mutex::new(good), ..Lost::default() };
+    let lost = AtomicUsize::new(0);
     let computed = on_threads(arguments.threads, || {
-        compute(order, arguments, (folder.as_ref(), &lost), world)
+        compute(case, &asked, earlier, arguments, (folder.as_ref(), &lost), world)
     });
     let (record, last) = match computed {
         Ok(made) => made,
@@ -113,28 +91,26 @@ fn carry_out(
         }
     };
     if let Status::Interrupted { step, time } = record.status {
-        return Err(interrupted(folder.as_ref(), vtk.is_some(), step, time));
+        return Err(interrupted(folder.as_ref(), asked.vtk.is_some(), step, time));
     }
     let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();
     let is_asked = |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| why != NOT_ASKED);
     let (gates, unasked): (Vec<Gate>, Vec<Gate>) =
-        plan::gates_of(case, &spec).into_iter().partition(is_asked);
+        plan::gates_of(case, &asked.spec).into_iter().partition(is_asked);
     let verdicts: Vec<Judged> =
         gates.into_iter().map(|gate| Judged::of_record(gate, &record)).collect();
     // What was computed is not lost with a file that cannot be written: then the record is printed, and where
     // that is refused, too, its numbers are told.
-    let shown: Vec<&Judged> =
-        verdicts.iter().filter(|j| arguments.all || j.judgement.verdict != Verdict::Pass).collect();
-    let mut table = if shown.is_empty() { String::new() } else { judged::table(shown) + "\n" };
+    let mut table = judged::shown(&verdicts, arguments.all);
     if !unasked.is_empty() {
         let count = unasked.len();
         table +=
             &format!("more gates, on metrics that were not asked for (--metrics all): {count}\n\n");
     }
-    let end = outcome(case, &spec, &record, &verdicts);
+    let end = outcome(case, &asked.spec, &record, &verdicts);
     let text = format!("{}\n{table}{end}", summary(&record));
     let printed = match arguments.json || written.is_err() {
-        true => output::print_whole(&record.to_json()?),
+        true => output::print_whole(&record.to_json().map_err(Failure::bug)?),
         false => output::print(&text),
     };
     if printed.is_err() || (written.is_err() && !arguments.json) {
@@ -146,7 +122,7 @@ fn carry_out(
         folder.remove_checkpoint()?;
     }
     printed?;
-    match lost.count.into_inner() {
+    match lost.into_inner() {
         0 => Ok(exit),
         count => {
             output::say(&format!("touchstone: frames or checkpoints not written: {count}"));
@@ -172,30 +148,17 @@ fn interrupted(folder: Option<&Folder>, has_frames: bool, step: u64, time: f64) 
     Failure::interrupted(what)
 }
 
-/// Frames and checkpoints that could not be written, and when a checkpoint was last.
-#[derive(Default)]
-struct Lost {
-    count: AtomicUsize,
-    good: Mutex<Option<SystemTime>>,
-}
-
-impl Lost {
-    fn good(&self) -> MutexGuard<'_, Option<SystemTime>> {
-        self.good.lock().unwrap_or_else(PoisonError::into_inner)
+/// Says so of the first frame or checkpoint that could not be written.
+fn tell_lost(error: &RunError, folder: Option<&Folder>, lost: &AtomicUsize) {
+    if lost.fetch_add(1, Ordering::Relaxed) > 0 {
+        return;
     }
-
-    /// Says so of the first of them.
-    fn tell(&self, error: &RunError, folder: Option<&Folder>) {
-        if self.count.fetch_add(1, Ordering::Relaxed) > 0 {
-            return;
-        }
-        let good = folder.zip(*self.good()).map_or(String::new(), |(folder, time)| {
-            let (path, time) =
-                (folder.output.path().join(CHECKPOINT), format_rfc3339_seconds(time));
-            format!("; the last good checkpoint is {} of {time}", path.display())
-        });
-        output::say(&format!("touchstone: {error}; the run goes on{good}"));
-    }
+    let good = folder.and_then(|folder| Some((folder.checkpoint(), folder.checkpointed()?)));
+    let good = good.map_or(String::new(), |(path, time)| {
+        let time = format_rfc3339_seconds(time);
+        format!("; the last good checkpoint is {} of {time}", path.display())
+    });
+    output::say(&format!("touchstone: {error}; the run goes on{good}"));
 }
 
 /// The settings that were given, `--rows` among them.
@@ -227,13 +190,14 @@ fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
 
 /// The record, and all fields of the particles at the end if there is a folder for them.
 fn compute(
-    Order { case, spec, vtk, allow_long, every, earlier }: Order,
+    case: &dyn Case,
+    asked: &Asked,
+    earlier: Vec<Vec<u8>>,
     arguments: &arguments::Run,
-    (folder, lost): (Option<&Folder>, &Lost),
+    (folder, lost): (Option<&Folder>, &AtomicUsize),
     world: &World,
 ) -> Result<(Record, Option<Profile>), Failure> {
-    let _hold = every.map(|_| Hold::new());
-    let sources = (world.sources)(case.name());
+    let _hold = asked.every.map(|_| Hold::new());
     let bar = Bar::new();
     let last = Mutex::default();
     let told = Once::new(); // a run may consist of several simulations, the first of which is the longest
@@ -243,26 +207,20 @@ fn compute(
         }
     };
     let show = |progress: Progress| bar.show_run(progress);
-    let lose = |error: &RunError| lost.tell(error, folder);
-    let frames = folder.zip(vtk).map(|(folder, count)| (folder.vtk(), count.into()));
-    let asked = |every| {
-        let (spec, sources) = (spec.clone(), sources.clone());
-        checkpoint::Asked { spec, sources, every, vtk, allow_long }
-    };
-    let asked = folder.zip(every.map(asked));
-    let write = |simulations: &[Vec<u8>]| match &asked {
-        Some((folder, asked)) => checkpoint::write(&folder.output, asked, simulations)
-            .map(|()| *lost.good() = Some(SystemTime::now())),
+    let lose = |error: &RunError| tell_lost(error, folder, lost);
+    let frames = folder.zip(asked.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
+    let write = |simulations: &[Vec<u8>]| match folder {
+        Some(folder) => checkpoint::write(&folder.output, asked, simulations),
         None => Ok(()),
     };
-    let every = every.map(|seconds| Duration::from_secs(seconds.into()));
+    let every = asked.every.map(|seconds| Duration::from_secs(seconds.into()));
     let checkpoints = every.map(|every| Checkpoints::new(every, earlier, &write));
     let context = Context {
         threads: rayon::current_num_threads(),
         frames,
         checkpoints: checkpoints.as_ref(),
         lost: Some(&lose),
-        allow_long,
+        allow_long: asked.allow_long,
         profile: arguments.profile,
         estimate: Some(&tell),
         at_the_end: folder.map(|_| &last),
@@ -270,10 +228,10 @@ fn compute(
         interrupt: Some(world.interrupt),
         ..Context::default()
     };
-    let record = case.run(&spec, &context);
+    let record = case.run(&asked.spec, &context);
     bar.clear();
     let mut record = record?;
-    record.manifest.sources = sources;
+    record.manifest.sources = asked.sources.clone();
     Ok((record, last.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }
 
@@ -312,12 +270,15 @@ impl Folder {
 
     /// When the checkpoint was written that is there.
     fn checkpointed(&self) -> Option<SystemTime> {
-        let file = fs::metadata(self.output.path().join(CHECKPOINT));
-        file.and_then(|file| file.modified()).ok()
+        fs::metadata(self.checkpoint()).and_then(|file| file.modified()).ok()
+    }
+
+    fn checkpoint(&self) -> PathBuf {
+        self.output.path().join(CHECKPOINT)
     }
 
     fn remove_checkpoint(&self) -> Result<(), FileError> {
-        let path = self.output.path().join(CHECKPOINT);
+        let path = self.checkpoint();
         match fs::remove_file(&path) {
             Err(reason) if reason.kind() != io::ErrorKind::NotFound => {
                 Err(FileError::File { path, reason })
@@ -352,18 +313,19 @@ const RECORD: &str = "record.json";
 /// Writes the record, what can be drawn from it, and the particles at the end; returns the names.
 fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<String>, Failure> {
     let Folder { output, .. } = folder;
-    output.write(RECORD, record.to_json()?.as_bytes())?;
+    output.write(RECORD, record.to_json().map_err(Failure::bug)?.as_bytes())?;
     let mut names = vec![RECORD.to_string()];
     let curves = curves(record);
-    if !curves.is_empty() {
-        output.write("profile.csv", &profile_csv(&curves)?)?;
-        let path = output.path().join("profile.png");
-        let refused = |reason| FileError::File { path: path.clone(), reason };
-        report::png(&figure(record, &curves), &path).map_err(refused)?;
-        names.extend(["profile.csv".into(), "profile.png".into()]);
-    } else if let Some(last) = last {
-        output.write("profile.csv", &series_csv(&last)?)?;
+    let shown = if curves.is_empty() { last } else { Some(of_curves(&curves)) };
+    if let Some(shown) = shown {
+        output.write("profile.csv", &series_csv(&shown)?)?;
         names.push("profile.csv".into());
+    }
+    if !curves.is_empty() {
+        let path = output.path().join("profile.png");
+        report::png(&figure(record, &curves), &path)
+            .map_err(|reason| FileError::File { path, reason })?;
+        names.push("profile.png".into());
     }
     for (name, profile) in &record.profiles {
         // Curves at one time are in profile.csv, particles in the frames.
@@ -412,14 +374,13 @@ fn curves(record: &Record) -> Vec<Curve> {
     curves
 }
 
-fn profile_csv(curves: &[Curve]) -> Result<Vec<u8>, FileError> {
-    let mut table = CsvTable::new(&["t[s]", "y[m]", "u[m/s]", "u_exact[m/s]"])?;
-    for Curve { time, points, .. } in curves {
-        for [y, u, exact] in points {
-            table.numbers(&[*time, *y, *u, *exact])?;
-        }
-    }
-    Ok(table.into_bytes())
+/// All curves, one below the other.
+fn of_curves(curves: &[Curve]) -> Profile {
+    let of_curve = |Curve { time, points, .. }: &Curve| {
+        points.iter().map(|[y, u, exact]| [*time, *y, *u, *exact]).collect::<Vec<_>>()
+    };
+    let rows: Vec<[f64; 4]> = curves.iter().flat_map(of_curve).collect();
+    Profile::of_rows(&[("t", "s"), ("y", "m"), ("u", "m/s"), ("u_exact", "m/s")], &rows)
 }
 
 /// The columns as they are; a number that is not finite leaves a gap.
@@ -464,7 +425,7 @@ fn summary(record: &Record) -> String {
     let numerics: Vec<String> =
         record.numerics.iter().map(|(name, number)| format!("{name} {}", value(number))).collect();
     let mut text = format!("{case}, variant {variant}\n");
-    text += &output::wrap(&numerics.join(", "), 100, "    ");
+    text += &output::wrap(&numerics.join(", "), "    ");
     let rate = cost.particle_rhs as f64 / cost.wall_s.max(1e-9) / 1e6;
     text += &format!(
         "    {} particles, {} steps in {}, {rate:.2} million particle right-hand sides a second\n\n",
@@ -483,7 +444,7 @@ fn absent(record: &Record) -> String {
         names.entry(reason).or_default().push(name);
     }
     let line = |(reason, names): (&&str, &Vec<&str>)| {
-        output::wrap(&format!("absent: {} ({reason})", names.join(", ")), 100, "    ")
+        output::wrap(&format!("absent: {} ({reason})", names.join(", ")), "    ")
     };
     let lines: String = names.iter().map(line).collect();
     if lines.is_empty() { lines } else { format!("\n{lines}") }
@@ -491,12 +452,11 @@ fn absent(record: &Record) -> String {
 
 /// Metrics `name@tau` as a table over tau, the others below.
 fn metrics(record: &Record) -> String {
-    let (mut times, mut names, mut single): (Vec<&str>, Vec<&str>, Vec<Vec<String>>) =
-        Default::default();
+    let (mut times, mut of_times, mut single) = (Vec::new(), BTreeMap::new(), Vec::new());
     for (name, metric) in &record.metrics {
         if let Some((name, time)) = name.split_once('@') {
             times.push(time);
-            names.push(name);
+            of_times.entry(name).or_insert(metric);
         } else {
             let value = report::sig(metric.value, 4);
             single.push(vec![name.clone(), value, metric.unit.clone(), metric.formula.clone()]);
@@ -505,34 +465,26 @@ fn metrics(record: &Record) -> String {
     let number = |text: &&str| text.parse().unwrap_or(f64::NAN);
     times.sort_by(|a, b| number(a).total_cmp(&number(b)).then(a.cmp(b)));
     times.dedup();
-    names.sort();
-    names.dedup();
     let value = |name: &str, time: &str| {
         let metric = record.metrics.get(&format!("{name}@{time}"));
         metric.map(|metric| report::sig(metric.value, 4)).unwrap_or_default()
     };
-    let rows: Vec<Vec<String>> = times
-        .iter()
-        .map(|time| {
-            let values = names.iter().map(|name| value(name, time));
-            std::iter::once(time.to_string()).chain(values).collect()
-        })
-        .collect();
     // Times of channels are νt/L²; those of other cases are in the units that their formulas name.
     let at = if curves(record).is_empty() { "at" } else { "at νt/L²" };
-    let heads: Vec<&str> = std::iter::once(at).chain(names.iter().copied()).collect();
+    let heads: Vec<&str> = std::iter::once(at).chain(of_times.keys().copied()).collect();
+    let row = |time: &&str| {
+        let values = of_times.keys().map(|name| value(name, time));
+        std::iter::once(time.to_string()).chain(values).collect()
+    };
     let mut text = String::new();
-    if !rows.is_empty() {
-        text += &output::table(&heads, &rows);
-        for name in &names {
-            let of_name = |(key, _): &(&String, _)| key.split_once('@').map(|k| k.0) == Some(*name);
-            if let Some((_, metric)) = record.metrics.iter().find(of_name) {
-                text += &format!("    {name} = {} [{}]\n", metric.formula, metric.unit);
-            }
+    if !times.is_empty() {
+        text += &output::table(&heads, times.iter().map(row));
+        for (name, metric) in &of_times {
+            text += &format!("    {name} = {} [{}]\n", metric.formula, metric.unit);
         }
         text.push('\n');
     }
-    text + &output::table(&["metric", "value", "unit", "formula"], &single)
+    text + &output::table(&["metric", "value", "unit", "formula"], single)
 }
 
 #[cfg(test)]

@@ -16,10 +16,7 @@ use validation::cases;
 
 use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
 
-pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
-    let Some(path) = &arguments.store else {
-        return Err(Failure::usage("--specs needs --store DIR"));
-    };
+pub fn run(file: &Path, store: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     let (planned, refused) = planned(file, arguments, world)?;
     tell(&refused);
     if planned.is_empty() {
@@ -31,53 +28,45 @@ pub fn run(file: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
     };
     let jobs = plan::merged(planned).into_iter().map(job).collect::<Result<Vec<Job>, _>>()?;
     world.check_references(&jobs.iter().map(|job| job.case).collect::<Vec<_>>())?;
-    let store = Store::open(path)?;
+    let store = Store::open(store)?;
     let allow_long = arguments.allow_long;
     // Nothing is timed here.
     let making = Making { store: Some(&store), allow_long, ..world.making(Tier::Quick) };
     let made = world.make(&jobs, making, arguments.threads, None)?;
     // What the store could not keep is not lost.
     for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
-        output::print_whole(&record.to_json()?)?;
+        output::print_whole(&record.to_json().map_err(Failure::bug)?)?;
     }
     let (runs, lines) = (counted(jobs.len(), "run", "runs"), counted(lines, "line", "lines"));
-    let words = format!("{runs} in {lines}: {}", ended(&made));
+    let (ends, exit) = ended(&made, !refused.is_empty());
+    let words = format!("{runs} in {lines}: {ends}");
     if made.interrupted {
         let rest = "the same command makes the missing runs";
         return Err(Failure::interrupted(format!("{words}; {rest}")));
     }
     output::say(&format!("{words}; {}", store.path().display()));
-    Ok(exit(&made, !refused.is_empty()))
+    Ok(exit)
 }
 
-fn count(made: &Made, of: fn(&Status) -> bool) -> usize {
-    made.records.values().filter(|record| of(&record.status)).count()
-}
-
-fn is_refused(status: &Status) -> bool {
-    matches!(status, Status::Refused { .. })
-}
-
-fn is_diverged(status: &Status) -> bool {
-    matches!(status, Status::Diverged { .. })
-}
-
-fn ended(made: &Made) -> String {
-    format!(
-        "{} completed, {} diverged, {} refused; {} of them were in the store before",
-        count(made, |status| *status == Status::Completed),
-        count(made, is_diverged),
-        count(made, is_refused),
+/// How runs ended: in words, and the exit code of the worst of all lines.
+fn ended(made: &Made, is_a_line_refused: bool) -> (String, Exit) {
+    let count =
+        |of: fn(&Status) -> bool| made.records.values().filter(|record| of(&record.status)).count();
+    let completed = count(|status| *status == Status::Completed);
+    let diverged = count(|status| matches!(status, Status::Diverged { .. }));
+    let refused = count(|status| matches!(status, Status::Refused { .. }));
+    let words = format!(
+        "{completed} completed, {diverged} diverged, {refused} refused; {} of them were in the store before",
         made.reused
-    )
-}
-
-/// The worst of all lines.
-fn exit(made: &Made, is_a_line_refused: bool) -> Exit {
-    let refused = is_a_line_refused || count(made, is_refused) > 0;
-    let diverged = count(made, is_diverged) > 0;
-    let ends = [trouble(made), diverged.then_some(Exit::Diverged), refused.then_some(Exit::Usage)];
-    ends.into_iter().flatten().max_by_key(|exit| *exit as u8).unwrap_or(Exit::Pass)
+    );
+    let is_refused = is_a_line_refused || refused > 0;
+    let ends = [
+        trouble(made),
+        (diverged > 0).then_some(Exit::Diverged),
+        is_refused.then_some(Exit::Usage),
+    ];
+    let worst = ends.into_iter().flatten().max_by_key(|exit| *exit as u8);
+    (words, worst.unwrap_or(Exit::Pass))
 }
 
 /// The runs of the lines that were asked for, and what is wrong with the other lines.

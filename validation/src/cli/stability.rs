@@ -1,6 +1,5 @@
 //! `stability`: the largest stable time steps that cases declare, measured and by theory.
 
-use ::report::{self, Cell};
 use harness::{
     case::Case,
     declare::StepLimit,
@@ -10,6 +9,7 @@ use harness::{
     runs::{JudgedRun, Runs},
     studies::limit_of_theory,
 };
+use report::Cell;
 use serde_json::{Value, json};
 
 use validation::stiffness::{self, Row};
@@ -26,7 +26,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
     world.check_references(&cases)?;
     if arguments.theory {
-        return theory(&cases, arguments.json);
+        return theory(&cases, arguments.json).map(|()| Exit::Pass);
     }
     let mut declared = Vec::new();
     for case in cases {
@@ -52,17 +52,13 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         Some(JudgedRun::new(job.planned, record))
     });
     let runs = Runs::new(found.collect());
-    if arguments.json {
-        let all = declared.iter().map(|declared| json(declared, &runs)).collect();
-        output::print_whole(&format!("{:#}\n", Value::Array(all)))?;
-    } else {
-        output::print(&(table(&declared, &runs) + "\n"))?;
-    }
+    let all = || declared.iter().map(|declared| json(declared, &runs)).collect();
+    output::answer(arguments.json, all, || table(&declared, &runs))?;
     Ok(trouble(&made).unwrap_or(Exit::Pass))
 }
 
 /// What limits the step of each variant, without a run.
-fn theory(cases: &[&'static dyn Case], as_json: bool) -> Outcome {
+fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for case in cases {
         rows.extend(Row::of(*case)?);
@@ -71,18 +67,14 @@ fn theory(cases: &[&'static dyn Case], as_json: bool) -> Outcome {
         let words = format!("{} has no rule for its time step", cases[0].name());
         return Err(Failure::usage(words));
     }
-    if as_json {
-        let all = rows.iter().map(row_json).collect();
-        output::print_whole(&format!("{:#}\n", Value::Array(all)))?;
-    } else {
+    let text = || {
         let table = stiffness::table(&rows);
         let heads: Vec<&str> = table.columns.iter().map(|column| &*column.head).collect();
         let cells = |row: &Vec<Cell>| row.iter().map(|cell| cell.text.replace('`', "")).collect();
-        let rows: Vec<Vec<String>> = table.rows.iter().map(cells).collect();
-        let reading = output::wrap(&stiffness::READING.replace('*', ""), 100, "");
-        output::print(&format!("{}\n{reading}", output::table(&heads, &rows)))?;
-    }
-    Ok(Exit::Pass)
+        let reading = output::wrap(&stiffness::READING.replace('*', ""), "");
+        format!("{}\n{reading}", output::table(&heads, table.rows.iter().map(cells)))
+    };
+    output::answer(as_json, || rows.iter().map(row_json).collect(), text)
 }
 
 fn row_json(row: &Row) -> Value {
@@ -112,28 +104,25 @@ fn json(Declared { case, limit }: &Declared, runs: &Runs) -> Value {
 }
 
 fn table(declared: &[Declared], runs: &Runs) -> String {
-    let rows: Vec<Vec<String>> = declared
-        .iter()
-        .map(|Declared { case, limit }| {
-            let ratio = limit_of_theory(limit, runs);
-            let number = |value: Option<f64>, digits| {
-                value.map_or("none found".to_string(), |value| report::sig(value, digits))
-            };
-            vec![
-                format!("{} {}", case.name(), limit.variant),
-                limit.scene.clone(),
-                report::sig(limit.theory, 4),
-                number(ratio.map(|ratio| ratio * limit.theory), 4),
-                number(ratio, 3),
-                report::sig(limit.default_at / limit.theory_at, 3),
-            ]
-        })
-        .collect();
+    let row = |Declared { case, limit }: &Declared| {
+        let ratio = limit_of_theory(limit, runs);
+        let number = |value: Option<f64>, digits| {
+            value.map_or("none found".to_string(), |value| report::sig(value, digits))
+        };
+        vec![
+            format!("{} {}", case.name(), limit.variant),
+            limit.scene.clone(),
+            report::sig(limit.theory, 4),
+            number(ratio.map(|ratio| ratio * limit.theory), 4),
+            number(ratio, 3),
+            report::sig(limit.default_at / limit.theory_at, 3),
+        ]
+    };
     let heads =
         ["variant", "scene", "theory [s]", "measured [s]", "measured/theory", "default/theory"];
     format!(
         "{}\nTheory: linear stability on a lattice at rest. Measured: by bisection, with the criterion that \
-         the report states for each case.",
-        output::table(&heads, &rows)
+         the report states for each case.\n",
+        output::table(&heads, declared.iter().map(row))
     )
 }

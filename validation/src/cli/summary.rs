@@ -27,8 +27,7 @@ pub fn summary(suite: &Suite) -> String {
         "worst gate",
         "margin",
     ];
-    let rows: Vec<Vec<String>> = suite.cases.iter().map(row).collect();
-    let mut text = output::table(&heads, &rows);
+    let mut text = output::table(&heads, suite.cases.iter().map(row));
     text += "The error is that of the best variant, its cost that on one core; the margin is the unused\n\
              share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
     text += &failures(suite);
@@ -93,7 +92,7 @@ fn failures(suite: &Suite) -> String {
     if !more.is_empty() {
         let words = report::counted(more.len(), "more gate fails", "more gates fail");
         let words = format!("{words}: {}", more.join(", "));
-        text += &format!("\n{}", output::wrap(&words, 100, ""));
+        text += &format!("\n{}", output::wrap(&words, ""));
     }
     text
 }

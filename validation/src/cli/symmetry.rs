@@ -24,7 +24,7 @@ pub fn row(case: &dyn Case, spec: &RunSpec, by: Relation, found: &Difference) ->
 pub fn show(rows: Vec<Vec<String>>) -> Result<(), Failure> {
     let heads = ["case", "variant", "relation", "observers", "difference", "round-off", "where"];
     let units = "\nDifferences of places [h], velocities [c0] and densities [rho0].\n";
-    output::print(&(output::table(&heads, &rows) + units))
+    output::print(&(output::table(&heads, rows) + units))
 }
 
 pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::time::Instant;
 
-use ::report;
 use harness::{
     case::{Case, Tier},
     make::{self, Making, Stored},
