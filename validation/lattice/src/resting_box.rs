@@ -141,7 +141,7 @@ fn stiffness(s: &BoxSettings) -> f64 {
 fn modes(method: &Method, s: &BoxSettings) -> Vec<Mode> {
     let (nu, alpha, delta) = (1.0 / stiffness(s), s.alpha, s.delta);
     let medium = time_step::Medium { c0: 1.0, h: 1.0, nu, alpha, delta };
-    method.modes([s.h_over_dx, ETA2], s.n, &medium)
+    time_step::modes(&method.square([s.h_over_dx, ETA2]), s.n, &medium)
 }
 
 /// What the settings say, and theory.

@@ -105,7 +105,8 @@ impl WaveSettings {
     /// ω of the wave, from the gradient symbol.
     fn frequency(&self, method: &Method<Symmetric>) -> f64 {
         let h = self.h_over_dx / N as f64;
-        let g = method.gradient(self.h_over_dx, Vector2::new(TAU / N as f64, 0.0)).norm() / h;
+        let lattice = method.square([self.h_over_dx, 0.0]);
+        let g = lattice.gradient(Vector2::new(TAU / N as f64, 0.0)).norm() / h;
         let Material { bulk, shear, .. } = RUBBER;
         let modulus = if self.transverse { shear } else { bulk + 4.0 / 3.0 * shear };
         g * modulus.sqrt()

@@ -10,11 +10,7 @@ mod terms;
 mod tests;
 
 use base::mutation::{Constant, Disorder, Mutation};
-use maths::theory::{
-    Stepping,
-    lattice::SquareLattice,
-    time_step::{self, Mode},
-};
+use maths::theory::{Stepping, lattice::SquareLattice, time_step};
 use nalgebra::Vector2;
 use solver::{
     Domain, Integrator as _, Kernel, Numbers, Particle, PlaneWall, Role, Scene, SceneError, Scheme,
@@ -76,38 +72,32 @@ impl<X: Numbers> Parts<X> {
         particles: Vec<Particle<X>>,
         context: &Context,
     ) -> Self {
-        let (mirrors, surface, bodies) = (Vec::new(), Vec::new(), Vec::new());
-        let limits = solver::Limits::default();
-        let &Context { threads, mutation, disorder, ref outline, .. } = context;
-        let (skin, outline) = (None, outline.clone());
-        let particles = match context.playback {
-            Some(playback) => playback.particles(particles),
-            None => particles,
-        };
         Self {
             medium,
             domain,
-            particles,
-            mirrors,
-            surface,
-            bodies,
-            skin,
-            limits,
-            threads,
-            mutation,
-            disorder,
-            outline,
+            particles: match context.playback {
+                Some(playback) => playback.particles(particles),
+                None => particles,
+            },
+            mirrors: Vec::new(),
+            surface: Vec::new(),
+            bodies: Vec::new(),
+            skin: None,
+            limits: solver::Limits::default(),
+            threads: context.threads,
+            mutation: context.mutation,
+            disorder: context.disorder,
+            outline: context.outline.clone(),
         }
     }
 }
 
 /// The scene of a scheme with these parts.
-pub fn scene<S>(mut parts: Parts<S::Extra>) -> Scene<S>
-where
-    S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary>,
-{
+pub fn scene<S: Standard>(mut parts: Parts<S::Extra>) -> Scene<S> {
     mutate(&mut parts);
-    let feet = feet(&parts);
+    // From each wall particle to the point of the surface that is nearest to it [m], if walls read that.
+    let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
+    let feet = pairs.map(|(p, point)| point - p.position).collect();
     let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation, .. } = parts;
     let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
     let walls = S::Walls::new(&medium, mirrors);
@@ -121,15 +111,6 @@ where
     }
     scene
 }
-
-/// From each wall particle to the point of the surface that is nearest to it \[m\], if walls read that.
-fn feet<X>(parts: &Parts<X>) -> Vec<Vector2<f64>> {
-    let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
-    pairs.map(|(p, point)| point - p.position).collect()
-}
-
-/// h/dx and η²/h².
-type Lattice = [f64; 2];
 
 fn weight<K: Kernel>(h: f64, r2: f64) -> f64 {
     Smoothing::<K>::new(h).w(r2)
@@ -180,7 +161,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             support: S::Kernel::SUPPORT,
             theory: S::Integrator::THEORY,
             limit: None,
-            uses: [S::Forces::uses(), S::Drift::uses(), S::Walls::uses()].concat(),
+            uses: [&*S::Forces::uses(), &*S::Drift::uses(), S::Walls::USES].concat(),
             build,
             weight: weight::<S::Kernel>,
             lattice: SquareLattice::of::<S::Kernel>,
@@ -213,37 +194,16 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
         }
     }
 
-    /// The square lattice as its forces see it.
-    fn square(&self, [h_over_dx, eta2_over_h2]: Lattice) -> SquareLattice {
+    /// The square lattice with these h/dx and η²/h², as its forces see it.
+    pub fn square(&self, [h_over_dx, eta2_over_h2]: [f64; 2]) -> SquareLattice {
         let lattice = (self.lattice)(h_over_dx, eta2_over_h2);
         if self.is_corrected { lattice.corrected() } else { lattice }
     }
 
-    /// The wave with this phase difference between neighbouring particles \[rad\], on a square lattice with
-    /// these h/dx and η²/h².
-    pub fn mode(&self, lattice: Lattice, theta: Vector2<f64>, medium: &time_step::Medium) -> Mode {
-        Mode::new(&self.square(lattice), theta, medium)
-    }
-
-    /// g(k) h of the gradient on a square lattice with this h/dx, for a wave of phase k dx \[rad\].
-    pub fn gradient(&self, h_over_dx: f64, phase: Vector2<f64>) -> Vector2<f64> {
-        self.square([h_over_dx, 0.0]).gradient(phase)
-    }
-
-    /// The factor by which the method multiplies a uniform gradient on a square lattice with this
-    /// h/dx: G₁ = Σ V F x².
-    pub fn gradient_factor(&self, h_over_dx: f64) -> f64 {
-        self.square([h_over_dx, 0.0]).gradient_factor()
-    }
-
-    /// The waves of a periodic square lattice of n × n particles with these h/dx and η²/h².
-    pub fn modes(&self, lattice: Lattice, n: usize, medium: &time_step::Medium) -> Vec<Mode> {
-        time_step::modes(&self.square(lattice), n, medium)
-    }
-
-    /// The limits of a step by these waves.
-    pub fn limits(&self, lattice: Lattice, n: usize, medium: &time_step::Medium) -> Limits {
-        Limits::of(&self.modes(lattice, n, medium), self.theory)
+    /// The limits of a step by the waves of a periodic square lattice of n × n particles with these h/dx and
+    /// η²/h².
+    pub fn limits(&self, lattice: [f64; 2], n: usize, medium: &time_step::Medium) -> Limits {
+        Limits::of(&time_step::modes(&self.square(lattice), n, medium), self.theory)
     }
 }
 

@@ -21,16 +21,17 @@ pub trait FromMedium: Sized {
     }
 }
 
-/// `Type [generics] (settings that it reads) = |medium| value`.
+/// `Type [generics] (settings that it reads; the terms inside it) = |medium| value`.
 macro_rules! from_medium {
-    ($($type:ty [$($generics:tt)*] ($($knob:ident),*) = $new:expr;)+) => {$(
+    ($($type:ty [$($generics:tt)*] ($($knob:ident),* $(; $($inner:ident),+)?) = $new:expr;)+) => {$(
         impl<$($generics)*> FromMedium for $type {
             fn new(medium: &Medium) -> Self {
                 let new: fn(&Medium) -> Self = $new;
                 new(medium)
             }
             fn uses() -> Vec<Knob> {
-                vec![$(Knob::$knob),*]
+                let own = vec![$(Knob::$knob),*];
+                [own $(, $($inner::uses()),+)?].concat()
             }
         }
     )+};
@@ -61,76 +62,22 @@ from_medium! {
     ShiftAdvection [] (Shift) = |m| ShiftAdvection(Shifting::new(m.shift, m.h, m.w_at_spacing));
     JaumannRate [] () = |m| JaumannRate { shear_modulus: m.shear_modulus };
     ConsistentJaumannRate [] () = |m| Self(JaumannRate::new(m));
+    Pressure<E, R> [E: FromMedium, R: FromMedium] (; R) =
+        |m| Self { eos: E::new(m), tensile: R::new(m) };
+    CauchyStress<E, R> [E: FromMedium, R: FromMedium] (; R) =
+        |m| Self { eos: E::new(m), tensile: R::new(m) };
+    ConjugateStress<E, R> [E: FromMedium, R: FromMedium] (; R) =
+        |m| Self { eos: E::new(m), tensile: R::new(m) };
+    Split<E, T> [E: FromMedium, T: FromMedium] (; E, T) =
+        |m| Self(E::new(m), T::new(m), m.explicit_limit());
+    FluidPairs<T> [T: FromMedium] (; T) = |m| Self(T::new(m));
+    NoSlipImages<T> [T: FromMedium] (; T) = |m| Self(T::new(m));
+    (A, B) [A: FromMedium, B: FromMedium] (; A, B) = |m| (A::new(m), B::new(m));
+    (A, B, C) [A: FromMedium, B: FromMedium, C: FromMedium] (; A, B, C) =
+        |m| (A::new(m), B::new(m), C::new(m));
+    (A, B, C, D) [A: FromMedium, B: FromMedium, C: FromMedium, D: FromMedium] (; A, B, C, D) =
+        |m| (A::new(m), B::new(m), C::new(m), D::new(m));
 }
-
-impl<E: FromMedium, R: FromMedium> FromMedium for Pressure<E, R> {
-    fn new(medium: &Medium) -> Self {
-        Self { eos: E::new(medium), tensile: R::new(medium) }
-    }
-    fn uses() -> Vec<Knob> {
-        R::uses()
-    }
-}
-
-impl<E: FromMedium, T: FromMedium> FromMedium for Split<E, T> {
-    fn new(medium: &Medium) -> Self {
-        Self(E::new(medium), T::new(medium), medium.explicit_limit())
-    }
-    fn uses() -> Vec<Knob> {
-        [E::uses(), T::uses()].concat()
-    }
-}
-
-impl<T: FromMedium> FromMedium for FluidPairs<T> {
-    fn new(medium: &Medium) -> Self {
-        Self(T::new(medium))
-    }
-    fn uses() -> Vec<Knob> {
-        T::uses()
-    }
-}
-
-impl<T: FromMedium> FromMedium for NoSlipImages<T> {
-    fn new(medium: &Medium) -> Self {
-        Self(T::new(medium))
-    }
-    fn uses() -> Vec<Knob> {
-        T::uses()
-    }
-}
-
-impl<E: FromMedium, R: FromMedium> FromMedium for CauchyStress<E, R> {
-    fn new(medium: &Medium) -> Self {
-        Self { eos: E::new(medium), tensile: R::new(medium) }
-    }
-    fn uses() -> Vec<Knob> {
-        R::uses()
-    }
-}
-
-impl<E: FromMedium, R: FromMedium> FromMedium for ConjugateStress<E, R> {
-    fn new(medium: &Medium) -> Self {
-        Self { eos: E::new(medium), tensile: R::new(medium) }
-    }
-    fn uses() -> Vec<Knob> {
-        R::uses()
-    }
-}
-
-macro_rules! tuples_from_medium {
-    ($(($($member:ident),+))+) => {$(
-        impl<$($member: FromMedium),+> FromMedium for ($($member,)+) {
-            fn new(medium: &Medium) -> Self {
-                ($($member::new(medium),)+)
-            }
-            fn uses() -> Vec<Knob> {
-                [$($member::uses()),+].concat()
-            }
-        }
-    )+};
-}
-
-tuples_from_medium! { (A, B) (A, B, C) (A, B, C, D) }
 
 /// Where the first row of boundary particles lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,12 +109,10 @@ pub trait Boundary: Sized {
     const NAME: &'static str;
     /// Its boundary particles.
     const FIRST_ROW: FirstRow;
+    /// The settings that only some walls read and these do.
+    const USES: &'static [Knob] = &[];
     /// The walls.
     fn new(medium: &Medium, mirrors: Vec<PlaneWall>) -> Self;
-    /// The settings that only some walls read and these do.
-    fn uses() -> Vec<Knob> {
-        Vec::new()
-    }
 }
 
 impl Boundary for Open {
@@ -181,11 +126,9 @@ impl Boundary for Open {
 impl Boundary for Ghosts {
     const NAME: &'static str = "ghosts";
     const FIRST_ROW: FirstRow = FirstRow::Nowhere;
+    const USES: &'static [Knob] = &[Knob::WallCurvature];
     fn new(_: &Medium, walls: Vec<PlaneWall>) -> Self {
         Self { walls }
-    }
-    fn uses() -> Vec<Knob> {
-        vec![Knob::WallCurvature]
     }
 }
 
@@ -226,10 +169,8 @@ impl Boundary for ExtrapolatingWall<Tait, NoSlip> {
 impl Boundary for ExtrapolatingWall<Tait> {
     const NAME: &'static str = "extrapolating-wall";
     const FIRST_ROW: FirstRow = FirstRow::Behind;
+    const USES: &'static [Knob] = &[Knob::WallGravity];
     fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
         Self { least_pressure: 0.0, ..Self::new(medium.eos, medium.wall_acceleration) }
-    }
-    fn uses() -> Vec<Knob> {
-        vec![Knob::WallGravity]
     }
 }

@@ -8,7 +8,7 @@ use base::{
     record::*,
 };
 use harness::{case::*, context::Context, method::*, simulate};
-use maths::theory::time_step;
+use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
 use schemes::lattice::summing_step;
 use solver::{Domain, EquationOfState, Particle, Stepper, Tait};
@@ -101,7 +101,8 @@ impl Subject {
     fn symbol(&self, method: &Method, s: &OperatorSettings, weight: &dyn Fn(f64) -> f64) -> f64 {
         let (ratio, dx) = (s.h_over_dx, 1.0 / s.n as f64);
         let phase = K * dx;
-        let corrected = if self.is_corrected { method.gradient_factor(ratio) } else { 1.0 };
+        let corrected =
+            if self.is_corrected { method.square([ratio, 0.0]).gradient_factor() } else { 1.0 };
         match self.operator {
             Operator::Density => {
                 let reach = (method.support * ratio).ceil() as i32;
@@ -113,11 +114,12 @@ impl Subject {
             Operator::Laplacian => {
                 let eta2 = if self.is_corrected { 0.0 } else { ETA2 };
                 let unit = time_step::Medium { c0: 1.0, h: 1.0, nu: 1.0, alpha: 0.0, delta: 0.0 };
-                let mode = method.mode([ratio, eta2], Vector2::repeat(phase), &unit);
+                let lattice = method.square([ratio, eta2]);
+                let mode = Mode::new(&lattice, Vector2::repeat(phase), &unit);
                 mode.viscous / (2.0 * (phase * ratio).powi(2)) / corrected
             }
             Operator::Gradient | Operator::Divergence => {
-                let symbol = method.gradient(ratio, Vector2::repeat(phase)).x;
+                let symbol = method.square([ratio, 0.0]).gradient(Vector2::repeat(phase)).x;
                 symbol / (phase * ratio) / corrected
             }
         }

@@ -14,7 +14,7 @@ use harness::{
     runner::{self, Drive},
     simulate,
 };
-use maths::theory::time_step::{self, Mode};
+use maths::theory::time_step::{self, Mode, modes};
 use nalgebra::Vector2;
 use solver::{EquationOfState, Flow, Observer, Stepper, Tait};
 
@@ -72,7 +72,7 @@ impl Wave {
         let (dx, h) = (s.length / s.n as f64, s.h_over_dx * s.length / s.n as f64);
         let turn = std::f64::consts::TAU / s.n as f64;
         let theta = Vector2::new(s.kx as f64, s.ky as f64) * turn;
-        let lattice = [s.h_over_dx, s.eta2_over_h2];
+        let lattice = method.square([s.h_over_dx, s.eta2_over_h2]);
         let density = s.rho * (1.0 + s.compression);
         let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
         // A background pressure takes p to 0 at this density: a displacement then meets a pressure of its own
@@ -89,11 +89,11 @@ impl Wave {
         };
         let waves =
             time_step::Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
-        let mode = method.mode(lattice, theta, &waves);
+        let mode = Mode::new(&lattice, theta, &waves);
         let step = Step::courant(s.courant, h, [sound_speed, 0.0]).viscous(s.viscous, h, s.nu);
         // The predictor-corrector amplifies sound at every dt, which is part of what is compared.
         let theory = time_step::Integrator::Leapfrog;
-        let limits = Limits::of(&method.modes(lattice, s.n, &waves), theory);
+        let limits = Limits::of(&modes(&lattice, s.n, &waves), theory);
         let period = std::f64::consts::TAU / mode.omega;
         let time = match polarisation {
             Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,

@@ -43,6 +43,6 @@ fn correction_lengthens_the_step_by_the_factor_of_gradients() {
         limits(&method, &RUBBER, &RUBBER.medium(&method, [1.0, 1.5]), 1.5, 0.0).together
     }
     let ratio = limit(corrected_bare()) / limit(bare());
-    let factor = bare().gradient_factor(1.5);
+    let factor = bare().square([1.5, 0.0]).gradient_factor();
     assert!((ratio / factor - 1.0).abs() < 1e-12 && factor > 1.006, "{ratio} {factor}");
 }
