@@ -1,19 +1,23 @@
 //! The largest stable value of a setting by bisection, and the criterion by which a run counts as growing.
 
 use base::{
-    record::{Cost, Metric, Record, Status},
+    record::{Cost, Record, Status},
     spec::{Bisect, RunSpec, Task},
 };
 
 use crate::{
-    case::{Case, RunError},
+    case::{self, Case, RunError},
     context::Context,
 };
 
-/// Metric of a bisection: the largest x with which the run was stable.
-pub const STABLE: &str = "stable";
-/// The smallest x with which it was not.
-pub const UNSTABLE: &str = "unstable";
+base::metrics! {
+    STABLE = "stable" ["-"] "largest x that was stable";
+    UNSTABLE = "unstable" ["-"] "smallest x that was not";
+}
+
+/// Why a search by many simulations ended early: one of them was interrupted, or cannot be made for another
+/// reason than its settings.
+pub type Ended = Result<Status, RunError>;
 
 /// Bisects a setting of a run. The record has the settings of the run, the cost of all runs together, and
 /// the bracket as its metrics, which are missing if there is no limit within a factor of 16 of the guess.
@@ -27,35 +31,37 @@ pub fn run(
     context: &Context,
 ) -> Result<Record, RunError> {
     let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(spec);
-    record.cost.threads = 1;
-    let is_stable = |x: f64| match case.run(&at(spec, bisect, x), context) {
-        Ok(run) => {
-            add(&mut record.cost, &run.cost);
-            match run.status {
-                Status::Interrupted { .. } => Err(Ok(run.status)),
-                _ => Ok(case.is_stable(&run)),
-            }
-        }
-        Err(error) if error.is_refusal() => Ok(false),
-        Err(error) => Err(Err(error)),
+    let is_stable = |x: f64| {
+        let one = simulate(case, &at(spec, bisect, x), context, &mut record.cost)?;
+        Ok(case.is_stable(&one))
     };
-    let bracket = match largest_stable(bisect.guess, bisect.resolution, is_stable) {
-        Ok(bracket) => bracket,
-        Err(ended) => {
-            record.status = ended?;
-            None
+    match largest_stable(bisect.guess, bisect.resolution, is_stable) {
+        Ok(Some([stable, unstable])) => {
+            record.put(STABLE, stable);
+            record.put(UNSTABLE, unstable);
         }
-    };
-    if let Some(Bracket { stable, unstable }) = bracket {
-        let ends = [
-            (STABLE, stable, "largest x that was stable"),
-            (UNSTABLE, unstable, "smallest x that was not"),
-        ];
-        for (name, x, formula) in ends {
-            record.metrics.insert(name.into(), Metric::new(x, "-", formula));
-        }
+        Ok(None) => {}
+        Err(ended) => record.status = ended?,
     }
     Ok(record)
+}
+
+/// One simulation of a search, whose cost is added to that of all.
+///
+/// # Errors
+/// If the search is to end.
+pub fn simulate(
+    case: &dyn Case,
+    spec: &RunSpec,
+    context: &Context,
+    cost: &mut Cost,
+) -> Result<Record, Ended> {
+    let one = case::record_of(case, spec, context).map_err(Err)?;
+    add(cost, &one.cost);
+    match one.status {
+        Status::Interrupted { .. } => Err(Ok(one.status)),
+        _ => Ok(one),
+    }
 }
 
 /// The simulation of one x.
@@ -69,7 +75,7 @@ fn at(spec: &RunSpec, bisect: &Bisect, x: f64) -> RunSpec {
 }
 
 /// Adds what one more run took; sizes are those of the largest.
-pub fn add(sum: &mut Cost, run: &Cost) {
+fn add(sum: &mut Cost, run: &Cost) {
     sum.wall_s += run.wall_s;
     sum.cpu_s += run.cpu_s;
     sum.observing_s += run.observing_s;
@@ -82,60 +88,45 @@ pub fn add(sum: &mut Cost, run: &Cost) {
     sum.resumed += run.resumed;
 }
 
-/// A step that is stable and a longer one that is not.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bracket {
-    /// The longest step seen to be stable.
-    pub stable: f64,
-    /// The shortest step seen to be unstable.
-    pub unstable: f64,
-}
-
-impl Bracket {
-    /// The limit, up to half of the bracket.
-    pub fn middle(&self) -> f64 {
-        0.5 * (self.stable + self.unstable)
-    }
-}
-
 /// Half the width of the first bracket, relative to the guess.
 const FIRST_WIDTH: f64 = 0.04;
 /// The farthest that a limit may be from the guess, as a factor.
 const FARTHEST: f64 = 16.0;
 
-/// Bisects down to a bracket of `resolution` times `guess`. The guess decides on how many runs it
-/// takes, not on the answer: the bracket grows until it holds the limit. `None` if there is no limit
-/// within a factor of 16 of the guess.
+/// The longest step seen to be stable and the shortest one seen not to be, at most `resolution` times `guess`
+/// apart. The guess decides on how many runs it takes, not on the answer: the bracket grows until it holds
+/// the limit. `None` if there is no limit within a factor of 16 of the guess.
 ///
 /// # Errors
 /// The first of the runs.
-pub fn largest_stable<E>(
+fn largest_stable(
     guess: f64,
     resolution: f64,
-    mut is_stable: impl FnMut(f64) -> Result<bool, E>,
-) -> Result<Option<Bracket>, E> {
-    let (mut width, mut stable, mut unstable) = (FIRST_WIDTH, None, None);
+    mut is_stable: impl FnMut(f64) -> Result<bool, Ended>,
+) -> Result<Option<[f64; 2]>, Ended> {
+    let (mut width, mut longest, mut shortest) = (FIRST_WIDTH, None, None);
     let mut step = guess * (1.0 - width);
-    while stable.is_none() || unstable.is_none() {
+    let [mut stable, mut unstable] = loop {
+        if let (Some(stable), Some(unstable)) = (longest, shortest) {
+            break [stable, unstable];
+        }
         if !(guess / FARTHEST..=guess * FARTHEST).contains(&step) {
             return Ok(None);
         }
         if is_stable(step)? {
-            stable = Some(step);
+            longest = Some(step);
             step = if step < guess { guess * (1.0 + width) } else { step * (1.0 + width) };
         } else {
-            unstable = Some(step);
+            shortest = Some(step);
             step *= 1.0 - width;
         }
         width *= 1.5;
+    };
+    while unstable - stable > resolution * guess {
+        let middle = 0.5 * (stable + unstable);
+        if is_stable(middle)? { stable = middle } else { unstable = middle }
     }
-    let Some((stable, unstable)) = stable.zip(unstable) else { return Ok(None) };
-    let mut bracket = Bracket { stable, unstable };
-    while bracket.unstable - bracket.stable > resolution * guess {
-        let middle = bracket.middle();
-        if is_stable(middle)? { bracket.stable = middle } else { bracket.unstable = middle }
-    }
-    Ok(Some(bracket))
+    Ok(Some([stable, unstable]))
 }
 
 /// Energy that counts as growth beyond doubt, in units of the energy at the start.
@@ -205,17 +196,16 @@ mod tests {
         guess: f64,
         resolution: f64,
         mut is_stable: impl FnMut(f64) -> bool,
-    ) -> Option<Bracket> {
-        let is_stable = |x| Ok::<_, RunError>(is_stable(x));
-        largest_stable(guess, resolution, is_stable).expect("nothing fails")
+    ) -> Option<[f64; 2]> {
+        largest_stable(guess, resolution, |x| Ok(is_stable(x))).expect("nothing fails")
     }
 
     #[test]
     fn bisection_finds_a_limit_far_from_the_guess() {
         for limit in [0.2, 0.9, 0.999, 1.0, 1.03, 1.5, 7.0] {
-            let found = limit_of(1.0, 1e-3, |dt| dt <= limit).expect("a limit");
-            assert!(found.stable <= limit && limit <= found.unstable, "{limit}: {found:?}");
-            assert!(found.unstable - found.stable <= 1e-3);
+            let [stable, unstable] = limit_of(1.0, 1e-3, |dt| dt <= limit).expect("a limit");
+            assert!(stable <= limit && limit <= unstable, "{limit}: {stable} to {unstable}");
+            assert!(unstable - stable <= 1e-3);
         }
     }
 
@@ -227,7 +217,7 @@ mod tests {
             x <= limit
         };
         let found = limit_of(1.0, 0.5, is_stable);
-        assert!(found.is_none_or(|found| found.stable <= limit && limit < found.unstable));
+        assert!(found.is_none_or(|[stable, unstable]| stable <= limit && limit < unstable));
         tried
     }
 
@@ -336,7 +326,7 @@ mod tests {
         }
         assert_eq!(asked[0].0, 0.96 * 2e-3, "the first step, 4 % below the guess [s]");
         let [stable, unstable] =
-            [STABLE, UNSTABLE].map(|name| record.metric(name).expect("a limit"));
+            [STABLE, UNSTABLE].map(|metric| record.value(metric).expect("a limit"));
         assert!(
             stable <= 1.5 && 1.5 < unstable && unstable - stable <= 0.01,
             "{stable} to {unstable}"
@@ -421,7 +411,8 @@ mod tests {
             }
             !growth.grew()
         };
-        let found = limit_of(1.6, 1e-3, is_stable).expect("a limit").middle();
-        assert!((found / 1.7 - 1.0).abs() < 3e-3, "{found}");
+        let [stable, unstable] = limit_of(1.6, 1e-3, is_stable).expect("a limit");
+        let middle = 0.5 * (stable + unstable);
+        assert!((middle / 1.7 - 1.0).abs() < 3e-3, "{middle}");
     }
 }

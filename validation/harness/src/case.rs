@@ -75,6 +75,17 @@ pub trait Case: Sync {
     fn studies(&self, tier: Tier, runs: &Runs) -> Vec<Study>;
 }
 
+/// One simulation of a case. Settings that are refused give a record too, with the reason.
+///
+/// # Errors
+/// Why it cannot be made for another reason than its settings.
+pub fn record_of(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
+    match case.run(spec, context) {
+        Err(refusal) if refusal.is_refusal() => Ok(Record::refused(spec, refusal.to_string())),
+        made => Ok(made?.of(spec)),
+    }
+}
+
 /// The run of a case with the settings that `key=value` texts describe.
 pub fn spec(case: &dyn Case, variant: &str, set: &[String]) -> Result<RunSpec, RunError> {
     Ok(RunSpec::new(case.name(), variant, case.settings(variant, set)?))

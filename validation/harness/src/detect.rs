@@ -3,12 +3,12 @@
 use base::{
     gate::{Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
-    record::{Cost, Record, Status},
+    record::{Cost, Record},
     spec::{RunSpec, Task},
 };
 
 use crate::{
-    bisect,
+    bisect::{self, Ended},
     case::{Case, RunError, Tier},
     context::Context,
     plan,
@@ -52,96 +52,77 @@ pub fn run(
     detect: &Detect,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let mut healthy = RunSpec { task: Task::Simulate, ..spec.clone() };
-    let gates = gates(case, &healthy, detect.of);
-    healthy.measure = case.declaration(Tier::Quick).measure_for(&gates);
-    let mut search =
-        Search { case, healthy, detect, gates, context, ended: None, cost: Cost::default() };
-    let (detected, undetected) = search.smallest()?;
+    let mut wrong = RunSpec { task: Task::Simulate, ..spec.clone() }.allow_unstable();
+    let gates = gates(case, &wrong, detect.of);
+    wrong.measure = case.declaration(Tier::Quick).measure_for(&gates);
     let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(spec);
-    record.cost = search.cost;
-    if let Some(status) = search.ended {
-        record.status = status;
+    record.cost = Cost::default();
+    // The gates that the run fails with a constant multiplied by this factor.
+    let failed_at = |factor: f64| {
+        wrong.mutation = Some(Mutation { of: detect.of, factor });
+        let one = bisect::simulate(case, &wrong, context, &mut record.cost)?;
+        let fails = |gate: &&Gate| gate.judge_record(&one).verdict.is_failure();
+        Ok(gates.iter().filter(fails).map(|gate| gate.id.clone()).collect())
+    };
+    match smallest(detect, failed_at) {
+        Ok((detected, undetected)) => {
+            if let Some((_, failed)) = &detected {
+                record.numerics.insert(GATES.into(), failed.join(" ").into());
+            }
+            let never = "no error that was tried fails a gate with both signs";
+            record.put_or(DETECTED, detected.map(|(error, _)| error), never);
+            record.put_or(UNDETECTED, undetected, "every error that was tried fails a gate");
+        }
+        Err(ended) => record.status = ended?,
     }
-    if let Some((_, failed)) = &detected {
-        record.numerics.insert(GATES.into(), failed.join(" ").into());
-    }
-    let never = "no error that was tried fails a gate with both signs";
-    record.put_or(DETECTED, detected.map(|(error, _)| error), never);
-    record.put_or(UNDETECTED, undetected, "every error that was tried fails a gate");
     Ok(record)
-}
-
-struct Search<'a> {
-    case: &'a dyn Case,
-    healthy: RunSpec,
-    detect: &'a Detect,
-    gates: Vec<Gate>,
-    context: &'a Context<'a>,
-    /// Set by an interrupt.
-    ended: Option<Status>,
-    cost: Cost,
 }
 
 /// An error and the gates that detect it.
 type Found = (f64, Vec<String>);
 
-impl Search<'_> {
-    /// The smallest detected error, and the largest smaller one that is not detected.
-    fn smallest(&mut self) -> Result<(Option<Found>, Option<f64>), RunError> {
-        let allowed = self.detect.of.allowed();
-        let mut middle = ERRORS.iter().position(|error| *error >= allowed).unwrap_or_default();
-        let (mut low, mut high) = match self.detect.only_allowed {
-            true => (middle, middle + 1),
-            false => (0, ERRORS.len()),
-        };
-        let (mut detected, mut undetected) = (None, None);
-        while low < high && self.ended.is_none() {
-            let error = ERRORS[middle];
-            let failed = self.failed(error)?;
-            if failed.is_empty() {
-                (undetected, low) = (Some(error), middle + 1);
-            } else {
-                (detected, high) = (Some((error, failed)), middle);
-            }
-            middle = (low + high) / 2;
+/// The smallest detected error, and the largest smaller one that is not detected.
+fn smallest(
+    detect: &Detect,
+    mut failed_at: impl FnMut(f64) -> Result<Vec<String>, Ended>,
+) -> Result<(Option<Found>, Option<f64>), Ended> {
+    let allowed = detect.of.allowed();
+    let mut middle = ERRORS.iter().position(|error| *error >= allowed).unwrap_or_default();
+    let (mut low, mut high) = match detect.only_allowed {
+        true => (middle, middle + 1),
+        false => (0, ERRORS.len()),
+    };
+    let (mut detected, mut undetected) = (None, None);
+    while low < high {
+        let error = ERRORS[middle];
+        let failed = failed(error, &mut failed_at)?;
+        if failed.is_empty() {
+            (undetected, low) = (Some(error), middle + 1);
+        } else {
+            (detected, high) = (Some((error, failed)), middle);
         }
-        Ok((detected, undetected))
+        middle = (low + high) / 2;
     }
+    Ok((detected, undetected))
+}
 
-    /// The gates that the run fails with both signs of an error, or with different gates for each; none if it
-    /// passes all of them with one sign.
-    fn failed(&mut self, error: f64) -> Result<Vec<String>, RunError> {
-        let more = self.failed_at(1.0 + error)?;
-        if more.is_empty() {
-            return Ok(more);
-        }
-        let less = self.failed_at(1.0 - error)?;
-        let both: Vec<String> = less.iter().filter(|id| more.contains(id)).cloned().collect();
-        Ok(match (less.is_empty(), both.is_empty()) {
-            (true, _) => less,
-            (_, false) => both,
-            _ => [more, less].concat(),
-        })
+/// The gates that the run fails with both signs of an error, or with different gates for each; none if it
+/// passes all of them with one sign.
+fn failed(
+    error: f64,
+    mut failed_at: impl FnMut(f64) -> Result<Vec<String>, Ended>,
+) -> Result<Vec<String>, Ended> {
+    let more = failed_at(1.0 + error)?;
+    if more.is_empty() {
+        return Ok(more);
     }
-
-    /// The gates that the run fails with a constant multiplied by this factor.
-    fn failed_at(&mut self, factor: f64) -> Result<Vec<String>, RunError> {
-        let mutation = Mutation { of: self.detect.of, factor };
-        let spec = self.healthy.clone().allow_unstable().mutated(mutation);
-        let record = match self.case.run(&spec, self.context) {
-            Ok(record) => record,
-            Err(error) if error.is_refusal() => Record::refused(&spec, error.to_string()),
-            Err(error) => return Err(error),
-        };
-        bisect::add(&mut self.cost, &record.cost);
-        if let Status::Interrupted { .. } = record.status {
-            self.ended = Some(record.status);
-            return Ok(Vec::new());
-        }
-        let fails = |gate: &&Gate| gate.judge_record(&record).verdict.is_failure();
-        Ok(self.gates.iter().filter(fails).map(|gate| gate.id.clone()).collect())
-    }
+    let less = failed_at(1.0 - error)?;
+    let both: Vec<String> = less.iter().filter(|id| more.contains(id)).cloned().collect();
+    Ok(match (less.is_empty(), both.is_empty()) {
+        (true, _) => less,
+        (_, false) => both,
+        _ => [more, less].concat(),
+    })
 }
 
 #[cfg(test)]

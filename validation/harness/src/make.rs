@@ -16,7 +16,7 @@ use base::{
 
 use crate::{
     bisect,
-    case::{Case, RunError},
+    case::{self, Case, RunError},
     context::{self, Context},
     detect,
     planned::{Planned, Tier},
@@ -515,15 +515,10 @@ fn alone(jobs: &[&Job], batch: &Batch) {
 /// # Errors
 /// [`RunError::File`], [`RunError::Frame`] and [`RunError::Reference`].
 pub fn run(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
-    let record = match &spec.task {
-        Task::Simulate => case.run(spec, context),
+    match &spec.task {
+        Task::Simulate => case::record_of(case, spec, context),
         Task::Bisect(bisect) => bisect::run(case, spec, bisect, context),
         Task::Detect(detect) => detect::run(case, spec, detect, context),
-    };
-    match record {
-        Err(refusal) if refusal.is_refusal() => Ok(Record::refused(spec, refusal.to_string())),
-        Err(error) => Err(error),
-        Ok(record) => Ok(record.of(spec)),
     }
 }
 

@@ -41,7 +41,7 @@ pub fn of_theory(limit: &StepLimit, runs: &Runs) -> Option<f64> {
 
 /// The largest stable x of the bisection.
 fn stable(limit: &StepLimit, runs: &Runs) -> Option<f64> {
-    runs.completed(&limit.spec)?.metric(STABLE)
+    runs.completed(&limit.spec)?.value(STABLE)
 }
 
 #[cfg(test)]
