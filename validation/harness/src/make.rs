@@ -4,15 +4,18 @@
 //! the first complete case, one case is made in this way before all others.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::AddAssign;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use base::{
+    manifest::UNKNOWN,
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
+use rayon::prelude::*;
 
 use crate::{
     bisect,
@@ -20,7 +23,7 @@ use crate::{
     context::{self, Context},
     detect,
     planned::{Planned, Tier},
-    store::{Begun, Found, Store, StoreError},
+    store::{Begun, Store, StoreError},
 };
 
 /// A planned run and the case that it is of.
@@ -174,23 +177,21 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
             _ => true,
         };
         let found = match making.store {
-            Some(store) if !making.fresh => store.find(spec, &(making.sources)(&spec.case)),
-            _ => Found::Nothing,
+            Some(store) if !making.fresh => store.find(spec),
+            _ => Ok(None),
         };
         let made = &mut stored.made;
-        let (record, is_other) = match found {
-            Found::Same(record) => (Some(record), false),
-            Found::Other(record) => (making.reuse_other.then_some(record), true),
-            Found::Nothing => (None, false),
-            Found::Unsound(error) => {
-                made.unsound.insert(spec.key(), error);
-                (None, false)
-            }
-        };
-        if let Some(record) = record.filter(|record| serves(record)) {
+        let record = found.unwrap_or_else(|error| {
+            made.unsound.insert(spec.key(), error);
+            None
+        });
+        let sources = (making.sources)(&spec.case);
+        let is_other = |record: &Record| record.manifest.sources != sources || sources == UNKNOWN;
+        let is_other = record.as_ref().is_some_and(is_other);
+        if let Some(record) = record.filter(|of| serves(of) && (making.reuse_other || !is_other)) {
             made.reused += 1;
             made.of_other_sources += usize::from(is_other);
-            made.records.insert(spec.key(), *record);
+            made.records.insert(spec.key(), record);
         } else {
             stored.other += usize::from(is_other);
             stored.missing.push(job.clone());
@@ -210,13 +211,12 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
 /// Makes the runs that the store lacks. A run that is refused or diverges has a record; one that fails
 /// otherwise has none, see [`Made::failed`]. For what the store cannot keep see [`Made::not_kept`].
 pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
-    let (mut tally, mut open) = (Tally::default(), BTreeMap::new());
+    let mut tally = Tally::default();
     for job in &missing {
-        tally.plan(job.case.name(), expected(job, making));
-        *open.entry(job.case.name()).or_default() += 1;
+        let expected = of_batch(job, making, job.planned.seconds);
+        tally.plan(job.planned.spec.key(), job.case.name(), expected);
     }
-    let (tally, made, open) = (Mutex::new(tally), Mutex::new(made), Mutex::new(open));
-    let batch = Batch { making, tally, made, open };
+    let batch = Batch { making, tally: Mutex::new(tally), made: Mutex::new(made) };
     batch.tell(|_| ());
     let first = making.finished.and_then(|_| first(&missing, making.tier));
     let (early, later) = missing.iter().partition(|job| Some(job.case.name()) == first);
@@ -224,7 +224,8 @@ pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
         let (timed, mut rest): (Vec<&Job>, Vec<&Job>) =
             jobs.into_iter().partition(|job| job.planned.timed);
         rest.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
-        side_by_side(&rest, &batch);
+        // Each thread takes the longest run that is left.
+        rest.into_iter().par_bridge().for_each(|job| batch.make(job));
         alone(&timed, &batch);
     }
     let mut made = batch.made.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -241,16 +242,6 @@ fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
     cases.retain(|_, (case, _)| case.declaration(tier).card.is_some());
     let least = cases.into_iter().min_by(|(_, (_, a)), (_, (_, b))| a.total_cmp(b));
     least.map(|(name, _)| name)
-}
-
-/// The wall time that a run is expected to take of the batch \[s\].
-fn expected(job: &Job, making: &Making) -> f64 {
-    of_batch(job, making, job.planned.seconds)
-}
-
-/// The wall time that a run has taken of the batch since its start \[s\].
-fn took(job: &Job, making: &Making, start: Instant) -> f64 {
-    of_batch(job, making, start.elapsed().as_secs_f64())
 }
 
 /// What a run that lasts so long takes of the wall time of the batch \[s\]: all of it if it has the machine
@@ -276,55 +267,58 @@ struct Times {
     took: f64,
 }
 
-/// A run that is under way.
-#[derive(Clone, Copy, Debug)]
-struct UnderWay {
+impl AddAssign for Times {
+    fn add_assign(&mut self, more: Self) {
+        self.expected += more.expected;
+        self.done += more.done;
+        self.took += more.took;
+    }
+}
+
+/// How far a run is.
+#[derive(Debug)]
+struct Run {
     case: &'static str,
-    /// What is done of it, in the seconds that it was expected to take.
-    done: f64,
-    /// The seconds that this took.
-    took: f64,
+    times: Times,
+    has_ended: bool,
 }
 
 /// How much of a batch is done.
 #[derive(Debug, Default)]
 struct Tally {
-    all: usize,
-    runs: usize,
-    /// Of runs that are done, by case: what is expected is wrong by another factor for each.
-    cases: BTreeMap<&'static str, Times>,
-    under_way: BTreeMap<RunKey, UnderWay>,
+    runs: BTreeMap<RunKey, Run>,
+    /// Runs that have a record.
+    done: usize,
+    /// Name of the last of them.
     last: String,
 }
 
 impl Tally {
-    /// A run is to be made.
-    fn plan(&mut self, case: &'static str, expected: f64) {
-        self.all += 1;
-        self.cases.entry(case).or_default().expected += expected;
+    /// A run is to be made, which is expected to take so long.
+    fn plan(&mut self, run: RunKey, case: &'static str, expected: f64) {
+        let times = Times { expected, ..Times::default() };
+        self.runs.insert(run, Run { case, times, has_ended: false });
     }
 
-    /// The times by case, of the runs that are under way included.
-    fn times(&self) -> BTreeMap<&'static str, Times> {
-        let mut cases = self.cases.clone();
-        for run in self.under_way.values() {
-            let times = cases.entry(run.case).or_default();
-            times.done += run.done;
-            times.took += run.took;
+    /// The times of all runs, and by case: what is expected is wrong by another factor for each.
+    fn times(&self) -> (Times, BTreeMap<&'static str, Times>) {
+        let (mut all, mut cases) = (Times::default(), BTreeMap::<_, Times>::new());
+        for run in self.runs.values() {
+            all += run.times;
+            *cases.entry(run.case).or_default() += run.times;
         }
-        cases
+        (all, cases)
     }
 
     fn share(&self) -> f64 {
-        let Times { expected, done, .. } = sum(&self.times());
+        let Times { expected, done, .. } = self.times().0;
         if expected > 0.0 { done / expected } else { 1.0 }
     }
 
     /// What is left of each case is expected to take longer or shorter than was planned, as what is done of
     /// it did; with little of it done, as what is done of all cases did.
     fn left(&self) -> Option<f64> {
-        let cases = self.times();
-        let all = sum(&cases);
+        let (all, cases) = self.times();
         let weight = OF_ALL_CASES * all.expected;
         let of_case = |times: &Times| {
             let factor = (times.took + weight * all.took / all.done) / (times.done + weight);
@@ -333,28 +327,27 @@ impl Tally {
         (self.share() >= FIRST_ESTIMATE).then(|| cases.values().map(of_case).sum())
     }
 
-    /// So much of a run is done, which is expected to take so long, after so long.
-    fn reach(&mut self, run: RunKey, case: &'static str, part: f64, expected: f64, took: f64) {
-        self.under_way.insert(run, UnderWay { case, done: part.clamp(0.0, 1.0) * expected, took });
+    /// So much of a run is done, after so long; that a run is made again counts no more.
+    fn reach(&mut self, run: &RunKey, part: f64, took: f64) {
+        if let Some(Run { times, has_ended: false, .. }) = self.runs.get_mut(run) {
+            *times = Times { done: part.clamp(0.0, 1.0) * times.expected, took, ..*times };
+        }
     }
 
-    /// A run is done.
-    fn finish(&mut self, run: RunKey, case: &'static str, name: String, expected: f64, took: f64) {
-        self.under_way.remove(&run);
-        let times = self.cases.entry(case).or_default();
-        times.done += expected;
-        times.took += took;
-        self.runs += 1;
+    /// A run has a record after so long.
+    fn finish(&mut self, run: &RunKey, name: String, took: f64) {
+        self.reach(run, 1.0, took);
+        self.done += 1;
         self.last = name;
     }
-}
 
-fn sum(cases: &BTreeMap<&'static str, Times>) -> Times {
-    cases.values().fold(Times::default(), |sum, times| Times {
-        expected: sum.expected + times.expected,
-        done: sum.done + times.done,
-        took: sum.took + times.took,
-    })
+    /// A run has ended, with or without a record; was it the last one of its case?
+    fn end(&mut self, run: &RunKey) -> bool {
+        let Some(run) = self.runs.get_mut(run) else { return false };
+        run.has_ended = true;
+        let case = run.case;
+        self.runs.values().filter(|run| run.case == case).all(|run| run.has_ended)
+    }
 }
 
 /// The runs that are being made, and who is told of each.
@@ -362,37 +355,22 @@ struct Batch<'a> {
     making: &'a Making<'a>,
     tally: Mutex<Tally>,
     made: Mutex<Made>,
-    /// Runs of each case that have not ended.
-    open: Mutex<BTreeMap<&'static str, usize>>,
 }
 
 impl Batch<'_> {
-    /// A run has ended, with or without a record; tells if it was the last one of its case.
-    fn ended(&self, job: &Job) {
-        let Some(finished) = self.making.finished else { return };
-        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
-        let left = open.entry(job.case.name()).or_default();
-        *left = left.saturating_sub(1);
-        let is_last = *left == 0;
-        drop(open);
-        if is_last && !self.making.is_interrupted() {
-            let made = self.made();
-            let Made { reused, of_other_sources, .. } = *made;
-            let (records, submissions) = (made.records.clone(), made.submissions.clone());
-            drop(made);
-            let made = Made { records, submissions, reused, of_other_sources, ..Made::default() };
-            finished(made);
-        }
+    fn tally(&self) -> MutexGuard<'_, Tally> {
+        self.tally.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Tells how far it is after a change.
     fn tell(&self, change: impl FnOnce(&mut Tally)) {
-        let Some(progress) = self.making.progress else { return };
-        let mut tally = self.tally.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut tally = self.tally();
         change(&mut tally);
-        let share = tally.share();
-        let left = tally.left();
-        progress(Done { runs: tally.runs, all: tally.all, share, left, last: &tally.last });
+        if let Some(progress) = self.making.progress {
+            let (share, left) = (tally.share(), tally.left());
+            let (runs, all) = (tally.done, tally.runs.len());
+            progress(Done { runs, all, share, left, last: &tally.last });
+        }
     }
 
     fn made(&self) -> MutexGuard<'_, Made> {
@@ -409,22 +387,37 @@ impl Batch<'_> {
         made.records.insert(record.key(), record);
     }
 
-    /// Keeps a record and says that it is there; one that was interrupted is dropped.
-    fn done(&self, job: &Job, record: Record, start: Instant) {
-        if matches!(record.status, Status::Interrupted { .. }) {
+    /// Makes a run unless it is to stop, keeps its record, and tells that it is there, and if it was the last
+    /// one of its case. Of a timed run it is found out where its time goes.
+    fn make(&self, job: &Job) {
+        if self.making.is_interrupted() {
             return;
         }
-        let (key, case) = (record.key(), job.case.name());
-        let name = format!("{case} {}", record.variant);
-        self.keep(record);
-        let (expected, took) = (expected(job, self.making), took(job, self.making, start));
-        self.tell(|tally| tally.finish(key, case, name, expected, took));
+        let (key, start) = (job.planned.spec.key(), Instant::now());
+        if let Some(mut record) = self.run(job, job.planned.timed) {
+            if job.planned.timed {
+                record.cost.alone_s = vec![record.cost.cpu_s];
+            }
+            let name = format!("{} {}", job.case.name(), record.variant);
+            self.keep(record);
+            let took = of_batch(job, self.making, start.elapsed().as_secs_f64());
+            self.tell(|tally| tally.finish(&key, name, took));
+        }
+        let is_last = self.tally().end(&key);
+        let Some(finished) = self.making.finished.filter(|_| is_last) else { return };
+        if !self.making.is_interrupted() {
+            let made = self.made();
+            let Made { reused, of_other_sources, .. } = *made;
+            let (records, submissions) = (made.records.clone(), made.submissions.clone());
+            drop(made);
+            finished(Made { records, submissions, reused, of_other_sources, ..Made::default() });
+        }
     }
 
-    /// Makes a run, and finds out where its time goes if it is to be profiled; none if it failed.
+    /// Makes a run, and finds out where its time goes if it is to be profiled; none if it failed or was
+    /// interrupted.
     fn run(&self, job: &Job, profile: bool) -> Option<Record> {
         let (interrupt, spec, start) = (self.making.interrupt, &job.planned.spec, Instant::now());
-        let (case, expected) = (job.case.name(), expected(job, self.making));
         let begun = self.making.store.map(|store| store.begin(spec));
         let is_one = spec.task == Task::Simulate;
         let show = |progress: context::Progress| {
@@ -432,8 +425,9 @@ impl Batch<'_> {
             if !is_one {
                 return; // of a bisection nobody knows how many simulations are left
             }
-            let (part, took) = (progress.time / progress.end, took(job, self.making, start));
-            self.tell(|tally| tally.reach(spec.key(), case, part, expected, took));
+            let part = progress.time / progress.end;
+            let took = of_batch(job, self.making, start.elapsed().as_secs_f64());
+            self.tell(|tally| tally.reach(&spec.key(), part, took));
         };
         let (progress, allow_long) = (Some(&show as _), self.making.allow_long);
         let context =
@@ -442,8 +436,9 @@ impl Batch<'_> {
         let failed = match made {
             Ok(Ok(mut record)) => {
                 begun.into_iter().for_each(|begun| begun.end(None));
-                record.manifest.sources = (self.making.sources)(case);
-                return Some(record);
+                record.manifest.sources = (self.making.sources)(job.case.name());
+                let is_whole = !matches!(record.status, Status::Interrupted { .. });
+                return is_whole.then_some(record);
             }
             Ok(Err(error)) => Failed::Error(error),
             Err(_) => Failed::Bug,
@@ -454,41 +449,10 @@ impl Batch<'_> {
     }
 }
 
-/// Each thread takes the longest run that is left.
-fn side_by_side(jobs: &[&Job], batch: &Batch) {
-    let next = AtomicUsize::new(0);
-    let work = || {
-        while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-            if batch.making.is_interrupted() {
-                break;
-            }
-            let start = Instant::now();
-            if let Some(record) = batch.run(job, false) {
-                batch.done(job, record, start);
-            }
-            batch.ended(job);
-        }
-    };
-    // Not a broadcast, which would wait for threads of the pool that are busy with other things.
-    rayon::scope(|scope| {
-        (0..rayon::current_num_threads()).for_each(|_| scope.spawn(|_| work()));
-    });
-}
-
 /// One run at a time, the first of each profiled; cheap ones again in further rounds. A record is kept as
 /// soon as it is there, and again with the timings of the later rounds.
 fn alone(jobs: &[&Job], batch: &Batch) {
-    for job in jobs {
-        if batch.making.is_interrupted() {
-            break;
-        }
-        let start = Instant::now();
-        if let Some(mut record) = batch.run(job, true) {
-            record.cost.alone_s = vec![record.cost.cpu_s];
-            batch.done(job, record, start);
-        }
-        batch.ended(job);
-    }
+    jobs.iter().for_each(|job| batch.make(job));
     let record = |job: &Job| batch.made().records.get(&job.planned.spec.key()).cloned();
     let is_cheap = |record: &Record| {
         record.cost.alone_s.iter().any(|seconds| *seconds < timed_again_below(batch.making.tier))
@@ -500,9 +464,7 @@ fn alone(jobs: &[&Job], batch: &Batch) {
             if batch.making.is_interrupted() {
                 break;
             }
-            let again = batch.run(job, false);
-            let whole = again.filter(|again| !matches!(again.status, Status::Interrupted { .. }));
-            record.cost.alone_s.extend(whole.map(|again| again.cost.cpu_s));
+            record.cost.alone_s.extend(batch.run(job, false).map(|again| again.cost.cpu_s));
         }
     }
     let again = cheap.into_iter().map(|(_, record)| record);
@@ -823,15 +785,14 @@ mod tests {
         let planned = |k: usize| 20.0 * 0.97f64.powi(k as i32) + 0.01;
         let took = |k: usize| planned(k) * factors[k % 3].1 * [1.3, 0.7, 1.1, 0.8, 1.0][k % 5];
         let mut tally = Tally::default();
-        (0..200).for_each(|k| tally.plan(factors[k % 3].0, planned(k)));
+        (0..200).for_each(|k| tally.plan(key(k), factors[k % 3].0, planned(k)));
         let whole: f64 = (0..200).map(took).sum();
         let (mut elapsed, mut shares, mut told) = (0.0, Vec::new(), 0);
         for k in 0..200 {
-            let case = factors[k % 3].0;
             for part in [0.5, 1.0] {
                 match part < 1.0 {
-                    true => tally.reach(key(k), case, part, planned(k), part * took(k)),
-                    false => tally.finish(key(k), case, String::new(), planned(k), took(k)),
+                    true => tally.reach(&key(k), part, part * took(k)),
+                    false => tally.finish(&key(k), String::new(), took(k)),
                 }
                 let elapsed = elapsed + part * took(k);
                 shares.push(tally.share());
@@ -856,10 +817,10 @@ mod tests {
     fn a_case_that_takes_far_longer_than_planned_is_seen_by_its_own_times() {
         let mut tally = Tally::default();
         let key = |k: usize| RunSpec::new("c", "v", json!({ "k": k })).key();
-        (0..95).for_each(|_| tally.plan("quick", 1.0));
-        (0..50).for_each(|_| tally.plan("slow", 0.1));
-        (0..95).for_each(|k| tally.finish(key(k), "quick", String::new(), 1.0, 0.1));
-        (95..115).for_each(|k| tally.finish(key(k), "slow", String::new(), 0.1, 2.0));
+        (0..95).for_each(|k| tally.plan(key(k), "quick", 1.0));
+        (95..145).for_each(|k| tally.plan(key(k), "slow", 0.1));
+        (0..95).for_each(|k| tally.finish(&key(k), String::new(), 0.1));
+        (95..115).for_each(|k| tally.finish(&key(k), String::new(), 2.0));
         let (left, of_all) = (tally.left().expect("told"), 3.0 * (9.5 + 40.0) / 97.0);
         assert!((0.5..2.0).contains(&(left / 60.0)), "{left}");
         assert!(of_all < 60.0 / 8.0, "{of_all}");

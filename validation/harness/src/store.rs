@@ -9,7 +9,6 @@ use std::time::{Duration, Instant, SystemTime};
 
 use base::{
     files::{self, FileError, OutputFolder},
-    manifest::UNKNOWN,
     record::{Record, RecordError, Status},
     spec::RunSpec,
 };
@@ -105,19 +104,6 @@ impl Begun<'_> {
     }
 }
 
-/// What a store contains for a run.
-#[derive(Debug)]
-pub enum Found {
-    /// No record that serves this run.
-    Nothing,
-    /// A file in its place that cannot be read as a record.
-    Unsound(StoreError),
-    /// A record that the same sources made.
-    Same(Box<Record>),
-    /// A record that other sources made.
-    Other(Box<Record>),
-}
-
 impl Store {
     /// The store in a folder, which is made if it does not exist.
     ///
@@ -145,48 +131,40 @@ impl Store {
     /// The records of runs that other codes made of a case, sorted by file name; a file that cannot be read
     /// as one is an error in its place.
     pub fn submissions(&self, case: &str) -> Vec<Result<Record, StoreError>> {
-        let entries = fs::read_dir(self.path()).into_iter().flatten().flatten();
         let begin = format!("{SUBMITTED}{case}-");
-        let is_of_case = |name: &String| name.starts_with(&begin) && name.ends_with(".json");
-        let mut names: Vec<String> =
-            entries.filter_map(|e| e.file_name().into_string().ok()).filter(is_of_case).collect();
-        names.sort();
-        let of_its_name = |name: String| {
-            let record = read(self.path().join(&name))?;
+        let of_its_name = |path: PathBuf| {
+            let record = read(path.clone())?;
             let expected = Self::name(&record.spec());
-            if expected == name {
+            if path.ends_with(&expected) {
                 return Ok(record);
             }
             // A copy would count twice.
             let what = format!("its content belongs to {expected}");
             let reason = io::Error::new(io::ErrorKind::InvalidData, what);
-            Err(StoreError::Unreadable { path: self.path().join(name), reason })
+            Err(StoreError::Unreadable { path, reason })
         };
-        names.into_iter().map(of_its_name).collect()
+        let paths = paths(self.path(), &begin).unwrap_or_default();
+        paths.into_iter().map(of_its_name).collect()
     }
 
-    /// The record of a run, if there is one, and whether sources of this digest made it. An interrupted
-    /// record, or one of which less was measured than the run asks for, does not count: the run will be made
-    /// again.
-    pub fn find(&self, spec: &RunSpec, sources: &str) -> Found {
+    /// The record of a run, if there is one. An interrupted record, or one of which less was measured than
+    /// the run asks for, does not count: the run will be made again.
+    ///
+    /// # Errors
+    /// If a file in its place cannot be read as a record.
+    pub fn find(&self, spec: &RunSpec) -> Result<Option<Record>, StoreError> {
         let record = match read(self.path().join(Self::name(spec))) {
-            Ok(record) => record,
             Err(StoreError::Unreadable { reason, .. })
                 if reason.kind() == io::ErrorKind::NotFound =>
             {
-                return Found::Nothing;
+                return Ok(None);
             }
-            Err(error) => return Found::Unsound(error),
+            read => read?,
         };
         let is_of_run = record.spec() == RunSpec { measure: <_>::default(), ..spec.clone() };
         let is_whole = !matches!(record.status, Status::Interrupted { .. });
-        match is_of_run && is_whole && record.measured() >= spec.measure {
-            false => Found::Nothing,
-            true if record.manifest.sources == sources && sources != UNKNOWN => {
-                Found::Same(Box::new(record))
-            }
-            true => Found::Other(Box::new(record)),
-        }
+        let serves = is_of_run && is_whole && record.measured() >= spec.measure;
+        Ok(serves.then_some(record))
     }
 
     /// Writes a record in place of an older one of the same run.
@@ -221,22 +199,27 @@ impl Store {
         }
     }
 
-    /// Every record of the folder, sorted by file name. What a process that was killed had not finished is
-    /// none: its name begins with a dot.
+    /// Every record of the folder, sorted by file name.
     ///
     /// # Errors
     /// If the folder or a file of it cannot be read, or a `.json` file is no record.
     pub fn all(path: &Path) -> Result<Vec<Record>, StoreError> {
         let refused = |reason| StoreError::Unreadable { path: path.to_path_buf(), reason };
-        let mut paths: Vec<PathBuf> =
-            fs::read_dir(path).map_err(refused)?.flatten().map(|entry| entry.path()).collect();
-        let is_hidden = |path: &Path| {
-            path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
-        };
-        paths.retain(|path| path.extension().is_some_and(|e| e == "json") && !is_hidden(path));
-        paths.sort();
-        paths.into_iter().map(read).collect()
+        paths(path, "").map_err(refused)?.into_iter().map(read).collect()
     }
+}
+
+/// The files of a folder that are records and whose names begin so, sorted. What a process that was killed
+/// had not finished is none: its name begins with a dot.
+fn paths(folder: &Path, begin: &str) -> io::Result<Vec<PathBuf>> {
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(folder)?.flatten().map(|entry| entry.path()).collect();
+    paths.retain(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(begin) && name.ends_with(".json") && !name.starts_with('.')
+    });
+    paths.sort();
+    Ok(paths)
 }
 
 fn read(path: PathBuf) -> Result<Record, StoreError> {
@@ -261,20 +244,15 @@ mod tests {
     }
 
     #[test]
-    fn a_record_comes_back_and_one_of_other_sources_says_so() {
+    fn a_record_comes_back_and_that_of_another_run_does_not() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(&folder.path().join("records")).unwrap();
         let whole = record(Status::Completed);
-        assert!(matches!(store.find(&whole.spec(), "abc"), Found::Nothing));
+        assert_eq!(store.find(&whole.spec()).unwrap(), None);
         store.write(&whole).unwrap();
-        match store.find(&whole.spec(), "abc") {
-            Found::Same(found) => assert_eq!(*found, whole),
-            other => panic!("{other:?}"),
-        }
-        assert!(matches!(store.find(&whole.spec(), "abd"), Found::Other(_)));
-        assert!(matches!(store.find(&whole.spec(), UNKNOWN), Found::Other(_)));
+        assert_eq!(store.find(&whole.spec()).unwrap().as_ref(), Some(&whole));
         let finer = whole.spec().with_setting("rows", 40);
-        assert!(matches!(store.find(&finer, "abc"), Found::Nothing));
+        assert_eq!(store.find(&finer).unwrap(), None);
         let path = store.path().join(Store::name(&whole.spec()));
         let of = Constant::Viscosity;
         // A mutated run that was taken for a healthy one passed.
@@ -289,8 +267,7 @@ mod tests {
         for other in others {
             let in_its_place = store.path().join(Store::name(&other));
             fs::copy(&path, &in_its_place).unwrap();
-            let found = store.find(&other, "abc");
-            assert!(matches!(found, Found::Nothing), "the record of another run: {found:?}");
+            assert_eq!(store.find(&other).unwrap(), None, "the record of another run");
             fs::remove_file(in_its_place).unwrap();
         }
         assert_eq!(Store::all(store.path()).unwrap(), [whole]);
@@ -306,7 +283,7 @@ mod tests {
         all.put(GAP, 0.0);
         headline.leave_unasked(&[GAP]);
         let spec = all.spec();
-        let serves = |spec: &RunSpec| matches!(store.find(spec, "abc"), Found::Same(_));
+        let serves = |spec: &RunSpec| store.find(spec).unwrap().is_some();
         store.write(&all).unwrap();
         assert!(serves(&spec) && serves(&spec.clone().measure_all()));
         store.write(&headline).unwrap();
@@ -341,10 +318,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::to_read(&folder.path().join("records"));
         let whole = record(Status::Completed);
-        assert!(matches!(store.find(&whole.spec(), "abc"), Found::Nothing));
+        assert_eq!(store.find(&whole.spec()).unwrap(), None);
         assert!(!store.path().exists());
         Store::open(store.path()).unwrap().write(&whole).unwrap();
-        assert!(matches!(store.find(&whole.spec(), "abc"), Found::Same(_)));
+        assert_eq!(store.find(&whole.spec()).unwrap(), Some(whole));
     }
 
     #[test]
@@ -353,19 +330,16 @@ mod tests {
         let store = Store::open(folder.path()).unwrap();
         let cut = record(Status::Interrupted { step: 1, time: 0.1 });
         store.write(&cut).unwrap();
-        assert!(matches!(store.find(&cut.spec(), "abc"), Found::Nothing));
+        assert_eq!(store.find(&cut.spec()).unwrap(), None);
         let path = store.write(&record(Status::Completed)).unwrap();
         fs::write(folder.path().join(".unfinished-1-0-c.json"), "{").unwrap();
         assert_eq!(Store::all(store.path()).unwrap().len(), 1);
         fs::write(&path, "{").unwrap();
-        assert!(matches!(
-            store.find(&cut.spec(), "abc"),
-            Found::Unsound(StoreError::Record { .. })
-        ));
+        assert!(matches!(store.find(&cut.spec()), Err(StoreError::Record { .. })));
         assert!(matches!(Store::all(store.path()), Err(StoreError::Record { .. })));
         fs::remove_file(&path).unwrap();
         fs::create_dir(&path).unwrap();
-        let found = store.find(&cut.spec(), "abc");
-        assert!(matches!(found, Found::Unsound(StoreError::Unreadable { .. })), "{found:?}");
+        let found = store.find(&cut.spec());
+        assert!(matches!(found, Err(StoreError::Unreadable { .. })), "{found:?}");
     }
 }
