@@ -5,7 +5,7 @@
 //! and its observers, and each simulation then takes over its state and theirs, so that no case knows whether
 //! it goes on.
 
-use std::any::Any;
+use std::any::{Any, TypeId};
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -144,94 +144,72 @@ pub(crate) struct Stage {
 
 base::bits! { Stage { reached, cost, frames, ended } }
 
-/// Id, role, position, velocity, density and mass of a particle, where it was when the neighbour lists were
-/// built, and its extra fields, with those of earlier steps.
-type Stored = (u32, u8, [f64; 8], Vec<f64>);
+/// The extra fields of a particle: none, or those of a deviatoric stress.
+struct Extra<X>(X);
+
+impl<X: Numbers> Bits for Extra<X> {
+    fn write_to(&self, to: &mut Vec<u8>) {
+        let extra: &dyn Any = &self.0;
+        if let Some(s) = extra.downcast_ref::<Symmetric>() {
+            [s.xx, s.yy, s.xy].write_to(to);
+        }
+    }
+    fn read_from(from: &mut &[u8]) -> Result<Self, OtherBits> {
+        let mut read = Self(X::default());
+        let extra: &mut dyn Any = &mut read.0;
+        if let Some(s) = extra.downcast_mut::<Symmetric>() {
+            let [xx, yy, xy] = Bits::read_from(from)?;
+            *s = Symmetric { xx, yy, xy };
+        }
+        Ok(read)
+    }
+}
+
+/// Id and role of a particle, its position, its velocity and where it was when the neighbour lists were built,
+/// and then density, mass and extra fields.
+type Stored<X> = (u32, u8, [Vector2<f64>; 3], ([f64; 2], Extra<X>));
+
+/// What an integrator keeps of earlier steps: density and extra fields, and their rates.
+type Earlier<X> = [(f64, Extra<X>); 2];
 
 /// Times and steps, and then the particles.
-type State = ([f64; 7], [u64; 5], bool, Vec<Stored>);
-
-/// Appends the numbers of these extra fields.
-fn save_extra<X: Numbers>(extra: &X, to: &mut Vec<f64>) -> Result<(), CheckpointError> {
-    let known: &dyn Any = extra;
-    match known.downcast_ref::<Symmetric>() {
-        Some(s) => to.extend([s.xx, s.yy, s.xy]),
-        None if size_of::<X>() == 0 => {}
-        None => return Err(CheckpointError::Extra),
-    }
-    Ok(())
-}
-
-/// Takes the numbers of extra fields from the front.
-fn restore_extra<X: Numbers>(from: &mut &[f64]) -> Result<X, CheckpointError> {
-    let mut extra = X::default();
-    let known: &mut dyn Any = &mut extra;
-    match known.downcast_mut::<Symmetric>() {
-        Some(s) => {
-            let (&[xx, yy, xy], rest) = from.split_first_chunk().ok_or(CheckpointError::Extra)?;
-            (*s, *from) = (Symmetric { xx, yy, xy }, rest);
-        }
-        None if size_of::<X>() == 0 => {}
-        None => return Err(CheckpointError::Extra),
-    }
-    Ok(extra)
-}
-
-/// What an integrator keeps of earlier steps.
-fn restore_past<X: Numbers>(mut from: &[f64]) -> Result<Past<X>, CheckpointError> {
-    let mut rates = || {
-        let (&density, rest) = from.split_first().ok_or(CheckpointError::Extra)?;
-        from = rest;
-        Ok::<_, CheckpointError>((density, restore_extra(&mut from)?))
-    };
-    let past = Past { drifted: rates()?, rate: rates()? };
-    if from.is_empty() { Ok(past) } else { Err(CheckpointError::Extra) }
-}
+type State<X> = ([f64; 7], [u64; 5], bool, (Vec<Stored<X>>, Vec<Earlier<X>>));
 
 /// The state of a simulation.
-fn save_state<X: Numbers>(state: &Checkpoint<X>, to: &mut Vec<u8>) -> Result<(), CheckpointError> {
-    let Checkpoint { progress, lag, particles, built_at, past } = state;
+fn state<X: Numbers>(of: &Checkpoint<X>) -> State<X> {
+    let Checkpoint { progress, lag, particles, built_at, past } = of;
     let &Progress { time, dt, work, last_approach, built_inside_a_step, call, made } = progress;
     let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-    let mut all: Vec<Stored> = Vec::new();
-    for (k, ((id, p), at)) in particles.iter().zip(built_at).enumerate() {
-        let (x, v) = (p.position, p.velocity);
-        let mut numbers = Vec::new();
-        save_extra(&p.extra, &mut numbers)?;
-        for (density, extra) in past.get(k).iter().flat_map(|past| [past.drifted, past.rate]) {
-            numbers.push(density);
-            save_extra(&extra, &mut numbers)?;
-        }
-        let at = [x.x, x.y, v.x, v.y, p.density, p.mass, at.x, at.y];
-        all.push((*id, p.role as u8, at, numbers));
-    }
+    let stored = particles.iter().zip(built_at).map(|((id, p), at)| {
+        let moved = [p.position, p.velocity, *at];
+        (*id, p.role as u8, moved, ([p.density, p.mass], Extra(p.extra)))
+    });
+    let earlier = |past: &Past<X>| [past.drifted, past.rate].map(|(of, extra)| (of, Extra(extra)));
     let times = [time, dt, last_approach, *lag, call[0], call[1], call[2]];
     let counts = [steps, pair_interactions, right_hand_sides, list_builds, made];
-    let state: State = (times, counts, built_inside_a_step, all);
-    state.write_to(to);
-    Ok(())
+    let particles = (stored.collect(), past.iter().map(earlier).collect());
+    (times, counts, built_inside_a_step, particles)
 }
 
 fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, CheckpointError> {
-    let (times, counts, built_inside_a_step, stored) = State::read_from(from)?;
+    let (times, counts, built_inside_a_step, (stored, past)) = State::read_from(from)?;
     let [time, dt, last_approach, lag, call @ ..] = times;
     let [steps, pair_interactions, right_hand_sides, list_builds, made] = counts;
     let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
     let progress = Progress { time, dt, work, last_approach, built_inside_a_step, call, made };
-    let (mut particles, mut built_at, mut past) = (Vec::new(), Vec::new(), Vec::new());
-    for (id, role, [x, y, u, v, density, mass, at_x, at_y], numbers) in stored {
+    let (mut particles, mut built_at) = (Vec::new(), Vec::new());
+    for (id, role, [position, velocity, at], ([density, mass], Extra(extra))) in stored {
         let roles = [Role::Fluid, Role::Wall, Role::Interface];
         let role = roles.into_iter().find(|known| *known as u8 == role);
         let role = role.ok_or(CheckpointError::State("a particle of an unknown role"))?;
-        let mut numbers = &numbers[..];
-        let extra = restore_extra(&mut numbers)?;
-        if !numbers.is_empty() {
-            past.push(restore_past(numbers)?);
-        }
-        let (position, velocity) = (Vector2::new(x, y), Vector2::new(u, v));
         particles.push((id, Particle { role, position, velocity, density, mass, extra }));
-        built_at.push(Vector2::new(at_x, at_y));
+        built_at.push(at);
     }
+    let earlier = |earlier: Earlier<X>| {
+        let [drifted, rate] = earlier.map(|(density, Extra(extra))| (density, extra));
+        Past { drifted, rate }
+    };
+    let past = past.into_iter().map(earlier).collect();
     Ok(Checkpoint { progress, lag, particles, built_at, past })
 }
 
@@ -241,8 +219,11 @@ pub(crate) fn save<X: Numbers>(
     stage: &Stage,
     seen: &impl Observed,
 ) -> Result<Vec<u8>, CheckpointError> {
+    if size_of::<X>() > 0 && TypeId::of::<X>() != TypeId::of::<Symmetric>() {
+        return Err(CheckpointError::Extra);
+    }
     let mut to = Vec::new();
-    save_state(&simulation.checkpoint(), &mut to)?;
+    state(&simulation.checkpoint()).write_to(&mut to);
     stage.write_to(&mut to);
     seen.save(&mut to);
     Ok(to)
