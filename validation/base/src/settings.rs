@@ -129,8 +129,11 @@ impl Field {
 #[error("{0}")]
 pub struct SettingError(String);
 
-/// " (did you mean NAME?)", or nothing.
-pub fn hint(nearest: &Option<&'static str>) -> String {
+/// " (did you mean NAME?)" with the name most similar to what was written, or nothing if none is similar.
+pub fn hint(names: &[&str], written: &str) -> String {
+    let distance = |name: &&&str| edit_distance(name, written);
+    let is_close = |name: &&&str| distance(name) <= 1 + name.len() / 3;
+    let nearest = names.iter().filter(is_close).min_by_key(distance);
     nearest.map(|name| format!(" (did you mean {name}?)")).unwrap_or_default()
 }
 
@@ -187,15 +190,8 @@ pub fn apply<S: Settings>(
 /// The error for a key that is not among the fields.
 pub fn unknown(fields: &'static [Field], key: &str) -> SettingError {
     let keys: Vec<_> = fields.iter().map(|field| field.name).collect();
-    let (hint, keys) = (hint(&nearest(&keys, key)), keys.join(", "));
+    let (hint, keys) = (hint(&keys, key), keys.join(", "));
     SettingError(format!("no setting is called {key:?}{hint}; the settings are {keys}"))
-}
-
-/// The name most similar to what was written, if one is similar.
-pub fn nearest<'a>(names: &[&'a str], written: &str) -> Option<&'a str> {
-    let distance = |name: &&str| edit_distance(name, written);
-    let is_close = |name: &&&str| distance(name) <= 1 + name.len() / 3;
-    names.iter().filter(is_close).min_by_key(|name| distance(name)).copied()
 }
 
 /// All names, the most similar to what was written first: those that contain it, then those that differ from

@@ -3,7 +3,7 @@
 
 use base::{
     record::{Record, Status},
-    settings::{self, Field, Kind, nearest},
+    settings::{self, Field, Kind},
     spec::{RunSpec, SpecError, Task},
 };
 use serde_json::Value;
@@ -149,31 +149,9 @@ pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
         .collect()
 }
 
-/// The variant of that name, or an error that lists the names.
-pub fn find<V>(
-    case: &'static str,
-    mut variants: Vec<V>,
-    name: &str,
-    name_of: impl Fn(&V) -> &'static str,
-) -> Result<V, RunError> {
-    match variants.iter().position(|v| name_of(v) == name) {
-        Some(place) => Ok(variants.swap_remove(place)),
-        None => {
-            let known: Vec<_> = variants.iter().map(name_of).collect();
-            Err(RunError::Variant {
-                case,
-                name: name.into(),
-                nearest: nearest(&known, name),
-                known,
-            })
-        }
-    }
-}
-
 /// The case of that name among these.
 pub fn find_in(cases: &[&'static dyn Case], name: &str) -> Result<&'static dyn Case, RunError> {
-    cases.iter().copied().find(|case| case.name() == name).ok_or_else(|| {
-        let known: Vec<_> = cases.iter().map(|case| case.name()).collect();
-        RunError::Case { name: name.into(), nearest: nearest(&known, name), known }
-    })
+    let known = || cases.iter().map(|case| case.name()).collect();
+    let unknown = || RunError::Case { name: name.into(), known: known() };
+    cases.iter().copied().find(|case| case.name() == name).ok_or_else(unknown)
 }

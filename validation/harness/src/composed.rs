@@ -12,7 +12,7 @@ use base::{
 
 pub use crate::case::Best;
 use crate::{
-    case::{self, Case, Planned, Rules, RunError, Tier, Variant},
+    case::{Case, Planned, Rules, RunError, Tier, Variant},
     context::Context,
     declare::Declaration,
     deep::deepened,
@@ -213,7 +213,12 @@ impl<T: Settings + 'static> Composed<T> {
 
     /// The composition of that name.
     fn composition(&self, variant: &str) -> Result<Composition<T>, RunError> {
-        case::find(self.name, (self.variants)(), variant, |v| v.variant.name)
+        let mut all = (self.variants)();
+        let known: Vec<_> = all.iter().map(|of| of.variant.name).collect();
+        match known.iter().position(|name| *name == variant) {
+            Some(place) => Ok(all.swap_remove(place)),
+            None => Err(RunError::Variant { case: self.name, name: variant.into(), known }),
+        }
     }
 
     /// The composition of a run and its settings.

@@ -18,27 +18,23 @@ use crate::{
 #[derive(Debug, Error)]
 pub enum RunError {
     /// No case of that name.
-    #[error("no case is called {name:?}{}; the cases are {}", hint(.nearest), .known.join(", "))]
+    #[error("no case is called {name:?}{}; the cases are {}", hint(.known, .name), .known.join(", "))]
     Case {
         /// As given.
         name: String,
-        /// The most similar name, if one is similar.
-        nearest: Option<&'static str>,
         /// All names.
         known: Vec<&'static str>,
     },
     /// No variant of that name.
     #[error(
         "case {case} has no variant {name:?}{}; its variants are {}",
-        hint(.nearest), .known.join(", ")
+        hint(.known, .name), .known.join(", ")
     )]
     Variant {
         /// The case.
         case: &'static str,
         /// As given.
         name: String,
-        /// The most similar name, if one is similar.
-        nearest: Option<&'static str>,
         /// All names.
         known: Vec<&'static str>,
     },

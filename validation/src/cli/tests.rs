@@ -71,7 +71,7 @@ impl Case for Staged {
         let known: Vec<&'static str> = self.variants().iter().map(|known| known.name).collect();
         if !known.contains(&variant) {
             let (case, name) = (self.name, variant.into());
-            return Err(RunError::Variant { case, name, nearest: None, known });
+            return Err(RunError::Variant { case, name, known });
         }
         for (key, value) in set.iter().filter_map(|text| text.split_once('=')) {
             settings[key] = value.parse::<f64>().map_or(value.into(), Value::from);
