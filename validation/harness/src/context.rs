@@ -98,6 +98,11 @@ impl Context<'_> {
         self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
+    /// A frame or a checkpoint could not be written.
+    pub(crate) fn lose(&self, error: &RunError) {
+        self.lost.iter().for_each(|lost| lost(error));
+    }
+
     /// The context for computing rules, which give the time step whether or not it is stable, and however
     /// many there are.
     pub fn of_rules() -> Self {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use base::record::Status;
 use nalgebra::Vector2;
-use solver::{Checkpoint, Numbers, Observer, Outcome, Particle, Role, Stepper};
+use solver::{Checkpoint, Divergence, Numbers, Observer, Outcome, Particle, Role, Stepper};
 
 use crate::error::RunError;
 
@@ -165,14 +165,21 @@ fn put<X: Numbers, D: Stepper<X> + ?Sized>(
         simulation.restore(&state).map_err(|reason| refused(reason.into()))?;
     }
     match advanced(frame, time, state, simulation) {
-        Outcome::Diverged(divergence) => Ok(Some(Status::Diverged {
-            step: 0,
-            time,
-            particle: divergence.fault.particle as usize,
-            field: divergence.fault.field.into(),
-            value_text: format!("{:.6e}", divergence.fault.value),
-        })),
+        Outcome::Diverged(divergence) => {
+            Ok(Some(diverged(Divergence { step: 0, time, ..divergence })))
+        }
         Outcome::Reached | Outcome::Stopped => Ok(None),
+    }
+}
+
+/// How a run that diverged has ended.
+pub(crate) fn diverged(Divergence { step, time, fault }: Divergence) -> Status {
+    Status::Diverged {
+        step,
+        time,
+        particle: fault.particle as usize,
+        field: fault.field.into(),
+        value_text: format!("{:.6e}", fault.value),
     }
 }
 

@@ -16,7 +16,7 @@ use crate::{
     error::RunError,
     frames::{self, Frames},
     outline::Sink,
-    playback::Playback,
+    playback,
     profile::{self, Profiler},
     size::Size,
 };
@@ -35,19 +35,9 @@ type Synchronised = bool;
 /// A function that is called when a run goes on from a checkpoint.
 type Resumed<'a, D, S> = &'a dyn Fn(&S, &mut D);
 
-/// The way to one of the times of interest.
-#[derive(Default)]
-struct Stretch {
-    start: Reading,
-    /// What observers, frames and checkpoints took.
-    observing: Reading,
-    /// Steps before it.
-    steps: u64,
-}
-
 /// Sees every step: calls the observer, writes frames and checkpoints, shows how far the run is, and obeys an
 /// interrupt after every step, however long steps take.
-struct Watch<'a, X, S> {
+struct Watch<'a, X, D: ?Sized, S> {
     context: &'a Context<'a>,
     end: f64,
     shown: Instant,
@@ -56,18 +46,22 @@ struct Watch<'a, X, S> {
     seen: &'a mut S,
     pressure: &'a dyn Fn(f64) -> f64,
     after_step: Named<AfterStep<'a, X, S>>,
+    at: Named<(At<'a, D, S>, Synchronised)>,
     frames: Option<Frames<'a>>,
     profiler: Option<Profiler>,
-    /// Until the stretch began.
+    /// What the way to the last of the times of interest took, and all observing.
     cost: Cost,
-    stretch: Stretch,
+    /// When the way to the next one began, later by what observers, frames and checkpoints took since.
+    start: Reading,
+    /// Steps before it.
+    steps: u64,
     /// How many of the times of interest were reached.
     reached: usize,
     /// Whether what is called at the next of them reads quantities of that very time.
     synchronises: Synchronised,
 }
 
-impl<X: Numbers, S: Observed> Watch<'_, X, S> {
+impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
     fn show(&mut self, simulation: &(impl Stepper<X> + ?Sized), dt: f64) {
         if let Some(show) = self.context.progress {
             let particle_steps = simulation.work().steps * simulation.fluid_count() as u64;
@@ -80,21 +74,15 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         self.context.clock().read(self.cost.threads)
     }
 
-    /// A frame or a checkpoint could not be written.
-    fn lose(&self, error: &RunError) {
-        self.context.lost.iter().for_each(|lost| lost(error));
-    }
-
     /// What the run took until now.
     fn cost(&self, simulation: &(impl Stepper<X> + ?Sized), now: Reading) -> Cost {
-        let (mut cost, Stretch { start, observing, steps }) = (self.cost.clone(), &self.stretch);
-        if simulation.work().steps > *steps {
+        let mut cost = self.cost.clone();
+        if simulation.work().steps > self.steps {
             cost.largest_dt_s = cost.largest_dt_s.max(simulation.dt());
         }
-        let stepping = now - *start - *observing;
+        let stepping = now - self.start;
         cost.wall_s += stepping.wall;
         cost.cpu_s += stepping.cpu;
-        cost.observing_s += observing.wall;
         cost
     }
 
@@ -132,9 +120,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         let Some(frames) = &mut self.frames else { return };
         self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
         while frames.is_due(simulation.time()) && !self.context.is_interrupted() {
-            let written = frames.write(simulation);
-            let lost = written.err().zip(self.context.lost);
-            lost.into_iter().for_each(|(error, lost)| lost(&error.into()));
+            frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error.into()));
         }
     }
 
@@ -157,21 +143,16 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
             let cost = Cost { breakdown: self.breakdown(simulation), ..self.cost(simulation, now) };
             let saved = self.save(simulation, cost, None);
             let is_last = self.context.is_interrupted();
-            if let Err(error) = saved.and_then(|bytes| checkpoints.write(bytes, is_last)) {
-                self.lose(&error.into());
-            }
+            let written = saved.and_then(|bytes| checkpoints.write(bytes, is_last));
+            written.unwrap_or_else(|error| self.context.lose(&error.into()));
             self.saved = self.now().wall;
         }
         flow
     }
 
     /// Steps to a time; how the run ended, if it did not get there.
-    fn step_to<D>(&mut self, simulation: &mut D, until: f64, dt: f64) -> Option<Status>
-    where
-        D: Stepper<X> + ?Sized,
-    {
-        let steps = simulation.work().steps;
-        self.stretch = Stretch { start: self.now(), observing: Reading::default(), steps };
+    fn step_to(&mut self, simulation: &mut D, until: f64, dt: f64) -> Option<Status> {
+        (self.start, self.steps) = (self.now(), simulation.work().steps);
         self.profiler.iter().for_each(Profiler::step);
         let outcome = simulation.advance(until, dt, self);
         self.profiler.iter().for_each(Profiler::pause);
@@ -181,13 +162,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         }
         match outcome {
             Outcome::Reached => None,
-            Outcome::Diverged(divergence) => Some(Status::Diverged {
-                step: divergence.step,
-                time: divergence.time,
-                particle: divergence.fault.particle as usize,
-                field: divergence.fault.field.into(),
-                value_text: format!("{:.6e}", divergence.fault.value),
-            }),
+            Outcome::Diverged(divergence) => Some(playback::diverged(divergence)),
             Outcome::Stopped => {
                 let (step, time) = (simulation.work().steps, simulation.time());
                 Some(Status::Interrupted { step, time })
@@ -197,23 +172,14 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
 
     /// Steps through the times that are left, with steps of at most `dt` \[s\] and at least so many to each,
     /// and observes each; how the run ended.
-    fn step_through<D>(
-        &mut self,
-        simulation: &mut D,
-        times: &[f64],
-        (dt, least): (f64, f64),
-        at: &Named<(At<D, S>, Synchronised)>,
-    ) -> Status
-    where
-        D: Stepper<X> + ?Sized,
-    {
+    fn step_through(&mut self, simulation: &mut D, times: &[f64], dt: f64, least: f64) -> Status {
         while let Some(&until) = times.get(self.reached) {
             let start = self.reached.checked_sub(1).map_or(0.0, |before| times[before]);
             let dt = if until > start { dt.min((until - start) / least) } else { dt };
             let is_last = self.reached + 1 == times.len();
             let is_told = self.context.at_times.is_some();
             self.synchronises =
-                is_last || is_told || at.iter().any(|(_, (_, synchronised))| *synchronised);
+                is_last || is_told || self.at.iter().any(|(_, (_, synchronised))| *synchronised);
             if let Some(ended) = self.step_to(simulation, until, dt) {
                 return ended;
             }
@@ -221,7 +187,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
             if let Some(tell) = self.context.at_times {
                 tell(until, frames::columns(&simulation.particles(), self.pressure));
             }
-            for (name, (at, _)) in at {
+            for (name, (at, _)) in &self.at {
                 self.profile(name);
                 at(self.seen, simulation, self.reached);
             }
@@ -232,28 +198,8 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
         Status::Completed
     }
 
-    /// Shows the frames of another code in place of steps; how its run ended.
-    fn play<D>(
-        &mut self,
-        playback: &Playback<'_>,
-        simulation: &mut D,
-        times: &[f64],
-        at: &Named<(At<D, S>, Synchronised)>,
-    ) -> Result<Status, RunError>
-    where
-        D: Stepper<X> + ?Sized,
-    {
-        let at = |watch: &mut Self, simulation: &mut D, k: usize| {
-            at.iter().for_each(|(_, (at, _))| at(watch.seen, simulation, k));
-        };
-        playback.play(simulation, times, self, at)
-    }
-
     /// Goes on from a checkpoint; how the simulation ended, if it did.
-    fn go_on<D>(&mut self, bytes: &[u8], simulation: &mut D) -> Result<Option<Status>, RunError>
-    where
-        D: Stepper<X> + ?Sized,
-    {
+    fn go_on(&mut self, bytes: &[u8], simulation: &mut D) -> Result<Option<Status>, RunError> {
         let Stage { reached, cost, frames, ended } =
             checkpoint::restore(bytes, simulation, self.seen)?;
         let resumed = cost.resumed + u32::from(ended.is_none());
@@ -273,7 +219,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
     }
 
     /// What was counted.
-    fn counted(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Cost {
+    fn counted(&self, simulation: &D) -> Cost {
         let work = simulation.work();
         Cost {
             threads: self.context.threads.max(1),
@@ -288,7 +234,7 @@ impl<X: Numbers, S: Observed> Watch<'_, X, S> {
     }
 }
 
-impl<X: Numbers, S: Observed> Observer<X> for Watch<'_, X, S> {
+impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Observer<X> for Watch<'_, X, D, S> {
     #[inline]
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         if self.context.progress.is_some() && self.shown.elapsed() >= SHOW_EVERY {
@@ -298,7 +244,9 @@ impl<X: Numbers, S: Observed> Observer<X> for Watch<'_, X, S> {
         if self.observes() {
             let now = self.now();
             flow = self.observe(simulation, now);
-            self.stretch.observing += self.now() - now;
+            let took = self.now() - now;
+            self.start += took;
+            self.cost.observing_s += took.wall;
         }
         if self.context.is_interrupted() { Flow::Stop } else { flow }
     }
@@ -465,15 +413,21 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             seen,
             pressure,
             after_step,
+            at,
             frames: frames.transpose()?,
             profiler: None,
             cost: Cost { threads: context.threads.max(1), ..Cost::default() },
-            stretch: Stretch::default(),
+            start: Reading::default(),
+            steps: 0,
             reached: 0,
             synchronises: true,
         };
         if let Some(playback) = context.playback {
-            return Ok((watch.play(playback, simulation, times, &at)?, watch.counted(simulation)));
+            let at = |watch: &mut Watch<_, D, _>, simulation: &mut D, k: usize| {
+                watch.at.iter().for_each(|(_, (at, _))| at(watch.seen, simulation, k));
+            };
+            let status = playback.play(simulation, times, &mut watch, at)?;
+            return Ok((status, watch.counted(simulation)));
         }
         let mut ended = None;
         if let Some(bytes) = context.checkpoints.and_then(Checkpoints::next) {
@@ -482,7 +436,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         }
         if context.profile && ended.is_none() {
             let names = watch.after_step.iter().map(|(name, _)| *name);
-            let names: Vec<_> = names.chain(at.iter().map(|(name, _)| *name)).collect();
+            let names: Vec<_> = names.chain(watch.at.iter().map(|(name, _)| *name)).collect();
             let earlier = watch.cost.breakdown.take().unwrap_or_default();
             watch.profiler = Some(Profiler::new(simulation, names.into_iter(), earlier));
         }
@@ -490,11 +444,9 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         let (status, cost) = match ended {
             Some(status) => (status, watch.cost.clone()),
             None => {
-                let status = watch.step_through(simulation, times, (dt, least), &at);
-                if let (Some(frames), Status::Completed) = (&mut watch.frames, &status)
-                    && let Err(error) = frames.write(simulation)
-                {
-                    watch.lose(&error.into());
+                let status = watch.step_through(simulation, times, dt, least);
+                if let (Some(frames), Status::Completed) = (&mut watch.frames, &status) {
+                    frames.write(simulation).unwrap_or_else(|error| context.lose(&error.into()));
                 }
                 (status, watch.counted(simulation))
             }
