@@ -49,7 +49,7 @@ fn a_new_case_has_order_cost_budget_and_step_limit() {
     let ids: Vec<&str> = results.studies.iter().map(|study| study.id.as_str()).collect();
     let expected = ["decay-work-precision", "decay-error-budget", "decay-time-step"];
     assert_eq!(ids, expected);
-    for run in results.runs.all() {
+    for run in &results.runs.all {
         let record = &run.record;
         assert!(!record.metrics.is_empty(), "{:?}: {:?}", record.settings, record.status);
     }

@@ -76,7 +76,7 @@ fn line(results: &CaseResults) -> String {
 
 /// What all runs of the report cost together.
 fn cost(suite: &Suite) -> String {
-    let records = || suite.cases.iter().flat_map(|results| results.runs.all()).map(|r| &r.record);
+    let records = || suite.cases.iter().flat_map(|results| &results.runs.all).map(|r| &r.record);
     let cost = || records().map(|record| &record.cost);
     let repeated: f64 = cost().flat_map(|cost| cost.alone_s.iter().skip(1)).sum();
     let stepping: f64 = cost().map(|cost| cost.cpu_s).sum();
@@ -195,7 +195,7 @@ fn case_section(results: &CaseResults) -> Section {
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
     section.block(Block::Details {
         summary: "Variants and all runs".into(),
-        blocks: vec![Block::List(variants), run_table(case, results.runs.all()).into()],
+        blocks: vec![Block::List(variants), run_table(case, &results.runs.all).into()],
     })
 }
 

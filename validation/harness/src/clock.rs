@@ -1,4 +1,4 @@
-//! The clocks of a run. They are read through [`Clock`], so that a test can say what time it is.
+//! The clocks of a run. A test can say what time it is: see [`crate::context::Context::clock`].
 
 use std::ops::{AddAssign, Sub};
 use std::sync::OnceLock;
@@ -29,26 +29,16 @@ impl AddAssign for Reading {
     }
 }
 
-/// Tells the time of a run.
-pub trait Clock: Sync {
-    /// Now, with the processor time of this thread, or of the whole process if the run has several threads:
-    /// runs side by side share a process.
-    fn read(&self, threads: usize) -> Reading;
-}
-
-/// The clocks of the system.
-pub struct System;
-
-impl Clock for System {
-    fn read(&self, threads: usize) -> Reading {
-        static START: OnceLock<Instant> = OnceLock::new();
-        let cpu = match threads {
-            0 | 1 => ThreadTime::now().as_duration(),
-            _ => ProcessTime::now().as_duration(),
-        };
-        let wall = START.get_or_init(Instant::now).elapsed();
-        Reading { wall: wall.as_secs_f64(), cpu: cpu.as_secs_f64() }
-    }
+/// Now by the clocks of the system, with the processor time of this thread, or of the whole process if the
+/// run has several threads: runs side by side share a process.
+pub fn system(threads: usize) -> Reading {
+    static START: OnceLock<Instant> = OnceLock::new();
+    let cpu = match threads {
+        0 | 1 => ThreadTime::now().as_duration(),
+        _ => ProcessTime::now().as_duration(),
+    };
+    let wall = START.get_or_init(Instant::now).elapsed();
+    Reading { wall: wall.as_secs_f64(), cpu: cpu.as_secs_f64() }
 }
 
 #[cfg(test)]
@@ -69,9 +59,9 @@ mod tests {
                     std::hint::spin_loop()
                 }
             });
-            let before = [1, 2].map(|threads| System.read(threads));
+            let before = [1, 2].map(system);
             sleep(Duration::from_millis(200));
-            let after = [1, 2].map(|threads| System.read(threads));
+            let after = [1, 2].map(system);
             is_over.store(true, Ordering::Relaxed);
             [0, 1].map(|k| after[k] - before[k])
         });

@@ -14,7 +14,7 @@ use base::{
 
 use crate::{
     checkpoint::Checkpoints,
-    clock::{self, Clock},
+    clock::{self, Reading},
     error::RunError,
     outline::Sink,
     playback::Playback,
@@ -68,8 +68,8 @@ pub struct Context<'a> {
     pub profile: bool,
     /// Told of a frame or a checkpoint that could not be written; the run goes on.
     pub lost: Option<&'a (dyn Fn(&RunError) + Sync)>,
-    /// What time it is, by default that of the system.
-    pub clock: Option<&'a dyn Clock>,
+    /// Tells the time of a run with so many threads, by default [`clock::system`].
+    pub clock: Option<&'a (dyn Fn(usize) -> Reading + Sync)>,
     /// Where the problem of the run is put: then no step is made.
     pub outline: Option<Sink>,
     /// Frames of another code, which are measured in place of steps.
@@ -88,9 +88,9 @@ impl Context<'_> {
         self.measure == Measure::All
     }
 
-    /// The clocks of the run.
-    pub fn clock(&self) -> &dyn Clock {
-        self.clock.unwrap_or(&clock::System)
+    /// What time it is by the clocks of the run.
+    pub fn now(&self) -> Reading {
+        self.clock.unwrap_or(&clock::system)(self.threads)
     }
 
     /// Is the run to stop?

@@ -766,7 +766,7 @@ mod tests {
             ..Making::new(Tier::Quick, &|_| "abc".into())
         };
         let suite = suite::run(&[&Quick], &making);
-        let values = suite.cases[0].runs.all().iter().map(|run| run.record.value(ERROR));
+        let values = suite.cases[0].runs.all.iter().map(|run| run.record.value(ERROR));
         assert_eq!(values.collect::<Vec<_>>(), [Some(1.0); 3]);
         assert_eq!(suite.made.not_kept.len(), 3);
         for error in suite.made.not_kept.values() {

@@ -70,10 +70,6 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
         }
     }
 
-    fn now(&self) -> Reading {
-        self.context.clock().read(self.cost.threads)
-    }
-
     /// What the run took until now.
     fn cost(&self, simulation: &(impl Stepper<X> + ?Sized), now: Reading) -> Cost {
         let mut cost = self.cost.clone();
@@ -145,18 +141,18 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
             let is_last = self.context.is_interrupted();
             let written = saved.and_then(|bytes| checkpoints.write(bytes, is_last));
             written.unwrap_or_else(|error| self.context.lose(&error.into()));
-            self.saved = self.now().wall;
+            self.saved = self.context.now().wall;
         }
         flow
     }
 
     /// Steps to a time; how the run ended, if it did not get there.
     fn step_to(&mut self, simulation: &mut D, until: f64, dt: f64) -> Option<Status> {
-        (self.start, self.steps) = (self.now(), simulation.work().steps);
+        (self.start, self.steps) = (self.context.now(), simulation.work().steps);
         self.profiler.iter().for_each(Profiler::step);
         let outcome = simulation.advance(until, dt, self);
         self.profiler.iter().for_each(Profiler::pause);
-        self.cost = self.cost(simulation, self.now());
+        self.cost = self.cost(simulation, self.context.now());
         if let Some(profiler) = &mut self.profiler {
             profiler.sample(simulation);
         }
@@ -183,7 +179,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
             if let Some(ended) = self.step_to(simulation, until, dt) {
                 return ended;
             }
-            let start = self.now();
+            let start = self.context.now();
             if let Some(tell) = self.context.at_times {
                 tell(until, frames::columns(&simulation.particles(), self.pressure));
             }
@@ -192,7 +188,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
                 at(self.seen, simulation, self.reached);
             }
             self.profiler.iter().for_each(Profiler::pause);
-            self.cost.observing_s += (self.now() - start).wall;
+            self.cost.observing_s += (self.context.now() - start).wall;
             self.reached += 1;
         }
         Status::Completed
@@ -242,9 +238,9 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Observer<X> for Watch<'_, 
         }
         let mut flow = Flow::Continue;
         if self.observes() {
-            let now = self.now();
+            let now = self.context.now();
             flow = self.observe(simulation, now);
-            let took = self.now() - now;
+            let took = self.context.now() - now;
             self.start += took;
             self.cost.observing_s += took.wall;
         }
@@ -396,7 +392,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         let end = times.last().copied().unwrap_or_default();
         let fewest = least.max(1.0) * times.len() as f64;
         let steps = ((end - simulation.time()) / dt).max(fewest);
-        let size = Size::of(simulation, steps).with_sweeps(sweeps);
+        let size = Size { sweeps, ..Size::of(simulation, steps) };
         check_size(size, "the end, the time step or the spacing", context)?;
         if let Some(tell) = context.estimate {
             tell(&size);
@@ -409,7 +405,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             context,
             end,
             shown: Instant::now(),
-            saved: context.clock().read(context.threads).wall,
+            saved: context.now().wall,
             seen,
             pressure,
             after_step,
@@ -478,7 +474,6 @@ mod tests {
 
     use super::*;
     use crate::{
-        clock::Clock,
         method::{Method, Parts},
         simulate::state,
     };
@@ -575,10 +570,7 @@ mod tests {
         fn pass(&self, wall: f64, cpu: f64) {
             *self.now.lock().unwrap() += Reading { wall, cpu };
         }
-    }
-
-    impl Clock for Ticking {
-        fn read(&self, _: usize) -> Reading {
+        fn read(&self) -> Reading {
             self.pass(1.0, 0.5);
             self.reads.fetch_add(1, Ordering::Relaxed);
             *self.now.lock().unwrap()
@@ -589,7 +581,8 @@ mod tests {
     /// \[wall s, processor s\] by the clock, or with none: what it took, and how often the clock was read.
     fn clocked(observer: Option<[f64; 2]>) -> (Cost, usize) {
         let (clock, times, mut wave) = (Ticking::default(), [10.0 * DT, 40.0 * DT], wave());
-        let context = Context { clock: Some(&clock), ..Context::default() };
+        let tell = |_| clock.read();
+        let context = Context { clock: Some(&tell), ..Context::default() };
         let [wall, cpu] = observer.unwrap_or_default();
         let observe = |_: &mut (), _: &dyn Stepper<()>| {
             clock.pass(wall, cpu);
@@ -640,8 +633,9 @@ mod tests {
             Ok(())
         };
         let checkpoints = Checkpoints::new(Duration::MAX, earlier, &write);
+        let tell = |_| clock.read();
         let context = Context {
-            clock: Some(&clock),
+            clock: Some(&tell),
             interrupt: Some(&flag),
             checkpoints: Some(&checkpoints),
             frames,
@@ -687,11 +681,12 @@ mod tests {
         };
         let checkpoints = Checkpoints::new(Duration::from_secs(30), Vec::new(), &write);
         let clock = Ticking::default();
+        let tell = |_| clock.read();
         let context = Context {
             frames: Some((frames.clone(), 4)),
             checkpoints: Some(&checkpoints),
             lost: Some(&lose),
-            clock: Some(&clock),
+            clock: Some(&tell),
             ..Context::default()
         };
         let (status, cost) =

@@ -93,38 +93,25 @@ impl Judged {
 /// [`Runs::unplanned`] tells, so that it cannot pass in silence.
 #[derive(Debug, Default)]
 pub struct Runs {
-    runs: Vec<JudgedRun>,
+    /// All of them in the order of the plan.
+    pub all: Vec<JudgedRun>,
     by_key: BTreeMap<RunKey, usize>,
-    submissions: Vec<JudgedRun>,
+    /// The runs that other codes made.
+    pub submissions: Vec<JudgedRun>,
     unplanned: Mutex<BTreeSet<String>>,
 }
 
 impl Runs {
     /// Runs in the order of the plan.
-    pub fn new(runs: Vec<JudgedRun>) -> Self {
+    pub fn new(all: Vec<JudgedRun>) -> Self {
         let key = |(k, run): (usize, &JudgedRun)| (run.planned.spec.key(), k);
-        let by_key = runs.iter().enumerate().map(key).collect();
-        Self { runs, by_key, ..Self::default() }
-    }
-
-    /// The same with runs of other codes beside them.
-    pub fn with_submissions(self, submissions: Vec<JudgedRun>) -> Self {
-        Self { submissions, ..self }
-    }
-
-    /// The runs that other codes made.
-    pub fn submissions(&self) -> &[JudgedRun] {
-        &self.submissions
-    }
-
-    /// All of them in the order of the plan.
-    pub fn all(&self) -> &[JudgedRun] {
-        &self.runs
+        let by_key = all.iter().enumerate().map(key).collect();
+        Self { all, by_key, ..Self::default() }
     }
 
     /// The judged run of a spec.
     pub fn judged(&self, spec: &RunSpec) -> Option<&JudgedRun> {
-        let found = self.by_key.get(&spec.key()).map(|k| &self.runs[*k]);
+        let found = self.by_key.get(&spec.key()).map(|k| &self.all[*k]);
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         if found.is_none() {
             let mut unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
@@ -145,7 +132,7 @@ impl Runs {
 
     /// The records of all simulations, in the order of the plan.
     pub fn simulations(&self) -> impl Iterator<Item = &Record> {
-        self.runs.iter().map(|run| &run.record).filter(|record| record.task == Task::Simulate)
+        self.all.iter().map(|run| &run.record).filter(|record| record.task == Task::Simulate)
     }
 
     /// The record of a run that reached its end.

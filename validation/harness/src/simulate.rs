@@ -88,7 +88,7 @@ pub fn check<X, D: ?Sized>(
 ) -> Result<(), RunError> {
     check_step(method.integrator, rules, context)?;
     let size = size(method, medium, [rules.end / rules.dt(), particles]);
-    check_size(size.with_sweeps(rules.sweeps()), settings, context)
+    check_size(Size { sweeps: rules.sweeps(), ..size }, settings, context)
 }
 
 /// Steps a scene to `end` \[s\] by `dt` \[s\] and completes its record: how it ended, what it took, and the

@@ -51,18 +51,6 @@ impl Size {
         Self::new([steps, particles as f64], reach)
     }
 
-    /// The same of a run that keeps something of every step.
-    #[must_use]
-    pub fn sampled_at_every_step(self) -> Self {
-        Self { samples: self.steps, ..self }
-    }
-
-    /// The same of a run with so many pair sweeps a step.
-    #[must_use]
-    pub fn with_sweeps(self, sweeps: f64) -> Self {
-        Self { sweeps, ..self }
-    }
-
     /// Processor time \[s\].
     pub fn seconds(&self) -> f64 {
         0.5 * self.sweeps * self.steps * self.particles * (STEP[0] + STEP[1] * self.neighbours)
@@ -127,7 +115,8 @@ mod tests {
         let large = Size::new([1.0, 2e7], 3.0);
         assert!(large.is_too_much() && large.to_string().ends_with(" MB"), "{large}");
         let sampled = Size::new([1e8, 16.0], 2.4);
-        assert!(!sampled.is_too_much() && sampled.sampled_at_every_step().is_too_much());
+        assert!(!sampled.is_too_much());
+        assert!(Size { samples: 1e8, ..sampled }.is_too_much());
         assert!(Size::new([f64::NAN, 1.0], 2.0).is_too_much());
     }
 }

@@ -42,7 +42,7 @@ impl CaseResults {
     pub fn judged(&self) -> impl Iterator<Item = (Of<'_>, &Judged)> {
         let of_run = |run| move |judged| (Of::Run(run), judged);
         let of_study = |study| move |judged| (Of::Study(study), judged);
-        let runs = self.runs.all().iter().flat_map(move |run| run.judged.iter().map(of_run(run)));
+        let runs = self.runs.all.iter().flat_map(move |run| run.judged.iter().map(of_run(run)));
         let studies = self.studies.iter();
         runs.chain(studies.flat_map(move |study| study.judged.iter().map(of_study(study))))
     }
@@ -78,18 +78,11 @@ impl Suite {
         self.judged().filter(|j| j.judgement.verdict.is_failure()).count()
     }
 
-    /// Simulations that diverged.
-    pub fn diverged(&self) -> usize {
-        let records = self.cases.iter().flat_map(|case| case.runs.simulations());
-        records.filter(|record| matches!(record.status, Status::Diverged { .. })).count()
-    }
-
     /// How all gates ended, and how many simulations diverged.
     pub fn counts(&self) -> Counts {
-        Counts {
-            diverged: self.diverged(),
-            ..Counts::of(self.judged().map(|judged| judged.judgement.verdict))
-        }
+        let records = self.cases.iter().flat_map(|case| case.runs.simulations());
+        let diverged = records.filter(|record| matches!(record.status, Status::Diverged { .. }));
+        Counts { diverged: diverged.count(), ..Counts::of(self.judged().map(|judged| judged.judgement.verdict)) }
     }
 }
 
@@ -126,8 +119,9 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
                 JudgedRun::new(planned, record)
             });
             let of_case = made.submissions.iter().filter(|record| record.case == case.name());
-            let submitted = of_case.map(|record| submitted(case, record.clone())).collect();
-            (case, Runs::new(judged.collect()).with_submissions(submitted))
+            let mut runs = Runs::new(judged.collect());
+            runs.submissions.extend(of_case.map(|record| submitted(case, record.clone())));
+            (case, runs)
         })
         .collect();
     let study = |(case, runs): (&'static dyn Case, Runs)| {

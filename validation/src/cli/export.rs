@@ -44,7 +44,7 @@ pub fn value(judgement: &Judgement) -> String {
 fn junit(suite: &Suite) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
     for results in &suite.cases {
-        let runs = results.runs.all().iter().flat_map(|run| &run.judged);
+        let runs = results.runs.all.iter().flat_map(|run| &run.judged);
         let all: Vec<_> = runs.chain(results.studies.iter().flat_map(|s| &s.judged)).collect();
         let failed = all.iter().filter(|j| j.judgement.verdict.is_failure()).count();
         let passed = all.iter().filter(|j| j.judgement.verdict == Verdict::Pass).count();

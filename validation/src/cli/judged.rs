@@ -257,7 +257,7 @@ impl Verdicts {
             runs: suite
                 .cases
                 .iter()
-                .flat_map(|of| of.runs.all().iter().map(|run| of_run(of.case, run)))
+                .flat_map(|of| of.runs.all.iter().map(|run| of_run(of.case, run)))
                 .collect(),
             studies: of_cases.collect(),
         }

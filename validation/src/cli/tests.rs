@@ -123,7 +123,7 @@ impl Case for Staged {
     }
 
     fn studies(&self, _: Tier, runs: &Runs) -> Vec<Study> {
-        let count = runs.all().len() as f64;
+        let count = runs.all.len() as f64;
         let id = format!("{}-count", self.name);
         let study = Study::new(&id, "How many").prose("Runs are counted.");
         vec![study.judge(gate(self.name, "count"), count)]

@@ -59,7 +59,7 @@ fn show(
 
 /// `206 runs, 12 of them from the store`.
 pub fn runs(suite: &Suite) -> String {
-    let all: usize = suite.cases.iter().map(|results| results.runs.all().len()).sum();
+    let all: usize = suite.cases.iter().map(|results| results.runs.all.len()).sum();
     let other = match suite.made.of_other_sources {
         0 => String::new(),
         count => format!(", {count} of these made by a build of other sources"),

@@ -18,7 +18,7 @@ use crate::{
 /// The card of a case, if it declares one.
 pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) -> Option<Card> {
     let card = declared.card.as_ref()?;
-    let of_runs = runs.all().iter().flat_map(|run| &run.judged);
+    let of_runs = runs.all.iter().flat_map(|run| &run.judged);
     let judged: Vec<&Judged> = of_runs.chain(studies.iter().flat_map(|s| &s.judged)).collect();
     let mut facts = vec![("Error:".to_string(), error(card))];
     for (name, spec) in ["Best, ", "Paper's, "].into_iter().zip(&card.runs) {

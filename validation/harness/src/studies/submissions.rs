@@ -44,7 +44,7 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
             seconds: record.cost.cpu_s,
         })
     };
-    let mut marks: Vec<Mark> = runs.submissions().iter().filter_map(of).collect();
+    let mut marks: Vec<Mark> = runs.submissions.iter().filter_map(of).collect();
     marks.sort_by(|a, b| a.name.cmp(&b.name).then(a.seconds.total_cmp(&b.seconds)));
     let mut seen = BTreeSet::new();
     marks.retain(|mark| mark.particles == 0 || seen.insert((mark.name.clone(), mark.particles)));
@@ -123,7 +123,7 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
 /// Where and when the runs that the program contains were made.
 fn provenance(runs: &Runs) -> Option<String> {
     let day = |run: &JudgedRun| run.record.numerics.get(SESSION)?.as_str().map(String::from);
-    let day = runs.submissions().iter().find_map(day)?;
+    let day = runs.submissions.iter().find_map(day)?;
     Some(format!(
         "Records that the program contains (`references/peers`) were made on {day} on another machine, in \
          turn with ours, each on one thread while other programs were at work. Their seconds \
@@ -133,7 +133,7 @@ fn provenance(runs: &Runs) -> Option<String> {
 
 /// All submissions of a case, if there are any: the closed division, then the open one.
 pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
-    if runs.submissions().is_empty() {
+    if runs.submissions.is_empty() {
         return None;
     }
     let id = format!("{}-submissions", case.replace('_', "-"));
@@ -157,7 +157,7 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
 /// The runs of the closed division, then those of the open one, the best first.
 fn table(declared: &Declaration, runs: &Runs) -> report::Table {
     type Row<'a> = (&'a Submission, &'a JudgedRun, f64, &'a str);
-    let rows = runs.submissions().iter().filter_map(|run| {
+    let rows = runs.submissions.iter().filter_map(|run| {
         let mut all = declared.accuracy.iter();
         let found = all.find_map(|of| Some((error_of(&of.error, &run.record)?, &*of.label)));
         let (error, of) = found.unwrap_or((f64::NAN, ""));

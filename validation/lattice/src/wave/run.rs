@@ -13,6 +13,7 @@ use harness::{
     method::*,
     runner::{self, Drive},
     simulate,
+    size::Size,
 };
 use maths::theory::time_step::{self, Mode, modes};
 use nalgebra::Vector2;
@@ -103,8 +104,8 @@ impl Wave {
         let mut rules = Rules { step: step.or_given(s.dt), limits, sound_speed, end };
         simulate::check_step("leapfrog", &rules, context)?;
         let steps = (end / rules.dt()).ceil().max(4.0);
-        let size =
-            simulate::size(method, &medium, [steps, (s.n * s.n) as f64]).sampled_at_every_step();
+        let size = simulate::size(method, &medium, [steps, (s.n * s.n) as f64]);
+        let size = Size { samples: steps, ..size };
         runner::check_size(size, "span, dt, courant, viscous, nu or n", context)?;
         rules.step.dt = end / steps;
         Ok(Self { settings: s.clone(), polarisation, theta, medium, mode, rules })

@@ -17,6 +17,7 @@ use harness::{
     outline::Sink,
     runner::{self, Drive},
     simulate,
+    size::Size,
 };
 use maths::theory::time_step::Integrator;
 
@@ -185,8 +186,8 @@ fn run<P: Problem>(
     simulate::check_step(method.integrator, &rules, context)?;
     let acceleration = settings.gravity();
     let medium = Medium { acceleration, ..settings.medium(method, settings.dx()) };
-    let size = simulate::size(method, &medium, [rules.end / rules.dt(), settings.count()])
-        .sampled_at_every_step();
+    let size = simulate::size(method, &medium, [rules.end / rules.dt(), settings.count()]);
+    let size = Size { samples: size.steps, ..size };
     runner::check_size(size, P::DECISIVE, context)?;
     let material = settings.material();
     let own = [
