@@ -49,25 +49,19 @@ pub trait Observed {
     fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits>;
 }
 
-/// Implements [`Observed`] for a struct: which of its fields change during a run and are [`Bits`], which are
-/// [`Observed`] themselves, and which stay as they were at the start. Every field must be named, so that a
-/// new one cannot be forgotten.
+/// Implements [`Observed`] for a struct: which of its fields change during a run and are [`Bits`], and which
+/// stay as they were at the start. Every field must be named, so that a new one cannot be forgotten.
 #[macro_export]
 macro_rules! observed {
-    (
-        $Struct:ty:
-        changes($($change:ident),*), parts($($part:ident),*), stays($($stay:ident),*)
-    ) => {
+    ($Struct:ty: changes($($change:ident),*), stays($($stay:ident),*)) => {
         impl $crate::checkpoint::Observed for $Struct {
             fn save(&self, to: &mut Vec<u8>) {
-                let Self { $($change,)* $($part,)* $($stay: _,)* } = self;
+                let Self { $($change,)* $($stay: _,)* } = self;
                 $(base::bits::Bits::write_to($change, to);)*
-                $($crate::checkpoint::Observed::save($part, to);)*
             }
             fn restore(&mut self, from: &mut &[u8]) -> Result<(), base::bits::OtherBits> {
-                let Self { $($change,)* $($part,)* $($stay: _,)* } = self;
+                let Self { $($change,)* $($stay: _,)* } = self;
                 $(*$change = base::bits::Bits::read_from(from)?;)*
-                $($crate::checkpoint::Observed::restore($part, from)?;)*
                 Ok(())
             }
         }
@@ -309,7 +303,7 @@ mod tests {
         width: f64,
     }
 
-    observed! { Seen: changes(numbers), parts(record), stays(width) }
+    observed! { Seen: changes(numbers, record), stays(width) }
 
     fn seen(numbers: Vec<f64>) -> Seen {
         let record = Record::new("case", "variant", serde_json::json!({"n": 8, "x": 1.0}), 1);

@@ -4,12 +4,12 @@ use base::{
     files::FileError,
     settings::{SettingError, hint},
     spec::SpecError,
+    vtk::VtkError,
 };
 use thiserror::Error;
 
 use crate::{
     checkpoint::CheckpointError,
-    frames::FrameError,
     relation::{NoSymmetry, Relation},
     size::{MOST_BYTES, MOST_SECONDS, Size},
 };
@@ -141,9 +141,9 @@ pub enum RunError {
     /// A folder or file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Frames could not be written.
+    /// A frame has numbers that its file cannot state.
     #[error(transparent)]
-    Frame(#[from] FrameError),
+    Frame(#[from] VtkError),
 }
 
 impl RunError {

@@ -11,6 +11,8 @@ use base::{
 };
 use solver::{Numbers, Particle, Stepper, Symmetric};
 
+use crate::error::RunError;
+
 /// Writes `count` frames at equal intervals, each after the first step that reaches its time, and the last
 /// one at the end. In a leapfrog the velocities of a frame are half a step behind the places.
 pub struct Frames<'a> {
@@ -64,7 +66,7 @@ impl<'a> Frames<'a> {
     pub fn write<X: Numbers>(
         &mut self,
         simulation: &(impl Stepper<X> + ?Sized),
-    ) -> Result<(), FrameError> {
+    ) -> Result<(), RunError> {
         let name = format!("particles_{:04}.vtp", self.come);
         self.come += 1;
         let columns = columns(&simulation.particles(), self.pressure);
@@ -106,15 +108,4 @@ pub fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> 
         profile.with(&format!("{STRESS} {name}"), "Pa", stress.iter().map(|s| s[k]).collect())
     });
     profile.with("mass", "kg/m", column(&|p| p.mass))
-}
-
-/// Why a frame was not written.
-#[derive(Debug, thiserror::Error)]
-pub enum FrameError {
-    /// Its numbers.
-    #[error(transparent)]
-    Vtk(#[from] VtkError),
-    /// Its file.
-    #[error(transparent)]
-    File(#[from] base::files::FileError),
 }

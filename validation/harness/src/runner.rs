@@ -116,7 +116,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
         let Some(frames) = &mut self.frames else { return };
         self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
         while frames.is_due(simulation.time()) && !self.context.is_interrupted() {
-            frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error.into()));
+            frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error));
         }
     }
 
@@ -442,7 +442,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             None => {
                 let status = watch.step_through(simulation, times, dt, least);
                 if let (Some(frames), Status::Completed) = (&mut watch.frames, &status) {
-                    frames.write(simulation).unwrap_or_else(|error| context.lose(&error.into()));
+                    frames.write(simulation).unwrap_or_else(|error| context.lose(&error));
                 }
                 (status, watch.counted(simulation))
             }

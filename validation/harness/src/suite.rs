@@ -82,7 +82,10 @@ impl Suite {
     pub fn counts(&self) -> Counts {
         let records = self.cases.iter().flat_map(|case| case.runs.simulations());
         let diverged = records.filter(|record| matches!(record.status, Status::Diverged { .. }));
-        Counts { diverged: diverged.count(), ..Counts::of(self.judged().map(|judged| judged.judgement.verdict)) }
+        Counts {
+            diverged: diverged.count(),
+            ..Counts::of(self.judged().map(|judged| judged.judgement.verdict))
+        }
     }
 }
 

@@ -209,7 +209,7 @@ pub struct Motion {
 }
 
 harness::observed! {
-    Motion: changes(series, stress), parts(), stays(settings, momentum, total, energy, start)
+    Motion: changes(series, stress), stays(settings, momentum, total, energy, start)
 }
 
 /// A row of the series from masses, places and velocities along x.

@@ -155,7 +155,7 @@ struct Watch {
     amplitudes: Vec<f64>,
 }
 
-harness::observed! { Watch: changes(amplitudes), parts(), stays(direction) }
+harness::observed! { Watch: changes(amplitudes), stays(direction) }
 
 impl Watch {
     /// θ of a step, from a fit to all steps.

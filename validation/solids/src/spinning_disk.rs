@@ -136,9 +136,7 @@ pub struct History {
     first: Option<([f64; 2], f64)>,
 }
 
-harness::observed! {
-    History: changes(until, series, first), parts(), stays(settings, mass)
-}
+harness::observed! { History: changes(until, series, first), stays(settings, mass) }
 
 impl History {
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {

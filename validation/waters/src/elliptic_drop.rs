@@ -137,7 +137,7 @@ struct History {
     free_fall: [f64; 2],
 }
 
-harness::observed! { History: changes(rows, free_fall), parts(), stays() }
+harness::observed! { History: changes(rows, free_fall), stays() }
 
 impl History {
     fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {

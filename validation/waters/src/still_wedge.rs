@@ -166,7 +166,7 @@ struct Moments<'a> {
 }
 
 harness::observed! {
-    Moments<'_>: changes(samples, corners, errors, kinetic), parts(), stays(settings, medium)
+    Moments<'_>: changes(samples, corners, errors, kinetic), stays(settings, medium)
 }
 
 /// Samples a period.

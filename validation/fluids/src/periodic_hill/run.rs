@@ -40,7 +40,7 @@ struct Monitor<'a> {
 }
 
 harness::observed! {
-    Monitor<'_>: changes(controller, window, series), parts(), stays(setup, area)
+    Monitor<'_>: changes(controller, window, series), stays(setup, area)
 }
 
 impl Monitor<'_> {

@@ -81,7 +81,7 @@ pub struct Series {
 
 harness::observed! {
     Series:
-    changes(next, samples, counted, rows), parts(), stays(settings, least_hole, bonds, is_seen)
+    changes(next, samples, counted, rows), stays(settings, least_hole, bonds, is_seen)
 }
 
 const COLUMNS: usize = 12;

@@ -49,7 +49,7 @@ pub struct Ledger {
 }
 
 harness::observed! {
-    Ledger: changes(account, start, force, impulse, unexplained, rows), parts(), stays(water)
+    Ledger: changes(account, start, force, impulse, unexplained, rows), stays(water)
 }
 
 impl Ledger {
