@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use base::{
     files::{FileError, OutputFolder},
     record::Profile,
-    vtk::{self, VtkError},
+    vtk,
 };
 use solver::{Numbers, Particle, Stepper, Symmetric};
 

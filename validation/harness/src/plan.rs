@@ -42,22 +42,18 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
     let mut merged: Vec<Planned> = Vec::new();
     let mut places: BTreeMap<RunKey, usize> = BTreeMap::new();
     for planned in all {
-        match places.get(&planned.spec.key()) {
-            None => {
-                places.insert(planned.spec.key(), merged.len());
-                merged.push(planned);
-            }
-            Some(&place) => {
-                let first = &mut merged[place];
-                // A run of a table is in the plan and in a ladder, with the same gates.
-                let others = planned.gates.into_iter().filter(|gate| !first.gates.contains(gate));
-                let others: Vec<Gate> = others.collect();
-                first.gates.extend(others);
-                first.timed |= planned.timed;
-                first.spec.measure = first.spec.measure.max(planned.spec.measure);
-                first.seconds = first.seconds.max(planned.seconds);
-            }
-        }
+        let place = *places.entry(planned.spec.key()).or_insert(merged.len());
+        let Some(first) = merged.get_mut(place) else {
+            merged.push(planned);
+            continue;
+        };
+        // A run of a table is in the plan and in a ladder, with the same gates.
+        let others = planned.gates.into_iter().filter(|gate| !first.gates.contains(gate));
+        let others: Vec<Gate> = others.collect();
+        first.gates.extend(others);
+        first.timed |= planned.timed;
+        first.spec.measure = first.spec.measure.max(planned.spec.measure);
+        first.seconds = first.seconds.max(planned.seconds);
     }
     merged
 }
