@@ -135,6 +135,9 @@ pub enum RunError {
     /// A reference that the case needs could not be loaded.
     #[error("a reference that the case needs cannot be loaded: {0}")]
     Reference(String),
+    /// A panic, of which the hook of panics has told.
+    #[error("it ended by the bug of which was told")]
+    Bug,
     /// A checkpoint could not be written, or is not one of the run.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
@@ -147,9 +150,12 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Was the run refused because of its settings? Otherwise a file or a reference is the reason, which is
-    /// not a property of the run.
+    /// Was the run refused because of its settings? Otherwise a file, a reference or a bug is the reason,
+    /// which is not a property of the run.
     pub fn is_refusal(&self) -> bool {
-        !matches!(self, Self::File(_) | Self::Frame(_) | Self::Checkpoint(_) | Self::Reference(_))
+        !matches!(
+            self,
+            Self::File(_) | Self::Frame(_) | Self::Checkpoint(_) | Self::Reference(_) | Self::Bug
+        )
     }
 }

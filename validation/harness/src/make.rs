@@ -117,24 +117,13 @@ pub struct Made {
     /// Why records that the store had could not be read; these runs were made again.
     pub unsound: BTreeMap<RunKey, StoreError>,
     /// Why runs have no record. None of them costs another its record.
-    pub failed: BTreeMap<RunKey, Failed>,
+    pub failed: BTreeMap<RunKey, RunError>,
     /// Runs that other codes made of the cases of the plan, as the store has them.
     pub submissions: Vec<Record>,
     /// Why files that say that they are such runs could not be read.
     pub unread: Vec<StoreError>,
     /// Was it stopped from outside?
     pub interrupted: bool,
-}
-
-/// Why a run has no record.
-#[derive(Debug, thiserror::Error)]
-pub enum Failed {
-    /// A file that could not be written or read.
-    #[error(transparent)]
-    Error(RunError),
-    /// A panic, of which the hook of panics has told.
-    #[error("it ended by the bug of which was told")]
-    Bug,
 }
 
 /// Timings of a run that is cheap enough to be timed again: the fewest that have a median.
@@ -433,19 +422,19 @@ impl Batch<'_> {
         let context =
             Context { threads: 1, allow_long, profile, interrupt, progress, ..Context::default() };
         let made = catch_unwind(AssertUnwindSafe(|| run(job.case, spec, &context)));
-        let failed = match made {
-            Ok(Ok(mut record)) => {
+        match made.unwrap_or(Err(RunError::Bug)) {
+            Ok(mut record) => {
                 begun.into_iter().for_each(|begun| begun.end(None));
                 record.manifest.sources = (self.making.sources)(job.case.name());
                 let is_whole = !matches!(record.status, Status::Interrupted { .. });
-                return is_whole.then_some(record);
+                is_whole.then_some(record)
             }
-            Ok(Err(error)) => Failed::Error(error),
-            Err(_) => Failed::Bug,
-        };
-        begun.into_iter().for_each(|begun| begun.end(Some(&failed.to_string())));
-        self.made().failed.insert(spec.key(), failed);
-        None
+            Err(failed) => {
+                begun.into_iter().for_each(|begun| begun.end(Some(&failed.to_string())));
+                self.made().failed.insert(spec.key(), failed);
+                None
+            }
+        }
     }
 }
 
@@ -646,7 +635,7 @@ mod tests {
         std::panic::set_hook(hook);
         for made in [beside, alone] {
             let failed: Vec<_> = [1, 3].map(|k| &made.failed[&jobs[k].planned.spec.key()]).into();
-            assert!(matches!(failed[..], [Failed::Bug, Failed::Error(_)]), "{failed:?}");
+            assert!(matches!(failed[..], [RunError::Bug, RunError::Reference(_)]), "{failed:?}");
             let refused = &made.records[&jobs[5].planned.spec.key()].status;
             assert!(matches!(refused, Status::Refused { .. }), "{refused:?}");
             assert_eq!((made.records.len(), made.failed.len()), (4, 2));

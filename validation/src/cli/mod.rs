@@ -46,7 +46,7 @@ use base::reference::{Reference, ReferenceError};
 use base::spec::RunKey;
 use clap::{CommandFactory, Parser};
 use harness::case::{Case, RunError, Tier};
-use harness::make::{self, Done, Failed, Job, Made, Making, Stored};
+use harness::make::{self, Done, Job, Made, Making, Stored};
 use harness::store::{Store, StoreError};
 use harness::suite::Plans;
 use validation::cases;
@@ -215,7 +215,7 @@ fn tell_trouble(made: &Made) {
     tell(&made.unsound.values().map(again).collect::<Vec<_>>());
     let lost = |error: &StoreError| format!("a record could not be stored: {error}");
     tell(&made.not_kept.values().map(lost).collect::<Vec<_>>());
-    let failed = |(key, failed): (&RunKey, &Failed)| format!("run {key} has no record: {failed}");
+    let failed = |(key, failed): (&RunKey, &RunError)| format!("run {key} has no record: {failed}");
     tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
     let unread = |error: &StoreError| format!("{error}; the submission does not count");
     tell(&made.unread.iter().map(unread).collect::<Vec<_>>());
@@ -223,7 +223,7 @@ fn tell_trouble(made: &Made) {
 
 /// 4 if a run ended by a bug, 2 if a file could not be written or read, otherwise nothing.
 fn trouble(made: &Made) -> Option<Exit> {
-    match made.failed.values().any(|failed| matches!(failed, Failed::Bug)) {
+    match made.failed.values().any(|failed| matches!(failed, RunError::Bug)) {
         true => Some(Exit::Bug),
         false => (!made.failed.is_empty() || !made.not_kept.is_empty()).then_some(Exit::Usage),
     }
