@@ -73,11 +73,6 @@ impl Suite {
         self.cases.iter().flat_map(|case| case.judged().map(|(_, judged)| judged))
     }
 
-    /// Gates that failed.
-    pub fn failures(&self) -> usize {
-        self.judged().filter(|j| j.judgement.verdict.is_failure()).count()
-    }
-
     /// How all gates ended, and how many simulations diverged.
     pub fn counts(&self) -> Counts {
         let records = self.cases.iter().flat_map(|case| case.runs.simulations());

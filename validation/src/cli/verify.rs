@@ -1,5 +1,6 @@
 //! `verify` and `judge`: plans of cases, judged.
 
+use base::gate::Verdict;
 use std::path::Path;
 use std::time::Instant;
 
@@ -73,7 +74,8 @@ pub fn runs(suite: &Suite) -> String {
 
 /// What a run or its record that failed ends with, 1 if a gate failed.
 pub fn exit(suite: &Suite) -> Exit {
-    let verdict = if suite.failures() == 0 { Exit::Pass } else { Exit::GateFailed };
+    let verdict =
+        if suite.counts().count(Verdict::Fail) == 0 { Exit::Pass } else { Exit::GateFailed };
     trouble(&suite.made).unwrap_or(verdict)
 }
 
