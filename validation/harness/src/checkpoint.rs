@@ -287,9 +287,7 @@ impl<'a> Checkpoints<'a> {
             return Ok(());
         }
         simulations.is_over = is_last;
-        let mut all = simulations.ended.clone();
-        all.push(under_way);
-        Ok((self.write)(&all)?)
+        Ok((self.write)(&[&simulations.ended[..], &[under_way]].concat())?)
     }
 }
 

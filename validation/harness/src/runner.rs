@@ -84,9 +84,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
 
     /// An observer of this name begins.
     fn profile(&self, name: &str) {
-        if let Some(profiler) = &self.profiler {
-            profiler.observe(name);
-        }
+        self.profiler.iter().for_each(|profiler| profiler.observe(name));
     }
 
     /// Where the time went until now, if anyone wants to know.
@@ -218,7 +216,6 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
     fn counted(&self, simulation: &D) -> Cost {
         let work = simulation.work();
         Cost {
-            threads: self.context.threads.max(1),
             steps: work.steps,
             pair_interactions: work.pair_interactions,
             particle_rhs: work.right_hand_sides,
@@ -268,28 +265,23 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
         let (what, value, most) = ("the number of time steps", size.steps, MOST_STEPS);
         return Err(RunError::TooMuch { what, value, most, setting: settings });
     }
-    match (context.only_estimate, context.estimate) {
-        (true, Some(tell)) => {
-            tell(&size);
-            Err(RunError::Estimated)
-        }
-        _ => Ok(()),
+    if let (true, Some(tell)) = (context.only_estimate, context.estimate) {
+        tell(&size);
+        return Err(RunError::Estimated);
     }
+    Ok(())
 }
 
 /// Puts the outline of a run, and makes the few steps that another observer sees if there is one. Nothing of
-/// the case looks at them: it does not know what the observer sees.
+/// the case looks at them: it does not know what the observer sees. The run ends here, as an error.
 fn outlined<X: Numbers>(
     outline: &Sink,
     simulation: &mut (impl Stepper<X> + ?Sized),
     (dt, times): (f64, &[f64]),
     pressure: &dyn Fn(f64) -> f64,
     context: &Context,
-) -> RunError {
-    let early = match outline.early(dt) {
-        Ok(early) => early,
-        Err(error) => return error,
-    };
+) -> Result<(Status, Cost), RunError> {
+    let early = outline.early(dt)?;
     let (dt, times) = early.as_ref().map_or((dt, times), |(dt, times)| (*dt, &times[..]));
     outline.drive(simulation, times, dt, pressure);
     for until in times.iter().filter(|_| outline.steps && !context.is_interrupted()) {
@@ -300,7 +292,7 @@ fn outlined<X: Numbers>(
             tell(*until, frames::columns(&simulation.particles(), pressure));
         }
     }
-    RunError::Outlined
+    Err(RunError::Outlined)
 }
 
 /// A simulation with what is observed of it on its way through the times of interest.
@@ -398,7 +390,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             tell(&size);
         }
         if let Some(outline) = &context.outline {
-            return Err(outlined(outline, simulation, (dt, times), pressure, context));
+            return outlined(outline, simulation, (dt, times), pressure, context);
         }
         let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
         let mut watch = Watch {

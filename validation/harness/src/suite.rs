@@ -104,20 +104,17 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
     if made.interrupted {
         return Suite { tier, cases: Vec::new(), made }; // nothing can be said of runs that were cut short
     }
-    let mut record = |planned: &Planned| {
+    let mut judged = |planned: Planned| {
         let missing =
             || Record::refused(&planned.spec, "the store has no record of this run".into());
-        made.records.remove(&planned.spec.key()).unwrap_or_else(missing)
+        let record = made.records.remove(&planned.spec.key()).unwrap_or_else(missing);
+        JudgedRun::new(planned, record)
     };
     let of_plans: Vec<(&'static dyn Case, Runs)> = plans
         .into_iter()
         .map(|(case, plan)| {
-            let judged = plan.into_iter().map(|planned| {
-                let record = record(&planned);
-                JudgedRun::new(planned, record)
-            });
+            let mut runs = Runs::new(plan.into_iter().map(&mut judged).collect());
             let of_case = made.submissions.iter().filter(|record| record.case == case.name());
-            let mut runs = Runs::new(judged.collect());
             runs.submissions.extend(of_case.map(|record| submitted(case, record.clone())));
             (case, runs)
         })

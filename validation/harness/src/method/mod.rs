@@ -112,10 +112,6 @@ pub fn scene<S: Standard>(mut parts: Parts<S::Extra>) -> Scene<S> {
     scene
 }
 
-fn weight<K: Kernel>(h: f64, r2: f64) -> f64 {
-    Smoothing::<K>::new(h).w(r2)
-}
-
 /// A scheme without its type. `D` is what a case needs of a simulation beyond [`Stepper`].
 pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     /// Name of the kernel.
@@ -163,7 +159,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             limit: None,
             uses: [&*S::Forces::uses(), &*S::Drift::uses(), S::Walls::USES].concat(),
             build,
-            weight: weight::<S::Kernel>,
+            weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
             lattice: SquareLattice::of::<S::Kernel>,
             is_corrected: S::Forces::NORMALISES,
         }

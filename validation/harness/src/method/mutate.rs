@@ -27,12 +27,10 @@ pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     medium.nu *= of(Constant::Viscosity);
     medium.acceleration *= of(Constant::BodyForce);
     medium.wall_acceleration *= of(Constant::BodyForce);
-    for sound_speed in [&mut medium.sound_speed, &mut medium.eos.sound_speed] {
-        *sound_speed *= of(Constant::SoundSpeed);
-    }
-    for density in [&mut medium.density, &mut medium.eos.density] {
-        *density *= of(Constant::Density);
-    }
+    medium.sound_speed *= of(Constant::SoundSpeed);
+    medium.eos.sound_speed *= of(Constant::SoundSpeed);
+    medium.density *= of(Constant::Density);
+    medium.eos.density *= of(Constant::Density);
     medium.shear_modulus *= of(Constant::ShearModulus);
     medium.h *= of(Constant::SmoothingLength);
     medium.alpha *= of(Constant::ArtificialViscosity);
