@@ -12,8 +12,8 @@ use crate::{context::Context, declare::Declaration, runs::Runs, study::Study};
 pub use crate::{
     error::RunError,
     limits::Limits,
-    planned::{Planned, Tier},
     rules::{PLANNED_DT, Rules, Step},
+    runs::{Planned, Tier},
 };
 
 /// One named composition of types with its default settings.

@@ -14,8 +14,8 @@ use report::{Axis, Colour, ColourMap};
 use serde_json::Value;
 
 use crate::{
-    planned::{Planned, Tier},
     rules::Rules,
+    runs::{Planned, Tier},
 };
 
 /// The declaration of one case for one tier.

@@ -30,7 +30,6 @@ pub mod orders;
 pub mod outline;
 pub mod pictures;
 pub mod plan;
-pub mod planned;
 pub mod playback;
 pub mod profile;
 pub mod quantiles;

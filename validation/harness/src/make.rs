@@ -22,7 +22,7 @@ use crate::{
     case::{self, Case, RunError},
     context::{self, Context},
     detect,
-    planned::{Planned, Tier},
+    runs::{Planned, Tier},
     store::{Begun, Store, StoreError},
 };
 

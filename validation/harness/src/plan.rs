@@ -9,7 +9,7 @@ use base::{
 
 use crate::{
     case::Case,
-    planned::{Planned, Tier},
+    runs::{Planned, Tier},
 };
 
 /// The runs of a case in a tier: those of its own plan, then those of its declaration. Runs that occur

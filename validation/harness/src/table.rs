@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 use crate::{
     composed::Composed,
     declare::{Ladder, Level, Picture, Pictured},
-    planned::{Planned, Tier},
+    runs::{Planned, Tier},
 };
 
 /// By how much the starts of an ensemble differ \[dx\]: less than any method or experiment knows, and more

@@ -5,8 +5,7 @@ use harness::{
     declare::StepLimit,
     limits::Mechanism,
     make::Job,
-    planned::Planned,
-    runs::{JudgedRun, Runs},
+    runs::{JudgedRun, Planned, Runs},
     studies::limit_of_theory,
 };
 use report::Cell;

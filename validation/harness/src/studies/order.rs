@@ -111,8 +111,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        planned::Planned,
-        runs::Runs,
+        runs::{Planned, Runs},
         studies::tests::{ERROR, column, runs, spec},
     };
 

@@ -153,8 +153,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        planned::{Planned, Tier},
-        runs::JudgedRun,
+        runs::{JudgedRun, Planned, Tier},
         studies::{
             causes::NOT_MEASURED,
             tests::{ERROR, column, records, spec, tables},

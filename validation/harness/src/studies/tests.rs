@@ -6,8 +6,7 @@ use serde_json::json;
 
 use crate::{
     declare::{Comparison, Level},
-    planned::Planned,
-    runs::{JudgedRun, Runs},
+    runs::{JudgedRun, Planned, Runs},
     study::Study,
 };
 

@@ -174,8 +174,7 @@ mod tests {
     use harness::{
         case::{self, Case},
         context::Context,
-        planned::Planned,
-        runs::{JudgedRun, Runs},
+        runs::{JudgedRun, Planned, Runs},
         studies,
     };
     use std::thread;
