@@ -227,22 +227,14 @@ impl Gate {
         gate.sound()
     }
 
-    /// Lying outside is known, for a reason, as far as `known` reaches: a number outside of that, NaN and
-    /// a missing metric fail.
+    /// Lying outside is known, for a reason, as far as `bound` reaches: a number outside of that, NaN and
+    /// a missing metric fail. The cause is shared with other limitations.
     ///
     /// # Panics
     /// If the gate is unsound with it (see [`Gate::check`]).
-    pub fn with_limitation(self, known: Bound, reason: impl Into<String>) -> Self {
-        let known = Known { bound: known, reason: reason.into(), cause: None };
+    pub fn with_limitation(self, bound: Bound, reason: impl Into<String>, cause: &Cause) -> Self {
+        let known = Known { bound, reason: reason.into(), cause: Some(cause.clone()) };
         Gate { purpose: Purpose::Limitation(known), ..self }.sound()
-    }
-
-    /// The cause of the limitation; nothing of a gate without one.
-    pub fn because_of(mut self, cause: &Cause) -> Self {
-        if let Purpose::Limitation(known) = &mut self.purpose {
-            known.cause = Some(cause.clone());
-        }
-        self
     }
 
     /// A control: a finite number outside the bound is what must come out.
@@ -442,6 +434,8 @@ mod tests {
         Gate::new("case.metric", "metric", bound, Evidence::Analytic, "it is so")
     }
 
+    const CAUSE: Cause = Cause::new("Rubber tears.", "Another rubber.");
+
     const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
     #[test]
@@ -473,7 +467,8 @@ mod tests {
     fn the_table_of_purposes_holds() {
         use Verdict::{ExpectedFailure, Fail, Limitation, Pass};
         let plain = gate(Bound::Below(1.0));
-        let limited = plain.clone().with_limitation(Bound::Below(2.0), "tensile instability");
+        let limited =
+            plain.clone().with_limitation(Bound::Below(2.0), "tensile instability", &CAUSE);
         let expected = [
             (plain.clone(), [Pass, Fail, Fail, Fail]),
             (limited, [Pass, Limitation, Fail, Fail]),
@@ -499,7 +494,7 @@ mod tests {
         let plain = gate(Bound::Below(1.0));
         assert_eq!(plain.judge_record(&record).verdict, Verdict::Pass);
         record.status = Status::Interrupted { step: 3, time: 0.1 };
-        let limited = plain.clone().with_limitation(Bound::Below(2.0), "it tears");
+        let limited = plain.clone().with_limitation(Bound::Below(2.0), "it tears", &CAUSE);
         let control = plain.clone().expected_to_fail();
         for gate in [plain.clone(), limited.clone(), control.clone()] {
             let judgement = gate.judge_record(&record);
@@ -559,7 +554,8 @@ mod tests {
             assert_eq!(gate(bound).judge(Some(value)).margin, margin, "{bound}: {value}");
         }
         // Of a limitation, what is left until it fails.
-        let limited = gate(Bound::Below(1.0)).with_limitation(Bound::Below(4.0), "it is known");
+        let limited =
+            gate(Bound::Below(1.0)).with_limitation(Bound::Below(4.0), "it is known", &CAUSE);
         let margins = [0.5, 3.0, 5.0].map(|value| limited.judge(Some(value)).margin);
         assert_eq!(margins, [Some(0.5), Some(0.25), None]);
     }

@@ -275,7 +275,7 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
     let [u, v] = [U_RMS, V_RMS].map(|metric| of(metric, half_dx, Reference, half));
     let control = of(U_RMS, half_dx, Reference, control);
     let limited = |gate: &Gate, low, why: &str, cause| {
-        gate.clone().with_limitation(Bound::Within(low, mach2), why).because_of(cause)
+        gate.clone().with_limitation(Bound::Within(low, mach2), why, cause)
     };
     let ramp = limited(&volume, -0.004 * s.end, rises, &RAMP);
     let weaker = |low| limited(&strength, low, weak, &LAYERS);

@@ -218,7 +218,7 @@ fn gate(of: For, variant: &str) -> Gate {
         For::Strained if SEED.contains(&variant) => (floor, 0.0, &LATTICE),
         _ => return gate,
     };
-    gate.with_limitation(Bound::Within(least, low), reason).because_of(cause)
+    gate.with_limitation(Bound::Within(least, low), reason, cause)
 }
 
 /// What the report shows of the case.

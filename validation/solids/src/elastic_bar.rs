@@ -401,11 +401,11 @@ fn pulse(
             gate(TRAVEL_ERROR, [-0.01, 0.01], exact, group),
             gate(TRAVEL_LATTICE_ERROR, [-1e-3, 1e-3], Evidence::Theory, lattice),
         ],
-        _ => vec![
-            gate(TRAVEL_ERROR, [-0.01, 0.01], exact, group)
-                .with_limitation(Bound::Within(-0.0968, 0.01), ahead)
-                .because_of(&VISCOSITY),
-        ],
+        _ => vec![gate(TRAVEL_ERROR, [-0.01, 0.01], exact, group).with_limitation(
+            Bound::Within(-0.0968, 0.01),
+            ahead,
+            &VISCOSITY,
+        )],
     }
 }
 
@@ -437,15 +437,11 @@ fn meeting(
             (_, true) => (0.28, SOFT, &SOFT_CONTACT),
             (_, false) => (0.85, welded, &ONE_LATTICE),
         };
-        gate.with_limitation(Bound::Within(least, most), why).because_of(cause)
+        gate.with_limitation(Bound::Within(least, most), why, cause)
     };
     let mut gates = vec![match (is_soft, variant) {
-        (true, _) => {
-            stress.with_limitation(Bound::Within(-0.42, 0.13), SOFT).because_of(&SOFT_CONTACT)
-        }
-        (_, LAGRANGIAN) => {
-            stress.with_limitation(Bound::Within(-0.06, 0.06), swings).because_of(&DISPERSION)
-        }
+        (true, _) => stress.with_limitation(Bound::Within(-0.42, 0.13), SOFT, &SOFT_CONTACT),
+        (_, LAGRANGIAN) => stress.with_limitation(Bound::Within(-0.06, 0.06), swings, &DISPERSION),
         _ => stress,
     }];
     if !is_soft {

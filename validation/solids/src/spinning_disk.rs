@@ -329,12 +329,11 @@ fn gates(row: &Row<DiskSettings, For>) -> Vec<Gate> {
     ];
     if is_braked {
         let first = -if variant == "bare" { 0.08 } else { 0.53 } / s.n as f64;
-        let known = [
-            tenth.with_limitation(Bound::Within(first, 0.001), BRAKED),
-            drift.with_limitation(Bound::Below(2.1), REVERSED),
-            stress.with_limitation(Bound::Below(9.6), ALL_SHEAR),
-        ];
-        gates.extend(known.map(|gate| gate.because_of(&FREE_FACES)));
+        gates.extend([
+            tenth.with_limitation(Bound::Within(first, 0.001), BRAKED, &FREE_FACES),
+            drift.with_limitation(Bound::Below(2.1), REVERSED, &FREE_FACES),
+            stress.with_limitation(Bound::Below(9.6), ALL_SHEAR, &FREE_FACES),
+        ]);
         return gates;
     }
     let energy = "The forces derive from the stored energy; the leapfrog keeps it within (omega dt)^2/8 of \

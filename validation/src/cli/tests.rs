@@ -586,7 +586,10 @@ fn more_threads_than_can_be_asked_for_are_clamped() {
 fn notes_tell_each_reason_once() {
     let limited = |id: &str, reason: &str| {
         let gate = Gate::new(id, "error", Bound::Below(2.0), Evidence::Theory, "staged");
-        Judged::new(gate.with_limitation(Bound::Below(4.0), reason), Some(3.0))
+        Judged::new(
+            gate.with_limitation(Bound::Below(4.0), reason, &Cause::new("It is so.", "Time.")),
+            Some(3.0),
+        )
     };
     let all = [limited("a", "one"), limited("b", "two"), limited("c", "one")];
     let text = super::judged::table(&all);
@@ -635,7 +638,7 @@ fn verify_is_a_line_a_case_then_each_failure_in_full() {
 
 fn limited(id: &str, cause: &Cause) -> Judged {
     let gate = Gate::new(id, "error", Bound::Below(2.0), Evidence::Theory, "staged");
-    Judged::new(gate.with_limitation(Bound::Below(4.0), "why").because_of(cause), Some(3.0))
+    Judged::new(gate.with_limitation(Bound::Below(4.0), "why", cause), Some(3.0))
 }
 
 #[test]

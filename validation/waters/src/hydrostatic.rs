@@ -406,7 +406,7 @@ fn gates(row: &Row) -> Vec<Gate> {
     let pressure = match (row.group, variant) {
         (Group::Control, _) => return vec![pressure.expected_to_fail()],
         (_, "ghosts") => {
-            pressure.with_limitation(Bound::Below(0.087), mirrored).because_of(&MIRRORED_PRESSURE)
+            pressure.with_limitation(Bound::Below(0.087), mirrored, &MIRRORED_PRESSURE)
         }
         _ => pressure,
     };

@@ -292,7 +292,7 @@ fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
         let why = "The pressure is too low, by a share that does not fall with the spacing: the bound is one \
                    and a half times the largest of five spacings.";
         let known = Bound::Within(low, 0.5 * dx);
-        base.clone().with_limitation(known, why).because_of(&UNWEIGHED)
+        base.clone().with_limitation(known, why, &UNWEIGHED)
     };
     match variant {
         "modern" => vec![base, apex, all, kinetic, outside],

@@ -39,7 +39,7 @@ fn gates(flow: Flow, (settings, [modern, error], share): Pair) -> [(Gate, f64); 
     if is_poiseuille && rows == 40 && re > 0.1 {
         let known = "The steps that 0.75 of the limit of sound allows, counted before the run, make 1/3.7; \
                      the bound adds 5 % for pairs at the edge of the kernel.";
-        pairs = pairs.with_limitation(Bound::Below(1.05 / 3.7), known).because_of(&SOUND);
+        pairs = pairs.with_limitation(Bound::Below(1.05 / 3.7), known, &SOUND);
     }
     [(l2, error), (pairs, share)]
 }

@@ -140,7 +140,7 @@ fn gate(sensitivity: &Sensitivity, watched: &Watched) -> Gate {
     let gate = Gate::new(id, DETECTED, bound, Evidence::Theory, because);
     match &watched.blind {
         Some(Blind { up_to, why, cause }) => {
-            gate.with_limitation(Bound::Below(*up_to), *why).because_of(cause)
+            gate.with_limitation(Bound::Below(*up_to), *why, cause)
         }
         None => gate,
     }

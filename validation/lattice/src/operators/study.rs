@@ -114,7 +114,7 @@ impl Refined {
                               bias of 24, 48 and 96 spacings a wave is of order 1.77, and that of the \
                               Laplacian, which is half as large, of order 1.63. The limitation is these two \
                               numbers with 0.05 either way.";
-                gate.with_limitation(Bound::Within(1.58, 1.82), reason).because_of(&QUADRATURE)
+                gate.with_limitation(Bound::Within(1.58, 1.82), reason, &QUADRATURE)
             }
             For::Resolution if expected <= 0.0 => {
                 let reason = format!(
@@ -122,7 +122,7 @@ impl Refined {
                      does not cancel, less that of the derivative that is sought. The limitation is this \
                      number with 0.25 either way, for the rms of few independent samples."
                 );
-                gate.with_limitation(within(0.25), reason).because_of(&DISORDERED)
+                gate.with_limitation(within(0.25), reason, &DISORDERED)
             }
             _ => gate,
         }

@@ -99,10 +99,12 @@ fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
             let energy =
                 gate(ENERGY_CHANGE, Bound::Within(-0.01, 0.01), Evidence::Invariant, nothing);
             vec![
-                fall()
-                    .with_limitation(Bound::Within(-0.01, longer * longer - 1.0), soft)
-                    .because_of(&FREE_FACES),
-                energy.with_limitation(Bound::Within(-1.0, 0.01), loses).because_of(&VISCOSITY),
+                fall().with_limitation(
+                    Bound::Within(-0.01, longer * longer - 1.0),
+                    soft,
+                    &FREE_FACES,
+                ),
+                energy.with_limitation(Bound::Within(-1.0, 0.01), loses, &VISCOSITY),
             ]
         }
     }

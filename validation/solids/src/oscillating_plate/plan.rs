@@ -108,7 +108,7 @@ fn period(row: &Row<PlateSettings, For>) -> Gate {
         return gate;
     }
     let softer = faces::known_excess(s.n, s.h_over_dx);
-    gate.with_limitation(Bound::Within(0.0, softer), FACES).because_of(&FREE_FACES)
+    gate.with_limitation(Bound::Within(0.0, softer), FACES, &FREE_FACES)
 }
 
 /// The same, of any Poisson's ratio.
@@ -123,7 +123,7 @@ fn amplitude(row: &Row<PlateSettings, For>) -> Gate {
     let least = (1.0 - 0.053 * (row.settings.material().sound_speed() / usual)).max(0.0);
     let known = "The rubber swings 5.3 % less far. Artificial viscosity is in proportion to c0, so that it \
                  may lose as many times more as sound is faster, at most all.";
-    gate.with_limitation(Bound::Within(least, 1.02), known).because_of(&VISCOSITY)
+    gate.with_limitation(Bound::Within(least, 1.02), known, &VISCOSITY)
 }
 
 /// Of a swing by the equations of the paper.
@@ -137,10 +137,10 @@ fn energy(row: &Row<PlateSettings, For>) -> Gate {
                  work.";
     match (row.variant, row.settings.n) {
         ("bare", _) => gate,
-        (_, 20..) => gate
-            .with_limitation(Bound::Within(-0.01, 0.5 * 0.3 / 0.7), gains)
-            .because_of(&STRESS_ADDS_ENERGY),
-        _ => gate.with_limitation(Bound::Within(-0.086, 0.01), loses).because_of(&VISCOSITY),
+        (_, 20..) => {
+            gate.with_limitation(Bound::Within(-0.01, 0.5 * 0.3 / 0.7), gains, &STRESS_ADDS_ENERGY)
+        }
+        _ => gate.with_limitation(Bound::Within(-0.086, 0.01), loses, &VISCOSITY),
     }
 }
 
@@ -195,7 +195,7 @@ fn locked(row: &Row<PlateSettings, For>) -> Gate {
     if locked >= -error {
         return period;
     }
-    period.with_limitation(Bound::Within(locked + least, most), LOCKS).because_of(&LOCKING)
+    period.with_limitation(Bound::Within(locked + least, most), LOCKS, &LOCKING)
 }
 
 /// Order in the full tier; the quick tier has one resolution.

@@ -178,7 +178,7 @@ fn of_wholeness(row: &Row, id: &str) -> Vec<Gate> {
         (_, "seed") => speed >= 0.2 || (speed >= 0.12 && is_fine),
         _ => speed >= 0.12,
     };
-    let cut = |gate: Gate| gate.with_limitation(Bound::Within(0.0, 1.0), CUT).because_of(&TEARING);
+    let cut = |gate: Gate| gate.with_limitation(Bound::Within(0.0, 1.0), CUT, &TEARING);
     vec![pieces, if is_cut { cut(holes) } else { holes }]
 }
 
@@ -243,23 +243,26 @@ impl Distances<'_> {
         let spacing = self.row.settings.spacing;
         if self.row.variant == LAGRANGIAN {
             let end = reference(self.id, end, Bound::Within(-3.0, 3.0), GOAL);
-            let late = |end: Gate| end.with_limitation(Bound::Within(-3.0, 8.3), LIGHT_TOUCH);
-            let is_coarse = spacing > 0.051;
-            return vec![phases, if is_coarse { late(end).because_of(&FOLDS) } else { end }];
+            let late = Bound::Within(-3.0, 8.3);
+            let is_fine = spacing <= 0.051;
+            return vec![
+                phases,
+                if is_fine { end } else { end.with_limitation(late, LIGHT_TOUCH, &FOLDS) },
+            ];
         }
         let (touch, (last, doubt)) = self.contact();
         let late = self.allowed * (last - touch) + doubt;
         let after = self.exact.leaves(spacing) - last;
         let end = reference(self.id, end, Bound::Within(-late, after + late), REACH);
         if spacing > 0.1 {
-            let one = phases.with_limitation(Bound::Within(1.0, 2.0), NO_GAP);
+            let one = phases.with_limitation(Bound::Within(1.0, 2.0), NO_GAP, &SOFT_CONTACT);
             let later = after + self.softer() * (last - touch) + doubt;
-            return vec![one.because_of(&SOFT_CONTACT), soft(end, Bound::Within(-late, later))];
+            return vec![one, soft(end, Bound::Within(-late, later))];
         }
         let known = [Bound::Within(-0.09, self.allowed), Bound::Within(-self.allowed, 0.14)];
         let impulses = known.into_iter().enumerate().map(|(k, known)| {
             let gate = self.near_zero(IMPULSE_ERROR.at(phase(k)), self.allowed);
-            gate.with_limitation(known, SHARED).because_of(&SHARED_IMPULSE)
+            gate.with_limitation(known, SHARED, &SHARED_IMPULSE)
         });
         [phases, end].into_iter().chain(impulses).collect()
     }
@@ -277,7 +280,7 @@ impl Distances<'_> {
             _ => 0.1,
         };
         let let_go = Bound::Below(2.0 * h_over_dx);
-        let torn = |gate: Gate| gate.with_limitation(let_go, TEAR_BEGINS).because_of(&TEARING);
+        let torn = |gate: Gate| gate.with_limitation(let_go, TEAR_BEGINS, &TEARING);
         if spacing < tears_below { torn(gate) } else { gate }
     }
 
@@ -288,7 +291,7 @@ impl Distances<'_> {
         let [restitution, width, height] = [RESTITUTION_ERROR, WIDTH_MIN_ERROR, HEIGHT_MAX_ERROR]
             .map(|metric| reference(self.id, metric, Bound::Within(-small, small), GOAL));
         let known = Bound::Within(-small, if spacing > 0.051 { 0.041 } else { 0.01 });
-        let restitution = restitution.with_limitation(known, SENSITIVE).because_of(&FOLDS);
+        let restitution = restitution.with_limitation(known, SENSITIVE, &FOLDS);
         let half = Bound::Below(0.25 * spacing / self.row.settings.outer);
         vec![reference(self.id, HISTORIES, half, HALF_A_SPACING), restitution, width, height]
     }
@@ -300,7 +303,7 @@ fn soft(gate: Gate, known: Bound) -> Gate {
         later, and their centre stays behind. The bound: sums over the layers that there are lengthen the \
         period of bending by 30 % with 5, 15 % with 10 and 7 % with 20 layers, and published plates have \
         another 7 %.";
-    gate.with_limitation(known, SOFT).because_of(&FREE_FACES)
+    gate.with_limitation(known, SOFT, &FREE_FACES)
 }
 
 const GOAL: &str = "Finite elements of the same law. The bounds are what the project set out to reach: 2, 1 \

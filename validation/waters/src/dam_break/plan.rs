@@ -139,7 +139,7 @@ fn gates(row: &Row) -> Vec<Gate> {
     let limited = |gate: Gate| match known.iter().find(|known| known.0.name == gate.metric) {
         Some((_, to, (cause, reason))) => {
             let bound = widened(gate.bound, *to);
-            gate.with_limitation(bound, *reason).because_of(cause)
+            gate.with_limitation(bound, *reason, cause)
         }
         None => gate,
     };
@@ -237,9 +237,11 @@ fn tank_references(run: &str) -> Vec<Gate> {
     let of_model = [(0.257, 0.13), (0.173, 0.12), (-0.074, 0.12), (-0.600, 0.28)];
     let impulses = IMPULSE.into_iter().zip(of_model).map(|(sensor, (away, share))| {
         let of = |share: f64| (1.0 + away) * (1.0 + share) - 1.0;
-        against(run, sensor.at(1), Bound::Within(-spread, spread), impulse)
-            .with_limitation(Bound::Within(of(-share), of(share)), model)
-            .because_of(&TWO_DIMENSIONS)
+        against(run, sensor.at(1), Bound::Within(-spread, spread), impulse).with_limitation(
+            Bound::Within(of(-share), of(share)),
+            model,
+            &TWO_DIMENSIONS,
+        )
     });
     let front = against(run, FRONT.rms_shifted, Bound::Below(0.08), front);
     let levels = against(run, LEVELS.rms_shifted, Bound::Below(0.05), levels);
@@ -263,8 +265,8 @@ fn tank_model(run: &str) -> Vec<Gate> {
     }
     // Only a thin jet reaches the uppermost sensor during the first window.
     let thin = &mut gates[LEVEL_AWAY.len() + 3];
-    let known = thin.clone().with_limitation(Bound::Within(-0.28, 0.28), uncertain);
-    *thin = known.because_of(&UNCERTAIN_REFERENCE);
+    let known = Bound::Within(-0.28, 0.28);
+    *thin = thin.clone().with_limitation(known, uncertain, &UNCERTAIN_REFERENCE);
     gates
 }
 
