@@ -71,8 +71,8 @@ impl Cylinders {
         let inner = s.gap / (s.ratio - 1.0);
         // Mach 0.1, and not below what is as stiff as viscosity.
         let sound_speed = (10.0 * speed).max(s.c0_viscous * s.nu / h);
-        let medium = method.medium(Tait::new(s.rho, sound_speed), [dx, h]);
-        let medium = Medium { nu: s.nu, eta2_over_h2: s.eta2_over_h2, ..medium };
+        let medium = method.medium(Tait::new(s.rho, sound_speed), [dx, h]).set_by(s);
+        let medium = Medium { nu: s.nu, ..medium };
         let step = Step::courant(s.courant, h, [sound_speed, speed]).viscous(s.viscous, h, s.nu);
         let waves = medium.waves(&method.uses);
         let limits = method.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);

@@ -112,13 +112,8 @@ macro_rules! unit_settings {
                     background: self.background * self.c0 * self.c0,
                     ..solver::Tait::new(1.0, self.c0)
                 };
-                let medium = harness::method::Medium {
-                    nu,
-                    eta2_over_h2: self.eta2_over_h2,
-                    diffusion: self.diffusion,
-                    shift: self.shift,
-                    ..method.medium(eos, [dx, h])
-                };
+                let medium = method.medium(eos, [dx, h]).set_by(self);
+                let medium = harness::method::Medium { nu, ..medium };
                 let numbers = [self.courant, self.viscous, self.skin, self.end];
                 $crate::unit_flow::UnitFlow::new(method, medium, numbers, scales, context)
             }

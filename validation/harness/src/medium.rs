@@ -1,5 +1,6 @@
 //! The parameters from which terms and walls are constructed.
 
+use base::settings::{Settings, Value};
 use maths::theory::time_step;
 use nalgebra::Vector2;
 use solver::{Linear, Tait};
@@ -48,6 +49,29 @@ pub struct Medium {
 }
 
 impl Medium {
+    /// With the values that settings have by the names of [`Knob`]s.
+    #[must_use]
+    pub fn set_by(mut self, settings: &impl Settings) -> Self {
+        let parameters = [
+            (Knob::Eta2, &mut self.eta2_over_h2),
+            (Knob::Alpha, &mut self.alpha),
+            (Knob::Beta, &mut self.beta),
+            (Knob::Xsph, &mut self.xsph),
+            (Knob::Xi, &mut self.xi),
+            (Knob::Diffusion, &mut self.diffusion),
+            (Knob::Shift, &mut self.shift),
+        ];
+        for (knob, parameter) in parameters {
+            if let Some(Value::Real(value)) = settings.get(knob.name()) {
+                *parameter = value;
+            }
+        }
+        if let Some(Value::Count(exponent)) = settings.get(Knob::Exponent.name()) {
+            self.exponent = exponent as u32;
+        }
+        self
+    }
+
     /// δ h c0 of the density diffusion \[m²/s\].
     pub fn diffusivity(&self) -> f64 {
         self.diffusion * self.h * self.sound_speed

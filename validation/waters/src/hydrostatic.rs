@@ -141,13 +141,7 @@ impl Column {
         let medium = Medium {
             acceleration: down,
             wall_acceleration: down * s.wall_gravity,
-            alpha: s.alpha,
-            beta: s.beta,
-            xsph: s.xsph,
-            xi: s.xi,
-            exponent: s.exponent as u32,
-            diffusion: s.diffusion,
-            ..m.medium(Tait { gamma, ..Tait::new(s.rho, c0) }, [dx, h])
+            ..m.medium(Tait { gamma, ..Tait::new(s.rho, c0) }, [dx, h]).set_by(s)
         };
         let exact = water::at_rest(&medium);
         let fastest = exact.sound_speed(s.depth);

@@ -96,15 +96,7 @@ impl Setup {
             nu: s.nu,
             acceleration: along,
             wall_acceleration: along,
-            eta2_over_h2: s.eta2_over_h2,
-            alpha: s.alpha,
-            beta: s.beta,
-            xsph: s.xsph,
-            xi: s.xi,
-            exponent: s.exponent as u32,
-            diffusion: s.diffusion,
-            shift: s.shift,
-            ..method.medium(eos, [dx, h])
+            ..method.medium(eos, [dx, h]).set_by(s)
         };
         let waves = medium.waves(&method.uses);
         let limits = method.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);

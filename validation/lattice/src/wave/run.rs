@@ -80,14 +80,8 @@ impl Wave {
         // order, as the theory of the lattice has it.
         let eos = Tait::new(s.rho, s.c0);
         let eos = Tait { background: -eos.pressure(density), ..eos };
-        let medium = Medium {
-            density,
-            sound_speed,
-            nu: s.nu,
-            eta2_over_h2: s.eta2_over_h2,
-            diffusion: s.diffusion,
-            ..method.medium(eos, [dx, h])
-        };
+        let medium =
+            Medium { density, sound_speed, nu: s.nu, ..method.medium(eos, [dx, h]).set_by(s) };
         let waves =
             time_step::Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
         let mode = Mode::new(&lattice, theta, &waves);

@@ -7,11 +7,7 @@ use std::f64::consts::TAU;
 
 use super::{RingSettings, measure::Series};
 use crate::solid::{Energy, Material, Problem, SharedSettings};
-use harness::{
-    case::RunError,
-    context::Context,
-    method::{Medium, Method},
-};
+use harness::{case::RunError, context::Context, method::Method};
 
 /// The most layers that are known to stay whole with corrected gradients at the paper's speed. Those of 20
 /// tear at the inner face (docs/limits.md).
@@ -21,12 +17,6 @@ impl SharedSettings for RingSettings {
     fn material(&self) -> Material {
         let shear = self.shear_modulus * self.bulk_modulus;
         Material { density: self.rho, bulk: self.bulk_modulus, shear }
-    }
-
-    fn medium(&self, method: &Method<Symmetric>, dx: f64) -> Medium {
-        let Self { h_over_dx, alpha, beta, xsph, xi, exponent, .. } = *self;
-        let medium = self.material().medium(method, [dx, h_over_dx * dx]);
-        Medium { alpha, beta, xsph, xi, exponent: exponent as u32, ..medium }
     }
 
     fn h_over_dx(&self) -> f64 {

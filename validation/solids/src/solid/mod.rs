@@ -70,21 +70,6 @@ macro_rules! solid_settings {
             fn material(&self) -> $crate::solid::Material {
                 $crate::solid::Material::from_young(self.rho, self.young, self.poisson)
             }
-            fn medium(
-                &self,
-                method: &harness::method::Method<solver::Symmetric>,
-                dx: f64,
-            ) -> harness::method::Medium {
-                let Self { h_over_dx, alpha, beta, xi, exponent, xsph, .. } = *self;
-                harness::method::Medium {
-                    alpha,
-                    beta,
-                    xi,
-                    exponent: exponent as u32,
-                    xsph,
-                    ..self.material().medium(method, [dx, h_over_dx * dx])
-                }
-            }
             fn h_over_dx(&self) -> f64 {
                 self.h_over_dx
             }

@@ -25,12 +25,14 @@ use maths::theory::time_step::Integrator;
 pub trait SharedSettings: Settings + 'static {
     /// The material.
     fn material(&self) -> Material;
-    /// What terms are made from, at this spacing \[m\].
-    fn medium(&self, method: &Method<Symmetric>, dx: f64) -> Medium;
     /// h/dx.
     fn h_over_dx(&self) -> f64;
     /// Time step \[s\] and Courant number dt (c_p + V)/h, if they are given.
     fn given_step(&self) -> [Option<f64>; 2];
+    /// What terms are made from, at this spacing \[m\].
+    fn medium(&self, method: &Method<Symmetric>, dx: f64) -> Medium {
+        self.material().medium(method, [dx, self.h_over_dx() * dx]).set_by(self)
+    }
 }
 
 /// A problem of elasticity, stated by its settings: what differs between solid cases.

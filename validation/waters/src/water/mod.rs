@@ -105,13 +105,7 @@ macro_rules! water_settings {
                 let medium = harness::method::Medium {
                     acceleration: down,
                     wall_acceleration: down,
-                    alpha: self.alpha,
-                    beta: self.beta,
-                    xsph: self.xsph,
-                    xi: self.xi,
-                    exponent: self.exponent as u32,
-                    diffusion: self.diffusion,
-                    ..method.medium(eos, [dx, h])
+                    ..method.medium(eos, [dx, h]).set_by(self)
                 };
                 let step = harness::case::Step::courant(self.courant, h, [c0, speed]);
                 let limits = $crate::water::limits(method, &medium, [self.h_over_dx, c0], 24);
