@@ -1,28 +1,16 @@
 //! Waves in uniaxial strain: a pulse through a bar, and two equal bars that meet.
 
+use base::{functions::*, gate::*, record::*};
+use harness::{case::*, composed::*, declare::*, simulate, table::*};
+use maths::{exact::impact::Impact, theory::lattice::SquareLattice};
 use nalgebra::Vector2;
-use solver::{
-    CubicSpline, Domain, EquationOfState, Flow, Kernel, Observer, Particle, Stepper, Symmetric,
-};
+use solver::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use super::{
-    causes::{DISPERSION, ONE_LATTICE, SOFT_CONTACT, VISCOSITY},
-    solid::{self, Energy, Material, Problem, SharedSettings, Watch},
+    causes::*,
+    solid::{self, *},
 };
-use base::functions::{erfc, exp};
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::{MetricKey, Profile, Record},
-};
-use harness::{
-    case::Tier,
-    composed::{self, Best, Composed},
-    declare::{Accuracy, Declaration},
-    simulate,
-    table::{Row, Table},
-};
-use maths::{exact::impact::Impact, theory::lattice::SquareLattice};
 
 crate::solid_settings! {
     /// Settings of bars along x that are periodic in y, so that nothing strains across.
@@ -58,10 +46,10 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
             bars meet at speeds V and -V: the contact bears rho c_p V (the jump conditions at finite V) \
             for 2 L/c_p, and then both have exchanged their velocities.",
     variants: || solid::variants(schemes::solid::free()),
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: composed::no_studies,
+    studies: no_studies,
 };
 
 base::metrics! {

@@ -4,29 +4,16 @@
 //! longitudinal wave has ω² = |g|² (K + 4μ/3)/ρ and a transverse one ω² = |g|² μ/ρ, whatever the
 //! kernel. The leapfrog turns by θ a step, 2 sin(θ/2) = ω dt, which is divided out.
 
-use nalgebra::Vector2;
-use solver::{
-    CubicSpline, Domain, EquationOfState, Flow, Kernel, Observer, Particle, Stepper, Symmetric,
+use base::{functions::*, gate::*, record::*};
+use harness::{
+    case::*, composed::*, context::Context, declare::*, method::*, rules::PLANNED_DT,
+    runner::Drive, simulate, table::*,
 };
+use nalgebra::Vector2;
+use solver::*;
 use std::f64::consts::TAU;
 
 use super::solid::{Material, limits};
-use base::functions::{acos, cos, sin};
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::Record,
-};
-use harness::{
-    case::{Rules, RunError, Step, Tier},
-    composed::{self, Best, Composed, Composition, Program, Variants},
-    context::Context,
-    declare::Declaration,
-    method::{Method, Parts},
-    rules::PLANNED_DT,
-    runner::Drive,
-    simulate,
-    table::{Row, Table},
-};
 
 base::settings! {
     /// Settings of a wave along x on a lattice of the unit square.
@@ -51,10 +38,10 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
             from the gradient symbol of the kernel. The shear modulus is 0.22 K, the wave has 16 \
             particles, and the effect of the time step is divided out.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: |_| Declaration { stepwise: &[FREQUENCY_ERROR], ..Declaration::default() },
     plan: |tier| table(tier).plan(),
-    studies: composed::no_studies,
+    studies: no_studies,
 };
 
 const NAME: &str = "elastic_wave";

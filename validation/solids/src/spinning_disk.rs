@@ -1,23 +1,14 @@
 //! A free elastic disk that spins: is a rotation a rotation to the method?
 
+use base::{gate::*, record::*};
+use harness::{case::*, composed::*, declare::*, simulate, table::*};
 use nalgebra::Vector2;
-use solver::{Flow, Observer, Particle, Stepper, Symmetric};
+use solver::*;
 use std::f64::consts::{PI, TAU};
 
 use super::{
     causes::FREE_FACES,
-    solid::{self, Energy, Problem, SharedSettings, Watch, angular_momentum, norm_squared},
-};
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::{Profile, Record},
-};
-use harness::{
-    case::Tier,
-    composed::{self, Best, Composed, Composition, Variants},
-    declare::{Accuracy, Budget, Budgets, Change, Declaration},
-    simulate,
-    table::{Row, Table},
+    solid::{self, *},
 };
 crate::solid_settings! {
     /// Settings of a disk cut from a square lattice.
@@ -46,10 +37,10 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
             stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
             for strain.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: composed::no_studies,
+    studies: no_studies,
 };
 
 fn variants() -> Vec<Composition<DiskSettings>> {

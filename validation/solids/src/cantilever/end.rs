@@ -1,10 +1,6 @@
 //! What is observed of a bar: the path of its end, its energies, its middle line when the end is lowest.
 
-use solver::{Evolved, Flow, Observer, Stepper};
-
 use super::*;
-use crate::solid::{Path, SharedSettings, Watch};
-use base::record::{Profile, Record};
 
 /// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
 const SAMPLES: f64 = 1600.0;

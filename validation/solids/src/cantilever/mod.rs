@@ -4,22 +4,20 @@ mod end;
 mod path;
 mod plan;
 
-use ::lagrangian::{Hencky, Law as _, NeoHookean, SaintVenantKirchhoff};
+use ::lagrangian::*;
+use base::{gate::*, mutation::Constant, record::*, reference::Reference};
+use harness::{case::*, composed::*, context::Context, declare::*, method::Method, table::*};
 use nalgebra::Vector2;
-use solver::{Particle, PlaneWall, Role, Symmetric};
+use schemes::total;
+use solver::*;
 use std::f64::consts::TAU;
 
-use crate::solid::{self, Elements, Energy, Problem, lagrangian};
-use base::{record::MetricKey, reference::Reference};
-use end::End;
-use harness::{
-    case::RunError,
-    composed::{self, Best, Composed, Composition, Variants},
-    context::Context,
-    method::Method,
+use crate::{
+    causes::*,
+    solid::{self, *},
 };
+use end::End;
 use path::*;
-use schemes::total;
 
 crate::solid_settings! {
     /// Settings of a bar that is held at x = 0 and has weight from t = 0 on.
@@ -50,10 +48,10 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
             begins to act: shape, material and load are those of the test CSM3 of Turek & Hron (2006). The \
             path of its end is compared with finite elements of the same bar and law.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: plan::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: composed::no_studies,
+    studies: no_studies,
 };
 
 base::metrics! {

@@ -1,14 +1,8 @@
 //! What is measured of the path of the end of a bar, as finite elements are measured.
 
-use std::f64::consts::TAU;
+use base::functions::{cos, sin};
 
-use base::{
-    functions::{cos, sin},
-    record::MetricKey,
-};
-use nalgebra::Vector2;
-
-use crate::solid::Path;
+use super::*;
 
 base::metrics! {
     MEAN_X = "mean_x" ["m"]

@@ -1,19 +1,6 @@
 //! The runs of the bar, their gates, and what the report says of them.
 
 use super::*;
-use crate::{
-    causes::{FREE_FACES, VISCOSITY},
-    solid::faces,
-};
-use base::{
-    gate::{Bound, Evidence, Gate},
-    mutation::Constant,
-};
-use harness::{
-    case::Tier,
-    declare::{Accuracy, Curve, Declaration, Sensitivity, Watched},
-    table::{Row, Table},
-};
 
 /// What a run is for.
 #[derive(Clone, Copy, PartialEq)]

@@ -3,21 +3,15 @@
 mod plan;
 
 use ::lagrangian::{Hencky, Law as _};
+use base::{functions::*, gate::*, record::*, reference::Reference};
+use harness::{case::*, composed::*, context::Context, declare::*, method::Method, table::*};
 use nalgebra::Vector2;
-use solver::{Flow, Observer, Particle, PlaneWall, Role, Stepper, Symmetric};
+use solver::*;
 use std::f64::consts::TAU;
 
-use super::solid::{self, Elements, Energy, FIRST_MODE, Path, Problem, SharedSettings, Watch};
-use base::{
-    functions::{cos, cosh, sin, sinh},
-    record::{Profile, Record},
-    reference::Reference,
-};
-use harness::{
-    case::RunError,
-    composed::{self, Best, Composed, Composition, Variants},
-    context::Context,
-    method::Method,
+use super::{
+    causes::*,
+    solid::{self, *},
 };
 
 crate::solid_settings! {
@@ -49,10 +43,10 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
             first mode (Landau & Lifshitz; Gray, Monaghan & Swift 2001). Its period is compared with 0.254 \
             s of thin-plate theory, and with finite elements, as its amplitude and the path of its tip.",
     variants,
-    is_stable: composed::completed,
+    is_stable: completed,
     declaration: plan::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: composed::no_studies,
+    studies: no_studies,
 };
 
 fn variants() -> Vec<Composition<PlateSettings>> {
@@ -392,7 +386,7 @@ mod tests {
             let set = |s: &mut PlateSettings| (s.n, s.end, s.dt) = (5, 0.5, Some(share * limit));
             let spec = OSCILLATING_PLATE.spec(LAGRANGIAN, set).allow_unstable();
             let record = OSCILLATING_PLATE.run(&spec, &Context::default()).expect("a run");
-            assert_eq!(composed::completed(&record), is_stable, "{share} of the limit");
+            assert_eq!(completed(&record), is_stable, "{share} of the limit");
         }
     }
 }

@@ -1,19 +1,6 @@
 //! The runs of the plate, their gates, and what the report says of them.
 
 use super::*;
-use crate::{
-    causes::{FREE_FACES, LOCKING, STRESS_ADDS_ENERGY, VISCOSITY},
-    solid::{faces, lagrangian},
-};
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::MetricKey,
-};
-use harness::{
-    case::Tier,
-    declare::{Accuracy, Declaration},
-    table::{Row, Table},
-};
 
 /// What a run is for.
 #[derive(Clone, Copy, PartialEq)]

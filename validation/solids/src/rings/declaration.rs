@@ -1,29 +1,9 @@
 //! What the studies that every case has are made of: histories over finite elements, errors over spacing and
 //! cost, an error budget, step limits, maps, errors of constants that the gates must detect.
 
-use super::{
-    LAGRANGIAN, RUBBER_RINGS, RingSettings,
-    measure::halves,
-    metrics::*,
-    plan::{Group, SPEED, table},
-    reference::Reference,
-};
-use crate::solid::{Problem as _, corners};
-use base::{
-    gate::{Bound, Evidence, Gate},
-    mutation::Constant,
-    record::{MetricKey, Record},
-};
-use harness::{
-    case::{Case, Rules, Tier},
-    declare::{
-        Accuracy, Budget, Budgets, Card, Change, Comparison, Curve, CurveOf, CurvePanel, Curves,
-        Declaration, Ladder, Map, MapPanel, Sensitivity, StepLimit, StepLimits, Watched,
-    },
-    studies::causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
-};
-use nalgebra::Vector2;
 use report::{Colour, sig};
+
+use super::*;
 
 /// What is read from the phases of contact, which begin and end between two steps; extremes of every step;
 /// and energies that lack the stress.

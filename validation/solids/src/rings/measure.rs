@@ -1,16 +1,9 @@
 //! What is measured of the rings, sample by sample and at the end.
 
-use nalgebra::Vector2;
-use solver::{EquationOfState, Flow as Going, Observer, Particle, Stepper, Symmetric};
-
-use super::{RingSettings, metrics::*, reference};
-use crate::solid::{Energy, Problem, SharedSettings, Watch, corners, largest};
-use base::{
-    functions::hypot,
-    record::{MetricKey, Profile, Record, Status},
-};
-use harness::{context::Context, simulate};
 use maths::geometry::{Bonds, Topology};
+use solver::Flow as Going;
+
+use super::*;
 
 /// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
 const SAMPLES: f64 = 800.0;

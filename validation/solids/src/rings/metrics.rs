@@ -1,6 +1,6 @@
 //! What the records of the rings state.
 
-use base::record::{MetricKey, Record};
+use super::*;
 
 base::metrics! {
     RESTITUTION = "restitution" ["-"]

@@ -14,10 +14,23 @@ mod studies;
 #[cfg(test)]
 mod tests;
 
-use base::record::{Record, Status};
-use harness::composed::{Best, Composed, Composition, Variants};
+use base::{functions::*, gate::*, mutation::Constant, record::*};
+use harness::{
+    case::*, columns::Columns, composed::*, context::Context, declare::*, method::Method, pictures,
+    runs::Runs, simulate, studies::causes::*, study::Study, table,
+};
+use nalgebra::{Rotation2, Vector2};
+use solver::{EquationOfState, Limits, Observer, Particle, Stepper, Symmetric};
+use std::f64::consts::TAU;
 
-use crate::solid::{self, Problem, lagrangian as total};
+use crate::{
+    causes::*,
+    solid::{self, lagrangian as total, *},
+};
+use measure::*;
+use metrics::*;
+use plan::*;
+use reference::Reference;
 
 base::settings! {
     /// Settings of the collision of two rings; L is 1 m.

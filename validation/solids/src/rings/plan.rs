@@ -1,22 +1,8 @@
 //! The table of the runs, and what a run is judged by.
 
-use super::{
-    COMPONENTWISE, CORRECTED, LAGRANGIAN, MOST_ENERGY_GAINED, PLANE, RUBBER_RINGS, RingSettings,
-    measure::NEIGHBOURS, metrics::*, reference::Reference,
-};
-use crate::{
-    causes::{FOLDS, FREE_FACES, SHARED_IMPULSE, SOFT_CONTACT, TEARING},
-    solid::faces,
-};
-use base::{
-    functions::exp,
-    gate::{Bound, Evidence, Gate},
-    record::MetricName,
-};
-use harness::{
-    case::{Planned, Tier},
-    table::{self, Table},
-};
+use harness::table::Table;
+
+use super::*;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,14 +1,10 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
 use ::lagrangian::{Hencky, Law as _};
-
-use super::{LAGRANGIAN, PLANE, RingSettings, metrics::*};
-use crate::solid::{Quantities, largest, quantities};
-use base::{
-    record::{MetricKey, Record},
-    reference::{Reference as Package, Table},
-};
+use base::reference::{Reference as Package, Table};
 use maths::metrics::{history, norms::rms};
+
+use super::*;
 
 /// The law of (10) to (12), as the tables name it.
 const JAUMANN: &str = "jaumann";

@@ -1,13 +1,6 @@
 //! From settings to a scene: spacing, moduli, particles.
 
-use base::functions::{rotation, sin_cos};
-use nalgebra::{Rotation2, Vector2};
-use solver::{Limits, Particle, Symmetric};
-use std::f64::consts::TAU;
-
-use super::{RingSettings, measure::Series};
-use crate::solid::{Energy, Material, Problem, SharedSettings};
-use harness::{case::RunError, context::Context, method::Method};
+use super::*;
 
 /// The most layers that are known to stay whole with corrected gradients at the paper's speed. Those of 20
 /// tear at the inner face (docs/limits.md).

@@ -1,20 +1,9 @@
 //! What the runs of the rings say together, beside what their declaration says: a table of all collisions
 //! with claim M2, and pictures.
 
-use super::{
-    LAGRANGIAN, RUBBER_RINGS, RingSettings,
-    measure::PICTURES,
-    metrics::{self, *},
-    plan::{FRAMES, Group, Row, SPEED, table},
-    reference::{self, Reference},
-};
-use crate::solid::largest;
-use base::{
-    gate::{Bound, Evidence, Gate},
-    record::Record,
-};
-use harness::{case::Tier, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{Axis, Cell, ColourMap, Figure, Film, ParticleMap, Series, exact, sig};
+
+use super::*;
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
