@@ -1,23 +1,12 @@
 //! Histories of both experiments over what was measured and over the same model by volume of fluid.
 
+use report::{Axis, sig};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::{
-    DamSettings,
     measure::{PROBES, SENSORS},
-    metrics,
-    plan::{self, Group, Row},
-    reference::{
-        Curve, LOBOVSKY, MARTIN_MOYCE, MODEL, arrival, depth, front, front_from, height, pressure,
-        until,
-    },
+    *,
 };
-use base::record::Record;
-use harness::{
-    case::Tier,
-    declare::{CurveOf, CurvePanel, Curves},
-};
-use report::{Axis, sig};
 
 /// Panels over time until an end, of the judged runs of the best variant and of the paper's.
 struct Panels {
@@ -32,8 +21,8 @@ impl Panels {
         &mut self,
         title: String,
         ([x, y], end): ([&str; 2], f64),
-        points: impl Fn(&Record) -> Curve + Clone + Send + Sync + 'static,
-        curves: [&Curve; 2],
+        points: impl Fn(&Record) -> Points + Clone + Send + Sync + 'static,
+        curves: [&Points; 2],
     ) -> &mut CurvePanel {
         let table = plan::table(self.tier);
         let line = |row: &Row| CurveOf {
@@ -100,7 +89,7 @@ fn tank(tier: Tier) -> Curves {
         let curves = [&LOBOVSKY.level(k, 6.0), &MODEL.levels[k]];
         panels.add(title, ([time, "depth [H]"], 6.0), move |record| depth(record, k), curves);
     }
-    let since = |curve: &Curve, arrival: f64| -> Curve {
+    let since = |curve: &Points, arrival: f64| -> Points {
         let from = curve.iter().map(|(t, p)| (t - arrival, *p));
         from.filter(|(t, _)| *t >= 0.0).collect()
     };

@@ -2,19 +2,9 @@
 //! resolutions, what its error is made of, the longest stable time steps, and the errors of constants that
 //! the gates must detect.
 
-use super::{
-    DAM_BREAK, DamSettings, NAME, curves, ensembles,
-    metrics::{
-        FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, MACH, Z,
-    },
-    plan::{self, Group},
-    reference::{FRONT_SPREAD, IMPULSE_SPREAD},
-    run::COSTLY,
-};
-use crate::water::ledger::ENERGY_GAP;
-use base::{gate::*, mutation::*, record::*, reference::Reference};
-use harness::{case::*, declare::*, studies::causes::*};
-use nalgebra::Vector2;
+use base::reference::Reference;
+
+use super::{run::COSTLY, *};
 
 /// A run that ended, with the energy that it began with.
 pub fn is_stable(record: &Record) -> bool {

@@ -1,21 +1,7 @@
 //! The column in the tank from twenty starts that differ by a millionth of a spacing: until when levels and
 //! impulses agree, and how what comes after the jet has fallen back is distributed.
 
-use base::{gate::*, record::MetricName};
-use harness::{
-    case::Tier,
-    declare::{Comparison, Ensemble, Ensembles, History, Number},
-};
-
-use super::{
-    NAME,
-    metrics::{IMPULSE, LEVELS, PEAK},
-    plan::{self, Group},
-    reference::{
-        Curve, LEVELS_UNTIL, LOBOVSKY, MODEL, WINDOWS, arrival, depth, impulse, mean, pressure,
-        trapezoid,
-    },
-};
+use super::*;
 
 /// When the levels of what comes after the jet has closed are taken \[(H/g)^(1/2)\].
 const LATE: [f64; 2] = [6.0, plan::UNTIL];
@@ -96,7 +82,7 @@ fn histories(id: &str, variant: &str, comparisons: &[Comparison]) -> Vec<History
 }
 
 /// The impulse since the start, by the trapezoidal rule.
-fn summed(pressure: &Curve) -> Curve {
+fn summed(pressure: &Points) -> Points {
     let mut sum = 0.0;
     let add = |pair: &[(f64, f64)]| {
         sum += trapezoid(pair);
@@ -106,7 +92,7 @@ fn summed(pressure: &Curve) -> Curve {
 }
 
 /// The mean of a curve over [`LATE`]; none if it does not reach so far.
-fn late(curve: &Curve) -> Option<f64> {
+fn late(curve: &Points) -> Option<f64> {
     Some(mean(curve, LATE)).filter(|mean| !mean.is_nan())
 }
 
@@ -235,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_mean_of_what_comes_late_needs_a_run_that_reaches_so_far() {
-        let rising: Curve = (0..=800).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
+        let rising: Points = (0..=800).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
         assert!(late(&rising).is_some_and(|mean| (mean - 7.0).abs() < 1e-9));
         assert_eq!(late(&rising[..500].to_vec()), None);
         let sum = summed(&rising);

@@ -2,11 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::Vector2;
-use solver::{EquationOfState, Evolved, Flow, Observer, Role, Stepper, Tait};
-
-use super::{Dam, metrics};
-use base::record::{Profile, Record};
+use super::*;
 
 /// Heights of the sensors on the far wall \[m\], and their diameter (Lobovsky et al. 2014).
 pub const SENSORS: [f64; 4] = [0.003, 0.015, 0.030, 0.080];

@@ -1,6 +1,6 @@
 //! Metrics of a collapsing column.
 
-use base::record::MetricKey;
+use super::*;
 
 /// Distance of curves from those of an experiment.
 pub struct Distance {

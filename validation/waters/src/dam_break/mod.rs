@@ -16,9 +16,25 @@ mod run;
 mod setup;
 mod studies;
 
-use harness::composed::{Best, Composed, Composition, Variants};
-use schemes::water;
+use base::{gate::*, mutation::*, record::*};
+use harness::{
+    case::*, columns::Columns, composed::*, context::Context, declare::*, method::*, pictures,
+    runner::Drive, runs::Runs, simulate, studies::causes::*, study::Study, table,
+};
+use nalgebra::Vector2;
+use schemes::water::WaterMethod;
+use solver::*;
 
+use crate::{
+    causes::*,
+    water::{
+        self, Ledger,
+        ledger::{self, *},
+    },
+};
+use metrics::*;
+use plan::*;
+use reference::*;
 pub use setup::Dam;
 
 crate::water_settings! {
@@ -74,6 +90,7 @@ fn modern(s: &mut DamSettings) {
 
 /// The variants, each with the question that it answers.
 fn variants() -> Vec<Composition<DamSettings>> {
+    use schemes::water;
     let paper = "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
                  stress, predictor-corrector";
     let ghosts = "the seed with ghosts; in a corner a particle has a third one, turned by half a turn about \

@@ -4,16 +4,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{
-    DAM_BREAK, DamSettings, lobovsky,
-    metrics::{
-        self, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY, LEVELS, Z,
-    },
-    reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS, WINDOWS},
-};
-use crate::{causes::*, water::ledger};
-use base::{gate::*, record::MetricName};
-use harness::{case::Tier, table};
+use super::*;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,20 +1,10 @@
 //! The two experiments, the same two-dimensional model computed by volume of fluid, and the distance from
 //! them: from the model it is an error of the method.
 
+use base::reference::{Reference as Package, ReferenceError, Table};
 use std::sync::LazyLock;
 
-use super::{
-    Dam, DamSettings,
-    metrics::{
-        ARRIVAL, Distance, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY,
-        LEVEL_AWAY, LEVELS, NOISE, PEAK, Z,
-    },
-};
-use crate::water;
-use base::{
-    record::{MetricName, Record},
-    reference::{Reference as Package, ReferenceError, Table},
-};
+use super::*;
 
 /// Spread of digitised curves of the front of Martin & Moyce \[a\].
 pub const FRONT_SPREAD: f64 = 0.1;
@@ -25,7 +15,7 @@ pub const IMPULSE_SPREAD: f64 = 0.06;
 pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
 
 /// A curve: points in ascending order of the first number.
-pub type Curve = Vec<(f64, f64)>;
+pub type Points = Vec<(f64, f64)>;
 
 /// The value of a curve, linear between its points and constant beyond its ends.
 pub fn value(curve: &[(f64, f64)], t: f64) -> f64 {
@@ -45,12 +35,12 @@ fn rms(computed: &[(f64, f64)], measured: &[(f64, f64)], shift: f64) -> f64 {
 }
 
 /// Sum of squares of the distance over pairs of curves, computed and measured.
-fn squares(pairs: &[(Curve, Curve)], shift: f64) -> f64 {
+fn squares(pairs: &[(Points, Points)], shift: f64) -> f64 {
     pairs.iter().map(|(c, m)| rms(c, m, shift).powi(2) * m.len() as f64).sum()
 }
 
 /// The shift of the clock within ± `range` with the least sum of squares over pairs of curves.
-fn best_shift(pairs: &[(Curve, Curve)], range: f64) -> f64 {
+fn best_shift(pairs: &[(Points, Points)], range: f64) -> f64 {
     let cost = |shift: f64| squares(pairs, shift);
     let (mut best, mut step) = (0.0, range / 20.0);
     for _ in 0..4 {
@@ -63,18 +53,18 @@ fn best_shift(pairs: &[(Curve, Curve)], range: f64) -> f64 {
 }
 
 /// A column of a table over another one.
-fn curve(table: &Table, t: &str, y: &str) -> Result<Curve, ReferenceError> {
+fn curve(table: &Table, t: &str, y: &str) -> Result<Points, ReferenceError> {
     Ok(table.numbers(t)?.into_iter().zip(table.numbers(y)?).collect())
 }
 
 /// Four columns of a table over its times.
-fn four(table: &Table, names: [&str; 4]) -> Result<[Curve; 4], ReferenceError> {
+fn four(table: &Table, names: [&str; 4]) -> Result<[Points; 4], ReferenceError> {
     let [a, b, c, d] = names.map(|name| curve(table, "t", name));
     Ok([a?, b?, c?, d?])
 }
 
 /// Front (T, Z) and residual height (τ, η) of Martin & Moyce. Packages are embedded and checked by a test.
-pub static MARTIN_MOYCE: LazyLock<[Curve; 2]> = LazyLock::new(|| {
+pub static MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
     let load = || {
         let package = Package::load("dambreak_martin_moyce")?;
         let front = curve(package.table("front")?, "T", "Z")?;
@@ -87,13 +77,13 @@ pub static MARTIN_MOYCE: LazyLock<[Curve; 2]> = LazyLock::new(|| {
 #[derive(Default)]
 pub struct Lobovsky {
     /// x of the tip from the gate.
-    pub front: Curve,
+    pub front: Points,
     /// Levels at H1 to H4: each series there is.
-    pub levels: [Vec<Curve>; 4],
+    pub levels: [Vec<Points>; 4],
     /// P1 to P4.
-    pub pressure: [Curve; 4],
+    pub pressure: [Points; 4],
     /// The second sensor at the height of P2.
-    pub aside: Curve,
+    pub aside: Points,
 }
 
 /// It.
@@ -118,7 +108,7 @@ impl Lobovsky {
     }
 
     /// The mean of the series at a probe, until t.
-    pub fn level(&self, k: usize, until: f64) -> Curve {
+    pub fn level(&self, k: usize, until: f64) -> Points {
         let series = &self.levels[k];
         let mean = |(n, (t, _)): (usize, &(f64, f64))| {
             (*t, series.iter().map(|s| s[n].1).sum::<f64>() / series.len() as f64)
@@ -131,13 +121,13 @@ impl Lobovsky {
 #[derive(Default)]
 pub struct VolumeOfFluid {
     /// Front Z \[a\] over T, and residual height, of the column of Martin & Moyce.
-    pub free: [Curve; 2],
+    pub free: [Points; 2],
     /// Front in the tank of Lobovsky et al., from the back wall.
-    pub front: Curve,
+    pub front: Points,
     /// Levels at H1 to H4.
-    pub levels: [Curve; 4],
+    pub levels: [Points; 4],
     /// P1 to P4.
-    pub pressure: [Curve; 4],
+    pub pressure: [Points; 4],
 }
 
 /// It.
@@ -148,7 +138,7 @@ impl VolumeOfFluid {
     fn load() -> Result<Self, ReferenceError> {
         let package = Package::load("dam_break_vof")?;
         let series = package.table("series")?;
-        let of = |scene: &str, name: &str| -> Result<Curve, ReferenceError> {
+        let of = |scene: &str, name: &str| -> Result<Points, ReferenceError> {
             let rows = series.texts("scene")?.into_iter().zip(curve(series, "t", name)?);
             Ok(rows.filter(|(of, _)| *of == scene).map(|(_, point)| point).collect())
         };
@@ -165,33 +155,33 @@ impl VolumeOfFluid {
 }
 
 /// Z over T of a run of the column of Martin & Moyce.
-pub fn front(record: &Record) -> Curve {
+pub fn front(record: &Record) -> Points {
     let DamSettings { width: a, gravity: g, .. } = record.settings_as();
     water::curve(record, "series", ["t", "front"], [(0.5 * a / g).sqrt(), a])
 }
 
 /// The residual height \[H\] over time in a unit \[s\].
-pub fn height(record: &Record, unit: f64) -> Curve {
+pub fn height(record: &Record, unit: f64) -> Points {
     let height = record.settings_as::<DamSettings>().height;
     water::curve(record, "series", ["t", "height"], [unit, height])
 }
 
 /// The front in the tank \[H\] over time \[(H/g)^(1/2)\], from a place \[m\].
-pub fn front_from(record: &Record, place: f64) -> Curve {
+pub fn front_from(record: &Record, place: f64) -> Points {
     let s: DamSettings = record.settings_as();
     let front = water::curve(record, "series", ["t", "front"], [s.unit_time(), 1.0]);
     front.into_iter().map(|(t, x)| (t, (x - place) / s.height)).collect()
 }
 
 /// The level at a probe \[H\] over time \[(H/g)^(1/2)\].
-pub fn depth(record: &Record, probe: usize) -> Curve {
+pub fn depth(record: &Record, probe: usize) -> Points {
     let s: DamSettings = record.settings_as();
     let name = format!("H{}", probe + 1);
     water::curve(record, "series", ["t", &name], [s.unit_time(), s.height])
 }
 
 /// The pressure on a sensor \[ρ g H\] over time \[(H/g)^(1/2)\].
-pub fn pressure(record: &Record, sensor: usize) -> Curve {
+pub fn pressure(record: &Record, sensor: usize) -> Points {
     water::curve(record, "pressure", ["t", &format!("P{}", sensor + 1)], [1.0, 1.0])
 }
 
@@ -269,7 +259,7 @@ fn end_of(curve: &[(f64, f64)]) -> f64 {
 fn put_distance(
     record: &mut Record,
     of: Distance,
-    pairs: &[(Curve, Curve)],
+    pairs: &[(Points, Points)],
     range: f64,
     what: &str,
 ) {
@@ -288,7 +278,7 @@ fn put_distance(
 }
 
 /// A curve until a time.
-pub fn until(curve: &[(f64, f64)], end: f64) -> Curve {
+pub fn until(curve: &[(f64, f64)], end: f64) -> Points {
     curve.iter().filter(|(t, _)| *t <= end).copied().collect()
 }
 
@@ -308,7 +298,7 @@ fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
     let height_of = |unit| height(record, unit);
     let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
     let [measured_front, measured_height] = &*MARTIN_MOYCE;
-    let within = |measured: &Curve, computed: &Curve| until(measured, end_of(computed));
+    let within = |measured: &Points, computed: &Points| until(measured, end_of(computed));
     let reached = end_of(&front);
     for t in FREE_TIMES {
         let away = || value(&front, t) - value(&MODEL.free[0], t);
@@ -384,8 +374,8 @@ mod tests {
 
     #[test]
     fn a_curve_that_starts_late_is_found_shifted() {
-        let early: Curve = (0..100).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t)).collect();
-        let late: Curve =
+        let early: Points = (0..100).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t)).collect();
+        let late: Points =
             (8..60).map(|k| 0.07 * f64::from(k)).map(|t| (t, (t - 0.21).powi(2))).collect();
         let shift = best_shift(&[(early.clone(), late.clone())], 1.0);
         assert!((shift - 0.21).abs() < 2e-3, "{shift}");
@@ -395,7 +385,7 @@ mod tests {
 
     #[test]
     fn an_impulse_is_an_integral_and_the_experiment_repeats_itself() {
-        let ramp: Curve = (0..=1000).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
+        let ramp: Points = (0..=1000).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
         assert!((impulse(&ramp, 1.0, 2.0) - 4.0).abs() < 1e-9);
         assert!((arrival(&ramp) - 0.11).abs() < 1e-9);
         // The package: arrival at 2.44; its neighbour differs from P2 more in the longer window.
@@ -414,7 +404,7 @@ mod tests {
     #[test]
     fn noise_is_what_a_running_mean_leaves() {
         // The mean over five points of alternating sign has a fifth of their amplitude.
-        let curve = |amplitude: f64| -> Curve {
+        let curve = |amplitude: f64| -> Points {
             let sign = |k: u32| if k.is_multiple_of(2) { amplitude } else { -amplitude };
             (0..1000).map(|k| (0.02 * f64::from(k) + 0.001, sign(k))).collect()
         };
@@ -493,12 +483,12 @@ mod tests {
         }
         let most = rows.chunks(10).map(|rows| mean(rows, 1)).fold(0.0, f64::max) / scale;
         is(metric(PEAK.into()) / most, 1.0, 1e-9);
-        let of_level = |level: &Curve| level.iter().map(|(_, y)| y * y).sum::<f64>();
+        let of_level = |level: &Points| level.iter().map(|(_, y)| y * y).sum::<f64>();
         let points: usize = levels.iter().map(Vec::len).sum();
         let all = levels.iter().map(of_level).sum::<f64>() / points as f64;
         is(metric(LEVELS.rms.into()) / all.sqrt(), 0.05, 5e-4);
         is(metric(FRONT.rms.into()), 0.0, 1e-3);
-        let p2: Curve =
+        let p2: Points =
             rows.chunks(10).map(|rows| (mean(rows, 0) / unit, mean(rows, 2) / scale)).collect();
         let left = noise(&p2, metric(ARRIVAL.into()) + 1.0);
         is(metric(NOISE.into()) / left, 1.0, 0.01);

@@ -2,21 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use schemes::water::WaterMethod;
-use solver::{EquationOfState, Observer, Particle, Role, Stepper};
-
 use super::{
-    Dam, DamSettings, NAME,
     measure::{Gauge, Samples},
-    metrics, reference,
-};
-use crate::water::{Ledger, ledger};
-use base::record::{MetricKey, Profile, Record, Status};
-use harness::{
-    case::RunError,
-    composed::Program,
-    runner::{Context, Drive},
-    simulate,
+    *,
 };
 
 /// Runs of the variants.

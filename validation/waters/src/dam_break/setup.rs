@@ -1,18 +1,8 @@
 //! From settings to a scene: spacing, time step, tank, column.
 
-use nalgebra::Vector2;
-use schemes::water::WaterMethod;
-use solver::{Domain, EquationOfState, Ghosts, Limits, Particle};
-
-use super::DamSettings;
-use crate::water::{self};
-use harness::{
-    case::{Rules, RunError},
-    context::Context,
-    method::{Boundary as _, FirstRow, Medium, Parts},
-    simulate,
-};
 use maths::geometry::Tank;
+
+use super::*;
 
 /// The settings on which time and memory of a run depend.
 const DECISIVE: &str = "end, dt, courant, c0, n or tank";
@@ -124,7 +114,7 @@ impl Dam {
         // A step far beyond the limit must not make everything a neighbour of everything.
         let skin = (SKIN_STEPS * self.rules.dt() * speed).clamp(LEAST_SKIN * medium.h, medium.h);
         // Water that is twice as dense, or as fast as sound, is no water any more.
-        let limits = Limits { density: [0.5 * rho, 2.0 * rho], speed: c0.max(2.0 * speed) };
+        let limits = solver::Limits { density: [0.5 * rho, 2.0 * rho], speed: c0.max(2.0 * speed) };
         let parts = Parts::new(*medium, Domain::open(), particles, context);
         Parts { mirrors: tank.mirrors(), skin: Some(skin), limits, ..parts }
     }

@@ -1,15 +1,8 @@
 //! Pictures of the tank, and what each ingredient buys.
 
-use super::{
-    DAM_BREAK, DamSettings,
-    metrics::{FRONT, IMPULSE, LEVELS, NOISE, OUTSIDE_END},
-    plan::{self, Group},
-    run::PICTURES,
-};
-use crate::water::ledger::{WORK_STRESS, WORK_VISCOSITY, WORK_WALLS};
-use base::record::Record;
-use harness::{case::*, columns::Columns, pictures, runs::Runs, study::Study};
 use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, sig};
+
+use super::{run::PICTURES, *};
 
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
