@@ -24,7 +24,7 @@ impl Energy {
         if let Some(known) = Self::known(simulation) {
             return known;
         }
-        simulation.fluid().fold(Self::default(), |sum, (mass, p)| sum + Self::of_one(mass, p, of))
+        simulation.fluid().fold(Self::default(), |sum, (mass, p)| sum.with(mass, p, of))
     }
 
     /// Of a simulation whose forces derive from energies.
@@ -39,12 +39,12 @@ impl Energy {
     pub fn of_all(particles: &[Particle<Symmetric>], of: &Material) -> Self {
         particles.iter().fold(Self::default(), |sum, p| {
             let Particle { position, velocity, density, extra, .. } = *p;
-            sum + Self::of_one(p.mass, &Evolved { position, velocity, density, extra }, of)
+            sum.with(p.mass, &Evolved { position, velocity, density, extra }, of)
         })
     }
 
-    /// Of one particle of this mass \[kg/m\].
-    pub fn of_one(mass: f64, particle: &Evolved<Symmetric>, material: &Material) -> Self {
+    /// With those of one more particle of this mass \[kg/m\].
+    fn with(self, mass: f64, particle: &Evolved<Symmetric>, material: &Material) -> Self {
         let ratio = particle.density / material.density;
         let c2 = material.bulk / material.density;
         // ln(1 + x) − x/(1 + x): neither term alone is small where their difference is.
@@ -56,26 +56,15 @@ impl Energy {
             0.0
         };
         Self {
-            kinetic: 0.5 * mass * particle.velocity.norm_squared(),
-            compression: mass * c2 * (ln_1p(x) - x / ratio),
-            shear,
+            kinetic: self.kinetic + 0.5 * mass * particle.velocity.norm_squared(),
+            compression: self.compression + mass * c2 * (ln_1p(x) - x / ratio),
+            shear: self.shear + shear,
         }
     }
 
     /// All of it.
     pub fn total(&self) -> f64 {
         self.kinetic + (self.compression + self.shear)
-    }
-}
-
-impl std::ops::Add for Energy {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            kinetic: self.kinetic + other.kinetic,
-            compression: self.compression + other.compression,
-            shear: self.shear + other.shear,
-        }
     }
 }
 
@@ -108,26 +97,29 @@ mod tests {
         Evolved { position: Vector2::zeros(), velocity, density, extra }
     }
 
+    fn of_one(mass: f64, particle: &Evolved<Symmetric>, material: &Material) -> Energy {
+        Energy::default().with(mass, particle, material)
+    }
+
     #[test]
     fn simple_states_have_the_energies_of_the_books() {
         let material = Material { density: 2.0, bulk: 8.0, shear: 3.0 };
         let nothing = Symmetric::default();
-        let at_rest = Energy::of_one(5.0, &particle(2.0, 0.0, nothing), &material);
+        let at_rest = of_one(5.0, &particle(2.0, 0.0, nothing), &material);
         assert_eq!(at_rest, Energy::default());
-        let moving = Energy::of_one(5.0, &particle(2.0, 3.0, nothing), &material);
+        let moving = of_one(5.0, &particle(2.0, 3.0, nothing), &material);
         assert_relative_eq!(moving.total(), 22.5, max_relative = 1e-15);
         // Small compression: V K e²/2; V = 2.5.
         let e = 1e-5;
-        let pressed = Energy::of_one(5.0, &particle(2.0 * (1.0 + e), 0.0, nothing), &material);
+        let pressed = of_one(5.0, &particle(2.0 * (1.0 + e), 0.0, nothing), &material);
         assert_relative_eq!(pressed.compression, 2.5 * 8.0 * e * e / 2.0, max_relative = 1e-4);
         // Simple shear by g: S_xy = mu g, energy V mu g²/2.
         let sheared = Symmetric { xy: 3.0 * 0.01, ..nothing };
-        let sheared = Energy::of_one(5.0, &particle(2.0, 0.0, sheared), &material);
+        let sheared = of_one(5.0, &particle(2.0, 0.0, sheared), &material);
         assert_relative_eq!(sheared.shear, 2.5 * 3.0 * 1e-4 / 2.0, max_relative = 1e-12);
         // Uniaxial strain e: S = 2 mu e (2/3, -1/3, -1/3), energy V (4/3) mu e²/2.
         let (xx, yy) = (4.0 / 3.0 * 3.0 * e, -2.0 / 3.0 * 3.0 * e);
-        let along =
-            Energy::of_one(5.0, &particle(2.0, 0.0, Symmetric { xx, yy, xy: 0.0 }), &material);
+        let along = of_one(5.0, &particle(2.0, 0.0, Symmetric { xx, yy, xy: 0.0 }), &material);
         assert_relative_eq!(along.shear, 2.5 * 4.0 / 3.0 * 3.0 * e * e / 2.0, max_relative = 1e-12);
     }
 
@@ -135,8 +127,7 @@ mod tests {
     #[test]
     fn the_compression_energy_is_the_work_of_the_pressure() {
         let material = Material { density: 2.0, bulk: 8.0, shear: 3.0 };
-        let energy =
-            |rho: f64| Energy::of_one(1.0, &particle(rho, 0.0, Symmetric::default()), &material);
+        let energy = |rho: f64| of_one(1.0, &particle(rho, 0.0, Symmetric::default()), &material);
         for rho in [1.6, 1.9, 2.3, 3.0] {
             let d = 1e-5;
             let slope = (energy(rho + d).compression - energy(rho - d).compression) / (2.0 * d);
