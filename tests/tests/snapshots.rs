@@ -151,7 +151,7 @@ fn kept_water(case: &str) -> Vec<Kept> {
             (vec!["modern"], vec!["compressibility=0.1", "compressibility=1e-4"]),
         ],
         "elliptic_drop" => vec![(vec!["seed", "plain", "modern"], vec!["n=20"])],
-        "still_wedge" => vec![(vec!["modern", "modern-interface"], vec!["n=10", "n=14"])],
+        "still_wedge" => vec![(vec!["modern"], vec!["n=10", "n=14"])],
         "dam_break" => {
             vec![
                 (vec!["seed", "modern"], vec!["n=20"]),

@@ -33,6 +33,6 @@ pub mod load;
 pub mod reference;
 pub mod solid;
 
-pub use law::{Hencky, Law, Moduli, NeoHookean, SaintVenantKirchhoff};
+pub use law::{Hencky, Law, Moduli, SaintVenantKirchhoff};
 pub use load::{BetweenFaces, Contact, Load, RigidPlane, Weight};
 pub use solid::{Solid, SolidScene};

@@ -42,8 +42,6 @@ methods! { stepped => Method:
     componentwise: Rubber<Stabilised<ComponentStress>>;
     /// The paper's terms with the leapfrog.
     leapfrog: Rubber<Stabilised<PrincipalStress>, Leapfrog>;
-    /// The same with one pair sweep a step.
-    single_sweep: Rubber<Stabilised<PrincipalStress>, SingleSweep>;
     /// The paper's, clamped.
     clamped_seed: Rubber<Stabilised<PrincipalStress>, Midpoint, Clamp>;
     /// The same of a body that has weight.

@@ -35,8 +35,6 @@ methods! { bodies => Method:
 methods! { heavy => Method:
     /// One body that has weight, with the stored energy of Hencky.
     heavy_hencky: Hencky;
-    /// The same with that of a neo-Hookean solid.
-    heavy_neo_hookean: NeoHookean;
     /// The same with that of Saint Venant and Kirchhoff.
     heavy_saint_venant_kirchhoff: SaintVenantKirchhoff;
 }

@@ -50,8 +50,6 @@ methods! { metered => WaterMethod:
     sticking: Modern<(Continuity, Diffusion), Walls, Leapfrog, ArtificialViscosity<Tait>>;
     /// `modern` with one pair sweep a step.
     single_sweep: Modern<(Continuity, Diffusion), Walls, SingleSweep>;
-    /// `modern` with interface and wall particles.
-    interface_wall: Modern<(Continuity, Diffusion), InterfaceWall>;
     /// `modern` with the density diffusion of Molteni and Colagrossi.
     molteni: Modern<(Continuity, DensityDiffusion)>;
     /// The same without walls.

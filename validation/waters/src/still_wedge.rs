@@ -45,15 +45,9 @@ fn variants() -> Vec<Composition<Wedge>> {
     let seed = "the paper's: interface and wall particles, XSPH, artificial viscosity and stress";
     let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
                   pressure: do they bear water at corners too?";
-    let interface =
-        "modern with interface and wall particles: are the paper's walls enough for it?";
-    fn rule(s: &mut Wedge) {
-        (s.alpha, s.courant) = (0.02, 0.8);
-    }
     Variants::of(&Program { run, rules: |m, s| Ok(scene(s, m, &Context::of_rules())?.1) })
         .with("seed", seed, schemes::water::seed(), |s| s.courant = 0.4)
-        .with("modern", modern, schemes::water::modern(), rule)
-        .with("modern-interface", interface, schemes::water::interface_wall(), rule)
+        .with("modern", modern, schemes::water::modern(), |s| (s.alpha, s.courant) = (0.02, 0.8))
         .all
 }
 
@@ -255,7 +249,7 @@ fn table(tier: Tier) -> table::Table<Wedge, ()> {
     let mut table = table::Table::new(&STILL_WEDGE, tier);
     let depths: [&[usize]; 2] = [&[10, 14, 20], &[10, 14, 20, 28, 40]];
     table.over((), &["seed"], [&[10, 14], depths[1]], |s, n| s.n = n);
-    table.over((), &["modern", "modern-interface"], depths, |s, n| s.n = n);
+    table.over((), &["modern"], depths, |s, n| s.n = n);
     for row in &mut table.rows {
         row.run.seconds = 0.3 * (row.settings.n as f64 / 20.0).powi(3);
         if row.settings.n == 20 {
@@ -288,17 +282,12 @@ fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
     let (all, kinetic) = (of(P_L2, Bound::Below(0.25 * dx), level), (0.1 * dx).powi(2));
     let kinetic = of(KINETIC, Bound::Below(kinetic), still);
     let outside = of(OUTSIDE, Bound::Equals(0.0), "No particle passes a wall.");
-    let unweighed = |low| {
-        let why = "The pressure is too low, by a share that does not fall with the spacing: the bound is one \
-                   and a half times the largest of five spacings.";
-        let known = Bound::Within(low, 0.5 * dx);
-        base.clone().with_limitation(known, why, &UNWEIGHED)
-    };
-    match variant {
-        "modern" => vec![base, apex, all, kinetic, outside],
-        "seed" => vec![unweighed(-0.53), outside],
-        _ => vec![unweighed(-0.078), outside],
+    if variant == "modern" {
+        return vec![base, apex, all, kinetic, outside];
     }
+    let why = "The pressure is too low, by a share that does not fall with the spacing: the bound is one and \
+               a half times the largest of five spacings.";
+    vec![base.with_limitation(Bound::Within(-0.53, 0.5 * dx), why, &UNWEIGHED), outside]
 }
 
 fn declaration(tier: Tier) -> Declaration {
@@ -309,7 +298,7 @@ fn declaration(tier: Tier) -> Declaration {
         about: "Water at rest over a wedge, mean over the last five of 20 acoustic periods.".into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders: ["seed", "modern", "modern-interface"].map(ladder).into(),
+        ladders: ["seed", "modern"].map(ladder).into(),
         ..Accuracy::new(
             "still-wedge",
             P_BASE,

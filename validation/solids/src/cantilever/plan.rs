@@ -24,8 +24,8 @@ pub fn table(tier: Tier) -> Table<CantileverSettings, For> {
     let mut table = Table::new(&CANTILEVER, tier);
     table.over(Whole, &[LAGRANGIAN], [&[], &[5, 10, 20]], layers);
     table.over(Light, &[LAGRANGIAN], [&[], &[0.2]], |s, gravity| s.gravity = gravity);
-    table.over(Whole, &[NEO_HOOKEAN, SAINT_VENANT], [&[], &[10]], layers);
-    table.over(First, &[LAGRANGIAN, NEO_HOOKEAN, SAINT_VENANT], [&[2.0]; 2], short);
+    table.over(Whole, &[SAINT_VENANT], [&[], &[10]], layers);
+    table.over(First, &[LAGRANGIAN, SAINT_VENANT], [&[2.0]; 2], short);
     table.over(Paper, &["seed"], [&[], &[2.0]], short);
     table.judge(gates);
     for row in &mut table.rows {

@@ -146,7 +146,7 @@ fn accuracy(tier: Tier) -> Accuracy {
     let table = table(tier);
     let variants: &[&str] = match tier {
         Tier::Quick => &["seed", LAGRANGIAN],
-        _ => &["seed", "leapfrog", "single-sweep", LAGRANGIAN],
+        _ => &["seed", "leapfrog", LAGRANGIAN],
     };
     let ladder = |variant| {
         table.ladder(&[Group::Coarse, Group::Paper], variant, |s| {

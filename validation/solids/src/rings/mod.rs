@@ -91,11 +91,8 @@ pub const PLANE: &str = "plane";
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
 const LONG_STEPS: f64 = 0.8;
 
-/// That of `single-sweep`: two thirds of its limit as well.
-const SINGLE_STEPS: f64 = 0.43;
-
 fn variants() -> Vec<Composition<RingSettings>> {
-    use schemes::solid::{componentwise, corrected, leapfrog, seed, single_sweep};
+    use schemes::solid::{componentwise, corrected, leapfrog, seed};
     Variants::of(&solid::program::<RingSettings>())
         .with(
             "seed",
@@ -117,12 +114,6 @@ fn variants() -> Vec<Composition<RingSettings>> {
              change anything but the cost?",
             leapfrog(),
             |s| s.courant = LONG_STEPS,
-        )
-        .with(
-            "single-sweep",
-            "leapfrog with one pair sweep a step in place of two: is its error cheaper?",
-            single_sweep(),
-            |s| s.courant = SINGLE_STEPS,
         )
         .with(
             CORRECTED,

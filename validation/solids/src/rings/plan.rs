@@ -39,7 +39,6 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     film.run.spec = film.run.spec.clone().keep_particles().keep_pictures(FRAMES);
     table.over(Paper, &["seed"], [&[], &[0.1, 0.05]], dx);
     table.over(Paper, &["leapfrog"], [&[0.2], &[0.2, 0.1]], dx);
-    table.over(Paper, &["single-sweep"], [&[], &[0.2, 0.1]], dx);
     table.over(Paper, &[COMPONENTWISE], [&[], &[0.2]], dx);
     // Rings of 20 layers tear, and are refused.
     table.over(Paper, &[CORRECTED], [&[], &[0.2, 0.1]], dx);
@@ -61,7 +60,7 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     let others = [(0.2, SPEED), (0.1, SPEED), (0.1, 0.12)];
     table.over(Unstressed, &["seed"], [&[], &others], unstressed);
     table.over(Coarse, &["seed", LAGRANGIAN], [COARSE; 2], dx);
-    table.over(Coarse, &["leapfrog", "single-sweep"], [&[], COARSE], dx);
+    table.over(Coarse, &["leapfrog"], [&[], COARSE], dx);
     for row in &mut table.rows {
         // Particles times steps.
         row.run.seconds = 12.0 * (0.1 / row.settings.spacing).powi(3);
