@@ -334,10 +334,7 @@ fn fill_images<P: Physics, T: Term<P::Extra>>(
         let source = image.source as usize;
         if source >= first {
             let (map, source) = (&neighbours.maps[image.map as usize], &columns[source]);
-            let mut image = map.apply(source, P::Walls::SLIPS, motion);
-            let no_slip = map.apply(source, false, motion).velocity;
-            T::tell(&mut image.derived, News::NoSlip(no_slip - image.velocity));
-            columns[real + k] = image;
+            columns[real + k] = map.apply(source, P::Walls::SLIPS, motion);
         }
     }
 }

@@ -15,7 +15,6 @@ mod density_diffusion;
 mod fluid_pairs;
 mod jaumann_rate;
 pub mod moments;
-mod no_slip_images;
 mod pressure;
 mod shift_advection;
 mod shifting;
@@ -34,7 +33,6 @@ pub use continuity::Continuity;
 pub use density_diffusion::{DensityDiffusion, Hydrostatic, Rest};
 pub use fluid_pairs::FluidPairs;
 pub use jaumann_rate::JaumannRate;
-pub use no_slip_images::NoSlipImages;
 pub use pressure::Pressure;
 pub use shift_advection::ShiftAdvection;
 pub use shifting::Shifting;
@@ -103,8 +101,6 @@ impl<'k, V: Lane, K: Kernel, D: Numbers> Pair<'k, V, K, D> {
 pub enum News {
     /// That they are those of a boundary particle.
     OnBoundary,
-    /// How the velocity of an image would differ behind a no-slip wall \[m/s\].
-    NoSlip(Vector2<f64>),
     /// The inverse of the [`moments`] of the particle, once a state.
     Inverse(Symmetric),
 }

@@ -12,8 +12,6 @@ type Water<R = (), V = ArtificialViscosity<Tait>> = (Pressure<Tait, R>, V, BodyF
 /// What the paper describes.
 type Seed<W> =
     Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), W, PredictorCorrector>;
-/// The seed's forces, for whose viscosity alone images have the velocity of those behind a no-slip wall.
-type Split = (Pressure<Tait, ArtificialStress>, NoSlipImages<ArtificialViscosity<Tait>>, BodyForce);
 /// Density diffusion that leaves a column at rest alone.
 type Diffusion = DensityDiffusion<Hydrostatic>;
 /// The viscosity of water that slips along boundary particles: it leaves them out, because they stand still.
@@ -40,8 +38,6 @@ methods! { metered => WaterMethod:
     ghosts: Seed<Ghosts>;
     /// The paper's, with ghosts that keep the velocity along the wall.
     slip_ghosts: Seed<SlipGhosts>;
-    /// The same with the opposite velocity for viscosity alone.
-    split_ghosts: Compose<CubicSpline, Split, (Continuity, Xsph), SlipGhosts, PredictorCorrector>;
     /// The paper's without walls.
     free_seed: Seed<Open>;
     /// The best known.

@@ -6,8 +6,8 @@ use base::gate::Cause;
 pub static NO_SLIP_IMAGES: Cause = Cause::new(
     "Ghost particles carry the opposite velocity along their wall, which the continuity equation (3) takes \
      for changes of density where particles are disordered.",
-    "Images that reverse the velocity for viscosity alone, as in `ghosts-split`, or walls that extrapolate \
-     the pressure, as in `modern`.",
+    "Ghosts along which water slips, as in `ghosts-slip`, or walls that extrapolate the pressure, as in \
+     `modern`.",
 );
 
 /// Nothing holds a particle in the plane of a ghost wall.

@@ -4,8 +4,8 @@ use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConjugateStress,
     ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure, ConsistentViscosity,
     Continuity, CurvedNoSlip, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts,
-    InterfaceWall, JaumannRate, Linear, NoSlip, NoSlipImages, Open, PlaneWall, Pressure,
-    ShiftAdvection, Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
+    InterfaceWall, JaumannRate, Linear, NoSlip, Open, PlaneWall, Pressure, ShiftAdvection,
+    Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension},
 };
 
@@ -71,7 +71,6 @@ from_medium! {
     Split<E, T> [E: FromMedium, T: FromMedium] (; E, T) =
         |m| Self(E::new(m), T::new(m), m.explicit_limit());
     FluidPairs<T> [T: FromMedium] (; T) = |m| Self(T::new(m));
-    NoSlipImages<T> [T: FromMedium] (; T) = |m| Self(T::new(m));
     (A, B) [A: FromMedium, B: FromMedium] (; A, B) = |m| (A::new(m), B::new(m));
     (A, B, C) [A: FromMedium, B: FromMedium, C: FromMedium] (; A, B, C) =
         |m| (A::new(m), B::new(m), C::new(m));

@@ -15,7 +15,7 @@
 use nalgebra::Vector2;
 use solver::{
     ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
-    FluidPairs, NoSlipImages, Numbers, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
+    FluidPairs, Numbers, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
     terms::{Rest, Tensile},
 };
 
@@ -86,7 +86,6 @@ pub trait Viscous<X>: Term<X> {}
 
 impl<X, E: EquationOfState, const ALL: bool> Viscous<X> for ArtificialViscosity<E, ALL> {}
 impl<X, T: Viscous<X>> Viscous<X> for FluidPairs<T> where Self: Term<X> {}
-impl<X, T: Viscous<X>> Viscous<X> for NoSlipImages<T> where Self: Term<X> {}
 
 impl<X, E: EquationOfState, R: Tensile<f64>> WaterForces<X> for (Pressure<E, R>, BodyForce) {
     fn pairs(&self) -> impl Term<X> {

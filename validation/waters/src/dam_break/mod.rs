@@ -100,8 +100,6 @@ fn variants() -> Vec<Composition<DamSettings>> {
                 viscosity, and none between water and walls, so that water slips";
     let slip = "the seed with ghosts that keep the velocity along the wall: is the opposite velocity what \
                 makes `ghosts` noisy?";
-    let split = "the same with the opposite velocity for viscosity alone, which so drags the water along the \
-                 wall: is it what (3) makes of the opposite velocity, or the drag?";
     let sticking = "modern with artificial viscosity that sees the particles of the walls too, which stand \
                     still: how much do they drag the water?";
     let single = "modern with one pair sweep a step in place of two, in the same share of its limit: is its \
@@ -112,7 +110,6 @@ fn variants() -> Vec<Composition<DamSettings>> {
         .with("ghosts", ghosts, water::ghosts(), seed)
         .with("modern", best, water::modern(), modern)
         .with("ghosts-slip", slip, water::slip_ghosts(), seed)
-        .with("ghosts-split", split, water::split_ghosts(), seed)
         .with("modern-sticking", sticking, water::sticking(), modern)
         .with("single-sweep", single, water::single_sweep(), slower)
         .all

@@ -46,7 +46,7 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     table.over(Free, &["seed", "ghosts"], [&[20], &[20]], across);
     table.over(Free, &["modern"], [&[20], &[20, 40, 80]], across);
     table.over(Tank, &["modern"], [&[30], &[30, 60, 120]], along);
-    table.over(Free, &["ghosts-slip", "ghosts-split"], [&[], &[20]], across);
+    table.over(Free, &["ghosts-slip"], [&[], &[20]], across);
     let ladder: [&[usize]; 2] = [&[7, 10, 14, 20], &[10, 14, 20, 28, 40]];
     table.over(Ladder, &["seed", "modern"], ladder, across);
     table.over(Ladder, &["single-sweep"], [&[10], ladder[1]], across);
@@ -81,7 +81,7 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
 /// with one setting changed; in the full tier.
 fn ablate(table: &mut table::Table<DamSettings, Group>) {
     type Set = fn(&mut DamSettings, f64);
-    let walls = ["seed", "ghosts", "ghosts-slip", "ghosts-split", "modern", "modern-sticking"];
+    let walls = ["seed", "ghosts", "ghosts-slip", "modern", "modern-sticking"];
     let changes: [(&[&'static str], &[f64], Set); 6] = [
         (&walls, &[0.0], |_, _| ()),
         (&["seed"], &[0.0, 0.01, 0.05, 0.2], |s, value| s.alpha = value),
@@ -111,7 +111,7 @@ fn gates(row: &Row) -> Vec<Gate> {
         Group::Free => {
             let run = format!("martin-moyce.{variant}.{n}");
             let mut gates = invariants(&run);
-            if !["ghosts-slip", "ghosts-split"].contains(&variant) {
+            if variant != "ghosts-slip" {
                 gates.extend(free_references(&run));
             }
             if variant == "modern" {

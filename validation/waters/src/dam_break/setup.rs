@@ -44,7 +44,7 @@ impl Dam {
                 key: "variant",
                 value: Ghosts::NAME.into(),
                 allowed: "--allow-unstable: particles of a stretched layer sink through mirrors to which \
-                          water sticks; ghosts-slip and ghosts-split put them back"
+                          water sticks; ghosts-slip puts them back"
                     .into(),
             });
         }
