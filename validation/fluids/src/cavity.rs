@@ -215,7 +215,7 @@ fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Recor
     }
     if context.keep_particles {
         let speeds = all.iter().map(|p| (p.position, p.velocity.norm()));
-        pictures::keep(&mut record, "L", ("speed", "U"), speeds);
+        pictures::keep(&mut record, pictures::END, "L", ("speed", "U"), speeds);
     }
     Ok(record)
 }

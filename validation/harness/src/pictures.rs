@@ -13,16 +13,17 @@ use crate::{
 /// The profile of the particles at the end of a run.
 pub const END: &str = "particles";
 
-/// Keeps places in a unit, and a number of each particle.
+/// Keeps places in a unit, and a number of each particle, as this profile.
 pub fn keep(
     record: &mut Record,
+    profile: &str,
     unit: &str,
-    (name, of): (&str, &str),
+    value: (&str, &str),
     particles: impl Iterator<Item = (Vector2<f64>, f64)>,
 ) {
     let rows: Vec<[f64; 3]> = particles.map(|(x, value)| [x.x, x.y, value]).collect();
-    let profile = Profile::of_rows(&[("x", unit), ("y", unit), (name, of)], &rows);
-    record.profiles.insert(END.into(), profile);
+    let kept = Profile::of_rows(&[("x", unit), ("y", unit), value], &rows);
+    record.profiles.insert(profile.into(), kept);
 }
 
 /// Places of the particles of a profile, each with its value of a column; none if there is no such profile.

@@ -208,7 +208,7 @@ fn run(
         let pressures = particles
             .iter()
             .map(|p| ((p.position - centre) / s.radius, medium.eos.pressure(p.density) / scale));
-        pictures::keep(&mut record, "R", ("p", "p(0)"), pressures);
+        pictures::keep(&mut record, pictures::END, "R", ("p", "p(0)"), pressures);
     }
     Ok(record)
 }

@@ -241,7 +241,7 @@ fn measure(moments: &Moments, all: &[Particle], is_kept: bool, record: &mut Reco
     if is_kept {
         let errors = moments.errors.iter().map(|sum| sum / moments.samples);
         let errors = water.map(|p| p.position).zip(errors);
-        pictures::keep(record, "H", ("error", "rho g H"), errors);
+        pictures::keep(record, pictures::END, "H", ("error", "rho g H"), errors);
     }
 }
 

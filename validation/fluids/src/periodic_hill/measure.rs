@@ -356,7 +356,7 @@ pub fn particles(setup: &Setup, s: &dyn Stepper<()>, is_kept: bool, record: &mut
     let is_outside = |x: &Vector2<f64>| !(setup.floor(x.x)..=setup.hill.lid()).contains(&x.y);
     record.put(OUTSIDE, fluid.iter().filter(|(x, _)| is_outside(x)).count() as f64);
     if is_kept {
-        pictures::keep(record, "H", ("u", "U_b"), fluid.into_iter());
+        pictures::keep(record, pictures::END, "H", ("u", "U_b"), fluid.into_iter());
     }
 }
 

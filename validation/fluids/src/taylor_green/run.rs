@@ -124,7 +124,7 @@ fn run(
                 let error = (p.velocity - setup.exact.velocity(p.position, time)).norm() / scale;
                 (p.position.map(|x| x.rem_euclid(1.0)), error)
             });
-            pictures::keep(&mut record, "L", ("error", "U exp(bt)"), all);
+            pictures::keep(&mut record, pictures::END, "L", ("error", "U exp(bt)"), all);
         }
     }
     let columns = [("t", "L/U"), ("error", "-")];

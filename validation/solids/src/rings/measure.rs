@@ -283,17 +283,14 @@ impl Watch for Series {
             return;
         }
         let all = along_flight(s, simulation.particles());
-        let column = |f: &dyn Fn(&Solid) -> f64| all.iter().map(f).collect::<Vec<f64>>();
         let eos = s.material().eos();
         let stress = |p: &Solid| {
             let (m, d) = (0.5 * (p.extra.xx + p.extra.yy), 0.5 * (p.extra.xx - p.extra.yy));
             m + hypot(d, p.extra.xy) - eos.pressure(p.density)
         };
-        let profile = Profile::default()
-            .with("x", "m", column(&|p| p.position.x))
-            .with("y", "m", column(&|p| p.position.y))
-            .with("stress", "Pa", column(&stress));
-        record.profiles.insert(format!("particles@{share}"), profile);
+        let stressed = all.iter().map(|p| (p.position, stress(p)));
+        let name = format!("particles@{share}");
+        pictures::keep(record, &name, "m", ("stress", "Pa"), stressed);
     }
 
     fn measure(mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {

@@ -48,7 +48,7 @@ fn run(
     let mut samples = Samples::new(dam);
     let mut gauge = Gauge::new(dam, method.support * medium.h, &|r2| simulation.weight(r2));
     let filled = water_mass(&simulation.particles());
-    let (times, pictures) = stops(dam, context);
+    let (times, shares) = stops(dam, context);
     let pressure = |density| medium.eos.pressure(density);
     let is_balanced = ledger.is_some();
     let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
@@ -59,8 +59,11 @@ fn run(
             ledger.iter_mut().for_each(|ledger| ledger.sample(s));
         })
         .at_positions("pictures", &|(.., record), s, k| {
-            if let Some(share) = pictures.get(&k) {
-                record.profiles.insert(format!("particles@{share}"), picture(dam, &*s));
+            if let Some(share) = shares.get(&k) {
+                let value = |p: &Evolved<()>| pressure(p.density) / dam.unit_pressure();
+                let fluid = s.fluid().map(|(_, p)| (p.position / settings.height, value(p)));
+                let name = format!("particles@{share}");
+                pictures::keep(record, &name, "H", ("p", "rho g H"), fluid);
             }
         })
         .run(context)?;
@@ -110,17 +113,6 @@ fn stops(dam: &Dam, context: &Context) -> (Vec<f64>, BTreeMap<usize, f64>) {
     let nearest = |share: f64| ((share * end / every).round() as usize).min(last);
     let pictures = context.keep_particles.then_some(PICTURES).into_iter().flatten();
     (times, pictures.map(|share| (nearest(share), share)).collect())
-}
-
-/// x, y and the pressure.
-fn picture(dam: &Dam, simulation: &dyn Stepper<()>) -> Profile {
-    let fluid: Vec<_> = simulation.fluid().map(|(_, p)| *p).collect();
-    let unit = dam.settings.height;
-    let pressure = |density: f64| dam.medium.eos.pressure(density) / dam.unit_pressure();
-    Profile::default()
-        .with("x", "H", fluid.iter().map(|p| p.position.x / unit).collect())
-        .with("y", "H", fluid.iter().map(|p| p.position.y / unit).collect())
-        .with("p", "rho g H", fluid.iter().map(|p| pressure(p.density)).collect())
 }
 
 #[cfg(test)]
