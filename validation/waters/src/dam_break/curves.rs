@@ -98,7 +98,7 @@ fn tank(tier: Tier) -> Curves {
         let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
         let arrived = move |record: &Record| {
             // NaN, so that no curve is drawn, if the wave did not arrive.
-            let arrival = record.value(metrics::ARRIVAL).unwrap_or(f64::NAN);
+            let arrival = record.value(ARRIVAL).unwrap_or(f64::NAN);
             since(&pressure(record, k), arrival)
         };
         let axes = (["time since arrival [√(H/g)]", "pressure [ρ g H]"], 3.4);

@@ -30,7 +30,7 @@ const MOST_SAMPLES: f64 = 2e4;
 /// The metrics that take pair sweeps of their own.
 pub const COSTLY: &[MetricKey] = &{
     let [a, b, c, d, e, f] = ledger::METRICS;
-    [a, b, c, d, e, f, metrics::MOMENTUM_GAP]
+    [a, b, c, d, e, f, MOMENTUM_GAP]
 };
 
 fn run(
@@ -68,18 +68,18 @@ fn run(
         })
         .run(context)?;
     (record.status, record.cost) = (status, cost);
-    record.put(metrics::REACHED, simulation.time() / times[times.len() - 1]);
+    record.put(REACHED, simulation.time() / times[times.len() - 1]);
     let particles = simulation.particles();
     let mass = water_mass(&particles);
     samples.measure(&mut record);
-    record.put(metrics::MASS_ERROR, (mass / filled - 1.0).abs());
+    record.put(MASS_ERROR, (mass / filled - 1.0).abs());
     match &ledger {
         Some(ledger) => {
             let fall = settings.gravity * settings.height;
             let of_what = "M g H/2, the potential energy of the column";
             ledger.measure(0.5 * mass * settings.gravity * settings.height, of_what, &mut record);
             let gap = ledger.unexplained_momentum() / (mass * fall.sqrt());
-            record.put(metrics::MOMENTUM_GAP, gap);
+            record.put(MOMENTUM_GAP, gap);
         }
         None => record.leave_unasked(COSTLY),
     }
