@@ -167,14 +167,11 @@ impl Watch for History {
         let (material, speed) = (self.settings.material(), self.settings.speed());
         let scale = material.density * speed * speed;
         metrics(&self.series, self.settings.end, scale, record);
-        if self.settings.end > TENTH {
-            let time = TENTH / self.settings.end * self.settings.end();
-            let spin = momentum_at(&self.series, time);
-            record.put(ANGULAR_MOMENTUM_TENTH, spin / self.series[0][1] - 1.0);
-        } else {
-            let short = "the run is not longer than a tenth of a revolution";
-            record.leave_out(ANGULAR_MOMENTUM_TENTH, short);
-        }
+        let time = TENTH / self.settings.end * self.settings.end();
+        let spin = || momentum_at(&self.series, time) / self.series[0][1] - 1.0;
+        let tenth = (self.settings.end > TENTH).then(spin);
+        let short = "the run is not longer than a tenth of a revolution";
+        record.put_or(ANGULAR_MOMENTUM_TENTH, tenth, short);
         let ([inside, rim], dt) = self.first.unwrap_or(([f64::NAN; 2], 1.0));
         let scale = 2.0 * material.shear * speed / self.settings.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
@@ -218,13 +215,9 @@ fn metrics(series: &[[f64; 4]], revolutions: f64, scale: f64, record: &mut Recor
         ("energy", "of the start"),
         ("stress", "rho U^2"),
     ];
-    let rows: Vec<[f64; 4]> = series
-        .iter()
-        .map(|[t, spin, energy, stress]| {
-            [*t, spin / first[1], energy / first[2], stress.sqrt() / scale]
-        })
-        .collect();
-    let profile = Profile::of_rows(&columns, &rows);
+    let row =
+        |row: &[f64; 4]| [row[0], row[1] / first[1], row[2] / first[2], row[3].sqrt() / scale];
+    let profile = Profile::of_rows(&columns, &series.iter().map(row).collect::<Vec<_>>());
     record.profiles.insert("spin".into(), profile);
 }
 

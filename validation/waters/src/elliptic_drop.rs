@@ -94,14 +94,9 @@ impl Drop {
                 Particle::fluid(x, velocity, density, dx * dx)
             })
             .collect();
-        let exact = Exact::circle(shape(particles.iter().map(evolved)).axes[0], s.strain);
+        let exact = Exact::circle(shape(&particles).axes[0], s.strain);
         Self { medium, rules, exact, particles }
     }
-}
-
-/// Mass, place and velocity.
-fn evolved(p: &Particle) -> (f64, Vector2<f64>, Vector2<f64>) {
-    (p.mass, p.position, p.velocity)
 }
 
 /// Mean place and velocity, and the semi-axes of the ellipse of the same second moments:
@@ -113,17 +108,17 @@ struct Shape {
     axes: [f64; 2],
 }
 
-fn shape(particles: impl Iterator<Item = (f64, Vector2<f64>, Vector2<f64>)> + Clone) -> Shape {
+fn shape(particles: &[Particle]) -> Shape {
     let (mut mass, mut centre, mut velocity) = (0.0, Vector2::zeros(), Vector2::zeros());
-    for (m, x, v) in particles.clone() {
-        mass += m;
-        centre += x * m;
-        velocity += v * m;
+    for p in particles {
+        mass += p.mass;
+        centre += p.position * p.mass;
+        velocity += p.velocity * p.mass;
     }
     (centre, velocity) = (centre / mass, velocity / mass);
-    let squares = particles.fold(Vector2::zeros(), |sum, (m, x, _)| {
-        let r: Vector2<f64> = x - centre;
-        sum + r.component_mul(&r) * m
+    let squares = particles.iter().fold(Vector2::zeros(), |sum, p| {
+        let r: Vector2<f64> = p.position - centre;
+        sum + r.component_mul(&r) * p.mass
     });
     let axes = [squares.x, squares.y].map(|s| 2.0 * (s / mass).sqrt());
     Shape { mass, centre, velocity, axes }
@@ -143,7 +138,7 @@ impl History {
     fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {
         let (t, g) = (simulation.time(), drop.medium.acceleration);
         let particles = simulation.particles();
-        let now = shape(particles.iter().map(evolved));
+        let now = shape(&particles);
         let exact = drop.exact.after(t);
         self.rows.push([t, now.axes[0], now.axes[1], exact.a, exact.b]);
         let scale = drop.exact.strain * drop.exact.a + g.norm() * t;
@@ -194,7 +189,7 @@ fn run(
             })
             .run(context)?;
     history.measure(&mut record);
-    let start = shape(drop.particles.iter().map(evolved));
+    let start = shape(&drop.particles);
     let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;
     match ledger {
         Some(ledger) => ledger.measure(kinetic, "initial kinetic energy", &mut record),
@@ -203,7 +198,7 @@ fn run(
     let particles = simulation.particles();
     record.state = Some(simulate::state(&particles));
     if context.keep_particles {
-        let centre = shape(particles.iter().map(evolved)).centre;
+        let centre = shape(&particles).centre;
         let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
         let pressures = particles
             .iter()
@@ -265,17 +260,13 @@ fn table(tier: Tier) -> table::Table<DropSettings, Group> {
     }
     for row in &mut table.rows {
         row.run.seconds = 0.7 * (row.settings.n as f64 / 40.0).powi(3);
-        if is_pictured(row) {
+        // The run of the figure.
+        if (row.group, row.variant, row.settings.n) == (Group::Judged, "modern", 40) {
             row.run.spec = row.run.spec.clone().keep_particles();
         }
     }
     table.judge(gates);
     table
-}
-
-/// Is it the run of the figures?
-fn is_pictured(row: &Row) -> bool {
-    (row.group, row.variant, row.settings.n) == (Group::Judged, "modern", 40)
 }
 
 fn declaration(tier: Tier) -> Declaration {
@@ -356,7 +347,7 @@ mod tests {
     #[test]
     fn the_particles_of_the_start_are_the_exact_drop() {
         let drop = Drop::new(&DropSettings::default(), &water::plain());
-        let start = shape(drop.particles.iter().map(evolved));
+        let start = shape(&drop.particles);
         assert!(
             (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12
         );

@@ -84,14 +84,8 @@ impl Watch for End {
             all.for_each(|metric| record.leave_out(metric, why.clone()));
             return;
         }
-        let found = path::measure(&path);
-        for (metric, value) in &found {
-            record.put(*metric, *value);
-        }
-        for (metric, _) in COMPARED {
-            if record.value(metric).is_none() {
-                record.leave_out(metric, "the run is too short for it");
-            }
+        for (metric, value) in path::measure(&path) {
+            record.put_or(metric, value, "the run is too short for it");
         }
         let (s, exact) = (&self.settings, elements(&record.variant, &self.settings));
         // All but the first swing was measured over 4 s.

@@ -57,33 +57,33 @@ fn falls(rows: &[[f64; 3]], height: f64) -> Vec<f64> {
     rows.windows(2).filter_map(pass).collect()
 }
 
-/// What a path has of [`COMPARED`](super::COMPARED); averages, harmonics and the frequency need two falls,
+/// The quantities of [`COMPARED`](super::COMPARED); averages, harmonics and the frequency need two falls,
 /// and the least height of the first swing needs to be passed.
-pub fn measure(path: &Path) -> Vec<(MetricKey, f64)> {
+pub fn measure(path: &Path) -> [(MetricKey, Option<f64>); 10] {
     let [[mean_x, amplitude_x], [mean_y, amplitude_y]] =
         [0, 1].map(|axis| mean_and_amplitude(&path.0, axis));
-    let mut found = vec![
-        (MEAN_X, mean_x),
-        (MEAN_Y, mean_y),
-        (AMPLITUDE_X, amplitude_x),
-        (AMPLITUDE_Y, amplitude_y),
-    ];
     let times = falls(&path.0, mean_y);
     let second = times.get(1).copied().unwrap_or(f64::INFINITY);
     let swing = &path.0[..path.0.partition_point(|row| row[0] < second)];
-    found.extend(extremes(swing, 1)[1].map(|least| (FIRST_LEAST_Y, least)));
-    if let [first, .., last] = times[..] {
+    let whole = if let [first, .., last] = times[..] {
         let frequency = (times.len() - 1) as f64 / (last - first);
         let (average, harmonic) = fourier(path, [first, last], frequency);
-        found.extend([
-            (FREQUENCY, frequency),
-            (AVERAGE_X, average.x),
-            (AVERAGE_Y, average.y),
-            (HARMONIC_X, harmonic.x),
-            (HARMONIC_Y, harmonic.y),
-        ]);
-    }
-    found
+        [frequency, average.x, average.y, harmonic.x, harmonic.y].map(Some)
+    } else {
+        [None; 5]
+    };
+    [
+        (MEAN_X, Some(mean_x)),
+        (MEAN_Y, Some(mean_y)),
+        (AMPLITUDE_X, Some(amplitude_x)),
+        (AMPLITUDE_Y, Some(amplitude_y)),
+        (FREQUENCY, whole[0]),
+        (AVERAGE_X, whole[1]),
+        (AVERAGE_Y, whole[2]),
+        (HARMONIC_X, whole[3]),
+        (HARMONIC_Y, whole[4]),
+        (FIRST_LEAST_Y, extremes(swing, 1)[1]),
+    ]
 }
 
 /// Mean between two times \[s\], and amplitude of the sinusoid of this frequency \[Hz\].
@@ -121,7 +121,8 @@ mod tests {
         let found = measure(&swing(1.1, 4.0));
         let value = |key: MetricKey| {
             let name = String::from(key);
-            found.iter().find(|(other, _)| String::from(*other) == name).expect("measured").1
+            let one = found.iter().find(|(other, _)| String::from(*other) == name);
+            one.and_then(|(_, value)| *value).expect("measured")
         };
         assert_relative_eq!(value(FREQUENCY), 1.1, max_relative = 1e-6);
         assert_relative_eq!(value(AVERAGE_Y), -0.06, max_relative = 1e-4);
@@ -137,8 +138,8 @@ mod tests {
     #[test]
     fn a_short_path_has_no_frequency_and_a_shorter_one_no_least_height() {
         let has = |end: f64, key: MetricKey| {
-            let name = String::from(key);
-            measure(&swing(1.1, end)).iter().any(|(other, _)| String::from(*other) == name)
+            let found = measure(&swing(1.1, end));
+            found.iter().any(|(other, value)| *other == key && value.is_some())
         };
         assert!(has(0.5, FIRST_LEAST_Y) && !has(0.5, FREQUENCY) && !has(0.5, AVERAGE_Y));
         assert!(!has(0.3, FIRST_LEAST_Y) && has(0.3, MEAN_Y));

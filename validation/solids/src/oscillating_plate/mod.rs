@@ -234,23 +234,18 @@ impl Watch for Tip {
     }
 }
 
-/// Why a run has no period.
-const NO_PERIOD: &str = "the tip does not pass its height of rest again";
-
 impl Tip {
     fn measure_swing(&self, record: &mut Record) {
         let first = self.passes().first().copied().unwrap_or(f64::INFINITY);
         let swing = self.series.iter().take_while(|row| row[0] <= first);
         let highest = swing.map(|row| row[2]).fold(f64::NEG_INFINITY, f64::max);
-        let Some(period) = self.period() else {
-            for metric in [PERIOD, PERIOD_EXCESS, AMPLITUDE_RATIO] {
-                record.leave_out(metric, NO_PERIOD);
-            }
-            return;
-        };
-        record.put(PERIOD, period);
-        record.put(PERIOD_EXCESS, period / thin_plate_period(&self.settings) - 1.0);
-        record.put(AMPLITUDE_RATIO, highest * TAU / (period * self.settings.speed()));
+        let (thin, speed) = (thin_plate_period(&self.settings), self.settings.speed());
+        let period = self.period();
+        let never = "the tip does not pass its height of rest again";
+        record.put_or(PERIOD, period, never);
+        record.put_or(PERIOD_EXCESS, period.map(|period| period / thin - 1.0), never);
+        let ratio = period.map(|period| highest * TAU / (period * speed));
+        record.put_or(AMPLITUDE_RATIO, ratio, never);
     }
 }
 

@@ -232,12 +232,7 @@ fn map(tier: Tier) -> Map {
         })
     };
     let whole = &[Group::Paper, Group::Speed];
-    let fates = [
-        (Fate::Whole, Colour::GREEN),
-        (Fate::Torn, Colour::YELLOW),
-        (Fate::InPieces, Colour::ORANGE),
-        (Fate::Diverged, Colour::VERMILLION),
-    ];
+    let colours = [Colour::GREEN, Colour::YELLOW, Colour::ORANGE, Colour::VERMILLION];
     Map {
         id: "rubber-rings-fracture-map".into(),
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
@@ -249,7 +244,7 @@ fn map(tier: Tier) -> Map {
             .into(),
         x: "speed of each ring [c0]".into(),
         y: "particle spacing [L]".into(),
-        outcomes: fates.map(|(fate, colour)| (fate.name().into(), colour)).into(),
+        outcomes: Fate::NAMES.map(String::from).into_iter().zip(colours).collect(),
         panels: vec![
             panel("seed", "seed", whole),
             panel("seed, ξ = 0", "seed", &[Group::Unstressed]),

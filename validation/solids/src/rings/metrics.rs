@@ -64,9 +64,12 @@ impl Fate {
         }
     }
 
-    /// For tables and maps.
+    /// Names, for tables and maps.
+    pub const NAMES: [&'static str; 4] = ["whole", "torn", "in pieces", "diverged"];
+
+    /// Its name.
     pub fn name(self) -> &'static str {
-        ["whole", "torn", "in pieces", "diverged"][self as usize]
+        Self::NAMES[self as usize]
     }
 }
 

@@ -135,13 +135,9 @@ fn accuracy(tier: Tier) -> Accuracy {
         let because = "Artificial viscosity, the place of a surface and what a wall sees of it are of first \
                        order in dx. A front is known to a quarter of a spacing, so the order is uncertain by \
                        0.5.";
-        ladders[1].order = Some(Gate::new(
-            format!("{NAME}.martin-moyce.modern.front.order"),
-            "order",
-            Bound::Within(0.5, 1.5),
-            Evidence::Theory,
-            because,
-        ));
+        let id = format!("{NAME}.martin-moyce.modern.front.order");
+        let bound = Bound::Within(0.5, 1.5);
+        ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
     }
     Accuracy {
         about: "Front of the column of Martin & Moyce at T = 1, less that of the same model by volume of \
@@ -151,11 +147,7 @@ fn accuracy(tier: Tier) -> Accuracy {
         spacing: "dx/a [-]",
         slope: Some(1.0),
         ladders: ladders.into(),
-        ..Accuracy::new(
-            "dam-break",
-            FRONT_AWAY.at(1),
-            "error of the front at T = 1 [a]",
-        )
+        ..Accuracy::new("dam-break", FRONT_AWAY.at(1), "error of the front at T = 1 [a]")
     }
 }
 
@@ -262,10 +254,6 @@ fn sensitivity(tier: Tier) -> Sensitivity {
         blind(Constant::ArtificialStress, PLACE, &WIDE_BOUNDS),
         blind(Constant::Xsph, PLACE, &WIDE_BOUNDS).faults(&[-1.0]),
     ];
-    Sensitivity::new(
-        NAME,
-        tier,
-        ["modern", "seed"].map(|variant| DAM_BREAK.spec(variant, |_| {})),
-        watched,
-    )
+    let runs = ["modern", "seed"].map(|variant| DAM_BREAK.spec(variant, |_| {}));
+    Sensitivity::new(NAME, tier, runs, watched)
 }
