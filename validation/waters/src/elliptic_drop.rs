@@ -272,12 +272,7 @@ fn table(tier: Tier) -> table::Table<DropSettings, Group> {
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
     let level = |s: &DropSettings| (2.0 / s.n as f64, format!("{} across", s.n));
-    let ladder = |variant| {
-        let mut ladder = table.ladder(&[Group::Judged, Group::Ladder], variant, level);
-        // The plan has the gates of judged runs.
-        ladder.levels.iter_mut().for_each(|level| level.run.gates.clear());
-        ladder
-    };
+    let ladder = |variant| table.ladder(&[Group::Judged, Group::Ladder], variant, level);
     let accuracy = Accuracy {
         about: "A free drop until A t = 0.8, when it is four times as long as wide.".into(),
         spacing: "dx/R [-]",

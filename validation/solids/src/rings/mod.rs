@@ -163,7 +163,7 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     variants,
     is_stable,
     declaration: declaration::declaration,
-    plan: plan::plan,
+    plan: |tier| table(tier).plan(),
     studies: studies::studies,
 };
 

@@ -28,7 +28,7 @@ pub const SPEED: f64 = 0.059;
 /// Pictures of the film.
 pub const FRAMES: usize = 20;
 
-/// The runs of a tier; only [`plan`] judges them, so that no gate of a run is there twice.
+/// The runs of a tier, with their gates.
 pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     use Group::{Coarse, Contact, Paper, Speed, Unstressed};
     const COARSE: &[f64] = &[1.0 / 3.0, 0.25];
@@ -65,14 +65,8 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
         // Particles times steps.
         row.run.seconds = 12.0 * (0.1 / row.settings.spacing).powi(3);
     }
-    table
-}
-
-/// The runs of a tier with their gates.
-pub fn plan(tier: Tier) -> Vec<Planned> {
-    let mut table = table(tier);
     table.judge(gates);
-    table.plan()
+    table
 }
 
 /// Gates of a run: what holds whatever the settings, whether the rings stay whole, distances from finite
