@@ -75,6 +75,6 @@ pub const DECAY: Composed<Decay> = Composed {
     },
     is_stable: completed,
     declaration,
-    plan: no_plan,
-    studies: no_studies,
+    plan: |_| Vec::new(),
+    studies: |_, _| Vec::new(),
 };

@@ -7,9 +7,9 @@
 //! the density keeps its bits.
 
 use base::record::{Record, Status};
-use fluids::channel::{ChannelSettings, Flow, Setup, TIMES, variants};
+use fluids::channel::{COUETTE, ChannelSettings, Flow, POISEUILLE, Setup, TIMES};
 use harness::{
-    composed::Composition,
+    case::{self, Case},
     context::Context,
     method::{self, Boundary, Method, Standard},
     simulate::{INTEGRATOR, KERNEL, WALLS},
@@ -283,13 +283,14 @@ fn matrix_of(record: &Record, setup: &Setup) -> RowModel {
 
 /// u of a record at the times of comparison against the matrix: settings, ingredients, runner and
 /// profile have a part in it.
-fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
+fn check_variant(case: &dyn Case, variant: &str, flow: Flow) {
     // c0 by Morris' rule alone: with sound as stiff as viscosity, round-off of the density would
     // push such slow flows about. It also leaves an artificial viscosity of 1e-7 nu.
     let set = ["re=1e-9", "end=0.2", "c0_viscous=0"].map(String::from);
-    let settings = variant.settings(&set).expect("settings");
-    let name = format!("{flow:?}, {}", variant.variant.name);
-    let record = variant.run(&settings, &Context::default()).expect(&name);
+    let name = format!("{flow:?}, {variant}");
+    let spec = case::spec(case, variant, &set).expect("settings");
+    let record = case.run(&spec, &Context::default()).expect(&name);
+    let settings: ChannelSettings = record.settings_as();
     assert_eq!(record.status, Status::Completed, "{name}");
     // The kernel and the integrator decide on the limit of dt only, which is used for `stiff` alone.
     let plain = Method::of::<Channels<QuinticSpline, Ghosts, Leapfrog>>;
@@ -319,11 +320,12 @@ fn check_variant(variant: &Composition<ChannelSettings>, flow: Flow) {
 
 #[test]
 fn every_variant_is_its_matrix() {
-    for variant in variants::of_poiseuille() {
-        check_variant(&variant, Flow::Poiseuille);
-    }
-    for variant in variants::of_couette() {
-        check_variant(&variant, Flow::Couette);
+    let flows: [(&dyn Case, Flow); 2] =
+        [(&POISEUILLE, Flow::Poiseuille), (&COUETTE, Flow::Couette)];
+    for (case, flow) in flows {
+        for variant in case.variants() {
+            check_variant(case, variant.name, flow);
+        }
     }
 }
 

@@ -190,8 +190,8 @@ const FLAWED: Composed<Decay> = Composed {
     },
     is_stable: completed,
     declaration: |_| Declaration::default(),
-    plan: no_plan,
-    studies: no_studies,
+    plan: |_| Vec::new(),
+    studies: |_, _| Vec::new(),
 };
 
 #[test]

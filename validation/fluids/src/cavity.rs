@@ -76,7 +76,7 @@ static CASE: Composed<Cavity> = Composed {
     is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: no_studies,
+    studies: |_, _| Vec::new(),
 };
 
 /// The cavity.

@@ -23,20 +23,23 @@ use crate::{
 };
 
 /// What runs a variant: its name, settings.
-type Run<T> = dyn Fn(&str, &T, &Context) -> Result<Record, RunError>;
+pub type Run<T> = dyn Fn(&str, &T, &Context) -> Result<Record, RunError>;
 
 /// What states the rules of a variant.
-type Ruled<T> = dyn Fn(&T) -> Result<Rules, RunError>;
+pub type Ruled<T> = dyn Fn(&T) -> Result<Rules, RunError>;
 
 /// A variant: its name, its settings before `--set`, and its method.
 pub struct Composition<T> {
     /// Name and description.
     pub variant: Variant,
-    adjust: fn(&mut T),
-    run: Box<Run<T>>,
-    rules: Box<Ruled<T>>,
+    /// How it changes the default settings.
+    pub adjust: fn(&mut T),
+    /// What runs it.
+    pub run: Box<Run<T>>,
+    /// What states its rules.
+    pub rules: Box<Ruled<T>>,
     /// Settings that none of its terms and walls reads: the variant refuses them.
-    lacks: Vec<&'static str>,
+    pub lacks: Vec<&'static str>,
 }
 
 /// What a case does with any of its methods.
@@ -73,69 +76,22 @@ impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T,
         let is_setting = |name: &&str| T::FIELDS.iter().any(|field| field.name == *name);
         let lacks = Knob::others(&method.uses).filter(is_setting).collect();
         let ruled = Rc::clone(&method);
-        self.all.push(Composition::new(
-            (name, about),
+        self.all.push(Composition {
+            variant: Variant { name, about },
             adjust,
-            move |variant, settings, context| run(&method, variant, settings, context),
-            move |settings| rules(&ruled, settings),
+            run: Box::new(move |variant, settings, context| {
+                run(&method, variant, settings, context)
+            }),
+            rules: Box::new(move |settings| rules(&ruled, settings)),
             lacks,
-        ));
+        });
         self
-    }
-}
-
-impl<T: Settings + 'static> Composition<T> {
-    /// A variant with this name and description. Further arguments: how it changes the default settings, what
-    /// runs it, its rules, and the settings that it does not read.
-    pub fn new(
-        (name, about): (&'static str, &'static str),
-        adjust: fn(&mut T),
-        run: impl Fn(&str, &T, &Context) -> Result<Record, RunError> + 'static,
-        rules: impl Fn(&T) -> Result<Rules, RunError> + 'static,
-        lacks: Vec<&'static str>,
-    ) -> Self {
-        let variant = Variant { name, about };
-        Self { variant, adjust, run: Box::new(run), rules: Box::new(rules), lacks }
-    }
-
-    /// One simulation with these settings.
-    ///
-    /// # Errors
-    /// Why it was refused.
-    pub fn run(&self, settings: &T, context: &Context) -> Result<Record, RunError> {
-        (self.run)(self.variant.name, settings, context)
-    }
-
-    /// The settings of this variant with `key=value` texts applied.
-    pub fn settings(&self, set: &[String]) -> Result<T, RunError> {
-        let mut settings = T::default();
-        (self.adjust)(&mut settings);
-        settings::apply(&mut settings, set)?;
-        settings.validate()?;
-        for assignment in set {
-            let key = assignment.split('=').next().unwrap_or_default().trim();
-            if self.lacks.contains(&key) {
-                let (key, variant) = (key.to_string(), self.variant.name.to_string());
-                return Err(RunError::Unused { key, variant });
-            }
-        }
-        Ok(settings)
     }
 }
 
 /// A run is stable if it reached its end: the criterion of a case that needs no stricter one.
 pub fn completed(record: &Record) -> bool {
     record.status == Status::Completed
-}
-
-/// No runs beside those of the declaration.
-pub fn no_plan(_: Tier) -> Vec<Planned> {
-    Vec::new()
-}
-
-/// No studies beside those that every case has.
-pub fn no_studies(_: Tier, _: &Runs) -> Vec<Study> {
-    Vec::new()
 }
 
 /// A table of compositions as a [`Case`].
@@ -161,14 +117,6 @@ pub struct Composed<T> {
 }
 
 impl<T: Settings + 'static> Composed<T> {
-    /// The settings of a variant with `key=value` texts applied.
-    ///
-    /// # Errors
-    /// If there is no such variant or setting, or a value is out of range.
-    pub fn settings_of(&self, variant: &str, set: &[String]) -> Result<T, RunError> {
-        self.composition(variant)?.settings(set)
-    }
-
     /// The run of a variant with its default settings, changed by `set`. A name that no variant has, or a
     /// value out of range, makes a run that is refused, with the reason in its record.
     pub fn spec(&self, variant: &str, set: impl FnOnce(&mut T)) -> RunSpec {
@@ -177,10 +125,8 @@ impl<T: Settings + 'static> Composed<T> {
 
     /// The settings of a variant, changed.
     pub fn chosen(&self, variant: &str, set: impl FnOnce(&mut T)) -> T {
-        let mut settings = T::default();
-        if let Ok(chosen) = self.composition(variant) {
-            (chosen.adjust)(&mut settings);
-        }
+        let found = self.composition(variant).ok();
+        let mut settings = found.map_or_else(T::default, |(_, defaults)| defaults);
         set(&mut settings);
         settings
     }
@@ -211,25 +157,25 @@ impl<T: Settings + 'static> Composed<T> {
         Gate::new(format!("{}.{run}.{metric}", self.name), metric, bound, evidence, because)
     }
 
-    /// The composition of that name.
-    fn composition(&self, variant: &str) -> Result<Composition<T>, RunError> {
+    /// The composition of that name, and its settings before any is set.
+    fn composition(&self, variant: &str) -> Result<(Composition<T>, T), RunError> {
         let mut all = (self.variants)();
         let known: Vec<_> = all.iter().map(|of| of.variant.name).collect();
-        match known.iter().position(|name| *name == variant) {
-            Some(place) => Ok(all.swap_remove(place)),
-            None => Err(RunError::Variant { case: self.name, name: variant.into(), known }),
-        }
+        let Some(place) = known.iter().position(|name| *name == variant) else {
+            return Err(RunError::Variant { case: self.name, name: variant.into(), known });
+        };
+        let (chosen, mut defaults) = (all.swap_remove(place), T::default());
+        (chosen.adjust)(&mut defaults);
+        Ok((chosen, defaults))
     }
 
     /// The composition of a run and its settings.
     fn resolve(&self, spec: &RunSpec) -> Result<(Composition<T>, T), RunError> {
-        let chosen = self.composition(&spec.variant)?;
+        let (chosen, defaults) = self.composition(&spec.variant)?;
         let settings: T = serde_json::from_value(spec.settings.clone()).map_err(|reason| {
             RunError::Settings { case: self.name.into(), reason: reason.to_string() }
         })?;
         settings.validate()?;
-        let mut defaults = T::default();
-        (chosen.adjust)(&mut defaults);
         let is_changed = |key: &&&str| settings.get(key) != defaults.get(key);
         if let Some(key) = chosen.lacks.iter().find(is_changed) {
             let (key, variant) = (key.to_string(), spec.variant.clone());
@@ -265,12 +211,23 @@ impl<T: Settings + 'static> Case for Composed<T> {
     }
 
     fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        Ok(serde_json::to_value(self.settings_of(variant, set)?).unwrap_or_default())
+        let (chosen, mut settings) = self.composition(variant)?;
+        settings::apply(&mut settings, set)?;
+        settings.validate()?;
+        for assignment in set {
+            let key = assignment.split('=').next().unwrap_or_default().trim();
+            if chosen.lacks.contains(&key) {
+                let (key, variant) = (key.to_string(), variant.to_string());
+                return Err(RunError::Unused { key, variant });
+            }
+        }
+        Ok(serde_json::to_value(settings).unwrap_or_default())
     }
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
         let (chosen, settings) = self.resolve(spec)?;
-        let mut record = chosen.run(&settings, &context.of(spec))?.of(spec);
+        let run = (chosen.run)(&spec.variant, &settings, &context.of(spec));
+        let mut record = run?.of(spec);
         state_steps(&mut record);
         Ok(record)
     }

@@ -56,7 +56,7 @@ pub static EXTREMES: Composed<ExtremeSettings> = Composed {
     is_stable: completed,
     declaration: |_| Declaration::default(),
     plan,
-    studies: no_studies,
+    studies: |_, _| Vec::new(),
 };
 
 base::metrics! {
@@ -72,7 +72,7 @@ type Scene = fn(&Method, &ExtremeSettings) -> Parts;
 
 /// A variant that uses some of the settings.
 fn variant(
-    name: [&'static str; 2],
+    [name, about]: [&'static str; 2],
     uses: &[&str],
     adjust: fn(&mut ExtremeSettings),
     (method, scene): (Method, Scene),
@@ -83,7 +83,8 @@ fn variant(
     let run = move |variant: &str, s: &ExtremeSettings, context: &Context| {
         run((&method, scene), variant, s, context)
     };
-    Composition::new(name.into(), adjust, run, rules, lacks)
+    let (run, rules, variant) = (Box::new(run), Box::new(rules), Variant { name, about });
+    Composition { variant, adjust, run, rules, lacks }
 }
 
 const REST: &str = "rest";

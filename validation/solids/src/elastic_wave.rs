@@ -41,7 +41,7 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
     is_stable: completed,
     declaration: |_| Declaration { stepwise: &[FREQUENCY_ERROR], ..Declaration::default() },
     plan: |tier| table(tier).plan(),
-    studies: no_studies,
+    studies: |_, _| Vec::new(),
 };
 
 const NAME: &str = "elastic_wave";

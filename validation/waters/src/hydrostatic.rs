@@ -109,7 +109,7 @@ pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
     is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: no_studies,
+    studies: |_, _| Vec::new(),
 };
 
 /// Spacings from the surface of the water to the rim of the tank.

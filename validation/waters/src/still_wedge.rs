@@ -67,7 +67,7 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
     is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: no_studies,
+    studies: |_, _| Vec::new(),
 };
 
 /// Half of the width of the tank \[H\].

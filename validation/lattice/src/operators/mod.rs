@@ -15,7 +15,7 @@ mod tests;
 
 use std::rc::Rc;
 
-use harness::{composed::*, context::Context, declare::Declaration, method::*};
+use harness::{case::Variant, composed::*, context::Context, declare::Declaration, method::*};
 use schemes::lattice;
 
 base::settings! {
@@ -139,13 +139,13 @@ fn variants() -> Vec<Composition<OperatorSettings>> {
     let variant = |of: &'static Subject| {
         let method = Rc::new((of.method)());
         let ruled = Rc::clone(&method);
-        Composition::new(
-            (of.name, of.about()),
-            of.adjust,
-            move |_, s, context| run::run(of, &method, s, context),
-            move |s| run::rules(&ruled, s, &Context::of_rules()),
-            Vec::new(),
-        )
+        Composition {
+            variant: Variant { name: of.name, about: of.about() },
+            adjust: of.adjust,
+            run: Box::new(move |_, s, context| run::run(of, &method, s, context)),
+            rules: Box::new(move |s| run::rules(&ruled, s, &Context::of_rules())),
+            lacks: Vec::new(),
+        }
     };
     subjects().map(variant).collect()
 }

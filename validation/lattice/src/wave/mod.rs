@@ -94,7 +94,7 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
     is_stable: completed,
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
-    studies: no_studies,
+    studies: |_, _| Vec::new(),
 };
 
 /// A decaying shear wave.
@@ -116,7 +116,7 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
     is_stable: completed,
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
-    studies: no_studies,
+    studies: |_, _| Vec::new(),
 };
 
 const BEST: Best = Best {

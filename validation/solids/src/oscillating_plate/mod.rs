@@ -46,7 +46,7 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
     is_stable: completed,
     declaration: plan::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: no_studies,
+    studies: |_, _| Vec::new(),
 };
 
 fn variants() -> Vec<Composition<PlateSettings>> {
