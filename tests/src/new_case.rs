@@ -1,7 +1,7 @@
 //! A case of its own in one file: the decay of a shear wave in a periodic box.
 
 use base::{functions::*, record::*};
-use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate::*};
+use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate::*, table};
 use nalgebra::Vector2;
 use solver::*;
 use std::f64::consts::TAU;
@@ -45,19 +45,19 @@ fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record
     Ok(record)
 }
 
-fn declaration(_: Tier) -> Declaration {
-    let level = |variant: &str, n| DECAY.planned(variant, |s| s.n = n);
-    let error = Accuracy::new("decay", ERROR, "Error [-]");
-    let accuracy = error.over(&["cubic", "quintic"], [8, 16, 32], level);
-    let none = Change::new("none", "–", DECAY.spec("cubic", |_| {}));
+fn declaration(tier: Tier) -> Declaration {
+    let mut table = table::Table::new(&DECAY, tier);
+    table.over((), &["cubic", "quintic"], [&[8, 16, 32]; 2], |s, n| s.n = n);
+    let level = |s: &Decay| (1.0 / s.n as f64, format!("n = {}", s.n));
+    let ladders = ["cubic", "quintic"].map(|variant| table.ladder(&[()], variant, level)).into();
+    let accuracy = vec![Accuracy { ladders, ..Accuracy::new("decay", ERROR, "Error [-]") }];
     let halved = Change::new("dt/2", "time", DECAY.spec("cubic", |s| s.step *= 0.5));
-    let budgets =
-        Budgets::of(&accuracy, vec![Budget { variant: "cubic", changes: vec![none, halved] }]);
+    let changes = vec![Change::new("none", "–", DECAY.spec("cubic", |_| {})), halved];
+    let budgets = Budgets { about: String::new(), of: vec![Budget { variant: "cubic", changes }] };
     let long = DECAY.spec("cubic", |s| s.end = 5.0);
     let rules = DECAY.rules(&long).unwrap_or(Rules::REFUSED);
-    let limit = StepLimit::proportional("cubic", "the wave", long, ("step", 1.0), &rules);
-    let limits = StepLimits::new("decay", "Stable is what reaches its end.", [limit]);
-    let (budgets, limits, accuracy) = (Some(budgets), Some(limits), vec![accuracy]);
+    let limit = StepLimit::proportional("the wave", long, ("step", 1.0), &rules);
+    let limits = StepLimits { about: "Stable is what reaches its end.".into(), of: vec![limit] };
     Declaration { budgets, limits, accuracy, ..Declaration::default() }
 }
 

@@ -99,7 +99,7 @@ fn the_deep_tier_has_the_full_one_and_two_levels_and_20_starts() {
 fn a_budget_compares_each_change_with_the_run_that_it_names() {
     let (mut named, mut count) = (0, 0);
     for (case, tier) in CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)]) {
-        let budgets = case.declaration(tier).budgets.into_iter().flat_map(|budgets| budgets.of);
+        let budgets = case.declaration(tier).budgets.of.into_iter();
         for Budget { variant, changes } in budgets {
             let budget = format!("the budget of {} {variant}, {tier:?} tier", case.name());
             assert_eq!((changes[0].what.as_str(), changes[0].against), ("none", 0), "{budget}");

@@ -314,7 +314,7 @@ fn declaration(tier: Tier) -> Declaration {
         curves: vec![curves(&table)],
         pictures: vec![picture],
         accuracy: accuracy.filter(|of| !of.ladders[0].levels.is_empty()).collect(),
-        sensitivity: Some(Sensitivity::new(NAME, tier, [CASE.spec(BEST, |s| s.n = 16)], [speed])),
+        sensitivity: Some(Sensitivity::new(tier, [CASE.spec(BEST, |s| s.n = 16)], [speed])),
         ..Declaration::default()
     }
 }

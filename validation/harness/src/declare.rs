@@ -33,10 +33,10 @@ pub struct Declaration {
     pub comparisons: Vec<Comparison>,
     /// Runs that differ by next to nothing at the start.
     pub ensembles: Option<Ensembles>,
-    /// Contributions to the error.
-    pub budgets: Option<Budgets>,
+    /// Contributions to the error of the first ladders.
+    pub budgets: Budgets,
     /// Largest stable time steps.
-    pub limits: Option<StepLimits>,
+    pub limits: StepLimits,
     /// Outcomes over two settings.
     pub maps: Vec<Map>,
     /// Errors of constants that the gates must detect.
@@ -131,8 +131,6 @@ impl Comparison {
 /// The ensembles of a case: runs that differ by a small disorder of their start alone. Until their horizon
 /// any of them says what all say, and later each is one draw of a distribution.
 pub struct Ensembles {
-    /// Anchor of the study: letters, digits, hyphens.
-    pub id: String,
     /// What was run, one or two sentences.
     pub about: String,
     /// Name of the time, and its unit.
@@ -239,14 +237,8 @@ pub struct Level {
 }
 
 /// Error budgets: the same run with one thing changed at a time.
+#[derive(Default)]
 pub struct Budgets {
-    /// Anchor of the study.
-    pub id: String,
-    /// What an error is: the distance from an exact solution or a reference. Of a metric with a sign the
-    /// magnitude counts.
-    pub error: MetricName,
-    /// Name of the error.
-    pub label: String,
     /// What was run, one or two sentences.
     pub about: String,
     /// One per variant.
@@ -283,25 +275,6 @@ impl Accuracy {
         Self { id, error, label, about, spacing, slope, ladders: Vec::new() }
     }
 
-    /// The same with one ladder per variant, whose order is not judged. `level` gives the run of a variant at
-    /// a resolution n; its spacing is 1/n.
-    pub fn over<const N: usize>(
-        mut self,
-        variants: &[&'static str],
-        resolutions: [usize; N],
-        level: impl Fn(&str, usize) -> Planned,
-    ) -> Self {
-        self.ladders.extend(variants.iter().map(|&variant| {
-            let level = |n: usize| Level {
-                run: level(variant, n),
-                spacing: 1.0 / n as f64,
-                label: format!("n = {n}"),
-            };
-            Ladder::new(variant, resolutions.map(level).into())
-        }));
-        self
-    }
-
     /// The runs of these variants with the finest spacing of their ladders.
     pub fn finest(&self, variants: &[&str]) -> Vec<RunSpec> {
         let ladder = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
@@ -310,36 +283,10 @@ impl Accuracy {
     }
 }
 
-impl Ladder {
-    /// The levels of a variant, sorted from coarse to fine, whose order is not judged.
-    pub fn new(variant: &'static str, mut levels: Vec<Level>) -> Self {
-        levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
-        Self { variant, levels, order: None }
-    }
-}
-
-impl Budgets {
-    /// Budgets of the error that a ladder is judged by.
-    pub fn of(accuracy: &Accuracy, of: Vec<Budget>) -> Self {
-        let (error, label) = (accuracy.error.clone(), accuracy.label.clone());
-        let (id, about) = (format!("{}-error-budget", accuracy.id), accuracy.about.clone());
-        Self { id, error, label, about, of }
-    }
-}
-
-impl StepLimits {
-    /// Step limits of a case whose anchors begin with `case`.
-    pub fn new(case: &str, about: &str, of: impl IntoIterator<Item = StepLimit>) -> Self {
-        let of = of.into_iter().collect();
-        Self { id: format!("{case}-time-step"), about: about.into(), of }
-    }
-}
-
 impl StepLimit {
     /// The bisection of a setting that is the time step over its theoretical limit, or in proportion to it:
     /// the setting has the value `unit` at the limit. `rules` are those of the run with its default step.
     pub fn proportional(
-        variant: &'static str,
         scene: &str,
         spec: RunSpec,
         (setting, unit): (&str, f64),
@@ -348,7 +295,6 @@ impl StepLimit {
         let setting = setting.to_string();
         let bisect = Bisect { setting, guess: 1.0, unit, resolution: 0.02, end: None };
         Self {
-            variant,
             scene: scene.into(),
             spec: spec.allow_unstable().bisect(bisect),
             theory_at: 1.0,
@@ -368,9 +314,8 @@ impl Change {
 }
 
 /// Largest stable time steps against theory.
+#[derive(Default)]
 pub struct StepLimits {
-    /// Anchor of the study.
-    pub id: String,
     /// What was run and what counts as stable, one or two sentences.
     pub about: String,
     /// One per variant and scene.
@@ -379,8 +324,6 @@ pub struct StepLimits {
 
 /// The largest stable time step of one variant.
 pub struct StepLimit {
-    /// Name of the variant.
-    pub variant: &'static str,
     /// The scene in words.
     pub scene: String,
     /// The bisection.
@@ -399,10 +342,6 @@ pub struct StepLimit {
 
 /// Which errors of the constants of a case the gates of some of its runs must detect.
 pub struct Sensitivity {
-    /// Name of the case, with which names of gates begin.
-    pub case: &'static str,
-    /// Anchor of the study.
-    pub id: String,
     /// The runs, each judged by the gates that the plans have for it.
     pub runs: Vec<RunSpec>,
     /// The constants.
@@ -465,7 +404,6 @@ impl Sensitivity {
     /// The full tier bisects every constant and makes every gross fault. The quick tier tries, on the first
     /// run alone, the largest allowed error of the constants that are marked for it.
     pub fn new(
-        case: &'static str,
         tier: Tier,
         runs: impl IntoIterator<Item = RunSpec>,
         of: impl IntoIterator<Item = Watched>,
@@ -478,8 +416,7 @@ impl Sensitivity {
             of.iter_mut().for_each(|watched| watched.faults.clear());
             runs.truncate(1);
         }
-        let id = format!("{}-sensitivity", case.replace('_', "-"));
-        Self { case, id, runs, of, is_bisected }
+        Self { runs, of, is_bisected }
     }
 
     /// The searches for a constant, one a run.
@@ -663,9 +600,12 @@ impl Declaration {
         }
         let ensembles = self.ensembles.iter().flat_map(|ensembles| &ensembles.of);
         ensembles.flat_map(|ensemble| &ensemble.members).for_each(&mut plain);
-        let budgets = self.budgets.iter().flat_map(|budgets| &budgets.of);
-        budgets.flat_map(|budget| &budget.changes).for_each(|change| plain(&change.spec));
-        self.limits.iter().flat_map(|limits| &limits.of).for_each(|limit| plain(&limit.spec));
+        self.budgets
+            .of
+            .iter()
+            .flat_map(|budget| &budget.changes)
+            .for_each(|change| plain(&change.spec));
+        self.limits.of.iter().for_each(|limit| plain(&limit.spec));
         let cells = self.maps.iter().flat_map(|map| &map.panels).flat_map(|panel| &panel.cells);
         cells.flatten().flatten().for_each(&mut plain);
         if let Some(sensitivity) = &self.sensitivity {

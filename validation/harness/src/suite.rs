@@ -167,7 +167,7 @@ fn unplanned(case: &dyn Case, runs: &Runs) -> Option<Study> {
     let because = "a study may only speak of runs that its case plans";
     let id = format!("{name}.unplanned");
     let gate = Gate::new(id, "runs", Bound::Equals(0.0), Evidence::Invariant, because);
-    let study = Study::new(&format!("{}-unplanned", name.replace('_', "-")), "Runs not planned");
+    let study = Study::new(&studies::anchor(name, "unplanned"), "Runs not planned");
     let count = asked.len() as f64;
     Some(study.prose(format!("Asked for, not planned: {}", asked.join("; "))).judge(gate, count))
 }

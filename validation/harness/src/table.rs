@@ -106,8 +106,8 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         self.of(group).map(|row| row.run.spec.clone())
     }
 
-    /// The ladder of a variant over the runs of some groups; `level` gives the spacing of a run and its
-    /// resolution in words.
+    /// The ladder of a variant over the runs of some groups, from coarse to fine, whose order is not judged;
+    /// `level` gives the spacing of a run and its resolution in words.
     pub fn ladder(
         &self,
         groups: &[G],
@@ -120,7 +120,9 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
             let (spacing, label) = level(&row.settings);
             Level { run: row.run.clone(), spacing, label }
         });
-        Ladder::new(variant, levels.collect())
+        let mut levels: Vec<Level> = levels.collect();
+        levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
+        Ladder { variant, levels, order: None }
     }
 
     /// A picture of the runs that keep particles; `panel` gives the title of one, and its spacing.

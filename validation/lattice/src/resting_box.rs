@@ -276,7 +276,7 @@ fn gate(Row { variant, settings: s, .. }: &Row<BoxSettings, ()>) -> Gate {
 
 /// The bisection of a row, whose step is the limit of theory.
 fn bisected(row: Row<BoxSettings, ()>) -> StepLimit {
-    let Row { variant, settings: s, run, .. } = row;
+    let Row { settings: s, run, .. } = row;
     let bisect = Bisect {
         setting: "courant".into(),
         guess: s.courant,
@@ -285,7 +285,6 @@ fn bisected(row: Row<BoxSettings, ()>) -> StepLimit {
         end: None,
     };
     StepLimit {
-        variant,
         scene: format!("c0 h/nu = {}, alpha = {}, delta = {}", stiffness(&s), s.alpha, s.delta),
         spec: run.spec.allow_unstable().bisect(bisect),
         theory: s.courant * h(&s),
@@ -300,8 +299,9 @@ fn declaration(tier: Tier) -> Declaration {
     let about = "A box at rest is stable if the energy of its noise does not grow. Theory is linear \
                  stability of the same box, with every wave vector and with sound and damping together. The \
                  predictor-corrector has no limit without damping, because it grows at every step.";
-    let limits = StepLimits::new("resting-box", about, table(tier).rows.into_iter().map(bisected));
-    Declaration { limits: Some(limits), ..Declaration::default() }
+    let of = table(tier).rows.into_iter().map(bisected).collect();
+    let limits = StepLimits { about: about.into(), of };
+    Declaration { limits, ..Declaration::default() }
 }
 
 /// Super-time-stepping at its limit, in a larger box.

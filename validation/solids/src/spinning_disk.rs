@@ -327,10 +327,9 @@ fn declaration(tier: Tier) -> Declaration {
     let changes = changes.map(|(what, spec)| Change::new(what, "time", spec)).collect();
     let budgets = Budgets {
         about: "A free disk, rim at 0.05 c0, makes a tenth of a revolution.".into(),
-        ..Budgets::of(&accuracy, vec![Budget { variant: "bare", changes }])
+        of: vec![Budget { variant: "bare", changes }],
     };
     let stepwise = &[INTERIOR_STRAIN, RIM_STRAIN, ANGULAR_MOMENTUM_TENTH, LARGEST_STRESS];
-    let budgets = Some(budgets);
     Declaration { accuracy: vec![accuracy], budgets, stepwise, ..Declaration::default() }
 }
 

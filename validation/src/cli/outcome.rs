@@ -80,7 +80,7 @@ fn next(
         .filter(|judged| matches!(judged.judgement.verdict, Verdict::Fail | Verdict::Limitation));
     match (worst, &record.status) {
         (Some(judged), _) => format!("touchstone explain {}", judged.gate.id),
-        (None, Status::Diverged { .. }) if declared.limits.is_some() => {
+        (None, Status::Diverged { .. }) if !declared.limits.of.is_empty() => {
             format!("touchstone stability {name}")
         }
         (None, Status::Diverged { .. }) => format!("touchstone list {name}"),

@@ -29,13 +29,12 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     }
     let mut declared = Vec::new();
     for case in cases {
-        let limits = case.declaration(arguments.tier).limits;
-        if limits.is_none() && !arguments.cases.is_empty() {
+        let limits = case.declaration(arguments.tier).limits.of;
+        if limits.is_empty() && !arguments.cases.is_empty() {
             let words = format!("{} declares no largest stable time step", case.name());
             return Err(Failure::usage(words));
         }
-        let of_case = limits.into_iter().flat_map(|limits| limits.of);
-        declared.extend(of_case.map(|limit| Declared { case, limit }));
+        declared.extend(limits.into_iter().map(|limit| Declared { case, limit }));
     }
     let job = |Declared { case, limit }: &Declared| Job {
         case: *case,
@@ -93,7 +92,7 @@ fn row_json(row: &Row) -> Value {
 
 fn json(Declared { case, limit }: &Declared, runs: &Runs) -> Value {
     let mut value = json!({
-        "case": case.name(), "variant": limit.variant, "scene": limit.scene,
+        "case": case.name(), "variant": limit.spec.variant, "scene": limit.scene,
         "theory_s": limit.theory, "default_of_theory": limit.default_at / limit.theory_at,
     });
     if let Some(ratio) = limit_of_theory(limit, runs) {
@@ -109,7 +108,7 @@ fn table(declared: &[Declared], runs: &Runs) -> String {
             value.map_or("none found".to_string(), |value| report::sig(value, digits))
         };
         vec![
-            format!("{} {}", case.name(), limit.variant),
+            format!("{} {}", case.name(), limit.spec.variant),
             limit.scene.clone(),
             report::sig(limit.theory, 4),
             number(ratio.map(|ratio| ratio * limit.theory), 4),

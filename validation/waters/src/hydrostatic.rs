@@ -363,7 +363,7 @@ fn declaration(tier: Tier) -> Declaration {
         Watched::new(Constant::Height),
     ];
     let run = HYDROSTATIC.spec("modern", |_| ());
-    let sensitivity = Some(Sensitivity::new(NAME, tier, [run], watched));
+    let sensitivity = Some(Sensitivity::new(tier, [run], watched));
     Declaration { accuracy: vec![accuracy], sensitivity, ..Declaration::default() }
 }
 

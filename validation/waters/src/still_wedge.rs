@@ -307,7 +307,7 @@ fn declaration(tier: Tier) -> Declaration {
     };
     let watched = [Watched::new(Constant::BodyForce).quick(), Watched::new(Constant::Density)];
     let run = STILL_WEDGE.spec("modern", |_| {});
-    let sensitivity = Some(Sensitivity::new(NAME, tier, [run], watched));
+    let sensitivity = Some(Sensitivity::new(tier, [run], watched));
     let caption = "Mean error of the pressure of each particle over the last quarter of the run, with 20 \
                    spacings along the depth.";
     let texts = ["still-wedge-errors", "Errors of still water over a wedge", caption];

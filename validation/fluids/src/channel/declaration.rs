@@ -21,9 +21,9 @@ pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
         card: Some(card(flow, &at_half)),
         curves: vec![curves(flow)],
         comparisons: comparisons(flow, &at_half),
-        budgets: Some(budgets(flow, &at_half, tier)),
+        budgets: budgets(flow, tier),
         accuracy: vec![at_half],
-        limits: Some(limits(flow, tier)),
+        limits: limits(flow, tier),
         maps: maps::declared(&table),
         sensitivity: Some(sensitivity(flow, tier)),
         curve: Some(profile()),
@@ -142,7 +142,7 @@ fn curves(flow: Flow) -> Curves {
     }
 }
 
-fn budgets(flow: Flow, accuracy: &Accuracy, tier: Tier) -> Budgets {
+fn budgets(flow: Flow, tier: Tier) -> Budgets {
     let variants: &[&str] = match (tier, flow) {
         (Tier::Quick, _) => &["seed"],
         (_, Flow::Couette) => &["seed", "plain"],
@@ -150,7 +150,7 @@ fn budgets(flow: Flow, accuracy: &Accuracy, tier: Tier) -> Budgets {
     };
     let of = |variant: &&'static str| Budget { variant, changes: changes(flow, variant, tier) };
     let about = "Runs have 20 rows and Re 0.5.".into();
-    Budgets { about, ..Budgets::of(accuracy, variants.iter().map(of).collect()) }
+    Budgets { about, of: variants.iter().map(of).collect() }
 }
 
 fn changes(flow: Flow, variant: &'static str, tier: Tier) -> Vec<Change> {
@@ -217,7 +217,7 @@ fn limits(flow: Flow, tier: Tier) -> StepLimits {
          viscosity and other damping, without walls, motion and stabilisers."
     );
     let of = variants.into_iter().map(|variant| limit(flow, variant));
-    StepLimits::new(flow.case().name, &about, of)
+    StepLimits { about, of: of.collect() }
 }
 
 fn limit(flow: Flow, variant: &'static str) -> StepLimit {
@@ -241,7 +241,6 @@ fn limit(flow: Flow, variant: &'static str) -> StepLimit {
     let (id, metric) = (format!("{name}.stable"), "longest stable dt/default dt");
     let stable = Gate::new(id, metric, Bound::Above(1.0), Evidence::Theory, because);
     StepLimit {
-        variant,
         scene: "20 rows".into(),
         spec: spec.bisect(bisect),
         theory,
@@ -285,7 +284,7 @@ fn sensitivity(flow: Flow, tier: Tier) -> Sensitivity {
         Watched::blind_up_to(Constant::ListLifetime, 1.0, LISTS, &SAFETY_MARGIN).faults(&[100.0]),
     ];
     let runs = [case.spec("plain", |_| {}), case.spec("modern", |s| s.end = 1.5)];
-    Sensitivity::new(case.name, tier, runs, watched)
+    Sensitivity::new(tier, runs, watched)
 }
 
 /// The studies of a flow.

@@ -20,9 +20,9 @@ pub fn declaration(tier: Tier) -> Declaration {
         card: Some(card(tier, &accuracy)),
         comparisons: comparisons(tier, &accuracy),
         curves: vec![profiles(&table)],
-        budgets: (tier == Tier::Full).then(|| budgets(&accuracy)),
+        budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
         accuracy: vec![accuracy],
-        limits: Some(limits(tier)),
+        limits: limits(tier),
         sensitivity: Some(sensitivity(tier, &table)),
         ..Declaration::default()
     }
@@ -96,7 +96,7 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
 }
 
 /// One thing changed at a time.
-fn budgets(accuracy: &Accuracy) -> Budgets {
+fn budgets() -> Budgets {
     let about = "Runs from rest at Re 50, H/dx = 10. A change smaller than that by the start is within the \
                  effect of disorder.";
     let change = |what, part, variant, set: fn(&mut HillSettings)| {
@@ -119,8 +119,7 @@ fn budgets(accuracy: &Accuracy) -> Budgets {
     ];
     // The walls are compared with those of `modern`, before it in the list.
     changes[10].against = 9;
-    let of = vec![Budget { variant: BEST, changes }];
-    Budgets { about: about.into(), ..Budgets::of(accuracy, of) }
+    Budgets { about: about.into(), of: vec![Budget { variant: BEST, changes }] }
 }
 
 /// Profiles at their stations, symbols on lines, and shear along the hill.
@@ -194,7 +193,8 @@ fn limits(tier: Tier) -> StepLimits {
     let about = "The longest time step with which the flow at Re 50 goes on for 3 H/U_b from the reference \
                  without diverging or doubling its kinetic energy, by bisection, over the limit of linear \
                  theory for a lattice at rest, which has no walls, no curvature and no disorder.";
-    StepLimits::new("periodic-hill", about, variants.iter().map(|variant| limit(variant, n)))
+    let of = variants.iter().map(|variant| limit(variant, n)).collect();
+    StepLimits { about: about.into(), of }
 }
 
 /// The bisection of a variant with its gates.
@@ -210,7 +210,7 @@ fn limit(variant: &'static str, n: usize) -> StepLimit {
     let (id, bound) = (format!("{NAME}.step.{variant}.theory"), Bound::Within(default, 1.2));
     StepLimit {
         of_theory: vec![Gate::new(id, "measured/theory", bound, Evidence::Theory, theory)],
-        ..StepLimit::proportional(variant, &scene, spec, at_limit, &rules)
+        ..StepLimit::proportional(&scene, spec, at_limit, &rules)
     }
 }
 
@@ -237,7 +237,7 @@ fn sensitivity(tier: Tier, table: &Table) -> Sensitivity {
         Watched::blind_up_to(Constant::Shifting, 1.0, DISORDER, &ENOUGH_OR_IDLE).faults(&[0.0]),
     ];
     let run = shown(table, 10.0).into_iter().take(1).map(|row| row.run.spec.clone());
-    Sensitivity::new(NAME, tier, run, watched)
+    Sensitivity::new(tier, run, watched)
 }
 
 /// All of them.

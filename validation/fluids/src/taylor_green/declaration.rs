@@ -26,14 +26,14 @@ pub fn declaration(tier: Tier) -> Declaration {
     };
     Declaration {
         curves: vec![histories(&table)],
-        budgets: budgets(&table, &accuracy).filter(|_| tier == Tier::Full),
+        budgets: budgets(&table).filter(|_| tier == Tier::Full).unwrap_or_default(),
         accuracy: vec![accuracy],
         ..Declaration::default()
     }
 }
 
 /// One thing changed at a time, over the best variant at 50 x 50 from the disturbed lattice.
-fn budgets(table: &Table, accuracy: &Accuracy) -> Option<Budgets> {
+fn budgets(table: &Table) -> Option<Budgets> {
     let [base, finer] = [50, 100].map(|n| usual(table, BEST, n).map(|row| row.run.spec.clone()));
     let changed = |what: &str, part, set: fn(&mut VortexSettings)| {
         let spec = CASE.spec(BEST, |s| {
@@ -56,8 +56,7 @@ fn budgets(table: &Table, accuracy: &Accuracy) -> Option<Budgets> {
                  row, with another disturbance, shows what is chance. A shorter step, faster sound and less \
                  diffusion all raise the error, because their parts have the sign opposite to that of the \
                  spacing and cancel some of it.";
-    let of = vec![Budget { variant: BEST, changes }];
-    Some(Budgets { about: about.into(), ..Budgets::of(accuracy, of) })
+    Some(Budgets { about: about.into(), of: vec![Budget { variant: BEST, changes }] })
 }
 
 /// Error through time, of each variant in its finest run of at most 50 x 50 particles.

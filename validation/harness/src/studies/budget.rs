@@ -4,23 +4,23 @@ use report::Cell;
 
 use crate::{
     columns::Columns,
-    declare::{Budgets, Change, error_of},
+    declare::{Accuracy, Budgets, Change, error_of},
     runs::Runs,
     study::Study,
 };
 
-pub fn study(budgets: &Budgets, runs: &Runs) -> Study {
+pub fn study(accuracy: &Accuracy, budgets: &Budgets, runs: &Runs) -> Study {
     let caption = format!(
         "Error budget with one thing changed at a time: {}. {} \
          Where the error rises as dt falls, errors of time and spacing cancel at the default dt, and the row \
          with the least dt is the better measure of the spacing.",
-        budgets.label, budgets.about
+        accuracy.label, budgets.about
     );
     let mut rows = Vec::new();
     for budget in &budgets.of {
         let error = |change: &Change| {
             let record = runs.record(&change.spec);
-            record.and_then(|record| error_of(&budgets.error, record)).unwrap_or(f64::NAN)
+            record.and_then(|record| error_of(&accuracy.error, record)).unwrap_or(f64::NAN)
         };
         let errors: Vec<f64> = budget.changes.iter().map(error).collect();
         for (change, error) in budget.changes.iter().zip(&errors) {
@@ -34,7 +34,7 @@ pub fn study(budgets: &Budgets, runs: &Runs) -> Study {
         .num(["error", "-"], |(.., error, _)| Cell::percent(*error, 3))
         .num(["change of error", "-"], |(.., change)| Cell::percent(*change, 2))
         .table(caption, rows);
-    Study::new(&budgets.id, "Error budget").block(table)
+    Study::new(&format!("{}-error-budget", accuracy.id), "Error budget").block(table)
 }
 
 #[cfg(test)]
@@ -56,9 +56,6 @@ mod tests {
                 ..Change::new(what, part, of(n))
             };
         let budgets = Budgets {
-            id: "case-error-budget".into(),
-            error: ERROR.into(),
-            label: "error".into(),
             about: "Made up.".into(),
             of: vec![Budget {
                 variant: "seed",
@@ -67,7 +64,7 @@ mod tests {
         };
         let errors = changes.iter().enumerate().map(|(n, (.., error))| (of(n), *error));
         let runs = runs(errors.filter(|(_, error)| error.is_finite()));
-        study(&budgets, &runs)
+        study(&Accuracy::new("case", ERROR, "error"), &budgets, &runs)
     }
 
     /// 8 % less 5 % are 3 %: compared with the unchanged run it would be 15 %.

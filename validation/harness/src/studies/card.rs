@@ -119,9 +119,8 @@ impl Headline {
 
 /// The largest stable time steps over their theoretical limits.
 fn stable(declared: &Declaration, specs: &[RunSpec], runs: &Runs) -> Option<String> {
-    let limits = declared.limits.as_ref()?;
     let of = |spec: &RunSpec| {
-        let own = limits.of.iter().filter(|limit| limit.variant == spec.variant);
+        let own = declared.limits.of.iter().filter(|limit| limit.spec.variant == spec.variant);
         let ratios = own.filter_map(|limit| limit::of_theory(limit, runs));
         let least = ratios.min_by(f64::total_cmp)?;
         Some(format!("{} (`{}`)", sig(least, 3), spec.variant))

@@ -6,7 +6,7 @@ use base::{
 };
 use report::{Axis, Cell, Colour, Dash, Figure, Layer, Legend, Plot, Series, Table, sig};
 
-use super::validation::Found;
+use super::{anchor, validation::Found};
 use crate::{
     columns::Columns,
     declare::{Ensemble, Ensembles, History, Number},
@@ -70,7 +70,7 @@ impl<'a> Followed<'a> {
 }
 
 /// The study.
-pub fn study(ensembles: &Ensembles, runs: &Runs) -> Study {
+pub fn study(case: &str, ensembles: &Ensembles, runs: &Runs) -> Study {
     let completed = |of: &Ensemble| of.members.iter().filter_map(|s| runs.completed(s)).collect();
     let all: Vec<Made> =
         ensembles.of.iter().map(|of| Made { of, records: completed(of) }).collect();
@@ -81,9 +81,10 @@ pub fn study(ensembles: &Ensembles, runs: &Runs) -> Study {
         .collect();
     let numbers: Vec<(&Made, &Number)> =
         all.iter().flat_map(|made| made.of.numbers.iter().map(move |of| (made, of))).collect();
-    let mut study = Study::new(&ensembles.id, "Ensembles: what a run predicts and what is a draw")
+    let id = anchor(case, "ensembles");
+    let mut study = Study::new(&id, "Ensembles: what a run predicts and what is a draw")
         .prose(&*ensembles.about)
-        .block(figure(ensembles, &followed))
+        .block(figure(&id, &ensembles.time, &followed))
         .block(horizons(ensembles.time[1], &followed))
         .block(distributions(&numbers));
     study.judged.extend(all.iter().map(complete));
@@ -181,15 +182,15 @@ fn distributions(all: &[(&Made, &Number)]) -> Table {
         .table(caption, all)
 }
 
-fn figure(ensembles: &Ensembles, all: &[(&Made, Followed)]) -> Figure {
+fn figure(id: &str, time: &[&str; 2], all: &[(&Made, Followed)]) -> Figure {
     let drawn = all.iter().filter(|(made, of)| made.of.is_drawn && of.of.is_drawn);
     let drawn: Vec<_> = drawn.collect();
     let columns = drawn.iter().filter(|(made, _)| made.of.id == drawn[0].0.of.id).count();
     let caption = "Median, quartiles (dark band) and range (pale band) of the members over time, of the \
                    ensembles with the finest spacing. Black is the experiment, each series for itself. The \
                    dashed line is the horizon: to its right a run is one draw.";
-    let figure = Figure::new(&ensembles.id, caption).columns(columns.max(1));
-    let panels = drawn.iter().map(|(made, followed)| panel(&ensembles.time, made, followed));
+    let figure = Figure::new(id, caption).columns(columns.max(1));
+    let panels = drawn.iter().map(|(made, followed)| panel(time, made, followed));
     panels.fold(figure, Figure::panel).panel_size(300.0, 220.0)
 }
 
@@ -297,15 +298,14 @@ mod tests {
             numbers: vec![number],
             is_drawn: true,
         };
-        let (id, time) = ("case-ensembles".into(), ["time", "s"]);
-        Ensembles { id, about: "Made up.".into(), time, of: vec![of] }
+        Ensembles { about: "Made up.".into(), time: ["time", "s"], of: vec![of] }
     }
 
     /// The names of the gates that fail, and the study.
     fn judged(members: Vec<JudgedRun>, with_ladder: bool) -> (Vec<String>, Study) {
         let others = if with_ladder { ladder() } else { Vec::new() };
         let runs = Runs::new([members, others].concat());
-        let study = study(&ensembles(), &runs);
+        let study = study("case", &ensembles(), &runs);
         let failed = study.judged.iter().filter(|of| of.judgement.verdict.is_failure());
         (failed.map(|of| of.gate.id.clone()).collect(), study)
     }

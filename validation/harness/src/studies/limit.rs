@@ -2,6 +2,7 @@
 
 use report::Cell;
 
+use super::anchor;
 use crate::{
     bisect::STABLE,
     columns::Columns,
@@ -17,7 +18,7 @@ pub fn study(case: &str, limits: &StepLimits, runs: &Runs) -> Study {
     let ratio = |value: Option<f64>| Cell::num(value.unwrap_or(f64::NAN), 3);
     let measured = |limit: &StepLimit| of_theory(limit).unwrap_or(f64::NAN) * limit.theory;
     let table = Columns::<StepLimit>::default()
-        .code("variant", |limit| limit.variant)
+        .code("variant", |limit| limit.spec.variant.clone())
         .text("scene", |limit| limit.scene.clone())
         .num(["theory", "s"], |limit| Cell::sci(limit.theory, 3))
         .num(["measured", "s"], |limit| Cell::sci(measured(limit), 3))
@@ -25,7 +26,7 @@ pub fn study(case: &str, limits: &StepLimits, runs: &Runs) -> Study {
         .num(["default/theory", "-"], |limit| Cell::num(limit.default_at / limit.theory_at, 3))
         .num(["measured/default", "-"], |limit| ratio(of_default(limit)))
         .table(caption, &limits.of);
-    let mut study = Study::new(&limits.id, "Largest stable time step");
+    let mut study = Study::new(&anchor(case, "time-step"), "Largest stable time step");
     for limit in &limits.of {
         let judge = |value: Option<f64>| move |gate: &_| Judged::new(Clone::clone(gate), value);
         study.judged.extend(limit.of_theory.iter().map(judge(of_theory(limit))));
@@ -65,7 +66,6 @@ mod tests {
             Gate::new(id, STABLE, Bound::Within(low, high), Evidence::Theory, "made up")
         };
         let limit = |n: usize| StepLimit {
-            variant: "seed",
             scene: "made up".into(),
             spec: spec("seed", n).bisect(bisect.clone()),
             theory: 4e-3,
@@ -74,7 +74,7 @@ mod tests {
             of_theory: vec![gate("of theory", 1.49, 1.51)],
             of_default: vec![gate("of default", 1.99, 2.01)],
         };
-        let limits = StepLimits::new("case", "Made up.", [limit(8), limit(9)]);
+        let limits = StepLimits { about: "Made up.".into(), of: vec![limit(8), limit(9)] };
         let stable = |record: &mut Record| {
             record.metrics.insert(STABLE.into(), Metric::new(1.2, "-", "made up"));
         };

@@ -25,6 +25,11 @@ use crate::{
     study::Study,
 };
 
+/// The anchor of a study of a case in the report.
+pub(crate) fn anchor(case: &str, study: &str) -> String {
+    format!("{}-{study}", case.replace('_', "-"))
+}
+
 /// All studies of a declaration, in the order of the report.
 pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     let mut studies: Vec<Study> =
@@ -36,11 +41,14 @@ pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     if !declared.comparisons.is_empty() {
         studies.push(validation::study(case, &declared.comparisons, runs));
     }
-    studies.extend(declared.ensembles.iter().map(|of| ensemble::study(of, runs)));
-    studies.extend(declared.budgets.iter().map(|budgets| budget::study(budgets, runs)));
-    studies.extend(declared.limits.iter().map(|limits| limit::study(case, limits, runs)));
+    studies.extend(declared.ensembles.iter().map(|of| ensemble::study(case, of, runs)));
+    let accuracy = declared.accuracy.first().filter(|_| !declared.budgets.of.is_empty());
+    studies.extend(accuracy.map(|accuracy| budget::study(accuracy, &declared.budgets, runs)));
+    if !declared.limits.of.is_empty() {
+        studies.push(limit::study(case, &declared.limits, runs));
+    }
     let sensitivity = declared.sensitivity.iter().filter(|sensitivity| !sensitivity.of.is_empty());
-    studies.extend(sensitivity.map(|of| sensitivity::study(of, runs)));
+    studies.extend(sensitivity.map(|of| sensitivity::study(case, of, runs)));
     studies.extend(declared.maps.iter().map(|map| map::study(map, runs)));
     studies.extend(submissions::study(case, declared, runs));
     studies

@@ -111,21 +111,20 @@ mod tests {
 
     use super::*;
     use crate::{
-        runs::{Planned, Runs},
-        studies::tests::{ERROR, column, runs, spec},
+        runs::Runs,
+        studies::tests::{ERROR, column, comparison, runs, spec},
     };
 
     /// Ladders of `seed` and `best` at n = 10, 20, 40, 80; the order of the second is judged.
     fn accuracy() -> Accuracy {
-        let mut accuracy = Accuracy::new("case", ERROR, "Error [-]").over(
-            &["seed", "best"],
-            [10, 20, 40, 80],
-            |variant, n| Planned::new(spec(variant, n)),
-        );
         let bound = Bound::Within(2.9, 3.1);
         let gate = Gate::new("case.order", "order", bound, Evidence::Theory, "made up");
-        accuracy.ladders[1].order = Some(gate);
-        accuracy
+        let ladder = |(variant, order)| {
+            let levels = comparison(variant, &[10, 20, 40, 80]).levels;
+            Ladder { variant, levels, order }
+        };
+        let ladders = [("seed", None), ("best", Some(gate))].map(ladder).into();
+        Accuracy { ladders, ..Accuracy::new("case", ERROR, "Error [-]") }
     }
 
     /// Runs with these errors, a function of variant and n.

@@ -9,6 +9,7 @@ use base::{
 };
 use report::Cell;
 
+use super::anchor;
 use crate::{
     columns::Columns,
     declare::{Blind, Sensitivity, Watched},
@@ -56,14 +57,14 @@ impl Row<'_> {
     }
 }
 
-pub fn study(sensitivity: &Sensitivity, runs: &Runs) -> Study {
+pub fn study(case: &str, sensitivity: &Sensitivity, runs: &Runs) -> Study {
     let row = |watched| row(sensitivity, watched, runs);
     let rows: Vec<Row> = sensitivity.of.iter().map(row).collect();
-    let mut study = Study::new(&sensitivity.id, "Errors that the gates detect");
+    let mut study = Study::new(&anchor(case, "sensitivity"), "Errors that the gates detect");
     for row in &rows {
-        study = study.judge(gate(sensitivity, row.watched), row.error());
+        study = study.judge(gate(case, row.watched), row.error());
         for &(factor, failed) in &row.faults {
-            let gate = fault_gate(sensitivity, row.watched.constant, factor);
+            let gate = fault_gate(case, row.watched.constant, factor);
             study = study.judge(gate, failed as f64);
         }
     }
@@ -122,16 +123,16 @@ fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> 
 }
 
 /// The gate on the number of gates that detect a gross fault.
-fn fault_gate(sensitivity: &Sensitivity, of: Constant, factor: f64) -> Gate {
-    let id = format!("{}.detects.{}_x_{factor}", sensitivity.case, of);
+fn fault_gate(case: &str, of: Constant, factor: f64) -> Gate {
+    let id = format!("{case}.detects.{}_x_{factor}", of);
     let because = "a wrong sign, a missing term, and a constant that is wrong by a factor are faults of the \
                    program, which some gate must detect";
     Gate::new(id, "gates that fail", Bound::Above(1.0), Evidence::Theory, because)
 }
 
 /// The gate on the smallest error that is detected.
-fn gate(sensitivity: &Sensitivity, watched: &Watched) -> Gate {
-    let id = format!("{}.detects.{}", sensitivity.case, watched.constant);
+fn gate(case: &str, watched: &Watched) -> Gate {
+    let id = format!("{case}.detects.{}", watched.constant);
     let because = match watched.constant.is_physical() {
         true => "a result with a physical constant that is wrong by 3 % is wrong",
         false => "an ingredient of the method that is wrong by 10 % is a fault of the program",
@@ -168,8 +169,8 @@ mod tests {
             Watched::new(Constant::Height).faults(&[0.0]),
             Watched::blind_up_to(Constant::Speed, 1.0, "nothing depends on it", &NOT_MEASURED),
         ];
-        let of = Sensitivity::new("case", Tier::Full, [run], watched);
-        let study = study(&of, &Runs::new(Vec::new()));
+        let of = Sensitivity::new(Tier::Full, [run], watched);
+        let study = study("case", &of, &Runs::new(Vec::new()));
         assert_eq!(study.judged.len(), 3);
         for judged in study.judged {
             assert_eq!(judged.judgement.verdict, Verdict::Fail, "{}", judged.gate.id);
@@ -196,8 +197,7 @@ mod tests {
     #[test]
     fn the_run_that_sees_most_counts() {
         let of = [spec("seed", 1), spec("seed", 2)];
-        let sensitivity =
-            Sensitivity::new("case", Tier::Full, of, [Watched::new(Constant::Viscosity)]);
+        let sensitivity = Sensitivity::new(Tier::Full, of, [Watched::new(Constant::Viscosity)]);
         for (first, second, expected) in [
             (
                 (Some(0.02), Some(0.01)),
@@ -215,7 +215,7 @@ mod tests {
         ] {
             let searches = sensitivity.searches(Constant::Viscosity);
             let found = [first, second].map(|(detected, undetected)| search(detected, undetected));
-            let study = study(&sensitivity, &records(searches.zip(found)));
+            let study = study("case", &sensitivity, &records(searches.zip(found)));
             let table = tables(&study)[0];
             let shown = ["detected from", "not detected", "gates that detect it"]
                 .map(|head| column(table, head).concat());
@@ -232,7 +232,7 @@ mod tests {
     fn a_gross_fault_counts_the_gates_that_it_fails() {
         let of = [spec("seed", 1), spec("seed", 2)];
         let watched = Watched::new(Constant::Viscosity).faults(&[-1.0]);
-        let sensitivity = Sensitivity::new("case", Tier::Full, of.clone(), [watched]);
+        let sensitivity = Sensitivity::new(Tier::Full, of.clone(), [watched]);
         let gate =
             |id: &str, evidence| Gate::new(id, ERROR, Bound::Below(0.1), evidence, "made up");
         let planned = |spec: RunSpec, gates: Vec<Gate>| {
@@ -254,7 +254,7 @@ mod tests {
             run.record.put(ERROR, error);
             runs.push(run);
         }
-        let study = study(&sensitivity, &Runs::new(runs));
+        let study = study("case", &sensitivity, &Runs::new(runs));
         let shown = column(tables(&study)[0], "gates that detect a gross fault");
         assert_eq!(shown, ["× -1: 2"], "`case.shared` and `case.own_0` of the first run");
         let of_fault = study.judged.iter().find(|judged| judged.gate.id.contains("_x_-1"));

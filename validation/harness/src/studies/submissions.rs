@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use base::submission::{Division, OURS, SESSION, Submission};
 use report::{Axis, Cell, Colour, Figure, Legend, Plot, Series, percent, seconds};
 
+use super::anchor;
 use crate::{
     columns::Columns,
     declare::{Accuracy, Declaration, error_of},
@@ -136,7 +137,7 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     if runs.submissions.is_empty() {
         return None;
     }
-    let id = format!("{}-submissions", case.replace('_', "-"));
+    let id = anchor(case, "submissions");
     let accuracy = declared.accuracy.iter();
     let found = accuracy.map(|of| (of, marks(of, runs))).find(|(_, marks)| !marks.is_empty());
     let first = found.as_ref().and_then(|(_, marks)| better(marks));

@@ -7,6 +7,7 @@ use base::{
 };
 use report::{Cell, percent, sig};
 
+use super::anchor;
 use crate::{
     columns::Columns,
     convergence::{Convergence, Label, Level, convergence},
@@ -173,8 +174,7 @@ pub fn study(case: &str, comparisons: &[Comparison], runs: &Runs) -> Study {
         .of(["u_val", "-"], |(_, found)| found.uncertainty(), show)
         .text("verdict", |(_, found)| found.in_words())
         .table(caption, &rows);
-    let id = format!("{}-uncertainty", case.replace('_', "-"));
-    Study::new(&id, "Uncertainty of every comparison").block(table)
+    Study::new(&anchor(case, "uncertainty"), "Uncertainty of every comparison").block(table)
 }
 
 /// One line for the card of a case: how many comparisons ended how.

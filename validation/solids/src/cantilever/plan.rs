@@ -102,7 +102,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     let constants =
         [Constant::BodyForce, Constant::SoundSpeed, Constant::Density, Constant::ShearModulus];
     let run = CANTILEVER.spec(LAGRANGIAN, |s| s.n = 5);
-    let sensitivity = Sensitivity::new(CANTILEVER.name, tier, [run], constants.map(Watched::new));
+    let sensitivity = Sensitivity::new(tier, [run], constants.map(Watched::new));
     let sensitivity = (tier == Tier::Full).then_some(sensitivity);
     let level = |s: &CantileverSettings| (s.thickness / s.n as f64, format!("{} layers", s.n));
     let accuracy = Accuracy {

@@ -62,8 +62,8 @@ pub fn declaration(tier: Tier) -> Declaration {
         card: Some(card(&accuracy)),
         curves: vec![histories(tier)],
         comparisons: comparisons(&accuracy),
-        budgets: (tier == Tier::Full).then(|| budgets(&accuracy)),
-        limits: Some(limits(tier)),
+        budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
+        limits: limits(tier),
         maps: vec![map(tier)],
         sensitivity: Some(sensitivity(tier)),
         stepwise: STEPWISE,
@@ -166,7 +166,7 @@ fn accuracy(tier: Tier) -> Accuracy {
     }
 }
 
-fn budgets(accuracy: &Accuracy) -> Budgets {
+fn budgets() -> Budgets {
     let change = |what: &str, part: &'static str, set: fn(&mut RingSettings)| {
         let spec = RUBBER_RINGS.spec("leapfrog", |s| {
             s.spacing = 0.25;
@@ -186,7 +186,7 @@ fn budgets(accuracy: &Accuracy) -> Budgets {
     ];
     Budgets {
         about: "Rings collide at 0.059 c0 each at spacing 0.25 L.".into(),
-        ..Budgets::of(accuracy, vec![Budget { variant: "leapfrog", changes }])
+        of: vec![Budget { variant: "leapfrog", changes }],
     }
 }
 
@@ -198,7 +198,8 @@ fn limits(tier: Tier) -> StepLimits {
     let about = "Rings of 4 layers collide at 0.059 c0 each, to t = 100 L/c0. A time step counts as stable \
                  if the energy never rises by more than 1 %. Theory is that of a stress-free lattice with \
                  artificial viscosity on every pair; rings have it on approaching pairs alone.";
-    StepLimits::new("rubber-rings", about, variants.iter().map(|variant| step_limit(variant)))
+    let of = variants.iter().map(|variant| step_limit(variant)).collect();
+    StepLimits { about: about.into(), of }
 }
 
 fn step_limit(variant: &'static str) -> StepLimit {
@@ -210,8 +211,7 @@ fn step_limit(variant: &'static str) -> StepLimit {
     let id = format!("rubber_rings.{variant}.step_limit");
     let bound = Bound::Above(1.0);
     let gate = Gate::new(id, "stable dt/default dt", bound, Evidence::Invariant, because);
-    let limit =
-        StepLimit::proportional(variant, "collision", spec, ("dt", rules.dt_limit()), &rules);
+    let limit = StepLimit::proportional("collision", spec, ("dt", rules.dt_limit()), &rules);
     StepLimit { of_default: vec![gate], ..limit }
 }
 
@@ -307,7 +307,7 @@ fn sensitivity(tier: Tier) -> Sensitivity {
     let fast = RUBBER_RINGS.spec("seed", |s| (s.spacing, s.speed) = (0.2, 0.12));
     let fast = (tier != Tier::Quick).then_some(fast);
     let runs = [slow].into_iter().chain(fast);
-    Sensitivity::new(RUBBER_RINGS.name, tier, runs, watched)
+    Sensitivity::new(tier, runs, watched)
 }
 
 #[cfg(test)]
@@ -318,7 +318,7 @@ mod tests {
     /// It was left out with its gate, so that a report passed without them.
     #[test]
     fn a_step_limit_whose_run_is_refused_keeps_its_gate_and_fails_it() {
-        let limits = Some(StepLimits::new("rubber-rings", "", [step_limit("no such variant")]));
+        let limits = StepLimits { about: String::new(), of: vec![step_limit("no such variant")] };
         let declared = Declaration { limits, ..Declaration::default() };
         let studies = harness::studies::of("rubber_rings", &declared, &Runs::default());
         let judged: Vec<_> = studies.iter().flat_map(|study| &study.judged).collect();

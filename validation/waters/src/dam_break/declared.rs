@@ -31,9 +31,9 @@ pub fn declaration(tier: Tier) -> Declaration {
         ensembles: ensembles::ensembles(tier, &comparisons),
         comparisons,
         curves: curves::curves(tier),
-        budgets: Some(budgets(tier, &accuracy)),
+        budgets: budgets(tier, &accuracy),
         accuracy: vec![accuracy, in_the_tank(tier)],
-        limits: Some(limits(tier)),
+        limits: limits(tier),
         sensitivity: Some(sensitivity(tier)),
         costly: COSTLY,
         curve: Some(front()),
@@ -199,7 +199,7 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
         };
         Budget { variant, changes: has.map(change).collect() }
     };
-    Budgets::of(accuracy, variants.iter().map(of).collect())
+    Budgets { about: accuracy.about.clone(), of: variants.iter().map(of).collect() }
 }
 
 fn limits(tier: Tier) -> StepLimits {
@@ -207,7 +207,8 @@ fn limits(tier: Tier) -> StepLimits {
     let about = "A time step counts as stable if the collapse ends with its energy accounted for within 2 \
                  %. Theory is the limit of a lattice at rest. Water that moves, is compressed and loses \
                  its lattice is expected at 0.7 to 1.0 of it.";
-    StepLimits::new("dam-break", about, ["modern", "seed"].map(limit).into_iter().take(most))
+    let of = ["modern", "seed"].map(limit).into_iter().take(most).collect();
+    StepLimits { about: about.into(), of }
 }
 
 fn limit(variant: &'static str) -> StepLimit {
@@ -224,7 +225,7 @@ fn limit(variant: &'static str) -> StepLimit {
     let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
     // The limit as the record's dt and dt/limit state it.
     let setting = ("dt", rules.dt() / default_at);
-    let limit = StepLimit::proportional(variant, "Martin & Moyce", spec, setting, &rules);
+    let limit = StepLimit::proportional("Martin & Moyce", spec, setting, &rules);
     StepLimit { of_theory: vec![gate], ..limit }
 }
 
@@ -255,5 +256,5 @@ fn sensitivity(tier: Tier) -> Sensitivity {
         blind(Constant::Xsph, PLACE, &WIDE_BOUNDS).faults(&[-1.0]),
     ];
     let runs = ["modern", "seed"].map(|variant| DAM_BREAK.spec(variant, |_| {}));
-    Sensitivity::new(NAME, tier, runs, watched)
+    Sensitivity::new(tier, runs, watched)
 }

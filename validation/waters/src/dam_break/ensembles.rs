@@ -30,11 +30,11 @@ pub fn ensembles(tier: Tier, comparisons: &[Comparison]) -> Option<Ensembles> {
                  are of another tank and say nothing of this one. Two spacings have different \
                  distributions, by more than their intervals: what comes beyond the horizon depends on the \
                  spacing too, so the scatter of an ensemble is not its error.";
-    let (id, time) = ("dam-break-ensembles".into(), ["time", "√(H/g)"]);
+    let time = ["time", "√(H/g)"];
     let all =
         plan::ENSEMBLES.into_iter().flat_map(|n| ["modern", "seed"].map(|variant| (n, variant)));
     let of = || all.map(ensemble).collect();
-    (tier != Tier::Quick).then(|| Ensembles { id, about: about.into(), time, of: of() })
+    (tier != Tier::Quick).then(|| Ensembles { about: about.into(), time, of: of() })
 }
 
 /// Levels and impulses. Until the end of what single runs are compared by, all must agree.
@@ -187,7 +187,7 @@ mod tests {
             all.into_iter().map(|run| run.join().expect("a run")).collect()
         });
         let runs = Runs::new(made);
-        let study = studies::ensemble::study(ensembles, &runs);
+        let study = studies::ensemble::study(NAME, ensembles, &runs);
         let failed = study.judged.iter().filter(|judged| judged.judgement.verdict.is_failure());
         // Tolerances follow from runs that are not made here.
         let failed = failed.filter(|judged| !judged.gate.id.ends_with(".agree"));
