@@ -10,7 +10,6 @@
 //! - [`Label::NotAsymptotic`] otherwise.
 
 use base::functions::ln;
-use thiserror::Error;
 
 /// Local orders within this fraction of the fitted one count as the same order.
 pub const SAME_ORDER: f64 = 0.15;
@@ -54,16 +53,11 @@ pub struct Convergence {
     pub label: Label,
 }
 
-/// Why no order can be computed, in words.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("{0}")]
-pub struct ConvergenceError(String);
-
 /// Order of the errors of three or more levels in any sequence, with the actual ratios of spacing.
 ///
 /// # Errors
-/// [`ConvergenceError`]; an error of exactly 0 has no order and is refused.
-pub fn convergence(levels: &[Level]) -> Result<Convergence, ConvergenceError> {
+/// Why there is none, in words; an error of exactly 0 has no order and is refused.
+pub fn convergence(levels: &[Level]) -> Result<Convergence, String> {
     let levels = sorted(levels)?;
     let x: Vec<f64> = levels.iter().map(|level| ln(level.spacing)).collect();
     let y: Vec<f64> = levels.iter().map(|level| ln(level.value)).collect();
@@ -77,26 +71,20 @@ pub fn convergence(levels: &[Level]) -> Result<Convergence, ConvergenceError> {
 }
 
 /// The levels, coarse to fine.
-fn sorted(levels: &[Level]) -> Result<Vec<Level>, ConvergenceError> {
+fn sorted(levels: &[Level]) -> Result<Vec<Level>, String> {
     if levels.len() < 3 {
-        let words = format!("there are {} levels, but at least 3 are needed", levels.len());
-        return Err(ConvergenceError(words));
+        return Err(format!("there are {} levels, but at least 3 are needed", levels.len()));
     }
     let is_usable = |number: f64| number > 0.0 && number.is_finite();
     let usable = |level: &&Level| is_usable(level.spacing) && is_usable(level.value);
     if let Some(Level { spacing, value }) = levels.iter().find(|level| !usable(level)) {
         let level = format!("a level with spacing {spacing} and value {value}");
-        return Err(ConvergenceError(format!(
-            "{level} cannot be used, for its logarithm is needed"
-        )));
+        return Err(format!("{level} cannot be used, for its logarithm is needed"));
     }
     let mut levels = levels.to_vec();
     levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
     match levels.windows(2).find(|w| w[0].spacing == w[1].spacing) {
-        Some(twins) => {
-            let words = format!("two levels have the same spacing {}", twins[0].spacing);
-            Err(ConvergenceError(words))
-        }
+        Some(twins) => Err(format!("two levels have the same spacing {}", twins[0].spacing)),
         None => Ok(levels),
     }
 }
@@ -281,13 +269,13 @@ mod tests {
     #[test]
     fn what_has_no_order_is_an_error() {
         let two = levels([0.2, 0.1], |h| h);
-        assert!(convergence(&two).unwrap_err().0.starts_with("there are 2 levels"));
+        assert!(convergence(&two).unwrap_err().starts_with("there are 2 levels"));
         for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
             let broken = levels([0.4, 0.2, 0.1], |h| if h < 0.15 { bad } else { h });
-            assert!(convergence(&broken).is_err_and(|e| e.0.contains("cannot be used")), "{bad}");
+            assert!(convergence(&broken).is_err_and(|e| e.contains("cannot be used")), "{bad}");
         }
         let twins = levels([0.2, 0.1, 0.1], |h| h);
-        assert!(convergence(&twins).unwrap_err().0.ends_with("the same spacing 0.1"));
+        assert!(convergence(&twins).unwrap_err().ends_with("the same spacing 0.1"));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, sig};
 
 use crate::{
     columns::Columns,
-    convergence::{Convergence, ConvergenceError, Level, convergence},
+    convergence::{Convergence, Level, convergence},
     study::Study,
 };
 
@@ -36,7 +36,7 @@ pub struct Line {
     pub gate: Gate,
 }
 
-type Found = Result<Convergence, ConvergenceError>;
+type Found = Result<Convergence, String>;
 
 /// Adds the figure, the table and the judged orders to a study; lines that `is_drawn` refuses are not drawn.
 pub fn study(

@@ -1,78 +1,77 @@
-//! Errors and their cost: the order in the spacing, and which settings reach an error with the least work, in
-//! seconds of a run that was made alone, and in pair interactions, which do not depend on the machine or on
-//! other programs.
+//! Errors and their cost: the observed order in the spacing with its confidence interval, and which settings
+//! reach an error with the least work, in seconds of a run that was made alone, and in pair interactions,
+//! which do not depend on the machine or on other programs.
 
 use base::record::{Status, median};
-use report::{Axis, Colour, Figure, Plot, Series, first_sentence};
+use report::{
+    Axis, Cell, Colour, Figure, Layer, Legend, Plot, Series, Table, exact, first_sentence, percent,
+    sig,
+};
 
 use crate::{
-    declare::{Accuracy, Ladder, Level, error_of},
+    columns::Columns,
+    convergence::{Convergence, Label, Level, convergence},
+    declare::{Accuracy, Ladder, error_of},
     runs::Runs,
-    studies::order::{GOALS, orders},
     study::Study,
 };
 
-/// One run of a cost diagram.
+/// One run of a ladder.
 #[derive(Clone, Debug)]
-pub struct Point {
-    /// The variant of its ladder.
-    pub ladder: String,
+struct Point {
     /// Spacing.
-    pub spacing: f64,
+    spacing: f64,
     /// The resolution in words.
-    pub label: String,
+    label: String,
     /// Its error; NaN if it has none.
-    pub error: f64,
+    error: f64,
     /// Processor seconds of the stepping, sorted, taken alone \[s\].
-    pub seconds: Vec<f64>,
+    seconds: Vec<f64>,
     /// Pair interactions.
-    pub pairs: f64,
-    /// Ladder and resolution of a run that failed, which has no error.
-    pub failure: Option<String>,
+    pairs: f64,
+    /// Did the run end early?
+    has_failed: bool,
 }
 
 impl Point {
     /// Median of the timings \[s\]; NaN if the run was not timed.
-    pub fn median(&self) -> f64 {
+    fn median(&self) -> f64 {
         median(&self.seconds).unwrap_or(f64::NAN)
     }
 
     /// Fastest and slowest \[s\].
-    pub fn spread(&self) -> (f64, f64) {
+    fn spread(&self) -> (f64, f64) {
         let end = |value: Option<&f64>| value.copied().unwrap_or(f64::NAN);
         (end(self.seconds.first()), end(self.seconds.last()))
     }
 }
 
 /// The points of a ladder.
-pub fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
-    let point = |level: &Level| {
-        let record = runs.record(&level.run.spec)?;
-        let error = error_of(&accuracy.error, record);
-        let name = ladder.variant.to_string();
-        let has_failed = record.status != Status::Completed;
-        let failure = has_failed.then(|| format!("{name}, {}", level.label));
-        let mut seconds = record.cost.alone_s.clone();
+fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
+    let levels = ladder.levels.iter();
+    let of = levels.map(|level| {
+        let record = runs.record(&level.run.spec);
+        let error = record.and_then(|record| error_of(&accuracy.error, record));
+        let mut seconds = record.map_or(Vec::new(), |record| record.cost.alone_s.clone());
         seconds.sort_by(f64::total_cmp);
-        Some(Point {
-            ladder: name,
+        Point {
             spacing: level.spacing,
             label: level.label.clone(),
             error: error.unwrap_or(f64::NAN),
             seconds,
-            pairs: record.cost.pair_interactions as f64,
-            failure,
-        })
-    };
-    ladder.levels.iter().filter_map(point).collect()
+            pairs: record.map_or(f64::NAN, |record| record.cost.pair_interactions as f64),
+            has_failed: record.is_some_and(|record| record.status != Status::Completed),
+        }
+    });
+    of.collect()
 }
 
 /// What a run costs.
 type Cost = fn(&Point) -> f64;
 
 /// Points that no other point beats in both error and cost, cheapest first.
-fn pareto(points: &[Point], cost: Cost) -> Vec<&Point> {
-    let mut sorted: Vec<&Point> = points.iter().filter(|p| p.error.is_finite()).collect();
+fn pareto<'a>(points: impl Iterator<Item = &'a Point>, cost: Cost) -> Vec<&'a Point> {
+    let mut sorted: Vec<&Point> = points.filter(|p| p.error.is_finite()).collect();
     sorted.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     let mut front: Vec<&Point> = Vec::new();
     for point in sorted {
@@ -93,44 +92,69 @@ fn cheapest(ladder: &[Point], error: f64) -> f64 {
     ladder.iter().filter(holds).map(Point::median).fold(f64::NAN, f64::min)
 }
 
-pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
-    let id = format!("{}-work-precision", accuracy.id);
-    let of = |ladder| points(accuracy, ladder, runs);
-    let ladders: Vec<Vec<Point>> = accuracy.ladders.iter().map(of).collect();
-    let costs: Vec<_> =
-        ladders.iter().map(|ladder| GOALS.map(|goal| cheapest(ladder, goal))).collect();
-    let orders = orders(accuracy, &costs, runs);
-    let study = Study::new(&id, "Error against spacing and run time");
-    let study =
-        orders.judged.into_iter().fold(study, |study, (gate, order)| study.judge(gate, order));
-    let figure = figure(&id, accuracy, &ladders.concat(), (orders.panel, orders.caption));
-    study.block(figure).block(orders.table)
+/// The errors of which the table tells the least run time that reaches them.
+const GOALS: [f64; 2] = [1e-2, 1e-3];
+
+/// What is found of a ladder.
+struct Row<'a> {
+    of: &'a Ladder,
+    points: Vec<Point>,
+    /// Its order, or why it has none.
+    found: Result<Convergence, String>,
 }
 
-/// Beside the panel of orders and what its caption explains.
-fn figure(
-    id: &str,
-    accuracy: &Accuracy,
-    points: &[Point],
-    (orders, explained): (Plot, String),
-) -> Figure {
-    let failed: Vec<&str> = points.iter().filter_map(|p| p.failure.as_deref()).collect();
-    let failed = match failed.is_empty() {
-        true => String::new(),
-        false => format!(" Runs that failed: {}.", failed.join("; ")),
+/// The study of the errors of all ladders.
+pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
+    let row = |of| {
+        let points = points(accuracy, of, runs);
+        let level = |point: &Point| Level { spacing: point.spacing, value: point.error };
+        let found = convergence(&points.iter().map(level).collect::<Vec<_>>());
+        Row { of, points, found }
+    };
+    let rows: Vec<Row> = accuracy.ladders.iter().map(row).collect();
+    let id = format!("{}-work-precision", accuracy.id);
+    let study = Study::new(&id, "Error against spacing and run time");
+    let judged = rows.iter().filter_map(|row| Some((row.of.order.clone()?, &row.found)));
+    let study = judged.fold(study, |study, (gate, found)| {
+        study.judge(gate, found.as_ref().map_or(f64::NAN, |found| found.order))
+    });
+    study.block(figure(&id, accuracy, &rows)).block(table(accuracy, &rows))
+}
+
+/// Error over spacing, over run time and over work.
+fn figure(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
+    let slope = accuracy.slope.map(|order| format!(" The triangle shows order {}.", exact(order)));
+    let failed = rows.iter().flat_map(|row| {
+        let points = row.points.iter().filter(|point| point.has_failed);
+        points.map(|point| format!("{}, {}", row.of.variant, point.label))
+    });
+    let failed = match failed.collect::<Vec<_>>() {
+        failed if failed.is_empty() => String::new(),
+        failed => format!(" Runs that failed: {}.", failed.join("; ")),
     };
     let caption = format!(
-        "{} {} over spacing (left), run time on one core (middle) and work (right).\
-         {explained}{failed}",
+        "{} {} over spacing (left), run time on one core (middle) and work (right).{}{failed}",
         first_sentence(&accuracy.about).0,
         name_of_error(&accuracy.label),
+        slope.unwrap_or_default(),
     );
-    let clock = panel("Error against run time", "run time on one core [s]", points, Point::median);
-    let pairs = |p: &Point| p.pairs;
-    let counted = panel("Error against work", "pair interactions [-]", points, pairs);
-    let panels = [orders, clock, counted];
+    let clock = panel("Error against run time", "run time on one core [s]", rows, Point::median);
+    let counted = panel("Error against work", "pair interactions [-]", rows, |p| p.pairs);
+    let panels = [orders(accuracy, rows), clock, counted];
     let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
     panels.into_iter().fold(figure, Figure::panel)
+}
+
+/// Error over spacing.
+fn orders(accuracy: &Accuracy, rows: &[Row]) -> Plot {
+    let axes = (Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
+    let plot = Plot::new("Error against spacing", axes.0, axes.1).legend(Legend::Hidden);
+    let plot = rows.iter().enumerate().fold(plot, |plot, (k, row)| {
+        let usable = row.points.iter().filter(|p| p.error.is_finite());
+        let line = usable.map(|p| (p.spacing, p.error)).collect();
+        plot.layer(Series::line_markers(row.of.variant, line).cycle(k))
+    });
+    accuracy.slope.into_iter().map(Layer::Slope).fold(plot, Plot::layer)
 }
 
 /// The label of an axis without the mark of a number without unit, as the beginning of a sentence.
@@ -151,15 +175,16 @@ fn short(label: &str) -> String {
     label.split_whitespace().find(is_number).unwrap_or(label).into()
 }
 
-fn panel(title: &str, cost_label: &str, points: &[Point], cost: Cost) -> Plot {
+fn panel(title: &str, cost_label: &str, rows: &[Row], cost: Cost) -> Plot {
     // The error is named at the panel on the left.
     let mut plot = Plot::new(title, Axis::log(cost_label), Axis::log(""));
-    let front = pareto(points, cost).iter().map(|p| (cost(p), p.error)).collect();
+    let all = rows.iter().flat_map(|row| &row.points);
+    let front = pareto(all, cost).iter().map(|p| (cost(p), p.error)).collect();
     plot = plot.layer(Series::line("Pareto front", front).colour(PALE).width(7.0));
-    for (k, ladder) in points.chunk_by(|a, b| a.ladder == b.ladder).enumerate() {
-        let own: Vec<&Point> = ladder.iter().filter(|p| p.error.is_finite()).collect();
+    for (k, row) in rows.iter().enumerate() {
+        let own: Vec<&Point> = row.points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let mut series = Series::line_markers(&ladder[0].ladder, line).cycle(k);
+        let mut series = Series::line_markers(row.of.variant, line).cycle(k);
         if title.contains("time") {
             series = series.labels(own.iter().map(|p| short(&p.label)));
             series = series.x_bars(own.iter().map(|p| p.spread()).collect());
@@ -172,20 +197,62 @@ fn panel(title: &str, cost_label: &str, points: &[Point], cost: Cost) -> Plot {
 /// Behind everything else.
 const PALE: Colour = Colour(222, 222, 222);
 
+const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of \
+    every finer level, is at most so much: at a single level errors of time and spacing can cancel.";
+
+/// Orders, intervals, and what errors cost.
+fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
+    let about = format!("Observed orders of accuracy. {} {TIMES}", accuracy.about);
+    let of = |show: fn(&Convergence) -> String| {
+        move |row: &Row| row.found.as_ref().map_or("–".into(), show)
+    };
+    let order = of(|found| format!("{} ± {}", sig(found.order, 3), sig(found.standard_error, 2)));
+    let interval = of(|found| {
+        let [low, high] = found.interval.map(|end| sig(end, 2));
+        format!("{low} … {high}")
+    });
+    let local = of(|found| {
+        let orders: Vec<String> = found.local_orders.iter().map(|p| sig(*p, 2)).collect();
+        orders.join(", ")
+    });
+    let label = |row: &Row| match &row.found {
+        Ok(Convergence { label: Label::Asymptotic, .. }) => "asymptotic".into(),
+        Ok(Convergence { label: Label::FloorReached, .. }) => "floor reached".into(),
+        Ok(Convergence { label: Label::NotAsymptotic, .. }) => "not asymptotic".into(),
+        Err(error) => format!("no order: {error}"),
+    };
+    let columns = Columns::default()
+        .code("variant", |row: &Row| row.of.variant)
+        .num(["order ± standard error", "-"], move |row| Cell::text(order(row)))
+        .text("95 % interval", interval)
+        .text("local orders, coarse to fine", local)
+        .text("label", label)
+        .of(
+            ["finest error", "-"],
+            |row| row.points.last().map_or(f64::NAN, |p| p.error),
+            |error| Cell::percent(error, 2),
+        );
+    let columns = GOALS.iter().fold(columns, |columns, goal| {
+        let head = format!("time to {}", percent(*goal, 1));
+        columns.of([&head, "s"], |row| cheapest(&row.points, *goal), Cell::seconds)
+    });
+    columns.table(about, rows)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use base::{
+        gate::{Bound, Evidence, Gate, Verdict},
+        record::Record,
+    };
+    use report::Block;
 
-    fn point(ladder: &str, error: f64, seconds: &[f64]) -> Point {
-        Point {
-            ladder: ladder.into(),
-            spacing: 0.1,
-            label: "10 rows".into(),
-            error,
-            seconds: seconds.to_vec(),
-            pairs: 1.0,
-            failure: None,
-        }
+    use super::*;
+    use crate::studies::tests::{ERROR, column, comparison, records, spec, tables};
+
+    fn point(label: &str, error: f64, seconds: &[f64]) -> Point {
+        let (label, seconds) = (label.into(), seconds.to_vec());
+        Point { spacing: 0.1, label, error, seconds, pairs: 1.0, has_failed: false }
     }
 
     #[test]
@@ -196,15 +263,14 @@ mod tests {
             point("slow and bad", 2e-2, &[1.5]),
             point("failed", f64::NAN, &[0.01]),
         ];
-        let names: Vec<_> =
-            pareto(&points, Point::median).iter().map(|p| p.ladder.as_str()).collect();
-        assert_eq!(names, ["fast and bad", "slow and good"]);
+        let front = pareto(points.iter(), Point::median);
+        assert_eq!(names(front), ["fast and bad", "slow and good"]);
         assert_eq!(points[0].median(), 2.0);
         assert_eq!(points[0].spread(), (1.0, 3.0));
     }
 
     fn names<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a str> {
-        points.into_iter().map(|p| p.ladder.as_str()).collect()
+        points.into_iter().map(|p| p.label.as_str()).collect()
     }
 
     /// What is a tenth worse at a higher cost is beaten, what is a hundredth better is not.
@@ -218,11 +284,11 @@ mod tests {
             point("equal and dearer", 1e-2, &[1.5]),
             point("worse than the best alone", 0.9901e-2, &[5.0]),
         ];
-        assert_eq!(names(pareto(&points, Point::median)), ["cheapest", "a hundredth better"]);
+        assert_eq!(names(pareto(points.iter(), Point::median)), ["cheapest", "a hundredth better"]);
         // By work, of which they all have as much as the number of their place, the first comes first.
         let work = |k: usize| Point { pairs: k as f64, ..points[k].clone() };
         let work: Vec<Point> = (0..points.len()).map(work).collect();
-        assert_eq!(names(pareto(&work, |p| p.pairs)), ["a hundredth better"]);
+        assert_eq!(names(pareto(work.iter(), |p| p.pairs)), ["a hundredth better"]);
     }
 
     /// The median, not the mean or the fastest, is what a level costs.
@@ -259,5 +325,63 @@ mod tests {
         let points = [of(0.1, 1e-3, 0.1), of(0.05, 2e-3, 1.0), of(0.025, 5e-4, 9.0)];
         assert_eq!(cheapest(&points, 1e-3), 9.0);
         assert_eq!(cheapest(&points, 3e-3), 0.1);
+    }
+
+    /// Ladders of `seed` and `best` at n = 10, 20, 40, 80, of which the order of the second is judged; runs
+    /// with these errors, a function of variant and n, each of which took n/20 s.
+    fn study_of(error: impl Fn(&str, f64) -> f64) -> Study {
+        let bound = Bound::Within(2.9, 3.1);
+        let gate = Gate::new("case.order", "order", bound, Evidence::Theory, "made up");
+        let levels = [10, 20, 40, 80];
+        let ladder = |(variant, order)| {
+            let levels = comparison(variant, &levels).levels;
+            Ladder { variant, levels, order }
+        };
+        let ladders = [("seed", None), ("best", Some(gate))].map(ladder).into();
+        let accuracy = Accuracy { ladders, ..Accuracy::new("case", ERROR, "Error [-]") };
+        let each = ["seed", "best"].into_iter().flat_map(|v| levels.map(|n| (v, n)));
+        let made = each.map(|(variant, n)| {
+            let error = error(variant, n as f64);
+            let fill = move |record: &mut Record| {
+                record.put(ERROR, error);
+                record.cost.alone_s = vec![n as f64 / 20.0];
+            };
+            (spec(variant, n), fill)
+        });
+        study(&accuracy, &records(made))
+    }
+
+    #[test]
+    fn each_ladder_has_the_order_of_its_own_errors() {
+        let study = study_of(|variant, n| match variant {
+            "seed" => -4.0 / (n * n), // a metric with a sign
+            _ => 8.0 / n.powi(3),
+        });
+        let table = tables(&study)[0];
+        assert_eq!(column(table, "variant"), ["`seed`", "`best`"]);
+        let local = column(table, "local orders, coarse to fine");
+        assert_eq!(local, ["2.0, 2.0, 2.0", "3.0, 3.0, 3.0"]);
+        assert_eq!(column(table, "label"), ["asymptotic", "asymptotic"]);
+        let finest = column(table, "finest error");
+        assert_eq!(finest, ["0.062 %", "0.0016 %"], "4/80² and 8/80³");
+        let times = GOALS.map(|goal| column(table, &format!("time to {}", percent(goal, 1))));
+        assert_eq!(times, [["1.00 s", "500 ms"], ["4.00 s", "1.00 s"]], "n = 20 and 10, 80 and 20");
+        let [judged] = study.judged.as_slice() else { panic!("one order is judged") };
+        assert_eq!((&*judged.gate.id, &judged.judgement.verdict), ("case.order", &Verdict::Pass));
+        let order = judged.judgement.value.expect("an order");
+        assert!((order - 3.0).abs() < 1e-12, "order {order} of errors 8/n³");
+        let Block::Figure(figure) = &study.blocks[0] else { panic!("a figure") };
+        assert!(figure.caption.ends_with(" The triangle shows order 2."), "{}", figure.caption);
+    }
+
+    #[test]
+    fn a_level_that_failed_leaves_no_order_and_its_gate_fails() {
+        let study = study_of(|_, n| if n == 20.0 { f64::NAN } else { 1.0 / n });
+        let judged = &study.judged[0].judgement;
+        assert!(judged.verdict.is_failure() && judged.value.is_some_and(f64::is_nan), "{judged:?}");
+        let label = &column(tables(&study)[0], "label")[0];
+        assert!(label.starts_with("no order: a level with spacing 0.05"), "{label}");
+        // What is coarser than it has no cost either.
+        assert_eq!(column(tables(&study)[0], &format!("time to {}", percent(0.01, 1))), ["–"; 2]);
     }
 }

@@ -8,7 +8,6 @@ mod curves;
 pub mod ensemble;
 mod limit;
 mod map;
-mod order;
 mod sensitivity;
 mod submissions;
 #[cfg(test)]
