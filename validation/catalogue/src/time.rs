@@ -13,8 +13,8 @@ type Profiled<'a> = (&'a Record, &'a Breakdown);
 
 /// The largest run of the best variant of a case among those that were profiled.
 fn largest(results: &CaseResults) -> Option<Profiled<'_>> {
-    let best = &results.headlines.first()?.variant;
-    let profiled = results.runs.simulations().filter(|record| record.variant == *best);
+    let (_, best) = results.best()?;
+    let profiled = results.runs.simulations().filter(|record| record.variant == best.variant);
     profiled
         .filter_map(|record| Some((record, record.cost.breakdown.as_ref()?)))
         .max_by_key(|(record, _)| record.cost.pair_interactions)

@@ -10,11 +10,11 @@ use report::{Card, Counts};
 
 use crate::{
     case::{Case, Planned, Tier},
-    declare::Declaration,
+    declare::{self, Declaration},
     make::{self, Made, Making},
     plan,
     runs::{Judged, JudgedRun, Runs},
-    studies::{self, Headline},
+    studies,
     study::Study,
 };
 
@@ -28,8 +28,8 @@ pub struct CaseResults {
     pub studies: Vec<Study>,
     /// What is said of it first.
     pub card: Option<Card>,
-    /// The error of the best variant and of the paper's, if the case declares a card.
-    pub headlines: Vec<Headline>,
+    /// What it declares.
+    pub declared: Declaration,
 }
 
 impl CaseResults {
@@ -45,6 +45,12 @@ impl CaseResults {
         let runs = self.runs.all.iter().flat_map(move |run| run.judged.iter().map(of_run(run)));
         let studies = self.studies.iter();
         runs.chain(studies.flat_map(move |study| study.judged.iter().map(of_study(study))))
+    }
+
+    /// The card that it declares and the run of its best variant there.
+    pub fn best(&self) -> Option<(&declare::Card, &Record)> {
+        let card = self.declared.card.as_ref()?;
+        Some((card, self.runs.record(card.runs.first()?)?))
     }
 }
 
@@ -124,9 +130,8 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
         let mut studies = case.studies(tier, &runs);
         studies.extend(studies::of(case.name(), &declared, &runs));
         let card = studies::card(case.name(), &declared, &studies, &runs);
-        let headlines = Headline::all(&declared, &runs);
         studies.extend(unplanned(case, &runs));
-        CaseResults { case, runs, studies, card, headlines }
+        CaseResults { case, runs, studies, card, declared }
     };
     let cases = of_plans.into_par_iter().map(study).collect();
     Suite { tier, cases, made }

@@ -10,7 +10,7 @@ use harness::{
     case::{self, Case, Tier},
     declare::Declaration,
     runs::Judged,
-    studies::Headline,
+    studies::{cost_in_words, headline},
 };
 use report::Counts;
 
@@ -24,7 +24,7 @@ pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Jud
         ("error", error),
         ("bound", bound(verdicts, &metric)),
         ("gates", gates(verdicts)),
-        ("cost", Headline::new(record, None).cost()),
+        ("cost", cost_in_words(record)),
         ("next", next(case, &declared, spec, record, verdicts)),
     ];
     let told = lines.iter().filter(|(_, words)| !words.is_empty());
@@ -35,7 +35,7 @@ pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Jud
 /// judged; and the name of its metric.
 fn error(declared: &Declaration, record: &Record, verdicts: &[Judged]) -> (String, String) {
     if let Some(card) = &declared.card
-        && let Ok(error) = Headline::of(card, record).error()
+        && let Ok(error) = headline(card, record)
     {
         let words = format!("{error}, {}, against {}", card.error, card.against);
         return (words, card.metric.name.clone());

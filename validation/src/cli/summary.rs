@@ -4,6 +4,7 @@ use ::report;
 use base::gate::Verdict;
 use harness::{
     runs::Judged,
+    studies::headline,
     suite::{CaseResults, Suite},
 };
 use report::Counts;
@@ -50,11 +51,11 @@ fn row(results: &CaseResults) -> Vec<String> {
     let mut row = vec![results.case.name().to_string()];
     let columns = [Verdict::Fail, Verdict::Limitation, Verdict::ExpectedFailure, Verdict::Pass];
     row.extend(columns.map(|verdict| counts.count(verdict).to_string()));
-    row.extend(match results.headlines.first() {
-        Some(best) => [
-            best.error().unwrap_or_else(|_| "none".into()),
+    row.extend(match results.best() {
+        Some((card, best)) => [
+            headline(card, best).unwrap_or_else(|_| "none".into()),
             best.variant.clone(),
-            report::seconds(best.seconds),
+            report::seconds(best.cost.alone_median().unwrap_or(best.cost.cpu_s)),
         ],
         None => Default::default(),
     });

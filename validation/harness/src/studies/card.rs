@@ -22,8 +22,7 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     let judged: Vec<&Judged> = of_runs.chain(studies.iter().flat_map(|s| &s.judged)).collect();
     let mut facts = vec![("Error:".to_string(), error(card))];
     for (name, spec) in ["Best, ", "Paper's, "].into_iter().zip(&card.runs) {
-        let found = runs.record(spec).map(|record| Headline::of(card, record));
-        facts.push((format!("{name}`{}`:", spec.variant), result(found)));
+        facts.push((format!("{name}`{}`:", spec.variant), result(card, runs.record(spec))));
     }
     let stable = stable(declared, &card.runs, runs);
     facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
@@ -47,74 +46,33 @@ fn error(card: &declare::Card) -> String {
 }
 
 /// The error of a run and what it cost.
-fn result(found: Option<Headline>) -> String {
-    let Some(found) = found else { return "not run".into() };
-    match found.error() {
-        Ok(error) => format!("**{error}** in {}", found.cost()),
+fn result(card: &declare::Card, record: Option<&Record>) -> String {
+    let Some(record) = record else { return "not run".into() };
+    match headline(card, record) {
+        Ok(error) => format!("**{error}** in {}", cost(record)),
         Err(status) => status,
     }
 }
 
-/// The headline error of a run, and what it cost.
-#[derive(Clone, Debug)]
-pub struct Headline {
-    /// Name of the variant.
-    pub variant: String,
-    /// The error, if it was measured.
-    pub value: Option<f64>,
-    /// How the run ended.
-    pub status: Status,
-    /// Processor time for stepping \[s\], with the machine for itself if the run was timed so.
-    pub seconds: f64,
-    /// Pair interactions.
-    pub pairs: f64,
+/// The error of a run in per cent.
+///
+/// # Errors
+/// How the run ended, if the error was not measured.
+pub fn headline(card: &declare::Card, record: &Record) -> Result<String, String> {
+    let value = record.value(card.metric.clone());
+    value.map(|value| percent(value, 2)).ok_or_else(|| record.status.to_string())
 }
 
-impl Headline {
-    /// Of a record of the case that declares the card.
-    pub fn of(card: &declare::Card, record: &Record) -> Self {
-        Self::new(record, record.value(card.metric.clone()))
-    }
-
-    /// Of a record whose error is this.
-    pub fn new(record: &Record, value: Option<f64>) -> Self {
-        let cost = &record.cost;
-        Self {
-            variant: record.variant.clone(),
-            value,
-            status: record.status.clone(),
-            seconds: cost.alone_median().unwrap_or(cost.cpu_s),
-            pairs: cost.pair_interactions as f64,
-        }
-    }
-
-    /// The best run of a case and that of the paper's variant, as far as they were made.
-    pub fn all(declared: &Declaration, runs: &Runs) -> Vec<Self> {
-        let of_card = |card: &declare::Card| -> Vec<Self> {
-            let records = runs.records(card.runs.iter().cloned());
-            records.into_iter().map(|record| Self::of(card, record)).collect()
-        };
-        declared.card.as_ref().map(of_card).unwrap_or_default()
-    }
-
-    /// The error in per cent, or how the run ended.
-    ///
-    /// # Errors
-    /// If the error was not measured.
-    pub fn error(&self) -> Result<String, String> {
-        self.value.map(|value| percent(value, 2)).ok_or_else(|| self.status.to_string())
-    }
-
-    /// The cost in words.
-    pub fn cost(&self) -> String {
-        let known = |number: f64, words: String| match number > 0.0 {
-            true => words,
-            false => "unknown".into(),
-        };
-        let time = known(self.seconds, seconds(self.seconds));
-        let pairs = known(self.pairs, sci(self.pairs, 2));
-        format!("{time} on one core, {pairs} pairs")
-    }
+/// The cost of a run in words.
+pub fn cost(record: &Record) -> String {
+    let known = |number: f64, words: fn(f64) -> String| match number > 0.0 {
+        true => words(number),
+        false => "unknown".into(),
+    };
+    let alone = record.cost.alone_median();
+    let time = known(alone.unwrap_or(record.cost.cpu_s), seconds);
+    let pairs = known(record.cost.pair_interactions as f64, |pairs| sci(pairs, 2));
+    format!("{time} on one core, {pairs} pairs")
 }
 
 /// The largest stable time steps over their theoretical limits.

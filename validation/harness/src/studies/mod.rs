@@ -14,7 +14,7 @@ mod submissions;
 mod tests;
 pub mod validation;
 
-pub use card::{Headline, card};
+pub use card::{card, cost as cost_in_words, headline};
 pub use limit::of_theory as limit_of_theory;
 
 use crate::{
