@@ -3,7 +3,7 @@
 use base::settings::{Settings, Value};
 use maths::theory::time_step;
 use nalgebra::Vector2;
-use solver::{Linear, Tait};
+use solver::Tait;
 
 /// The parameters of a material at a particle spacing. Parameters that a case does not use are 0.
 #[derive(Clone, Copy, Debug)]
@@ -82,11 +82,6 @@ impl Medium {
         time_step::explicit_limit(self.stiffest, self.h, self.nu)
     }
 
-    /// (12).
-    pub fn linear(&self) -> Linear {
-        Linear { density: self.eos.density, sound_speed: self.eos.sound_speed }
-    }
-
     /// The parameters on which waves in the medium depend, for terms that read these settings.
     pub fn waves(&self, uses: &[Knob]) -> time_step::Medium {
         let used = |knob, value| if uses.contains(&knob) { value } else { 0.0 };
@@ -134,7 +129,7 @@ impl Knob {
         (Self::WallGravity, "wall_gravity"),
     ];
 
-    /// The name of the setting, in every case that has it.
+    /// Its name among the settings.
     pub fn name(self) -> &'static str {
         Self::ALL[self as usize].1
     }

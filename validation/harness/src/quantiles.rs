@@ -14,19 +14,15 @@ pub struct Quantile {
 }
 
 impl Quantile {
-    /// The number below which this share of a distribution lies, from a sample in ascending order.
-    pub fn of(sorted: &[f64], share: f64) -> Self {
-        let at = |rank: usize| sorted.get(rank.wrapping_sub(1)).copied();
-        let [low, high] = ranks(sorted.len(), share);
-        let within = at(low).zip(at(high)).map(|(low, high)| [low, high]);
-        Self { value: between(sorted, share), within }
-    }
-
-    /// The same, of a sample in any order, without what is not finite.
+    /// The number below which this share of a distribution lies, from a sample in any order, without what is
+    /// not finite.
     pub fn of_sample(sample: &[f64], share: f64) -> Self {
         let mut sorted: Vec<f64> = sample.iter().copied().filter(|x| x.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
-        Self::of(&sorted, share)
+        let at = |rank: usize| sorted.get(rank.wrapping_sub(1)).copied();
+        let [low, high] = ranks(sorted.len(), share);
+        let within = at(low).zip(at(high)).map(|(low, high)| [low, high]);
+        Self { value: between(&sorted, share), within }
     }
 }
 

@@ -40,7 +40,7 @@ macro_rules! from_medium {
 from_medium! {
     () [] () = |_| ();
     Tait [] () = |m| m.eos;
-    Linear [] () = |m| m.linear();
+    Linear [] () = |m| Self { density: m.eos.density, sound_speed: m.eos.sound_speed };
     Continuity [] () = |_| Continuity;
     ConsistentContinuity [] () = |_| ConsistentContinuity;
     ConsistentPressure<Tait> [] () = |m| ConsistentPressure { eos: m.eos };
