@@ -136,11 +136,6 @@ impl<T: Settings + 'static> Composed<T> {
         RunSpec::new(self.name, variant, serde_json::to_value(settings).unwrap_or_default())
     }
 
-    /// [`Composed::spec`] as a run of a plan.
-    pub fn planned(&self, variant: &str, set: impl FnOnce(&mut T)) -> Planned {
-        Planned::new(self.spec(variant, set))
-    }
-
     /// A gate on a metric of a run, called `case.run.metric`.
     ///
     /// # Panics

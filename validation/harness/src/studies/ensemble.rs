@@ -71,16 +71,18 @@ impl<'a> Followed<'a> {
 
 /// The study.
 pub fn study(case: &str, ensembles: &Ensembles, runs: &Runs) -> Study {
-    let completed = |of: &Ensemble| of.members.iter().filter_map(|s| runs.completed(s)).collect();
-    let all: Vec<Made> =
-        ensembles.of.iter().map(|of| Made { of, records: completed(of) }).collect();
-    let followed: Vec<(&Made, Followed)> = all
-        .iter()
-        .flat_map(|made| made.of.histories.iter().map(move |history| (made, history)))
-        .map(|(made, history)| (made, Followed::of(history, &made.records, runs)))
-        .collect();
-    let numbers: Vec<(&Made, &Number)> =
-        all.iter().flat_map(|made| made.of.numbers.iter().map(move |of| (made, of))).collect();
+    let made = |of| -> Made {
+        Made { of, records: of.members.iter().filter_map(|spec| runs.completed(spec)).collect() }
+    };
+    let all: Vec<Made> = ensembles.of.iter().map(made).collect();
+    let (mut followed, mut numbers) = (Vec::new(), Vec::new());
+    for made in &all {
+        let of = |of| (made, Followed::of(of, &made.records, runs));
+        followed.extend(made.of.histories.iter().map(of));
+        let values =
+            |of: &Number| made.records.iter().filter_map(|record| (of.value)(record)).collect();
+        numbers.extend(made.of.numbers.iter().map(|of| (made, of, values(of))));
+    }
     let id = anchor(case, "ensembles");
     let mut study = Study::new(&id, "Ensembles: what a run predicts and what is a draw")
         .prose(&*ensembles.about)
@@ -91,8 +93,8 @@ pub fn study(case: &str, ensembles: &Ensembles, runs: &Runs) -> Study {
     study.judged.extend(followed.iter().filter_map(|(_, followed)| {
         followed.of.gate.clone().map(|gate| Judged::new(gate, followed.agree()))
     }));
-    study.judged.extend(numbers.iter().filter_map(|(made, number)| {
-        let median = quantile(made, number, 0.5).value;
+    study.judged.extend(numbers.iter().filter_map(|(_, number, values)| {
+        let median = Quantile::of_sample(values, 0.5).value;
         number.gate.clone().map(|gate| Judged::new(gate, Some(median).filter(|m| m.is_finite())))
     }));
     study
@@ -108,13 +110,8 @@ fn complete(made: &Made) -> Judged {
     Judged::new(gate, Some(made.records.len() as f64))
 }
 
-fn values(made: &Made, number: &Number) -> Vec<f64> {
-    made.records.iter().filter_map(|record| (number.value)(record)).collect()
-}
-
-fn quantile(made: &Made, number: &Number, share: f64) -> Quantile {
-    Quantile::of_sample(&values(made, number), share)
-}
+/// A number of an ensemble with its values, one a member.
+type Numbered<'a> = (&'a Made<'a>, &'a Number, Vec<f64>);
 
 fn horizons(unit: &str, all: &[(&Made, Followed)]) -> Table {
     let caption = format!(
@@ -143,41 +140,39 @@ fn horizons(unit: &str, all: &[(&Made, Followed)]) -> Table {
         .table(caption, all)
 }
 
-fn distributions(all: &[(&Made, &Number)]) -> Table {
+fn distributions(all: &[Numbered]) -> Table {
     let caption = format!(
         "Distributions over the members. Intervals of median and quartiles lie between order statistics and \
          hold with at least {} % whatever the distribution is. Measured is each repetition that there is.",
         sig(100.0 * CONFIDENCE, 2)
     );
-    type Row<'a> = (&'a Made<'a>, &'a Number);
     let show = |value| Cell::num(value, 3);
-    let shown = |quantile: Quantile| {
-        let [value, low, high] = [
-            quantile.value,
-            quantile.within.map_or(f64::NAN, |[low, _]| low),
-            quantile.within.map_or(f64::NAN, |[_, high]| high),
-        ]
-        .map(|value| if value.is_finite() { sig(value, 3) } else { "–".into() });
-        Cell { value: Some(quantile.value), ..Cell::text(format!("{value} ({low} … {high})")) }
+    let quarter = |share: f64| {
+        move |(.., values): &Numbered| {
+            let Quantile { value, within } = Quantile::of_sample(values, share);
+            let [low, high] = within.unwrap_or([f64::NAN; 2]);
+            let [shown, low, high] = [value, low, high]
+                .map(|value| if value.is_finite() { sig(value, 3) } else { "–".into() });
+            Cell { value: Some(value), ..Cell::text(format!("{shown} ({low} … {high})")) }
+        }
     };
-    let end = |(made, number): &Row, fold: fn(f64, f64) -> f64| {
-        values(made, number).into_iter().fold(f64::NAN, fold)
+    let end = |fold: fn(f64, f64) -> f64| {
+        move |(.., values): &Numbered| values.iter().copied().fold(f64::NAN, fold)
     };
-    let quarter = |share| move |(made, number): &Row| shown(quantile(made, number, share));
-    let measured = |(_, number): &Row| {
+    let measured = |(_, number, _): &Numbered| {
         let all: Vec<String> = number.measured.iter().map(|value| sig(*value, 3)).collect();
         if all.is_empty() { "–".to_string() } else { all.join("; ") }
     };
-    Columns::<Row>::default()
-        .code("variant", |(made, _)| made.of.variant)
-        .text("resolution", |(made, _)| made.of.label.clone())
-        .text("number", |(_, number)| number.name[0])
-        .text("unit", |(_, number)| number.name[1])
+    Columns::<Numbered>::default()
+        .code("variant", |(made, ..)| made.of.variant)
+        .text("resolution", |(made, ..)| made.of.label.clone())
+        .text("number", |(_, number, _)| number.name[0])
+        .text("unit", |(_, number, _)| number.name[1])
         .num(["median", ""], quarter(QUARTERS[1]))
         .num(["lower quartile", ""], quarter(QUARTERS[0]))
         .num(["upper quartile", ""], quarter(QUARTERS[2]))
-        .of(["least", ""], move |row| end(row, f64::min), show)
-        .of(["largest", ""], move |row| end(row, f64::max), show)
+        .of(["least", ""], end(f64::min), show)
+        .of(["largest", ""], end(f64::max), show)
         .text("measured", measured)
         .table(caption, all)
 }
