@@ -225,7 +225,7 @@ pub struct Ladder {
     pub order: Option<Gate>,
 }
 
-/// One resolution of a ladder.
+/// A run at a resolution, such as one of a ladder.
 #[derive(Clone)]
 pub struct Level {
     /// The run and its gates.
@@ -503,18 +503,8 @@ pub struct Picture {
     pub colours: (&'static str, ColourMap),
     /// Width and height of a panel \[px\].
     pub size: [f64; 2],
-    /// The panels.
-    pub panels: Vec<Pictured>,
-}
-
-/// The particles of one run.
-pub struct Pictured {
-    /// Title of the panel.
-    pub title: String,
-    /// The run, which keeps particles.
-    pub spec: RunSpec,
-    /// Their spacing, in the unit of their places.
-    pub spacing: f64,
+    /// The panels: runs that keep particles, their spacing in the unit of the places, and titles as labels.
+    pub panels: Vec<Level>,
 }
 
 /// One panel of curves.
@@ -618,7 +608,7 @@ impl Declaration {
         let panels = self.curves.iter().flat_map(|curves| &curves.panels);
         panels.flat_map(|panel| &panel.lines).for_each(|line| plain(&line.spec));
         let pictured = self.pictures.iter().flat_map(|picture| &picture.panels);
-        pictured.for_each(|panel| plain(&panel.spec));
+        pictured.for_each(|panel| plain(&panel.run.spec));
         self.card.iter().flat_map(|card| &card.runs).for_each(&mut plain);
         runs
     }

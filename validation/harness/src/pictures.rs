@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use report::{Axis, Figure, ParticleMap};
 
 use crate::{
-    declare::{Picture, Pictured},
+    declare::{Level, Picture},
     runs::Runs,
     study::Study,
 };
@@ -34,8 +34,8 @@ pub fn points(record: &Record, profile: &str, value: &str) -> Vec<(f64, f64, f64
 
 /// The runs that are there.
 pub(crate) fn study(of: &Picture, runs: &Runs) -> Study {
-    let panel = |Pictured { title, spec, spacing }: &Pictured| {
-        let record = runs.record(spec)?;
+    let panel = |Level { run, spacing, label: title }: &Level| {
+        let record = runs.record(&run.spec)?;
         let [x, _, value] = &record.profiles.get(END)?.columns[..] else { return None };
         let axes = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
         let points = points(record, END, &value.name);

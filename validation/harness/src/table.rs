@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 
 use crate::{
     composed::Composed,
-    declare::{Ladder, Level, Picture, Pictured},
+    declare::{Ladder, Level, Picture},
     runs::{Planned, Tier},
 };
 
@@ -135,8 +135,8 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
     ) -> Picture {
         let kept = self.rows.iter().filter(|row| row.run.spec.keep.particles);
         let panels = kept.map(|row| {
-            let (title, spacing) = panel(row);
-            Pictured { title, spec: row.run.spec.clone(), spacing }
+            let (label, spacing) = panel(row);
+            Level { run: row.run.clone(), spacing, label }
         });
         Picture { texts, colours, size, panels: panels.collect() }
     }
