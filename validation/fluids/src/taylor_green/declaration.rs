@@ -75,14 +75,10 @@ fn histories(table: &Table) -> Curves {
         points: Box::new(error),
     };
     let most = most_error(side);
-    let panel = CurvePanel {
-        title: String::new(),
-        x: Axis::linear("t [L/U]"),
-        y: Axis::log("error of the velocity [-]"),
-        lines: shown.map(line).collect(),
-        references: vec![(format!("bound for {BEST}"), vec![(1.8, most), (2.0, most)])],
-        symbols: false,
-    };
+    let (axes, name) = (["t [L/U]", "error of the velocity [-]"], format!("bound for {BEST}"));
+    let bound = (name.as_str(), vec![(1.8, most), (2.0, most)]);
+    let panel = CurvePanel::linear("", axes, shown.map(line).collect(), bound);
+    let panel = CurvePanel { y: Axis::log(axes[1]), ..panel };
     let (id, title) = ("taylor-green-histories".into(), "Error through time".into());
     Curves { id, title, caption: caption.into(), columns: 1, panels: vec![panel] }
 }
