@@ -11,7 +11,7 @@ use crate::{
     particle_data::{Extent, Fault, ParticleData, Phase},
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
-    sweep::{self, BlockUpdate, PairSweep, Sweep, first, nothing, second, whole},
+    sweep::{self, BlockUpdate, PairSweep, Select, Sweep, first, nothing, second, whole},
     terms::{News, Term, moments::InverseMoments},
     walls::Walls,
 };
@@ -87,10 +87,7 @@ impl<P: Physics> Engine<P> {
     /// Sums the forces: `update(i, target, rate)` with dv/dt, for fluid particles.
     pub fn sweep_forces(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
         self.normalise();
-        self.data.count(Phase::Forces);
-        let sweep = self.sweep(&self.terms.0, first(), true);
-        sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
-        self.data.enter(Phase::Rest);
+        self.sweep_part(targets, &self.terms.0.clone(), first(), update);
     }
 
     /// Sums a part of the forces, whose derived numbers `select` reads: `update(i, target, rate)` with dv/dt,
@@ -99,10 +96,9 @@ impl<P: Physics> Engine<P> {
         &mut self,
         targets: &mut State<P>,
         part: &T,
-        select: impl Fn(usize, &Derived<P>) -> T::Derived + Sync,
+        select: impl Select<Derived<P>, T::Derived>,
         update: impl Update<P::Extra>,
     ) {
-        const { assert!(!T::NORMALISES, "moments are not summed for a part") };
         self.data.count(Phase::Forces);
         let sweep = self.sweep(part, select, true);
         sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
@@ -191,7 +187,7 @@ impl<P: Physics> Engine<P> {
     fn sweep<'a, T: Term<P::Extra>>(
         &'a self,
         terms: &'a T,
-        select: impl Fn(usize, &Derived<P>) -> T::Derived + Sync,
+        select: impl Select<Derived<P>, T::Derived>,
         moving: bool,
     ) -> impl PairSweep<P::Extra> {
         Sweep { kernel: &self.kernel, terms, columns: &self.columns, select, moving }
@@ -238,7 +234,9 @@ impl<P: Physics> Engine<P> {
     pub(crate) fn build_lists(&mut self, positions: &mut dyn Iterator<Item = Vector2<f64>>) {
         self.data.enter(Phase::Search);
         self.data.neighbours.place(positions);
-        self.data.build_lists(P::Walls::EXTRAPOLATES);
+        let Self { data, .. } = self;
+        data.neighbours.build(data.counts, P::Walls::EXTRAPOLATES, data.parallel);
+        data.progress.work.list_builds += 1;
         self.still = None;
         let columns = self.data.fixed.len() + self.data.neighbours.images.len();
         self.columns.resize(columns + 1, Column::sentinel());

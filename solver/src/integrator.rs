@@ -210,15 +210,13 @@ fn weight(j: u32) -> f64 {
     0.5 * (j * j + j - 2.0) / (j * j + j)
 }
 
-impl<P, E, T> Kick<P> for SuperSteps<P::Extra>
-where
-    P: Physics<Forces = Split<E, T>>,
-    E: Term<P::Extra>,
-    T: Term<P::Extra>,
+impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kick<P>
+    for SuperSteps<P::Extra>
 {
     const NAME: &'static str = "super-leapfrog";
 
     fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
+        const { assert!(!T::NORMALISES, "moments are not summed for a part") };
         let Split(_, stiff, limit) = engine.terms.0.clone();
         let count = stages(dt[0] / limit);
         let s = f64::from(count);

@@ -347,13 +347,6 @@ impl<X: Numbers> ParticleData<X> {
         }
     }
 
-    /// Goes on from a checkpoint whose particles were put and listed.
-    pub(crate) fn go_on(&mut self, from: &Checkpoint<X>) {
-        (self.progress, self.lag) = (from.progress, from.lag);
-        self.held.clear();
-        self.past.clone_from(&from.past);
-    }
-
     /// Memory held \[bytes\].
     pub fn bytes(&self) -> usize {
         self.state.capacity() * size_of::<Evolved<X>>()
@@ -381,12 +374,6 @@ impl<X: Numbers> ParticleData<X> {
                 past.swap(i, j);
             }
         });
-    }
-
-    /// Builds neighbour lists and images for particles where they were placed.
-    pub(crate) fn build_lists(&mut self, fluid_only: bool) {
-        self.neighbours.build(self.counts, fluid_only, self.parallel);
-        self.progress.work.list_builds += 1;
     }
 
     /// Tells that a phase begins.

@@ -25,14 +25,8 @@ pub trait Physics: Sized + 'static {
 #[derive(Debug)]
 pub struct Compose<K, F, D, W, I = (), X = ()>(PhantomData<(K, F, D, W, I, X)>);
 
-impl<K, F, D, W, I, X> Physics for Compose<K, F, D, W, I, X>
-where
-    X: Numbers,
-    K: Kernel,
-    F: Term<X>,
-    D: Term<X>,
-    W: Walls<X>,
-    I: 'static,
+impl<K: Kernel, F: Term<X>, D: Term<X>, W: Walls<X>, I: 'static, X: Numbers> Physics
+    for Compose<K, F, D, W, I, X>
 {
     type Extra = X;
     type Kernel = K;

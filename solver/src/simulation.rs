@@ -190,7 +190,10 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         from.check()?;
         self.engine.data.put(&from.particles);
         self.engine.build_lists(&mut from.built_at.iter().copied());
-        self.engine.data.go_on(from);
+        let data = &mut self.engine.data;
+        (data.progress, data.lag) = (from.progress, from.lag);
+        data.held.clear();
+        data.past.clone_from(&from.past);
         self.integrator = S::Integrator::default();
         Ok(())
     }

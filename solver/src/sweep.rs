@@ -75,27 +75,29 @@ pub(crate) fn fill<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists, rates: &
     });
 }
 
-// Which of the derived numbers of a column terms read. Each closure is a type of its own, which depends on
-// no scheme.
+/// Which of the derived numbers of a column terms read: from its number and these to theirs. Each closure is a
+/// type of its own, which depends on no scheme.
+pub trait Select<S, D>: Fn(usize, &S) -> D + Sync {}
+impl<S, D, F: Fn(usize, &S) -> D + Sync> Select<S, D> for F {}
 
 /// Those of the forces.
-pub(crate) fn first<A: Copy, B>() -> impl Fn(usize, &(A, B)) -> A {
+pub(crate) fn first<A: Copy, B>() -> impl Select<(A, B), A> {
     |_, derived| derived.0
 }
 
 /// Those of the drift.
-pub(crate) fn second<A, B: Copy>() -> impl Fn(usize, &(A, B)) -> B {
+pub(crate) fn second<A, B: Copy>() -> impl Select<(A, B), B> {
     |_, derived| derived.1
 }
 
 /// All.
-pub(crate) fn whole<S: Copy>() -> impl Fn(usize, &S) -> S {
+pub(crate) fn whole<S: Copy>() -> impl Select<S, S> {
     |_, derived| *derived
 }
 
 /// None: zeros.
-pub(crate) fn nothing<S, T: Default>() -> impl Fn(usize, &S) -> T {
-    |_, _| T::default()
+pub(crate) fn nothing<S, D: Default>() -> impl Select<S, D> {
+    |_, _| D::default()
 }
 
 /// A sum of terms over the columns.
@@ -103,19 +105,13 @@ pub(crate) struct Sweep<'a, K, T, S, C> {
     pub kernel: &'a Smoothing<K>,
     pub terms: &'a T,
     pub columns: &'a [Column<S>],
-    /// From a column's number and its derived numbers to those that these terms read.
     pub select: C,
     /// Whether the particles move: dx/dt = v, to which terms may add.
     pub moving: bool,
 }
 
-impl<K, T, S, C, X> PairSweep<X> for Sweep<'_, K, T, S, C>
-where
-    K: Kernel,
-    T: Term<X>,
-    S: Numbers,
-    C: Fn(usize, &S) -> T::Derived + Sync,
-    X: Numbers,
+impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> PairSweep<X>
+    for Sweep<'_, K, T, S, C>
 {
     fn rates(&self, block: &Block, list: usize, first: usize, rates: &mut [Rate<X>]) {
         for (rate, own) in rates.iter_mut().zip(&self.columns[first..]) {
@@ -139,13 +135,8 @@ struct Particles<'a, W, X> {
     rates: &'a mut [Rate<X>],
 }
 
-impl<K, T, S, C, X> OnLanes for Particles<'_, Sweep<'_, K, T, S, C>, X>
-where
-    K: Kernel,
-    T: Term<X>,
-    S: Numbers,
-    C: Fn(usize, &S) -> T::Derived + Sync,
-    X: Numbers,
+impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> OnLanes
+    for Particles<'_, Sweep<'_, K, T, S, C>, X>
 {
     #[inline(always)]
     fn run<V: Lane>(self) {

@@ -120,7 +120,6 @@ impl Law for Hencky {
     const NAME: &'static str = "hencky";
     const ENERGY: &'static str = "w = K (J - 1 - ln J) + μ |dev ln V|², V = (F Fᵀ)^½ (Hencky)";
 
-    #[inline(always)]
     fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
         let (log_j, [d, xy]) = Self::logarithm(strain);
         let shear = 2.0 * (d * d + xy * xy) + log_j * log_j / 6.0;
@@ -160,7 +159,6 @@ impl Law for SaintVenantKirchhoff {
     const ENERGY: &'static str =
         "w = λ (tr E)²/2 + μ E:E, E = (FᵀF - 1)/2, λ = K - 2μ/3 (St. Venant and Kirchhoff)";
 
-    #[inline(always)]
     fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
         let Symmetric { xx, yy, xy } = Self::green(strain);
         let trace = xx + yy;

@@ -180,11 +180,8 @@ impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U>
     }
 
     #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K, U::Foot>,
-        (weight, pressure, velocity): &mut In<Self::Sum, V>,
-    ) {
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, U::Foot>, sum: &mut In<Self::Sum, V>) {
+        let (weight, pressure, velocity) = sum;
         let ((r, w), density) = (U::reach(pair), pair.other.density);
         let a = self.acceleration;
         let across = V::all(a.x) * r.x + V::all(a.y) * r.y;
@@ -194,13 +191,8 @@ impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U>
     }
 
     #[inline(always)]
-    fn finish(
-        &self,
-        own: &Common,
-        _: U::Foot,
-        (weight, pressure, velocity): Self::Sum,
-        rate: &mut Rate<X>,
-    ) {
+    fn finish(&self, own: &Common, _: U::Foot, sum: Self::Sum, rate: &mut Rate<X>) {
+        let (weight, pressure, velocity) = sum;
         if weight > 0.0 {
             let pressure = (pressure / weight).max(self.least_pressure);
             rate.density = self.eos.density(pressure);
