@@ -65,22 +65,14 @@ impl Load for Weight {
     }
 }
 
-/// Two faces that overlap by o push each other apart, with the force k o on what stands for the size s of a
-/// face at small o.
-#[derive(Clone, Copy, Debug)]
-pub struct Contact {
-    /// k \[Pa\].
-    pub stiffness: f64,
-}
-
-impl Contact {
-    /// The rule k = (K + 4μ/3)/4. Two bodies that meet send fronts that rise at the rate 2 k/(ρ c_p dx), and
-    /// a lattice carries waves of up to half its largest frequency, about c_p/dx, with little dispersion. A
-    /// harder contact leaves energy in waves that are hardly longer than two spacings, a softer one lets
-    /// bodies overlap more.
-    pub fn of(moduli: &Moduli) -> Self {
-        Self { stiffness: 0.25 * moduli.longitudinal() }
-    }
+/// The stiffness of contact, k = (K + 4μ/3)/4 \[Pa\]: two faces that overlap by o push each other apart, with
+/// the force k o on what stands for the size s of a face at small o.
+///
+/// Two bodies that meet send fronts that rise at the rate 2 k/(ρ c_p dx), and a lattice carries waves of up to
+/// half its largest frequency, about c_p/dx, with little dispersion. A harder contact leaves energy in waves
+/// that are hardly longer than two spacings, a softer one lets bodies overlap more.
+pub fn contact_stiffness(moduli: &Moduli) -> f64 {
+    0.25 * moduli.longitudinal()
 }
 
 /// A rigid plane without friction, which pushes and never pulls. Each particle stays on the side of it on
@@ -93,8 +85,8 @@ pub struct RigidPlane {
     pub point: Vector2<f64>,
     /// Unit normal.
     pub normal: Vector2<f64>,
-    /// How it pushes.
-    pub contact: Contact,
+    /// k \[Pa\], see [`contact_stiffness`].
+    pub stiffness: f64,
 }
 
 impl RigidPlane {
@@ -114,13 +106,13 @@ impl RigidPlane {
     /// 2 k (t − d) t/d \[N/m\].
     fn force(&self, touch: f64, distance: f64) -> f64 {
         let inverse = if distance > 0.0 { touch / distance } else { f64::INFINITY };
-        2.0 * self.contact.stiffness * (touch - distance).max(0.0) * inverse
+        2.0 * self.stiffness * (touch - distance).max(0.0) * inverse
     }
 
     /// 2 k t (t ln(t/d) − (t − d)) \[J/m\].
     fn stored(&self, touch: f64, distance: f64) -> f64 {
         let overlap = (touch - distance).max(0.0);
-        2.0 * self.contact.stiffness * touch * (-touch * libm::log1p(-overlap / touch) - overlap)
+        2.0 * self.stiffness * touch * (-touch * libm::log1p(-overlap / touch) - overlap)
     }
 }
 
@@ -136,7 +128,7 @@ impl Load for RigidPlane {
     }
 }
 
-/// [`Contact`] between the faces of bodies, also of a body with itself: without friction and attraction.
+/// Contact between the faces of bodies, also of a body with itself: without friction and attraction.
 ///
 /// What a face particle a sees of other faces is ψ_a = Σ_b (s_b/s) W(|x_a − x_b|/s), with sizes s_a and s_b,
 /// whose mean is s, and the kernel W, which reaches 2 s. Beside a straight row of particles at the distance d
@@ -151,7 +143,8 @@ impl Load for RigidPlane {
 /// than twice the reach in the reference do not see each other: their distance is the business of the stress.
 #[derive(Clone, Copy, Debug)]
 pub struct BetweenFaces {
-    contact: Contact,
+    /// k \[Pa\].
+    stiffness: f64,
     kernel: Smoothing<WendlandC2>,
     /// Ψ(s) and −s Ψ'(s).
     row: [f64; 2],
@@ -180,10 +173,10 @@ fn row(kernel: &Smoothing<WendlandC2>, d: f64) -> [f64; 2] {
 }
 
 impl BetweenFaces {
-    /// Of this stiffness.
-    pub fn new(contact: Contact) -> Self {
+    /// Of this stiffness \[Pa\], see [`contact_stiffness`].
+    pub fn new(stiffness: f64) -> Self {
         let kernel = Smoothing::<WendlandC2>::new(1.0);
-        Self { contact, kernel, row: row(&kernel, 1.0) }
+        Self { stiffness, kernel, row: row(&kernel, 1.0) }
     }
 
     /// The pressure of two straight faces whose outermost particles are this many sizes apart \[Pa\]:
@@ -273,7 +266,7 @@ impl BetweenFaces {
     /// ½ k s² (Ψ/Ψ')² \[J/m\].
     fn scale(&self, size: f64) -> f64 {
         let gap = size * self.row[0] / self.row[1];
-        0.5 * self.contact.stiffness * gap * gap
+        0.5 * self.stiffness * gap * gap
     }
 }
 

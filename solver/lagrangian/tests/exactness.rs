@@ -4,7 +4,8 @@ mod common;
 
 use common::{MODULI, block, build, energy, forces, free, number, put, scene, stored};
 use lagrangian::{
-    BetweenFaces, Contact, Hencky, Law, Load, RigidPlane, SaintVenantKirchhoff, SolidScene, Weight,
+    BetweenFaces, Hencky, Law, Load, RigidPlane, SaintVenantKirchhoff, SolidScene, Weight,
+    contact_stiffness,
 };
 use nalgebra::{Matrix2, Vector2};
 use solver::{Domain, Ghosts, Open, PlaneWall, SlipGhosts, Stepper, Symmetric, walls::Walls};
@@ -123,7 +124,7 @@ fn two<C: Load>(loads: C) -> SolidScene<Open, C> {
 }
 
 fn contact() -> BetweenFaces {
-    BetweenFaces::new(Contact::of(&MODULI))
+    BetweenFaces::new(contact_stiffness(&MODULI))
 }
 
 /// The forces of a load on a block that it reaches.
@@ -139,7 +140,7 @@ fn forces_of_loads_are_derivatives_of_their_energy() {
     let plane = RigidPlane {
         point: Vector2::new(0.0, 0.3),
         normal: Vector2::new(0.6, 0.8),
-        contact: Contact::of(&MODULI),
+        stiffness: contact_stiffness(&MODULI),
     };
     check_load(plane);
     let solid = build::<Hencky, _, _>(two(contact()));
@@ -227,10 +228,10 @@ fn the_stiffness_of_contact_is_a_quarter_of_the_modulus_of_longitudinal_waves() 
     let expected = 0.733_333;
     let found = contact().pressure(0.9999) / 1e-4;
     assert!((found / expected - 1.0).abs() < 1e-3, "faces: {found} Pa, expected {expected} Pa");
-    let contact = Contact::of(&MODULI);
+    let stiffness = contact_stiffness(&MODULI);
     let (normal, point) = (Vector2::y(), Vector2::zeros());
     // A particle of size 1 touches the plane at the distance 1/2.
-    let plane = RigidPlane { point: Vector2::new(0.0, 1e-4), normal, contact };
+    let plane = RigidPlane { point: Vector2::new(0.0, 1e-4), normal, stiffness };
     let solid = build::<Hencky, _, _>(scene(block(4, 3, 0.0), Open, plane));
     let of_row = forces(&solid).into_iter().filter(|(_, x, ..)| x.y < 1.0);
     let found = of_row.fold(0.0, |sum, (.., f)| sum + f.y) / 4.0 / 1e-4;
@@ -248,7 +249,7 @@ fn the_stiffness_of_contact_is_a_quarter_of_the_modulus_of_longitudinal_waves() 
 fn a_plane_between_two_bodies_pushes_both_apart() {
     let normal = Vector2::new(0.6, 0.8);
     let middle = Vector2::new(0.3, -0.1);
-    let plane = RigidPlane { point: middle, normal, contact: Contact::of(&MODULI) };
+    let plane = RigidPlane { point: middle, normal, stiffness: contact_stiffness(&MODULI) };
     // The nearest particle is 0.45 away, of sizes near 1.
     let mut right = block(4, 3, 0.1);
     let nearest = |all: &[solver::Particle<solver::Symmetric>]| {

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{DENSITY, MODULI, block, build, energy, forces, free, number, put, scene};
-use lagrangian::{BetweenFaces, Contact, Hencky, Law, SaintVenantKirchhoff, SolidScene};
+use lagrangian::{BetweenFaces, Hencky, Law, SaintVenantKirchhoff, SolidScene, contact_stiffness};
 use nalgebra::Vector2;
 use solver::{
     Domain, Limits, Open, Outcome, PlaneWall, SlipGhosts, Smoothing, Stepper, WendlandC2,
@@ -144,7 +144,7 @@ fn pressed() -> (common::Block<Hencky, BetweenFaces>, BetweenFaces) {
     }
     let plane = |x, normal| PlaneWall::new(Vector2::new(x, 0.0), normal, Vector2::zeros());
     let walls = vec![plane(0.0, Vector2::x()), plane(7.4, -Vector2::x())];
-    let contact = BetweenFaces::new(Contact::of(&MODULI));
+    let contact = BetweenFaces::new(contact_stiffness(&MODULI));
     let mut solid = build::<Hencky, _, _>(SolidScene {
         domain: Domain { low: Vector2::zeros(), period: [None, Some(5.0)] },
         bodies: particles.iter().map(|p| u32::from(p.position.x > 3.7)).collect(),
@@ -225,13 +225,13 @@ fn the_step_limit_of_bodies_in_contact_is_that_of_their_fastest_mode() {
 /// the row by Simpson's rule. Without contact it is the limit of the lattice.
 #[test]
 fn the_rule_of_the_step_limit_in_contact_has_its_numbers() {
-    let contact = BetweenFaces::new(Contact::of(&MODULI));
+    let contact = BetweenFaces::new(contact_stiffness(&MODULI));
     for (pressure, expected) in [(0.1, 0.867_108), (0.5, 0.613_709)] {
         let found = contact.step_limit(1.3, DENSITY, 1.0, pressure);
         let error = (found / expected - 1.0).abs();
         assert!(error < 1e-5, "at {pressure} Pa: {found} s, expected {expected} s");
     }
-    let none = BetweenFaces::new(Contact { stiffness: 0.0 });
+    let none = BetweenFaces::new(0.0);
     let found = none.step_limit(1.3, DENSITY, 1.0, 0.0);
     assert!((found - 1.3).abs() < 1e-14, "without contact: {found} s, expected 1.3 s");
 }

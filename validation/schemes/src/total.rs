@@ -51,7 +51,7 @@ fn bodies<L: Law>() -> Method {
         if parts.bodies.is_empty() {
             return Ok(Box::new(scene(parts, ()).build::<WendlandC2, L>()?));
         }
-        let contact = BetweenFaces::new(Contact::of(&moduli(&parts.medium)));
+        let contact = BetweenFaces::new(contact_stiffness(&moduli(&parts.medium)));
         Ok(Box::new(scene(parts, contact).build::<WendlandC2, L>()?))
     })
 }
@@ -78,7 +78,8 @@ fn beside_a_plane<L: Law>() -> Method {
         };
         let [left, right] = [middle(0), middle(1)];
         let (point, normal) = (0.5 * (left + right), (right - left).normalize());
-        let plane = RigidPlane { point, normal, contact: Contact::of(&moduli(&parts.medium)) };
+        let plane =
+            RigidPlane { point, normal, stiffness: contact_stiffness(&moduli(&parts.medium)) };
         Ok(Box::new(scene(parts, plane).build::<WendlandC2, L>()?))
     })
 }
@@ -154,7 +155,7 @@ fn stiffness(of: [f64; 3]) -> f64 {
 /// The same of bodies that press against each other with this pressure \[Pa\], from the limit of the
 /// compressed lattice.
 pub fn limit_in_contact(lattice: f64, medium: &Medium, pressure: f64) -> f64 {
-    let contact = BetweenFaces::new(Contact::of(&moduli(medium)));
+    let contact = BetweenFaces::new(contact_stiffness(&moduli(medium)));
     contact.step_limit(lattice, medium.density, medium.dx, pressure)
 }
 
