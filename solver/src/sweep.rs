@@ -75,8 +75,8 @@ pub(crate) fn fill<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists, rates: &
     });
 }
 
-/// Which of the derived numbers of a column terms read: from its number and these to theirs. Each closure is a
-/// type of its own, which depends on no scheme.
+/// Which of the derived numbers of a column terms read: from its number and these to theirs. Each closure is
+/// a type of its own, which depends on no scheme.
 pub trait Select<S, D>: Fn(usize, &S) -> D + Sync {}
 impl<S, D, F: Fn(usize, &S) -> D + Sync> Select<S, D> for F {}
 

@@ -68,9 +68,9 @@ impl Load for Weight {
 /// The stiffness of contact, k = (K + 4μ/3)/4 \[Pa\]: two faces that overlap by o push each other apart, with
 /// the force k o on what stands for the size s of a face at small o.
 ///
-/// Two bodies that meet send fronts that rise at the rate 2 k/(ρ c_p dx), and a lattice carries waves of up to
-/// half its largest frequency, about c_p/dx, with little dispersion. A harder contact leaves energy in waves
-/// that are hardly longer than two spacings, a softer one lets bodies overlap more.
+/// Two bodies that meet send fronts that rise at the rate 2 k/(ρ c_p dx), and a lattice carries waves of up
+/// to half its largest frequency, about c_p/dx, with little dispersion. A harder contact leaves energy in
+/// waves that are hardly longer than two spacings, a softer one lets bodies overlap more.
 pub fn contact_stiffness(moduli: &Moduli) -> f64 {
     0.25 * moduli.longitudinal()
 }

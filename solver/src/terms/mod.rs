@@ -54,8 +54,8 @@ use crate::{
     particles::{Common, Rate},
 };
 
-/// Particles i, one a lane, and a neighbour j of each, which in a pair sweep is the same for all, as a term sees
-/// them that derives `D`.
+/// Particles i, one a lane, and a neighbour j of each, which in a pair sweep is the same for all, as a term
+/// sees them that derives `D`.
 pub struct Pair<'k, V: Lane, K, D: Numbers = ()> {
     /// rᵢⱼ = rᵢ − rⱼ \[m\].
     pub r: Vector2<V>,

@@ -51,8 +51,8 @@ impl<X> Walls<X> for Open {
 
 /// Walls represented by boundary particles (section 4.2 of the paper), which do not move: a layer of
 /// [`crate::Role::Interface`] on the surface, with constant density and pressure, and layers of
-/// [`crate::Role::Wall`] behind it, whose density and pressure evolve by (3) and (7). All carry the velocity of
-/// the wall.
+/// [`crate::Role::Wall`] behind it, whose density and pressure evolve by (3) and (7). All carry the velocity
+/// of the wall.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InterfaceWall;
 
