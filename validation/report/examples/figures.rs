@@ -10,6 +10,7 @@ use report::{
     Page, ParticleMap, Plot, Section, Series, Table, VERDICTS, check_page,
 };
 use std::error::Error;
+use std::io;
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -69,7 +70,7 @@ fn explorer() -> Explorer {
     Explorer { gates: (0..40).map(gate).collect(), reasons: reasons.into() }
 }
 
-fn film() -> Result<Film, String> {
+fn film() -> io::Result<Film> {
     let frame = |k: u32| {
         let points =
             (0..40).map(|x| (0.15 * f64::from(x), (0.15 * f64::from(x + k)).sin())).collect();
@@ -80,7 +81,7 @@ fn film() -> Result<Film, String> {
     Film::new("film", "A wave that moves.", &(0..8).map(frame).collect::<Vec<_>>(), 120)
 }
 
-fn page() -> Result<Page, String> {
+fn page() -> io::Result<Page> {
     let card = Card {
         id: "curves".into(),
         title: "Curves".into(),

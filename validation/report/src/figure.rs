@@ -265,27 +265,12 @@ impl Series {
         Self { width, ..self }
     }
 
-    /// Sets the shape of the markers; adds markers where there are none.
-    pub fn shape(self, shape: Shape) -> Self {
-        Self { shape: Some(shape), marked: true, ..self }
-    }
-
     /// Colour, marker and line of the `i`th of many curves that may lie on each other: of any three in a
     /// row, one is solid with full markers, and the next two lie dashed and dotted with open ones on top.
     pub fn cycle(self, i: usize) -> Self {
         let dash = [Dash::Solid, Dash::Dashed, Dash::Dotted][(i + 1) % 3];
-        let open = dash != Dash::Solid;
-        Self { open, ..self.colour(Colour::cycle(i)).shape(Shape::cycle(i)).dash(dash) }
-    }
-
-    /// Makes the markers open.
-    pub fn open(self) -> Self {
-        Self { open: true, ..self }
-    }
-
-    /// Bars in x, (lower, upper) for each point.
-    pub fn x_bars(self, x_bars: Vec<(f64, f64)>) -> Self {
-        Self { x_bars, ..self }
+        let series = self.colour(Colour::cycle(i)).dash(dash);
+        Self { open: dash != Dash::Solid, shape: Some(Shape::cycle(i)), marked: true, ..series }
     }
 
     /// A short text beside each point.

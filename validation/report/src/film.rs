@@ -1,11 +1,17 @@
-//! Figures one after the other: an animated PNG, which browsers and image viewers play.
+//! Figures in pixels inside the page: those that would be too large as SVG, and films, which are animated PNG
+//! files that browsers and image viewers play.
 
+use base::text::{base64, escaped};
 use color_quant::NeuQuant;
+use maud::{Markup, PreEscaped};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::io;
 
 use super::{figure::Figure, render};
 
+/// Bytes of an SVG beyond which a page has the figure in pixels: some thousand dots.
+const LARGEST_SVG: usize = 100_000;
 /// Pixels of a film per CSS pixel: half of what a figure has, for the size of the page.
 const DENSITY: u32 = 1;
 /// Bits of a colour channel that are kept: edges stay smooth, and the file is a third smaller.
@@ -44,13 +50,15 @@ impl Film {
         caption: impl Into<String>,
         frames: &[Figure],
         milliseconds: u16,
-    ) -> Result<Self, String> {
-        let drawn: Result<Vec<_>, String> =
+    ) -> io::Result<Self> {
+        let drawn: io::Result<Vec<_>> =
             frames.par_iter().map(|frame| render::pixels(frame, DENSITY)).collect();
         let drawn = drawn?;
-        let &(_, width, height) = drawn.first().ok_or("a film without a frame")?;
+        let Some(&(_, width, height)) = drawn.first() else {
+            return Err(io::Error::other("a film without a frame"));
+        };
         if drawn.iter().any(|frame| (frame.1, frame.2) != (width, height)) {
-            return Err("frames of different sizes".into());
+            return Err(io::Error::other("frames of different sizes"));
         }
         let drawn: Vec<Vec<u8>> = drawn.into_iter().map(|(pixels, ..)| pixels).collect();
         let (frames, size) = (drawn.len(), (width, height));
@@ -60,29 +68,44 @@ impl Film {
     }
 }
 
-/// One figure as a small PNG: for thousands of dots, each of which an SVG would name.
-pub(super) fn still(figure: &Figure) -> Result<Vec<u8>, String> {
-    let (pixels, width, height) = render::pixels(figure, DENSITY)?;
-    encode(&[pixels], (width, height), 1)
+/// The figure as SVG, or as pixels where that would be too large.
+pub(super) fn drawing(figure: &Figure) -> Markup {
+    let svg = render::svg(figure);
+    let still = || {
+        let (pixels, width, height) = render::pixels(figure, DENSITY)?;
+        encode(&[pixels], (width, height), 1)
+    };
+    match (svg.len() > LARGEST_SVG).then(still) {
+        Some(Ok(png)) => image(&figure.caption, &png),
+        _ => PreEscaped(svg),
+    }
 }
 
-/// A PNG of frames of three bytes a pixel, in the colours of a palette.
-fn encode(frames: &[Vec<u8>], size: (u32, u32), milliseconds: u16) -> Result<Vec<u8>, String> {
-    let mut bytes = Vec::new();
-    write(&mut bytes, frames, size, milliseconds).map_err(|error| error.to_string())?;
-    Ok(bytes)
+/// An image inside the page. The page is XML too: every element is closed.
+pub(super) fn image(caption: &str, png: &[u8]) -> Markup {
+    let (caption, data) = (escaped(caption), base64(png));
+    PreEscaped(format!("<img alt=\"{caption}\" src=\"data:image/png;base64,{data}\"/>"))
 }
 
-fn write(
-    bytes: &mut Vec<u8>,
+/// Red, green and blue.
+type Rgb = [u8; 3];
+
+/// A PNG of frames of three bytes a pixel, in the colours of a palette: a few that stand for all of them.
+fn encode(
     frames: &[Vec<u8>],
     (width, height): (u32, u32),
     milliseconds: u16,
-) -> Result<(), png::EncodingError> {
-    let palette = Palette::of(frames);
-    let mut encoder = png::Encoder::new(bytes, width, height);
+) -> io::Result<Vec<u8>> {
+    let all = || frames.iter().flat_map(|pixels| coarse_colours(pixels));
+    let opaque: Vec<u8> = all().flat_map(|[r, g, b]| [r, g, b, u8::MAX]).collect();
+    let chosen = NeuQuant::new(SAMPLED, COLOURS, &opaque);
+    let place = |[r, g, b]: Rgb| ([r, g, b], chosen.index_of(&[r, g, b, u8::MAX]) as u8);
+    let distinct: BTreeSet<Rgb> = all().collect();
+    let index: BTreeMap<Rgb, u8> = distinct.into_iter().map(place).collect();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Indexed);
-    encoder.set_palette(palette.colours.clone());
+    encoder.set_palette(chosen.color_map_rgb());
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::High);
     encoder.set_filter(png::Filter::NoFilter); // flat colours: every filter makes it larger
@@ -92,38 +115,11 @@ fn write(
     }
     let mut writer = encoder.write_header()?;
     for pixels in frames {
-        writer.write_image_data(&palette.indices(pixels))?;
+        let indices: Vec<u8> = coarse_colours(pixels).map(|colour| index[&colour]).collect();
+        writer.write_image_data(&indices)?;
     }
-    writer.finish()
-}
-
-/// Red, green and blue.
-type Rgb = [u8; 3];
-
-/// A few colours that stand for all of some frames, and which stands for which.
-struct Palette {
-    /// Three bytes each.
-    colours: Vec<u8>,
-    index: BTreeMap<Rgb, u8>,
-}
-
-impl Palette {
-    fn of(frames: &[Vec<u8>]) -> Self {
-        let pixels = || frames.iter().flat_map(|pixels| coarse_colours(pixels));
-        let opaque: Vec<u8> = pixels().flat_map(|[r, g, b]| [r, g, b, u8::MAX]).collect();
-        let chosen = NeuQuant::new(SAMPLED, COLOURS, &opaque);
-        let place = |[r, g, b]: Rgb| ([r, g, b], chosen.index_of(&[r, g, b, u8::MAX]) as u8);
-        let distinct: BTreeSet<Rgb> = pixels().collect();
-        let index = distinct.into_iter().map(place).collect();
-        Self { colours: chosen.color_map_rgb(), index }
-    }
-
-    /// The pixels as places in the palette.
-    fn indices(&self, pixels: &[u8]) -> Vec<u8> {
-        coarse_colours(pixels)
-            .map(|colour| self.index.get(&colour).copied().unwrap_or_default())
-            .collect()
-    }
+    writer.finish()?;
+    Ok(bytes)
 }
 
 /// The colours of pixels of three bytes, with [`BITS`] bits a channel, black and white as they are.

@@ -25,7 +25,6 @@ mod legend;
 mod maps;
 mod number;
 mod page;
-mod picture;
 mod plot;
 mod raster;
 mod render;

@@ -4,10 +4,9 @@ use super::card::Card;
 use super::counts::Counts;
 use super::explorer::{Explorer, verdicts_where};
 use super::figure::Figure;
-use super::film::Film;
+use super::film::{Film, drawing, image};
 use super::font;
 use super::inline::inline;
-use super::picture::{drawing, image};
 use super::render;
 use super::table::{Table, class, first_sentence, mark};
 use base::{files, gate::Verdict, text::base64};
@@ -186,8 +185,8 @@ impl Page {
             // What a report that was killed left there goes, too.
             let images = files::OutputFolder::create(&folder.join(&self.png_folder));
             let images = images.map_err(io::Error::other)?;
-            let drawings: Vec<Drawing> = self.sections.iter().flat_map(drawings).collect();
-            drawings.par_iter().try_for_each(|drawing| drawing.write(images.path()))?;
+            let drawings: Vec<&Block> = self.sections.iter().flat_map(drawings).collect();
+            drawings.par_iter().try_for_each(|drawing| write_png(drawing, images.path()))?;
         }
         files::write_atomically(path, html.as_bytes()).map_err(io::Error::other)
     }
@@ -195,31 +194,24 @@ impl Page {
 
 const VIEWPORT: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
 
-/// What has a PNG file.
-enum Drawing<'a> {
-    Figure(&'a Figure),
-    Film(&'a Film),
-}
-
-impl Drawing<'_> {
-    fn write(&self, folder: &Path) -> io::Result<()> {
-        let path = |id: &str| folder.join(format!("{id}.png"));
-        match self {
-            Self::Figure(figure) => render::png(figure, &path(&figure.id)),
-            Self::Film(film) => {
-                files::write_atomically(&path(&film.id), &film.png).map_err(io::Error::other)
-            }
+/// Writes the PNG file of a drawing.
+fn write_png(drawing: &Block, folder: &Path) -> io::Result<()> {
+    let path = |id: &str| folder.join(format!("{id}.png"));
+    match drawing {
+        Block::Figure(figure) => render::png(figure, &path(&figure.id)),
+        Block::Film(film) => {
+            files::write_atomically(&path(&film.id), &film.png).map_err(io::Error::other)
         }
+        _ => Ok(()),
     }
 }
 
-/// Every drawing of a section.
-fn drawings(section: &Section) -> Vec<Drawing<'_>> {
-    fn of(block: &Block) -> Vec<Drawing<'_>> {
+/// Every drawing of a section, each of which has a PNG file.
+fn drawings(section: &Section) -> Vec<&Block> {
+    fn of(block: &Block) -> Vec<&Block> {
         match block {
             Block::Figure(figure) if figure.panels.is_empty() => Vec::new(),
-            Block::Figure(figure) => vec![Drawing::Figure(figure)],
-            Block::Film(film) => vec![Drawing::Film(film)],
+            Block::Figure(_) | Block::Film(_) => vec![block],
             Block::Details { blocks, .. } => blocks.iter().flat_map(of).collect(),
             _ => Vec::new(),
         }

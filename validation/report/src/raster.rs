@@ -10,11 +10,12 @@ use super::font::{self, Align, Type};
 use plotters::prelude::{BitMapBackend, DrawingBackend, RGBColor, TextStyle};
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::io;
 
 pub(super) struct Raster<'a> {
     backend: BitMapBackend<'a>,
     scale: f64,
-    error: Option<String>,
+    error: Option<io::Error>,
 }
 
 impl<'a> Raster<'a> {
@@ -23,7 +24,7 @@ impl<'a> Raster<'a> {
     }
 
     /// The first error, if there was one.
-    pub fn finish(mut self) -> Result<(), String> {
+    pub fn finish(mut self) -> io::Result<()> {
         let last = self.backend.present();
         self.note(last);
         self.error.map_or(Ok(()), Err)
@@ -31,7 +32,7 @@ impl<'a> Raster<'a> {
 
     fn note<E: std::fmt::Display>(&mut self, result: Result<(), E>) {
         if let Err(e) = result {
-            self.error.get_or_insert(e.to_string());
+            self.error.get_or_insert(io::Error::other(e.to_string()));
         }
     }
 

@@ -143,7 +143,7 @@ pub fn svg(figure: &Figure) -> String {
 
 /// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
 /// pixel.
-pub(super) fn pixels(figure: &Figure, density: u32) -> Result<(Vec<u8>, u32, u32), String> {
+pub(super) fn pixels(figure: &Figure, density: u32) -> io::Result<(Vec<u8>, u32, u32)> {
     let layout = layout(figure);
     let scale = SUPERSAMPLE * density;
     let (width, height) = (layout.size.0 as u32 * density, layout.size.1 as u32 * density);
@@ -177,7 +177,7 @@ fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
 
 /// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
 pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
-    let (pixels, width, height) = pixels(figure, DENSITY).map_err(io::Error::other)?;
+    let (pixels, width, height) = pixels(figure, DENSITY)?;
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -219,9 +219,10 @@ mod tests {
             values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b))).collect();
         let triples: Vec<_> = pairs.iter().map(|p| (p.0, p.1, p.0)).collect();
         let any = values.first().copied().unwrap_or(f64::NAN);
+        let b = Series::markers("b", pairs.clone());
         Plot::new("Title", x, y)
             .layer(Series::line_markers("a", pairs.clone()))
-            .layer(Series::markers("b", pairs.clone()).shape(Shape::Cross).x_bars(pairs.clone()))
+            .layer(Series { shape: Some(Shape::Cross), x_bars: pairs, ..b })
             .layer(Layer::band("c", triples, Colour::SKY))
             .layer(Layer::Slope(any))
     }

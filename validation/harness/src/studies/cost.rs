@@ -187,7 +187,7 @@ fn panel(title: &str, cost_label: &str, rows: &[Row], cost: Cost) -> Plot {
         let mut series = Series::line_markers(row.of.variant, line).cycle(k);
         if title.contains("time") {
             series = series.labels(own.iter().map(|p| short(&p.label)));
-            series = series.x_bars(own.iter().map(|p| p.spread()).collect());
+            series.x_bars = own.iter().map(|p| p.spread()).collect();
         }
         plot = plot.layer(series);
     }

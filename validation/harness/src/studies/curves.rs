@@ -42,7 +42,10 @@ fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
         let k = named.unwrap_or(k);
         let (colour, shape) = (Colour::cycle(k), Shape::cycle(k));
         plot = plot.layer(match of.symbols {
-            true => Series::markers(&line.name, points).colour(colour).shape(shape).open(),
+            true => {
+                let markers = Series::markers(&line.name, points).colour(colour);
+                Series { open: true, shape: Some(shape), ..markers }
+            }
             false => Series::line(&line.name, points).colour(colour),
         });
     }
