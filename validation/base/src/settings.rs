@@ -104,24 +104,8 @@ pub struct Field {
     pub kind: Kind,
     /// allowed range in words
     pub range: &'static str,
-    default: fn() -> Value,
-}
-
-impl Field {
-    /// For [`settings!`](crate::settings!) only: the macro fills in every field.
-    #[doc(hidden)]
-    pub const fn new(
-        [name, unit, doc, range]: [&'static str; 4],
-        kind: Kind,
-        default: fn() -> Value,
-    ) -> Self {
-        Field { name, unit, doc, kind, range, default }
-    }
-
-    /// The value that the setting has unless it is set.
-    pub fn default(&self) -> Value {
-        (self.default)()
-    }
+    /// the value unless it is set
+    pub default: fn() -> Value,
 }
 
 /// Why a setting was refused: in words that name it, its value, and what is allowed.
@@ -379,18 +363,17 @@ macro_rules! settings {
         }
 
         impl $crate::settings::Settings for $Struct {
-            const FIELDS: &'static [$crate::settings::Field] = &[$({
-                #[allow(unused_mut, unused_assignments)]
-                let (mut unit, mut range) = ("-", "true or false");
-                $((unit, range) = (
-                    $unit,
-                    concat!(stringify!($low), " to ", stringify!($high), " [", $unit, "]"),
-                );)?
-                $crate::settings::Field::new(
-                    [stringify!($name), unit, concat!($($doc),+).trim_ascii(), range],
-                    <$kind as $crate::settings::SettingType>::KIND,
-                    || <$kind as $crate::settings::SettingType>::value($default),
-                )
+            // The unit and the range of a flag are the last of their lists, those of a number the first.
+            const FIELDS: &'static [$crate::settings::Field] = &[$($crate::settings::Field {
+                name: stringify!($name),
+                unit: [$($unit,)? "-"][0],
+                doc: concat!($($doc),+).trim_ascii(),
+                kind: <$kind as $crate::settings::SettingType>::KIND,
+                range: [
+                    $(concat!(stringify!($low), " to ", stringify!($high), " [", $unit, "]"),)?
+                    "true or false",
+                ][0],
+                default: || <$kind as $crate::settings::SettingType>::value($default),
             }),+];
 
             fn entries(&self) -> Vec<(&'static $crate::settings::Field, $crate::settings::Value)> {
@@ -402,9 +385,7 @@ macro_rules! settings {
                 use $crate::settings::{SettingType, check, unknown};
                 match Self::FIELDS.iter().find(|field| field.name == key) {
                     $(Some(field) if key == stringify!($name) => {
-                        #[allow(unused_mut, unused_assignments)]
-                        let mut range = None;
-                        $(range = Some($low..=$high);)?
+                        let range = [$($low..=$high)?].into_iter().next();
                         self.$name = check(<$kind as SettingType>::read(text, field)?, range, field)?;
                     })+
                     _ => return Err(unknown(Self::FIELDS, key)),
@@ -472,7 +453,7 @@ mod tests {
         let re = &Channel::FIELDS[0];
         assert_eq!((re.name, re.unit, re.kind), ("re", "-", Kind::Real));
         assert_eq!((re.doc, re.range), ("Reynolds number V L / nu", "1e-9 to 1e6 [-]"));
-        assert_eq!(re.default(), Value::Real(0.5));
+        assert_eq!((re.default)(), Value::Real(0.5));
         let printed: Vec<_> = Channel::default()
             .entries()
             .iter()

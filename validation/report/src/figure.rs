@@ -199,7 +199,7 @@ impl Shape {
 
 /// A line, markers, or both, with or without error bars. Points that are not finite, or not
 /// positive on a logarithmic axis, break the line and are counted above the plot.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
     /// Name in the legend; empty leaves it out.
     pub name: String,
@@ -226,18 +226,7 @@ pub struct Series {
 impl Series {
     /// A solid line.
     pub fn line(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self {
-            name: name.into(),
-            points,
-            colour: None,
-            line: Some(Dash::Solid),
-            width: 1.6,
-            marked: false,
-            shape: None,
-            open: false,
-            x_bars: Vec::new(),
-            labels: Vec::new(),
-        }
+        Self { name: name.into(), points, line: Some(Dash::Solid), width: 1.6, ..Self::default() }
     }
 
     /// Filled markers without a line.

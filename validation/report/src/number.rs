@@ -9,11 +9,8 @@ fn not_finite(x: f64) -> String {
 
 /// `digits` significant digits: `0.0123`, `12.3`, `1.23·10⁻⁷` where zeros would bury them.
 pub fn sig(x: f64, digits: usize) -> String {
-    if !x.is_finite() {
-        return not_finite(x);
-    }
-    if x == 0.0 {
-        return "0".into();
+    if !x.is_finite() || x == 0.0 {
+        return sci(x, digits);
     }
     let digits = digits.max(1);
     // The exponent after rounding: 9.996 to three digits is 10.0.
