@@ -310,11 +310,6 @@ impl ParticleMap {
         Self { values: Some((lo, hi)), ..self }
     }
 
-    /// Adds a black line over the dots.
-    pub fn line(self, points: Vec<(f64, f64)>) -> Self {
-        self.curve(Series::line("", points).width(1.4))
-    }
-
     /// Adds a line over the dots, black if it has no colour.
     pub fn curve(mut self, line: Series) -> Self {
         self.lines.push(line);

@@ -306,7 +306,7 @@ fn pictures(table: &Table, runs: &Runs) -> Study {
         ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points)
             .values(-most, most)
             .diameter(1.0 / row.settings.n as f64)
-            .line(floor())
+            .curve(Series::line("", floor()).width(1.4))
             .curve(Series::line("", reference.line.clone()).width(2.4))
     });
     let figure = panels.fold(Figure::new("periodic-hill-pictures", caption), Figure::panel);
