@@ -1,13 +1,12 @@
 //! Bounds of gates that are made from the row-reduced matrix are computed again.
 
 use fluids::channel::{Flow, GHOSTS, TIMES};
-use maths::exact::{Couette, Poiseuille};
+use maths::exact::StartUp;
 use nalgebra::DVector;
 use solver::{Kernel, QuinticSpline};
 use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
 
-const COUETTE: Couette = Couette { v0: 1.0, l: 1.0, nu: 1.0 };
-const POISEUILLE: Poiseuille = Poiseuille { v: 1.0, l: 1.0, nu: 1.0 };
+const START_UP: StartUp = StartUp { v: 1.0, l: 1.0, nu: 1.0 };
 const ALIGNMENTS: [Alignment; 2] = [Alignment::Aligned, Alignment::Slid];
 
 fn model<K: Kernel>(
@@ -27,8 +26,8 @@ fn model<K: Kernel>(
 fn error_at(flow: Flow, model: &RowModel, tau: f64) -> f64 {
     let u = model.at(tau).expect("regular");
     match flow {
-        Flow::Couette => model.relative_error(&u, |y| COUETTE.velocity(y, tau)),
-        Flow::Poiseuille => model.relative_error(&u, |y| POISEUILLE.velocity(y, tau)),
+        Flow::Couette => model.relative_error(&u, |y| START_UP.couette(y, tau)),
+        Flow::Poiseuille => model.relative_error(&u, |y| START_UP.poiseuille(y, tau)),
     }
 }
 
@@ -46,7 +45,7 @@ fn error_of_leapfrog(model: &RowModel, dt: f64) -> f64 {
         start = until;
     }
     u += model.rate(&u) * lag;
-    model.relative_error(&u, |y| COUETTE.velocity(y, 0.1))
+    model.relative_error(&u, |y| START_UP.couette(y, 0.1))
 }
 
 fn assert_near(found: f64, printed: f64, tolerance: f64) {

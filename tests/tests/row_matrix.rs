@@ -4,7 +4,7 @@
 mod printed;
 
 use base::functions::log2;
-use maths::exact::{Couette, Poiseuille};
+use maths::exact::StartUp;
 use maths::theory::lattice::SquareLattice;
 use nalgebra::{DVector, Vector2};
 use solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
@@ -16,12 +16,11 @@ use touchstone_tests::row_matrix::{
 use approx::assert_relative_eq;
 use printed::assert_rounds_to;
 
-const POISEUILLE: Poiseuille = Poiseuille { v: 1.0, l: 1.0, nu: 1.0 };
-const COUETTE: Couette = Couette { v0: 1.0, l: 1.0, nu: 1.0 };
-/// F = 8νV/L² of [`POISEUILLE`].
+const START_UP: StartUp = StartUp { v: 1.0, l: 1.0, nu: 1.0 };
+/// F = 8νV/L² of Poiseuille flow.
 const FORCE: f64 = 8.0;
 
-/// The velocity of [`POISEUILLE`] for t → ∞.
+/// The velocity of Poiseuille flow for t → ∞.
 fn parabola(y: f64) -> f64 {
     4.0 * y * (1.0 - y)
 }
@@ -45,7 +44,7 @@ fn poiseuille_error<K: Kernel>(rule: WallRule, kernel: (f64, f64), rows: usize) 
 
 fn couette_error<K: Kernel>(rule: WallRule, kernel: (f64, f64), rows: usize) -> f64 {
     let model = reduced::<K>(rule, kernel, rows, [0.0, 1.0], 0.0);
-    model.relative_error(&model.at(0.1).expect("regular"), |y| COUETTE.velocity(y, 0.1))
+    model.relative_error(&model.at(0.1).expect("regular"), |y| START_UP.couette(y, 0.1))
 }
 
 /// Steady Poiseuille at N = 10, 20, 40, 80, then start-up Couette at νt/L² = 0.1, N = 20, 40.
@@ -183,7 +182,7 @@ fn curved_ghosts_help_during_start_up() {
     ] {
         let error = |rule| {
             let model = reduced::<QuinticSpline>(rule, (1.0, 0.0), 20, [0.0; 2], 8.0);
-            model.relative_error(&model.at(t).expect("regular"), |y| POISEUILLE.velocity(y, t))
+            model.relative_error(&model.at(t).expect("regular"), |y| START_UP.poiseuille(y, t))
         };
         let rules = [WallRule::Ghosts, WallRule::CurvedGhosts, WallRule::Quadratic];
         assert_rounds_to(&format!("t = {t}"), &printed, &rules.map(error));

@@ -2,7 +2,7 @@
 
 use base::random::Random;
 use harness::{case::*, context::Context, method::*, simulate};
-use maths::exact::{couette::Couette, poiseuille::Poiseuille};
+use maths::exact::StartUp;
 use nalgebra::Vector2;
 use solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
 
@@ -35,9 +35,10 @@ impl Flow {
 
     /// The exact velocity at height y and time t where V, the width and ν are these.
     pub fn exact(self, y: f64, t: f64, [v, l, nu]: [f64; 3]) -> f64 {
+        let flow = StartUp { v, l, nu };
         match self {
-            Flow::Couette => Couette { v0: v, l, nu }.velocity(y, t),
-            Flow::Poiseuille => Poiseuille { v, l, nu }.velocity(y, t),
+            Flow::Couette => flow.couette(y, t),
+            Flow::Poiseuille => flow.poiseuille(y, t),
         }
     }
 }
