@@ -4,7 +4,6 @@ mod lammps;
 mod vtu;
 
 use base::files::{CsvTable, FileError, OutputFolder};
-use serde_json::Error as JsonError;
 use thiserror::Error;
 
 use crate::problem::{PARTICLES, PROBLEM, Problem};
@@ -35,9 +34,6 @@ pub enum WriteError {
     /// A file.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The document.
-    #[error("the problem cannot be written as JSON: {0}")]
-    Json(#[from] JsonError),
     /// The other code cannot do it.
     #[error("{code} cannot run {case}, variant {variant}: {why}")]
     Cannot {
@@ -70,7 +66,7 @@ pub fn write(
             vec![("run_pysph.py", PYSPH.to_string())]
         }
     };
-    let document = serde_json::to_string_pretty(&problem.to_json())? + "\n";
+    let document = format!("{:#}\n", problem.to_json());
     let mut files: Vec<(&str, Vec<u8>)> = vec![
         (PARTICLES, particles(problem)?),
         ("README.md", problem.page().into_bytes()),

@@ -111,7 +111,7 @@ fn each_pair(points: &[Point], reach: f64, mut found: impl FnMut(usize, usize)) 
 
 /// The pieces that bonds of at most `reach` \[m\] hold together.
 fn pieces(points: &[Point], reach: f64) -> Vec<Vec<Point>> {
-    let mut joined = Joined::new(points.len());
+    let mut joined = Joined((0..points.len()).collect());
     each_pair(points, reach, |a, b| {
         joined.join(a, b);
     });
@@ -132,10 +132,6 @@ fn pieces(points: &[Point], reach: f64) -> Vec<Vec<Point>> {
 struct Joined(Vec<usize>);
 
 impl Joined {
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
     fn root(&mut self, mut k: usize) -> usize {
         while self.0[k] != k {
             self.0[k] = self.0[self.0[k]];
@@ -157,7 +153,7 @@ impl Joined {
 fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
     // So that the intervals of a line are nearly in order.
     piece.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
-    let mut background = Background { joined: Joined::new(OUTSIDE + 1), area: vec![0.0] };
+    let mut background = Background { joined: Joined(vec![OUTSIDE]), area: vec![0.0] };
     let everything = (f64::NEG_INFINITY, f64::INFINITY, OUTSIDE);
     let mut above = vec![everything];
     for mut line in scan_lines(piece, 0.5 * BOND * dx, LINE * dx) {

@@ -41,16 +41,16 @@ impl Water {
 
     /// The energy of all particles.
     pub fn energy<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Energy {
-        let add = |sum: Energy, (mass, p): (f64, &Evolved<X>)| Energy {
-            kinetic: sum.kinetic + 0.5 * mass * p.velocity.norm_squared(),
-            potential: sum.potential - mass * self.gravity.dot(&p.position),
-            compression: sum.compression + mass * self.compression(p.density),
-        };
-        let fluid = simulation.fluid().fold(Energy::default(), add);
-        let pressed =
-            |sum: f64, (mass, p): (f64, &Evolved<X>)| sum + mass * self.compression(p.density);
-        let compression = simulation.walls().fold(fluid.compression, pressed);
-        Energy { compression, ..fluid }
+        let mut sum = Energy::default();
+        for (mass, p) in simulation.fluid() {
+            sum.kinetic += 0.5 * mass * p.velocity.norm_squared();
+            sum.potential -= mass * self.gravity.dot(&p.position);
+            sum.compression += mass * self.compression(p.density);
+        }
+        for (mass, p) in simulation.walls() {
+            sum.compression += mass * self.compression(p.density);
+        }
+        sum
     }
 }
 
