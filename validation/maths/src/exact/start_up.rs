@@ -2,8 +2,8 @@
 //!
 //! - Couette flow, where the upper plate moves at V: u_t = ν u_yy, u(0, t) = 0, u(L, t) = V, u(y, 0) = 0.
 //!   u/V = η + Σ_{n≥1} 2/(nπ) (-1)ⁿ sin(nπη) exp(-n²π²τ)  (Morris, Fox & Zhu 1997), and, as an image sum,
-//!   u/V = Σ_{m≥0} erfc((2m+1-η)/(2√τ)) - erfc((2m+1+η)/(2√τ))  (after Carslaw & Jaeger, Conduction of Heat in
-//!   Solids).
+//!   u/V = Σ_{m≥0} erfc((2m+1-η)/(2√τ)) - erfc((2m+1+η)/(2√τ))  (after Carslaw & Jaeger, Conduction of
+//!   Heat in Solids).
 //! - Poiseuille flow, along which a body force acts: u_t = ν u_yy + F, u(0, t) = u(L, t) = 0, u(y, 0) = 0,
 //!   F = 8νV/L². u/V = 4η(1-η) - Σ_{n≥0} 32/(π³m³) sin(mπη) exp(-m²π²τ), m = 2n+1, and, as an image sum,
 //!   u/V = 8τ (1 - 4 Σ_{n≥0} (-1)ⁿ [i²erfc((n+η)/(2√τ)) + i²erfc((n+1-η)/(2√τ))]).
@@ -108,8 +108,8 @@ impl StartUp {
         self.v * sum
     }
 
-    /// u(y, t) of Poiseuille flow \[m/s\] for 0 ≤ y ≤ L, to about 1e-14 V: the images for νt/L² < 0.1, else the
-    /// series. 0 for t ≤ 0.
+    /// u(y, t) of Poiseuille flow \[m/s\] for 0 ≤ y ≤ L, to about 1e-14 V: the images for νt/L² < 0.1, else
+    /// the series. 0 for t ≤ 0.
     pub fn poiseuille(&self, y: f64, t: f64) -> f64 {
         match self.tau(t) {
             tau if tau <= 0.0 => 0.0,

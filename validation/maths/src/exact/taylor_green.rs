@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-/// u = −cos kx sin ky e^{−2νk²t}, v = sin kx cos ky e^{−2νk²t}, p = −¼ (cos 2kx + cos 2ky) e^{−4νk²t}, k = 2π,
-/// in units of the largest speed at the start U, the period L and the density: exact for incompressible flow.
+/// u = −cos kx sin ky e^{−2νk²t}, v = sin kx cos ky e^{−2νk²t}, p = −¼ (cos 2kx + cos 2ky) e^{−4νk²t},
+/// k = 2π, in units of the largest speed at the start U, the period L and the density ρ: exact for
+/// incompressible flow.
 #[derive(Clone, Copy, Debug)]
 pub struct TaylorGreen {
     /// Kinematic viscosity ν \[UL\].

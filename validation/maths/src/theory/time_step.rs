@@ -111,8 +111,8 @@ pub struct Mode {
     pub explicit: f64,
 }
 
-/// The limit of a mechanism acting alone \[s\], 2 over the largest of its rates in `modes`; infinite for what is
-/// absent. The smallest is up to 28 % above the limit of all of them together, [`time_step_limit`].
+/// The limit of a mechanism acting alone \[s\], 2 over the largest of its rates in `modes`; infinite for what
+/// is absent. The smallest is up to 28 % above the limit of all of them together, [`time_step_limit`].
 ///
 /// That of sound, 2/ω_max, is one of the leapfrog only: alone, sound grows at any dt under Euler and the
 /// predictor-corrector. That of viscosity, 2/(ν λ_max), is one of every integrator but super-time-stepping.
