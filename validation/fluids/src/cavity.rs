@@ -198,9 +198,8 @@ fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Recor
     let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
     let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
     let mut means = Means { means: vec![0.0; places.len()], places, dx };
-    let pressure = |density| eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt(), &times, &pressure, &mut means)
+        Drive::new(&mut *simulation, flow.rules.dt(), &times, eos, &mut means)
             .sweeps(flow.rules.sweeps())
             .at("mid-lines", &|means, simulation, _| means.sample(&simulation.particles()))
             .run(context)?;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use base::breakdown::Breakdown;
 use base::mutation::Constant;
 use base::record::{Cost, Status};
-use solver::{Flow, Numbers, Observer, Outcome, Stepper};
+use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{
@@ -305,7 +305,7 @@ pub struct Drive<'a, X, D: ?Sized, S> {
     least: usize,
     sweeps: f64,
     times: &'a [f64],
-    pressure: &'a dyn Fn(f64) -> f64,
+    pressure: Box<dyn Fn(f64) -> f64>,
     seen: &'a mut S,
     after_step: Named<AfterStep<'a, X, S>>,
     at: Named<(At<'a, D, S>, Synchronised)>,
@@ -313,15 +313,16 @@ pub struct Drive<'a, X, D: ?Sized, S> {
 }
 
 impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
-    /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show
-    /// `pressure` \[Pa\] as a function of density \[kg/m³\].
+    /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show the
+    /// pressure of this equation of state.
     pub fn new(
         simulation: &'a mut D,
         dt: f64,
         times: &'a [f64],
-        pressure: &'a dyn Fn(f64) -> f64,
+        eos: impl EquationOfState,
         seen: &'a mut S,
     ) -> Self {
+        let pressure = Box::new(move |density| eos.pressure(density));
         let (after_step, at) = (Vec::new(), Vec::new());
         let resumed: Resumed<'a, D, S> = &|_, _| {};
         let (least, sweeps) = (1, 2.0);
@@ -378,6 +379,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
     pub fn run(self, context: &Context) -> Result<(Status, Cost), RunError> {
         let Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed } =
             self;
+        let pressure = &*pressure;
         let factor =
             context.mutation.map_or(1.0, |mutation| mutation.factor_of(Constant::TimeStep));
         let (dt, least) = (dt * factor, least as f64 / factor);
@@ -510,7 +512,7 @@ mod tests {
         let set = || flag.store(true, Ordering::Relaxed);
         let slow = Slow { each: Duration::ZERO, at: (3, set) };
         let (times, mut wave) = ([1000.0 * DT], wave());
-        let (status, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+        let (status, cost) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("slow", &|_, simulation| slow.after_step(simulation))
             .run(&context)
             .unwrap();
@@ -522,7 +524,7 @@ mod tests {
     #[test]
     fn a_divergence_is_told_after_the_steps_that_were_completed() {
         let mut wave = wave();
-        let (status, cost) = Drive::new(&mut *wave, 1.0, &[100.0], &|_| 0.0, &mut ())
+        let (status, cost) = Drive::new(&mut *wave, 1.0, &[100.0], Tait::new(1.0, 1.0), &mut ())
             .run(&Context::default())
             .unwrap();
         let Status::Diverged { step, .. } = status else { panic!("the run is {status}") };
@@ -538,7 +540,7 @@ mod tests {
         for context in [Context::default(), watched] {
             let slow = Slow { each: Duration::from_millis(25), at: (0, || ()) };
             let (times, mut wave) = ([10.0 * DT, 40.0 * DT], wave());
-            Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+            Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
                 .after_step("slow", &|_, simulation| slow.after_step(simulation))
                 .run(&context)
                 .unwrap();
@@ -581,7 +583,7 @@ mod tests {
             Flow::Continue
         };
         let mut nothing = ();
-        let mut drive = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut nothing);
+        let mut drive = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut nothing);
         if observer.is_some() {
             drive = drive.after_step("observer", &observe);
         }
@@ -637,7 +639,7 @@ mod tests {
             flag.store(Some(simulation.work().steps) == stop_at, Ordering::Relaxed);
             Flow::Continue
         };
-        let (_, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+        let (_, cost) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("stop", &stop)
             .run(&context)
             .unwrap();
@@ -682,7 +684,7 @@ mod tests {
             ..Context::default()
         };
         let (status, cost) =
-            Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ()).run(&context).unwrap();
+            Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ()).run(&context).unwrap();
         assert_eq!((status, cost.steps), (Status::Completed, 40));
         let lost = lost.into_inner().unwrap();
         let of = |name: &str| lost.iter().filter(|words| words.contains(name)).count();
@@ -746,7 +748,7 @@ mod tests {
                     flag.store(stop && is_last, Ordering::Relaxed);
                     Flow::Continue
                 };
-                let (_, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+                let (_, cost) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
                     .after_step("stop", &after)
                     .run(&context)
                     .unwrap();
@@ -770,7 +772,7 @@ mod tests {
             flag.store(true, Ordering::Relaxed);
             Flow::Continue
         };
-        let (status, _) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+        let (status, _) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("stop", &stop)
             .run(&context)
             .unwrap();
@@ -783,7 +785,7 @@ mod tests {
     fn profiled(profile: bool) -> (String, solver::Work, Cost, usize) {
         let slow = Slow { each: Duration::from_micros(200), at: (0, || ()) };
         let (times, mut wave) = ([10.0 * DT, 400.0 * DT], wave());
-        let (_, cost) = Drive::new(&mut *wave, DT, &times, &|_| 0.0, &mut ())
+        let (_, cost) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("slow", &|_, simulation| slow.after_step(simulation))
             .after_step("quick", &|_, _| Flow::Continue)
             .at("pause", &|_, _, _| std::thread::sleep(Duration::from_millis(20)))

@@ -6,7 +6,7 @@ use base::{
     settings::Settings,
 };
 use nalgebra::Vector2;
-use solver::{EquationOfState as _, Numbers, Particle, Role, Stepper};
+use solver::{Numbers, Particle, Role, Stepper};
 
 use crate::{
     context::Context,
@@ -105,9 +105,8 @@ pub fn simulate<X: Numbers>(
 ) -> Result<Box<dyn Stepper<X>>, RunError> {
     let eos = parts.medium.eos;
     let mut simulation = (method.build)(parts)?;
-    let pressure = |density| eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, dt, &[end], &pressure, &mut ()).run(context)?;
+        Drive::new(&mut *simulation, dt, &[end], eos, &mut ()).run(context)?;
     record.state = Some(state(&simulation.particles()));
     Ok(simulation)
 }

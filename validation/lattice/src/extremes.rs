@@ -16,7 +16,7 @@ use harness::{
     table::{Row, Table},
 };
 use nalgebra::Vector2;
-use solver::{Domain, EquationOfState, Particle, Tait};
+use solver::{Domain, Particle, Tait};
 
 use crate::torus;
 
@@ -139,8 +139,7 @@ fn run(
     let mut late = 0.0f64;
     let (name, serial) = ((EXTREMES.name, variant), Context::default());
     let mut record = simulate::begin(name, s, method, &[(PLANNED_DT, s.dt)], &serial);
-    let pressure = |density| eos.pressure(density);
-    (record.status, record.cost) = Drive::new(&mut *simulation, s.dt, &times, &pressure, &mut late)
+    (record.status, record.cost) = Drive::new(&mut *simulation, s.dt, &times, eos, &mut late)
         .at("samples", &|late, simulation, look| {
             let is_on_time = simulation.work().steps == done(look) as u64;
             let off = (simulation.time() - times[look]).abs();

@@ -24,7 +24,7 @@ use harness::{
 };
 use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
-use solver::{EquationOfState, Flow, Limits, Stepper, Tait};
+use solver::{Flow, Limits, Stepper, Tait};
 
 use crate::torus;
 
@@ -196,8 +196,7 @@ fn run(
     let mut simulation = (method.build)(parts(method, s))?;
     let start = energy(&*simulation);
     let mut growth = Growth::new(start, s.steps as u64);
-    let pressure = |density| Tait::new(1.0, 1.0).pressure(density);
-    let (status, cost) = Drive::new(&mut *simulation, dt, &end, &pressure, &mut growth)
+    let (status, cost) = Drive::new(&mut *simulation, dt, &end, Tait::new(1.0, 1.0), &mut growth)
         .after_step("energy", &watch)
         .run(context)?;
     let numbers = [

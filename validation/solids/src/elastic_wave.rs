@@ -128,8 +128,8 @@ fn run(
     let numbers = [("h/dx", h_over_dx), (PLANNED_DT, dt)];
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
     let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
-    let (times, pressure) = ([rules.end], |density| RUBBER.eos().pressure(density));
-    (record.status, record.cost) = Drive::new(&mut *simulation, dt, &times, &pressure, &mut watch)
+    let (times, eos) = ([rules.end], RUBBER.eos());
+    (record.status, record.cost) = Drive::new(&mut *simulation, dt, &times, eos, &mut watch)
         .after_step("projection", &Watch::after_step)
         .run(context)?;
     record.put(FREQUENCY_ERROR, (2.0 * sin(0.5 * watch.angle()) / (omega * dt) - 1.0).abs());

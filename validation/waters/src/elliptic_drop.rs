@@ -179,10 +179,9 @@ fn run(
     let mut ledger = context.measures_all().then(|| Ledger::new(medium));
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
-    let pressure = |density| medium.eos.pressure(density);
     let mut seen = (&mut history, &mut ledger);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, drop.rules.dt(), &times, &pressure, &mut seen)
+        Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
             .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
             .at("energy ledger by term", &|(_, ledger), simulation, _| {
                 ledger.iter_mut().for_each(|ledger| ledger.sample(simulation));

@@ -209,12 +209,11 @@ fn run(
     let mut record = simulate::begin((NAME, variant), s, m, &numbers, context);
     let mut history = History::new(&column, &*simulation);
     history.sample(&*simulation);
-    let pressure = |density| medium.eos.pressure(density);
     // Once a period and at the end.
     let times = (1..).map(|k| f64::from(k) * period).take_while(|t| *t < rules.end);
     let times: Vec<f64> = times.chain([rules.end]).collect();
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, rules.dt(), &times, &pressure, &mut history)
+        Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut history)
             .at("history", &|history, simulation, _| history.sample(&*simulation))
             .run(context)?;
     history.measure(&mut record);

@@ -219,9 +219,8 @@ fn run(m: &WaterMethod, variant: &str, s: &Wedge, context: &Context) -> Result<R
     let (corners, errors) = ([0.0; 3], Vec::new());
     let (settings, medium) = (s, &medium);
     let mut moments = Moments { settings, medium, samples: 0.0, corners, errors, kinetic: 0.0 };
-    let pressure = |density| medium.eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, rules.dt(), &times, &pressure, &mut moments)
+        Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut moments)
             .at("moments", &|moments, simulation, _| moments.sample(&*simulation))
             .run(context)?;
     let all = simulation.particles();

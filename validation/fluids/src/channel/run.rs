@@ -2,7 +2,7 @@
 
 use base::record::{Record, Status};
 use harness::{case::*, composed::Program, context::Context, method::*, runner::Drive, simulate};
-use solver::{EquationOfState, Particle, Role};
+use solver::{Particle, Role};
 
 use super::measure::{self, MODE, Mode};
 use super::{ChannelProgram, ChannelSettings, Flow, Setup};
@@ -37,21 +37,19 @@ fn run(
     let compared = s.compared();
     let times: Vec<f64> = compared.iter().map(|tau| setup.time(*tau)).collect();
     let mut mode = Mode::new(setup);
-    let pressure = |density| eos.pressure(density);
     let fluid = |mut all: Vec<Particle>| {
         all.retain(|p| p.role == Role::Fluid);
         all
     };
     let mut seen = (&mut mode, &mut record);
-    let (status, cost) =
-        Drive::new(&mut *simulation, setup.rules.dt(), &times, &pressure, &mut seen)
-            .at_least(s.least_steps)
-            .sweeps(setup.rules.sweeps())
-            .after_step("pressure mode", &|(mode, _), simulation| mode.after_step(simulation))
-            .at("profiles and errors", &|(_, record), simulation, k| {
-                measure::compare(setup, &fluid(simulation.particles()), compared[k], record);
-            })
-            .run(context)?;
+    let (status, cost) = Drive::new(&mut *simulation, setup.rules.dt(), &times, eos, &mut seen)
+        .at_least(s.least_steps)
+        .sweeps(setup.rules.sweeps())
+        .after_step("pressure mode", &|(mode, _), simulation| mode.after_step(simulation))
+        .at("profiles and errors", &|(_, record), simulation, k| {
+            measure::compare(setup, &fluid(simulation.particles()), compared[k], record);
+        })
+        .run(context)?;
     (record.status, record.cost) = (status, cost);
     let all = simulation.particles();
     record.state = Some(simulate::state(&all));

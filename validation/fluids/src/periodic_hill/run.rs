@@ -3,7 +3,6 @@
 use base::record::*;
 use harness::{case::RunError, composed::Program, context::Context, runner::Drive, simulate};
 use schemes::hill::{Driving, HillMethod};
-use solver::EquationOfState;
 
 use super::{HillSettings, NAME, Setup, control::*, measure::*};
 
@@ -90,9 +89,8 @@ fn run(
     let start = [0.0, s.force, last * area / setup.hill.period(), kinetic_energy(&*simulation)];
     let (window, series) = (Window::default(), vec![start]);
     let mut monitor = Monitor { setup, area, controller, window, series };
-    let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt(), &times, &pressure, &mut monitor)
+        Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut monitor)
             .at("controller and samples", &|monitor, s, _| monitor.look(s, stretch))
             .resumed(&|monitor, simulation| {
                 // Until its first look the force is that of the scene, which may have a deliberate error.

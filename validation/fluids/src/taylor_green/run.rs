@@ -106,9 +106,8 @@ fn run(
     let times: Vec<f64> = (1..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let start = simulation.particles();
     let mut series = vec![[0.0, setup.error(0.0, &start)]];
-    let pressure = |density| flow.medium.eos.pressure(density);
     (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt(), &times, &pressure, &mut series)
+        Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut series)
             .sweeps(flow.rules.sweeps())
             .at("series", &|series, simulation, _| {
                 let time = simulation.time();

@@ -205,12 +205,10 @@ pub(super) fn run(
     let mut simulation = (method.build)(wave.parts(context))?;
     let (s, Medium { density, sound_speed, h, eos, .. }) = (&wave.settings, wave.medium);
     let (mut projection, end) = (Projection::new(wave), [wave.rules.end]);
-    let pressure = |density: f64| eos.pressure(density);
     // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
-    let (status, cost) =
-        Drive::new(&mut *simulation, wave.rules.dt(), &end, &pressure, &mut projection)
-            .after_step("projection", &Projection::after_step)
-            .run(context)?;
+    let (status, cost) = Drive::new(&mut *simulation, wave.rules.dt(), &end, eos, &mut projection)
+        .after_step("projection", &Projection::after_step)
+        .run(context)?;
     let numbers = [
         ("h/dx", s.h_over_dx),
         ("c0 [m/s]", sound_speed),

@@ -1,7 +1,7 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
 use nalgebra::Vector2;
-use solver::{Domain, EquationOfState, Observer, Particle, PlaneWall, Stepper, Symmetric};
+use solver::{Domain, Observer, Particle, PlaneWall, Stepper, Symmetric};
 
 use super::{Energy, Material, lagrangian, limits};
 use base::{
@@ -210,9 +210,9 @@ fn run<P: Problem>(
     }
     let energy = Energy::known(&*simulation);
     let mut watch = settings.watch(&particles, energy);
-    let (stops, pressure) = (settings.stops(), |density| eos.pressure(density));
+    let stops = settings.stops();
     let mut seen = (&mut watch, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &stops, &pressure, &mut seen)
+    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
         .after_step("measurements", &|(watch, _), simulation| watch.after_step(simulation))
         .at_positions("particles", &|(watch, record), simulation, stop| {
             if context.keep_particles {

@@ -49,10 +49,9 @@ fn run(
     let mut gauge = Gauge::new(dam, method.support * medium.h, &|r2| simulation.weight(r2));
     let filled = water_mass(&simulation.particles());
     let (times, shares) = stops(dam, context);
-    let pressure = |density| medium.eos.pressure(density);
     let is_balanced = ledger.is_some();
     let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &times, &pressure, &mut seen)
+    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut seen)
         .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
         .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
         .at_if(is_balanced, "energy ledger and momentum", &|(_, _, ledger, _), s, _| {
@@ -60,7 +59,7 @@ fn run(
         })
         .at_positions("pictures", &|(.., record), s, k| {
             if let Some(share) = shares.get(&k) {
-                let value = |p: &Evolved<()>| pressure(p.density) / dam.unit_pressure();
+                let value = |p: &Evolved<()>| medium.eos.pressure(p.density) / dam.unit_pressure();
                 let fluid = s.fluid().map(|(_, p)| (p.position / settings.height, value(p)));
                 let name = format!("particles@{share}");
                 pictures::keep(record, &name, "H", ("p", "rho g H"), fluid);
