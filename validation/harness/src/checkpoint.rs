@@ -121,7 +121,6 @@ macro_rules! tuple {
 
 tuple!();
 tuple!(A 0, B 1);
-tuple!(A 0, B 1, C 2);
 tuple!(A 0, B 1, C 2, D 3);
 
 /// How far a simulation is, apart from its particles and from what is observed of it.

@@ -40,11 +40,9 @@ impl CaseResults {
 
     /// Every judgement on the case, with the run that was judged, or the study.
     pub fn judged(&self) -> impl Iterator<Item = (Of<'_>, &Judged)> {
-        let of_run = |run| move |judged| (Of::Run(run), judged);
-        let of_study = |study| move |judged| (Of::Study(study), judged);
-        let runs = self.runs.all.iter().flat_map(move |run| run.judged.iter().map(of_run(run)));
-        let studies = self.studies.iter();
-        runs.chain(studies.flat_map(move |study| study.judged.iter().map(of_study(study))))
+        let runs = self.runs.all.iter().map(|run| (Of::Run(run), &run.judged));
+        let studies = self.studies.iter().map(|study| (Of::Study(study), &study.judged));
+        runs.chain(studies).flat_map(|(of, judged)| judged.iter().map(move |judged| (of, judged)))
     }
 
     /// The card that it declares and the run of its best variant there.
