@@ -52,8 +52,6 @@ methods! { stepped => Method:
     corrected: Corrected<(ConjugateStress<Linear, PrincipalStress>, ArtificialViscosity<Linear>)>;
     /// (3), (9)–(12) alone, stepped by the leapfrog: nothing stabilises, and nothing dissipates.
     bare: Leaping<CauchyStress<Linear>>;
-    /// The same with corrected gradients.
-    corrected_bare: Corrected<ConjugateStress<Linear>>;
     /// [`bare`], clamped.
     clamped_bare: Leaping<CauchyStress<Linear>, Clamp>;
 }

@@ -1,8 +1,6 @@
 //! What cases of the elastic solid have in common: material, methods, settings, energies, and the
 //! variants of a problem.
 
-#[cfg(test)]
-mod corrected;
 mod elements;
 mod energy;
 pub mod faces;
